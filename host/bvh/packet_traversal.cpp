@@ -9,7 +9,7 @@
 
 // Why no true hit is culled
 //
-// Let the ray intersect_boxes a triangle at t* > 0, t* at most the exact cutoff, I its direction,
+// Let the ray hit a triangle at t* > 0, t* at most the exact cutoff, I its direction,
 // and u = 2^-24. On each axis t* I = x - O for a coordinate x inside the triangle's box, which the
 // tree stores at least one float, so at least 2^-149, wider: low' + 2^-149 <= x <= high' - 2^-149.
 // By symmetry let I > 0; near = low', far = high'.
@@ -76,7 +76,7 @@ void PacketTraversal::set_cutoff(int lane, double t) { cutoff_[lane] = cutoff_be
 struct PacketVisitor {
   int octant;
   FloatLanes origin[3], inverse_near[3], inverse_far[3], cutoff;
-  LaneMask lanes[Bvh::kWidth];  ///< the rays that intersect_boxes the children of the last node
+  LaneMask lanes[Bvh::kWidth];  ///< rays that meet each child of the last node
 
   RAYGATE_INLINE explicit PacketVisitor(const PacketTraversal& packet)
       : octant(packet.octant_), cutoff(packet.cutoff_) {
@@ -87,8 +87,7 @@ struct PacketVisitor {
     }
   }
 
-  /// The rays that intersect_boxes a box, given as the planes that they come to first and last, and
-  /// where.
+  /// Returns the rays that meet a box, given by its near and far planes, and sets their entries.
   RAYGATE_INLINE LaneMask lanes_at(const float (&near)[3], const float (&far)[3],
                                    FloatLanes& enter) const {
     FloatLanes leave = cutoff;
@@ -129,7 +128,7 @@ struct PacketVisitor {
 
   RAYGATE_INLINE LaneMask rays_of_child(int i) const { return lanes[i]; }
 
-  /// The rays that intersect_boxes the box of one triangle of a leaf.
+  /// Returns the rays that meet the box of one triangle of a leaf.
   RAYGATE_INLINE LaneMask lanes_at(const Bvh::Corners& corners) const {
     Box box;
     box_around(corners[0], corners[1], corners[2], box);

@@ -1,4 +1,5 @@
-// Packet traversal: takes eight rays through the tree and stops at each leaf.
+// Packet traversal: eight rays go through the tree together and stop at each leaf; and slab tests
+// of many rays with one origin as if they were one ray.
 #pragma once
 
 #include <algorithm>
@@ -16,42 +17,41 @@
 
 namespace raygate {
 
-/// Some primitives of a leaf that a packet came to, and which of its rays intersect_boxes the boxes
-/// of each.
+/// Consecutive primitives of a leaf whose boxes the same rays of the packet meet.
 struct LeafVisit {
-  std::uint32_t first = 0;  ///< the primitives first .. first + count
+  std::uint32_t first = 0;  ///< primitives [first, first + count)
   std::uint32_t count = 0;
   LaneMask lanes = 0;
 };
 
-/// A leaf's primitives that any ray meets, as runs that the same rays intersect_boxes.
+/// The primitives of a leaf whose boxes any ray of the packet meets, in runs met by the same rays.
 struct LeafVisits {
   std::array<LeafVisit, Bvh::kMaxLeafSize> visits;
-  std::size_t count = 0;  ///< 0: all rays have seen everything
+  std::size_t count = 0;  ///< 0: the traversal has ended
 
   [[nodiscard]] const LeafVisit* begin() const { return visits.data(); }
   [[nodiscard]] const LeafVisit* end() const { return visits.data() + count; }
 };
 
-/// A traversal that can be left at every leaf and resumed, front to back along the octant of its
+/// A traversal that stops at every leaf and can be resumed, front to back along the octant of its
 /// rays. Many packets in flight keep a hit-test unit busy while each waits for its own results.
 ///
-/// No ray misses a triangle that it hits in exact arithmetic (at t no farther than its cutoff):
-/// packet_traversal.cpp has the proof. Of others it comes to those whose own boxes it meets; those
-/// in the plane of its origin, which no ray hits, may be missed.
+/// Box tests are conservative: no ray misses a triangle that it hits in exact arithmetic at a
+/// distance up to its cutoff (proof in packet_traversal.cpp). A ray also visits other triangles
+/// whose boxes it meets, except those in a plane through its origin, which no ray hits.
 class PacketTraversal {
  public:
-  /// All rays point into one octant. Directions as scaled_direction gives them (the largest
-  /// component in [1, 2)); coordinates of magnitude at most 2^126.
+  /// All rays point into one octant. Directions are scaled (scaled_direction: the largest component
+  /// in [1, 2)); coordinates have a magnitude of at most 2^126.
   PacketTraversal(const Bvh& bvh, int octant);
 
-  /// Adds a ray to a lane that has none, before the first call of next_leaf.
+  /// Puts a ray into an empty lane; only before the first call of next_leaf.
   void set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction);
 
-  /// From now on the ray in `lane` looks for nothing beyond `t`.
+  /// Restricts the ray in `lane` to distances up to `t` from now on.
   void set_cutoff(int lane, double t);
 
-  /// The next leaf for any ray.
+  /// Returns the next leaf that any ray meets.
   [[nodiscard]] LeafVisits next_leaf();
 
  private:
@@ -71,24 +71,26 @@ class PacketTraversal {
 // packet_traversal.cpp has it for one ray, whose entry into a box is the largest of 0 and
 // float32((near - O) * inverse_near) of each axis, and whose exit the smallest of its cutoff and
 // float32((far - O) * inverse_far). Both inverses have the sign of the direction's component, and
-// never grow when its magnitude does: rounding keeps order. So a bounds that takes inverse_near for
-// a magnitude no smaller than any of its rays', and inverse_far for one no larger, enters
+// never grow when its magnitude does: rounding keeps order. So bounds that take inverse_near for
+// a magnitude no smaller than any of its rays', and inverse_far for one no larger, enter
 //   * where near - O has the sign of I: no later than any of them;
 //   * else: at 0 or before, as they do;
-// and leaves, where far - O has the sign of I, no earlier than any of them (else none of them hits
-// anything in the box). Its cutoff is no nearer than any of theirs.
+// and leave, where far - O has the sign of I, no earlier than any of them (else none of them hits
+// anything in the box). Their cutoff is no nearer than any of the rays'.
 
-/// For boxes as for single rays: direction components below are as good as 0, and exits grow.
+/// Direction components of smaller magnitude count as 0; exit distances are multiplied by the
+/// growth. The same for single rays and packets.
 inline constexpr float kSmallestComponent = 0x1p-100f;
 inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
 
-/// Which octant a direction points into: bit k is set where component k is negative.
+/// Returns the octant that a direction points into: bit k is set if component k is negative.
 [[nodiscard]] inline int octant_of(const glm::vec3& direction) {
   return (direction.x < 0.0f ? 1 : 0) | (direction.y < 0.0f ? 2 : 0) | (direction.z < 0.0f ? 4 : 0);
 }
 
-/// Where boxes end to matter for a ray that ends at `t`: stored as t (1 + 8 u), rounded up; finite,
-/// so that an entry of +infinity stands for a box that is not entered. A t below 0 leaves nothing.
+/// Returns the distance beyond which boxes can be skipped for a ray with maximum distance `t`:
+/// t (1 + 8 u) rounded up, and finite, so that an entry of +infinity means a box is not entered.
+/// Negative t: -1, beyond which every box can be skipped.
 [[nodiscard]] inline float cutoff_beyond(double t) {
   constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float: no t is, nor any entry
   if (t < 0.0) return -1.0f;
@@ -96,14 +98,14 @@ inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
   return std::bit_cast<float>(std::min(nearest + 1, kFarthest));
 }
 
-/// Rays from one origin into one octant.
+/// Bounds of rays from one origin into one octant.
 struct PacketBounds {
   float origin[3];
   float inverse_near[3], inverse_far[3];
   int octant;  ///< see octant_of
 
   PacketBounds() = default;
-  /// Around one ray; its direction is scaled.
+  /// Bounds of one ray; its direction is scaled.
   PacketBounds(const glm::vec3& from, const glm::vec3& direction) : octant(octant_of(direction)) {
     for (int k = 0; k < 3; ++k) {
       const bool small = std::abs(direction[k]) < kSmallestComponent;
@@ -116,8 +118,8 @@ struct PacketBounds {
   }
 };
 
-/// Sets bit i of the result where the bounds meets the box of child i before `cutoff` (see
-/// PacketTraversal::set_cutoff), and entry[i] to where it enters it.
+/// Returns a mask of the node's children whose boxes the bounds meet before `cutoff` (see
+/// cutoff_beyond); sets entry[i] to the distance at which they enter child i.
 template <Vectors kCode = Vectors::kBaseline>
 RAYGATE_INLINE LaneMask intersect_children(const PacketBounds& bounds, const Bvh::Node& node,
                                            float cutoff, FloatLanes& entry) {
@@ -135,12 +137,12 @@ RAYGATE_INLINE LaneMask intersect_children(const PacketBounds& bounds, const Bvh
   return sign_mask<kCode>(enter <= leave);
 }
 
-/// Eight bounds8 of one origin and octant; an absent one has a negative cutoff.
+/// Bounds of eight packets with one origin and octant; an absent packet has a negative cutoff.
 struct PacketBounds8 {
   FloatLanes inverse_near[3], inverse_far[3];
   FloatLanes cutoff;
 
-  /// From magnitudes of direction components: no smaller and no larger than any of the rays'.
+  /// Sets one axis from bounds of the magnitudes of the rays' direction components.
   RAYGATE_INLINE void set(int axis, int octant, const FloatLanes& smallest,
                           const FloatLanes& largest) {
     const float sign = (octant >> axis & 1) != 0 ? -1.0f : 1.0f;
@@ -152,7 +154,7 @@ struct PacketBounds8 {
   }
 };
 
-/// One of the eight, in a form for intersect_children.
+/// Returns one of the eight as bounds for intersect_children.
 RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
                                       const PacketBounds& like) {
   PacketBounds bounds = like;
@@ -163,7 +165,7 @@ RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
   return bounds;
 }
 
-/// The bounds8 that intersect_boxes the box of a node's child.
+/// Returns a mask of the packets that meet the box of a node's child.
 template <Vectors kCode = Vectors::kBaseline>
 RAYGATE_INLINE LaneMask intersect_packets(const PacketBounds8& bounds8, const glm::vec3& origin,
                                           int octant, const Bvh::Node& node, int child) {

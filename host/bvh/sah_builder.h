@@ -82,12 +82,12 @@ struct BinaryBvh {
   std::vector<Node> nodes;  ///< nodes[0] is above the root
 };
 
-/// Consecutive runs of numbers, none of them empty. Finding a number's run takes as long as it does
-/// to look into a table, where the runs are about equally long.
+/// Consecutive non-empty runs of numbers. Finding the run of a number takes one table lookup if the
+/// runs are about equally long.
 class RangeMap {
  public:
   RangeMap() = default;
-  /// RangeMap of these lengths from `begin` on; their end is below 2^32.
+  /// Runs of these lengths, the first from `begin` on; their end is below 2^32.
   RangeMap(std::uint32_t begin, const std::vector<std::uint32_t>& lengths) : begins_{begin} {
     begins_.reserve(lengths.size() + 1);
     for (const std::uint32_t length : lengths) begins_.push_back(begins_.back() + length);

@@ -1,4 +1,4 @@
-// Traversal: the tree's ordered walk, leaf by leaf and near before far, for any visitor.
+// Traversal of the tree, leaf by leaf and near before far, for any visitor.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace raygate {
 
-/// What waits to be visited: where the first of the bundle enters its box, a little less at most,
-/// and which of the bundle may intersect_boxes it.
+/// A node or leaf that is still to be visited: a lower bound of the distance at which the first ray
+/// enters its box, and the rays that may enter it.
 template <class Rays>
 struct StackEntry {
   Bvh::Child child;
@@ -19,7 +19,7 @@ struct StackEntry {
   [[no_unique_address]] Rays rays;
 };
 
-/// Of what waits, the nearest comes last, as far as one node knows.
+/// The entries still to be visited. Of one node's children the nearest is on top.
 template <class Rays>
 struct TraversalStack {
   int depth;

@@ -69,9 +69,9 @@ void require_distinct(std::span<const std::filesystem::path> outputs,
 /// Whether writing to `file` is writing to standard output.
 [[nodiscard]] bool is_standard_output(const std::filesystem::path& file);
 
-/// Throws the InputError that a AtomicFile for `path` would end in as things stand: folder
-/// missing, no permission, a folder by that name, a pipe that nobody reads. Changes nothing. To be
-/// called before hours of work whose result goes to `path`.
+/// Throws the InputError that an AtomicFile for `path` would throw now: the folder is missing, no
+/// permission, a folder of that name, a pipe without a reader. Changes nothing. Call it before
+/// hours of work whose result goes to `path`.
 void require_writable(const std::filesystem::path& path);
 
 }  // namespace raygate

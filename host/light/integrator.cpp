@@ -290,13 +290,13 @@ void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutp
     shadow.sample = sample;
     shadow.radiance = light.radiance;
     shadow.surface = **points[light.is_transmitted];
-    shadow.surface_slot = place.primitive;
+    shadow.surface_primitive = place.primitive;
     shadow.is_to_camera = light.is_to_camera != 0;
     if (light.is_point_light != 0) {
       shadow.point_light = light.index;
     } else {
       shadow.target = light.target;
-      shadow.target_slot = light.index;
+      shadow.target_primitive = light.index;
     }
   }
   for (const ScatteredRay& scattered : block_.scattered_of(i)) {

@@ -25,7 +25,7 @@ namespace {
 
 /// In the order of the scene's triangles: lights, and what is sampled of them, do not depend on how
 /// the tree is built.
-std::vector<std::uint32_t> emitting_slots(const Scene& scene, const Bvh& bvh) {
+std::vector<std::uint32_t> emitting_primitives(const Scene& scene, const Bvh& bvh) {
   std::vector<std::uint32_t> primitives;
   for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
     if (emits(scene.materials[scene.triangles[bvh.triangle_of(primitive)].material])) {
@@ -234,7 +234,7 @@ glm::vec3 Lights::textured_radiance(std::uint32_t primitive, const glm::vec3& po
 /// The faces that emit, light by light.
 void Lights::find_areas() {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
-  for (const std::uint32_t primitive : emitting_slots(scene_, bvh_)) {
+  for (const std::uint32_t primitive : emitting_primitives(scene_, bvh_)) {
     const Triangle& face = scene_.triangles[bvh_.triangle_of(primitive)];
     const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas_.size());
     if (is_new) {
@@ -264,7 +264,7 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
   for (std::size_t i = 0; i < light.primitives.size(); ++i) {
     const Corners t = bvh_.corners_of(light.primitives[i]);
     Patch patch;
-    patch.primitive = patch.slot_beyond = light.primitives[i];
+    patch.primitive = patch.primitive_beyond = light.primitives[i];
     patch.begin = static_cast<float>(before / light.area());
     patch.normal = glm::vec3(glm::normalize(triangle_normal(t)));
     patch.corner = t[0];
@@ -278,7 +278,7 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
         patch.corner = sides->corner;
         patch.u = sides->u;
         patch.v = sides->v;
-        patch.slot_beyond = light.primitives[i];
+        patch.primitive_beyond = light.primitives[i];
       }
     }
     patch.end = static_cast<float>(light.area_up_to[i] / light.area());
@@ -327,16 +327,16 @@ void Lights::add_sources(double unit) {
   for (const AreaLight& light : areas_)
     primitives.insert(primitives.end(), light.primitives.begin(), light.primitives.end());
   const std::vector<OuterSide> sides = outer_sides(bvh_, primitives);
-  if (!areas_.empty()) source_of_slot_.assign(bvh_.primitive_count(), kNoIndex);
-  std::vector<OuterSide> side_of_slot(source_of_slot_.size());
-  for (std::size_t i = 0; i < primitives.size(); ++i) side_of_slot[primitives[i]] = sides[i];
+  if (!areas_.empty()) source_of_primitive_.assign(bvh_.primitive_count(), kNoIndex);
+  std::vector<OuterSide> side_of_primitive(source_of_primitive_.size());
+  for (std::size_t i = 0; i < primitives.size(); ++i) side_of_primitive[primitives[i]] = sides[i];
   for (const AreaLight& light : areas_) {
     const std::uint32_t first = lights_[number].first_patch;
     for (std::uint32_t i = first; i < first + lights_[number].patches; ++i) {
       const Patch& patch = patches_[i];
-      source_of_slot_[patch.primitive] = source_of_slot_[patch.slot_beyond] =
+      source_of_primitive_[patch.primitive] = source_of_primitive_[patch.primitive_beyond] =
           static_cast<std::uint32_t>(sources.size());
-      add(light_bounds(patch, light, unit, side_of_slot[patch.primitive]), i, patch.area);
+      add(light_bounds(patch, light, unit, side_of_primitive[patch.primitive]), i, patch.area);
     }
     ++number;
   }
@@ -402,7 +402,7 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
     const auto back = edges.find({edge.second, edge.first});
     if (back != edges.end()) parts.join(back->second[0], along[0]);
   }
-  std::unordered_map<std::uint32_t, std::uint32_t> part_of_slot;
+  std::unordered_map<std::uint32_t, std::uint32_t> part_of_primitive;
   std::map<std::uint32_t, Part> found;
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     const Corners t = bvh.corners_of(primitives[i]);
@@ -414,7 +414,7 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
     part.high = glm::max(part.high, glm::max(t[0], glm::max(t[1], t[2])));
     part.volume += glm::dot(glm::dvec3(t[0]) - middle,
                             glm::cross(glm::dvec3(t[1]) - middle, glm::dvec3(t[2]) - middle));
-    part_of_slot[primitives[i]] = parts.of(i);
+    part_of_primitive[primitives[i]] = parts.of(i);
   }
   for (const auto& [edge, along] : edges) {
     const auto back = edges.find({edge.second, edge.first});
@@ -426,8 +426,8 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
     part.is_open =
         part.is_open || part.volume == 0.0 ||
         any_primitive_near(bvh, part.low, part.high, [&](std::uint32_t primitive, const Corners&) {
-          const auto known = part_of_slot.find(primitive);
-          return known == part_of_slot.end() || known->second != number;
+          const auto known = part_of_primitive.find(primitive);
+          return known == part_of_primitive.end() || known->second != number;
         });
   }
   std::vector<OuterSide> sides(primitives.size());

@@ -199,7 +199,7 @@ class Lights {
   [[nodiscard]] const Source& source(std::size_t index) const { return sources_[index]; }
   /// Which one a primitive belongs to; kNoIndex for none.
   [[nodiscard]] std::uint32_t source_of(std::uint32_t primitive) const {
-    return primitive < source_of_slot_.size() ? source_of_slot_[primitive] : kNoIndex;
+    return primitive < source_of_primitive_.size() ? source_of_primitive_[primitive] : kNoIndex;
   }
   /// There is at most one; the last.
   [[nodiscard]] std::uint32_t environment_source() const {
@@ -230,8 +230,8 @@ class Lights {
   struct Patch {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
     std::uint32_t primitive = 0,
-                  slot_beyond = 0;   ///< with more of u than of v, and the other way round
-    float begin = 0.0f, end = 0.0f;  ///< its part of the light's area, in [0, 1]
+                  primitive_beyond = 0;  ///< with more of u than of v, and the other way round
+    float begin = 0.0f, end = 0.0f;      ///< its part of the light's area, in [0, 1]
     double area = 0.0;
     bool is_triangle = true;
   };
@@ -252,9 +252,10 @@ class Lights {
   std::vector<AreaLight> areas_;
   std::vector<Light> lights_;
   std::vector<Patch> patches_;
-  std::vector<float> patch_ends_;              // of the patches, for searching
-  std::vector<Source> sources_;                // as in count(), patch by patch
-  std::vector<std::uint32_t> source_of_slot_;  // or kNoIndex; empty: none at all. No instance emits
+  std::vector<float> patch_ends_;  // of the patches, for searching
+  std::vector<Source> sources_;    // as in count(), patch by patch
+  std::vector<std::uint32_t>
+      source_of_primitive_;  // or kNoIndex; empty: none at all. No instance emits
   LightTree tree_;
   bool any_power_ = false;
   float per_unit_ = 1.0f;
@@ -292,7 +293,7 @@ RAYGATE_INLINE LightPoint<T> Lights::sample_patches(const std::uint32_t (&number
               gather<T>(patches, &Patch::v) * along_v,
           gather<T>(patches, &Patch::normal),
           choose(is_triangle | (along_u > along_v), gather<T>(patches, &Patch::primitive),
-                 gather<T>(patches, &Patch::slot_beyond))};
+                 gather<T>(patches, &Patch::primitive_beyond))};
 }
 
 }  // namespace raygate

@@ -43,8 +43,8 @@ float largest_coordinate(const Bvh& bvh) {
 }  // namespace
 
 void Overlaps::add(std::uint32_t primitive, const Corners& triangle) {
-  const auto lane = static_cast<int>(slots_.size() % kLanes);
-  slots_.push_back(primitive);
+  const auto lane = static_cast<int>(primitives_.size() % kLanes);
+  primitives_.push_back(primitive);
   if (lane == 0) {
     Boxes& empty = boxes_.emplace_back();
     for (int k = 0; k < 3; ++k) {

@@ -21,7 +21,7 @@ namespace raygate {
 class Overlaps {
  public:
   void add(std::uint32_t primitive, const Corners& triangle);
-  [[nodiscard]] std::size_t size() const { return slots_.size(); }
+  [[nodiscard]] std::size_t size() const { return primitives_.size(); }
 
   /// Calls visit(primitive) for the triangles whose boxes are within `reach` of the point on each
   /// axis, until it says true; whether it did.
@@ -29,7 +29,7 @@ class Overlaps {
   [[nodiscard]] RAYGATE_INLINE bool any_near(const glm::vec3& point, float reach,
                                              const Visit& visit) const {
     const glm::vec3 from = point - reach, to = point + reach;
-    const std::uint32_t* primitives = slots_.data();
+    const std::uint32_t* primitives = primitives_.data();
     for (const Boxes& boxes : boxes_) {
       IntLanes touches = IntLanes{} - 1;
       for (int k = 0; k < 3; ++k) {
@@ -52,7 +52,7 @@ class Overlaps {
   };
 
   std::vector<Boxes> boxes_;
-  std::vector<std::uint32_t> slots_;
+  std::vector<std::uint32_t> primitives_;
 };
 
 /// The clearance of a triangle ABC, for rays that begin on it: one cache line.

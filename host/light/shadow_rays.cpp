@@ -94,12 +94,12 @@ void ShadowRays::next_from_surface(const ShadowRay& ray, std::uint32_t index) {
   Segment& segment = next_.emplace_back();
   segment.index = index;
   segment.from = ray.surface;
-  segment.source = ray.surface_slot;
+  segment.source = ray.surface_primitive;
   segment.to = is_area ? ray.target : lights_.points()[ray.point_light].position;
-  segment.ignored = is_area ? ray.target_slot : NearestHit::kNone;
-  segment.share = !is_area || ray.is_to_camera           ? kWholeWay
-                  : ray.target_slot == NearestHit::kNone ? kNoEnd
-                                                         : kBeforeAreaLight;
+  segment.ignored = is_area ? ray.target_primitive : NearestHit::kNone;
+  segment.share = !is_area || ray.is_to_camera                ? kWholeWay
+                  : ray.target_primitive == NearestHit::kNone ? kNoEnd
+                                                              : kBeforeAreaLight;
 }
 
 void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light) {
@@ -108,7 +108,7 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     if (rays[i].point_light != point_light) continue;
     segments_.push_back(
-        {i, position, rays[i].surface, NearestHit::kNone, rays[i].surface_slot, kWholeWay});
+        {i, position, rays[i].surface, NearestHit::kNone, rays[i].surface_primitive, kWholeWay});
   }
   if (segments_.empty()) return;
   trace(true, kSureOfLight);

@@ -25,11 +25,11 @@ struct ShadowRay {
 
   std::uint32_t sample = 0;  ///< whose light it is: for the caller
   glm::vec3 radiance{0.0f};  ///< what arrives if nothing is between; what does arrive
-  glm::vec3 surface{0.0f};   ///< a RaySpawner of the surface
-  std::uint32_t surface_slot = 0;
+  glm::vec3 surface{0.0f};   ///< origin of the ray, from RaySpawner
+  std::uint32_t surface_primitive = 0;
   std::uint32_t point_light = kNoPoint;  ///< index; or else the light is an area's or far away:
   glm::vec3 target{0.0f};                ///< its point, or the direction towards it
-  std::uint32_t target_slot = 0;         ///< and what that is on; kNone: it is infinitely far away
+  std::uint32_t target_primitive = 0;    ///< and what that is on; kNone: it is infinitely far away
   bool is_to_camera = false;             ///< the target is a point that is on nothing
 };
 

@@ -205,8 +205,8 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
       return false;
     }
     return !any_primitive_near(bvh_, low, high,
-                               [&](std::uint32_t other_slot, const Corners& other) {
-                                 if (other_slot == primitive || surely_apart(low, high, other))
+                               [&](std::uint32_t other_primitive, const Corners& other) {
+                                 if (other_primitive == primitive || surely_apart(low, high, other))
                                    return false;
                                  if (lies_beyond(other, hit, sign)) return false;
                                  const Refuser refuser{other, side_of_ray(ray, hit, other, side)};

@@ -53,7 +53,7 @@ struct SpawnOrigin {
 ///
 /// How far: let u be one float step (ulp) of X's largest coordinate, or the error of X in double
 /// if that is more. Where no other triangle is within 4 u of X, O' is within 1.5 u, or 3 u next to
-/// a power of two, of X as double has it, on each axis: departure.cpp has the proof. From the exact
+/// a power of two, of X as double has it, on each axis: spawn_ray.cpp has the proof. From the exact
 /// X it is farther by that error, which only far from the origin shows (1.528 u). In corners too
 /// narrow for that O' backs away from X, by powers of two, along the normal or the ray, or to the
 /// ray's origin itself, so that in a convex room there always is an O' for kIncident. In other

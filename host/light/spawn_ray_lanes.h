@@ -10,9 +10,9 @@
 
 // Which side
 //
-// X, u and candidate 0, the float nearest to X + u m, are departure.cpp's; X in double is off by
-// u / 16 at most on each axis, or nothing is said. With m and X so exact, and no coordinate rounded
-// by more than u / 2, candidate 0 is beyond the plane by
+// X, u and candidate 0, the float nearest to X + u m, are those of spawn_ray.cpp; X in double is
+// off by u / 16 at most on each axis, or nothing is said. With m and X so exact, and no coordinate
+// rounded by more than u / 2, candidate 0 is beyond the plane by
 //   u / |n|_max - (u / 2 + u / 16) |n|_1 > u (1 - 1.37 * 9 / 16) / |n|_max > 0.
 //
 // How exact X is: a component of NeighborClearance::normal is off by less than 1, so D = (A - O) .

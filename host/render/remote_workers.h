@@ -15,8 +15,8 @@
 
 namespace raygate {
 
-/// A message about a tile: with the work goes what the film has of the tile (film_region.h), there
-/// where the worker lacks it, and back what it has then, after the splats that it has brought.
+/// Encodes a message about a tile. To the worker: the work, and the film's data of the tile if the
+/// worker lacks it. From the worker: the work, its splats, and the film's data of the tile.
 [[nodiscard]] inline std::string message_of(TileWork work, std::string_view region,
                                             std::span<const Splat> splats = {}) {
   work.splats = splats.size();

@@ -10,9 +10,9 @@
 namespace raygate {
 
 /// The window cut into tiles, numbered row by row, and each pixel's samples into passes, so that a
-/// tile's samples of a pass are about as many as a intersector likes at once. Fewer where some of
-/// the threads would have no tile; and where there are other ranks, smaller tiles and longer
-/// passes, unless these are to stay short, as long as a thread has not four tiles.
+/// tile's samples of a pass are about as many as an intersector prefers in a batch. Fewer where
+/// some of the threads would have no tile; and where there are other ranks, smaller tiles and
+/// longer passes, unless these are to stay short, as long as a thread has not four tiles.
 struct Tiles {
   PixelRect window;
   int samples, samples_per_pass;

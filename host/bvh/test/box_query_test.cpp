@@ -9,7 +9,8 @@
 namespace raygate {
 namespace {
 
-std::vector<std::uint32_t> slots_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high) {
+std::vector<std::uint32_t> primitives_near(const Bvh& bvh, const glm::vec3& low,
+                                           const glm::vec3& high) {
   std::vector<std::uint32_t> primitives;
   EXPECT_FALSE(
       any_primitive_near(bvh, low, high, [&](std::uint32_t primitive, const Corners& corners) {
@@ -32,7 +33,7 @@ TEST(BoxQuery, FindsWhatTouchesAndNothingElse) {
   for (int i = 0; i < 2000; ++i) {
     const glm::vec3 p = random.point(), q = p + random.point(0.3f);
     const glm::vec3 low = glm::min(p, q), high = glm::max(p, q);
-    found = slots_near(bvh, low, high);
+    found = primitives_near(bvh, low, high);
     std::ranges::sort(found);
     std::vector<std::uint32_t> expected;
     for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
@@ -56,7 +57,7 @@ TEST(BoxQuery, APointTouchesTheTrianglesThatEndThere) {
   const Bvh bvh(test::scene_of(mesh));
   std::vector<std::uint32_t> found;
   for (const Corners& t : mesh) {
-    found = slots_near(bvh, t[0], t[0]);
+    found = primitives_near(bvh, t[0], t[0]);
     EXPECT_GE(found.size(), 5u);
   }
 }
@@ -64,7 +65,7 @@ TEST(BoxQuery, APointTouchesTheTrianglesThatEndThere) {
 TEST(BoxQuery, AnEmptySceneHasNothing) {
   const Bvh bvh(test::scene_of({}));
   std::vector<std::uint32_t> found = {7};
-  found = slots_near(bvh, glm::vec3(-1), glm::vec3(1));
+  found = primitives_near(bvh, glm::vec3(-1), glm::vec3(1));
   EXPECT_TRUE(found.empty());
 }
 

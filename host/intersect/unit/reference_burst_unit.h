@@ -23,11 +23,11 @@ struct HitDistance {
   std::uint32_t error = 0;
 };
 
-/// BurstUnit's contract in the format and rounding of `Math` (Binary32, or bench/variants'
-/// Arithmetic): every float of the records, rays and results is a number of that format, "floats"
-/// between two distances are its numbers, and the limit of grazing is hit_test_pkg::max_grazing's
-/// for it. The same operations in the same order as hit_test_pipeline with these parameters, so
-/// that the bits are equal.
+/// BurstUnit's contract in the format and rounding of `Math` (Binary32, or Arithmetic of
+/// host/variants): every float of the records, rays and results is a number of that format,
+/// "floats" between two distances are its numbers, and the limit of grazing is
+/// hit_test_pkg::max_grazing's for it. The same operations in the same order as hit_test_pipeline
+/// with these parameters, so that the bits are equal.
 template <typename Math>
 class BasicReferenceBurstUnit : public BurstUnit {
  public:

@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-/// A intersector that likes larger tiles.
+/// An intersector that prefers larger tiles.
 class ManyAtOnce : public CpuIntersector {
  public:
   ManyAtOnce(const Bvh& bvh, std::size_t lanes) : CpuIntersector(bvh), lanes_(lanes) {}

@@ -48,7 +48,7 @@ class ShadowRaysTest : public testing::Test {
       ShadowRay ray;
       ray.radiance = glm::vec3(1.0f);
       ray.surface = *origin;
-      ray.surface_slot = primitive;
+      ray.surface_primitive = primitive;
       const int side = orient3d(eye, bvh_.corners_of(primitive));
       const auto ask = [&](const glm::vec3& at) {
         if (orient3d(at, bvh_.corners_of(primitive)) == side) questions_.push_back(ray);
@@ -61,10 +61,10 @@ class ShadowRaysTest : public testing::Test {
       const LightPoint<float> point = lights_.sample<float>(
           area_light, {float(random_.uniform(0, 1)), float(random_.uniform(0, 1))});
       ray.target = {point.position.x, point.position.y, point.position.z};
-      ray.target_slot = point.primitive;
+      ray.target_primitive = point.primitive;
       ask(ray.target);
       ray.target = glm::vec3(-scene_.directional_lights[0].direction);
-      ray.target_slot = NearestHit::kNone;
+      ray.target_primitive = NearestHit::kNone;
       if (direction_side(ray.target, bvh_.corners_of(primitive)) == -side)
         questions_.push_back(ray);
     }
@@ -73,7 +73,7 @@ class ShadowRaysTest : public testing::Test {
   /// Whether a triangle is between the departure point and the light, in exact arithmetic.
   bool is_blocked(const ShadowRay& question) const {
     const bool is_point = question.point_light != ShadowRay::kNoPoint;
-    if (!is_point && question.target_slot == NearestHit::kNone)
+    if (!is_point && question.target_primitive == NearestHit::kNone)
       return is_blocked_from_afar(question);
     const glm::vec3 target =
         is_point ? scene_.lights[question.point_light].position : question.target;
@@ -84,7 +84,7 @@ class ShadowRaysTest : public testing::Test {
     const auto limit =
         static_cast<float>(share * std::sqrt(glm::dot(way, way) / glm::dot(scaled, scaled)));
     for (std::uint32_t primitive = 0; primitive < bvh_.primitive_count(); ++primitive) {
-      if (!is_point && primitive == question.target_slot) continue;
+      if (!is_point && primitive == question.target_primitive) continue;
       const Corners& t = bvh_.corners_of(primitive);
       if (hits_triangle(ray, t) && compare_hit_to_limit(ray, t, limit) < 0) return true;
     }
@@ -171,9 +171,9 @@ TEST(ShadowRays, EndAtSureOccludersAmongLeaves) {
   for (std::size_t i = 0; i < asked.size(); ++i) {
     asked[i].radiance = glm::vec3(1.0f);
     asked[i].surface = random.point(4.5f);
-    asked[i].surface_slot = NearestHit::kNone;
+    asked[i].surface_primitive = NearestHit::kNone;
     asked[i].target = i % 2 == 0 ? random.point(4.5f) : random.point();
-    asked[i].target_slot = i % 2 == 0 ? 0 : NearestHit::kNone;
+    asked[i].target_primitive = i % 2 == 0 ? 0 : NearestHit::kNone;
   }
   const auto answers = [&](Intersector& intersector, bool first_occluder) {
     Skips skips;
