@@ -10,30 +10,30 @@
 
 namespace raygate {
 
-/// The low corner in lanes 0 to 2, the high one with its signs turned in lanes 4 to 6: the box
-/// around two boxes is the smaller of each lane. Lanes 3 and 7 mean nothing.
+/// The low corner in lanes 0 to 2, the negated high corner in lanes 4 to 6: the union of two boxes
+/// is the minimum of each lane. Lanes 3 and 7 are not used.
 using Box = FloatLanes;
 
-/// What holds nothing.
+/// Makes the box empty.
 RAYGATE_INLINE void clear(Box& box) { box = FloatLanes{} + std::numeric_limits<float>::infinity(); }
 
 RAYGATE_INLINE void grow(Box& box, const Box& other) { box = other < box ? other : box; }
 
-/// One over a box's longest side: areas in that unit are finite.
+/// Returns 1 / (the box's longest side), a unit in which areas are finite.
 RAYGATE_INLINE float unit_of(const Box& box) {
   const float longest = -std::min({box[0] + box[4], box[1] + box[5], box[2] + box[6]});
   return std::min(1.0f / longest, std::numeric_limits<float>::max());
 }
 
-/// Half the surface of a box that is not empty, with lengths times `unit`.
+/// Returns half the surface area of a box that is not empty, with all lengths multiplied by `unit`.
 RAYGATE_INLINE float half_area(const Box& box, float unit) {
   const FloatLanes sizes =
       unit * (box + __builtin_shufflevector(box, box, 4, 5, 6, 7, 0, 1, 2, 3));  // negative
   return sizes[0] * sizes[1] + sizes[1] * sizes[2] + sizes[2] * sizes[0];
 }
 
-/// The box around three corners, one float wider than they are on every side. Finite for
-/// coordinates that are below the largest float.
+/// Sets `box` to the bounds of three corners, widened by one float on every side. Finite for
+/// coordinates below the largest float.
 RAYGATE_INLINE void box_around(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
                                Box& box) {
   const Box corners[3] = {{a.x, a.y, a.z, 0.0f, -a.x, -a.y, -a.z, 0.0f},

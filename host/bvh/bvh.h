@@ -1,7 +1,9 @@
 // Bvh: an eight-wide bounding volume hierarchy around a scene's triangles and instances.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -10,7 +12,6 @@
 #include <vector>
 
 #include "host/base/vectors.h"
-#include "host/bvh/sah_builder.h"
 #include "host/scene/instances.h"
 #include "host/scene/scene.h"
 
@@ -18,56 +19,91 @@ namespace raygate {
 
 struct TreeContent;
 
-/// Its nodes and primitives are those of the mesh's tree, of numbers from `first_node` and
-/// `first_primitive` on.
+/// Consecutive non-empty runs of numbers. Finding the run of a number takes one table lookup if the
+/// runs are about equally long.
+class RangeMap {
+ public:
+  RangeMap() = default;
+  /// Runs of these lengths, the first from `begin` on; their end is below 2^32.
+  RangeMap(std::uint32_t begin, const std::vector<std::uint32_t>& lengths) : begins_{begin} {
+    begins_.reserve(lengths.size() + 1);
+    for (const std::uint32_t length : lengths) begins_.push_back(begins_.back() + length);
+    if (lengths.empty()) return;
+    const std::uint32_t size = end() - begin;
+    shift_ = std::bit_width(size / static_cast<std::uint32_t>(lengths.size()));
+    for (std::uint32_t chunk = 0, run = 0; chunk <= (size - 1) >> shift_; ++chunk) {
+      while (begins_[run + 1] - begin <= chunk << shift_) ++run;
+      first_.push_back(run);
+    }
+    first_.push_back(static_cast<std::uint32_t>(lengths.size() - 1));
+  }
+
+  [[nodiscard]] std::uint32_t begin() const { return begins_.front(); }
+  [[nodiscard]] std::uint32_t end() const { return begins_.back(); }
+  [[nodiscard]] std::uint32_t begin(std::uint32_t run) const { return begins_[run]; }
+
+  /// The run that a number from begin() to before end() is in.
+  [[nodiscard]] std::uint32_t find(std::uint32_t number) const {
+    const std::uint32_t* const chunk = &first_[(number - begins_[0]) >> shift_];
+    const auto first = begins_.begin() + chunk[0] + 1, last = begins_.begin() + chunk[1] + 1;
+    return static_cast<std::uint32_t>(std::upper_bound(first, last, number) - begins_.begin()) - 1;
+  }
+
+ private:
+  std::vector<std::uint32_t> begins_{0};  // of the runs, and their end
+  std::vector<std::uint32_t> first_;      // the run of the first number of each 2^shift_, and more
+  int shift_ = 0;
+};
+
+/// One instance of a mesh. Its nodes and primitives are those of the mesh's tree, renumbered from
+/// `first_node` and `first_primitive` on.
 struct InstanceBvh {
-  double rows[3][4];      ///< as Instance has them
-  float matrix[3][3];     ///< the first three of each
-  float low[3], high[3];  ///< about the fourth: what bounds begin with
-  std::uint32_t mesh;     ///< whose tree it is
+  double rows[3][4];      ///< the transform, as in Instance
+  float matrix[3][3];     ///< its linear part, rounded
+  float low[3], high[3];  ///< bounds of its translation, widened for all rounding
+  std::uint32_t mesh;     ///< index of the mesh's tree
   std::uint32_t first_node = 0, first_primitive = 0;
   std::uint32_t first_triangle = 0;  ///< in the scene
 
-  /// `size`: the largest magnitudes of the bounds of the mesh's tree.
+  /// `size`: the largest magnitude on each axis of the bounds of the mesh's tree.
   InstanceBvh(const Instance& instance, const glm::dvec3& size);
 };
 
-/// A tree of axis-aligned boxes, eight to a node. A leaf holds a run of primitives; primitive s
-/// stands for triangle `triangle_of(s)` of the scene. The tree does not refer to the scene after it
-/// is built, and is the same, byte for byte, whatever the number of threads that build it. Memory:
-/// 320 bytes a node, a node for about five primitives, and 41 bytes a primitive.
+/// A tree of axis-aligned boxes, eight to a node. A leaf holds a run of primitives; primitive s is
+/// triangle `triangle_of(s)` of the scene. The tree does not refer to the scene after it is built,
+/// and is the same, byte for byte, for any number of threads that build it. Memory: 320 bytes a
+/// node, one node for about five primitives, and 41 bytes a primitive.
 ///
-/// Of a mesh that stands in several places there is one tree. What is below an instance looks like
-/// any other part of the tree, with nodes and primitives of numbers that nothing is stored for:
-/// BvhView and corners_of() make them out of the mesh's when they are asked for: instance_bvh.cpp
-/// says how. An instance takes some 200 bytes.
+/// A mesh with several instances has one tree. The nodes and primitives below an instance have
+/// numbers of their own but are not stored: BvhView and corners_of() compute them from the mesh's
+/// tree on access (instance_bvh.cpp). An instance takes about 200 bytes.
 class Bvh {
  public:
   static constexpr int kWidth = 8;
   static constexpr std::uint32_t kMaxLeafSize = 4;
-  /// No way from the root to a leaf is longer.
+  /// No path from the root to a leaf has more nodes.
   static constexpr int kMaxDepth = 48;
-  /// What a walk's stack must hold: each level leaves at most seven children waiting.
+  /// Entries of a traversal's stack: each level leaves at most seven children to visit.
   static constexpr int kStackSize = (kWidth - 1) * kMaxDepth + 1;
 
   /// An inner node or a leaf.
   struct Child {
-    std::uint32_t first;  ///< inner: index of the node; leaf: the primitives first .. first + count
+    std::uint32_t first;  ///< inner: index of the node; leaf: primitives [first, first + count)
     std::uint32_t count;  ///< 0: an inner node
 
-    /// The last kind, of more triangles than a leaf may have, is what a walk ends with.
+    /// kNone, with more triangles than a leaf may have, marks the end of a traversal.
     enum Kind : std::size_t { kInner, kLeaf, kNone, kKinds };
     [[nodiscard]] std::size_t kind() const { return (count + kMaxLeafSize - 1) / kMaxLeafSize; }
   };
 
-  /// Eight boxes against which one ray is tested at once. Boxes are one float wider than what they
-  /// hold on every side; absent children, which come last, have empty ones, low = +infinity and
-  /// high = -infinity.
+  /// Eight boxes that are tested against a ray at once. Each is one float wider than its contents
+  /// on every side. Absent children come last and have empty boxes: low = +infinity, high =
+  /// -infinity.
   struct alignas(64) Node {
     float bounds[2][3][kWidth];  ///< [low = 0, high = 1][axis][child]
     Child child[kWidth];
 
-    /// The low and the high corner of a child's box.
+    /// Returns the low and the high corner of a child's box.
     [[nodiscard]] std::pair<glm::vec3, glm::vec3> box(int i) const {
       return {{bounds[0][0][i], bounds[0][1][i], bounds[0][2][i]},
               {bounds[1][0][i], bounds[1][1][i], bounds[1][2][i]}};
@@ -77,46 +113,46 @@ class Bvh {
   /// The vertices of a primitive's triangle, in the triangle's order.
   using Corners = std::array<glm::vec3, 3>;
 
-  /// Where the corners of a leaf's triangles are made, if they are not stored.
+  /// Room for the corners of a leaf's triangles, where they are not stored.
   struct LeafRoom {
     float corners[9 * kMaxLeafSize + kMaxLeafSize];
   };
 
-  /// Builds the tree; all positions finite, of magnitude at most 2^126, those of instances too, and
-  /// so are sums of their rows' magnitudes times positions; fewer than 2^31 triangles. A scene
-  /// without triangles gives a tree that no ray enters.
+  /// Builds the tree of fewer than 2^31 triangles. All positions are finite with a magnitude of at
+  /// most 2^126, also after instances' transforms, whose sums of magnitudes are bounded likewise.
+  /// No ray enters the tree of a scene without triangles.
   explicit Bvh(const Scene& scene, int threads = 1);
 
-  /// Those that are stored, of no instance; nodes()[0] is the root.
+  /// The stored nodes, without those of instances; nodes()[0] is the root.
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
 
-  /// The primitives below are those that are stored, of no instance.
+  /// Number of stored primitives, without those of instances.
   [[nodiscard]] std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(triangles_.size());
   }
   [[nodiscard]] bool has_instances() const { return !instances_.empty(); }
-  /// The primitives of all instances: first .. second; after the stored ones.
+  /// The primitives of all instances, [first, second); they follow the stored ones.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> instance_primitives() const {
     if (!has_instances()) return {primitive_count(), primitive_count()};
     return {instance_primitives_.begin(), instance_primitives_.end()};
   }
-  /// Whether the number of a primitive, or of a node, is one of an instance.
+  /// Whether a primitive or node number belongs to an instance.
   [[nodiscard]] RAYGATE_INLINE bool is_instanced(std::uint32_t number) const {
     return number >= first_instanced_;
   }
-  /// The leaves of the whole tree.
+  /// Returns the leaves of the tree, including those of instances.
   [[nodiscard]] std::vector<Child> leaves() const;
-  /// Of the whole tree, instances included.
+  /// Number of triangles, including those of instances.
   [[nodiscard]] std::uint64_t triangle_count() const {
     return std::uint64_t{primitive_count()} +
            (instance_primitives_.end() - instance_primitives_.begin());
   }
 
-  /// The number of a primitive's triangle in the scene.
+  /// Returns the scene's index of a primitive's triangle.
   [[nodiscard]] std::uint32_t triangle_of(std::uint32_t primitive) const {
     return is_instanced(primitive) ? instance_triangle(primitive) : triangles_[primitive];
   }
-  /// Where the scene stores it.
+  /// Returns a reference to the scene's face of a primitive.
   [[nodiscard]] RAYGATE_INLINE FaceRef face_of(std::uint32_t primitive) const {
     if (is_instanced(primitive)) [[unlikely]]
       return instance_face(primitive);
@@ -135,11 +171,12 @@ class Bvh {
 
   Bvh() = default;
 
-  /// Builds it, of at most so many levels.
+  /// Builds the tree with at most `most_levels` levels.
   void build(const TreeContent& content, int most_levels, int threads);
-  /// Takes the scene's instances in, adds them to the content, and says how many levels they have.
+  /// Builds the trees of the scene's meshes, adds the instances to the content, and returns the
+  /// number of levels below an instance.
   int add_instances(const Scene& scene, int threads, TreeContent& content);
-  /// How many nodes there are on the longest way down.
+  /// Returns the number of nodes on the longest path down from a node.
   [[nodiscard]] int levels(std::uint32_t index = 0) const;
 
   void make_instance_node(std::uint32_t index, Node& room) const;
@@ -159,18 +196,17 @@ class Bvh {
     return corners;
   }
 
-  /// Which of its leaf's triangles a primitive is.
+  /// A primitive's number within its leaf, and the leaf's number of triangles.
   struct Place {
     std::uint8_t number, count;
   };
 
   std::vector<Node> nodes_;
-  std::vector<float> corners_;            // all geometry: leaf by leaf
-  std::vector<std::uint32_t> triangles_;  // of the primitives, as the places
+  std::vector<float> corners_;            // of all primitives, leaf by leaf
+  std::vector<std::uint32_t> triangles_;  // index in the scene, by primitive
   std::vector<Place> places_;
 
-  // Nodes and primitives from here on are of instances: `instance_nodes_` and
-  // `instance_primitives_` say of which.
+  // Nodes and primitives from this number on belong to instances, each to a run of these.
   std::uint32_t first_instanced_ = 0xFFFFFFFF;
   RangeMap instance_nodes_, instance_primitives_;
   std::vector<InstanceBvh> instances_;

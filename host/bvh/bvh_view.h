@@ -1,4 +1,4 @@
-// BvhView: what a walk reads of a tree.
+// BvhView: the arrays of a tree, as a traversal reads them.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace raygate {
 
-/// The nodes and leaves of a Bvh, which must outlive it and not move. To be held by value: of a
-/// reference, compilers read the parts anew after each store.
+/// The nodes and leaves of a Bvh, which must outlive the view and not move. Hold it by value:
+/// through a reference, compilers load the pointers again after each store.
 class BvhView {
  public:
   explicit BvhView(const Bvh& bvh)
@@ -19,7 +19,7 @@ class BvhView {
                 {bvh.corners_.data(), 0}},
         first_instanced_(bvh.first_instanced_) {}
 
-  /// A node, which may be made in `room`.
+  /// Returns a node; an instance's is computed in `room`.
   [[nodiscard]] RAYGATE_INLINE const Bvh::Node& node(std::uint32_t index, Bvh::Node& room) const {
     if (index >= first_instanced_) [[unlikely]] {
       bvh_->make_instance_node(index, room);
@@ -28,9 +28,9 @@ class BvhView {
     return static_cast<const Bvh::Node*>(places_[Bvh::Child::kInner].begin)[index];
   }
 
-  /// The corners of a leaf's triangles, one coordinate of all of them after the other: coordinate k
-  /// of corner v of triangle i is [(3 v + k) count + i]. What comes after the last one may be read,
-  /// and means nothing, as far as for four triangles. They may be made in `room`.
+  /// Returns the corners of a leaf's triangles: coordinate k of corner v of triangle i is at
+  /// [(3 v + k) count + i]. Floats beyond them, as far as for four triangles, can be read and have
+  /// no meaning. An instance's corners are computed in `room`.
   [[nodiscard]] RAYGATE_INLINE const float* corners_of(const Bvh::Child& leaf,
                                                        Bvh::LeafRoom& room) const {
     if (leaf.first >= first_instanced_) [[unlikely]] {
@@ -42,9 +42,9 @@ class BvhView {
            9 * std::size_t{leaf.first};
   }
 
-  /// Says that a child will soon be visited; kNone stands for the first leaf, as good as any other.
-  /// Without a branch, which would be a guess about its kind. (Always inlined: GCC 12 takes a
-  /// function that does nothing but prefetch for one without effect, and leaves its calls out.)
+  /// Prefetches a child that will be visited soon; for kNone, the first leaf. There is no branch on
+  /// the kind, which would be mispredicted. (Always inlined: GCC 12 drops calls of a function that
+  /// only prefetches.)
   RAYGATE_INLINE void prefetch(const Bvh::Child& child) const {
     if (child.first >= first_instanced_) [[unlikely]]
       return bvh_->prefetch_instance(child);
@@ -56,7 +56,7 @@ class BvhView {
  private:
   static constexpr std::size_t kCornerBytes = 9 * sizeof(float);  // of a primitive
 
-  /// Where children of a kind are stored, and how many bytes each takes.
+  /// Address of the children of one kind, and bytes per child.
   struct Place {
     const void* begin;
     std::size_t bytes;

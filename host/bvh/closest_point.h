@@ -1,4 +1,4 @@
-// Closest point: of a scene's triangles, the point that is nearest to a given one.
+// Point and box queries: the closest point of the triangles, and the triangles near a box.
 #pragma once
 
 #include <bit>
@@ -18,12 +18,13 @@ struct ClosestPoint {
   glm::dvec3 point{0.0};
 };
 
-/// For a finite point, in double: off by its rounding. Of triangles at the same distance the one of
-/// the lower number. The tree has a triangle.
+/// Returns the point of the triangles that is closest to `point`, which is finite; computed in
+/// double, with its rounding errors. Of triangles at the same distance the one of lower number is
+/// returned. The tree must have a triangle.
 [[nodiscard]] ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point);
 
-/// Calls visit(leaf) for all leaves of the tree whose boxes touch the closed box from `low` to
-/// `high`, in no particular order, until it says true; whether it did. For bodies of in_vectors.
+/// Calls visit(leaf) for the leaves whose boxes touch the closed box from `low` to `high`, in no
+/// particular order, until it returns true. Returns whether it did. For bodies of in_vectors.
 template <Vectors kCode, class Visit>
 RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
                                   const Visit& visit) {
@@ -58,8 +59,8 @@ RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const gl
          glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2])));
 }
 
-/// Calls visit(primitive, corners) for all triangles whose axis-aligned boxes touch that box, until
-/// it says true; whether it did.
+/// Calls visit(primitive, corners) for the triangles whose axis-aligned boxes touch the closed box
+/// from `low` to `high`, until it returns true. Returns whether it did.
 template <class Visit>
 [[nodiscard]] bool any_primitive_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
                                       const Visit& visit) {

@@ -28,15 +28,16 @@ struct TraversalStack {
   explicit TraversalStack(const Rays& rays) : depth(1) { waiting[0] = {{0, 0}, 0.0f, rays}; }
 };
 
-/// A bundle that is one thing, which goes where it goes.
+/// Stands for the rays of a traversal that has only one.
 struct SingleRay {};
 
-/// Goes on to the next leaf; false when there is none. To be called again and again, whatever the
-/// visitor has learned in between. The visitor is asked
-///   * should_visit(entry, rays): whether a child still matters to any of `rays`; may narrow them;
-///   * intersect_boxes(node, rays, entry): which children the rays meet, bit i for child i, and
-///     where they enter them, 0 or more;
-///   * rays_of_child(i): which of the rays meet child i, after that.
+/// Advances to the next leaf; returns false when there is none. The visitor may change its cutoff
+/// between calls. It provides
+///   * should_visit(entry, rays): whether a child can still matter to any of `rays`; may remove
+///   rays;
+///   * intersect_boxes(node, rays, entry): a mask of the children that the rays meet, and their
+///     entry distances, 0 or more;
+///   * rays_of_child(i): the rays that meet child i, after intersect_boxes.
 template <class Visitor, class Rays>
 RAYGATE_INLINE bool next_leaf(const BvhView& tree, Visitor& visitor, TraversalStack<Rays>& stack,
                               StackEntry<Rays>& leaf) {
