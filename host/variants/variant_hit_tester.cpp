@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/unit_hit_testers.h"
 #include "host/variants/variant_units.h"
 
 // The bound of an edge test in a format of u = 2^-digits

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/unit_hit_testers.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/scene/test/instanced_scene.h"
 

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,8 +12,6 @@
 #include "host/base/lanes.h"
 #include "host/intersect/intersect_counters.h"
 #include "host/intersect/polygon_record.h"
-#include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {
 
@@ -106,61 +103,6 @@ class BatchTester {
 class HitTester : public BatchTester<HitResults> {
  public:
   [[nodiscard]] virtual HitCounters counters() const = 0;
-};
-
-/// Everything but the doubts is decided by the unit. What it only reports (doubts, and the farther
-/// one of a near tie) gets its P and t here, by the same formulas.
-class PipelineHitTester : public HitTester {
- public:
-  explicit PipelineHitTester(std::unique_ptr<BurstUnit> unit);
-
-  void run(std::span<const RayBundle> batch, HitResults& results) override;
-  void start(std::span<const RayBundle> batch) override;
-  void finish(HitResults& results) override;
-  [[nodiscard]] std::size_t enough_tests() const override { return unit_->enough_tests(); }
-  [[nodiscard]] HitCounters counters() const override;
-
- private:
-  std::unique_ptr<BurstUnit> unit_;
-  BurstResults found_;  // kept from batch to batch
-};
-
-/// What a burst unit has counted, in a hit tester's terms: three coordinates are a plane test.
-[[nodiscard]] HitCounters hit_counters(const BurstCounters& unit);
-
-/// The unit finds where a ray meets a polygon's plane; whether that is inside the polygon, and
-/// which hit is nearest, is found here, in software, as in the paper.
-class SerialHitTester : public HitTester {
- public:
-  /// Which pairs go through the unit.
-  enum class Order {
-    kEdgesFirst,   ///< those that the edge planes do not rule out: a miss costs no clocks
-    kPlanesFirst,  ///< every one, as in the paper
-  };
-
-  explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit, Order order = Order::kEdgesFirst);
-
-  void run(std::span<const RayBundle> batch, HitResults& results) override;
-  [[nodiscard]] HitCounters counters() const override;
-
- private:
-  /// A pair on its way through the unit.
-  struct Pair {
-    std::uint32_t bundle, lane, record;
-    UnitVerdict verdict;
-  };
-
-  void collect(std::uint32_t index, const RayBundle& bundle);
-  void report_burst(std::span<const RayBundle> batch, std::size_t first, std::size_t last,
-                    HitResults& results);
-
-  std::unique_ptr<PlaneUnit> unit_;
-  Order order_;
-  HitCounters counters_;
-  // Room to work in, kept from batch to batch.
-  std::vector<Pair> pairs_;  // bundle by bundle, lane by lane, in the order of the records
-  std::vector<PlaneTest> plane_tests_;
-  std::vector<glm::vec3> points_;
 };
 
 }  // namespace raygate

@@ -10,7 +10,7 @@
 #include "host/base/vectors.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/unit_hit_testers.h"
 #include "host/light/test/light_scenes.h"
 
 static thread_local bool refuse_large = false;  // memory, to this thread

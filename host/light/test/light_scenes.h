@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/unit_hit_testers.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"

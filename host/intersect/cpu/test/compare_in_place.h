@@ -10,8 +10,8 @@
 
 #include "host/base/vectors.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/unit_hit_testers.h"
 #include "host/intersect/unit/unit_intersector.h"
 
 namespace raygate::test {

@@ -1,6 +1,4 @@
 // What a tester calls sure is so, and what it leaves out is no nearest hit.
-#include "host/intersect/unit/hit_tester.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "host/exact/test/meshes.h"
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/unit_hit_testers.h"
 #include "host/scene/camera.h"
 
 namespace raygate {

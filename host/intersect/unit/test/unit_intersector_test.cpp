@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/unit_hit_testers.h"
 
 namespace raygate {
 namespace {

@@ -1,4 +1,4 @@
-#include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/unit_hit_testers.h"
 
 #include <algorithm>
 #include <bit>
