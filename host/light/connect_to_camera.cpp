@@ -11,7 +11,7 @@ namespace {
 template <class T>
 RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits) {
   constexpr int kCount = Hits<T>::kCount;
-  const auto scatters = hits.bsdf.scatters() & (hits.path.way != 1u);
+  const auto scatters = hits.bsdf.scatters() & (hits.path.history != 1u);
   if (!any(scatters) || hits.bsdf.has_rough_glass()) return;
   const SquarePoint<T> u = hits.random(streams::kLens);
   const auto x = unpack(u.x), y = unpack(u.y);
@@ -27,7 +27,7 @@ RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits
   const T pixels = per_area * edge_cosine(hits, way.direction);
   const T in = edge_cosine(hits, view);
   const T pdf = seen.bsdf.pdf(view) * LobeProbabilities<T>(seen.bsdf).scatter_probability();
-  const T ratio = hits.path.ratio / in * pdf * pixels;
+  const T ratio = hits.path.light_over_camera_pdf / in * pdf * pixels;
   const T mis_weight = 1.0f / (1.0f + ratio * ratio);
   const T cosine = at_least(dot(seen.normal, view), 0.0f);
   const Triple<T> light =
@@ -46,8 +46,8 @@ void shade_light_path(const ShadingScene& shading, HitBlock& block, HitKind kind
     hits.set_radiance(zero<T>());
     if (block.batch->depth > shading.max_depth) return;
     Triple<T> none = zero<T>();
-    sample_scattered_ray<true>(shading, hits, LobeProbabilities<T>(hits.bsdf, hits.path.way == 1u),
-                               none);
+    sample_scattered_ray<true>(shading, hits,
+                               LobeProbabilities<T>(hits.bsdf, hits.path.history == 1u), none);
   });
 }
 

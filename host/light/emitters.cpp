@@ -4,21 +4,21 @@
 namespace raygate {
 namespace {
 
-/// Sends rays on by the ways that are asked for: in mirrors, through glass, and through what is not
-/// there or clear, where the way is the same.
+/// Spawns the rays whose histories are wanted: reflected, refracted, and straight through holes and
+/// clear surfaces, which do not change the history.
 template <class T>
-RAYGATE_INLINE void spawn_by_ways(Hits<T>& hits) {
+RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
   const Bsdf<T>& bsdf = hits.bsdf;
   const Triple<T>& normal = hits.surface.normal;
   ScatteredRays<T> next(hits);
-  const WordOf<T> first = hits.path.sample - hits.path.way;
+  const WordOf<T> first = hits.path.sample - hits.path.history;
   const auto send = [&](std::size_t number, const Triple<T>& share,
                         const MaskOf<T>& is_way) RAYGATE_BODY {
-    next.path.sample = first + next.path.way;
+    next.path.sample = first + next.path.history;
     next.path.throughput = hits.path.throughput * share;
-    const auto is_asked = PathLanes<T>::has(hits.path.emitters, next.path.way);
+    const auto is_asked = PathLanes<T>::has(hits.path.supersampled, next.path.history);
     next.is_wanted =
-        is_way & is_asked & (next.path.way > 0u) & (largest(next.path.throughput) > 0.0f);
+        is_way & is_asked & (next.path.history > 0u) & (largest(next.path.throughput) > 0.0f);
     next.send(hits, number);
   };
   if ((hits.kind & kMirrors) != 0) {
@@ -44,7 +44,7 @@ void shade_emitters(const ShadingScene& shading, HitBlock& block, HitKind kind,
     }
     hits.set_radiance(emitted);
     if (block.batch->depth > shading.max_depth || hits.bsdf.has_rough_glass()) return;
-    spawn_by_ways(hits);
+    spawn_specular_rays(hits);
   });
 }
 

@@ -65,11 +65,11 @@ RAYGATE_INLINE T flag_words(const Masks&... masks) {
   return float_of(flags);
 }
 
-/// Whether a path counts what shines, by PathState::way: what comes by mirrors or glass to where
-/// caustic rays begin, these count, and nothing else.
+/// Whether a path with this history adds the emission that it meets. Light that reaches a surface
+/// seen through mirrors or glass by further mirrors or glass is added by caustic rays only.
 template <class W>
-RAYGATE_INLINE auto sees_lights(const W& way) {
-  return (way < (kFromSeen | kBySpecular)) | (way > kCausticRay);
+RAYGATE_INLINE auto sees_lights(const W& history) {
+  return (history < (kAfterSeenSurface | kThenSpecular)) | (history > kCausticRay);
 }
 
 /// The states of paths, field by field, one path a lane.
@@ -78,9 +78,9 @@ struct PathLanes {
   Triple<T> throughput;
   T pdf;
   Triple<T> scattered_at, normal;
-  WordOf<T> sample, stream, index, way;
-  T ratio;
-  WordOf<T> emitters;
+  WordOf<T> sample, stream, index, history;
+  T light_over_camera_pdf;
+  WordOf<T> supersampled;
 
   PathLanes() = default;
   RAYGATE_INLINE explicit PathLanes(const PathState* const (&states)[kLanesOf<T>]) {
@@ -93,32 +93,37 @@ struct PathLanes {
     sample = words_in(w[10]);
     stream = words_in(w[11]);
     index = words_in(w[12]);
-    way = words_in(w[13]);
-    ratio = w[14];
-    emitters = words_in(w[15]);
+    history = words_in(w[13]);
+    light_over_camera_pdf = w[14];
+    supersampled = words_in(w[15]);
   }
-  /// The way on, in a mirror (0) or through glass (1).
-  [[nodiscard]] RAYGATE_INLINE WordOf<T> way_on(std::uint32_t step) const {
-    const auto has_next = (way > 0u) & (way < kSpecularWays / 2);
-    return choose(way >= kFromSeen, way | kBySpecular,
-                  choose(has_next, 2u * way + step, WordOf<T>{}));
-  }
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_caustic_rays() const { return way >= kCausticRay; }
-  /// Whether the set `ways` has a way; of those from kSpecularWays on it is to have none.
-  [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& ways, const WordOf<T>& way) {
-    return ((ways >> (way & (kSpecularWays - 1))) & 1u) != 0u;
+  /// The histories after reflection in a mirror, and after refraction by glass.
+  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
+  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_caustic_rays() const { return history >= kCausticRay; }
+  /// Whether a bit mask of histories has a history. It must have none from kSpecularHistories on.
+  [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& mask,
+                                                    const WordOf<T>& history) {
+    return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
   }
   /// The records' words, in their order.
   RAYGATE_INLINE void put(T* w) const {
     static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
-                  offsetof(PathState, way) == 52 && offsetof(PathState, ratio) == 56 &&
-                  sizeof(PathState) == 64);
+                  offsetof(PathState, history) == 52 &&
+                  offsetof(PathState, light_over_camera_pdf) == 56 && sizeof(PathState) == 64);
     const T words[] = {
-        throughput.x,      throughput.y,     throughput.z,    pdf,           scattered_at.x,
-        scattered_at.y,    scattered_at.z,   normal.x,        normal.y,      normal.z,
-        float_of(sample),  float_of(stream), float_of(index), float_of(way), ratio,
-        float_of(emitters)};
+        throughput.x,    throughput.y,      throughput.z,          pdf,
+        scattered_at.x,  scattered_at.y,    scattered_at.z,        normal.x,
+        normal.y,        normal.z,          float_of(sample),      float_of(stream),
+        float_of(index), float_of(history), light_over_camera_pdf, float_of(supersampled)};
     for (int i = 0; i < 16; ++i) w[i] = words[i];
+  }
+
+ private:
+  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_specular(std::uint32_t step) const {
+    const auto has_next = (history > 0u) & (history < kSpecularHistories / 2);
+    return choose(history >= kAfterSeenSurface, history | kThenSpecular,
+                  choose(has_next, 2u * history + step, WordOf<T>{}));
   }
 };
 
@@ -222,10 +227,10 @@ struct Hits {
     return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
   }
 
-  /// Whether they emit the same everywhere, on ways that are in PathState::emitters.
+  /// Whether they emit the same everywhere, on ways that are in PathState::supersampled.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
     const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
-    const auto are_wanted = PathLanes<T>::has(path.emitters, path.way);
+    const auto are_wanted = PathLanes<T>::has(path.supersampled, path.history);
     return are_even & are_wanted;
   }
   /// What they emit, but for what is supersampled.
@@ -290,7 +295,7 @@ struct ScatteredRays {
     flat = reflect(hits.surface.view, hits.surface.flat_normal);
     has_flat = T{} == 0.0f;
     is_transmitted = !has_flat;
-    path.way = hits.path.way_on(0);
+    path.history = hits.path.after_mirror();
   }
   /// Sets where they go through the surface: bent at that normal where it refracts, else straight
   /// on. The result says where there is such a way.
@@ -304,7 +309,7 @@ struct ScatteredRays {
     flat = choose(is_bent, flat_bent.direction, -surface.view);
     has_flat = (!is_bent) | flat_bent.exists;
     is_transmitted = T{} == 0.0f;
-    path.way = choose(is_bent, hits.path.way_on(1), hits.path.way);
+    path.history = choose(is_bent, hits.path.after_glass(), hits.path.history);
     return (!is_bent) | bent.exists;
   }
 

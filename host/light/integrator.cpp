@@ -135,7 +135,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     if (hit.primitive == NearestHit::kNone) {
       if (is_dark) continue;
       const PathState& state = block_.state(i);
-      if (!sees_lights(state.way)) continue;
+      if (!sees_lights(state.history)) continue;
       output.radiance[state.sample] += state.throughput * behind;
       continue;
     }
@@ -218,7 +218,7 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
                                                                      directions[k]);
                   });
                 });
-        light = choose(sees_lights(path.way), light, zero<T>());
+        light = choose(sees_lights(path.history), light, zero<T>());
       }
       const auto lights_out = unpack(light);
       for (std::size_t k = 0; k < count; ++k) {
@@ -268,7 +268,7 @@ bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const 
   };
   if (scattered.surely_leaves != 0 || leaves(scattered.direction)) return true;
   scattered.direction = scattered.flat;
-  scattered.state.ratio = 0.0f;  // no light path goes this way
+  scattered.state.light_over_camera_pdf = 0.0f;  // no light path goes this way
   return scattered.has_flat != 0 && leaves(scattered.flat);
 }
 

@@ -248,7 +248,7 @@ std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::ui
     density *= double{own.per_area} * meetings(origin, direction, false) / solid_angle(origin);
     const double cosine = std::abs(glm::dot(direction, wide(point.normal)));
     flux = wide(lights_.radiance_at<float>({light}, point)) * cosine;
-    state.ratio = finite_float(cosine / density);
+    state.light_over_camera_pdf = finite_float(cosine / density);
     origin += direction * (kBeyondLight * nearest_middle(origin));
   } else {
     glm::dvec3 towards(light->position);
@@ -260,7 +260,8 @@ std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::ui
     }
     const glm::dvec3 across = point_across(towards, ball, u);
     density *= meetings(across, towards, true) / discs_;
-    if (light->kind == Lights::Kind::kEnvironment) state.ratio = finite_float(1.0 / density);
+    if (light->kind == Lights::Kind::kEnvironment)
+      state.light_over_camera_pdf = finite_float(1.0 / density);
     origin = across + towards * reach_;
     direction = -towards;
   }

@@ -18,8 +18,8 @@ namespace raygate {
 /// from that place of the light against its ray as densely as `density()` says.
 template <class Density>
 RAYGATE_INLINE float caustic_weight(const PathState& state, const Density& density) {
-  if (!(state.ratio > 0.0f) || state.pdf > 0.0f || state.way == 1) return 1.0f;
-  const float ratio = state.ratio * density();
+  if (!(state.light_over_camera_pdf > 0.0f) || state.pdf > 0.0f || state.history == 1) return 1.0f;
+  const float ratio = state.light_over_camera_pdf * density();
   return 1.0f / (1.0f + ratio * ratio);
 }
 
@@ -45,12 +45,12 @@ struct FrameView {
 ///
 /// A path of both kinds, from the camera and from a light, is weighted by multiple importance
 /// sampling with the power heuristic (Veach, "Robust Monte Carlo methods for light transport
-/// simulation", 1997, chapters 9 and 10). PathState::ratio is the quotient of both densities as far
-/// as the path is known, so that no path is looked at twice (as "Implementing vertex connection and
-/// merging", Georgiev 2012, has it for more techniques). At a vertex with the cosines `in` and
-/// `out` of its edges and the densities `pdf` and `back` per solid angle of the ways on and back,
-/// it is multiplied by back / pdf * out / in: what both share is left out, and mirrors and
-/// smooth glass have neither density.
+/// simulation", 1997, chapters 9 and 10). PathState::light_over_camera_pdf is the quotient of both
+/// densities as far as the path is known, so that no path is looked at twice (as "Implementing
+/// vertex connection and merging", Georgiev 2012, has it for more techniques). At a vertex with the
+/// cosines `in` and `out` of its edges and the densities `pdf` and `back` per solid angle of the
+/// ways on and back, it is multiplied by back / pdf * out / in: what both share is left out, and
+/// mirrors and smooth glass have neither density.
 class LightPaths {
  public:
   /// The references must outlive this.
@@ -63,7 +63,7 @@ class LightPaths {
 
   struct Start {
     Ray ray;
-    PathState state;  ///< its throughput is flux, its ratio the camera's density over this one's
+    PathState state;  ///< its throughput is flux
   };
   /// Path `number` of a picture; none where the light sends nothing that way.
   [[nodiscard]] std::optional<Start> start(std::uint64_t number, std::uint64_t seed) const;
@@ -80,8 +80,8 @@ class LightPaths {
     return meetings(glm::dvec3(point), glm::dvec3(direction), false) > 0.0;
   }
 
-  /// PathState::ratio of camera rays with these unit directions, which lacks the squared distance
-  /// of what they meet.
+  /// PathState::light_over_camera_pdf of camera rays with these unit directions, which lacks the
+  /// squared distance of what they meet.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE T camera_ratio(const Triple<T>& direction) const {
     const T cosine = dot(direction, spread<T>(glm::vec3(frame_.camera.forward())));

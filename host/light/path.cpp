@@ -192,7 +192,7 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     Triple<T> radiance = zero<T>();
     if ((kind & kEmits) != 0) {
-      radiance = choose(sees_lights(hits.path.way), emitted_radiance(shading, hits), radiance);
+      radiance = choose(sees_lights(hits.path.history), emitted_radiance(shading, hits), radiance);
     }
     if (block.batch->depth <= shading.max_depth) {
       const LobeProbabilities<T> lobes(hits.bsdf, hits.path.are_caustic_rays());

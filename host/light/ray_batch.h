@@ -1,4 +1,4 @@
-// Ray batches: rays of one depth with the states of their paths, and the results of shading them.
+// Ray batches: rays of one depth with their path states, and the results of shading their hits.
 #pragma once
 
 #include <cstdint>
@@ -10,46 +10,45 @@
 
 namespace raygate {
 
-/// The state of a path along its ray: a record of 16 words, since hits are shaded in another order
-/// than rays are traced in, and one cache line is fetched for a ray, not ten. PathLanes has the
-/// fields of several.
+/// The state of a path along its current ray: a record of 16 words in one cache line, since hits
+/// are shaded in another order than rays are traced. PathLanes holds several, field by field.
 struct alignas(16) PathState {
-  glm::vec3 throughput{1.0f};  ///< what light along the ray is multiplied by
-  /// Per steradian, of sampling this direction where a surface scattered the ray; 0 where there was
-  /// no choice (camera, mirror, glass).
+  glm::vec3 throughput{1.0f};  ///< factor of light that arrives along the ray
+  /// Probability density per steradian of this direction at the last scattering event; 0 if the
+  /// event was a delta distribution (mirror, smooth glass) or the camera.
   float pdf = 0.0f;
-  glm::vec3 scattered_at{0.0f};  ///< and where
-  glm::vec3 normal{0.0f};        ///< of the surface there
-  std::uint32_t sample = 0;      ///< of those that are traced together: whose radiance it adds to
-  std::uint32_t stream = 0;      ///< of random numbers, its own in the picture
-  std::uint32_t index = 0;       ///< of its points in such streams
-  /// What the camera sees by: 1 for a ray of its own, 2w for what w sees in a mirror, 2w + 1 for
-  /// what it sees through glass that bends; below kSpecularWays. Light paths begin with 1, too.
-  /// Then one of those below, or 0.
-  std::uint32_t way = 1;
-  /// How dense light paths are here over how dense camera paths are, or on light paths the other
-  /// way round (LightPaths); 0: there is one kind alone.
-  float ratio = 0.0f;
-  /// By which ways emitters are not counted, for other rays see them: bit w for way w. Of those
-  /// rays: by which ways they go (EmitterSupersampler).
-  std::uint32_t emitters = 0;
+  glm::vec3 scattered_at{0.0f};  ///< position of the last scattering event
+  glm::vec3 normal{0.0f};        ///< shading normal there
+  std::uint32_t sample = 0;      ///< index of the radiance, in ShadingOutput, that the path adds to
+  std::uint32_t stream = 0;      ///< stream of random numbers, different for each path
+  std::uint32_t index = 0;       ///< index of the path's points in such streams
+  /// Specular history, a code. A path that has met mirrors and smooth glass only: 1 for the first
+  /// ray, and from h to 2 h by a mirror, 2 h + 1 by glass, below kSpecularHistories. Otherwise one
+  /// of the codes below, or 0.
+  std::uint32_t history = 1;
+  /// Density of light paths over that of camera paths for the path so far, or on light paths the
+  /// inverse (see LightPaths); 0: only one kind of path exists here.
+  float light_over_camera_pdf = 0.0f;
+  /// Histories, as a bit mask, at which emission is left out since EmitterSupersampler adds it. For
+  /// that class's own rays: the histories to follow.
+  std::uint32_t supersampled = 0;
 };
 
-/// PathState::way of what the camera sees by four mirrors and borders of glass at most is less.
-inline constexpr std::uint32_t kSpecularWays = 32;
+/// Codes of purely specular histories of at most four events are below this.
+inline constexpr std::uint32_t kSpecularHistories = 32;
 
-/// PathState::way after a surface that scatters and that the camera sees in mirrors or through
-/// glass: of the path, and of the rays that look for caustics there (sample_seen_caustics).
-inline constexpr std::uint32_t kFromSeen = 32, kCausticRay = 34;
-/// The same after a mirror or glass behind it.
-inline constexpr std::uint32_t kBySpecular = 1;
+/// Histories after a scattering surface that the camera sees through mirrors or glass: of the path
+/// itself, and of the additional rays that look for caustics there (sample_seen_caustics).
+inline constexpr std::uint32_t kAfterSeenSurface = 32, kCausticRay = 34;
+/// Added to these codes once a mirror or glass follows.
+inline constexpr std::uint32_t kThenSpecular = 1;
 
-/// Rays with the same number of surfaces behind them.
+/// Rays of the same depth.
 struct RayBatch {
-  int depth = 0;  ///< so many; 0: from the camera
+  int depth = 0;  ///< number of surfaces met so far; 0: camera rays
   std::vector<Ray> rays;
-  std::vector<PathState> states;       ///< of the rays
-  std::vector<std::uint32_t> sources;  ///< the primitives that they leave; none from the camera
+  std::vector<PathState> states;       ///< by ray
+  std::vector<std::uint32_t> sources;  ///< by ray: the primitive it leaves; empty for camera rays
 
   void clear() {
     rays.clear();
@@ -58,10 +57,10 @@ struct RayBatch {
   }
 };
 
-/// The first surface that a camera ray meets; holes of masks are no surface.
+/// The first surface on a camera ray; masked-out holes do not count.
 struct FirstSurface {
   std::uint32_t primitive = NearestHit::kNone;
-  glm::vec3 origin{0.0f};  ///< of the ray that meets it, of a pixel's first sample only
+  glm::vec3 origin{0.0f};  ///< of the ray that meets it; only of a pixel's first sample
   glm::vec3 point{0.0f};   ///< relative to `origin`
   glm::vec3 normal{0.0f}, albedo{0.0f};
 };
@@ -70,8 +69,8 @@ struct FirstSurface {
 struct ShadingOutput {
   std::vector<glm::vec3> radiance;          ///< by sample
   std::vector<FirstSurface> first_surface;  ///< by sample
-  std::vector<ShadowRay> shadows;           ///< light still to arrive
-  RayBatch next;                            ///< the rays that go on
+  std::vector<ShadowRay> shadows;           ///< shadow rays to trace
+  RayBatch next;                            ///< scattered rays to trace
 };
 
 }  // namespace raygate

@@ -49,7 +49,7 @@ struct LobeProbabilities {
 template <bool kFromLight, class T>
 RAYGATE_INLINE MaskOf<T> has_seen_caustics(const ShadingScene& shading, const Hits<T>& hits) {
   const auto scatters = hits.bsdf.scatters();
-  const auto is_seen = (hits.path.way > 1u) & (hits.path.way < kSpecularWays);
+  const auto is_seen = (hits.path.history > 1u) & (hits.path.history < kSpecularHistories);
   if (kFromLight || shading.light_paths == nullptr || hits.bsdf.has_rough_glass())
     return T{} > 0.0f;
   return is_seen & scatters;
@@ -66,13 +66,13 @@ RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
 /// sides of edges, and the BSDF as the camera's paths see it ("Robust Monte Carlo methods", 5.3).
 template <bool kFromLight, class T>
 struct WaysBack {
-  T arrived;  ///< PathState::ratio at the hit
+  T arrived;  ///< PathState::light_over_camera_pdf at the hit
   T in;       ///< the cosine of the way there
   MaskOf<T> is_first;
 
   RAYGATE_INLINE WaysBack(const ShadingScene& shading, const Hits<T>& hits)
-      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.way == 1u) {
-    T ratio = hits.path.ratio;
+      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.history == 1u) {
+    T ratio = hits.path.light_over_camera_pdf;
     if (!kFromLight) {
       const Triple<T> way =
           (hits.surface.point - hits.path.scattered_at) * spread<T>(shading.lights.per_unit());
@@ -90,7 +90,7 @@ struct WaysBack {
         seen.bsdf.pdf(hits.surface.view) * LobeProbabilities<T>(seen.bsdf).scatter_probability();
     const T out = edge_cosine(hits, next.direction);
     const T known = kFromLight ? back : choose(is_first, spread<T>(1.0f), back);
-    next.path.ratio = bounded(arrived * known * (out / next.path.pdf));
+    next.path.light_over_camera_pdf = bounded(arrived * known * (out / next.path.pdf));
     if (!kFromLight) return;
     const T cosine = at_least(dot(seen.normal, hits.surface.view), 0.0f);
     const Triple<T> flux =
@@ -105,7 +105,7 @@ struct WaysBack {
     const T out = edge_cosine(hits, next.direction);
     const auto has_back = !hits.surface.is_tilted();
     const T ratio = choose(has_back & (kFromLight ? has_back : !is_first), arrived * out, T{});
-    next.path.ratio = choose(is_specular, ratio, next.path.ratio);
+    next.path.light_over_camera_pdf = choose(is_specular, ratio, next.path.light_over_camera_pdf);
     if (!kFromLight) return;
     const T facing = absolute(dot(hits.surface.normal, hits.surface.view));
     const T leaving = at_least(absolute(dot(hits.surface.normal, next.direction)), kLeastCosine);
@@ -150,9 +150,9 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
   const WordOf<T> none{};
-  next.path.way =
-      choose(has_seen_caustics<kFromLight>(shading, hits), spread<WordOf<T>>(kFromSeen), none);
-  next.path.emitters = choose(next.has_flat, hits.path.emitters, none);
+  next.path.history = choose(has_seen_caustics<kFromLight>(shading, hits),
+                             spread<WordOf<T>>(kAfterSeenSurface), none);
+  next.path.supersampled = choose(next.has_flat, hits.path.supersampled, none);
   next.direction = next.flat = zero<T>();
   if (any(bsdf.scatters())) {
     next.direction = bsdf.sample(hits.random(streams::kDirection),
@@ -164,11 +164,12 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.throughput =
         choose(brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
                zero<T>());
-    if (has_rough_glass) {  // no light path goes through: PathState::ratio is 0 from here on
+    if (has_rough_glass) {  // no light path goes through: PathState::light_over_camera_pdf is 0
+                            // from here on
       if (kFromLight) return;
       next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
       next.is_wanted = next.is_wanted & brings;
-      next.path.ratio = T{};
+      next.path.light_over_camera_pdf = T{};
       next.send(hits, 0);
       return;
     }
@@ -181,9 +182,9 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
     next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
     next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
-    next.path.way = choose(is_mirrored, hits.path.way_on(0), next.path.way);
+    next.path.history = choose(is_mirrored, hits.path.after_mirror(), next.path.history);
     const auto shows_background = next.is_wanted & is_mirrored & !bsdf.mirror_is_traced();
-    const auto counts_background = shows_background & sees_lights(hits.path.way);
+    const auto counts_background = shows_background & sees_lights(hits.path.history);
     radiance = choose(counts_background,
                       radiance + reflected_throughput * sky(shading.lights, reflected), radiance);
     next.is_wanted = next.is_wanted & !shows_background;
@@ -208,15 +209,16 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.pdf = choose(is_straight, hits.path.pdf, next.path.pdf);
     next.path.scattered_at = choose(is_straight, hits.path.scattered_at, next.path.scattered_at);
     next.path.normal = choose(is_straight, hits.path.normal, next.path.normal);
-    next.path.way =
-        choose(is_straight, hits.path.way, choose(is_bent, hits.path.way_on(1), next.path.way));
+    next.path.history = choose(is_straight, hits.path.history,
+                               choose(is_bent, hits.path.after_glass(), next.path.history));
   }
   if (has_ways_back) {
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();
     const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
     const T eta = choose(is_bent, bsdf.eta(), spread<T>(1.0f));
     ways_back->mirror(hits, is_mirrored | is_bent, eta, next);
-    next.path.ratio = choose(is_straight, hits.path.ratio, next.path.ratio);
+    next.path.light_over_camera_pdf =
+        choose(is_straight, hits.path.light_over_camera_pdf, next.path.light_over_camera_pdf);
   }
   next.send(hits, 0);
 }
@@ -237,11 +239,11 @@ RAYGATE_INLINE void sample_seen_caustics(const ShadingScene& shading, Hits<T>& h
     ScatteredRays<T> next(hits);
     next.path.index = hits.path.index * kCausticRays + i;
     next.path.stream = hash(hits.path.stream, streams::kCausticRay);
-    next.path.way = spread<WordOf<T>>(kCausticRay);
+    next.path.history = spread<WordOf<T>>(kCausticRay);
     next.path.scattered_at = hits.surface.point;
     next.path.normal = hits.lit_normal();
-    next.path.emitters = WordOf<T>{};
-    next.path.ratio = T{};
+    next.path.supersampled = WordOf<T>{};
+    next.path.light_over_camera_pdf = T{};
     const auto random = [&](std::uint32_t purpose) RAYGATE_BODY {
       return sobol_point<T>(next.path.index, hash(hits.path.stream, purpose));
     };

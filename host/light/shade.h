@@ -51,9 +51,9 @@ ShadeFunction shade_path;
 /// camera, as a light sample that is on its way to the lens, and one ray goes on.
 ShadeFunction shade_light_path;
 
-/// Emitters as a camera sees them, directly and by each specular way that PathState::emitters has:
-/// what hits emit, and rays on, mirrored and through the surface. A ray's sample is a multiple of
-/// kSpecularWays, to which its way is added: radiance is told apart by ways.
+/// Emission along specular paths from the camera, with the histories in PathState::supersampled:
+/// what hits emit, and rays reflected and refracted. A ray's sample is a multiple of
+/// kSpecularHistories plus its history, so that radiance is separated by history.
 ShadeFunction shade_emitters;
 
 }  // namespace raygate

@@ -23,8 +23,9 @@ class Coordinator : public TileWorkers {
   Coordinator(const RenderJob& job, const Tiles& tiles,
               std::unique_ptr<Intersector> first_intersector,
               const IntersectorFactory& make_intersector, const RenderMonitor& monitor, Film& film,
-              std::span<EmitterWays> emitter_ways, RenderStats& stats)
-      : TileWorkers(job, std::move(first_intersector), make_intersector, film, emitter_ways, stats),
+              std::span<HistoryMask> emitter_histories, RenderStats& stats)
+      : TileWorkers(job, std::move(first_intersector), make_intersector, film, emitter_histories,
+                    stats),
         tiles_(tiles),
         monitor_(monitor),
         queue_(tiles.count, tiles.passes(), job.options.unfinished != nullptr) {
@@ -211,9 +212,9 @@ class Coordinator : public TileWorkers {
 void run_coordinator(const RenderJob& job, const Tiles& tiles,
                      std::unique_ptr<Intersector> first_intersector,
                      const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
-                     Film& film, std::span<EmitterWays> emitter_ways, RenderStats& stats) {
+                     Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats) {
   Coordinator(job, tiles, std::move(first_intersector), make_intersector, monitor, film,
-              emitter_ways, stats)
+              emitter_histories, stats)
       .run();
 }
 

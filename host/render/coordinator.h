@@ -18,13 +18,13 @@ namespace raygate {
 void run_coordinator(const RenderJob& job, const Tiles& tiles,
                      std::unique_ptr<Intersector> first_intersector,
                      const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
-                     Film& film, std::span<EmitterWays> emitter_ways, RenderStats& stats);
+                     Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats);
 
 /// Renders the tiles that rank 0 sends, on options.threads threads, until it says that all is done,
 /// or `monitor` says stop. `film`, with sums, becomes this rank's notebook. Throws what an
 /// intersector throws, and RunIsOver.
 void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
                 const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
-                Film& film, std::span<EmitterWays> emitter_ways, RenderStats& stats);
+                Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats);
 
 }  // namespace raygate

@@ -14,18 +14,20 @@ constexpr int kRaysPerSample = 8;
 constexpr std::size_t kManyRays = 1 << 11;   // at once
 constexpr float kLeastShare = 1.0f / 64.0f;  // of the brightest emitter
 
-constexpr EmitterWays kDirect = 1u << 1, kAllWays = ~1u;
+constexpr HistoryMask kDirect = 1u << 1, kAllHistories = ~1u;
 
 template <class Visit>
-void for_each(EmitterWays ways, const Visit& visit) {
-  for (; ways != 0; ways &= ways - 1) visit(static_cast<std::uint32_t>(std::countr_zero(ways)));
+void for_each(HistoryMask histories, const Visit& visit) {
+  for (; histories != 0; histories &= histories - 1) {
+    visit(static_cast<std::uint32_t>(std::countr_zero(histories)));
+  }
 }
 
-/// Those ways, and all that lead there.
-EmitterWays with_beginnings(EmitterWays ways) {
-  EmitterWays all = ways;
-  for_each(ways, [&](std::uint32_t way) {
-    for (; way != 0; way /= 2) all |= 1u << way;
+/// Returns the histories and all their prefixes.
+HistoryMask with_prefixes(HistoryMask histories) {
+  HistoryMask all = histories;
+  for_each(histories, [&](std::uint32_t history) {
+    for (; history != 0; history /= 2) all |= 1u << history;
   });
   return all;
 }
@@ -39,27 +41,28 @@ EmitterSupersampler::EmitterSupersampler(const RenderJob& job, Intersector& inte
       integrator_(IntegratorKind::kEmitters, job.prepared, job.lights, job.options),
       counts_work_(counts_work),
       all_(kDirect) {
-  // Whitted's pictures have few samples: to find the ways would take longer than they save.
+  // Whitted's pictures have few samples: finding more histories would take longer than it saves.
   if (job.options.integrator == IntegratorKind::kPath &&
       std::ranges::any_of(job.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
-    all_ = kAllWays;
+    all_ = kAllHistories;
   }
   for (const AreaLight& light : job.lights.areas()) {
     least_ = std::max(least_, kLeastShare * largest(glm::vec3(light.radiance)));
   }
 }
 
-void EmitterSupersampler::add(const Ray& ray, EmitterWays ways) {
+void EmitterSupersampler::add(const Ray& ray, HistoryMask histories) {
   PathState& state = batch_.states.emplace_back();
-  state.sample = static_cast<std::uint32_t>(batch_.rays.size() * kSpecularWays + state.way);
-  state.emitters = with_beginnings(ways);
+  state.sample =
+      static_cast<std::uint32_t>(batch_.rays.size() * kSpecularHistories + state.history);
+  state.supersampled = with_prefixes(histories);
   batch_.rays.push_back(ray);
 }
 
-/// Of all rays that were added.
+/// Traces and shades all rays that were added.
 void EmitterSupersampler::trace() {
   const std::size_t count = batch_.rays.size();
-  output_.radiance.assign(count * kSpecularWays, glm::vec3(0.0f));
+  output_.radiance.assign(count * kSpecularHistories, glm::vec3(0.0f));
   ray_work_.assign(counts_work_ ? count : 0, {});
   stats_.camera_rays += count;
   Stopwatch watch;
@@ -71,7 +74,7 @@ void EmitterSupersampler::trace() {
     intersector_.intersect(batch_.rays, query_of(job_, batch_, work_), hits_);
     watch.lap();
     for (std::size_t i = 0; i < work_.size(); ++i) {
-      ray_work_[batch_.states[i].sample / kSpecularWays] += work_[i];
+      ray_work_[batch_.states[i].sample / kSpecularHistories] += work_[i];
     }
     output_.next.clear();
     output_.next.depth = batch_.depth + 1;
@@ -82,8 +85,8 @@ void EmitterSupersampler::trace() {
   }
 }
 
-void EmitterSupersampler::find(const Film& film, const PixelRect& tile, std::span<EmitterWays> ways,
-                               std::span<RayWork> work) {
+void EmitterSupersampler::find(const Film& film, const PixelRect& tile,
+                               std::span<HistoryMask> histories, std::span<RayWork> work) {
   // Corners of pixels, up to so many beyond the tile's own.
   const int beyond = static_cast<int>(std::ceil(filter_radius(job_.options.filter) - 0.5));
   const auto may_see = [&](const AreaLight& light) {
@@ -91,7 +94,7 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile, std::spa
   };
   if (all_ == kDirect && std::ranges::none_of(job_.lights.areas(), may_see)) {
     for (int y = tile.y0; y < tile.y1; ++y) {
-      const auto row = ways.subspan(film.index_of(tile.x0, y), std::size_t(tile.width()));
+      const auto row = histories.subspan(film.index_of(tile.x0, y), std::size_t(tile.width()));
       std::ranges::fill(row, 0);
     }
     return;
@@ -113,10 +116,10 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile, std::spa
     const int row = std::clamp(y, 0, tile.height() - 1);
     work[std::size_t(row) * std::size_t(tile.width()) + std::size_t(column)] += ray_work_[i];
   }
-  std::vector<EmitterWays> seen(std::size_t(columns) * std::size_t(rows));  // by corner
+  std::vector<HistoryMask> seen(std::size_t(columns) * std::size_t(rows));  // by corner
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    for_each(all_, [&](std::uint32_t way) {
-      if (largest(radiance(i, way)) >= least_) seen[i] |= 1u << way;
+    for_each(all_, [&](std::uint32_t history) {
+      if (largest(radiance(i, history)) >= least_) seen[i] |= 1u << history;
     });
   }
   for (int y = 0; y < tile.height(); ++y) {
@@ -129,29 +132,29 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile, std::spa
           for (int dx = 0; dx <= 1 + 2 * beyond; ++dx) visit(corner(dx, dy));
         }
       };
-      EmitterWays near = 0, different = 0;
+      HistoryMask near = 0, different = 0;
       for_corners([&](std::size_t at) { near |= seen[at]; });
-      for_each(near, [&](std::uint32_t way) {
-        const glm::vec3& first = radiance(corner(0, 0), way);
+      for_each(near, [&](std::uint32_t history) {
+        const glm::vec3& first = radiance(corner(0, 0), history);
         for_corners([&](std::size_t at) {
-          if (radiance(at, way) != first) different |= 1u << way;
+          if (radiance(at, history) != first) different |= 1u << history;
         });
       });
-      ways[film.index_of(tile.x0 + x, tile.y0 + y)] = different;
+      histories[film.index_of(tile.x0 + x, tile.y0 + y)] = different;
     }
   }
 }
 
 void EmitterSupersampler::supersample(std::span<const PixelSamples> pixels,
-                                      std::span<const EmitterWays> ways,
+                                      std::span<const HistoryMask> histories,
                                       std::span<std::array<ExactAccumulator, 3>> sums,
                                       std::span<RayWork> work) {
   std::vector<std::size_t> pixel_of;
   const auto trace_them = [&] {
     trace();
     for (std::size_t i = 0; i < pixel_of.size(); ++i) {
-      for_each(ways[pixels[pixel_of[i]].index], [&](std::uint32_t way) {
-        const glm::dvec3 light(radiance(i, way));
+      for_each(histories[pixels[pixel_of[i]].index], [&](std::uint32_t history) {
+        const glm::dvec3 light(radiance(i, history));
         for (int k = 0; k < 3; ++k) sums[pixel_of[i]][k].add(light[k] / kRaysPerSample);
       });
       if (counts_work_) work[pixel_of[i]] += ray_work_[i];
@@ -162,12 +165,12 @@ void EmitterSupersampler::supersample(std::span<const PixelSamples> pixels,
   batch_.clear();
   for (std::size_t p = 0; p < pixels.size(); ++p) {
     const PixelSamples& pixel = pixels[p];
-    if (ways[pixel.index] == 0) continue;
+    if (histories[pixel.index] == 0) continue;
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
     for (int i = pixel.first * kRaysPerSample; i < pixel.end * kRaysPerSample; ++i) {
       add(camera_ray(job_, pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(i),
                      kEmitterStream),
-          ways[pixel.index]);
+          histories[pixel.index]);
       pixel_of.push_back(p);
       if (pixel_of.size() == kManyRays) trace_them();
     }

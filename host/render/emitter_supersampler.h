@@ -1,5 +1,5 @@
-// Emitters that the camera sees, directly, in mirrors and through glass: more rays where they begin
-// or end.
+// Emitter supersampler: more rays at the outlines of emitters that the camera sees, directly, in
+// mirrors and through glass.
 #pragma once
 
 #include <array>
@@ -16,52 +16,52 @@
 
 namespace raygate {
 
-/// A pixel's set of ways as PathState::emitters has it; kUnknownWays before they are found.
-using EmitterWays = std::uint32_t;
-inline constexpr EmitterWays kUnknownWays = 0xFFFFFFFF;
+/// A bit mask of histories (PathState::history), of a pixel; kUnknownHistories before find().
+using HistoryMask = std::uint32_t;
+inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 
-/// An emitter is as a rule far brighter than all around it, and the pixels at its edges are the
-/// noisiest of a picture, wherever the camera sees it: directly, or by up to four mirrors and
-/// borders of glass (PathState::way). What is seen of it costs little to know: no light, no shadow,
-/// no choice of a lobe. So in these pixels more rays see emitters and nothing else, and the
-/// pixel's samples leave out what emitters send by these ways.
+/// Emitters are usually much brighter than their surroundings, and the pixels on their outlines are
+/// the noisiest of a picture, whether the camera sees them directly or through up to four mirrors
+/// and glass borders. Emission along such a path is cheap to compute: it needs no lights, shadows
+/// or choice of a lobe. So these pixels get additional rays that collect emission only, and the
+/// pixel's samples leave it out.
 ///
-/// A pixel has a way if rays through the corners of pixels, as far as its filter reaches, see
-/// different emission by it. That depends on no sample, so that more rays where it is so favour
-/// nothing. Emitters between all corners, smaller than pixels, are not found.
+/// A pixel has a history if rays through pixel corners, as far as the pixel's filter reaches, find
+/// different emission with it. The choice does not depend on any sample, so it adds no bias.
+/// Emitters between all corners, smaller than a pixel, are not found.
 class EmitterSupersampler {
  public:
-  /// The references must outlive this. `counts_work`: asks the intersector for it.
+  /// The references must outlive this. `counts_work`: counts tests and doubts of each ray.
   EmitterSupersampler(const RenderJob& job, Intersector& intersector, bool counts_work);
 
-  /// Sets the ways of a tile's pixels; `ways` is by pixel of the film's window, and `work`, unless
-  /// empty, by pixel of the tile: what it takes is added there.
-  void find(const Film& film, const PixelRect& tile, std::span<EmitterWays> ways,
+  /// Sets the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
+  /// Adds its work to `work`, by pixel of the tile, unless that is empty.
+  void find(const Film& film, const PixelRect& tile, std::span<HistoryMask> histories,
             std::span<RayWork> work);
 
-  /// By all ways of each of `pixels`: adds to sums[i] what its samples leave out, and to
-  /// work[i], unless that is empty, what it takes.
-  void supersample(std::span<const PixelSamples> pixels, std::span<const EmitterWays> ways,
+  /// Adds to sums[i] the emission that the samples of pixels[i] leave out, and its work to work[i]
+  /// unless that is empty.
+  void supersample(std::span<const PixelSamples> pixels, std::span<const HistoryMask> histories,
                    std::span<std::array<ExactAccumulator, 3>> sums, std::span<RayWork> work);
 
   void add_to(RenderStats& stats) const;
 
  private:
-  void add(const Ray& ray, EmitterWays ways);
+  void add(const Ray& ray, HistoryMask histories);
   void trace();
-  /// Of a ray from the camera, by a way.
-  [[nodiscard]] const glm::vec3& radiance(std::size_t ray, std::uint32_t way) const {
-    return output_.radiance[ray * kSpecularWays + way];
+  /// Returns the radiance of a camera ray with a history.
+  [[nodiscard]] const glm::vec3& radiance(std::size_t ray, std::uint32_t history) const {
+    return output_.radiance[ray * kSpecularHistories + history];
   }
 
   RenderJob job_;
   Intersector& intersector_;
   Integrator integrator_;
   bool counts_work_;
-  EmitterWays all_;     // ways that there may be
-  float least_ = 0.0f;  // what is dimmer is left to chance
+  HistoryMask all_;     // the histories that can occur
+  float least_ = 0.0f;  // dimmer emission is not supersampled
   RenderStats stats_;
-  // Of the rays that are traced together.
+  // Of the current batch of rays.
   RayBatch batch_;
   ShadingOutput output_;
   std::vector<NearestHit> hits_;

@@ -77,9 +77,9 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
   }
   // One sample is the pixel's middle: where it falls is no matter of chance. Behind a lens lights
   // have no edges.
-  std::vector<EmitterWays> emitter_ways;
+  std::vector<HistoryMask> emitter_histories;
   if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
-    emitter_ways.assign(film.color.size(), kUnknownWays);
+    emitter_histories.assign(film.color.size(), kUnknownHistories);
   }
   RenderJob job{prepared, camera, options, lights, light_paths ? &*light_paths : nullptr};
   SplatLayer splats;
@@ -91,11 +91,11 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
   }
   if (ranks > 1 && options.ranks->index() != 0) {
     run_worker(*options.ranks, job, std::move(first_intersector), make_intersector, monitor, film,
-               emitter_ways, stats);
+               emitter_histories, stats);
     return film;
   }
   run_coordinator(job, tiles, std::move(first_intersector), make_intersector, monitor, film,
-                  emitter_ways, stats);
+                  emitter_histories, stats);
   if (stats.intersect.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
     const std::uint64_t every_record = bvh.primitive_count() * origins * std::uint64_t(ranks);

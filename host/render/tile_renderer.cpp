@@ -18,18 +18,18 @@ constexpr int kGlassPaths = 2;                    // of a sample
 }  // namespace
 
 TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
-                           std::span<EmitterWays> emitter_ways)
+                           std::span<HistoryMask> emitter_histories)
     : job_(job),
       intersector_(intersector),
       film_(film),
-      emitter_ways_(emitter_ways),
+      emitter_histories_(emitter_histories),
       integrator_(job.options.integrator, job.prepared, job.lights, job.options, job.light_paths),
       shadow_rays_(job.prepared, job.lights, intersector, job.options.skips,
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()),
       has_glass_(
           std::ranges::any_of(job.prepared.materials, &MaterialParameters::is_bending_glass)) {
-  if (!emitter_ways.empty()) emitter_supersampler_.emplace(job, intersector, is_counting_);
+  if (!emitter_histories.empty()) emitter_supersampler_.emplace(job, intersector, is_counting_);
   if (job.light_paths == nullptr || job.splats != nullptr) return;
   light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options,
                             job.light_paths);
@@ -74,7 +74,7 @@ void TileRenderer::make_camera_rays() {
       state.sample = static_cast<std::uint32_t>(batch_.rays.size());
       state.stream = sampler.key();
       state.index = index;
-      if (!emitter_ways_.empty()) state.emitters = emitter_ways_[pixel.index];
+      if (!emitter_histories_.empty()) state.supersampled = emitter_histories_[pixel.index];
       const Ray& ray = batch_.rays.emplace_back(
           camera_ray(job_, pixel.x, pixel.y, sampler, index, kFilterStream));
       state.scattered_at = ray.origin;
@@ -117,8 +117,8 @@ bool TileRenderer::is_empty_tile() const {
 
 bool TileRenderer::trace_camera_rays(const std::function<bool()>& keep_going) {
   Stopwatch watch;
-  if (emitter_supersampler_ && emitter_ways_[pixels_[0].index] == kUnknownWays) {
-    emitter_supersampler_->find(film_, tile_, emitter_ways_, pixel_work_);
+  if (emitter_supersampler_ && emitter_histories_[pixels_[0].index] == kUnknownHistories) {
+    emitter_supersampler_->find(film_, tile_, emitter_histories_, pixel_work_);
   }
   watch.lap();
   make_camera_rays();
@@ -171,7 +171,7 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
 void TileRenderer::supersample_emitters() {
   if (!emitter_supersampler_) return;
   std::vector<RayWork> work(is_counting_ ? pixels_.size() : 0);
-  emitter_supersampler_->supersample(pixels_, emitter_ways_, emitter_sums_, work);
+  emitter_supersampler_->supersample(pixels_, emitter_histories_, emitter_sums_, work);
   for (std::size_t p = 0; p < work.size(); ++p) pixel_work_[place_in_tile(pixels_[p])] += work[p];
 }
 

@@ -27,9 +27,10 @@ namespace raygate {
 /// path's light is added up by itself, depth by depth.
 class TileRenderer {
  public:
-  /// `emitter_ways`: of the film's pixels, for all tiles and passes; empty: not to be looked for.
+  /// `emitter_histories`: of the film's pixels, for all tiles and passes; empty: not to be looked
+  /// for.
   TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
-               std::span<EmitterWays> emitter_ways);
+               std::span<HistoryMask> emitter_histories);
 
   /// Traces the samples that samples_to_trace() names. `keep_going` is asked between batches; when
   /// it says no, what was traced is not worth writing, and false is returned.
@@ -65,7 +66,7 @@ class TileRenderer {
   RenderJob job_;
   Intersector& intersector_;
   Film& film_;
-  std::span<EmitterWays> emitter_ways_;
+  std::span<HistoryMask> emitter_histories_;
   std::optional<EmitterSupersampler> emitter_supersampler_;
   Integrator integrator_;
   std::optional<Integrator> light_integrator_;  // of light paths

@@ -33,13 +33,13 @@ class TileWorkers {
  public:
   TileWorkers(const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
               const IntersectorFactory& make_intersector, Film& film,
-              std::span<EmitterWays> emitter_ways, RenderStats& stats)
+              std::span<HistoryMask> emitter_histories, RenderStats& stats)
       : job_(job),
         film_(film),
         stats_(stats),
         first_intersector_(std::move(first_intersector)),
         make_intersector_(make_intersector),
-        emitter_ways_(emitter_ways) {}
+        emitter_histories_(emitter_histories) {}
   TileWorkers(const TileWorkers&) = delete;
   TileWorkers& operator=(const TileWorkers&) = delete;
   virtual ~TileWorkers() = default;
@@ -83,7 +83,7 @@ class TileWorkers {
 
   std::unique_ptr<Intersector> first_intersector_;  // of the thread that begins first
   const IntersectorFactory& make_intersector_;
-  std::span<EmitterWays> emitter_ways_;
+  std::span<HistoryMask> emitter_histories_;
 };
 
 }  // namespace raygate

@@ -89,8 +89,8 @@ class Worker : public TileWorkers {
 
 void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
                 const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
-                Film& film, std::span<EmitterWays> emitter_ways, RenderStats& stats) {
-  Worker(job, std::move(first_intersector), make_intersector, film, emitter_ways, stats)
+                Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats) {
+  Worker(job, std::move(first_intersector), make_intersector, film, emitter_histories, stats)
       .run(ranks, monitor);
 }
 

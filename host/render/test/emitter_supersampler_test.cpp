@@ -61,7 +61,7 @@ RenderOptions options(int samples, ReconstructionFilter filter = ReconstructionF
 }
 
 struct Found {
-  std::vector<EmitterWays> ways;  // by pixel
+  std::vector<HistoryMask> ways;  // by pixel
   std::uint64_t rays = 0;
 };
 
@@ -74,7 +74,7 @@ Found find(const Scene& scene, const Camera& camera, const RenderOptions& asked)
   film.width = film.height = kSide;
   film.window = {0, 0, kSide, kSide};
   Found found;
-  found.ways.resize(std::size_t{kSide} * kSide, kUnknownWays);
+  found.ways.resize(std::size_t{kSide} * kSide, kUnknownHistories);
   const RenderJob job{prepared, camera, asked, lights, {}};
   EmitterSupersampler emitters(job, intersector, false);
   emitters.find(film, film.window, found.ways, {});
@@ -84,11 +84,11 @@ Found find(const Scene& scene, const Camera& camera, const RenderOptions& asked)
   return found;
 }
 
-constexpr EmitterWays kDirect = 1u << 1;
-constexpr EmitterWays kInMirror = 1u << 2;
+constexpr HistoryMask kDirect = 1u << 1;
+constexpr HistoryMask kInMirror = 1u << 2;
 
 /// The ways of a panel of whole pixels 3 .. 5, 2 .. 4, and a half of those around it.
-void expect_around(const std::vector<EmitterWays>& ways, EmitterWays expected) {
+void expect_around(const std::vector<HistoryMask>& ways, HistoryMask expected) {
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
       const bool is_near = x >= 2 && x <= 6 && y >= 1 && y <= 5;
@@ -112,7 +112,7 @@ TEST(EmitterSupersampler, GoByMirrorsOfPathTracers) {
   const Found of_whitted = find(panel.scene, panel.camera,
                                 options(4, ReconstructionFilter::kBox, IntegratorKind::kWhitted));
   EXPECT_EQ(of_whitted.rays, 0u) << "the panel is behind the camera";
-  EXPECT_EQ(of_whitted.ways, std::vector<EmitterWays>(std::size_t{kSide} * kSide, 0));
+  EXPECT_EQ(of_whitted.ways, std::vector<HistoryMask>(std::size_t{kSide} * kSide, 0));
 }
 
 TEST(EmitterSupersampler, GoStraightThroughWhatIsClear) {
@@ -145,8 +145,8 @@ Scene ball() {
 
 TEST(EmitterSupersampler, GoThroughGlass) {
   const Found found = find(ball(), camera_of(), options(4));
-  EmitterWays all = 0;
-  for (const EmitterWays ways : found.ways) all |= ways;
+  HistoryMask all = 0;
+  for (const HistoryMask ways : found.ways) all |= ways;
   EXPECT_NE(all >> 0b10 & 1, 0u) << "mirrored by its front";
   EXPECT_NE(all >> 0b1101 & 1, 0u) << "in, mirrored at the back, out";
 }
@@ -156,8 +156,8 @@ TEST(EmitterSupersampler, GoThroughTwoPanes) {
   for (const float z : {0.3f, 0.6f}) {
     test::add(panel.scene, test::box({-9, -9, z}, {9, 9, z + 0.1f}), test::glass(1.5f));
   }
-  EmitterWays all = 0;
-  for (const EmitterWays ways : find(panel.scene, panel.camera, options(4)).ways) all |= ways;
+  HistoryMask all = 0;
+  for (const HistoryMask ways : find(panel.scene, panel.camera, options(4)).ways) all |= ways;
   EXPECT_NE(all >> 0b11111 & 1, 0u) << "in and out twice";
 }
 
