@@ -1,16 +1,21 @@
-// Prepared scene: what all pictures of a scene share, made once when the scene is loaded.
+// Prepared scene: data that all pictures of a scene share.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "host/bvh/bvh.h"
+#include "host/light/lights.h"
 #include "host/light/material_parameters.h"
 #include "host/light/neighbor_clearance.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
 
-/// For all threads to read, and for any camera and its lights.
+/// Read by all threads, with any camera and its lights.
 struct PreparedScene {
   /// The references must outlive this. `tree` is the scene's.
   PreparedScene(const Scene& loaded, const Bvh& tree)
@@ -19,10 +24,21 @@ struct PreparedScene {
         clearances(tree),
         materials(loaded.materials.begin(), loaded.materials.end()) {}
 
+  /// The scene's own lights; made at the first call. Thread-safe.
+  [[nodiscard]] const Lights& lights(Lights::Sampling sampling) const {
+    const std::lock_guard lock(mutex_);
+    auto& lights = lights_[static_cast<std::size_t>(sampling)];
+    return lights ? *lights : lights.emplace(scene, bvh, sampling);
+  }
+
   const Scene& scene;
   const Bvh& bvh;
   NeighborClearances clearances;
-  std::vector<MaterialParameters> materials;  ///< of Scene::materials, in their order
+  std::vector<MaterialParameters> materials;  ///< by index in Scene::materials
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::array<std::optional<Lights>, 2> lights_;  // by Lights::Sampling
 };
 
 }  // namespace raygate

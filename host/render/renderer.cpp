@@ -60,8 +60,10 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
   const Tiles tiles(film.window, end - options.first_sample, first_intersector->preferred_batch(),
                     options.threads, ranks, options.error > 0.0);
   const bool is_path = options.integrator == IntegratorKind::kPath;
-  const Lights lights(prepared.scene, bvh,
-                      is_path ? Lights::Sampling::kOne : Lights::Sampling::kAll, options.lights);
+  const auto sampling = is_path ? Lights::Sampling::kOne : Lights::Sampling::kAll;
+  std::optional<Lights> camera_lights;
+  if (options.lights) camera_lights.emplace(prepared.scene, bvh, sampling, options.lights);
+  const Lights& lights = camera_lights ? *camera_lights : prepared.lights(sampling);
   std::optional<LightPaths> light_paths;
   if (wants_light_paths(options, camera)) {
     light_paths.emplace(prepared, lights, frame_view(camera, options, film));

@@ -4,7 +4,7 @@
 // first goes through the pixel (0, 0), right and down lead from a pixel to the next. It is then scaled by a
 // power of two, so that the largest component is in [1, 2); a component that becomes smaller than
 // 2**-126 is zero. What cannot be scaled, zero or not finite, stays so: the core refuses it. Vectors are three words,
-// x lowest. Host: host/intersect/core/pixel_grid.h, bit for bit.
+// x lowest. Host: sim/test/ray_core/pixel_grid.h, bit for bit.
 //
 // start_i, while not busy_o, takes the rectangle; a width or height of zero gives nothing. stop_i: no pixel is begun
 // any more. Throughput a ray a clock.

@@ -15,7 +15,7 @@
 
 #include "Vray_core_axi.h"
 #include "host/intersect/core/memory_image.h"
-#include "host/intersect/core/pixel_grid.h"
+#include "sim/test/ray_core/pixel_grid.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "hw/ray_core/registers.h"

@@ -11,7 +11,7 @@
 
 #include "Vray_generator_behavioural.h"
 #include "Vray_generator_structural.h"
-#include "host/intersect/core/pixel_grid.h"
+#include "sim/test/ray_core/pixel_grid.h"
 #include "sim/model.h"
 
 namespace raygate {
