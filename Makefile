@@ -19,7 +19,7 @@ define build
 @cmake --build build -j $(JOBS) --target $(2)
 endef
 
-.PHONY: help cpu verilate example page wave render gallery denoise test python wheel check mutate fuzz lint format clean
+.PHONY: help cpu verilate example page wave render gallery test python wheel check mutate fuzz lint format clean
 
 help:
 	@for group in use test measure hardware develop; do \
@@ -55,10 +55,6 @@ else
 	@sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' scenes/README.md | \
 	  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done
 endif
-
-denoise: ## use: a denoised copy of a picture, to look at: make denoise PICTURE=cornell.exr [ARGS='--exposure 1']
-	@$(SETUP) denoise
-	@$(PYTHON) -B -m host.film.denoise $(PICTURE) $(ARGS)
 
 wave: ## use: the waveform of one pixel's ray through the ray core: make wave PIXEL=64,64 [SCENE= ARGS=]
 	$(call build,build,render)
