@@ -1,4 +1,4 @@
-// Remote workers: the other ranks as rank 0 sees them, and the messages about tiles.
+// Remote workers: the other ranks as seen by rank 0, and the messages about tiles.
 #pragma once
 
 #include <span>
@@ -8,9 +8,8 @@
 
 #include "host/film/film.h"
 #include "host/ranks/ranks.h"
+#include "host/render/coordinator.h"
 #include "host/render/splat_layer.h"
-#include "host/render/tile_queue.h"
-#include "host/render/tile_workers.h"
 #include "host/render/tiles.h"
 
 namespace raygate {
@@ -24,25 +23,26 @@ namespace raygate {
       .append(reinterpret_cast<const char*>(splats.data()), splats.size_bytes())
       .append(region);
 }
-/// Throws InputError where there are fewer than the message says.
+/// Throws InputError if the message has fewer splats than it says.
 [[nodiscard]] std::vector<Splat> splats_in(const std::string& message);
 [[nodiscard]] inline std::string_view region_in(const std::string& message) {
   return std::string_view(message).substr(sizeof(TileWork) +
                                           splats_in(message).size() * sizeof(Splat));
 }
 
-/// Hands out tiles and puts what comes back into the film. For one thread at a time, which also
-/// has the film and the queue to itself meanwhile.
+/// Sends tiles to the other ranks and puts their results into the film. Used by one thread at a time,
+/// which must have exclusive access to the film and the queue during a call.
 class RemoteWorkers {
  public:
-  /// `first_sample`: of the render. All else must outlive this.
+  /// `first_sample`: of the render. The references must outlive this.
   RemoteWorkers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film, SplatLayer& splats);
 
-  /// Takes what has come and gives everyone with room for it more to do. True if a tile came back.
+  /// Takes results that have arrived and sends work to ranks with room. Returns whether a tile came
+  /// back.
   bool serve(TileQueue& queue);
 
-  /// Says that all is traced, and waits for what everyone has to say about it: true once that is
-  /// in `stats`, with what serve() has done. False: not yet.
+  /// Tells the ranks that the render is complete and collects their statistics. Returns true once all
+  /// are in `stats`; call it again until then.
   bool finish(RenderStats& stats);
 
  private:
@@ -55,14 +55,14 @@ class RemoteWorkers {
   int first_sample_;
   Film& film_;
   SplatLayer& splats_;
-  std::vector<int> room_;  // by rank: for so many more tiles
-  int most_room_ = 0;      // of all of them, when they had nothing to do
-  double seconds_ = 0.0;   // of threads, for ...
+  std::vector<int> room_;  // by rank: how many more tiles it can take
+  int most_room_ = 0;      // of all ranks together, when idle
+  double seconds_ = 0.0;   // thread seconds of `passes_`
   std::int64_t passes_ = 0;
-  double serving_ = 0.0;  // seconds of this thread
+  double serving_ = 0.0;  // seconds spent in serve()
   std::uint64_t tiles_back_ = 0, bytes_back_ = 0;
   bool told_ = false;
-  int heard_ = 0;  // statistics that have come
+  int heard_ = 0;  // number of ranks whose statistics have come
 };
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// Tile renderer: one thread renders the samples of a tile, batch by batch.
+// Tile renderer: renders the samples of a tile, batch by batch, on one thread.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "host/bvh/bvh.h"
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
 #include "host/light/integrator.h"
@@ -19,6 +20,7 @@
 #include "host/render/emitter_supersampler.h"
 #include "host/render/render_job.h"
 #include "host/render/splat_layer.h"
+#include "host/scene/camera.h"
 
 namespace raygate {
 
@@ -87,5 +89,14 @@ class TileRenderer {
   std::vector<RayWork> work_;     // of the batch, if it is counted
   std::vector<Splat> splats_;
 };
+
+/// Whether a camera ray through `tile`, or up to `margin` pixels beside it, may enter a leaf of the
+/// tree. Conservative: false only if no ray does, including all rounding.
+[[nodiscard]] bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film,
+                                    const PixelRect& tile, double margin);
+
+/// The same for the box from `low` to `high`.
+[[nodiscard]] bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
+                               const Film& film, const PixelRect& tile, double margin);
 
 }  // namespace raygate

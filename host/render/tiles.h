@@ -1,25 +1,30 @@
-// Tiles: the cut of a picture into tiles of pixels and passes of samples.
+// Tiles: a picture split into tiles of pixels and passes of samples, and the queue of this work.
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <numeric>
+#include <optional>
+#include <vector>
 
 #include "host/film/film.h"
 
 namespace raygate {
 
-/// The window cut into tiles, numbered row by row, and each pixel's samples into passes, so that a
-/// tile's samples of a pass are about as many as an intersector prefers in a batch. Fewer where
-/// some of the threads would have no tile; and where there are other ranks, smaller tiles and
-/// longer passes, unless these are to stay short, as long as a thread has not four tiles.
+/// The window split into tiles, numbered row by row, and each pixel's samples into passes, so that a
+/// tile has about as many samples in a pass as an intersector prefers in a batch. Tiles are smaller
+/// if some threads would have none. With several ranks tiles are smaller and passes longer (unless
+/// `short_passes`) while a thread would have fewer than four tiles.
 struct Tiles {
   PixelRect window;
   int samples, samples_per_pass;
   int width, height;  ///< of a tile
   int columns, count;
 
-  /// `batch`: Intersector::preferred_batch. `threads` of each of so many `ranks`.
+  /// `batch`: Intersector::preferred_batch(). `threads`: per rank.
   Tiles(const PixelRect& rect, int samples_per_pixel, std::size_t batch, int threads, int ranks = 1,
         bool short_passes = false)
       : window(rect), samples(samples_per_pixel), samples_per_pass(std::min(samples_per_pixel, 4)) {
@@ -43,7 +48,7 @@ struct Tiles {
   }
 
   [[nodiscard]] int passes() const { return (samples + samples_per_pass - 1) / samples_per_pass; }
-  /// How many samples a pixel has after a pass.
+  /// Returns the number of samples that a pixel has after a pass.
   [[nodiscard]] int samples_after(int pass) const {
     return std::min(samples, (pass + 1) * samples_per_pass);
   }
@@ -53,6 +58,74 @@ struct Tiles {
     const int y = window.y0 + index / columns * height;
     return {x, y, std::min(x + width, window.x1), std::min(y + height, window.y1)};
   }
+};
+
+/// The steps of a render, each one or more passes over a tile. The passes of a tile are sequential;
+/// tiles are independent. A tile stays with the rank that began it while other tiles are left for
+/// the other ranks, so that its pixels need not be sent.
+class TileQueue {
+ public:
+  struct Step {
+    int tile, pass, end_pass;  ///< passes [pass, end_pass)
+    bool moves;                ///< another rank rendered the pass before
+  };
+
+  /// `is_begun`: rank 0 has samples of all tiles from an earlier run.
+  TileQueue(int tiles, int passes, bool is_begun = false)
+      : passes_(passes),
+        steps_(std::int64_t{tiles} * passes),
+        waiting_(static_cast<std::size_t>(tiles)),
+        tiles_(static_cast<std::size_t>(tiles), {.rank = is_begun ? 0 : kNobody}) {
+    std::iota(waiting_.begin(), waiting_.end(), 0);
+  }
+
+  /// Begins one to `most` passes of a tile. Returns none if every tile is complete or being rendered.
+  [[nodiscard]] std::optional<Step> begin(int rank = 0, int most = 1) {
+    if (waiting_.empty()) return std::nullopt;
+    const auto may_stay = [&](int tile) {
+      const int with = at(tile).rank;
+      return with == rank || with == kNobody;
+    };
+    auto next = std::ranges::find_if(waiting_, may_stay);
+    if (next == waiting_.end()) next = waiting_.begin();
+    Step step{*next, at(*next).begun, 0, !may_stay(*next)};
+    waiting_.erase(next);
+    step.end_pass = std::min(passes_, step.pass + std::max(1, most));
+    begun_ += step.end_pass - step.pass;
+    at(step.tile).begun = step.end_pass;
+    at(step.tile).rank = rank;
+    return step;
+  }
+
+  /// Ends the step of `tile` that was begun.
+  void end(int tile) {
+    Tile& ended = at(tile);
+    ended_ += ended.begun - ended.ended;
+    assert(ended_ <= begun_);
+    ended.ended = ended.begun;
+    if (ended.begun < passes_) waiting_.push_back(tile);
+  }
+
+  [[nodiscard]] bool all_begun() const { return begun_ == steps_; }
+  [[nodiscard]] bool all_ended() const { return ended_ == steps_; }
+  /// Number of passes that have not begun.
+  [[nodiscard]] std::int64_t left() const { return steps_ - begun_; }
+  [[nodiscard]] double fraction() const {
+    return static_cast<double>(ended_) / static_cast<double>(steps_);
+  }
+
+ private:
+  static constexpr int kNobody = -1;
+  struct Tile {
+    int rank = kNobody;        // the rank that has its samples
+    int begun = 0, ended = 0;  // passes
+  };
+  [[nodiscard]] Tile& at(int tile) { return tiles_[static_cast<std::size_t>(tile)]; }
+
+  int passes_;
+  std::int64_t steps_, begun_ = 0, ended_ = 0;
+  std::deque<int> waiting_;
+  std::vector<Tile> tiles_;
 };
 
 }  // namespace raygate

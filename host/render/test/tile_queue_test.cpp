@@ -1,5 +1,5 @@
 // Every pass of every tile once, a tile's in their order, and no tile waits for another.
-#include "host/render/tile_queue.h"
+#include "host/render/tiles.h"
 
 #include <gtest/gtest.h>
 
