@@ -9,6 +9,7 @@
 #include "host/cli/output_options.h"
 #include "host/cli/process.h"
 #include "host/film/film.h"
+#include "host/film/merge.h"
 
 namespace raygate {
 namespace {

@@ -14,6 +14,7 @@
 #include "host/film/exr.h"
 #include "host/film/false_color.h"
 #include "host/film/film.h"
+#include "host/film/merge.h"
 
 namespace raygate {
 namespace {

@@ -22,6 +22,7 @@
 #include "host/film/display.h"
 #include "host/film/environment_file.h"
 #include "host/film/film.h"
+#include "host/film/merge.h"
 #include "host/light/prepared_scene.h"
 #include "host/options/version.h"
 #include "host/ranks/ranks.h"

@@ -5,6 +5,7 @@
 
 #include "host/exact/exact.h"
 #include "host/film/film.h"
+#include "host/film/merge.h"
 
 namespace raygate {
 namespace {

@@ -10,6 +10,7 @@
 #include "host/base/input_error.h"
 #include "host/film/exr.h"
 #include "host/film/film.h"
+#include "host/film/merge.h"
 
 namespace {
 
