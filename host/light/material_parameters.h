@@ -61,7 +61,6 @@ struct MaterialParameters {
     return (kind & kMirrors) != 0 && (~kind & kRoughGlass) != 0 && (mirror_is_traced || refracts);
   }
   /// The same of glass at whose borders light is bent.
-  [[nodiscard]] bool is_bending_glass() const { return is_mirror_or_glass() && refracts; }
 
   /// The hole of a mask: all light goes straight on.
   [[nodiscard]] static MaterialParameters hole() {

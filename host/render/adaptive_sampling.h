@@ -71,11 +71,8 @@ struct PixelSamples {
   int x, y;
   std::size_t index;  ///< of the pixel, in the film
   int first, end;     ///< samples [first, end)
-  int paths = 1;      ///< that each sample is the mean of
 
-  [[nodiscard]] std::size_t path_count() const {
-    return static_cast<std::size_t>(end - first) * static_cast<std::size_t>(paths);
-  }
+  [[nodiscard]] std::size_t path_count() const { return static_cast<std::size_t>(end - first); }
 };
 
 /// Those that pixels of `tile` lack for having all up to number `end`; with RenderOptions::error,

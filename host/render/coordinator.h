@@ -1,4 +1,5 @@
-// The threads that render tiles, and the coordinator (rank 0 or the only process) that hands out tiles.
+// The threads that render tiles, and the coordinator (rank 0 or the only process) that hands out
+// tiles.
 #pragma once
 
 #include <condition_variable>

@@ -30,8 +30,8 @@ namespace raygate {
                                           splats_in(message).size() * sizeof(Splat));
 }
 
-/// Sends tiles to the other ranks and puts their results into the film. Used by one thread at a time,
-/// which must have exclusive access to the film and the queue during a call.
+/// Sends tiles to the other ranks and puts their results into the film. Used by one thread at a
+/// time, which must have exclusive access to the film and the queue during a call.
 class RemoteWorkers {
  public:
   /// `first_sample`: of the render. The references must outlive this.
@@ -41,8 +41,8 @@ class RemoteWorkers {
   /// back.
   bool serve(TileQueue& queue);
 
-  /// Tells the ranks that the render is complete and collects their statistics. Returns true once all
-  /// are in `stats`; call it again until then.
+  /// Tells the ranks that the render is complete and collects their statistics. Returns true once
+  /// all are in `stats`; call it again until then.
   bool finish(RenderStats& stats);
 
  private:

@@ -14,7 +14,6 @@ namespace raygate {
 namespace {
 
 constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
-constexpr int kGlassPaths = 2;                    // of a sample
 
 }  // namespace
 
@@ -27,41 +26,11 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
       integrator_(job.options.integrator, job.prepared, job.lights, job.options, job.light_paths),
       shadow_rays_(job.prepared, job.lights, intersector, job.options.skips,
                    integrator_.shadows_through_refraction()),
-      is_counting_(!film.tests.empty() || !film.doubts.empty()),
-      has_glass_(
-          std::ranges::any_of(job.prepared.materials, &MaterialParameters::is_bending_glass)) {
+      is_counting_(!film.tests.empty() || !film.doubts.empty()) {
   if (!emitter_histories.empty()) emitter_supersampler_.emplace(job, intersector, is_counting_);
   if (job.light_paths == nullptr || job.splats != nullptr) return;
   light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options,
                             job.light_paths);
-}
-
-/// Glass is the noisiest that a camera sees: at each of its borders chance chooses between mirror
-/// and way through, and caustics seen in it are smaller than pixels. So a sample of a pixel whose
-/// middle sees glass is the mean of several paths; not without light paths, for then caustics
-/// elsewhere are noisier. That depends on no sample, so that it favours nothing.
-void TileRenderer::choose_path_counts() {
-  if (!has_glass_ || job_.light_paths == nullptr) return;
-  Stopwatch watch;
-  batch_.clear();
-  batch_.depth = 0;
-  for (const PixelSamples& pixel : pixels_) {
-    batch_.rays.push_back(job_.camera.ray((pixel.x + 0.5) / job_.options.width,
-                                          (pixel.y + 0.5) / job_.options.height, {}));
-  }
-  stats_.camera_rays += pixels_.size();
-  stats_.shade_seconds += watch.lap();
-  intersect_batch();
-  watch.lap();
-  for (std::size_t i = 0; i < work_.size(); ++i) pixel_work_[place_in_tile(pixels_[i])] += work_[i];
-  for (std::size_t i = 0; i < hits_.size(); ++i) {
-    if (hits_[i].primitive == NearestHit::kNone) continue;
-    const FaceRef face = job_.prepared.bvh.face_of(hits_[i].primitive);
-    const MaterialParameters& material =
-        job_.prepared.materials[face_at(job_.prepared.scene, face).material];
-    if (material.is_bending_glass()) pixels_[i].paths = kGlassPaths;
-  }
-  stats_.shade_seconds += watch.lap();
 }
 
 void TileRenderer::make_camera_rays() {
@@ -69,7 +38,7 @@ void TileRenderer::make_camera_rays() {
   batch_.depth = 0;
   for (const PixelSamples& pixel : pixels_) {
     const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
-    for (int i = pixel.first * pixel.paths; i < pixel.end * pixel.paths; ++i) {
+    for (int i = pixel.first; i < pixel.end; ++i) {
       const auto index = static_cast<std::uint32_t>(i);
       PathState& state = batch_.states.emplace_back();
       state.sample = static_cast<std::uint32_t>(batch_.rays.size());
@@ -92,9 +61,6 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   pixel_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
   const bool is_empty = !job_.only_light_paths && is_empty_tile();
   const bool has_camera_paths = !job_.only_light_paths && !is_empty;
-  stats_.shade_seconds += watch.lap();
-  if (has_camera_paths) choose_path_counts();
-  watch.lap();
   paths_ = 0;
   for (const PixelSamples& pixel : pixels_) paths_ += pixel.path_count();
   path_work_.assign(is_counting_ ? paths_ : 0, {});
@@ -148,7 +114,7 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   std::size_t camera_path = 0;  // the work is counted with
   batch_.clear();
   for (const PixelSamples& pixel : pixels_) {
-    for (int i = pixel.first; i < pixel.end; ++i, camera_path += std::size_t(pixel.paths)) {
+    for (int i = pixel.first; i < pixel.end; ++i, ++camera_path) {
       for (std::uint64_t path = pixel.index * paths / window;
            path < (pixel.index + 1) * paths / window; ++path) {
         const auto start = job_.light_paths->start(static_cast<std::uint64_t>(i) * paths + path,
@@ -258,12 +224,10 @@ void TileRenderer::write() {
       const FirstSurface& first = output_.first_surface[i];
       const glm::dvec3 light = glm::dvec3(output_.radiance[i]) + glm::dvec3(direct_light_[i]);
       for (int k = 0; k < 3; ++k) {
-        color[k].add(light[k] / pixel.paths);
-        if (has_albedo) {
-          albedo[k].add(double{first.albedo[k]} / pixel.paths);
-        }
+        color[k].add(light[k]);
+        if (has_albedo) albedo[k].add(double{first.albedo[k]});
       }
-      if (first.primitive != NearestHit::kNone) hits += 1.0 / pixel.paths;
+      if (first.primitive != NearestHit::kNone) hits += 1.0;
       if (is_counting_) count(path_work_[i]);
     }
     color[3].add(hits);

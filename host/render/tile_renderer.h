@@ -46,7 +46,6 @@ class TileRenderer {
   void add_to(RenderStats& stats) const;
 
  private:
-  void choose_path_counts();
   void make_camera_rays();
   void supersample_emitters();
   [[nodiscard]] bool is_empty_tile() const;
@@ -78,7 +77,7 @@ class TileRenderer {
   std::vector<PixelSamples> pixels_;
   std::size_t paths_ = 0;           // of all of them
   std::vector<RayWork> path_work_;  // by path: of all its rays, if it is counted
-  bool is_counting_, has_glass_;
+  bool is_counting_;
   ShadingOutput output_;
   std::vector<glm::vec3> direct_light_;  // by path: what shadow rays have brought
   std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;  // by pixel, of emitter_supersampler_

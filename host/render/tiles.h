@@ -14,10 +14,10 @@
 
 namespace raygate {
 
-/// The window split into tiles, numbered row by row, and each pixel's samples into passes, so that a
-/// tile has about as many samples in a pass as an intersector prefers in a batch. Tiles are smaller
-/// if some threads would have none. With several ranks tiles are smaller and passes longer (unless
-/// `short_passes`) while a thread would have fewer than four tiles.
+/// The window split into tiles, numbered row by row, and each pixel's samples into passes, so that
+/// a tile has about as many samples in a pass as an intersector prefers in a batch. Tiles are
+/// smaller if some threads would have none. With several ranks tiles are smaller and passes longer
+/// (unless `short_passes`) while a thread would have fewer than four tiles.
 struct Tiles {
   PixelRect window;
   int samples, samples_per_pass;
@@ -79,7 +79,8 @@ class TileQueue {
     std::iota(waiting_.begin(), waiting_.end(), 0);
   }
 
-  /// Begins one to `most` passes of a tile. Returns none if every tile is complete or being rendered.
+  /// Begins one to `most` passes of a tile. Returns none if every tile is complete or being
+  /// rendered.
   [[nodiscard]] std::optional<Step> begin(int rank = 0, int most = 1) {
     if (waiting_.empty()) return std::nullopt;
     const auto may_stay = [&](int tile) {
