@@ -55,12 +55,11 @@ struct MaterialParameters {
 
   explicit MaterialParameters(const Material& material);
 
-  /// A smooth one, whose directions are no matter of chance.
+  /// Whether this is a mirror or glass that is smooth: its directions are not random.
   [[nodiscard]] bool is_mirror_or_glass() const {
     constexpr HitKind kRoughGlass = kMetallicRoughness | kGlossy | kMirrors;
     return (kind & kMirrors) != 0 && (~kind & kRoughGlass) != 0 && (mirror_is_traced || refracts);
   }
-  /// The same of glass at whose borders light is bent.
 
   /// The hole of a mask: all light goes straight on.
   [[nodiscard]] static MaterialParameters hole() {
