@@ -148,6 +148,7 @@ void check_caustics(const RenderOptions& options) {
     throw InputError("--caustics on: expected --integrator path");
   }
   if (options.samples == 1) throw InputError("--caustics on: expected --spp 2 or more");
+  if (options.error > 0.0) throw InputError("--caustics on and --error exclude each other");
 }
 
 /// What options ask of each other.

@@ -29,11 +29,7 @@ class Coordinator : public TileWorkers {
         tiles_(tiles),
         monitor_(monitor),
         queue_(tiles.count, tiles.passes(), job.options.unfinished != nullptr) {
-    if (job.splats != nullptr) {
-      splats_ = *job.splats;
-    } else if (job.light_paths != nullptr) {
-      splats_ = SplatLayer(film.window, job.options.filter);
-    }
+    if (job.light_paths != nullptr) splats_ = SplatLayer(film.window, job.options.filter);
     Ranks* const ranks = job.options.ranks;
     if (ranks == nullptr || ranks->count() == 1) return;
     remote_.emplace(*ranks, tiles, job.options.first_sample, film, splats_);

@@ -17,16 +17,12 @@
 
 namespace raygate {
 
-class SplatLayer;
-
 struct RenderJob {
   const PreparedScene& prepared;
   const Camera& camera;
   const RenderOptions& options;
   const Lights& lights;
-  const LightPaths* light_paths = nullptr;  ///< none: caustics are found by chance
-  bool only_light_paths = false;            ///< no camera paths
-  const SplatLayer* splats = nullptr;       ///< of all light paths; none: these go with the samples
+  const LightPaths* light_paths = nullptr;  ///< null: only camera paths find caustics
 };
 
 /// What is asked about a batch of rays; `work` is empty or of its size.

@@ -12,7 +12,6 @@
 #include "host/ranks/ranks.h"
 #include "host/render/coordinator.h"
 #include "host/render/emitter_supersampler.h"
-#include "host/render/splat_layer.h"
 #include "host/render/tiles.h"
 #include "host/scene/camera.h"
 
@@ -31,7 +30,8 @@ Film empty_film(const RenderOptions& options) {
 /// Whether light paths are asked for and possible.
 bool wants_light_paths(const RenderOptions& options, const Camera& camera) {
   return options.caustics != Caustics::kOff && options.integrator == IntegratorKind::kPath &&
-         options.samples > 1 && !options.lights && camera.projection() == Projection::kPerspective;
+         options.samples > 1 && options.error == 0.0 && !options.lights &&
+         camera.projection() == Projection::kPerspective;
 }
 
 /// The frame as light paths have to hit it for the film's window.
@@ -83,14 +83,7 @@ Film render(const PreparedScene& prepared, const Camera& camera, const RenderOpt
   if (options.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
     emitter_histories.assign(film.color.size(), kUnknownHistories);
   }
-  RenderJob job{prepared, camera, options, lights, light_paths ? &*light_paths : nullptr};
-  SplatLayer splats;
-  if (light_paths && options.error > 0.0) {
-    splats = adaptive_splats(job, film, make_intersector, monitor, stats);
-    if (stats.cancelled) return film;  // as it was
-    if (options.unfinished != nullptr) splats.take_from(film);
-    job.splats = &splats;
-  }
+  const RenderJob job{prepared, camera, options, lights, light_paths ? &*light_paths : nullptr};
   if (ranks > 1 && options.ranks->index() != 0) {
     run_worker(*options.ranks, job, std::move(first_intersector), make_intersector, monitor, film,
                emitter_histories, stats);

@@ -28,7 +28,7 @@ TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film&
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {
   if (!emitter_histories.empty()) emitter_supersampler_.emplace(job, intersector, is_counting_);
-  if (job.light_paths == nullptr || job.splats != nullptr) return;
+  if (job.light_paths == nullptr) return;
   light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options,
                             job.light_paths);
 }
@@ -59,8 +59,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   if (pixels_.empty()) return true;
   tile_ = tile;
   pixel_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
-  const bool is_empty = !job_.only_light_paths && is_empty_tile();
-  const bool has_camera_paths = !job_.only_light_paths && !is_empty;
+  const bool is_empty = is_empty_tile();
   paths_ = 0;
   for (const PixelSamples& pixel : pixels_) paths_ += pixel.path_count();
   path_work_.assign(is_counting_ ? paths_ : 0, {});
@@ -71,7 +70,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   emitter_sums_.assign(pixels_.size(), {});
   if (is_empty) stats_.skipped.empty_tile_rays += paths_;
   stats_.shade_seconds += watch.lap();
-  return (!has_camera_paths || trace_camera_rays(keep_going)) && trace_light_paths(keep_going);
+  return (is_empty || trace_camera_rays(keep_going)) && trace_light_paths(keep_going);
 }
 
 /// Whether camera rays can meet nothing but the background.
@@ -238,7 +237,6 @@ void TileRenderer::write() {
     if (!kept.color.empty()) kept.color[at] = color;
     if (!kept.albedo.empty()) kept.albedo[at] = albedo;
     film_.color[at] = mean_of(color, samples);
-    if (job_.splats != nullptr) film_.color[at] += job_.splats->mean(at);
     if (has_albedo) film_.albedo[at] = mean_of(albedo, samples);
   }
   if (job_.options.error > 0.0) update_errors();

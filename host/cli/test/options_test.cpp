@@ -329,13 +329,14 @@ TEST(Options, FilesOfTheRayCore) {
 TEST(Options, CausticsOnNeedWhatLightPathsNeed) {
   const RenderOptions off = parse({"a.obj", "--caustics", "off"}).render;
   EXPECT_EQ(off.caustics, Caustics::kOff);
-  const RenderOptions on =
-      parse({"a.obj", "--caustics", "on", "--integrator", "path", "--error", "1"}).render;
+  const RenderOptions on = parse({"a.obj", "--caustics", "on", "--integrator", "path"}).render;
   EXPECT_EQ(on.caustics, Caustics::kOn);
   expect_error({"a.obj", "--caustics", "maybe"}, "--caustics: expected on, off or auto");
   expect_error({"a.obj", "--caustics", "on"}, "--caustics on: expected --integrator path");
   expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--spp", "1"},
                "--caustics on: expected --spp 2 or more");
+  expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--error", "1"},
+               "--caustics on and --error exclude each other");
 }
 
 TEST(Options, NamesThatPeopleType) {

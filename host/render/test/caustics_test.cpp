@@ -156,37 +156,6 @@ Camera into_room() { return camera_at({0.3, 0.2, 5.5}, {0, -0.6, 0}, 32.0); }
 
 TEST(Caustics, HaveTheMeansOfChance) { expect_same_means(room(), into_room(), 256); }
 
-// The left half of the picture looks down on the slab, the right half past it.
-TEST(Caustics, GlassHasTwoPathsASample) {
-  Scene scene = slab();
-  scene.directional_lights.push_back({{0, -1, 0}, glm::vec3(3.0f)});
-  const Bvh bvh(scene);
-  const IntersectorFactory cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
-  const Camera camera = camera_at({1.5, 9, 0}, {1.5, 0, 0}, 20.0);
-  constexpr int kSize = 16, kSamples = 4;  // of one pass
-  constexpr std::uint64_t kPixels = kSize * kSize;
-  for (const Caustics caustics : {Caustics::kOff, Caustics::kOn}) {
-    RenderOptions options = options_of(kSize, kSamples, caustics);
-    options.filter = ReconstructionFilter::kBox;
-    options.channels.tests = true;
-    RenderStats stats;
-    const Film film = render(scene, bvh, camera, options, cpu, stats);
-    // Besides, a ray through the middle of each pixel looks for glass.
-    const std::uint64_t expected = caustics == Caustics::kOff
-                                       ? kPixels * kSamples
-                                       : kPixels + kPixels / 2 * kSamples + kPixels * kSamples;
-    EXPECT_EQ(stats.camera_rays, expected);
-    for (int y = 0; y < kSize; ++y) {
-      for (int x = 0; x < kSize; ++x) {
-        EXPECT_EQ(film.color[film.index_of(x, y)].a, x < kSize / 2 ? 1.0f : 0.0f) << x << " " << y;
-      }
-    }
-    std::uint64_t tests = 0;
-    for (const std::uint32_t count : film.tests) tests += count;
-    EXPECT_EQ(tests, stats.intersect.hit.tests) << "of every ray, once";
-  }
-}
-
 TEST(Caustics, AreSeenByALens) {
   CameraSetting setting{{0.3, 0.2, 5.5}, {0, -0.6, 0}, {}, 32.0};
   setting.lens.aperture = 0.2;
@@ -327,51 +296,6 @@ TEST(Caustics, AreTheSameBytesWhoeverTraces) {
   ASSERT_TRUE(stats.cancelled);
   options.unfinished = &part;
   EXPECT_TRUE(same(picture(options, cpu), whole));
-}
-
-// Light paths come first then, and no block's depend on another's.
-TEST(Caustics, OfAdaptiveSamplesAreTheSameBytesWhoeverTraces) {
-  Scene scene = everything();
-  const Bvh bvh(scene);
-  const IntersectorFactory cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
-  const auto picture = [&](const RenderOptions& options) {
-    RenderStats stats;
-    return render(scene, bvh, into_room(), options, cpu, stats);
-  };
-  RenderOptions options = options_of(40, 64);
-  options.error = 4.0;
-  const Film whole = picture(options);
-  options.threads = 4;
-  EXPECT_TRUE(same(picture(options), whole));
-  options.window = {8, 12, 32, 40};
-  const Film crop = picture(options);
-  for (int y = 12; y < 40; ++y) {
-    for (int x = 8; x < 32; ++x) {
-      ASSERT_EQ(crop.color[crop.index_of(x, y)], whole.color[whole.index_of(x, y)])
-          << x << " " << y;
-    }
-  }
-  options.window = {};
-  options.channels.sums = true;
-  options.samples = 20;
-  const Film begun = picture(options);
-  options.samples = 64;
-  options.unfinished = &begun;
-  EXPECT_TRUE(same(picture(options), whole));
-  options.unfinished = nullptr;
-  options.caustics = Caustics::kOff;
-  EXPECT_FALSE(same(picture(options), whole));
-}
-
-TEST(Caustics, OfAdaptiveSamplesAreAsBrightAsFresnelSays) {
-  Scene scene = slab();
-  scene.directional_lights.push_back({{0, -1, 0}, glm::vec3(3.0f)});
-  RenderOptions options = options_of(16, 64);
-  options.error = 0.05;
-  const double r = reflectance(0.0, 0.0);
-  const double expected = 3.0 * (1.0 - r) / (1.0 + r) * 0.1 / pi;
-  const double found = mean_colour(caustics_of(scene, above_floor(), options)).x;
-  EXPECT_NEAR(found, expected, 0.01 * expected);
 }
 
 }  // namespace
