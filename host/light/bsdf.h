@@ -1,4 +1,4 @@
-// BSDF: how a material reflects and transmits light, as lobes that never add energy.
+// BSDF: reflection and transmission of a material, as lobes that never add energy.
 #pragma once
 
 #include "host/base/elementary.h"
@@ -13,8 +13,8 @@ namespace raygate {
 
 /// The BSDF of hits of one kind: four lobes, each with a colour as its albedo.
 ///
-/// `illum` says which there are; d is the opacity, 1 opaque. Where the lobes of an opaque surface
-/// add up to more than 1 they are scaled down, so that no energy comes from nowhere.
+/// `illum` selects the lobes; d is the opacity, 1 is opaque. Lobes of an opaque surface that add up
+/// to more than 1 are scaled down, to conserve energy.
 ///
 /// | illum | diffuse | glossy | mirror | transmission |
 /// |---|---|---|---|---|
@@ -29,20 +29,18 @@ namespace raygate {
 /// | 8, 9 | as 3, 4, but mirrors show only the background | | | |
 /// | 10 | as 1, with the colour at which it looks like the background (catcher_colour) | | | |
 ///
-/// With 4, 6, 7 and 9, d = 1 counts as 0: it is what exporters leave there, and the model says
-/// that the material is clear. Light that enters glass is not made denser by Ni squared, and not
-/// thinner when it leaves: what is counted is radiance over the square of the index, which does not
-/// change. "The rest" is what the mirror leaves. A mirror cannot show a point
-/// light, which has no size: there it has a highlight with exponent Ns instead, unless that is 1
-/// (what it is where the file does not say) or less.
+/// With 4, 6, 7 and 9, d = 1 counts as 0: exporters leave this default, and the model implies a
+/// clear material. Radiance is divided by the squared index of refraction throughout, so that it
+/// does not change at an interface. "The rest" is the fraction that the mirror does not reflect. A
+/// mirror cannot show a point light, which has no size; it shows a highlight with exponent Ns
+/// instead, unless Ns is at most 1 (1 is the default).
 ///
-/// A metallic-roughness material has the lobes of MetallicRoughnessLobes instead: `diffuse` is what
-/// is under the facets, `glossy` what rough facets reflect (up to what they hide from each other)
-/// and `mirror` what smooth ones do; glass is `mirror` and `transmission`. Where glass is rough,
-/// these two are its shares straight on, and scattered: eval(), sample() and pdf() have them, to
-/// both sides.
+/// A metallic-roughness material has the lobes of MetallicRoughnessLobes instead: `diffuse` is the
+/// base below the facets, `glossy` the reflection of rough facets, `mirror` that of smooth ones;
+/// glass has `mirror` and `transmission`. For rough glass these two are its albedos at normal
+/// incidence, and eval(), sample() and pdf() scatter to both sides.
 ///
-/// T is float or FloatLanes: hits of one kind, each with a material of its own.
+/// T is float or FloatLanes: hits of one kind, each with its own material.
 template <class T>
 class Bsdf {
  public:
@@ -50,7 +48,7 @@ class Bsdf {
   RAYGATE_INLINE Bsdf(const Surface<T>& surface, HitKind kind,
                       const MaterialParameters* const (&materials)[kLanesOf<T>]);
 
-  /// The same hits' BSDF where the surface is seen from another direction on the same side.
+  /// Returns the BSDF of the same hits as seen from another direction on the same side.
   [[nodiscard]] RAYGATE_INLINE Bsdf seen_from(
       const Surface<T>& seen, const MaterialParameters* const (&materials)[kLanesOf<T>]) const {
     if ((kind_ & (kMirrors | kTransmits | kMetallicRoughness)) != 0) {
@@ -70,30 +68,30 @@ class Bsdf {
     return mirror_is_traced_;
   }
   [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& is_refracting() const { return is_refracting_; }
-  /// The index of refraction beyond the border over that before it.
+  /// Index of refraction beyond the interface over that before it.
   [[nodiscard]] RAYGATE_INLINE const T& eta() const { return eta_; }
-  /// Radiance that the surface sends along the view by itself, as a light does (Ke).
+  /// Emitted radiance (Ke).
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& emission() const { return emission_; }
-  /// Radiance that is only there to be seen: illum 0.
+  /// Radiance that is seen but lights nothing (illum 0).
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& unlit() const { return unlit_; }
-  /// Whether light from a direction of its own is scattered: diffuse or glossy, or by rough glass.
+  /// Whether there is a lobe that is not specular: diffuse, glossy, or rough glass.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> scatters() const {
     return largest(diffuse_) + glossy_sum() > 0.0f;
   }
-  /// The same, or shows a highlight of what is one point.
+  /// Whether lights are sampled: scatters(), or a mirror with a highlight of point lights.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> answers_lights() const {
     const MaskOf<T> scatters = this->scatters();
     if (!has_highlight()) return scatters;
     const auto has_one = largest(highlight()) > 0.0f;
     return scatters | has_one;
   }
-  /// What all of that brings, about.
+  /// Approximate albedo of all lobes that are not specular.
   [[nodiscard]] RAYGATE_INLINE T scattered_share() const {
     return has_rough_glass() ? largest(diffuse_) + glossy_sum() : largest(diffuse_ + glossy_);
   }
 
-  /// Scattered per steradian and without the cosine, from unit direction `light`; from behind by
-  /// rough glass alone.
+  /// Returns the BSDF without specular lobes, per steradian and without the cosine, for the unit
+  /// vector `light`. Behind the surface it is 0 except for rough glass.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     if ((kind_ & kMetallicRoughness) != 0) {
       const Triple<T> reflected = above(light, facets_.eval(light));
@@ -102,7 +100,7 @@ class Bsdf {
     return above(light, (kind_ & kGlossy) != 0 ? diffuse_ * per_pi() + glossy_ * phong_lobe(light)
                                                : diffuse_ * per_pi());
   }
-  /// The same, the mirror as a highlight where the light is one point's.
+  /// The same, with the highlight of mirrors where the light is a point.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light,
                                               const MaskOf<T>& is_from_point) const {
     if (!has_highlight() || !any(is_from_point)) return eval(light);
@@ -110,12 +108,12 @@ class Bsdf {
     return above(light, diffuse_ * per_pi() + (glossy_ + shown) * phong_lobe(light));
   }
 
-  /// A direction in which light is scattered, chosen for a point of the unit square, nearly in
-  /// proportion to what it brings. May point behind the surface, or be 0: it brings nothing then,
-  /// but behind rough glass. `choice` in [0, 1): see MetallicRoughnessLobes::sample.
+  /// Samples a direction, approximately in proportion to eval() times the cosine, for a point of
+  /// the unit square. The direction may point behind the surface or be 0; then its contribution is
+  /// 0, except behind rough glass. `choice` in [0, 1): see MetallicRoughnessLobes::sample.
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u,
                                                 const T& choice = T{}) const;
-  /// The pdf of sample() per steradian.
+  /// Returns the probability density of sample(), per steradian.
   [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
     const T diffuse = at_least(dot(normal_, light), 0.0f) * kPerPi;
     if ((kind_ & kGlossy) == 0) return diffuse;
@@ -129,11 +127,11 @@ class Bsdf {
            share * (phong_lobe(light) * ((exponent_ + 1.0f) / (exponent_ + 2.0f)));
   }
 
-  /// Whether light is scattered to both sides.
+  /// Whether light scatters to both sides.
   [[nodiscard]] RAYGATE_INLINE bool has_rough_glass() const {
     return (~kind_ & (kMetallicRoughness | kGlossy | kMirrors)) == 0;
   }
-  /// Of metallic-roughness materials.
+  /// The lobes of a metallic-roughness material.
   [[nodiscard]] RAYGATE_INLINE const MetallicRoughnessLobes<T>& facets() const { return facets_; }
 
  private:
@@ -147,7 +145,7 @@ class Bsdf {
   [[nodiscard]] RAYGATE_INLINE bool has_highlight() const {
     return (kind_ & kMirrors) != 0 && (kind_ & kMetallicRoughness) == 0;
   }
-  /// What the mirror shows of a light that is one point.
+  /// Returns the albedo of the highlight that a mirror has of point lights.
   [[nodiscard]] RAYGATE_INLINE Triple<T> highlight() const {
     return choose(exponent_ > 1.0f, mirror_, zero<T>());
   }
@@ -160,10 +158,9 @@ class Bsdf {
     return choose(glossy > 0.0f, glossy / sum, T{});
   }
 
-  /// Phong's lobe around the mirrored view, so high that it reflects no more than what arrives
-  /// (Lafortune and Willems 1994). The cosine comes from the distance of the two directions, and
-  /// its power is taken in double: next to 1, where lobes of a large exponent are, float cosines
-  /// are too far apart.
+  /// Returns Phong's lobe around the reflected view, normalised to conserve energy (Lafortune and
+  /// Willems 1994). The cosine is computed from the distance of the two directions and its power in
+  /// double: near 1, where lobes of large exponents are, float cosines are too coarse.
   [[nodiscard]] RAYGATE_INLINE T phong_lobe(const Triple<T>& light) const {
     const Triple<T> apart = reflect(view_, normal_) - light;
     const T squared = dot(apart, apart);

@@ -1,34 +1,33 @@
-// Facet albedo: the share of light that leaves a rough surface after one facet, as a table.
+// Facet albedo: a table of the single-scattering albedo of rough surfaces.
 #pragma once
 
 #include "host/base/triple.h"
 
 namespace raygate {
 
-/// Two shares of the light along a direction that leave GGX facets after meeting one of them, by
-/// the direction's cosine and alpha; the rest meets a second facet. Each is an integral over the
-/// facets that the direction sees, made when it is first asked for, and
-/// bilinear over square roots: off by less than 0.01 for cosines of 0.05 and more.
+/// Two single-scattering albedos of GGX facets, by the cosine of a direction and alpha. Each is an
+/// integral over the visible facets, computed on first use and interpolated bilinearly over square
+/// roots; the error is below 0.01 for cosines of at least 0.05.
 class FacetAlbedo {
  public:
-  /// One of each a lane.
+  /// One value per lane.
   template <class T>
   struct Shares {
     T first, second;
   };
 
-  /// `first`: of facets that reflect all; `second`: of facets that reflect Schlick's share.
+  /// `first`: of facets that reflect everything; `second`: of facets that reflect Schlick's weight.
   [[nodiscard]] static const FacetAlbedo& of_mirrors();
-  /// Of glass of that index of refraction, reflected and transmitted together: `first` of light
-  /// from outside, `second` from inside.
+  /// Of glass with that index of refraction, reflection plus transmission: `first` for light from
+  /// outside, `second` from inside.
   [[nodiscard]] static const FacetAlbedo& of_glass(float index);
 
-  /// At cosines and alphas in [0, 1].
+  /// Returns the albedos at cosines and alphas in [0, 1].
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Shares<T> at(const T& cosine, const T& alpha) const {
     return at<T>([&](int) RAYGATE_BODY -> const FacetAlbedo& { return *this; }, cosine, alpha);
   }
-  /// The same of several tables: lane k has table_of(k).
+  /// The same from several tables: lane k uses table_of(k).
   template <class T, class TableOf>
   [[nodiscard]] RAYGATE_INLINE static Shares<T> at(const TableOf& table_of, const T& cosine,
                                                    const T& alpha) {
@@ -44,7 +43,7 @@ class FacetAlbedo {
     };
     return {share(&Cell::first), share(&Cell::second)};
   }
-  /// The means over the cosine: of light from all sides.
+  /// Returns the means over all directions, weighted by the cosine.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Shares<T> mean(const T& alpha) const {
     const Place<T> row(alpha);
@@ -62,7 +61,7 @@ class FacetAlbedo {
   struct Cell {
     float first = 0.0f, second = 0.0f;
   };
-  /// A place between two rows or columns.
+  /// A position between two rows or columns.
   template <class T>
   struct Place {
     LaneArray<std::int32_t, kLanesOf<T>> number;

@@ -1,4 +1,4 @@
-// Material parameters: a material of any file format as the one record that shading reads.
+// Material parameters: a material of any file format as the record that shading reads.
 #pragma once
 
 #include <cstdint>
@@ -10,47 +10,47 @@ namespace raygate {
 
 class FacetAlbedo;
 
-/// Features of a hit's material: a set of these bits. Hits with the same set are shaded together.
+/// Features of a hit's material, as a bit mask. Hits with the same mask are shaded together.
 using HitKind = std::uint32_t;
-inline constexpr HitKind kInterpolates = 1;  ///< something is interpolated between the vertices
-inline constexpr HitKind kEmits = 2;    ///< an emitter, or a colour that is only there to be seen
-inline constexpr HitKind kGlossy = 4;   ///< a highlight
-inline constexpr HitKind kMirrors = 8;  ///< a mirror
-inline constexpr HitKind kTransmits = 16;          ///< light passes
-inline constexpr HitKind kShadowCatcher = 32;      ///< of the background's colour but for shadows
+inline constexpr HitKind kInterpolates = 1;        ///< a vertex attribute is interpolated
+inline constexpr HitKind kEmits = 2;               ///< an emitter, or an unlit colour
+inline constexpr HitKind kGlossy = 4;              ///< a highlight
+inline constexpr HitKind kMirrors = 8;             ///< a mirror
+inline constexpr HitKind kTransmits = 16;          ///< transmission
+inline constexpr HitKind kShadowCatcher = 32;      ///< shows the background and the shadows on it
 inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; rough where it is glossy
 inline constexpr HitKind kIsBumpy = 128;           ///< a normal map
-inline constexpr HitKind kCoated = 256;  ///< a clear coat: of kMetallicRoughness and kGlossy alone
-inline constexpr HitKind kHitKinds = 512;  ///< sets are less than that
+inline constexpr HitKind kCoated = 256;  ///< a clear coat; only with kMetallicRoughness and kGlossy
+inline constexpr HitKind kHitKinds = 512;  ///< number of masks
 
-/// The lobes of a material before an angle is known. MTL's illumination models (Bsdf has the table)
-/// and metallic-roughness materials meet in this record.
+/// The parameters of a material that do not depend on directions: of MTL's illumination models (see
+/// Bsdf) and of metallic-roughness materials.
 struct MaterialParameters {
-  glm::vec3 diffuse{0.0f};  ///< of the texture's colour, limited to 1
-  glm::vec3 unlit{0.0f};    ///< of the same
+  glm::vec3 diffuse{0.0f};  ///< factor of the texture, at most 1
+  glm::vec3 unlit{0.0f};    ///< factor of the texture
   glm::vec3 glossy{0.0f};
-  glm::vec3 mirror{0.0f};         ///< straight on, and
-  glm::vec3 grazing{0.0f};        ///< so much more at grazing angles
-  glm::vec3 transmittance{0.0f};  ///< of what the mirror leaves
+  glm::vec3 mirror{0.0f};         ///< reflectance at normal incidence
+  glm::vec3 grazing{0.0f};        ///< additional reflectance at grazing angles
+  glm::vec3 transmittance{0.0f};  ///< of the light that the mirror does not reflect
   glm::vec3 emission{0.0f};
   float opacity = 1.0f;  ///< d, or 0 for clear glass
   float exponent = 0.0f;
   float index = 1.0f;     ///< of refraction
-  bool is_glass = false;  ///< what the mirror takes is gone for all that lies under it
+  bool is_glass = false;  ///< light that the mirror reflects is missing in the lobes below
   bool refracts = false;
-  bool is_fresnel = false;  ///< the mirror is Fresnel's
+  bool is_fresnel = false;  ///< the mirror follows Fresnel's formula
   bool mirror_is_traced = true;
-  bool emits_evenly = false;  ///< the same everywhere on it
-  /// Of a metallic-roughness material, which has the textures' colours in all its shares:
+  bool emits_evenly = false;  ///< the emission has no texture
+  /// Of a metallic-roughness material; textures multiply all of these:
   float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
-  float specular = 1.0f;         ///< of what is not metallic, at grazing angles; and, times this,
-  glm::vec3 reflectance{0.04f};  ///< straight on, limited to 1
+  float specular = 1.0f;         ///< of dielectrics, at grazing angles
+  glm::vec3 reflectance{0.04f};  ///< of dielectrics at normal incidence, times specular; at most 1
   float coat = 0.0f, coat_roughness = 0.0f;
-  const FacetAlbedo* facet_albedo = nullptr;  ///< of what is rough,
-  const FacetAlbedo* glass_albedo = nullptr;  ///< and of what is rough glass
-  HitKind kind = 0;                           ///< without what depends on the triangle
+  const FacetAlbedo* facet_albedo = nullptr;  ///< of rough facets, or null
+  const FacetAlbedo* glass_albedo = nullptr;  ///< of rough glass, or null
+  HitKind kind = 0;                           ///< without bits that depend on the triangle
 
-  bool has_mask = false;  ///< where is_masked_out() says so, hits have hole() instead
+  bool has_mask = false;  ///< where is_masked_out(), hits use hole() instead
   bool is_hole = false;
 
   explicit MaterialParameters(const Material& material);
@@ -61,7 +61,7 @@ struct MaterialParameters {
     return (kind & kMirrors) != 0 && (~kind & kRoughGlass) != 0 && (mirror_is_traced || refracts);
   }
 
-  /// The hole of a mask: all light goes straight on.
+  /// Returns the material of a hole in a mask: light passes straight through.
   [[nodiscard]] static MaterialParameters hole() {
     Material clear;
     clear.illumination_model = 1;

@@ -11,33 +11,34 @@
 
 namespace raygate {
 
-/// A colour, limited to [0, 1].
+/// Returns a colour clamped to [0, 1].
 template <class T>
 RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
   return {at_most(at_least(x.x, 0.0f), 1.0f), at_most(at_least(x.y, 0.0f), 1.0f),
           at_most(at_least(x.z, 0.0f), 1.0f)};
 }
 
-/// For base colour c, metalness m, transmission t, specular weight w and r0, the reflectance
-/// straight on of the index of refraction, times w and the specular colour; s is Schlick's Fresnel
-/// share of a cosine:
+/// The lobes for base colour c, metalness m, transmission t, specular weight w, and r0, the normal
+/// reflectance of the index of refraction times w and the specular colour. s is Schlick's weight of
+/// a cosine:
 ///
-/// * Facets (Ggx) reflect f0 + (f90 - f0) s of what meets them: f0 = m c + (1 - m)(1 - t) r0 and
+/// * Facets (Ggx) reflect f0 + (f90 - f0) s with f0 = m c + (1 - m)(1 - t) r0 and
 ///   f90 = 1 - (1 - m) t - (1 - m)(1 - t)(1 - w).
-/// * What meets more facets than one, 1 - E (FacetAlbedo), comes back in a wide lobe, (1 - E(view))
-///   (1 - E(light)) / (1 - E's mean), weaker by what facets absorb ("Revisiting physically based
-///   shading at Imageworks", Kulla and Conty 2017; F^2 in place of F as Hill has it).
-/// * Under the facets of what is no metal is (1 - m)(1 - t) c (1 - h(view))(1 - h(light)) /
-///   (1 - h's mean), diffuse; h is the share that both lobes reflect, where they reflect most. So
-///   white neither makes nor loses light, and all is the same there and back.
-/// * The share (1 - m) t is glass with such facets: Fresnel's formula, and c times what goes
-///   through. Both are divided by what leaves glass after one facet ("Practical multiple scattering
-///   compensation for microfacet models", Turquin 2019), which is not the same there and back.
-/// * Over all is a clear coat (KHR_materials_clearcoat) with facets of its own that reflect r =
-/// 0.04
-///   + 0.96 s: what is below is multiplied by 1 - h of the coat on the way in and on the way out.
+/// * Multiple scattering: the energy 1 - E (FacetAlbedo) that one facet does not reflect returns in
+/// a
+///   wide lobe (1 - E(view)) (1 - E(light)) / (1 - mean E), reduced by the absorption of the facets
+///   ("Revisiting physically based shading at Imageworks", Kulla and Conty 2017, with Hill's F^2).
+/// * The diffuse base of a dielectric is (1 - m)(1 - t) c (1 - h(view))(1 - h(light)) / (1 - mean
+/// h),
+///   where h is the albedo of both lobes above in their brightest colour channel. So a white
+///   material conserves energy, and the BRDF is reciprocal.
+/// * The fraction (1 - m) t is glass with such facets: Fresnel's formula, and c times the
+///   transmitted light. Both are divided by the albedo of single scattering ("Practical multiple
+///   scattering compensation for microfacet models", Turquin 2019), which is not reciprocal.
+/// * A clear coat (KHR_materials_clearcoat) has its own facets with reflectance 0.04 + 0.96 s; the
+///   layers below are multiplied by 1 - h of the coat for both directions.
 ///
-/// All but glass is multiplied with the opacity. T is float or FloatLanes.
+/// All lobes but glass are multiplied by the opacity. T is float or FloatLanes.
 template <class T>
 struct MetallicRoughnessLobes {
   using Shares = FacetAlbedo::Shares<T>;
@@ -47,21 +48,21 @@ struct MetallicRoughnessLobes {
   Triple<T> view;
   Ggx<T> ggx;
   T alpha;
-  T view_cosine;  ///< off 0: it is divided by
+  T view_cosine;  ///< clamped away from 0
   Triple<T> f0;
   T f90;
-  Triple<T> specular;  ///< what the view sees of facets after one of them,
-  Triple<T> multiple;  ///< after several,
-  Triple<T> diffuse;   ///< and of what is under them; without the coat's share
-  T glass, eta;        ///< the share of glass; its index beyond the border over that before
-  T glass_gain;        ///< what makes up for light that meets several facets of glass
+  Triple<T> specular;  ///< albedo of single scattering for the view,
+  Triple<T> multiple;  ///< of multiple scattering,
+  Triple<T> diffuse;   ///< and of the base; all without the coat
+  T glass, eta;        ///< fraction of glass; its index beyond the interface over that before
+  T glass_gain;        ///< compensation for multiple scattering in glass
   MaskOf<T> is_glass;
   Triple<T> tint;   ///< c
-  T clear;          ///< what the opacity leaves
-  Ggx<T> coat_ggx;  ///< of kCoated alone, as is coat_alpha
+  T clear;          ///< 1 - opacity
+  Ggx<T> coat_ggx;  ///< only of kCoated, as is coat_alpha
   T coat_alpha;
-  T coat, coat_specular;  ///< its weight; what the view sees of it
-  T under_coat;           ///< what the view sees of all that is under it
+  T coat, coat_specular;  ///< weight of the coat; its albedo for the view
+  T under_coat;           ///< fraction of the view that passes the coat
 
   MetallicRoughnessLobes() = default;
   RAYGATE_INLINE MetallicRoughnessLobes(const Surface<T>& surface, HitKind hit_kind,
@@ -129,7 +130,7 @@ struct MetallicRoughnessLobes {
     return (~kind & (kGlossy | kMirrors)) == 0;
   }
 
-  /// Reflected per steradian and without the cosine, for a direction before the surface.
+  /// Returns the BRDF, per steradian and without the cosine, for a direction before the surface.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     const T cosine = at_most(at_least(dot(ggx.normal, light), 0.0f), 1.0f);
     const Shares there = shares_at(cosine);
@@ -150,8 +151,8 @@ struct MetallicRoughnessLobes {
                 coat_pair.d * coat_ggx.visibility(view_cosine, cosine));
   }
 
-  /// The same transmitted by rough glass, for a direction behind the surface (Walter and others,
-  /// equation 21); and how likely its facets send the view there.
+  /// The BTDF of rough glass for a direction behind the surface (Walter and others, equation 21),
+  /// and the probability density with which its facets are sampled.
   struct Transmitted {
     Triple<T> value;
     T pdf;
@@ -174,9 +175,9 @@ struct MetallicRoughnessLobes {
             choose(is_any, facets * (1.0f - coat_chance()) * (1.0f - mirrored_chance(inner)), T{})};
   }
 
-  /// A direction after one facet of what is rough: u says which facet, `choice` in [0, 1) what it
-  /// does, which only matters where there are glass or a coat. No direction, 0, where glass would
-  /// send it to the wrong side.
+  /// Samples a direction of the rough lobes: `u` selects the facet, `choice` in [0, 1) the kind of
+  /// event, which matters only with glass or a coat. Returns 0 where glass would refract to the
+  /// wrong side.
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u, const T& choice) const {
     if (!is_coated() && !has_rough_glass()) return reflect(view, ggx.sample(view, u));
     const T of_coat = coat_chance();
@@ -192,7 +193,7 @@ struct MetallicRoughnessLobes {
     const Triple<T> way = choose(is_mirrored, mirrored, bent.direction);
     return choose((dot(ggx.normal, way) > 0.0f) == is_mirrored, way, zero<T>());
   }
-  /// How likely that is, per steradian, for a direction before the surface.
+  /// Returns the probability density of sample(), per steradian, before the surface.
   [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
     const auto pair = ggx.pair(view, light);
     T pdf = ggx.reflection_pdf(view_cosine, pair.d);
@@ -203,14 +204,15 @@ struct MetallicRoughnessLobes {
            of_coat * coat_ggx.reflection_pdf(view_cosine, coat_ggx.pair(view, light).d);
   }
 
-  /// How likely a facet that sample() meets is the coat's.
+  /// Returns the probability that sample() chooses a facet of the coat.
   [[nodiscard]] RAYGATE_INLINE T coat_chance() const {
     if (!is_coated()) return T{};
     const T below = (largest(specular) + glass) * under_coat, sum = coat_specular + below;
     return choose(sum > 0.0f, coat_specular / sum, T{});
   }
 
-  /// What gets away of what a sampled facet mirrors, or lets through, in this direction.
+  /// Returns the fraction of light that is not masked after a sampled facet reflects or refracts
+  /// it.
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const Triple<T>& way) const {
     const T cosine = dot(ggx.normal, way);
     return choose(cosine > 0.0f, ggx.g2_over_g1(view_cosine, cosine), T{});
@@ -219,7 +221,7 @@ struct MetallicRoughnessLobes {
     const T cosine = -dot(ggx.normal, way);
     return choose(cosine > 0.0f, ggx.g1(cosine), T{});
   }
-  /// What a facet reflects at which Schlick's share is this.
+  /// Returns the reflectance of a facet for a given Schlick weight.
   [[nodiscard]] RAYGATE_INLINE Triple<T> schlick(const T& share) const {
     return f0 + (grey(f90) - f0) * share;
   }
@@ -232,7 +234,7 @@ struct MetallicRoughnessLobes {
   static constexpr float kPerPi = 0.318309886183790671537767526745f;
   static constexpr float kCoatReflectance = 0.04f;
 
-  /// Of all light at a cosine, what facets reflect that reflect all, and Schlick's share.
+  /// Returns the albedos at a cosine of facets that reflect everything, and Schlick's weight.
   [[nodiscard]] RAYGATE_INLINE Shares shares_at(const T& cosine) const {
     if (!is_rough()) return {spread<T>(1.0f), schlick_weight(cosine)};
     return albedo->at(cosine, alpha);
@@ -241,13 +243,13 @@ struct MetallicRoughnessLobes {
     if (!is_rough()) return {spread<T>(1.0f), spread<T>(1.0f / 21.0f)};
     return albedo->mean(alpha);
   }
-  /// Of what meets several facets, what gets away: each reflects between `straight` and `grazing`.
+  /// Returns the albedo of multiple scattering of facets that reflect `straight` to `grazing`.
   [[nodiscard]] RAYGATE_INLINE static T again(const T& straight, const T& grazing,
                                               const Shares& mean) {
     const T each = straight + (grazing - straight) * (1.0f / 21.0f);
     return each * each * mean.first / (1.0f - each * (1.0f - mean.first));
   }
-  /// What facets of what is no metal reflect, all in all, in the colour that they reflect best.
+  /// Returns the albedo of dielectric facets, in their brightest colour channel.
   [[nodiscard]] RAYGATE_INLINE T reflected(const Shares& shares) const {
     return most_ * (shares.first - shares.second) + weight_ * shares.second +
            at_least(1.0f - shares.first, 0.0f) * plastic_again_;
@@ -256,7 +258,7 @@ struct MetallicRoughnessLobes {
     const Shares shares = albedo->at(cosine, coat_alpha);
     return coat * (kCoatReflectance * (shares.first - shares.second) + shares.second);
   }
-  /// How likely sample() mirrors at a facet that is met at this cosine.
+  /// Returns the probability that sample() reflects at a facet met at this cosine.
   [[nodiscard]] RAYGATE_INLINE T mirrored_chance(const T& inner) const {
     const T share = glass * fresnel_reflectance(inner, eta);
     const T mirrored = largest(schlick(schlick_weight(inner))) + share;

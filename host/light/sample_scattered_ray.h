@@ -1,4 +1,4 @@
-// Where paths go on: a lobe of the BSDF is sampled, then a direction of it.
+// Scattered rays of a path: samples a lobe of the BSDF, then a direction of the lobe.
 #pragma once
 
 #include <optional>
@@ -9,19 +9,20 @@
 
 namespace raygate {
 
-/// Streams of random numbers of a path's surface.
+/// Streams of random numbers used at a surface of a path.
 namespace streams {
 inline constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
                                kDirection = 5, kFacet = 6, kLens = 9, kCausticRay = 14,
                                kCausticDirection = 15, kCausticFacet = 16;
 }  // namespace streams
 
-// Russian roulette begins after so many surfaces, for paths of less throughput than this.
+// Russian roulette begins after this many surfaces, for paths with less throughput.
 inline constexpr int kRouletteDepth = 3;
 inline constexpr float kRouletteThroughput = 0.25f;
 inline constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the inverse
 
-/// How likely each lobe is to be sampled, in proportion to what it reflects; rough glass scatters.
+/// Probability of sampling each lobe, in proportion to its albedo; rough glass counts as
+/// scattering.
 template <class T>
 struct LobeProbabilities {
   T mirror, transmission, scatter, sum;
@@ -31,21 +32,21 @@ struct LobeProbabilities {
         transmission(bsdf.has_rough_glass() ? T{} : largest(bsdf.transmission())),
         scatter(bsdf.scattered_share()),
         sum(mirror + transmission + scatter) {}
-  /// Without diffuse and glossy reflection where `is_specular`.
+  /// Where `is_specular`, diffuse and glossy reflection are left out.
   RAYGATE_INLINE LobeProbabilities(const Bsdf<T>& bsdf, const MaskOf<T>& is_specular)
       : LobeProbabilities(bsdf) {
     scatter = choose(is_specular, T{}, scatter);
     sum = mirror + transmission + scatter;
   }
 
-  /// Of diffuse and glossy reflection together; 0 where nothing is reflected at all.
+  /// Probability of diffuse or glossy reflection; 0 where the albedo of all lobes is 0.
   [[nodiscard]] RAYGATE_INLINE T scatter_probability() const {
     return choose(sum > 0.0f, scatter / sum, T{});
   }
 };
 
-/// Where the path counts no caustics, for caustic rays do: on surfaces that scatter, seen in
-/// mirrors or through glass.
+/// Surfaces whose caustics are found by caustic rays instead of the path: scattering surfaces seen
+/// through mirrors or glass.
 template <bool kFromLight, class T>
 RAYGATE_INLINE MaskOf<T> has_seen_caustics(const ShadingScene& shading, const Hits<T>& hits) {
   const auto scatters = hits.bsdf.scatters();
@@ -55,19 +56,19 @@ RAYGATE_INLINE MaskOf<T> has_seen_caustics(const ShadingScene& shading, const Hi
   return is_seen & scatters;
 }
 
-/// The cosine of a direction with the surface, as ratios of densities have it.
+/// Returns the cosine of a direction with the surface, clamped, as used in ratios of densities.
 template <class T>
 RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
   return at_least(absolute(dot(hits.surface.flat_normal, direction)), kLeastCosine);
 }
 
-/// The ways of a hit back from where its rays go: what light paths and camera paths need to know of
-/// each other (LightPaths). Light paths carry flux, whose throughput has the cosines of the other
-/// sides of edges, and the BSDF as the camera's paths see it ("Robust Monte Carlo methods", 5.3).
+/// Reverse densities of a hit: the ratio of the densities of light paths and camera paths (see
+/// LightPaths). Light paths carry flux; their throughput has the cosines of the opposite ends of
+/// edges and the adjoint BSDF ("Robust Monte Carlo methods", 5.3).
 template <bool kFromLight, class T>
 struct WaysBack {
   T arrived;  ///< PathState::light_over_camera_pdf at the hit
-  T in;       ///< the cosine of the way there
+  T in;       ///< cosine of the incoming edge
   MaskOf<T> is_first;
 
   RAYGATE_INLINE WaysBack(const ShadingScene& shading, const Hits<T>& hits)
@@ -82,7 +83,7 @@ struct WaysBack {
     arrived = ratio / in;
   }
 
-  /// After diffuse or glossy reflection.
+  /// Updates the ray after diffuse or glossy reflection.
   RAYGATE_INLINE void scatter(const Hits<T>& hits, const Triple<T>& throughput,
                               ScatteredRays<T>& next) const {
     const auto seen = hits.seen_from(next.direction);
@@ -98,8 +99,8 @@ struct WaysBack {
     next.path.throughput = choose(largest(next.path.throughput) > 0.0f, bounded(flux), zero<T>());
   }
 
-  /// After a mirror or glass that bends, where `is_specular`; `eta` is 1 of mirrors. Where the
-  /// normal was tilted for the view, there is no way back.
+  /// Updates the ray after a mirror or refraction, where `is_specular`; `eta` is 1 for mirrors. A
+  /// tilted normal has no reverse path.
   RAYGATE_INLINE void mirror(const Hits<T>& hits, const MaskOf<T>& is_specular, const T& eta,
                              ScatteredRays<T>& next) const {
     const T out = edge_cosine(hits, next.direction);
@@ -117,7 +118,7 @@ struct WaysBack {
   }
 };
 
-/// Sends one ray on: a lobe of the BSDF is chosen by its probability, then a direction of it.
+/// Spawns one ray per hit: samples a lobe of the BSDF by its probability, then a direction.
 template <bool kFromLight, class T>
 RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& hits,
                                          const LobeProbabilities<T>& lobes, Triple<T>& radiance) {
@@ -225,10 +226,10 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
 
 inline constexpr std::uint32_t kCausticRays = 4;  // of a hit
 
-/// Sends rays from the surfaces of has_seen_caustics() towards mirrors and glass. Light paths end
-/// at the lens, and there is no way of theirs to the lens by a mirror: these caustics are found by
-/// scattered rays alone, by chance. So more rays than the path's own one look for them. They go on
-/// by mirrors and glass only, and count what shines at the end of that; the path's ray does not.
+/// Spawns caustic rays from the surfaces of has_seen_caustics() towards mirrors and glass. Light
+/// paths cannot reach the lens through a mirror, so only scattered rays find these caustics.
+/// Additional rays reduce their noise. Caustic rays follow mirrors and glass only and add the
+/// emission at the end, which the path itself leaves out.
 template <class T>
 RAYGATE_INLINE void sample_seen_caustics(const ShadingScene& shading, Hits<T>& hits) {
   const Bsdf<T>& bsdf = hits.bsdf;

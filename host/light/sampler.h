@@ -8,7 +8,7 @@
 
 namespace raygate {
 
-/// A thorough mix of a word: every bit of the result depends on every bit. One to one. The factors
+/// Returns a bijective hash of a word: every bit of the result depends on every bit. The constants
 /// are Wellons' ("Prospecting for hash functions", 2018).
 template <class W>
 RAYGATE_INLINE W hash(W x) {
@@ -19,7 +19,7 @@ RAYGATE_INLINE W hash(W x) {
   return x ^ x >> 16;
 }
 
-/// The same of two words.
+/// Returns a hash of two words.
 template <class W>
 RAYGATE_INLINE W hash(const W& a, const W& b) {
   return hash<W>(hash<W>(a + 0x9E3779B9u) ^ b);
@@ -38,8 +38,8 @@ RAYGATE_INLINE W reversed_bits(W x) {
   return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
 }
 
-/// Owen's nested uniform scrambling of a word whose bits are in reverse: whether a bit is flipped
-/// depends on the bits that count for more, here the lower ones.
+/// Owen's nested uniform scrambling of a word with reversed bits: whether a bit is flipped depends
+/// on the more significant bits, here the lower ones.
 template <class W>
 RAYGATE_INLINE W owen_scramble(W x, const W& key) {
   x += key;
@@ -50,9 +50,9 @@ RAYGATE_INLINE W owen_scramble(W x, const W& key) {
   return x ^ x * 0x8D22F6E6u;
 }
 
-/// The second Sobol dimension in reverse: digit j is the sum, modulo 2, of the index's digits i
-/// times binomial(i, j). That is odd just where j's bits are among i's: five steps, one for each
-/// bit.
+/// Returns the second Sobol dimension with reversed bits: digit j is the sum modulo 2 of the
+/// index's digits i times binomial(i, j), which is odd if the bits of j are a subset of those of i.
+/// That takes five steps, one per bit of j.
 template <class W>
 RAYGATE_INLINE W second_sobol(W index) {
   index ^= index >> 1 & 0x55555555u;
@@ -68,11 +68,11 @@ struct SquarePoint {
   T x, y;  ///< in [0, 1)
 };
 
-/// Point `index` of the stream `key`: of the first two Sobol dimensions, a (0,2)-sequence. Of any
-/// 2^k successive points from a multiple of 2^k on, each elementary interval of area 2^-k holds
-/// one. Every stream has its own Owen scrambling of both coordinates and of the order, so that
-/// streams are independent of each other ("Practical Hash-based Owen Scrambling", Burley 2020, with
-/// the permutation of Laine and Karras 2011).
+/// Returns point `index` of the stream `key`: the first two Sobol dimensions, a (0,2)-sequence. Of
+/// 2^k successive points from a multiple of 2^k on, each elementary interval of area 2^-k has one.
+/// Every stream has its own Owen scrambling of both coordinates and of the order, so that streams
+/// are independent ("Practical Hash-based Owen Scrambling", Burley 2020, with the permutation of
+/// Laine and Karras 2011).
 template <class T>
 RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T>& key) {
   using Word = WordOf<T>;
@@ -82,18 +82,18 @@ RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T
   return {unit_interval(reversed_bits<Word>(x)), unit_interval(reversed_bits<Word>(y))};
 }
 
-/// The points of a pixel. A point depends on nothing but seed, pixel, stream and index.
+/// The points of a pixel. A point depends only on seed, pixel, stream and index.
 class Sampler {
  public:
-  /// `seed` of the whole picture; `pixel` names a pixel of the whole frame.
+  /// `seed`: of the picture; the pixel coordinates are those of the whole frame.
   Sampler(std::uint64_t seed, std::uint32_t pixel_x, std::uint32_t pixel_y)
       : key_(hash(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
                   hash(pixel_x, pixel_y))) {}
 
-  /// What streams are derived from.
+  /// Key from which streams of this pixel are derived.
   [[nodiscard]] std::uint32_t key() const { return key_; }
 
-  /// Point `index` of the stream `dimension`, in [0, 1)^2.
+  /// Returns point `index` of the stream `dimension`, in [0, 1)^2.
   [[nodiscard]] SquarePoint<float> operator()(std::uint32_t index, std::uint32_t dimension) const {
     return sobol_point<float>(index, hash(key_, dimension));
   }
@@ -102,8 +102,8 @@ class Sampler {
   std::uint32_t key_;
 };
 
-/// Two unit vectors across the unit vector `axis` and each other: those of Duff and others
-/// ("Building an orthonormal basis, revisited", 2017).
+/// Two unit vectors perpendicular to the unit vector `axis` and to each other (Duff and others,
+/// "Building an orthonormal basis, revisited", 2017).
 template <class T>
 struct Frame {
   Triple<T> u, v;
@@ -116,8 +116,8 @@ struct Frame {
   }
 };
 
-/// The unit vector that makes an angle with the unit vector `axis`, turned around it as the unit
-/// vector (`turned_x`, `turned_y`) says.
+/// Returns the unit vector at an angle to the unit vector `axis`, rotated around it by the angle of
+/// the unit vector (`turned_x`, `turned_y`).
 template <class T>
 RAYGATE_INLINE Triple<T> spherical_direction(const Triple<T>& axis, const T& cosine, const T& sine,
                                              const T& turned_x, const T& turned_y) {

@@ -1,5 +1,5 @@
-// Borders of media, smooth and rough: Fresnel's formulas, reflection, refraction and the GGX
-// distribution of facets. T is float or FloatLanes.
+// Smooth and rough interfaces of media: Fresnel's formulas, reflection, refraction and the GGX
+// distribution of microfacets. T is float or FloatLanes.
 #pragma once
 
 #include "host/base/elementary.h"
@@ -8,15 +8,16 @@
 
 namespace raygate {
 
-/// The square of the cosine beyond the border; negative at total reflection. `cosine` of the angle
-/// of incidence, in [0, 1]; `eta` is the refraction index beyond the border over the one before it.
+/// Returns the squared cosine of the angle of refraction; negative for total reflection. `cosine`
+/// is that of the angle of incidence, in [0, 1]; `eta` is the index of refraction beyond the
+/// interface over that before it.
 template <class T>
 RAYGATE_INLINE T transmitted_cosine_squared(const T& cosine, const T& eta) {
   return 1.0f - (1.0f - cosine * cosine) / (eta * eta);
 }
 
-/// The share of unpolarised light that a smooth border reflects, by Fresnel's formulas: the mean
-/// of both polarisations' |r|^2. 1 at total reflection.
+/// Returns the fraction of unpolarised light that a smooth interface reflects, by Fresnel's
+/// formulas: the mean of |r|^2 of both polarisations. 1 for total reflection.
 template <class T>
 RAYGATE_INLINE T fresnel_reflectance(const T& cosine, const T& eta) {
   const T squared = transmitted_cosine_squared(cosine, eta);
@@ -27,23 +28,23 @@ RAYGATE_INLINE T fresnel_reflectance(const T& cosine, const T& eta) {
   return choose(squared <= 0.0f, one, 0.5f * (across * across + parallel * parallel));
 }
 
-/// Schlick's stand-in for it (1994) goes from the reflectance at normal incidence up to 1 at
-/// grazing; this is how far.
+/// Returns the weight of Schlick's approximation (1994): 0 at normal incidence, 1 at grazing
+/// angles.
 template <class T>
 RAYGATE_INLINE T schlick_weight(const T& cosine) {
   const T x = 1.0f - at_most(cosine, 1.0f), squared = x * x;
   return squared * squared * x;
 }
 
-/// The unit vector `view` mirrored: -view off a plane with the unit normal `normal`.
+/// Returns the unit vector `view` reflected about the unit normal `normal`.
 template <class T>
 RAYGATE_INLINE Triple<T> reflect(const Triple<T>& view, const Triple<T>& normal) {
   return normal * (2.0f * dot(view, normal)) - view;
 }
 
-/// What runs against the unit vector `view` bent after Snell's law at a border with the unit normal
-/// `normal`, on the side of `view`; eta as above. No direction where `exists` is not set: total
-/// reflection.
+/// The direction of light that travels along -view and is refracted by Snell's law at an interface
+/// with the unit normal `normal`, which is on the side of `view`; eta as above. Where `exists` is
+/// not set there is none: total reflection.
 template <class T>
 struct Refraction {
   Triple<T> direction;
@@ -57,13 +58,13 @@ struct Refraction {
   }
 };
 
-/// Rough borders as many small smooth facets: the GGX distribution of their normals (Walter,
+/// A rough interface of many small smooth facets: the GGX distribution of their normals (Walter,
 /// Marschner, Li and Torrance, "Microfacet models for refraction through rough surfaces", 2007),
-/// with masking of both directions by height (Heitz, "Understanding the masking-shadowing
-/// function", 2014). Light that meets a second facet is lost: single scattering.
+/// with height-correlated masking and shadowing (Heitz, "Understanding the masking-shadowing
+/// function", 2014). Single scattering: light that meets a second facet is lost.
 ///
-/// Facets on a surface with a unit normal. alpha is the roughness, in [kLeast, 1]; directions are
-/// unit vectors away from the surface, cosines those with the surface's normal.
+/// alpha is the roughness, in [kLeast, 1]. Directions are unit vectors away from the surface;
+/// cosines are with the surface's unit normal.
 template <class T>
 struct Ggx {
   static constexpr float kLeast = 0x1p-10f;  // float cosines have room for the lobe
@@ -75,10 +76,10 @@ struct Ggx {
   RAYGATE_INLINE Ggx(const Triple<T>& surface_normal, const T& alpha)
       : normal(surface_normal), squared(alpha * alpha) {}
 
-  /// Two directions and the facets that mirror one into the other.
+  /// Two directions and the facets that reflect one into the other.
   struct Pair {
-    T d;         ///< D: facets of that normal, per steradian and per area of the surface
-    T cos_half;  ///< between either direction and that normal
+    T d;         ///< D, the density of facets with the half vector as normal
+    T cos_half;  ///< cosine between either direction and the half vector
   };
   [[nodiscard]] RAYGATE_INLINE Pair pair(const Triple<T>& a, const Triple<T>& b) const {
     constexpr float kPerPi = 0.318309886183790671537767526745f;
@@ -90,33 +91,34 @@ struct Ggx {
     return {kPerPi * squared * ratio * ratio, 0.5f * root(size)};
   }
 
-  /// sqrt(1 + alpha^2 tan^2) times the cosine: Lambda is half of this over the cosine, less 1.
+  /// Returns sqrt(1 + alpha^2 tan^2) times the cosine, from which Lambda follows.
   [[nodiscard]] RAYGATE_INLINE T stretched(const T& cosine) const {
     return root(squared + (1.0f - squared) * cosine * cosine);
   }
 
-  /// G2 / (4 cos cos): with D and Fresnel's share it is the reflection per steradian.
+  /// Returns G2 / (4 cos cos), which times D and the Fresnel reflectance is the BRDF.
   [[nodiscard]] RAYGATE_INLINE T visibility(const T& a, const T& b) const {
     return 0.5f / (a * stretched(b) + b * stretched(a));
   }
 
-  /// How likely sample() and a mirror at its facet give the other direction of a pair, per
-  /// steradian.
+  /// Returns the probability density per steradian with which reflection at a facet of sample()
+  /// generates the other direction of a pair.
   [[nodiscard]] RAYGATE_INLINE T reflection_pdf(const T& view, const T& d) const {
     return d * 0.5f / (view + stretched(view));
   }
 
-  /// The share of what a facet that was sampled for `view` mirrors that gets away: G2 / G1.
+  /// Returns G2 / G1: the fraction of light reflected by a sampled facet that is not masked.
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const T& view, const T& light) const {
     return light * (view + stretched(view)) / (light * stretched(view) + view * stretched(light));
   }
-  /// The same of what it lets through, whose masking is independent of the view's: G1.
+  /// Returns G1: the same fraction of transmitted light, whose masking is independent of the
+  /// view's.
   [[nodiscard]] RAYGATE_INLINE T g1(const T& light) const {
     return 2.0f * light / (light + stretched(light));
   }
 
-  /// The normal of a facet, chosen among those that `view` sees by the areas that it sees of them
-  /// ("Sampling visible GGX normals with spherical caps", Dupuy and Benyoub 2023).
+  /// Samples the normal of a facet from the distribution of visible normals ("Sampling visible GGX
+  /// normals with spherical caps", Dupuy and Benyoub 2023).
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const Triple<T>& view,
                                                 const SquarePoint<T>& u) const {
     const Frame<T> frame(normal);

@@ -1,5 +1,4 @@
-// Spawning rays: the origin of a ray that leaves a surface, reflected, refracted or towards a
-// light.
+// Origins of rays that leave a surface: reflected, refracted, or towards a light.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +20,7 @@ enum class SpawnSide {
   kTransmitted,  ///< the other side: refraction
 };
 
-/// A ray, its direction scaled, that hit the triangle `primitive` and spawns another ray.
+/// A ray with a scaled direction that hit the triangle `primitive` and spawns another ray.
 struct SpawnQuery {
   const Ray* ray = nullptr;
   std::uint32_t primitive = 0;
@@ -31,7 +30,8 @@ struct SpawnQuery {
 /// The origin of the spawned ray, if there is one.
 struct SpawnOrigin {
   glm::vec3 point{0.0f};
-  std::uint32_t exists = 0;  ///< or anything else
+  std::uint32_t exists =
+      0;  ///< non-zero if there is an origin (an integer, so that lanes store it)
 
   explicit operator bool() const { return exists != 0; }
   const glm::vec3& operator*() const { return point; }
@@ -48,36 +48,35 @@ struct SpawnOrigin {
 ///   * a ray from O' that goes away from the triangle's plane (leaves() says so exactly) never
 ///     hits that triangle again.
 ///
-/// X is what exact arithmetic makes of the corners, in double, not the unit's P: an origin that
-/// stood off by what P may be off would be no nearer to what is seen, and farther from the surface.
+/// X is computed in double from the corners, not from the unit's P: an origin that is off by the
+/// error of P would be farther from the surface.
 ///
-/// How far: let u be one float step (ulp) of X's largest coordinate, or the error of X in double
-/// if that is more. Where no other triangle is within 4 u of X, O' is within 1.5 u, or 3 u next to
-/// a power of two, of X as double has it, on each axis: spawn_ray.cpp has the proof. From the exact
-/// X it is farther by that error, which only far from the origin shows (1.528 u). In corners too
-/// narrow for that O' backs away from X, by powers of two, along the normal or the ray, or to the
-/// ray's origin itself, so that in a convex room there always is an O' for kIncident. In other
-/// corners, narrower than floats can express, there may be none: the ray had better end there.
+/// Distance: let u be one float step (ulp) of X's largest coordinate, or the error of X in double
+/// if that is larger. If no other triangle is within 4 u of X, O' is within 1.5 u (3 u next to a
+/// power of two) of X in double on each axis (proof in spawn_ray.cpp); the distance from the exact
+/// X is larger by the error of X (1.528 u far from the origin). In narrower corners O' moves away
+/// from X by powers of two, along the normal or the ray, up to the ray's origin, so that a convex
+/// room always has an O' for kIncident. Corners narrower than floats can express may have none; the
+/// path ends there.
 class RaySpawner {
  public:
   /// The clearances must outlive this.
   explicit RaySpawner(const NeighborClearances& clearances)
       : clearances_(clearances), bvh_(clearances.bvh()) {}
 
-  /// O' for `ray`, whose nearest hit is the triangle in `primitive`. The triangles in whose plane
-  /// the ray runs have no say.
+  /// Returns O' for `ray`, whose nearest hit is the triangle `primitive`, or none. Triangles whose
+  /// plane contains the ray are ignored.
   [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t primitive,
                                               SpawnSide side);
 
-  /// Says that a primitive will soon be asked about.
+  /// Prefetches the clearance of a primitive of a later query.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const { clearances_.prefetch(primitive); }
 
-  /// origins[i] becomes O' for queries[i]: what find() gives, several at a time and so much
-  /// sooner.
+  /// Sets origins[i] to O' for queries[i]: the same as find() above, several at a time and faster.
   void find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin> origins);
 
-  /// Whether `direction` goes away from the triangle that `ray` hit, to the side where O' is.
-  /// Shading normals and rounding may give directions that do not.
+  /// Whether `direction` leaves the triangle that `ray` hit on the side of O'. Directions made with
+  /// shading normals, or rounded, may not.
   [[nodiscard]] bool leaves(const Ray& ray, std::uint32_t primitive, SpawnSide side,
                             const glm::vec3& direction) const;
 
@@ -85,7 +84,7 @@ class RaySpawner {
   template <Vectors kCode, class T>
   RAYGATE_INLINE void find_some(const SpawnQuery* queries, SpawnOrigin* origins);
 
-  /// Of a query in this lane.
+  /// Returns the clearance for the query of a lane.
   [[nodiscard]] RAYGATE_INLINE const NeighborClearance& clearance_of(std::uint32_t primitive,
                                                                      int lane) {
     if (bvh_.is_instanced(primitive)) [[unlikely]]
@@ -94,7 +93,7 @@ class RaySpawner {
   }
   [[nodiscard]] const NeighborClearance& find_clearance(std::uint32_t primitive, std::size_t lane);
 
-  /// As find(), looking at what is near.
+  /// Does the work of find() by a search of nearby triangles.
   [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t primitive,
                                                 SpawnSide side);
 

@@ -1,4 +1,4 @@
-// The surfaces that rays hit: point, normals, colour, and which side was hit.
+// The surfaces at hits: point, normals, colour, and the side that was hit.
 #pragma once
 
 #include <cmath>
@@ -15,63 +15,63 @@
 
 namespace raygate {
 
-/// A hit, as the intersector gives it.
+/// A hit, as returned by the intersector.
 struct SurfaceHit {
   const Ray* ray = nullptr;
   std::uint32_t primitive = 0;
-  const Triangle* face = nullptr;    ///< of the primitive
-  const glm::vec3* point = nullptr;  ///< P as the hit-test unit has it, seen from the ray's origin;
-                                     ///< none: it is for the host to find
-  const Instance* instance = nullptr;  ///< whose triangle it is; none: it is the scene's own
+  const Triangle* face = nullptr;      ///< the primitive's triangle
+  const glm::vec3* point = nullptr;    ///< the hit-test unit's P, relative to the ray's origin;
+                                       ///< null: the host computes it
+  const Instance* instance = nullptr;  ///< the triangle's instance, or null
 
-  /// Those of the vertices; none: they are white, or do not count.
+  /// Returns the vertex colours, or null if there are none or the material ignores them.
   [[nodiscard]] const std::vector<glm::vec3>* vertex_colors(const Scene& scene) const {
     const auto& all = instance == nullptr ? scene.colors : scene.meshes[instance->mesh].colors;
     return all.empty() || !scene.materials[face->material].has_vertex_colors ? nullptr : &all;
   }
 
-  /// A normal that the face names.
+  /// Returns the normal of that index, in world space.
   [[nodiscard]] glm::vec3 normal(const Scene& scene, std::uint32_t index) const {
     const glm::vec3& own = scene.normals[index];
     return instance == nullptr ? own : transform_normal(*instance, own);
   }
 };
 
-/// Whether the file has a normal for each vertex.
+/// Whether the face has a normal for each vertex.
 [[nodiscard]] inline bool has_normals(const Triangle& face) {
   return face.normals[0] != kNoIndex && face.normals[1] != kNoIndex && face.normals[2] != kNoIndex;
 }
 
-/// Whether the weights of the vertices at the hit matter.
+/// Returns kInterpolates if shading needs the barycentric coordinates of the hit, or else 0.
 [[nodiscard]] inline HitKind weights_needed(const Scene& scene, const SurfaceHit& place) {
   return place.point == nullptr || has_normals(*place.face) || place.vertex_colors(scene) != nullptr
              ? kInterpolates
              : 0;
 }
 
-/// What shading needs to know of hits, one a lane. T is float or FloatLanes. In float, but for what
-/// comes of differences of corners: in slender triangles those cancel, and double has room for it.
+/// The surface at each lane's hit. T is float or FloatLanes. Computed in float, except differences
+/// of corners, which cancel in slender triangles and are computed in double.
 template <class T>
 struct Surface {
-  Triple<T> point;        ///< in the scene's coordinates
+  Triple<T> point;        ///< in scene coordinates
   Triple<T> view;         ///< unit vector back along the ray
-  Triple<T> flat_normal;  ///< unit normal of the triangle, to the side of the ray
-  /// Unit normal, interpolated where the file has normals, to the same side; where that would not
-  /// be seen from the ray, tilted until it is at right angles to the ray.
+  Triple<T> flat_normal;  ///< unit geometric normal, on the side of the ray
+  /// Unit shading normal on the side of the ray, interpolated if the face has normals. One that
+  /// faces away from the ray is tilted until it is perpendicular to the ray.
   Triple<T> normal;
-  Triple<T> untilted;  ///< without that
-  Triple<T> colour;    ///< Kd, times the texture
-  T opacity;           ///< what its texture multiplies; of kinds that interpolate and transmit
-  /// What the textures of a metallic-roughness material multiply; of other kinds nothing.
+  Triple<T> untilted;  ///< the shading normal before tilting
+  Triple<T> colour;    ///< Kd times the texture
+  T opacity;           ///< factor of the texture; only of kinds that interpolate and transmit
+  /// Factors of the textures of a metallic-roughness material; unused for other kinds.
   T roughness, metallic, transmission, specular, coat, coat_roughness;
   Triple<T> specular_color;
-  Triple<T> glow;  ///< what the texture of emission multiplies; of kinds that interpolate and emit
-  /// The ray comes from outside: from where the file's normals point or, without, from where the
-  /// vertices run counter-clockwise.
+  Triple<T> glow;  ///< factor of the emission texture; only of kinds that interpolate and emit
+  /// The ray comes from outside: from the side to which the file's normals point or, without
+  /// normals, from which the vertices are counter-clockwise.
   MaskOf<T> outside;
 
-  /// Which directions lead away from the triangle, to the ray's side of it or, `transmitted`, to
-  /// the other: exactly, where it is sure.
+  /// Whether a direction leaves the triangle to the ray's side or, if `transmitted`, to the other
+  /// side. Exact where `is_sure`.
   struct Leaving {
     MaskOf<T> leaves, is_sure;
   };
@@ -81,8 +81,7 @@ struct Surface {
     return {((slope.value < 0.0f) == (side < 0.0f)) == transmitted, slope.is_sure};
   }
 
-  /// I . N of directions and the triangle's own normal. Double has room to spare: where the value
-  /// is not surely off 0, the exact one has any sign.
+  /// Dot product of a direction and the triangle's normal, in double, and whether its sign is sure.
   struct Slope {
     T value;
     MaskOf<T> is_sure;
@@ -99,7 +98,7 @@ struct Surface {
       is_sure = is_far & is_some;
     }
   };
-  /// Tilts the normal for the view.
+  /// Tilts the shading normal so that it does not face away from the view.
   RAYGATE_INLINE void tilt() {
     const T facing = dot(untilted, view);
     const Triple<T> tilted = untilted - view * facing;
@@ -110,20 +109,20 @@ struct Surface {
   }
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_tilted() const { return dot(untilted, view) < 0.0f; }
 
-  /// The same point seen from another direction on this side.
+  /// Returns this surface as seen from another direction on the same side.
   [[nodiscard]] RAYGATE_INLINE Surface seen_from(const Triple<T>& direction) const {
     Surface seen = *this;
     seen.view = direction;
     seen.tilt();
     return seen;
   }
-  Triple<WideOf<T>> own_normal;  ///< as the vertices say, of any length,
-  Triple<WideOf<T>> own_size;    ///< and the sum of magnitudes that each component comes from
-  T side;                        ///< the exact sign of I . N, of the ray
+  Triple<WideOf<T>> own_normal;  ///< (B - A) x (C - A), of any length
+  Triple<WideOf<T>> own_size;    ///< sum of the magnitudes of each component's terms
+  T side;                        ///< exact sign of I . N for the ray
 };
 
-/// The weights of the vertices, up to a common factor: I . (B x C), I . (C x A), I . (A x B), all
-/// of one sign but for rounding.
+/// Returns the barycentric coordinates up to a common factor: I . (B x C), I . (C x A), I . (A x
+/// B). All have the same sign, except for rounding.
 template <class D>
 RAYGATE_INLINE Triple<D> unscaled_weights(const Triple<D>& origin, const Triple<D>& direction,
                                           const Triple<D> (&corners)[3]) {
@@ -137,7 +136,7 @@ RAYGATE_INLINE Triple<D> unscaled_weights(const Triple<D>& origin, const Triple<
   return {weights[0], weights[1], weights[2]};
 }
 
-/// The surfaces at hits of one kind.
+/// Returns the surfaces at hits of one kind.
 template <class T>
 RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind kind,
                                      const SurfaceHit (&places)[kLanesOf<T>]) {
@@ -271,7 +270,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   return surface;
 }
 
-/// Whether the mask of the face's material says that there is nothing where the ray hits it.
+/// Whether the mask of the face's material has a hole where the ray hits it.
 [[nodiscard]] inline bool is_masked_out(const Scene& scene, const Bvh& bvh,
                                         const SurfaceHit& place) {
   const Corners corners = bvh.corners_of(place.primitive);
