@@ -1,4 +1,4 @@
-// Environment light: the radiance of a map of all directions, and importance sampling of it.
+// Environment light: radiance from a map of all directions, with importance sampling.
 #pragma once
 
 #include <algorithm>
@@ -17,34 +17,34 @@ namespace raygate {
   return (colour.x + colour.y + colour.z) / 3.0;
 }
 
-/// An EnvironmentMap, ready for use. Directions are unit vectors away from the scene; T is float or
-/// FloatLanes.
+/// An EnvironmentMap prepared for rendering. Directions are unit vectors away from the scene; T is
+/// float or FloatLanes.
 ///
-/// It is sampled cell by cell. A cell lies between the middles of four texels (at the upper and the
-/// lower edge, of two), where the map is bilinear; it is as likely as the mean brightness of its
-/// corners times its solid angle, and all directions of a cell are equally likely. So the pdf
-/// is nowhere 0 where something shines, and nowhere less than a quarter of what would be ideal in
-/// its cell. ("Physically Based Rendering", Pharr, Jakob and Humphreys, does so with whole texels.)
+/// Sampling is by cell. A cell lies between the centres of four texels (two at the poles), where
+/// the map is bilinear. Its probability is the mean brightness of its corners times its solid
+/// angle; within a cell directions are uniform. So the pdf is positive wherever the map is, and at
+/// least a quarter of the ideal pdf. ("Physically Based Rendering", Pharr, Jakob and Humphreys,
+/// uses whole texels.)
 class Environment {
  public:
-  /// Without `is_sampled` there is neither pdf() nor sample().
+  /// Without `is_sampled`, pdf() and sample() must not be called.
   explicit Environment(const EnvironmentMap& map, bool is_sampled = true);
 
-  /// Radiance: scene-linear RGB.
+  /// Returns radiance, scene-linear RGB.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Triple<T> radiance(const Triple<T>& direction) const;
-  /// How likely sample() gives a direction, per steradian.
+  /// Returns the probability density of sample(), per steradian.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& direction) const;
-  /// A direction for a point of the unit square.
+  /// Samples a direction for a point of the unit square.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u) const;
 
-  /// Of all directions.
+  /// Mean over all directions.
   [[nodiscard]] const glm::dvec3& mean_radiance() const { return mean_; }
 
  private:
-  /// The cell around a direction, and where in it that is.
+  /// The cell of a direction, and the position within the cell.
   template <class T>
   struct Place {
     std::uint32_t columns[kLanesOf<T>], rows[kLanesOf<T>];

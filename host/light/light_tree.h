@@ -11,51 +11,52 @@
 
 namespace raygate {
 
-/// Bounds of the light that a light, or a flat part of one, may send where.
+/// Bounds of the position and emission of a light, or of a planar part of one.
 struct LightBounds {
-  glm::dvec3 middle{0.0};  ///< of a ball around it
+  glm::dvec3 middle{0.0};  ///< of the bounding sphere
   double radius = 0.0;
-  /// It shines within the angle of `spread` around the axis in full, and less and less, as a
-  /// surface's cosine has it, up to an angle of `reach` more. Both are given by their cosines.
+  /// Emission is full within the angle `spread` around the axis, and falls off with the cosine up
+  /// to the angle `reach` beyond that. Both are given as cosines.
   glm::dvec3 axis{0.0, 0.0, 1.0};
   double spread = -1.0, reach = 1.0;
-  double back = 0.0;    ///< the share of it that it sends against the axis
-  bool is_far = false;  ///< infinitely; `middle` is the direction towards it, or 0: all sides
-  /// What it would bring a surface that faces it, at distance 1; of one that is far, anywhere. What
-  /// has none is never chosen.
+  double back = 0.0;  ///< fraction emitted against the axis
+  bool is_far =
+      false;  ///< a distant light: `middle` is the direction towards it, or 0 for all directions
+  /// Irradiance on a facing surface at distance 1, or of a distant light anywhere. A source without
+  /// power is never chosen.
   double power = 0.0;
 };
 
-/// Chooses a source for a point of a surface, each nearly as likely as what it would bring there if
-/// nothing were between: by power, distance, and where source and surface face (Conty Estevez and
-/// Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018; no subtree is
-/// asked twice here, but each node has up to eight children, weighed together, so that the way to
-/// one of a thousand sources has three or four steps, and what is guessed of a cluster is guessed
-/// of a small one).
+/// Samples a light source for a surface point with a probability nearly proportional to its
+/// unoccluded contribution: by power, distance and the orientation of source and surface (Conty
+/// Estevez and Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018).
+/// There is no splitting; instead nodes have up to eight children that are weighted together, so
+/// that one of a thousand sources is reached in three or four steps, and clusters are small.
 ///
-/// No source that brings anything has chance 0. Chances depend on nothing but the sources, their
-/// order, point and normal: the same bits for float and FloatLanes.
+/// Every source that contributes has a positive probability. Probabilities depend only on the
+/// sources, their order, the point and the normal; float and FloatLanes give the same bits.
 class LightTree {
  public:
   LightTree() = default;
   explicit LightTree(std::span<const LightBounds> sources);
 
   struct Sample {
-    std::uint32_t source = kNoIndex;  ///< kNoIndex: none, no light would come
-    float pmf = 0.0f;                 ///< of having been chosen
+    std::uint32_t source = kNoIndex;  ///< kNoIndex: no source contributes
+    float pmf = 0.0f;                 ///< probability of the choice
   };
-  /// For u in [0, 1), where any source has power; a normal of 0 is that of a surface that light
-  /// reaches from all sides. T is float or FloatLanes: so many children are weighed at a time.
+  /// Samples a source for u in [0, 1); some source must have power. A normal of 0 stands for a
+  /// surface that is lit from both sides. T is float or FloatLanes: the number of children weighted
+  /// at once.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Sample sample(const glm::vec3& point, const glm::vec3& normal,
                                              double u) const;
-  /// How likely sample() is to give a source.
+  /// Returns the probability that sample() chooses a source.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE float pmf(std::uint32_t source, const glm::vec3& point,
                                          const glm::vec3& normal) const;
 
  private:
-  /// Up to eight sources and clusters of sources, field by field. A place without one has power 0.
+  /// Up to eight sources and clusters, field by field. An empty entry has power 0.
   struct alignas(32) Node {
     float x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {};  // as in LightBounds
     float nearness[kLanes] = {};                           // 0: far
@@ -71,7 +72,7 @@ class LightTree {
 
   class Builder;
 
-  /// What each child may bring, up to a common factor, and the sum of that.
+  /// Computes the relative importance of each child, and their sum.
   template <class T>
   RAYGATE_INLINE static void importance(const Node& node, const glm::vec3& point,
                                         const glm::vec3& normal, float (&weights)[kLanes],

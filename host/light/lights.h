@@ -27,10 +27,10 @@ namespace raygate {
   return {finite_float(x.x), finite_float(x.y), finite_float(x.z)};
 }
 
-/// A SpotCone as shading reads it: KHR_lights_punctual's ramp of the cosine from the axis.
+/// The falloff of a SpotCone: KHR_lights_punctual's ramp over the cosine of the angle to the axis.
 struct SpotFalloff {
   glm::vec3 axis{0.0f};
-  float scale = 0.0f, offset = 1.0f;  ///< of a light to all sides: 1 everywhere
+  float scale = 0.0f, offset = 1.0f;  ///< without a cone: 1 everywhere
 
   SpotFalloff() = default;
   explicit SpotFalloff(const SpotCone& cone) : axis(cone.axis) {
@@ -43,51 +43,51 @@ struct SpotFalloff {
   }
 };
 
-/// The share of the intensity at an angle from the axis with this cosine: 1 within the cone's inner
-/// angle, 0 beyond its outer one.
+/// Returns the fraction of the intensity at an angle to the axis with this cosine: 1 within the
+/// cone's inner angle, 0 beyond the outer one.
 template <class T>
 RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) {
   const T ramp = at_most(at_least(cosine * scale + offset, 0.0f), 1.0f);
   return ramp * ramp;
 }
 
-/// Of a triangle: which of its sides is seen from outside of what it encloses.
+/// The side of a triangle that is outside of the closed surface that it is part of.
 enum class OuterSide : std::uint8_t {
-  kBoth,           ///< it is no part of a closed surface, or not surely
-  kAlongNormal,    ///< that of its normal
+  kBoth,           ///< the triangle is not part of a closed surface, or not surely
+  kAlongNormal,    ///< the side of its normal
   kAgainstNormal,  ///< the other
 };
 
-/// For each of some primitives. A closed surface is a set of these triangles that hang together by
-/// their edges, each edge of just two of them, which run along it in opposite directions. Where
-/// anything else of the scene is within the box around it, it counts as open.
+/// Returns the outer side of each of the primitives. A closed surface is a set of these triangles,
+/// connected by edges, in which each edge belongs to exactly two triangles that traverse it in
+/// opposite directions. It counts as open if any other primitive is within its bounding box.
 [[nodiscard]] std::vector<OuterSide> outer_sides(const Bvh& bvh,
                                                  std::span<const std::uint32_t> primitives);
 
-/// The emitting faces of one object and material: one light, which shines to both sides of each
+/// The emitting faces of one object and material: one light that emits from both sides of each
 /// face.
 struct AreaLight {
   std::vector<std::uint32_t> primitives;
-  std::vector<double> area_up_to;   ///< of the primitives so far, each included
-  glm::vec3 low{0.0f}, high{0.0f};  ///< of the box around it
-  glm::dvec3 radiance{0.0};         ///< in the mean
+  std::vector<double> area_up_to;   ///< cumulative area, by primitive
+  glm::vec3 low{0.0f}, high{0.0f};  ///< bounds
+  glm::dvec3 radiance{0.0};         ///< mean
   bool is_textured = false;
   bool is_flat = false;
-  glm::dvec3 middle{0.0}, middle_normal{0.0};  ///< of a flat one
+  glm::dvec3 middle{0.0}, middle_normal{0.0};  ///< only of a flat light
 
   [[nodiscard]] double area() const { return area_up_to.back(); }
 };
 
-/// Points of lights, one a lane.
+/// A point of a light in each lane.
 template <class T>
 struct LightPoint {
-  /// Of a light that is infinitely far away a unit vector towards it, and no normal.
-  Triple<T> position, normal;  ///< the normal to one of both sides
-  WordOf<T> primitive;         ///< NearestHit::kNone: infinitely far away
+  /// For a distant light, a unit vector towards it, and no normal.
+  Triple<T> position, normal;  ///< unit normal of either side
+  WordOf<T> primitive;         ///< NearestHit::kNone: a distant light
 };
 
-/// All lights of a scene. Areas and distances are in units of about the scene's length: floats have
-/// room for their squares then.
+/// All lights of a scene. Areas and distances are in units of about the scene's size, so that their
+/// squares fit into floats.
 class Lights {
  public:
   /// How an integrator samples the lights.
@@ -105,65 +105,67 @@ class Lights {
   [[nodiscard]] std::span<const DirectionalLight> directions() const {
     return scene_.directional_lights;
   }
-  /// nullptr: there is none, but a background.
+  /// Null if there is only a background.
   [[nodiscard]] const Environment* environment() const {
     return environment_ ? &*environment_ : nullptr;
   }
-  /// Whether that is none of the scene's, which the camera does not see.
+  /// Whether the environment is one of the camera lights, which the camera itself does not see.
   [[nodiscard]] bool has_studio() const { return own_.studio.has_value(); }
-  /// The radiance from all sides that lights a floor as much as the background or the studio does.
+  /// Uniform radiance that lights a floor as much as the background or the camera lights'
+  /// environment.
   [[nodiscard]] const glm::vec3& light_from_above() const { return from_above_; }
-  /// Of an environment the mean.
+  /// Radiance of the background; for an environment, its mean.
   [[nodiscard]] glm::vec3 background() const {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : own_.background;
   }
-  /// Radiance from all sides that may stand for light that goes from surface to surface: the
-  /// background's or, where that is black, what the lights' flux would come to after many
-  /// reflections if it were spread evenly over all surfaces ("A progressive refinement approach to
-  /// fast radiosity image generation", Cohen, Chen, Wallace and Greenberg 1988, has such a term).
+  /// Uniform radiance that approximates interreflection: the background's or, if that is black, the
+  /// lights' flux after many reflections, spread evenly over all surfaces (the ambient term of "A
+  /// progressive refinement approach to fast radiosity image generation", Cohen, Chen, Wallace and
+  /// Greenberg 1988). 0 with Sampling::kOne.
   [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
-  /// Points first, then areas, then directions, then the environment.
+  /// Number of lights: first point lights, then area lights, directional lights, the environment.
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
 
-  /// The inverse of a power of two about as long as the scene.
+  /// 1 / the unit of length, a power of two about the size of the scene.
   [[nodiscard]] float per_unit() const { return per_unit_; }
 
   enum class Kind : std::uint8_t { kNone, kPoint, kArea, kDirection, kEnvironment };
 
-  /// What shading reads of a light, by its index as in count().
+  /// A light as shading reads it, by its index below count().
   struct Light {
     Kind kind = Kind::kPoint;
     bool is_spot = false;
-    /// Of a point light its intensity, in square units; of an area light radiance; of light from
-    /// one direction irradiance; of the environment nothing.
+    /// Point light: intensity, in square units. Area light: radiance. Directional light:
+    /// irradiance. Environment: unused.
     glm::vec3 emission{0.0f};
-    glm::vec3 position{0.0f};  ///< of a point light; or the direction towards the light
-    float radius = 0.0f;       ///< of a point light: it is a ball, beyond all of the scene
+    glm::vec3 position{0.0f};  ///< of a point light, or the direction towards a directional light
+    float radius = 0.0f;       ///< of a point light that is a sphere, outside the scene
     SpotFalloff spot;
-    float area = 0.0f;         ///< in square units
-    bool is_textured = false;  ///< `emission` is the mean; radiance_at() has it at a point
-    float sky = 0.0f;  ///< of an area light: the background's radiance over its own, at most 1/2
+    float area = 0.0f;  ///< in square units
+    bool is_textured =
+        false;         ///< `emission` is the mean; radiance_at() returns the value at a point
+    float sky = 0.0f;  ///< area light: the background's radiance over its own, at most 1/2
     std::uint32_t first_patch = 0, patches = 0;
   };
   [[nodiscard]] const Light& light(std::size_t index) const { return lights_[index]; }
 
-  /// Points of area lights, uniform in area, for points of the unit square.
+  /// Samples points of area lights, uniform in area, for points of the unit square.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(const std::uint32_t (&indices)[kLanesOf<T>],
                                                     const SquarePoint<T>& u) const;
-  /// The same of one patch each.
+  /// The same for a patch in each lane.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
       const std::uint32_t (&numbers)[kLanesOf<T>], const SquarePoint<T>& u) const;
-  /// The middle of a flat light, or very near, as a sample. Its primitive is one of the light's.
+  /// Returns the centre of a flat light as a sample; its primitive is one of the light's.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE static LightPoint<T> middle(const AreaLight& light) {
     return {spread<T>(glm::vec3(light.middle)), spread<T>(glm::vec3(light.middle_normal)),
             spread<WordOf<T>>(light.primitives[0])};
   }
 
-  /// The radiance of area lights at points of them, one light and one point a lane. Of what is no
-  /// area light its emission.
+  /// Returns the radiance of area lights at points on them, one per lane; of other lights, the
+  /// emission.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Triple<T> radiance_at(const Light* const (&lights)[kLanesOf<T>],
                                                      const LightPoint<T>& at) const {
@@ -176,7 +178,7 @@ class Lights {
     });
   }
 
-  /// Where on a point light light comes from to a place: its position, or a point of its disc.
+  /// Samples the point from which a spherical point light lights `from`: a point of its disc.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE static Triple<T> point_on(const Triple<T>& position, const T& radius,
                                                          const Triple<T>& from,
@@ -189,7 +191,7 @@ class Lights {
 
   // For sampling one light at a time:
 
-  /// What the light tree chooses: a light, or a patch (a triangle or two) of an area light.
+  /// What the light tree samples: a light, or a patch (one or two triangles) of an area light.
   struct Source {
     std::uint32_t light = 0;         ///< as in count()
     std::uint32_t patch = kNoIndex;  ///< of an area light
@@ -197,18 +199,18 @@ class Lights {
   };
   [[nodiscard]] std::size_t source_count() const { return sources_.size(); }
   [[nodiscard]] const Source& source(std::size_t index) const { return sources_[index]; }
-  /// Which one a primitive belongs to; kNoIndex for none.
+  /// Returns the source that a primitive belongs to, or kNoIndex.
   [[nodiscard]] std::uint32_t source_of(std::uint32_t primitive) const {
     return primitive < source_of_primitive_.size() ? source_of_primitive_[primitive] : kNoIndex;
   }
-  /// There is at most one; the last.
+  /// The environment is the last source.
   [[nodiscard]] std::uint32_t environment_source() const {
     return static_cast<std::uint32_t>(sources_.size() - 1);
   }
 
-  /// Whether there is a light, and not all are dark.
+  /// Whether any light emits.
   [[nodiscard]] bool any_power() const { return any_power_; }
-  /// One source for a point of a surface and its unit normal: see LightTree. Only where
+  /// Samples a source for a surface point and its unit normal (see LightTree). Requires
   /// any_power().
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightTree::Sample sample_source(const glm::vec3& point,
@@ -217,7 +219,7 @@ class Lights {
     if (sources_.size() == 1) return {0, 1.0f};
     return tree_.sample<T>(point * per_unit_, normal, u);
   }
-  /// How likely sample_source() is to give a source.
+  /// Returns the probability that sample_source() chooses a source.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE float pmf(std::uint32_t source, const glm::vec3& point,
                                          const glm::vec3& normal) const {
@@ -226,7 +228,7 @@ class Lights {
   }
 
  private:
-  /// A part of a light: a triangle, or two that make a parallelogram.
+  /// A part of an area light: a triangle, or two that form a parallelogram.
   struct Patch {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
     std::uint32_t primitive = 0,

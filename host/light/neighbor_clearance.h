@@ -1,4 +1,4 @@
-// Neighbor clearance: how near other triangles come to a triangle, computed on first use and kept.
+// Neighbor clearance: the distance of other triangles from a triangle, computed on first use.
 #pragma once
 
 #include <atomic>
@@ -17,14 +17,14 @@
 
 namespace raygate {
 
-/// Overlaps: the triangles that stand on a triangle or cut it.
+/// The triangles that touch a triangle in its interior or intersect it.
 class Overlaps {
  public:
   void add(std::uint32_t primitive, const Corners& triangle);
   [[nodiscard]] std::size_t size() const { return primitives_.size(); }
 
   /// Calls visit(primitive) for the triangles whose boxes are within `reach` of the point on each
-  /// axis, until it says true; whether it did.
+  /// axis, until it returns true. Returns whether it did.
   template <Vectors kCode = Vectors::kBaseline, class Visit>
   [[nodiscard]] RAYGATE_INLINE bool any_near(const glm::vec3& point, float reach,
                                              const Visit& visit) const {
@@ -46,7 +46,7 @@ class Overlaps {
   }
 
  private:
-  /// Eight boxes; those that are not there are empty.
+  /// Eight boxes; absent ones are empty.
   struct Boxes {
     float low[3][kLanes], high[3][kLanes];
   };
@@ -55,33 +55,31 @@ class Overlaps {
   std::vector<std::uint32_t> primitives_;
 };
 
-/// The clearance of a triangle ABC, for rays that begin on it: one cache line.
+/// The clearance of a triangle ABC for rays that start on it: one cache line.
 ///
-/// All other triangles are at least c w - margin() away from each point of this one, w being the
-/// least of that point's three barycentric weights, or farther than spawn_reach(), or one of its
-/// overlaps, or in its plane. Most triangles meet others at their edges and corners alone: they
-/// have no overlaps, and c is some part of their least height.
+/// Every other triangle is at least c w - margin() away from each point of this one, where w is the
+/// smallest of the point's barycentric coordinates; or it is farther than spawn_reach(), one of the
+/// overlaps, or in the same plane. Most triangles touch others only at edges and vertices: they
+/// have no overlaps, and c is a fraction of their smallest height.
 struct alignas(64) NeighborClearance {
   double normal[3] = {};  ///< (B-A) x (C-A) times a power of two: off by less than 1
-  /// c, at most an eighth of the least height; 0: nothing is known. Negative where there are
-  /// overlaps.
+  /// c, at most an eighth of the smallest height; 0: unknown. Negative if there are overlaps.
   float length = 0.0f;
   float corner[3] = {};       ///< A
-  float gradient[2][3] = {};  ///< of c times the weights of B and of C, in the triangle's plane
+  float gradient[2][3] = {};  ///< gradients of c times the coordinates of B and C, in the plane
 };
 
-/// How far away from a triangle with these vertices things may matter to rays that begin on it: 16
-/// float steps of its largest coordinate, or more.
+/// Returns the distance beyond which other triangles do not matter to rays that start on a triangle
+/// with these vertices: at least 16 float steps of its largest coordinate.
 [[nodiscard]] double spawn_reach(const Corners& corners);
 
-/// Whether no point of `other` is strictly on the given side (as orient3d) of the plane of `hit`.
-/// A straight way from that plane to that side does not meet it then: neighbours along a ridge do
-/// not matter, however flat the ridge.
+/// Whether no point of `other` is strictly on the given side (as orient3d) of the plane of `hit`. A
+/// straight line from that plane to that side does not meet it then, so neighbours along a convex
+/// edge do not matter, however flat the edge.
 [[nodiscard]] bool lies_beyond(const Corners& other, const Corners& hit, int side);
 
-/// The clearances and the overlaps of all triangles of a tree. Those of instances are not kept.
-///
-/// Threads may ask at the same time: whoever asks first finds out, and all find the same.
+/// The clearances and overlaps of all triangles of a tree, except those of instances, which are not
+/// stored. Thread-safe: computed on first use, with the same result in every thread.
 class NeighborClearances {
  public:
   /// The tree must outlive this.
@@ -90,21 +88,21 @@ class NeighborClearances {
   [[nodiscard]] const Bvh& bvh() const { return bvh_; }
   [[nodiscard]] float margin() const { return margin_; }
 
-  /// A clearance that is not kept.
+  /// A clearance that is not stored.
   struct Found {
     NeighborClearance clearance;
     Overlaps overlaps;
   };
-  /// Finds it out: of any triangle, an instance's too, of which there may be too many to keep.
+  /// Computes the clearance of any primitive, including those of instances.
   [[nodiscard]] Found look(std::uint32_t primitive) const;
 
-  /// Of a primitive that is no instance's.
+  /// Returns the clearance of a primitive that belongs to no instance.
   [[nodiscard]] RAYGATE_INLINE const NeighborClearance& of(std::uint32_t primitive) const {
     const NeighborClearance* const clearance =
         known_[primitive].clearance.load(std::memory_order_acquire);
     return clearance != nullptr ? *clearance : find(primitive);
   }
-  /// Says that a triangle's will soon be asked for; later, once more.
+  /// Prefetch the clearance of a primitive of a later call, in two steps.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const {
     if (!bvh_.is_instanced(primitive)) __builtin_prefetch(&known_[primitive]);
   }
@@ -112,7 +110,7 @@ class NeighborClearances {
     if (bvh_.is_instanced(primitive)) return;
     __builtin_prefetch(known_[primitive].clearance.load(std::memory_order_relaxed));
   }
-  /// Of a triangle whose clearance has been asked for, and says that there is one.
+  /// Returns the overlaps of a primitive whose clearance is known and says that there are some.
   [[nodiscard]] const Overlaps& overlaps_of(std::uint32_t primitive) const {
     return *known_[primitive].overlaps.load(std::memory_order_relaxed);
   }
@@ -120,16 +118,16 @@ class NeighborClearances {
  private:
   /// Of a primitive.
   struct Known {
-    std::atomic<const NeighborClearance*> clearance{nullptr};  // nobody has asked yet
+    std::atomic<const NeighborClearance*> clearance{nullptr};  // null: not computed yet
     std::atomic<const Overlaps*> overlaps{nullptr};
   };
 
-  /// Finds out, and keeps it.
+  /// Computes and stores the clearance.
   [[nodiscard]] const NeighborClearance& find(std::uint32_t primitive) const;
 
   const Bvh& bvh_;
   float margin_;
-  double slack_;  // how far a computed coordinate along a unit vector may be off
+  double slack_;  // error bound of a computed coordinate along a unit vector
   std::unique_ptr<Known[]> known_;
   mutable std::mutex mutex_;
   mutable std::deque<NeighborClearance> clearances_;

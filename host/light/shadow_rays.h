@@ -1,4 +1,4 @@
-// Shadow rays: how much of a light reaches a surface.
+// Shadow rays: the fraction of light that reaches a surface.
 #pragma once
 
 #include <cstdint>
@@ -19,64 +19,63 @@
 
 namespace raygate {
 
-/// A query: how much of `radiance` arrives?
+/// A shadow ray to trace, and the radiance that it carries.
 struct ShadowRay {
   static constexpr std::uint32_t kNoPoint = NearestHit::kNone;
 
-  std::uint32_t sample = 0;  ///< whose light it is: for the caller
-  glm::vec3 radiance{0.0f};  ///< what arrives if nothing is between; what does arrive
+  std::uint32_t sample = 0;  ///< for the caller: the sample that it belongs to
+  glm::vec3 radiance{0.0f};  ///< unoccluded radiance; after resolve() the radiance that arrives
   glm::vec3 surface{0.0f};   ///< origin of the ray, from RaySpawner
   std::uint32_t surface_primitive = 0;
-  std::uint32_t point_light = kNoPoint;  ///< index; or else the light is an area's or far away:
-  glm::vec3 target{0.0f};                ///< its point, or the direction towards it
-  std::uint32_t target_primitive = 0;    ///< and what that is on; kNone: it is infinitely far away
-  bool is_to_camera = false;             ///< the target is a point that is on nothing
+  std::uint32_t point_light = kNoPoint;  ///< index of a point light; otherwise:
+  glm::vec3 target{0.0f};  ///< a point of an area light, or the direction to a distant light
+  std::uint32_t target_primitive = 0;  ///< primitive of the target; kNone: a distant light
+  bool is_to_camera = false;           ///< the target is a point of the lens
 };
 
 /// Traces shadow rays in batches.
 ///
-/// Rays of a point light begin at the light, where they share its records, and end at the surface.
-/// Rounding their direction moves that end by about a float; so a hit in the last 2^-10 of the way
-/// does not count by itself: such a ray is traced again, from the surface. Hits of the surface's
-/// own triangle do not count, for the departure point is on the light's side of it. Where there are
-/// so many point lights that hardly any has several rays, all begin at the surface. Rays of area
-/// lights begin at the surface and end 2^-16 of the way before the light, whose own triangle does
-/// not count. Rays to lights that are infinitely far away begin at the surface and have no end.
-/// Surfaces that let light through straight weaken it.
+/// Rays of a point light start at the light, so that they share its polygon records, and end at the
+/// surface. Rounding the direction moves the end by about one float; so a hit in the last 2^-10 of
+/// the distance is not conclusive, and the ray is traced again from the surface. Hits of the
+/// surface's own triangle are ignored, since the ray's end is on the light's side of it. With so
+/// many point lights that few have several rays, all rays start at the surface. Rays to area lights
+/// start at the surface and end at 1 - 2^-16 of the distance; the light's own triangle is ignored.
+/// Rays to distant lights start at the surface and have no end. Surfaces that transmit light
+/// without refraction attenuate it.
 class ShadowRays {
  public:
-  /// `through_refraction`: glass that bends light casts the shadow of one that does not.
+  /// `through_refraction`: glass attenuates shadow rays as if it did not refract.
   ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
              const Skips& skips, bool through_refraction);
 
-  /// Called for each ray that was traced with what its search took, by its shadow ray's index.
+  /// Called for each traced ray with its work and the index of its shadow ray.
   using TracedFunction = std::function<void(const RayWork& work, std::size_t shadow_ray)>;
 
-  /// Multiplies each ray's `radiance` by what is not held up on its way: all, nothing, or what
-  /// clear surfaces leave. `traced` may be empty.
+  /// Multiplies each ray's `radiance` by the transmittance along the ray. `traced` may be empty.
   void resolve(std::span<ShadowRay> rays, const TracedFunction& traced = {});
 
-  [[nodiscard]] std::uint64_t rays() const { return rays_; }  ///< traced so far
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }  ///< number of rays traced so far
 
  private:
   /// A ray of the next batch.
   struct Segment {
-    std::uint32_t index;  // of the shadow ray that it is a part of
+    std::uint32_t index;  // of its shadow ray
     glm::vec3 from, to;
-    std::uint32_t source;   // the primitive that it begins at, if it begins at one
-    std::uint32_t ignored;  // primitive
-    float share;            // of the way in which hits count; infinite: `to` is a direction
+    std::uint32_t source;   // the primitive at which it starts, or kNone
+    std::uint32_t ignored;  // primitive whose hits are ignored
+    float share;  // fraction of the distance in which hits count; infinite: `to` is a direction
   };
 
   void trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light);
   void trace_from_surface(std::span<ShadowRay> rays);
   void trace(bool from_light, float enough);
   void next_from_surface(const ShadowRay& ray, std::uint32_t index);
-  /// Where ray `number` of the batch hits a primitive.
+  /// Returns the hit of ray `number` of the batch with a primitive.
   [[nodiscard]] SurfaceHit place_of(std::size_t number, std::uint32_t primitive) const;
-  /// Whether no light comes through there, nor near by.
+  /// Whether the hit surely blocks all light (see is_sure_occluder).
   [[nodiscard]] bool ends_at(std::size_t number, std::uint32_t primitive) const;
-  /// What is left after the surface that ray `number` of the batch has hit.
+  /// Returns the transmittance of the surface that ray `number` of the batch hit.
   [[nodiscard]] glm::vec3 transmittance(std::size_t number) const;
 
   const Scene& scene_;
@@ -101,21 +100,21 @@ class ShadowRays {
 
 // Why a sure occluder leaves a shadow dark
 //
-// A shadow ray that meets holes of masks, or what lets light through, goes on from behind each as
-// a ray of its own, from an origin O' that rounding and RaySpawner have moved. Let S be the largest
-// coordinate of its beginning O and of the hit X. ShadowRays lets no O' be farther than 2^-16 S
-// from the first ray's line (strays_from); the rays' directions are rounded by 2^-24 of themselves,
-// which moves them by less than 2^-22 S where X is. So seen along the first ray, all of them pass
-// within kRoom S = 2^-15 S of X. Where no edge of X's triangle is so near, each hits the triangle,
-// if it comes so far: RaySpawner puts no origin on the wrong side of a triangle. There is nothing
-// to see through within this distance: the last of them ends there, if none has ended before.
+// A shadow ray that meets holes of masks or transmitting surfaces continues behind each as a new
+// ray, from an origin O' moved by rounding and RaySpawner. Let S be the largest coordinate of the
+// first origin O and of the hit X. ShadowRays lets no O' be farther than 2^-16 S from the line of
+// the first ray (strays_from); directions have a relative rounding error of 2^-24, which moves them
+// by less than 2^-22 S at X. So, seen along the first ray, all rays pass within kRoom S = 2^-15 S
+// of X. If no edge of X's triangle is that near, each ray that gets so far hits the triangle,
+// because RaySpawner puts no origin on its wrong side. The triangle is opaque within this distance:
+// the last ray ends there, if none has ended before.
 
-/// Whether an opaque surface is hit so far within it. `place` is a sure hit of a ray; hits count up
-/// to t_max (+infinity: no limit). The triangle's material is opaque but for its mask.
+/// Whether a hit blocks all light as explained above. `place` is a sure hit of a ray with t below
+/// t_max (+infinity: no limit), on a triangle whose material is opaque except for its mask.
 [[nodiscard]] bool is_sure_occluder(const Scene& scene, const Bvh& bvh, const SurfaceHit& place,
                                     float t_max);
 
-/// Whether a point is too far from the line through `from` along `way`, for this to hold.
+/// Whether a point is too far from the line through `from` along `way` for that argument.
 [[nodiscard]] bool strays_from(const glm::vec3& from, const glm::dvec3& way,
                                const glm::vec3& point);
 
