@@ -1,4 +1,4 @@
-// Direct light: what samples of lights contribute to hits where nothing is between.
+// Direct light: the unoccluded contribution of light samples to hits.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,7 @@
 
 namespace raygate {
 
-/// Finite numbers for products of what is too bright and what is nothing: infinity becomes the
-/// largest float, NaN 0.
+/// Returns a finite number: infinity becomes the largest float, NaN becomes 0.
 template <class T>
 RAYGATE_INLINE T bounded(const T& x) {
   const T most = spread<T>(std::numeric_limits<float>::max());
@@ -21,19 +20,20 @@ RAYGATE_INLINE Triple<T> bounded(const Triple<T>& x) {
   return {bounded(x.x), bounded(x.y), bounded(x.z)};
 }
 
-/// Light that is on its way to hits from a point or a direction each, if nothing is between.
+/// Unoccluded light that arrives at each hit from a point or a direction.
 template <class T>
 struct IncidentLight {
-  MaskOf<T> is_asked = T{} > 0.0f;       ///< hits without this want none
-  MaskOf<T> is_area = is_asked;          ///< it is an area light's
-  MaskOf<T> is_point_light = is_asked;   ///< or one point's
+  MaskOf<T> is_asked = T{} > 0.0f;       ///< whether the hit samples this light
+  MaskOf<T> is_area = is_asked;          ///< from an area light
+  MaskOf<T> is_point_light = is_asked;   ///< from a point light
   Triple<T> direction = zero<T>();       ///< unit vector towards it
-  T distance_squared = spread<T>(1.0f);  ///< in the units of Lights; 1: infinitely far away
-  T cosine = T{};                        ///< of the hit, as Hits::cosine has it; 0: nothing arrives
+  T distance_squared = spread<T>(1.0f);  ///< in units of Lights; 1: a distant light
+  T cosine = T{};                        ///< Hits::cosine of the direction; 0: nothing arrives
   T light_cosine = T{};                  ///< of an area light
   Triple<T> emission = zero<T>();        ///< radiance, intensity or irradiance
-  T pdf = spread<T>(1.0f);       ///< of the light; times that of its point, per area, or direction
-  Triple<T> target = zero<T>();  ///< as LightSample has them
+  T pdf = spread<T>(
+      1.0f);  ///< probability of the light times the density of its point (per area) or direction
+  Triple<T> target = zero<T>();  ///< target and index as in LightSample
   WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
 
   IncidentLight() = default;
@@ -46,11 +46,11 @@ struct IncidentLight {
     direction = way * (1.0f / root(distance_squared));
     cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
   }
-  /// From infinitely far away; a unit vector.
+  /// From a distant light in the direction of a unit vector.
   RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
       : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
 
-  /// Becomes another one where that is asked.
+  /// Takes over the lanes of `other` in which it is asked.
   RAYGATE_INLINE void take(const IncidentLight& other) {
     const auto put = [&](auto& own, const auto& others)
                          RAYGATE_BODY { own = choose(other.is_asked, others, own); };
@@ -68,7 +68,7 @@ struct IncidentLight {
   }
 };
 
-/// The light of points of area lights, uniform in area.
+/// Returns the light from points of area lights that were sampled uniformly in area.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> area_light(const Lights& lights, const Hits<T>& hits,
                                            const LightPoint<T>& point, const Triple<T>& radiance) {
@@ -80,7 +80,7 @@ RAYGATE_INLINE IncidentLight<T> area_light(const Lights& lights, const Hits<T>& 
   return light;
 }
 
-/// What a hit sends back along its ray of light that it scatters so much of, from its direction.
+/// Returns the radiance that hits scatter back along their rays; `scattered` is the BSDF.
 template <class T>
 RAYGATE_INLINE Triple<T> scattered_light(const Hits<T>& hits, const IncidentLight<T>& light,
                                          const Triple<T>& scattered, const T& mis_weight) {
@@ -97,8 +97,8 @@ RAYGATE_INLINE Triple<T> scattered_light(const Hits<T>& hits, const IncidentLigh
   return choose(light.cosine > 0.0f, bounded(sent), zero<T>());
 }
 
-/// Asks for light that is `sent` back where nothing is between; `number` says which of its hit's
-/// samples it is.
+/// Stores a light sample of each hit that contributes `sent` if it is not occluded, as sample
+/// `number` of the hit.
 template <class T>
 RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number,
                                      const IncidentLight<T>& light, const Triple<T>& sent,
@@ -124,21 +124,21 @@ RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number,
   store_records(words, samples, hits.count);
 }
 
-/// a^2 / (a^2 + b^2), where a may be infinite.
+/// Returns a^2 / (a^2 + b^2); a may be infinite.
 template <class T>
 RAYGATE_INLINE T power_heuristic(const T& a, const T& b) {
   const T over = b / a;
   return 1.0f / (1.0f + over * over);
 }
 
-/// What is seen in a direction where nothing is; unit vectors.
+/// Returns the radiance of the environment or background in the direction of a unit vector.
 template <class T>
 RAYGATE_INLINE Triple<T> sky(const Lights& lights, const Triple<T>& direction) {
   const Environment* const environment = lights.environment();
   return environment != nullptr ? environment->radiance(direction) : spread<T>(lights.background());
 }
 
-/// The share of a spot light's intensity that goes from it towards a surface.
+/// Returns the fraction of a spot light's intensity in the direction of the hits.
 template <class T>
 RAYGATE_INLINE T spot_falloff_at(const Hits<T>& hits, const Lights& lights,
                                  const Triple<T>& position, const Triple<T>& axis, const T& scale,

@@ -1,5 +1,5 @@
-// Hits that are shaded together, as many as there are lanes: their surfaces and BSDFs, the light
-// that they sample, and the rays that they scatter.
+// Hits that are shaded together, one per lane: their surfaces and BSDFs, light samples and
+// scattered rays.
 #pragma once
 
 #include <algorithm>
@@ -25,14 +25,14 @@ namespace raygate {
 
 class LightPaths;
 
-/// What one light sends to a hit if nothing is between: a shadow ray to trace.
+/// A light sample of a hit: a shadow ray to trace.
 struct alignas(16) LightSample {
-  glm::vec3 radiance{0.0f};  ///< what arrives if nothing is between
-  /// Of an area light or of the lens a point; or the direction to what is infinitely far away.
+  glm::vec3 radiance{0.0f};  ///< contribution if not occluded
+  /// A point of an area light or of the lens, or the direction to a distant light.
   glm::vec3 target{0.0f};
-  std::uint32_t index = 0;  ///< of a point light; or of the primitive that the target is on
-  std::uint32_t is_asked : 1 = 0, is_dark : 1 = 0;  ///< dark: nothing would arrive
-  std::uint32_t is_transmitted : 1 = 0;             ///< by rough glass
+  std::uint32_t index = 0;  ///< of a point light, or of the primitive of the target
+  std::uint32_t is_asked : 1 = 0, is_dark : 1 = 0;  ///< dark: the contribution is 0
+  std::uint32_t is_transmitted : 1 = 0;             ///< through rough glass
   std::uint32_t is_point_light : 1 = 0, is_to_camera : 1 = 0;
 
   [[nodiscard]] SpawnSide side() const {
@@ -40,15 +40,16 @@ struct alignas(16) LightSample {
   }
 };
 
-/// A ray that a hit sends on: reflected, refracted or scattered.
+/// A ray spawned at a hit: reflected, refracted or scattered.
 struct alignas(16) ScatteredRay {
   PathState state;
   glm::vec3 direction{0.0f};  ///< scaled
-  /// Where the direction, made with an interpolated normal, leads to the wrong side: that of the
-  /// flat normal.
+  /// Direction made with the geometric normal, for use if that of the shading normal leads to the
+  /// wrong side.
   glm::vec3 flat{0.0f};
   std::uint32_t is_wanted : 1 = 0;
-  std::uint32_t surely_leaves : 1 = 0;  ///< the triangle; or else exact arithmetic decides
+  std::uint32_t surely_leaves : 1 =
+      0;  ///< the triangle, on the right side; otherwise exact arithmetic decides
   std::uint32_t has_flat : 1 = 0, is_transmitted : 1 = 0;
 
   [[nodiscard]] SpawnSide side() const {
@@ -56,7 +57,7 @@ struct alignas(16) ScatteredRay {
   }
 };
 
-/// The flags of such records, from masks: bit k is set where mask k is.
+/// Packs masks into the flags of such records: bit k is mask k.
 template <class T, class... Masks>
 RAYGATE_INLINE T flag_words(const Masks&... masks) {
   WordOf<T> flags{};
@@ -72,7 +73,7 @@ RAYGATE_INLINE auto sees_lights(const W& history) {
   return (history < (kAfterSeenSurface | kThenSpecular)) | (history > kCausticRay);
 }
 
-/// The states of paths, field by field, one path a lane.
+/// Path states, field by field, one path per lane.
 template <class T>
 struct PathLanes {
   Triple<T> throughput;
@@ -106,7 +107,7 @@ struct PathLanes {
                                                     const WordOf<T>& history) {
     return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
   }
-  /// The records' words, in their order.
+  /// Stores the words of the records.
   RAYGATE_INLINE void put(T* w) const {
     static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
                   offsetof(PathState, history) == 52 &&
@@ -127,23 +128,23 @@ struct PathLanes {
   }
 };
 
-/// A part of a batch, its hits, and their results: lists by the ray's place in the part.
+/// A part of a batch with its hits and their results, indexed by the ray's position in the part.
 struct HitBlock {
   const RayBatch* batch = nullptr;
   std::size_t begin = 0;                             ///< in the batch
-  std::vector<SurfaceHit> places;                    ///< no face: nothing is hit
+  std::vector<SurfaceHit> places;                    ///< without a face: no hit
   std::vector<const MaterialParameters*> materials;  ///< of the hits
-  std::vector<glm::vec3> radiance;                   ///< along the ray, already weighted
+  std::vector<glm::vec3> radiance;                   ///< along the ray, times the path's throughput
   std::vector<LightSample> light_samples;            ///< `light_samples_per_hit` of each hit
-  std::vector<ScatteredRay> scattered;               ///< room for `scattered_per_hit` of each hit
-  std::vector<std::uint8_t> scattered_counts;        ///< and how many of these it has
+  std::vector<ScatteredRay> scattered;               ///< `scattered_per_hit` of each hit, of which
+  std::vector<std::uint8_t> scattered_counts;        ///< this many are used
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
-  /// By place: null where the hit is not the first surface of its path. Empty: none of them is.
+  /// By position: null if the hit is not the first surface of its path. Empty: none is.
   std::vector<FirstSurface*> first_surfaces;
   SkipCounters skipped;
 
   [[nodiscard]] const PathState& state(std::size_t i) const { return batch->states[begin + i]; }
-  /// Of the hit at place i, and of so many.
+  /// Returns the samples of `hits` hits from position i on.
   [[nodiscard]] std::span<LightSample> light_samples_of(std::size_t i, std::size_t hits = 1) {
     return std::span(light_samples)
         .subspan(i * light_samples_per_hit, hits * light_samples_per_hit);
@@ -164,9 +165,9 @@ struct ShadingScene {
   const LightPaths* light_paths = nullptr;  ///< null: camera paths find all light
 };
 
-/// The matte colour at which `surface` looks like the background, in the light of all lights
-/// from one point to all sides and of `around`, the radiance from all sides: where any of these is
-/// kept away it is darker. At most 1. Light of other sources makes it brighter.
+/// Returns the diffuse colour, at most 1, with which `surface` looks like the background when lit
+/// by all point lights without a cone and by the uniform radiance `around`. It is darker in their
+/// shadows and brighter in the light of other sources.
 template <class T>
 RAYGATE_INLINE Triple<T> catcher_colour(const Lights& lights, const glm::vec3& around,
                                         const Surface<T>& surface) {
@@ -178,7 +179,7 @@ RAYGATE_INLINE Triple<T> catcher_colour(const Lights& lights, const glm::vec3& a
     const Triple<T> way =
         (spread<T>(light_record.position) - surface.point) * spread<T>(lights.per_unit());
     const T squared = dot(way, way), slope = dot(surface.normal, way);
-    // A cosine, over pi and the squared distance.
+    // The cosine over pi and the squared distance.
     const T share = slope * kPerPi / (squared * root(squared));
     light = light + spread<T>(light_record.emission) * choose(slope > 0.0f, share, T{});
   }
@@ -189,12 +190,12 @@ RAYGATE_INLINE Triple<T> catcher_colour(const Lights& lights, const glm::vec3& a
   return {ratio(shown.x, light.x), ratio(shown.y, light.y), ratio(shown.z, light.z)};
 }
 
-/// As many hits of one kind as T has lanes.
+/// Hits of one kind, one per lane of T.
 template <class T>
 struct Hits {
   static constexpr int kCount = kLanesOf<T>;
 
-  /// `at` says where in the block; where there are fewer than lanes, the last one fills the rest.
+  /// `at`: positions in the block; if there are fewer than lanes, the last one is repeated.
   RAYGATE_INLINE Hits(const ShadingScene& shading, HitBlock& hits, HitKind hit_kind,
                       std::span<const std::uint32_t> at)
       : block(hits), kind(hit_kind), count(static_cast<int>(at.size())) {
@@ -215,36 +216,37 @@ struct Hits {
     if (!hits.first_surfaces.empty()) show_first_surfaces();
   }
 
-  /// The cosine of light from a unit direction; 0 where the surface scatters none of it: from the
-  /// other side of the triangle, or, of rough glass, where its two normals do not agree on a side.
+  /// Returns the cosine of a unit direction with the shading normal; 0 if the surface scatters no
+  /// light from there: it is behind the triangle, or, for rough glass, the shading and geometric
+  /// normals disagree on the side.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
     return choose((flat > 0.0f) == (cosine > 0.0f), absolute(cosine), T{});
   }
-  /// What chooses lights: the normal, or 0 where light from both sides counts.
+  /// Normal for sampling lights: the shading normal, or 0 if light from both sides counts.
   [[nodiscard]] RAYGATE_INLINE Triple<T> lit_normal() const {
     return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
   }
 
-  /// Whether they emit the same everywhere, on ways that are in PathState::supersampled.
+  /// Whether EmitterSupersampler adds the emission of the hit.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
     const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
     const auto are_wanted = PathLanes<T>::has(path.supersampled, path.history);
     return are_even & are_wanted;
   }
-  /// What they emit, but for what is supersampled.
+  /// Emission, without what EmitterSupersampler adds.
   [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
     if ((kind & kEmits) == 0) return bsdf.emission();
     return choose(are_supersampled(), zero<T>(), bsdf.emission());
   }
 
-  /// A point of the rays' own random streams for this purpose.
+  /// Returns a point of the path's random stream for this purpose.
   [[nodiscard]] RAYGATE_INLINE SquarePoint<T> random(std::uint32_t purpose) const {
     return sobol_point<T>(path.index, hash(path.stream, purpose));
   }
 
-  /// The BSDF seen from another direction on the same side, and the normal there.
+  /// The BSDF and shading normal as seen from another direction on the same side.
   struct Seen {
     Bsdf<T> bsdf;
     Triple<T> normal;
@@ -280,7 +282,7 @@ struct Hits {
   }
 };
 
-/// Rays that go on where `is_wanted`; `number` says which of their hits' rays they are.
+/// Rays spawned at hits, where `is_wanted`.
 template <class T>
 struct ScatteredRays {
   PathLanes<T> path;
@@ -289,7 +291,7 @@ struct ScatteredRays {
 
   RAYGATE_INLINE explicit ScatteredRays(const Hits<T>& hits) : path(hits.path) {}
 
-  /// Sets where a mirror with that normal sends them.
+  /// Sets the directions to those reflected about `normal`.
   RAYGATE_INLINE void reflect_off(const Hits<T>& hits, const Triple<T>& normal) {
     direction = reflect(hits.surface.view, normal);
     flat = reflect(hits.surface.view, hits.surface.flat_normal);
@@ -297,8 +299,8 @@ struct ScatteredRays {
     is_transmitted = !has_flat;
     path.history = hits.path.after_mirror();
   }
-  /// Sets where they go through the surface: bent at that normal where it refracts, else straight
-  /// on. The result says where there is such a way.
+  /// Sets the directions to those through the surface: refracted at `normal` if the material
+  /// refracts, otherwise straight on. Returns where such a direction exists.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> pass_through(const Hits<T>& hits,
                                                       const Triple<T>& normal) {
     const Surface<T>& surface = hits.surface;

@@ -1,5 +1,4 @@
-// The integrator: shades the hits of a batch of rays; the light that arrives, and the rays that go
-// on.
+// Integrator: shades the hits of a batch of rays and spawns shadow rays and scattered rays.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +18,11 @@
 
 namespace raygate {
 
-/// Shades the hits of batches. Not for use by two threads at once.
+/// Shades the hits of batches. Not thread-safe.
 ///
-/// Hits of one kind are shaded together, as many at a time as the machine has lanes; where each
-/// goes, and in which order lights and rays are added to their lists, follows from the order of the
-/// batch alone. So what a sample gets depends on nothing but its own rays.
+/// Hits of one kind are shaded together, as many at a time as the machine has lanes. The order of
+/// results depends only on the order of the batch, so the radiance of a sample depends only on its
+/// own rays.
 class Integrator {
  public:
   /// The references must outlive this.
@@ -34,28 +33,28 @@ class Integrator {
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
-  /// So many rays are shaded at a time, at most.
+  /// Maximum number of rays per call of shade().
   [[nodiscard]] std::size_t block_size() const { return block_size_; }
 
-  /// Adds what the hits begin .. end of the batch give, at most block_size() of them.
+  /// Shades hits [begin, end) of the batch, at most block_size(), and adds the results to `output`.
   void shade(const RayBatch& batch, std::span<const NearestHit> hits, std::size_t begin,
              std::size_t end, ShadingOutput& output);
 
-  /// Radiance along rays that hit nothing.
+  /// Radiance along rays that miss everything.
   [[nodiscard]] glm::vec3 background() const {
     return sees_background() ? shading_.lights.background() : glm::vec3(0.0f);
   }
-  /// Whether they see an environment instead, at that depth.
+  /// Whether such rays of that depth see an environment instead.
   [[nodiscard]] bool sees_environment(int depth) const {
     const Lights& lights = shading_.lights;
     return sees_background() && lights.environment() != nullptr &&
            (depth > 0 || !lights.has_studio());
   }
-  /// Whether shadows are cast as if glass did not bend light.
+  /// Whether shadow rays pass glass as if it did not refract.
   [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }
 
   [[nodiscard]] const SkipCounters& skipped() const { return block_.skipped; }
-  /// Hits whose P the host found.
+  /// Number of hits whose P the host computed.
   [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 
  private:
@@ -81,13 +80,13 @@ class Integrator {
   bool has_masks_;
   const MaterialParameters hole_ = MaterialParameters::hole();
   HitBlock block_;
-  std::uint8_t scattered_count_;           // of a hit without caustic rays
-  std::vector<SpawnQuery> spawn_queries_;  // of the block's hits, in their order
+  std::uint8_t scattered_count_;           // rays per hit, without caustic rays
+  std::vector<SpawnQuery> spawn_queries_;  // of the block's hits, in order
   std::vector<SpawnOrigin> origins_;
-  std::vector<HitKind> kinds_;          // by place in the block; kHitKinds: nothing is hit
-  std::vector<std::uint32_t> order_;    // places, kind by kind
-  std::vector<std::uint32_t> first_;    // of each kind in it
-  std::vector<std::uint32_t> escaped_;  // places of rays that hit nothing but the environment
+  std::vector<HitKind> kinds_;          // by position in the block; kHitKinds: no hit
+  std::vector<std::uint32_t> order_;    // positions, sorted by kind
+  std::vector<std::uint32_t> first_;    // index in order_ of each kind's first position
+  std::vector<std::uint32_t> escaped_;  // positions of rays that see the environment
 };
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// The integrators: what each does with hits of one kind.
+// The shading functions of the integrators, for hits of one kind.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace raygate {
 
-/// Calls shade(hits) for the hits at `at` in the block, as many at a time as there are lanes. The
-/// baseline has one lane: it is the reference of the others, which have the same bits.
+/// Calls shade(hits) for the hits at positions `at` of the block, as many at a time as there are
+/// lanes. The baseline has one lane and is the reference for the others, which give the same bits.
 template <class Shade>
 void shade_in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
                     std::span<const std::uint32_t> at, const Shade& shade) {
@@ -27,28 +27,28 @@ void shade_in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
   });
 }
 
-/// Shades the hits at `at` in the block, all of one kind.
+/// Shades the hits at positions `at` of the block, all of one kind.
 using ShadeFunction = void(const ShadingScene& shading, HitBlock& block, HitKind kind,
                            std::span<const std::uint32_t> at);
 
-/// Whitted's ray tracing ("An improved illumination model for shaded display", 1980), as figure 2
-/// of the paper has it. At each hit: what the surface emits; the light of every light that it
-/// scatters, with a shadow ray to each point light and to one point of each area light; ambient
-/// light, which reaches everything, for all light between surfaces; and rays on through mirrors and
-/// glass, to the depth chosen or until their throughput falls below the threshold. With one sample
-/// a pixel flat area lights are sampled in their middle: no noise, hard shadows.
+/// Whitted's ray tracing ("An improved illumination model for shaded display", 1980), as in figure
+/// 2 of the paper. At each hit: emission; direct light of every light, with a shadow ray to each
+/// point light and to one point of each area light; an ambient term for interreflection; and rays
+/// through mirrors and glass, up to the maximum depth or until their throughput is below the
+/// threshold. With one sample per pixel flat area lights are sampled at their centre: no noise,
+/// hard shadows.
 ShadeFunction shade_whitted;
 
-/// Path tracing (Kajiya, "The rendering equation", 1986). At each hit one light is sampled, and one
-/// ray goes on, scattered, mirrored or through the surface. Light that both find is weighted by
+/// Path tracing (Kajiya, "The rendering equation", 1986). At each hit one light is sampled and one
+/// ray is spawned: scattered, reflected or transmitted. Light that both can find is weighted by
 /// multiple importance sampling (the power heuristic of Veach and Guibas, 1995). Russian roulette
-/// begins after three surfaces. The last rays, one deeper than the depth chosen, see what emits and
-/// nothing else.
+/// begins after three surfaces. The last rays, one deeper than the maximum depth, add emission
+/// only.
 ShadeFunction shade_path;
 
 /// Light tracing (Dutre, Lafortune and Willems, "Monte Carlo light tracing with direct computation
-/// of pixel intensities", 1993): each hit behind a first mirror or glass is connected to the
-/// camera, as a light sample that is on its way to the lens, and one ray goes on.
+/// of pixel intensities", 1993): each hit after a first mirror or glass is connected to the camera
+/// by a light sample whose target is on the lens, and one ray is spawned.
 ShadeFunction shade_light_path;
 
 /// Emission along specular paths from the camera, with the histories in PathState::supersampled:
