@@ -1,4 +1,4 @@
-// Render job: what all threads of a render read, and the camera rays that they begin with.
+// Render job: the data that all threads of a render read, and their camera rays.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct RenderJob {
   const LightPaths* light_paths = nullptr;  ///< null: only camera paths find caustics
 };
 
-/// What is asked about a batch of rays; `work` is empty or of its size.
+/// Returns the query for a batch of rays; `work` is empty or has the size of the batch.
 [[nodiscard]] inline RayQuery query_of(const RenderJob& job, const RayBatch& batch,
                                        std::span<RayWork> work) {
   return {.common_origin = batch.depth == 0 && job.camera.has_common_origin(),
@@ -34,11 +34,12 @@ struct RenderJob {
           .work = work};
 }
 
-// Streams of random numbers; the integrators' are made from others.
+// Streams of random numbers of a pixel.
 inline constexpr std::uint32_t kFilterStream = 0, kEmitterStream = 7, kLensStream = 8;
 
-/// Sample `index` of the pixel that `sampler` is of, where `stream` has it in the filter. With one
-/// sample a pixel its ray goes through the middles of pixel and lens.
+/// Returns the camera ray of sample `index` of a pixel. `sampler` is the pixel's; `stream` is the
+/// stream of the position in the filter. With one sample per pixel the ray goes through the centres
+/// of pixel and lens.
 [[nodiscard]] inline Ray camera_ray(const RenderJob& job, int pixel_x, int pixel_y,
                                     const Sampler& sampler, std::uint32_t index,
                                     std::uint32_t stream) {

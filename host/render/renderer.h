@@ -1,4 +1,4 @@
-// The renderer: from a scene and a camera to a film.
+// The renderer: renders a scene with a camera into a film.
 #pragma once
 
 #include "host/bvh/bvh.h"
@@ -12,15 +12,15 @@ namespace raygate {
 
 class Camera;
 
-/// The prepared scene is for renders to share, one after the other or at once.
-/// The film is the same, bit for bit, for every intersector, number of threads and skip, and a
-/// window's is that part of the whole one's. An exception of an intersector ends the render and is
-/// thrown on. Scenes without any light are black, but for kPrimary: see default_lights.
+/// Renders a picture. Several renders can share the prepared scene, also at the same time. The film
+/// does not depend, in any bit, on the intersector, the number of threads or the skips, and the
+/// film of a window is a part of the whole film. Rethrows exceptions of intersectors. A scene
+/// without lights is black except with kPrimary: see default_lights.
 [[nodiscard]] Film render(const PreparedScene& prepared, const Camera& camera,
                           const RenderOptions& options, const IntersectorFactory& make_intersector,
                           RenderStats& stats, const RenderMonitor& monitor = {});
 
-/// The same for a scene that is rendered once.
+/// Renders a scene that is not prepared.
 [[nodiscard]] inline Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
                                  const RenderOptions& options,
                                  const IntersectorFactory& make_intersector, RenderStats& stats,

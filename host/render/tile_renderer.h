@@ -24,23 +24,23 @@
 
 namespace raygate {
 
-/// Renders tiles into a film. All rays of one depth are one batch, and all shadow rays of a depth
-/// another: intersectors like many at once. What a pixel gets does not depend on the tile: each
-/// path's light is added up by itself, depth by depth.
+/// Renders tiles into a film. All rays of one depth form a batch, and all shadow rays of a depth
+/// another, because intersectors are faster with large batches. A pixel does not depend on its
+/// tile: the light of each path is summed separately, depth by depth.
 class TileRenderer {
  public:
-  /// `emitter_histories`: of the film's pixels, for all tiles and passes; empty: not to be looked
-  /// for.
+  /// `emitter_histories`: by pixel of the film, shared by all tiles and passes; empty: emitters are
+  /// not supersampled.
   TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
                std::span<HistoryMask> emitter_histories);
 
-  /// Traces the samples that samples_to_trace() names. `keep_going` is asked between batches; when
-  /// it says no, what was traced is not worth writing, and false is returned.
+  /// Traces the samples that samples_to_trace() returns. `keep_going` is polled between batches; if
+  /// it returns false, so does this function, and the samples are incomplete.
   [[nodiscard]] bool trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going);
 
-  /// Adds the samples that were traced last to the film.
+  /// Adds the samples of the last trace() to the film.
   void write();
-  /// What the light paths of these samples have brought, anywhere in the frame.
+  /// The splats of the light paths of these samples, anywhere in the frame.
   [[nodiscard]] std::span<const Splat> splats() const { return splats_; }
 
   void add_to(RenderStats& stats) const;
