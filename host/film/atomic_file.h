@@ -1,4 +1,4 @@
-// Atomic files: a target holds the old file or the new one, whole, whatever fails.
+// Atomic files: a target is always the complete old or the complete new file.
 #pragma once
 
 #include <sys/types.h>
@@ -11,39 +11,39 @@
 
 namespace raygate {
 
-/// A file that is written but does not have its name yet. The bytes go to a temporary file in the
-/// target's folder and reach the disk; commit() gives it the name in one step. So whoever looks at
-/// the target, at whatever moment and whatever fails, finds the old file or the new one, whole;
-/// and several files can be made ready before the first one is replaced.
+/// A file that is written under a temporary name in the target's folder and synced to disk;
+/// commit() renames it to the target in one step. So the target is the complete old or the complete
+/// new file at any time and after any failure, and several files can be staged before the first is
+/// replaced.
 ///
-/// Symbolic links are followed, to what is not there yet as well; an old file's permissions are
-/// kept. Its other names (hard links) keep the old file: a file that is replaced in one step is
-/// another one. A device, a pipe or standard
-/// output (/dev/stdout) has nothing to keep whole: the bytes go there at once, or fail where no
-/// process has the pipe open. All errors are InputError, "path: cannot write: reason".
+/// Symbolic links are followed, also to missing targets; the permissions of an old file are kept.
+/// Other hard links of the old file keep its contents. Bytes for a device, a pipe or standard
+/// output
+/// (/dev/stdout) are written at once; a pipe without a reader is an error. All errors are
+/// InputError, "path: cannot write: reason".
 class AtomicFile {
  public:
-  /// Begins a file for `path`, to be written bit by bit.
+  /// Starts an empty file for `path`.
   explicit AtomicFile(const std::filesystem::path& path);
-  /// Writes `bytes`, all of the file, for `path`.
+  /// Writes `bytes` as the file for `path`.
   AtomicFile(const std::filesystem::path& path, std::string_view bytes);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;
-  ~AtomicFile();  ///< removes the temporary file if commit() did not use it
+  ~AtomicFile();  ///< removes the temporary file unless it was committed
 
-  /// Adds `bytes` at the end.
+  /// Appends `bytes`.
   void append(std::string_view bytes);
-  /// Puts `bytes` over the first ones: a header that counts what came after it. Not in a stream.
+  /// Overwrites the start of the file, such as a header with a count. Not for streams.
   void replace_start(std::string_view bytes);
-  /// Brings all of it to the disk; nothing can be added then.
+  /// Syncs the file to disk; nothing can be appended after that.
   void finish();
-  /// Makes the target the new file, finished, and brings its name to the disk. At most once.
+  /// Finishes the file, renames it to the target and syncs the folder. At most once.
   void commit();
-  /// A name for code that writes all bytes by itself.
+  /// Returns the temporary name, for code that writes the file itself.
   [[nodiscard]] const std::filesystem::path& unnamed() const {
     return is_stream() ? name_ : temporary_;
   }
-  /// Whether it goes to a device, a pipe or standard output.
+  /// Whether the target is a device, a pipe or standard output.
   [[nodiscard]] bool is_stream() const { return temporary_.empty(); }
 
  private:
@@ -52,17 +52,16 @@ class AtomicFile {
   std::filesystem::path name_;         ///< as the user wrote it, for messages
   std::filesystem::path target_;       ///< symbolic links resolved
   std::filesystem::path temporary_;    ///< empty: none
-  std::optional<mode_t> permissions_;  ///< of the file that is there
+  std::optional<mode_t> permissions_;  ///< of the old file
   int descriptor_ = -1;                ///< -1: closed
 };
 
-/// The absolute path that `name` leads to when all symbolic links are followed, also to what is not
-/// there yet.
+/// Returns the absolute path of `name` with all symbolic links resolved, also to missing targets.
 [[nodiscard]] std::filesystem::path target_of(const std::filesystem::path& name,
                                               std::error_code& error);
 
-/// Throws InputError where one of `outputs` is, under whatever name, one of `inputs`: "a.png: would
-/// overwrite scene.mtl".
+/// Throws InputError if one of `outputs` is the same file as one of `inputs`, under any name:
+/// "a.png: would overwrite scene.mtl".
 void require_distinct(std::span<const std::filesystem::path> outputs,
                       std::span<const std::filesystem::path> inputs);
 

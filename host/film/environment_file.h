@@ -9,22 +9,22 @@
 
 namespace raygate {
 
-/// Linear RGB, row by row from the top.
+/// A linear RGB picture, row by row from the top.
 struct HdrImage {
   int width = 0, height = 0;
   std::vector<glm::vec3> pixels;  ///< finite, none negative
 };
 
-/// Reads a picture of 32-bit RGBE, run-length encoded or not, whose rows go from left to right and
-/// from the top down (Ward, "Real pixels", 1991; the format's page at radsite.lbl.gov). Its
-/// EXPOSURE lines are taken back. Throws InputError: what cannot be read or is none, is damaged, or
-/// is larger than 2^26 pixels.
+/// Reads a Radiance picture with 32-bit RGBE pixels, run-length encoded or not, in standard
+/// orientation (Ward, "Real pixels", 1991; format description at radsite.lbl.gov). EXPOSURE lines
+/// are undone. Throws InputError if the file cannot be read, is not such a picture, is damaged, or
+/// has more than 2^26 pixels.
 [[nodiscard]] HdrImage read_hdr(const std::filesystem::path& file);
 
-/// Reads the map into scene.environment; `up` is upwards in the scene, not zero. Its middle is
-/// ahead: towards -z where +y is up, towards +y where +z is. OpenEXR (channels R, G, B) or Radiance
-/// HDR, as its first bytes say. What is negative or no number counts as 0, what is above 1e30 as
-/// that. Throws InputError as read_exr and read_hdr.
+/// Reads an environment map, OpenEXR (channels R, G, B) or Radiance HDR by its first bytes, into
+/// scene.environment. `up` is the scene's up vector, not zero. The centre of the map points ahead:
+/// towards -z if +y is up, towards +y if +z is up. Negative values and NaN become 0; values are
+/// limited to 1e30. Throws InputError as read_exr and read_hdr.
 void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, Scene& scene);
 
 }  // namespace raygate

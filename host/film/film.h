@@ -1,4 +1,4 @@
-// The film: what a render knows of each pixel, array by array.
+// The film: the arrays of a rendered picture, and the exact sums that they are made of.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +15,11 @@
 #include <utility>
 #include <vector>
 
-
 namespace raygate {
 
-/// A sum of numbers in 192 bits, two's complement, with a unit of 2^-96. What a number has below
-/// that is cut off; numbers count as at most 2^63 in size, so that 2^31 of them do not overflow. A
-/// NaN counts as 0.
+/// A 192-bit fixed-point sum in two's complement with a unit of 2^-96. Added numbers are truncated
+/// to the unit and limited to a magnitude of 2^63, so that 2^31 of them do not overflow. NaN counts
+/// as 0. The sum does not depend on the order of additions.
 class ExactAccumulator {
  public:
   static_assert(std::endian::native == std::endian::little, "files have its words");
@@ -56,7 +55,7 @@ class ExactAccumulator {
     return result;
   }
 
-  /// The double near it: off by less than 2^-51 of it.
+  /// Returns the sum as a double, with a relative error below 2^-51.
   [[nodiscard]] double value() const {
     if (words_[2] >> 63 != 0) return -(-*this).value();
     return static_cast<double>(words_[2]) * 0x1p32 +
@@ -90,10 +89,10 @@ class ExactAccumulator {
   std::uint64_t words_[3] = {};  // the lowest first
 };
 
-/// The primitive or object of a pixel whose ray hits nothing.
+/// The primitive or object of a pixel that hits nothing.
 inline constexpr std::uint32_t kNoPrimitive = std::numeric_limits<std::uint32_t>::max();
 
-/// The most pixels of one picture, read or rendered: its film and encodings stay below about 5 GB.
+/// Maximum number of pixels of a picture, read or rendered: its film and encodings take up to 5 GB.
 inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 
 /// Pixels [x0, x1) x [y0, y1) of a larger picture, row 0 at the top.
@@ -103,19 +102,18 @@ struct PixelRect {
   [[nodiscard]] int height() const { return y1 - y0; }
 };
 
-/// Arrays of a film's pixels, in its order.
+/// Sums and sample counts of a film, by pixel.
 struct FilmSums {
-  std::vector<std::uint32_t> samples;  ///< how many
+  std::vector<std::uint32_t> samples;  ///< number of samples
   std::vector<std::array<ExactAccumulator, 4>> color;
-  std::vector<std::array<ExactAccumulator, 3>> albedo;  ///< if the film has it
+  std::vector<std::array<ExactAccumulator, 3>> albedo;  ///< if the film has albedo
   // Of films whose pixels get samples by their error: as of the last look, see
   // render/adaptive_sampling.h. In steps of an 8-bit display.
-  std::vector<float> error;  ///< standard error, estimated; infinite before there is an estimate
-  std::vector<float> shown;  ///< what a display shows
+  std::vector<float> error;  ///< estimated standard error; infinite until there is an estimate
+  std::vector<float> shown;  ///< display steps at the last check
 };
 
-/// The mean of so many samples, as a film has it: not negative, whatever
-/// small number rounding has left.
+/// Returns the mean of `samples` samples, clamped to 0 where rounding leaves it negative.
 template <std::size_t N>
 [[nodiscard]] glm::vec<N, float> mean_of(const std::array<ExactAccumulator, N>& sums,
                                          double samples) {
@@ -126,18 +124,17 @@ template <std::size_t N>
   return mean;
 }
 
-/// What a film holds only if it was asked for.
+/// Optional channels of a film.
 struct ExtraChannels {
   bool position = false, albedo = false, object = false, tests = false, doubts = false;
-  bool sums = false;  ///< what a render goes on from
+  bool sums = false;  ///< exact sums, to resume and merge
 };
 
-/// Scene-linear picture of `window` (the crop) within a `width` x `height` frame.
+/// A scene-linear picture of `window` (the crop) within a `width` x `height` frame.
 ///
-/// All arrays have window.width() * window.height() elements, row-major, top row first; those of
-/// channels that nobody asked for are empty. With several samples in a pixel, `color` and `albedo`
-/// are their filtered mean, `tests` and `doubts` their sum; the others cannot be mixed and are the
-/// first sample's.
+/// Arrays have window.width() * window.height() elements, row-major from the top; optional ones may
+/// be empty. With several samples per pixel, `color` and `albedo` are the filtered mean, `tests`
+/// and `doubts` the sum, and the others those of the first sample.
 struct Film {
   int width = 0, height = 0;
   PixelRect window;
@@ -148,31 +145,31 @@ struct Film {
   std::vector<std::uint32_t> primitive;  ///< triangle index of the scene; kNoPrimitive for a miss
 
   // On demand.
-  std::vector<glm::vec3> position;    ///< what the camera's ray hits, in world axes; 0 for a miss
-  std::vector<glm::vec3> albedo;      ///< its diffuse colour, textured; 0 for a miss
+  std::vector<glm::vec3> position;    ///< of the first surface, in world axes; 0 for a miss
+  std::vector<glm::vec3> albedo;      ///< diffuse colour of the first surface; 0 for a miss
   std::vector<std::uint32_t> object;  ///< index into Scene::objects; kNoPrimitive for a miss
-  /// Ray against polygon, of the camera's ray and of all that follow from it. How many were needed
-  /// depends on the engine, the skips and the window, not on the number of threads.
+  /// Hit tests of all rays of the pixel's paths. They depend on the engine, the skips and the
+  /// window, not on the number of threads.
   std::vector<std::uint32_t> tests;
-  std::vector<std::uint32_t> doubts;  ///< those tests that float32 could not decide
-  /// Where there is more to come; files have them if they were asked for.
+  std::vector<std::uint32_t> doubts;  ///< tests that binary32 could not decide
+  /// While rendering continues; written to files if `keeps_sums`.
   FilmSums sums;
   bool keeps_sums = false;
 
-  /// Where a pixel of the window is in the arrays.
+  /// Returns the array index of a pixel of the window.
   [[nodiscard]] std::size_t index_of(int x, int y) const {
     return std::size_t(y - window.y0) * std::size_t(window.width()) + std::size_t(x - window.x0);
   }
 };
 
-/// An array of a film as its files name it: the numbers of "N" with the parts "XYZ" are the
-/// channels N.X, N.Y and N.Z.
+/// An array of a film and its name in files: "N" with the parts "XYZ" has the channels N.X, N.Y,
+/// N.Z.
 struct FilmField {
   std::string_view layer, parts = {};
-  bool is_sum = false;  ///< in files only where the film keeps its sums
+  bool is_sum = false;  ///< written to files only if the film keeps its sums
 };
 
-/// The one list of a film's arrays: calls `visit` with each field and its array in each of `films`.
+/// Calls `visit` for each field with its array in each of `films`. This is the only list of arrays.
 template <class Visit, class... Films>
 void for_each_field(const Visit& visit, Films&... films) {
   visit(FilmField{"", "RGBA"}, films.color...);
@@ -194,17 +191,15 @@ static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
                   sizeof(Film) == 14 * sizeof(std::vector<int>) + 2 * sizeof(PixelRect),
               "for_each_field() has them all");
 
-/// A film of `window` with the arrays that `extra` asks for, but for sums, in which every pixel is
-/// a miss.
+/// Returns a film of `window` in which every pixel is a miss, with the optional channels of
+/// `extra`, but without sums.
 [[nodiscard]] Film make_film(int width, int height, const PixelRect& window,
                              const ExtraChannels& extra);
 
-/// Gives it sums of no samples; `with_error`: also what films have whose pixels get samples by
-/// their error.
+/// Adds sums of no samples; with `with_error` also the arrays for adaptive sampling.
 void add_sums(Film& film, bool with_error);
 
-/// One number of each pixel of a film, under the name that picture files give it. Valid as long as
-/// the film's arrays are.
+/// A channel of a film, as picture files name it. Valid while the film's arrays are.
 struct Channel {
   enum class Type { kFloat, kUint };  ///< float or std::uint32_t
 
@@ -214,17 +209,17 @@ struct Channel {
   std::size_t stride;  ///< bytes from one pixel to the next; rows follow without a gap
 };
 
-/// The channels of all arrays that the film holds; `samples` and the sums only where it keeps its
-/// sums (`samples` also where it has an error).
+/// Returns the channels of all arrays of the film; the sums only if it keeps its sums, `samples`
+/// also if it has an error.
 [[nodiscard]] std::vector<Channel> channels_of(const Film& film);
 
-/// The channel's number at pixel `index` (row by row) as a double, exactly.
+/// Returns the channel's value at array index `index`; exact.
 [[nodiscard]] double value_at(const Channel& channel, std::size_t index);
 
-/// The numbers of `rect`, a part of the film's window, as bytes: for another process or film.
+/// Returns the data of `rect`, a part of the film's window, as bytes for another process or film.
 [[nodiscard]] std::string region_bytes(const Film& film, const PixelRect& rect);
-/// Writes bytes that region_bytes() gave for the same window and arrays into `film`. Throws
-/// InputError where they are not as many, or `rect` is not within the window.
+/// Stores bytes of region_bytes() of a film with the same window and arrays. Throws InputError if
+/// their number is wrong or `rect` is not within the window.
 void set_region(Film& film, const PixelRect& rect, std::string_view bytes);
 
 }  // namespace raygate

@@ -5,7 +5,7 @@
 
 namespace raygate {
 
-/// Weights around a pixel's centre, all non-negative and separable.
+/// Filters around a pixel's centre; all are non-negative and separable.
 enum class ReconstructionFilter {
   kBox,             ///< 1 within the pixel: radius 0.5
   kTent,            ///< falls linearly to 0 at radius 1
@@ -13,15 +13,15 @@ enum class ReconstructionFilter {
   kBlackmanHarris,  ///< four-term window of radius 1.5: sharper than Gauss, and it ends smoothly
 };
 
-/// Where a sample falls, in pixels from the pixel's centre, for a point of the unit square: the
-/// filter is sampled by its weight, so that every sample of a pixel counts the same and no other
-/// pixel has a say in it. What is rendered of a window is what the whole picture has there.
+/// Returns the position of a sample in pixels from the pixel's centre, for a point of the unit
+/// square. The filter is importance sampled: all samples of a pixel have equal weight, and pixels
+/// are independent, so that a window is a part of the whole picture.
 [[nodiscard]] glm::dvec2 filter_offset(ReconstructionFilter filter, const glm::dvec2& u);
 
-/// How likely filter_offset() is to give an offset, per square pixel, for uniform `u`.
+/// Returns the probability density of filter_offset() for uniform `u`, per square pixel.
 [[nodiscard]] double filter_density(ReconstructionFilter filter, const glm::dvec2& offset);
 
-/// No offset is larger, on either axis.
+/// Returns the largest offset on either axis.
 [[nodiscard]] double filter_radius(ReconstructionFilter filter);
 
 }  // namespace raygate
