@@ -1,4 +1,4 @@
-// Counts that stay at the largest number instead of beginning again at 0.
+// Saturating counts.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace raygate {
 
-/// Adds `more`, up to the largest number.
+/// Adds `more`; saturates at the largest number instead of wrapping around.
 inline void add_count(std::uint32_t& count, std::uint32_t more) {
   count += std::min(more, std::numeric_limits<std::uint32_t>::max() - count);
 }

@@ -14,8 +14,8 @@ struct SineCosine {
   D sine, cosine;
 };
 
-/// Of an angle in turns (1 is 360 degrees), |turns| < 1000; D is double or DoubleLanes. Off by
-/// less than 2^-52.
+/// Returns sine and cosine of an angle in turns (1 is 360 degrees), |turns| < 1000, with an error
+/// below 2^-52. D is double or DoubleLanes.
 template <class D>
 RAYGATE_INLINE SineCosine<D> sine_cosine(const D& turns) {
   constexpr double kRadians = 6.283185307179586476925286766559;
@@ -34,8 +34,8 @@ RAYGATE_INLINE SineCosine<D> sine_cosine(const D& turns) {
   return {choose(is_odd, cosine, sine) * sine_sign, choose(is_odd, sine, cosine) * cosine_sign};
 }
 
-/// The angle of the point (x, y) in turns, counter-clockwise from +x: from -1/2 to 1/2, 0 for (0,
-/// 0). T is float or FloatLanes, finite. Off by less than 2^-50.
+/// Returns the angle of the point (x, y) in turns, counter-clockwise from +x, from -1/2 to 1/2,
+/// with an error below 2^-50; 0 for (0, 0). T is float or FloatLanes, finite.
 template <class T>
 RAYGATE_INLINE WideOf<T> turns_of(const T& y, const T& x) {
   using D = WideOf<T>;
@@ -55,8 +55,8 @@ RAYGATE_INLINE WideOf<T> turns_of(const T& y, const T& x) {
   return choose(y < 0.0f, -angle, angle);
 }
 
-/// The logarithm to the base 2 of x, which is positive and in the range of normal floats. Off by
-/// less than 2^-50 of itself or 2^-52, whichever is more.
+/// Returns the base-2 logarithm of x, a positive number in the range of normal floats. The error is
+/// below 2^-52 or a relative 2^-50, whichever is larger.
 template <class D>
 RAYGATE_INLINE D binary_logarithm(const D& x) {
   constexpr double kLog2OfE = 1.4426950408889634073599246810019;
@@ -71,7 +71,7 @@ RAYGATE_INLINE D binary_logarithm(const D& x) {
   return sum * s * (2.0 * kLog2OfE) + wide(exponent);
 }
 
-/// 2^x for x < 128; 0 below -126. Off by less than 2^-50 of itself.
+/// Returns 2^x for x < 128, with a relative error below 2^-50; 0 for x below -126.
 template <class D>
 RAYGATE_INLINE D binary_power(const D& x) {
   constexpr double kLogOf2 = 0.69314718055994530941723212145818;
@@ -84,8 +84,7 @@ RAYGATE_INLINE D binary_power(const D& x) {
   return choose(is_zero, D{}, sum * wide(float_of((exponent + 127) << 23)));
 }
 
-/// base^exponent, for a base as in binary_logarithm and an exponent for which the result is below
-/// 2^128.
+/// Returns base^exponent for a base as in binary_logarithm; the result must be below 2^128.
 template <class D>
 RAYGATE_INLINE D power(const D& base, const D& exponent) {
   return binary_power<D>(binary_logarithm(base) * exponent);

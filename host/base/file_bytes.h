@@ -9,11 +9,11 @@
 
 namespace raygate {
 
-/// Throws InputError: what cannot be read, is a folder or a device, or is empty.
+/// Returns the contents of a file. Throws InputError if it cannot be read, is a folder or a device,
+/// or is empty.
 [[nodiscard]] std::string read_file(const std::filesystem::path& file);
 
-/// The number whose bytes begin at `bytes`: the lowest first, as this machine has it, or the
-/// highest.
+/// Returns the number at `bytes`, in little-endian or big-endian byte order.
 template <class Number>
 [[nodiscard]] Number number_at(const char* bytes, bool highest_first = false) {
   char ordered[sizeof(Number)];
@@ -25,7 +25,7 @@ template <class Number>
   return number;
 }
 
-/// Types that a file names at run time.
+/// Number types that are known only at run time.
 enum class NumberType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 [[nodiscard]] std::size_t bytes_of(NumberType type);
 [[nodiscard]] double number_at(const char* bytes, NumberType type, bool highest_first = false);

@@ -6,9 +6,9 @@
 
 namespace raygate {
 
-/// One clear line: what was found and what was expected, with the file and line where there is
-/// one ("scene.obj:12: vertex index 9 in a face, but the file has 8 vertices so far").
-/// Caught once, in main, which prints it and exits with status 2.
+/// An error of the user's input. The text is one line that says what was found and what was
+/// expected, with file and line if there are any ("scene.obj:12: vertex index 9 in a face, but the
+/// file has 8 vertices so far"). Caught in main, which prints it and exits with status 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -14,7 +14,7 @@
 
 #include "host/base/vectors.h"
 
-// All of these are inlined: what registers a call would take them in does not matter.
+// All functions on vectors are inlined: the calling convention does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace raygate {
@@ -29,8 +29,8 @@ inline constexpr int kQuad = 4;
 using LaneMask = std::uint32_t;
 
 /// GCC's and Clang's vector types: element-wise arithmetic, comparisons giving 0 or -1, and
-/// `mask ? a : b`. Never passed to or returned by what is not inlined, so that no calling
-/// convention depends on the machine; aligned explicitly, as the compiler's own choice does.
+/// `mask ? a : b`. Functions that are not inlined must not take or return them, because the calling
+/// convention depends on the machine. The alignment is explicit for the same reason.
 template <class Element, int kCount>
 using Vec [[gnu::vector_size(sizeof(Element) * kCount), gnu::aligned(sizeof(Element) * kCount)]] =
     Element;
@@ -67,14 +67,14 @@ struct LanesInfo<T> {
 };
 }  // namespace detail
 
-// What goes with T, which is a number (one lane) or a vector. Functions over T are written once;
-// what they do to a lane depends on nothing in another lane, so the bits are the same for any
-// count. Comparisons give masks for choose(), & and |; `!` negates them.
+// Operations on T, which is a number (one lane) or a vector. Functions over T are written once. A
+// lane never depends on another lane, so results have the same bits for any number of lanes.
+// Comparisons return masks for choose(), & and |; `!` negates them.
 
-/// How many lanes.
+/// Number of lanes.
 template <class T>
 inline constexpr int kLanesOf = detail::LanesInfo<T>::kCount;
-/// As many lanes of another element.
+/// The same number of lanes of another element type.
 template <class T, class Element>
 using Like = typename detail::VecOf<Element, detail::LanesInfo<T>::kCount>::Type;
 template <class T>
@@ -83,11 +83,11 @@ template <class T>
 using WordOf = Like<T, std::uint32_t>;
 template <class T>
 using WideOf = Like<T, double>;
-/// What comparisons of T give.
+/// Result type of comparisons of T.
 template <class T>
 using MaskOf = typename detail::LanesInfo<T>::Mask;
 
-/// The lanes of T from an array or another object, and back.
+/// Load lanes from, and store them to, an array or another object.
 template <class T, class From>
 RAYGATE_INLINE T load(const From* from) {
   T lanes;
@@ -99,13 +99,13 @@ RAYGATE_INLINE void store(To* to, const T& lanes) {
   std::memcpy(to, &lanes, sizeof lanes);
 }
 
-/// x in all lanes.
+/// Returns x in all lanes.
 template <class T, class Element>
 RAYGATE_INLINE T spread(Element x) {
   return T{} + x;
 }
 
-/// The same numbers as another kind: rounded to nearest, or cut off where they become integers.
+/// Converts lanes to another element type: rounded to nearest, or truncated to integers.
 template <class To, class T>
 RAYGATE_INLINE To convert(const T& x) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -127,7 +127,7 @@ RAYGATE_INLINE IntOf<T> whole(const T& x) {
   return convert<IntOf<T>>(x);
 }
 
-/// The same bits as another kind of number.
+/// Reinterprets the bits as another element type.
 template <class T>
 RAYGATE_INLINE IntOf<T> bits_in(const T& x) {
   return __builtin_bit_cast(IntOf<T>, x);
@@ -141,8 +141,8 @@ RAYGATE_INLINE Like<T, float> float_of(const T& bits) {
   return __builtin_bit_cast(Like<T, float>, bits);
 }
 
-/// Lanes of a where the mask is set, of b elsewhere. By bits: GCC 12 compares the mask with 0 anew
-/// for `mask ? a : b`.
+/// Returns lanes of a where the mask is set, of b elsewhere. Uses bit operations, because GCC 12
+/// compares the mask with 0 again for `mask ? a : b`.
 template <class Mask, class T>
 RAYGATE_INLINE T choose(const Mask& mask, const T& a, const T& b) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -180,7 +180,7 @@ RAYGATE_INLINE T absolute(const T& x) {
   }
 }
 
-/// Square roots, correctly rounded.
+/// Returns correctly rounded square roots.
 template <class T>
 RAYGATE_INLINE T root(const T& x) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -192,13 +192,13 @@ RAYGATE_INLINE T root(const T& x) {
   }
 }
 
-/// A random word as a number in [0, 1): its upper 24 bits, each as they are.
+/// Converts a random word to a number in [0, 1): its upper 24 bits.
 template <class W>
 RAYGATE_INLINE Like<W, float> unit_interval(const W& word) {
   return narrow(__builtin_bit_cast(IntOf<W>, word >> 8)) * 0x1p-24f;
 }
 
-/// The largest lane; no NaN.
+/// Returns the largest lane; no lane may be NaN.
 RAYGATE_INLINE float largest_of(const FloatLanes& lanes) {
   FloatLanes x = maximum(lanes, __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7, 0, 1, 2, 3));
   x = maximum(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
@@ -206,7 +206,7 @@ RAYGATE_INLINE float largest_of(const FloatLanes& lanes) {
   return x[0];
 }
 
-/// Lanes 0 to 3, lanes 4 to 7, and both again.
+/// Split lanes into 0 to 3 and 4 to 7, and join them.
 template <class Lanes>
 RAYGATE_INLINE auto low_half(const Lanes& x) {
   return __builtin_shufflevector(x, x, 0, 1, 2, 3);
@@ -234,7 +234,7 @@ RAYGATE_INLINE auto join(const Quad& low, const Quad& high) {
 }
 #endif
 
-/// The lanes whose sign bit is set; the fitting code is the one it is inlined into.
+/// Returns the lanes whose sign bit is set. kCode is that of the function it is inlined into.
 template <Vectors kCode = Vectors::kBaseline>
 RAYGATE_INLINE LaneMask sign_mask(const IntQuad& quad) {
 #if defined(__SSE__)
@@ -259,13 +259,13 @@ RAYGATE_INLINE LaneMask sign_mask(const IntLanes& lanes) {
 RAYGATE_INLINE bool any(bool mask) { return mask; }
 RAYGATE_INLINE bool any(const IntLanes& mask) { return sign_mask(mask) != 0; }
 
-/// -1 in the lanes of the mask, 0 in the others.
+/// Returns -1 in the lanes of the mask, 0 in the others.
 RAYGATE_INLINE IntLanes lanes_of(LaneMask mask) {
   constexpr IntLanes kBit = {1, 2, 4, 8, 16, 32, 64, 128};
   return ((IntLanes{} + static_cast<std::int32_t>(mask)) & kBit) != 0;
 }
 
-/// Four floats as doubles: GCC 12 makes four instructions of what is one.
+/// Converts four floats to doubles in one instruction, where GCC 12 would use four.
 template <Vectors kCode>
 RAYGATE_INLINE DoubleQuad widen(const FloatQuad& from) {
 #if defined(RAYGATE_AVX2) && !defined(__clang__)
@@ -274,7 +274,7 @@ RAYGATE_INLINE DoubleQuad widen(const FloatQuad& from) {
   return wide(from);
 }
 
-/// As many floats as fit a register: what is wider, GCC takes apart word by word to compare it.
+/// Vector of floats that fills a register; GCC compares wider vectors word by word.
 template <Vectors kCode>
 using NativeFloats = Vec<float, kCode == Vectors::kBaseline ? kQuad : kLanes>;
 
@@ -317,8 +317,8 @@ RAYGATE_INLINE void transpose(FloatLanes (&rows)[kLanes]) {
   }
 }
 
-/// Word i of the record of each lane becomes words[i], and back for the first `count` of them.
-/// Records are kWords floats or 32-bit words in a row.
+/// Load records, one per lane, so that words[i] has word i of each, and store the first `count`
+/// records. A record is kWords consecutive floats or 32-bit words.
 template <class T, std::size_t kWords, class Record>
 RAYGATE_INLINE void load_records(const Record* const (&records)[kLanesOf<T>], T (&words)[kWords]) {
   static_assert(sizeof(Record) == 4 * kWords && kWords % kLanes == 0);
@@ -353,7 +353,7 @@ RAYGATE_INLINE void store_records(const T (&words)[kWords], Record* const (&reco
   }
 }
 
-/// u x v, and for each component the sum of the magnitudes of its two products.
+/// Computes u x v, and for each component the sum of the magnitudes of its two products.
 template <class T>
 RAYGATE_INLINE void cross(const T (&u)[3], const T (&v)[3], T (&value)[3], T (&size)[3]) {
   for (int k = 0; k < 3; ++k) {
@@ -364,7 +364,7 @@ RAYGATE_INLINE void cross(const T (&u)[3], const T (&v)[3], T (&value)[3], T (&s
   }
 }
 
-/// Lanes to be read one by one.
+/// Lanes as an array, for access one by one.
 template <class Element, int kCount>
 struct LaneArray {
   alignas(sizeof(Element) * kCount) Element values[kCount];

@@ -5,16 +5,16 @@
 
 namespace raygate {
 
-/// The sRGB code 0..255 nearest to scene-linear `linear`; below 0 and NaN give 0, above 1 gives
-/// 255. Monotone, and the inverse of `srgb_to_linear` on all 256 codes.
+/// Returns the sRGB code 0..255 nearest to scene-linear `linear`: 0 below 0 and for NaN, 255
+/// above 1. Monotone, and the inverse of `srgb_to_linear` for all 256 codes.
 [[nodiscard]] std::uint8_t linear_to_srgb(float linear);
 
-/// The continuous curve that those codes are steps of: from light clamped to [0, 1] to [0, 1].
+/// Returns the continuous sRGB curve of light clamped to [0, 1], in [0, 1].
 [[nodiscard]] double srgb_curve(double linear);
-/// The same curve for any light from 0 on, more than 1 for more than white.
+/// Returns the sRGB curve of light from 0 on; above 1 for light above white.
 [[nodiscard]] double srgb_curve_above(double linear);
 
-/// The scene-linear value of sRGB code `code` (a whole number 0..255, or between two of them).
+/// Returns the scene-linear value of an sRGB code from 0 to 255, which may be fractional.
 [[nodiscard]] double srgb_to_linear(double code);
 
 }  // namespace raygate

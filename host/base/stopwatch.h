@@ -1,4 +1,4 @@
-// Stopwatch: wall-clock seconds lap by lap; and the processor time of the program.
+// Stopwatch: elapsed seconds per lap; and the processor time of the program.
 #pragma once
 
 #include <chrono>
@@ -6,13 +6,13 @@
 
 namespace raygate {
 
-/// Processor time of all threads so far: what other programs take does not count.
+/// Returns the processor time of all threads of this process so far.
 inline double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Each lap ends one part and begins the next.
+/// Measures consecutive laps.
 class Stopwatch {
  public:
-  /// Seconds since construction or the last lap.
+  /// Returns the seconds since construction or the last lap.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const std::chrono::duration<double> elapsed = now - start_;

@@ -1,4 +1,4 @@
-// Runs work on several threads, the caller's among them.
+// Runs work on several threads, including the caller's.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace raygate {
 
-/// Calls `work` on up to `threads` threads at once, the caller's among them, and waits for all:
-/// on fewer where the system cannot start as many. Rethrows the first exception of any.
+/// Calls `work` on up to `threads` threads at once, including the caller's, and waits for all. Uses
+/// fewer if the system cannot start as many. Rethrows the first exception of any thread.
 template <class Work>
 void on_threads(int threads, const Work& work) {
   std::mutex mutex;

@@ -1,4 +1,4 @@
-// Triples: places, directions and colours, of one lane or many, and the gathering of their lanes.
+// Triples: points, directions and colours of one or many lanes, and gathering of lanes.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace raygate {
 
-/// Three numbers: a place, a direction or a colour.
+/// Three numbers: a point, a direction or a colour.
 template <class T>
 struct Triple {
   T x, y, z;
@@ -39,7 +39,7 @@ template <class T>
 RAYGATE_INLINE T dot(const Triple<T>& a, const Triple<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-/// The largest of three numbers that are not negative.
+/// Returns the largest of three numbers that are not negative.
 template <class T>
 RAYGATE_INLINE T largest(const Triple<T>& a) {
   return maximum(maximum(a.x, a.y), a.z);
@@ -60,8 +60,8 @@ template <class T>
 RAYGATE_INLINE Triple<T> normalized(const Triple<T>& a) {
   return a * (1.0f / root(dot(a, a)));
 }
-/// A direction scaled as is_scaled wants it: by a power of two, which rounds nothing. Its largest
-/// component is to be a normal number below 2^126.
+/// Returns a direction scaled by a power of two (see is_scaled), which is exact. Its largest
+/// component must be a normal number below 2^126.
 template <class T>
 RAYGATE_INLINE Triple<T> scaled(const Triple<T>& a) {
   constexpr std::int32_t kExponent = 0x7F800000, kOne = 0x3F800000;
@@ -78,7 +78,7 @@ RAYGATE_INLINE Triple<WideOf<T>> wide(const Triple<T>& a) {
   return {wide(a.x), wide(a.y), wide(a.z)};
 }
 
-/// What of(k) gives for each lane k: a number, a word, a mask or a triple, as it gives a float, a
+/// Gathers of(k) for each lane k into numbers, words, masks or triples, if it returns a float, a
 /// std::uint32_t, a bool or a glm::vec3.
 template <class T, class Of>
 RAYGATE_INLINE auto gather(const Of& of) {
@@ -101,13 +101,13 @@ RAYGATE_INLINE auto gather(const Of& of) {
     return load<std::conditional_t<std::is_same_v<Element, float>, T, WordOf<T>>>(values);
   }
 }
-/// The same member of each lane's object.
+/// Gathers a member of each lane's object.
 template <class T, class Object, class Member>
 RAYGATE_INLINE auto gather(const Object* const (&objects)[kLanesOf<T>], Member Object::*member) {
   return gather<T>([&](int k) RAYGATE_BODY -> const Member& { return objects[k]->*member; });
 }
 
-/// Triples to be read one by one.
+/// Triples as an array, for access one by one.
 template <int kCount>
 struct TripleArray {
   LaneArray<float, kCount> x, y, z;

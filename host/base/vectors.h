@@ -13,7 +13,7 @@
 
 namespace raygate {
 
-/// Kinds of vector code, narrowest first. Each gives the same bits: no kind fuses multiply and add.
+/// Instruction sets, narrowest first. All give the same bits: none fuses multiply and add.
 enum class Vectors { kBaseline, kAvx2, kAvx512 };
 
 inline constexpr std::array<std::string_view, 3> kVectorNames = {"baseline", "avx2", "avx512"};
@@ -22,17 +22,17 @@ inline constexpr std::array<std::string_view, 3> kVectorNames = {"baseline", "av
   return kVectorNames[static_cast<std::size_t>(vectors)];
 }
 
-/// What the body of in_vectors is given: which code it is, as a constant.
+/// The argument of the body of in_vectors: its instruction set as a constant.
 template <Vectors kVectors>
 using VectorCode = std::integral_constant<Vectors, kVectors>;
 
-// The widest kind that is compiled, as a number of Vectors. Builds with sanitizers, whose time each
-// kind adds to, have fewer.
+// The widest instruction set that is compiled, as a number of Vectors. Builds with sanitizers use
+// fewer, to compile in less time.
 #ifndef RAYGATE_WIDEST_VECTORS
 #define RAYGATE_WIDEST_VECTORS 2
 #endif
 
-// Baseline code alone can be called as it is, which compiles in less time.
+// With baseline code only, the body is called directly, which compiles in less time.
 #if RAYGATE_WIDEST_VECTORS > 0
 #define RAYGATE_INLINE inline __attribute__((always_inline))
 #define RAYGATE_BODY __attribute__((always_inline))
@@ -41,7 +41,7 @@ using VectorCode = std::integral_constant<Vectors, kVectors>;
 #define RAYGATE_BODY
 #endif
 
-// The instructions of each kind, as GCC and Clang name them.
+// The names of the instruction sets in GCC and Clang.
 #if defined(__x86_64__) && defined(__GNUC__) && RAYGATE_WIDEST_VECTORS > 0
 #define RAYGATE_AVX2 "avx2,bmi,bmi2,lzcnt,popcnt"
 #if RAYGATE_WIDEST_VECTORS > 1
@@ -49,7 +49,7 @@ using VectorCode = std::integral_constant<Vectors, kVectors>;
 #endif
 #endif
 
-/// The widest kind that is compiled and that this machine has.
+/// Returns the widest instruction set that is compiled and that this machine has.
 [[nodiscard]] inline Vectors widest_vectors() {
 #ifdef RAYGATE_AVX2
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) return Vectors::kBaseline;
@@ -66,14 +66,15 @@ using VectorCode = std::integral_constant<Vectors, kVectors>;
 #endif
 }
 
-/// All that this machine has, narrowest first: what tests go through.
+/// Returns the instruction sets of this machine, narrowest first, for tests.
 [[nodiscard]] inline std::span<const Vectors> machine_vectors() {
   static constexpr Vectors kAll[] = {Vectors::kBaseline, Vectors::kAvx2, Vectors::kAvx512};
   return std::span(kAll).first(static_cast<std::size_t>(widest_vectors()) + 1);
 }
 
-/// What the environment variable RAYGATE_VECTORS asks for, or else the widest. Throws
-/// std::runtime_error, one line, for a name that is none, and for what this machine does not have.
+/// Returns the instruction set that the environment variable RAYGATE_VECTORS names, or else the
+/// widest. Throws std::runtime_error, one line, for an unknown name or one that this machine does
+/// not have.
 [[nodiscard]] inline Vectors wanted_vectors() {
   const char* const text = std::getenv("RAYGATE_VECTORS");
   if (text == nullptr || *text == '\0') return widest_vectors();
@@ -90,10 +91,10 @@ namespace detail {
 inline std::atomic<int> vectors_in_use{-1};
 }  // namespace detail
 
-/// From now on all threads run this code. For tests; the machine must have it.
+/// Selects the instruction set of all threads. For tests; the machine must have it.
 inline void use_vectors(Vectors vectors) { detail::vectors_in_use = static_cast<int>(vectors); }
 
-/// What runs. First asked, it asks wanted_vectors.
+/// Returns the selected instruction set; by default wanted_vectors().
 [[nodiscard]] inline Vectors vectors_in_use() {
   const int vectors = detail::vectors_in_use.load(std::memory_order_relaxed);
   if (vectors >= 0) [[likely]]
@@ -102,7 +103,7 @@ inline void use_vectors(Vectors vectors) { detail::vectors_in_use = static_cast<
   return vectors_in_use();
 }
 
-/// This code, as long as this object lives.
+/// Selects an instruction set for the lifetime of the object.
 class UsingVectors {
  public:
   explicit UsingVectors(Vectors vectors) : before_(vectors_in_use()) { use_vectors(vectors); }
@@ -135,11 +136,11 @@ template <class Body>
 
 }  // namespace detail
 
-/// Calls body(code), compiled for what runs, and gives what it returns. The body is
+/// Calls body(code), compiled for the selected instruction set, and returns its result. The body is
 ///   [&](auto code) RAYGATE_BODY { ... }
-/// where code() is a constant of type Vectors. Only what is inlined into the body is compiled for
-/// the vectors: what it calls should be RAYGATE_INLINE. No vector may be returned or
-/// passed by value to anything that is not inlined.
+/// where code() is a constant of type Vectors. Only functions that are inlined into the body are
+/// compiled for the instruction set; mark them RAYGATE_INLINE. Functions that are not inlined must
+/// not take or return vectors by value.
 template <class Body>
 auto in_vectors(const Body& body) {
   [[maybe_unused]] const Vectors vectors = vectors_in_use();

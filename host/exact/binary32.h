@@ -14,7 +14,7 @@ struct Binary32 {
   static float add(float a, float b) { return canonical(a + b); }
   static float multiply(float a, float b) { return canonical(a * b); }
   static float divide(float a, float b) { return canonical(a / b); }
-  /// (ax bx + ay by) + az bz. Its NaNs may differ from the hardware's; nothing is made of them.
+  /// Returns (ax bx + ay by) + az bz. Its NaNs may differ from the hardware's; they are not used.
   static float dot(const glm::vec3& a, const glm::vec3& b) {
     return (a.x * b.x + a.y * b.y) + a.z * b.z;
   }
@@ -25,7 +25,7 @@ struct Binary32 {
   static constexpr int fraction_bits() { return 23; }
 
  private:
-  /// The hardware has one NaN; this machine's carries the sign and payload of an operand.
+  /// Returns x with the hardware's only NaN in place of any NaN.
   static float canonical(float x) { return std::isnan(x) ? std::bit_cast<float>(0x7FC00000u) : x; }
 };
 

@@ -1,5 +1,4 @@
-// Ranks: the processes that share a run, as MPI calls them, what they tell each other, and the jobs
-// that they take one after the other.
+// Ranks: the processes of a run (in MPI's terms), their messages, and a queue of jobs.
 #pragma once
 
 #include <algorithm>
@@ -18,17 +17,17 @@
 
 namespace raygate {
 
-/// What a message is about.
+/// The kinds of messages.
 enum class About : int {
-  kRoom,     ///< to rank 0: how many more tiles the sender has room for
-  kTile,     ///< from rank 0: samples of a tile to trace
-  kTraced,   ///< to rank 0: what came of them
-  kFinish,   ///< from rank 0: all is traced
+  kRoom,     ///< to rank 0: number of further tiles that the sender can take
+  kTile,     ///< from rank 0: samples of a tile to render
+  kTraced,   ///< to rank 0: the rendered tile
+  kFinish,   ///< from rank 0: all tiles are complete
   kCounts,   ///< to rank 0: the sender's statistics
-  kNext,     ///< to rank 0: asks for the number of the next job
-  kJob,      ///< from rank 0: that number
-  kFailure,  ///< to rank 0: the Ending of a sender that cannot go on
-  kEnd,      ///< from rank 0: the run is over, whatever the others are doing
+  kNext,     ///< to rank 0: requests the next job
+  kJob,      ///< from rank 0: the number of the job
+  kFailure,  ///< to rank 0: the Ending of a rank that failed
+  kEnd,      ///< from rank 0: the run ends at once
 };
 
 struct Message {
@@ -37,8 +36,8 @@ struct Message {
   std::string bytes;
 };
 
-/// The bytes of a value, and back from those that a message begins with. Ranks are the same program
-/// on like machines: throws InputError where there are fewer bytes than that.
+/// Convert a value to bytes, and back from the start of a message. Ranks run the same program on
+/// machines of the same kind. Throws InputError if the message is too short.
 [[noreturn]] void throw_short_message(std::size_t found, std::size_t expected);
 template <class T>
 [[nodiscard]] std::string bytes_of(const T& value) {
@@ -54,18 +53,18 @@ template <class T>
   return value;
 }
 
-/// What a process says last that cannot go on: its exit status, and a line that says why.
+/// The exit status and message of a process that failed.
 struct Ending {
   int status;
   std::string line;
 };
 
-/// What rank 0 throws when another one has ended so.
+/// Thrown on rank 0 when another rank has failed.
 class RankFailure : public std::runtime_error {
  public:
   explicit RankFailure(const Message& message)
       : RankFailure(message, value_of<int>(message.bytes)) {}
-  /// The bytes of a message about it.
+  /// Returns the bytes of the kFailure message.
   [[nodiscard]] static std::string message_of(const Ending& ending) {
     return bytes_of(ending.status) + ending.line;
   }
@@ -80,58 +79,58 @@ class RankFailure : public std::runtime_error {
   int status_;
 };
 
-/// All ranks of a run, as one of them sees them. Rank 0 hands out work, gathers and writes. From
-/// one thread at a time.
+/// The ranks of a run, as seen by one of them. Rank 0 distributes work, gathers results and writes
+/// output. Not thread-safe. The base class is a run of one process.
 class Ranks {
  public:
   Ranks() = default;
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
-  virtual ~Ranks() = default;  ///< leaves, if that has not been done
+  virtual ~Ranks() = default;  ///< leaves, unless leave() was called
 
-  [[nodiscard]] virtual int index() const { return 0; }  ///< of this one
+  [[nodiscard]] virtual int index() const { return 0; }  ///< of this process
   [[nodiscard]] virtual int count() const { return 1; }
-  /// This one's share of the machine's processors.
+  /// Number of processors for this rank.
   [[nodiscard]] virtual unsigned processors() const {
     return std::max(1u, std::thread::hardware_concurrency());
   }
 
-  /// Returns at once; messages from one rank to another arrive in their order.
+  /// Sends a message without blocking. Messages between two ranks arrive in order.
   // NOLINTNEXTLINE(performance-unnecessary-value-param): those that have others keep the bytes
   virtual void send(int /*to*/, About /*about*/, std::string /*bytes*/) {}
-  /// The next message, if one is there. Of those that are never handed on, throws: on rank 0
-  /// RankFailure for kFailure; on others RunIsOver for kEnd.
+  /// Returns the next message, or none. Throws RankFailure for kFailure on rank 0, and RunIsOver
+  /// for kEnd on others.
   [[nodiscard]] virtual std::optional<Message> receive() { return std::nullopt; }
 
-  /// Nothing is shared from now on. Rank 0 says so to the others, which wait for that; all wait for
-  /// all. A rank that dies later harms nobody.
+  /// Ends communication, collectively: all ranks wait for each other. A rank that dies later does
+  /// not affect the others.
   virtual void leave() {}
 };
 
-/// What ends a rank's work when rank 0 has ended.
+/// Thrown on a rank other than 0 when the run has ended.
 struct RunIsOver : std::exception {};
 
-/// The ranks of this run: those that mpirun or Slurm started, or this process alone. Throws
-/// InputError where a launcher has started several, and this program was built without MPI or with
-/// another one than the launcher's.
+/// Returns the ranks of this run: those started by mpirun or Slurm, or this process alone. Throws
+/// InputError if a launcher started several processes but the program was built without MPI or with
+/// another implementation than the launcher's.
 [[nodiscard]] std::unique_ptr<Ranks> join_ranks();
 
-/// Runs `work` of a rank other than 0. Of what it throws, as `ending` puts it, rank 0 hears, and
-/// has the last word: to the user, and about the exit status.
+/// Runs `work` on a rank other than 0. If it throws, the Ending that `ending` returns is sent to
+/// rank 0, which reports it and determines the exit status.
 void run_rank(Ranks& ranks, const std::function<void()>& work,
               const std::function<Ending(std::exception_ptr)>& ending);
 
-/// Jobs 0 to count - 1: each goes to the rank that asks first. Rank 0 hands the numbers out on a
-/// thread of its own while it works on jobs itself. All ranks make one of the same count; nobody
-/// else may use `ranks` meanwhile.
+/// A queue of jobs 0 to count - 1; each goes to the next rank that requests one. Rank 0 serves the
+/// queue on a separate thread while it works on jobs itself. All ranks construct a queue of the
+/// same count; `ranks` must not be used otherwise during its lifetime.
 class JobQueue {
  public:
   JobQueue(Ranks& ranks, int count) : ranks_(ranks), count_(count) {}
   JobQueue(const JobQueue&) = delete;
   JobQueue& operator=(const JobQueue&) = delete;
 
-  /// A job for this rank; none when all have been begun. On rank 0 not before those of the other
-  /// ranks have ended, or one of them could not go on; then throws what receive() does.
+  /// Returns a job for this rank, or none when all have begun. On rank 0 it returns none only after
+  /// the jobs of the other ranks have ended; throws like receive().
   [[nodiscard]] std::optional<int> next();
 
  private:
@@ -145,16 +144,16 @@ class JobQueue {
   std::jthread server_;  // last: it uses the others
 };
 
-/// Whether a launcher of MPI programs did: mpirun, or Slurm's srun by PMI or PMIx.
+/// Whether a launcher of MPI programs started this process: mpirun, or Slurm's srun by PMI or PMIx.
 [[nodiscard]] bool is_launched();
 
-/// How many processes the launcher says that it started; 0 where it says nothing.
+/// Number of processes as reported by the launcher, or 0.
 [[nodiscard]] int launched_count();
 
-/// Which of them this is, from 0; 0 where it says nothing.
+/// This process's rank as reported by the launcher, or 0.
 [[nodiscard]] int launched_index();
 
-/// Takes out of the environment what the launcher has put there, for programs that this one starts.
+/// Removes the launcher's variables from the environment, for programs that this one starts.
 void forget_launcher();
 
 }  // namespace raygate

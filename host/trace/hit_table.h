@@ -1,4 +1,4 @@
-// Hit table: the rows that say which triangle each ray hits, where, and all that follows.
+// Hit table: rows with the triangle and position that each ray hits, as CSV or NPY.
 #pragma once
 
 #include <cstddef>
@@ -15,68 +15,66 @@
 
 namespace raygate {
 
-/// A column of the table, or the columns of one vector.
+/// A column of the table, or the columns of a vector.
 enum class HitColumn {
   kRay,        ///< the ray's number, from 0
-  kHit,        ///< 1: it hits something; 0: nothing, and what follows is -1, inf or nan
+  kHit,        ///< 1: a hit; 0: a miss, and the other columns are -1, inf or nan
   kTriangle,   ///< number of the triangle, from 0: the file's faces in order, cut into triangles
   kObject,     ///< number of its `o` or `g`, from 0, in the order of the file
   kMaterial,   ///< number of its material, from 0
   kT,          ///< P = O + t D
   kPoint,      ///< x, y, z: P in the file's coordinates
   kUv,         ///< u, v: P = (1 - u - v) A + u B + v C; 0 <= u, 0 <= v, u + v <= 1
-  kNormal,     ///< nx, ny, nz: (B - A) x (C - A) by its length; not turned towards the ray
-  kSide,       ///< the exact sign of D . N: -1 where the ray meets the front, 1 the back
-  kDoubts,     ///< tests of this ray that binary32 left open: the engine's, resolved exactly
+  kNormal,     ///< nx, ny, nz: (B - A) x (C - A) normalised; not turned towards the ray
+  kSide,       ///< exact sign of D . N: -1 for the front, 1 for the back
+  kDoubts,     ///< tests of this ray that binary32 left open, resolved exactly
   kUnitPoint,  ///< unit_x, unit_y, unit_z: P with the bits of the hit-test unit
   kUnitError,  ///< unit_error: its error bound, as NearestHit::point_error
 };
 
-/// Which hits of a ray are asked for.
+/// Which hits of a ray are wanted.
 enum class Hits {
-  kNearest,  ///< one row a ray
-  kAny,      ///< one row a ray: whether there is a hit; the query ends at the first one found
-  kAll,  ///< a row for each hit, near before far, in exact order; none for a ray that hits nothing
+  kNearest,  ///< one row per ray
+  kAny,      ///< one row per ray: whether there is a hit; the search ends at the first one
+  kAll,      ///< one row per hit, near before far, in exact order; none for a miss
 };
 
-/// The columns of these names ("ray", "unit-point" ...) or, without names, the usual ones. Throws
-/// InputError, "--columns: found ..., expected ...", with `dashes` in the place of "--": for a name
-/// that is unknown, repeated or not available with `hits`, and for all hits of another engine than
-/// `cpu`.
+/// Returns the columns of these names ("ray", "unit-point" ...), or the default ones without names.
+/// Throws InputError "--columns: found ..., expected ..." (`dashes` replaces "--") for a name that
+/// is unknown, repeated or not available with `hits`, and for Hits::kAll unless `cpu`.
 [[nodiscard]] std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
                                                 bool is_cpu, const std::string& dashes);
 
-/// Where on its triangle a ray hits.
+/// The position of a hit on its triangle.
 struct HitPoint {
-  double t;     ///< the middle of its interval: off by at most 2^-33 of itself
+  double t;     ///< relative error at most 2^-33
   double u, v;  ///< as Barycentric
 };
 
-/// The triangle must be hit.
+/// Returns the position of the hit; the ray must hit the triangle.
 [[nodiscard]] HitPoint hit_point_of(const Ray& ray, const Corners& corners);
 
 /// One hit of a ray of a table.
 struct RayHit {
   std::uint32_t ray = 0;  ///< index into the table of rays
-  NearestHit hit;         ///< primitive kNone: the ray hits nothing
+  NearestHit hit;         ///< primitive kNone: a miss
   std::uint32_t doubts = 0;
 };
 
 enum class TableFormat { kCsv, kNpy };
 
-/// Turns hits into rows of a table. Numbers of CSV are the shortest decimals that are read back as
-/// the same; a NumPy array is structured, a field a column.
+/// Formats hits as rows of a table. CSV numbers are the shortest decimals that round-trip; a NumPy
+/// array is structured with one field per column.
 class HitTable {
  public:
   /// The references must outlive this.
   HitTable(const Scene& scene, const Bvh& bvh, std::vector<HitColumn> columns, TableFormat format)
       : scene_(scene), bvh_(bvh), columns_(std::move(columns)), format_(format) {}
 
-  /// What comes before the rows; of an NPY file, where `rows` are to come. Its length does not
-  /// depend on `rows`.
+  /// Returns the header of the file, for `rows` rows (NPY). Its length does not depend on `rows`.
   [[nodiscard]] std::string header(std::uint64_t rows) const;
 
-  /// The fields of a row, their names and NumPy's types: {"t", "<f8"}.
+  /// Returns the names and NumPy types of the fields of a row: {"t", "<f8"}.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> fields() const;
 
   /// Appends the rows of `hits` of `rays` to `bytes`.

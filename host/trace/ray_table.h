@@ -1,4 +1,4 @@
-// Ray table: a block of rays in the scene file's coordinates, converted for an intersector.
+// Ray table: blocks of rays, converted from the scene file's coordinates for an intersector.
 #pragma once
 
 #include <cstddef>
@@ -15,33 +15,31 @@
 
 namespace raygate {
 
-/// Some rays in a row.
+/// A block of consecutive rays.
 struct RayTable {
   std::uint64_t first = 0;     ///< number of the first ray, from 0
   std::vector<Ray> rays;       ///< relative to the scene's origin, scaled
   std::vector<float> limits;   ///< of the scaled rays; +infinity: none
-  std::vector<int> exponents;  ///< t of the file's ray is 2^exponent times t of the scaled one
-  std::uint64_t rounded = 0;   ///< rays that binary32 does not hold as they were given
+  std::vector<int> exponents;  ///< t of the given ray is 2^exponent times t of the scaled ray
+  std::uint64_t rounded = 0;   ///< number of rays that were rounded to binary32
 
   void clear(std::uint64_t its_first);
 
-  /// Adds the ray P = origin + t direction, in the file's coordinates, whose hits have 0 < t <
-  /// limit. The direction need not have length 1; one that is 0 hits nothing. Origins become
-  /// binary32 after the scene's origin has been subtracted; directions and limits, too. Gives what
-  /// is wrong with the ray, "found ..., expected ...", and then adds nothing; or nullptr.
+  /// Adds the ray P = origin + t direction with hits 0 < t < limit, in the file's coordinates. The
+  /// direction can have any length; a zero direction hits nothing. Origins are rounded to binary32
+  /// after subtracting the scene's origin, directions and limits directly. Returns null, or, for an
+  /// invalid ray, which is not added, the message "found ..., expected ...".
   const char* add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
                   const glm::dvec3& scene_origin);
 };
 
-/// Reads rays block by block, so that a file may be longer than the memory is.
+/// Reads rays block by block; a file can be larger than memory.
 ///
 /// CSV: OX,OY,OZ,DX,DY,DZ or, with the limit, OX,OY,OZ,DX,DY,DZ,LIMIT on each line, between commas,
 /// or else semicolons, or else spaces and tabs; spaces and quotes around numbers, a byte order
 /// mark, empty lines, lines that begin with # and one header line, without a number, are allowed.
 /// NPY: an array of shape (N, 6) or (N, 7), float32 or float64, little-endian, C order (NumPy's NEP
-/// 1). Which of the two it is, the first bytes say.
-///
-/// What the numbers mean, RayTable::add says.
+/// 1). The first bytes decide between the two. See RayTable::add for the meaning of the columns.
 class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".
@@ -50,7 +48,7 @@ class RayTableReader {
   RayTableReader(const RayTableReader&) = delete;
   RayTableReader& operator=(const RayTableReader&) = delete;
 
-  /// Replaces `block` by the next rays, at most `most`; false at the end. Throws InputError with
+  /// Replaces `block` by at most `most` next rays; returns false at the end. Throws InputError with
   /// the line (CSV) or row (NPY): what was found and what was expected.
   bool read(std::size_t most, RayTable& block);
 

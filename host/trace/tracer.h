@@ -12,13 +12,13 @@
 
 namespace raygate {
 
-/// What was done.
+/// Counts of a run.
 struct TraceCounts {
   std::uint64_t rays = 0, rows = 0, hits = 0;
-  std::uint64_t rounded = 0;  ///< rays that binary32 does not hold as they were given
+  std::uint64_t rounded = 0;  ///< number of rays that were rounded to binary32
 };
 
-/// Replaces a block by the next rays, at most so many; false where there are none.
+/// Replaces a block by at most that many next rays; returns false at the end.
 using ReadRays = std::function<bool(std::size_t, RayTable&)>;
 
 /// Reads all rays and gives the rows to `write`, block by block in the order of the rays. At most
