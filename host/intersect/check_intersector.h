@@ -14,17 +14,17 @@
 
 namespace raygate {
 
-/// What CheckIntersector throws. Its text is one line with the ray, ready to replay (origin,
-/// direction and limit in hex), and what each intersector made of it.
+/// Thrown by CheckIntersector. The text is one line with the ray, ready to replay (origin,
+/// direction and limit in hexadecimal), and the results of both intersectors.
 class IntersectorMismatch : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Asks both intersectors everything, gives the first one's answers and counts, and throws
-/// IntersectorMismatch at the first ray of which they say different things: another triangle,
-/// another bit of P or of its error, or intervals of t that cannot both hold the truth. Of a ray
-/// that may end at any hit before some t, both must say that there is one.
+/// Passes all queries to both intersectors, returns the results and counters of the first, and
+/// throws IntersectorMismatch at the first ray for which they differ: in the triangle, in any bit
+/// of P or its error, or by disjoint intervals of t. For a ray that may end at any hit, both must
+/// find one.
 class CheckIntersector : public Intersector {
  public:
   CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> intersector,
@@ -47,7 +47,7 @@ class CheckIntersector : public Intersector {
   std::vector<NearestHit> expected_;
 };
 
-/// " 3F800000 BF000000".
+/// Returns floats as hexadecimal words, " 3F800000 BF000000", from which a case can be replayed.
 [[nodiscard]] inline std::string hex_words(std::span<const float> words) {
   std::string text;
   for (const float word : words) {

@@ -1,4 +1,4 @@
-// Counters of what intersectors have done.
+// Counters of intersectors.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace raygate {
 
-/// Adds counters to counters of their kind, a struct of nothing but std::uint64_t: its declaration
-/// is the list of the fields.
+/// Adds the fields of a struct that consists of std::uint64_t only; its declaration is the only
+/// list of the fields.
 template <class Counters>
 void add_counters(Counters& sum, const Counters& other) {
   using Words = std::array<std::uint64_t, sizeof(Counters) / sizeof(std::uint64_t)>;
@@ -19,22 +19,22 @@ void add_counters(Counters& sum, const Counters& other) {
   sum = std::bit_cast<Counters>(words);
 }
 
-/// Tests of rays against polygons, and what a hit-test unit did for them.
+/// Tests of rays against polygons, and the work of a hit-test unit.
 struct HitCounters {
   std::uint64_t tests = 0;         ///< (ray, polygon) pairs; misses + hits + edge_doubts
   std::uint64_t misses = 0;        ///< certain misses
   std::uint64_t hits = 0;          ///< certain hits
-  std::uint64_t edge_doubts = 0;   ///< neither
-  std::uint64_t depth_doubts = 0;  ///< certain hits that float32 cannot put in order
+  std::uint64_t edge_doubts = 0;   ///< neither certain misses nor certain hits
+  std::uint64_t depth_doubts = 0;  ///< certain hits that binary32 cannot order
   std::uint64_t plane_tests = 0;   ///< points P = d I / (I . N) computed
-  // The rest is 0 without a unit.
+  // The fields below are 0 without a unit.
   std::uint64_t unit_tests = 0;     ///< tests done by the unit
   std::uint64_t quotients = 0;      ///< divisions done by the unit
   std::uint64_t input_bytes = 0;    ///< bytes sent to the unit: records, or rays and planes
   std::uint64_t clocks = 0;         ///< simulated clock cycles
   std::uint64_t idle_clocks = 0;    ///< clocks of the pipelined unit's lanes without a test
-  std::uint64_t output_stalls = 0;  ///< clocks of the lanes in which a result was not taken
-  std::uint64_t exact_clocks = 0;   ///< clocks in which the exact units of ray cores had a doubt
+  std::uint64_t output_stalls = 0;  ///< clocks of the lanes stalled by the consumer
+  std::uint64_t exact_clocks = 0;   ///< busy clocks of the exact units of ray cores
 
   HitCounters& operator+=(const HitCounters& other) {
     add_counters(*this, other);
@@ -42,19 +42,19 @@ struct HitCounters {
   }
 };
 
-/// What an intersector has done since it was made.
+/// The counts of an intersector since its construction.
 struct IntersectCounters {
   HitCounters hit;
-  std::uint64_t exact_inside = 0;    ///< edge doubts that exact arithmetic resolved; those surely
-                                     ///< too far away are not counted
+  std::uint64_t exact_inside = 0;    ///< edge doubts resolved by exact arithmetic, without those
+                                     ///< surely too far away
   std::uint64_t exact_depth = 0;     ///< exact comparisons of two hits, or of a hit and t_max
   std::uint64_t ended_early = 0;     ///< rays that ended at RayQuery::any_hit_before
   std::uint64_t own_records = 0;     ///< polygon records made for one packet of rays
-  std::uint64_t common_records = 0;  ///< polygon records made for an origin that queries share
+  std::uint64_t common_records = 0;  ///< polygon records made for a common origin
   // Seconds.
   double traverse = 0.0;   ///< boxes, and records of common origins
   double record = 0.0;     ///< own records
-  double hit_tests = 0.0;  ///< tests and resolving their doubts; without a unit: everything
+  double hit_tests = 0.0;  ///< tests and resolving doubts; without a unit: all time
 
   IntersectCounters& operator+=(const IntersectCounters& other) {
     hit += other.hit;

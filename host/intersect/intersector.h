@@ -1,4 +1,4 @@
-// Intersector: the interface of everything that finds the nearest hits of rays.
+// Intersector: the interface of engines that find the nearest hits of rays.
 #pragma once
 
 #include <cstddef>
@@ -20,16 +20,15 @@ namespace raygate {
 struct NearestHit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  std::uint32_t primitive = kNone;  ///< index of the tree's primitive; kNone: nothing is hit
+  std::uint32_t primitive = kNone;  ///< index of the tree's primitive; kNone: a miss
   glm::vec3 point{0.0f};  ///< P = d I / (I . N), relative to the ray's origin, in the unit's bits
-  /// Error bound of P's coordinates, of each of itself, besides 2^-46 of the largest, for what
-  /// underflows; +infinity where the unit gives no usable P. The same
-  /// bits from every intersector.
+  /// Relative error bound of each coordinate of P, in addition to 2^-46 of the largest coordinate
+  /// for underflow; +infinity if the unit has no usable P. Every intersector gives the same bits.
   float point_error = std::numeric_limits<float>::infinity();
-  Interval t{};  ///< holds the exact t
+  Interval t{};  ///< contains the exact t
 };
 
-/// Whether P may be off by more than `most` (finite) of itself: the host then computes it.
+/// Whether the relative error of P may be more than `most` (finite), so that the host computes P.
 [[nodiscard]] inline bool is_point_doubt(const NearestHit& hit, float most) {
   return !(hit.point_error <= most);
 }
@@ -45,31 +44,31 @@ struct RayWork {
   }
 };
 
-/// Options of a query for many rays. Spans have one element a ray, or are empty; they must live as
-/// long as the query.
+/// Options of a query for many rays. Spans have one element per ray or are empty; they must outlive
+/// the query.
 struct RayQuery {
-  /// All rays begin in one point that other queries use too (the camera, a light): what is made for
-  /// it is kept. Changes no result.
+  /// All rays start at one point that other queries also use (the camera, a light), so that its
+  /// polygon records are cached. Does not change results.
   bool common_origin = false;
   /// Positive: only hits with t < t_max[i], in exact arithmetic, count; +infinity: all.
   std::span<const float> t_max{};
   /// A primitive whose hits do not count, or NearestHit::kNone. With skip_ids or any_hit_before,
   /// NearestHit::point is not valid.
   std::span<const std::uint32_t> skip_ids{};
-  /// A primitive that the ray does not hit, as its sender knows: its source, the one that it
-  /// leaves; or NearestHit::kNone. Changes no result, but saves the test that is hardest to decide.
+  /// The primitive that the ray leaves, which it surely does not hit, or NearestHit::kNone. Does
+  /// not change results, but saves the test that is hardest to decide.
   std::span<const std::uint32_t> source_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
-  /// With any_hit_before, if filters_hits() and no common origin: which sure hits are enough, by
-  /// ray and primitive; without any the nearest is reported. nullptr: all are.
+  /// With any_hit_before, if filters_hits() and no common origin: whether a sure hit of a ray with
+  /// a primitive ends the ray. If none does, the nearest hit is reported. Null: every hit does.
   const std::function<bool(std::size_t ray, std::uint32_t primitive)>* is_enough = nullptr;
-  /// False: every ray is tested against every polygon, whatever the boxes say.
+  /// False: every ray is tested against every polygon, ignoring boxes.
   bool culling = true;
-  /// Receives the work done for each ray.
+  /// Receives the work of each ray.
   std::span<RayWork> work{};
 
-  /// Of ray i; +infinity where t_max is empty.
+  /// Returns t_max[i], or +infinity if t_max is empty.
   [[nodiscard]] float t_max_of(std::size_t i) const {
     return t_max.empty() ? std::numeric_limits<float>::infinity() : t_max[i];
   }
@@ -77,55 +76,55 @@ struct RayQuery {
   [[nodiscard]] bool with_points() const { return skip_ids.empty() && any_hit_before.empty(); }
 };
 
-/// Finds nearest hits, decided exactly: they depend on rays and scene alone, not on the
-/// intersector, nor on the other rays of the query. One thread each.
+/// Finds nearest hits with exact decisions: results depend only on ray and scene, not on the
+/// intersector or the other rays of the query. Each thread has its own.
 class Intersector {
  public:
   virtual ~Intersector() = default;
 
-  /// hits[i] becomes the nearest hit of rays[i]. Rays near each other in `rays` should go about the
-  /// same way. Directions that are zero or not finite hit nothing; all others must be scaled
-  /// (is_scaled): throws std::invalid_argument at the first that is not.
+  /// Sets hits[i] to the nearest hit of rays[i]. Neighbouring rays should have similar directions.
+  /// Directions that are zero or not finite hit nothing; others must be scaled (is_scaled), or
+  /// std::invalid_argument is thrown.
   virtual void intersect(std::span<const Ray> rays, const RayQuery& query,
                          std::span<NearestHit> hits) = 0;
 
-  /// The best number of rays for one query; about 16,384 for each test that runs at the same time.
+  /// Returns the best number of rays per query: about 16,384 for each test done at the same time.
   [[nodiscard]] virtual std::size_t preferred_batch() const { return kBatch; }
 
-  /// Whether RayQuery::source_ids are worth an exact decision of who sends a ray.
+  /// Whether the engine benefits from RayQuery::source_ids that need exact arithmetic.
   [[nodiscard]] virtual bool wants_sources() const { return false; }
 
-  /// Whether RayQuery::is_enough is asked.
+  /// Whether the engine calls RayQuery::is_enough.
   [[nodiscard]] virtual bool filters_hits() const { return false; }
 
   [[nodiscard]] virtual IntersectCounters counters() const = 0;
 
  protected:
   static constexpr std::size_t kBatch = std::size_t{1} << 14;
-  /// What every query begins with: no hits, no work.
+  /// Initialises the results of a query to misses without work.
   static void clear(const RayQuery& query, std::span<NearestHit> hits);
 };
 
-/// Throws what Intersector::intersect promises for a direction that is not scaled.
+/// Throws the exception of Intersector::intersect for a direction that is not scaled.
 [[noreturn]] void throw_unscaled(const Ray& ray);
 
-/// Makes the intersector of one thread; called on that thread. The factory owns what they share.
+/// Makes the intersector of a thread; called on that thread. The factory owns shared data.
 using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 
-/// Whether the hit has t < t_max (positive), exactly.
+/// Whether a hit has t < t_max (positive); exact.
 [[nodiscard]] bool is_before(const Bvh& bvh, const Ray& ray, const NearestHit& hit, float t_max);
 
-/// Whether hit `a` is nearer than hit `b`, exactly; ties in t: lower triangle index first.
+/// Whether hit `a` is nearer than hit `b`; exact. For equal t the lower triangle index is nearer.
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a,
                              const NearestHit& b);
 
-/// Makes `hit` the ray's `best` one if it has t < t_max and is nearer; true if so. The order of
-/// several offers does not matter. Counts the use of exact arithmetic.
+/// Replaces `best` by `hit` if that has t < t_max and is nearer; returns whether it did. The order
+/// of calls does not matter. Counts the use of exact arithmetic.
 bool take_if_nearer(const Bvh& bvh, const Ray& ray, float t_max, const NearestHit& hit,
                     NearestHit& best, IntersectCounters& counters);
 
-/// The same for a triangle that float32 calls neither hit nor missed; `doubt.t` is not read. Asks
-/// for the distance first, which takes doubles alone as a rule.
+/// The same for a doubt: a triangle that binary32 finds neither hit nor missed; `doubt.t` is not
+/// read. Decides the distance first, which usually needs doubles only.
 bool resolve_doubt(const Bvh& bvh, const Ray& ray, float t_max, NearestHit doubt, NearestHit& best,
                    IntersectCounters& counters);
 

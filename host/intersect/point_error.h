@@ -8,7 +8,7 @@
 
 #include "host/base/lanes.h"
 
-// Why P is no farther off
+// Derivation of the bound
 //
 // Let u = 2^-24 and g be how far V's exponent is below the largest of N's, or 0. hit_test_pkg.sv
 // has it that V is at most r = 48.5 u 2^g of itself off, and t, with 2 u of d and u of its
@@ -21,21 +21,22 @@
 
 namespace raygate {
 
-/// The grazing that the unit reports with a hit (BurstHit::t_error), from the largest exponent
-/// field of N's words and V's bits; V is finite. `Bits`: std::int32_t, or a vector of them.
+/// Returns the grazing that the unit reports with a hit (BurstHit::t_error), from the largest
+/// exponent field of N and the bits of V, which is finite. `Bits`: std::int32_t or a vector of
+/// them.
 template <class Bits>
 RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
   return maximum(Bits(largest - (v >> 23 & 0xFF)), Bits{});
 }
 
-/// The largest exponent field of a normal's words.
+/// Returns the largest exponent field of a normal's words.
 [[nodiscard]] inline std::int32_t largest_field(const glm::vec3& n) {
   const auto field = [](float x) { return std::bit_cast<std::int32_t>(x) >> 23 & 0xFF; };
   return std::max({field(n.x), field(n.y), field(n.z)});
 }
 
-/// The bits of NearestHit::point_error: 2^(grazing - 18), or +infinity where the unit says nothing
-/// about V, or calls it too small; from the bits of the plane's d and of V.
+/// Returns the bits of NearestHit::point_error from those of d and V: 2^(grazing - 18), or
+/// +infinity if V is not finite or too small for the unit.
 template <class Bits>
 RAYGATE_INLINE Bits point_error_of(const Bits& d, const Bits& v, const Bits& grazing) {
   constexpr std::int32_t kBias = 127, kMaxGrazing = 12, kRange = 102;
@@ -46,8 +47,8 @@ RAYGATE_INLINE Bits point_error_of(const Bits& d, const Bits& v, const Bits& gra
   return in_range ? (grazing + (kBias - 18)) << 23 : Bits{} + 0x7F800000;
 }
 
-/// P of a plane (N, d) and a direction each lane, and the bits of its error: those of plane_point.
-/// `largest`: the largest exponent field of N.
+/// Computes P of a plane (N, d) and a direction in each lane, and the bits of its error, as
+/// plane_point does. `largest`: the largest exponent field of N.
 template <class Floats, class Ints>
 RAYGATE_INLINE void plane_points(const Floats (&n)[3], const Floats& d, const Ints& largest,
                                  const Floats (&direction)[3], Floats (&point)[3], Ints& error) {

@@ -12,10 +12,10 @@ namespace raygate {
 /// The 16 words of a triangle A, B, C seen from an origin O (A, B, C stand for the vertices minus
 /// O). Rays from O share it, whatever their direction.
 ///
-/// Words are the correctly ordered results of double or exact arithmetic, rounded once to float;
-/// (N, d), and each edge with its bound, may be multiplied by a power of two of their own where
-/// their exponents leave [-60, 60], which changes neither P nor any sign. All words are finite,
-/// but a bound may be +infinity: that edge is then always in doubt.
+/// Words are results of double or exact arithmetic, rounded once to float. (N, d), and each edge
+/// with its bound, can be scaled by a power of two if their exponents are outside [-60, 60]; this
+/// changes neither P nor any sign. All words are finite, except that a bound can be +infinity: that
+/// edge is then always in doubt.
 struct alignas(64) PolygonRecord {
   glm::vec3 normal{0.0f};            ///< words 0-2: N = (B-A) x (C-A), the paper's H
   float d = 0.0f;                    ///< word 3: N . A; its sign is exact, and 0 is exactly 0
@@ -26,35 +26,36 @@ struct alignas(64) PolygonRecord {
 };
 static_assert(sizeof(PolygonRecord) == 64);
 
-/// The bound of an edge E, rounded to float, is kEdgeBound 2^-24 |E|_1: see polygon_record.cpp.
+/// The bound of an edge E is kEdgeBound 2^-24 |E|_1 (derivation in polygon_record.cpp).
 inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
 
-/// The record of a triangle for rays from `origin`. All coordinates finite, of magnitude at most
-/// 2^126. A triangle whose plane holds the origin, or without area, gets d = 0: no ray hits it.
+/// Returns the record of a triangle for rays from `origin`. All coordinates are finite with a
+/// magnitude of at most 2^126. If the origin is in the triangle's plane, or the triangle has no
+/// area, d is 0 and no ray hits it.
 [[nodiscard]] PolygonRecord make_record(const glm::vec3& origin, const Corners& triangle);
 
-/// The plane alone: words 0-3 of that record, the others being 0.
+/// Returns only the plane: words 0-3 of that record; the others are 0.
 [[nodiscard]] PolygonRecord make_plane(const glm::vec3& origin, const Corners& triangle);
 
-/// records[i] = make_record(origin, triangles[i]), bit for bit. The spans are of one size.
+/// Sets records[i] to make_record(origin, triangles[i]), bit for bit. The spans have the same size.
 void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
                   std::span<PolygonRecord> records);
 
-/// How many planes are made at once.
+/// Number of planes that make_planes makes at once.
 inline constexpr int kPlanes = 4;
 
-/// Triangles, and whence they are seen.
+/// Triangles and the origins from which they are seen.
 struct PlaneViews {
   glm::vec3 origins[kPlanes];
   Corners triangles[kPlanes];
 };
 
-/// N and d of polygon records, as make_plane has them, lane by lane.
+/// N and d of the results of make_plane, lane by lane.
 struct Planes {
   alignas(16) float words[4][kPlanes];
 };
 
-/// Lane i is make_plane(views.origins[i], views.triangles[i]), bit for bit.
+/// Sets lane i to make_plane(views.origins[i], views.triangles[i]), bit for bit.
 void make_planes(const PlaneViews& views, Planes& planes);
 
 }  // namespace raygate

@@ -11,15 +11,14 @@
 
 namespace raygate {
 
-/// Exact arithmetic resolves what the core leaves open: with a core that is_exact nothing but which
-/// hit is nearer of a ray that went on where a stack had no room. P is computed once for each
-/// nearest hit, from a record that the host makes, so that it has the bits of the other
-/// intersectors'. Throws InputError where the core reads a line that memory lacks, or a node that
-/// is below itself.
+/// Exact arithmetic on the host resolves the doubts of the core; a core that is_exact leaves only
+/// the comparison of hits of a ray whose stack overflowed. P is computed on the host for each
+/// nearest hit, with the same bits as in other intersectors. Throws InputError if the core reads a
+/// line that the memory does not have, or a node below itself.
 class CoreIntersector : public Intersector {
  public:
-  /// `image`, of `bvh`, is what the core reads. The tree must outlive this. Intersectors of one
-  /// thread may share a core.
+  /// `image`: the memory image of `bvh`. The tree must outlive this. Intersectors of one thread can
+  /// share a core.
   CoreIntersector(const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
                   std::shared_ptr<CoreUnit> core)
       : bvh_(bvh), image_(std::move(image)), core_(std::move(core)) {}

@@ -1,5 +1,5 @@
-// Core unit: the interface of the ray core, rays in, hits out, and doubts of a core that is not
-// exact.
+// Core unit: the interface of the ray core: rays in; hits, and doubts of a core that is not exact,
+// out.
 #pragma once
 
 #include <cstdint>
@@ -19,63 +19,61 @@ struct CoreRay {
   static constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
 
   Ray ray;  ///< the direction scaled (see is_scaled)
-  /// Positive, +infinity for none: hits at t >= limit do not count. The exact t.
+  /// Positive: hits with exact t >= t_max do not count; +infinity: no limit.
   float t_max = std::numeric_limits<float>::infinity();
-  std::uint32_t skip_id = kNoTriangle;    ///< a triangle that does not count, by its name
-  std::uint32_t source_id = kNoTriangle;  ///< another: the one that the ray leaves
-  std::uint32_t tag = 0;                  ///< comes back with all that concerns the ray
-  bool any_hit = false;                   ///< the first sure hit that is found will do
-  bool no_cull = false;                   ///< it enters all boxes
+  std::uint32_t skip_id = kNoTriangle;    ///< index of a triangle whose hits do not count
+  std::uint32_t source_id = kNoTriangle;  ///< index of the triangle that the ray leaves
+  std::uint32_t tag = 0;                  ///< returned with all results of the ray
+  bool any_hit = false;                   ///< the search ends at the first sure hit
+  bool no_cull = false;                   ///< the ray enters all boxes
 };
 
-/// A word of the core about a ray. Words of several rays come mixed; a ray's end is its last one.
+/// A result of the core. Results of different rays interleave; kEnd is the last result of a ray.
 struct CoreResult {
   enum class Kind : std::uint8_t {
-    kEnd = 0,  ///< of the walk; with the nearest sure hit, if there is one
-    /// A triangle that may be hit, nearer than the sure hit: exact arithmetic must say.
+    kEnd = 0,  ///< end of traversal, with the nearest sure hit if there is one
+    /// A triangle that may be hit and nearer than the sure hit; exact arithmetic must decide.
     kDoubt = 1,
   };
 
   enum class Error : std::uint8_t {
     kNone = 0,
-    kMemory = 1,     ///< memory answered a read of a line with an error
-    kCycle = 2,      ///< the ray met a node twice, or one below more than MemoryImage::kMostDepth
-    kDirection = 3,  ///< its direction is not scaled
-    kAbort = 4,      ///< the user of the core gave it up
+    kMemory = 1,     ///< a memory read returned an error
+    kCycle = 2,      ///< a node below itself, or deeper than MemoryImage::kMostDepth
+    kDirection = 3,  ///< the direction is not scaled
+    kAbort = 4,      ///< aborted by the user
   };
 
   static constexpr std::uint32_t kNoT = 31;
 
   Kind kind = Kind::kEnd;
-  bool found = false;     ///< kEnd: whether there is a sure hit; the next three are its
-  std::uint32_t tag = 0;  ///< the ray's
-  std::uint32_t triangle = CoreRay::kNoTriangle;  ///< kEnd, kDoubt: its name, its line in memory
-  float t = 0.0f;                                 ///< kEnd: off by fewer than 2^t_error numbers
-  std::uint32_t t_error = 0;                      ///< kNoT: t and P are not known, and 0
+  bool found = false;     ///< kEnd: whether there is a sure hit; the fields up to `point` are valid
+  std::uint32_t tag = 0;  ///< CoreRay::tag
+  std::uint32_t triangle = CoreRay::kNoTriangle;  ///< kEnd, kDoubt: its line in memory
+  float t = 0.0f;              ///< kEnd: fewer than 2^t_error floats from the exact t
+  std::uint32_t t_error = 0;   ///< kNoT: t and P are unknown, and 0
   glm::vec3 point{0.0f};       ///< kEnd: P in the core's own bits, relative to the origin
   std::uint32_t tests = 0;     ///< kEnd: triangles tested
-  Error error = Error::kNone;  ///< kEnd: if not kNone, the ray was given up: nothing else holds
-  std::uint32_t line = 0;      ///< kEnd, kMemory: one that memory lacks
+  Error error = Error::kNone;  ///< kEnd: if not kNone, only `tag` and `line` are valid
+  std::uint32_t line = 0;      ///< kEnd with kMemory: the line
 };
 
-/// What a core has done since it was made. Clocks are 0 where nothing is simulated.
+/// The counts of a core since its construction. Clocks are 0 without simulation.
 struct CoreCounters {
   static constexpr std::uint64_t kSpan = 256;
 
   std::uint64_t rays = 0;
-  std::uint64_t nodes = 0;                         ///< node lines that the box unit took
-  std::uint64_t triangles = 0;                     ///< triangle lines that the set-up unit took
-  std::uint64_t hits = 0, misses = 0, doubts = 0;  ///< of tests
-  std::uint64_t near_ties = 0;                     ///< sure hits that leave as doubts
-  std::uint64_t overflows = 0;                     ///< rays whose stack took the shared groups
-  std::uint64_t lines = 0;                         ///< read from memory
-  std::uint64_t waits = 0;         ///< clocks in which memory did not take what was asked for
-  std::uint64_t exact_clocks = 0;  ///< of an exact core's exact unit, with a question
-  /// Clocks of the busier of both units in each span of kSpan clocks: rays that keep boxes busy and
-  /// rays that keep triangles busy come in turns.
+  std::uint64_t nodes = 0;                         ///< node lines processed by the box unit
+  std::uint64_t triangles = 0;                     ///< triangle lines processed by the set-up unit
+  std::uint64_t hits = 0, misses = 0, doubts = 0;  ///< verdicts of tests
+  std::uint64_t near_ties = 0;                     ///< sure hits reported as doubts
+  std::uint64_t overflows = 0;                     ///< rays that used the shared stack
+  std::uint64_t lines = 0;                         ///< lines read from memory
+  std::uint64_t waits = 0;         ///< clocks in which memory did not accept a request
+  std::uint64_t exact_clocks = 0;  ///< busy clocks of the exact unit
+  /// Busy clocks of the busier of box unit and triangle unit, summed over spans of kSpan clocks.
   std::uint64_t busier = 0;
-  /// The same if box tests had two units for the one of triangles, or the triangles' took two
-  /// clocks each, and nothing else were slower.
+  /// The same with two box units, and with a triangle unit of half the throughput.
   std::uint64_t busier_two_boxes = 0, busier_half_triangles = 0;
   std::uint64_t clocks = 0;
 
@@ -85,19 +83,17 @@ struct CoreCounters {
   }
 };
 
-/// Walks rays through a memory image.
+/// Traces rays through a memory image.
 ///
-/// Promises: the ray's nearest hit, in exact arithmetic, is the sure hit of its end, or a triangle
-/// of its doubts; with any_hit the first that is found may be in its place. A ray whose end has an
-/// error has no hit that counts. What is a doubt may differ between cores, and for a core that
-/// waits for memory from run to run. A core that is_exact has no doubts: the nearest hit is that of
-/// its end.
+/// Guarantees: the nearest hit of a ray in exact arithmetic is the sure hit of its kEnd or one of
+/// its doubts; with any_hit it can be any hit instead. After an error a ray has no valid hit.
+/// Doubts can differ between cores and, because of memory timing, between runs. A core that
+/// is_exact has no doubts: the nearest hit is that of kEnd.
 class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
 
-  /// Adds what the rays give to `results`; all words of all rays. The memory holds `lines`, a
-  /// MemoryImage's.
+  /// Appends all results of the rays to `results`. `lines`: the lines of a MemoryImage.
   virtual void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
                      std::vector<CoreResult>& results) = 0;
 

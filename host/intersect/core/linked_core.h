@@ -49,7 +49,7 @@ class PackedFields {
   unsigned at_ = 0;
 };
 
-/// Of ray_core_pkg::result_t.
+/// Decodes ray_core_pkg::result_t.
 template <class Words>
 CoreResult unpack_result(const Words& words) {
   PackedFields fields(words);
@@ -66,7 +66,7 @@ CoreResult unpack_result(const Words& words) {
   return result;
 }
 
-/// A result as core_link sends it.
+/// A result of core_link.
 using ResultWords = std::array<std::uint32_t, 8>;
 
 /// Messages to core_link.
@@ -78,7 +78,7 @@ using RayMessage = std::array<std::uint32_t, 11>;
   std::ranges::copy(line.words, message.begin() + 1);
   return message;
 }
-/// Memory has changed: it has so many lines.
+/// Message that memory has changed and has that many lines.
 [[nodiscard]] inline std::uint32_t lines_message(std::uint32_t lines) { return 2u << 28 | lines; }
 [[nodiscard]] inline RayMessage ray_message(const CoreRay& ray) {
   RayMessage message{(4u | (ray.any_hit ? 1u : 0u) | (ray.no_cull ? 2u : 0u)) << 28, ray.tag,
@@ -90,24 +90,24 @@ using RayMessage = std::array<std::uint32_t, 11>;
   return message;
 }
 
-/// Words to a board and from it, hw/board/core_link.sv's, in their order.
+/// An ordered link of words to and from a board (hw/board/core_link.sv).
 class WordLink {
  public:
   virtual ~WordLink() = default;
 
-  /// Whether the word is taken; if not, it is to be offered again.
+  /// Sends a word; returns false if it was not accepted and must be sent again.
   virtual bool send(std::uint32_t word) = 0;
-  /// The next word that came, if there is one.
+  /// Returns the next received word, or none.
   virtual std::optional<std::uint32_t> receive() = 0;
-  /// Lets time pass: a clock in simulation. Throws where the board is silent for too long.
+  /// Waits: one clock in simulation. Throws if the board is silent for too long.
   virtual void wait() = 0;
-  /// Clocks since it was made; 0 where nothing is simulated.
+  /// Simulated clocks since construction; 0 without simulation.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
 };
 
-/// Sends the memory when it has changed, then rays, no more at a time than the core holds, for a
-/// link may have no way to make its host wait. Counters: rays, triangles, doubts, and the clocks
-/// with rays; the board tells no others.
+/// A ray core with its own memory, behind a link. Sends the memory when it has changed, then rays,
+/// at most as many as the core holds, since a link may have no back-pressure. The board reports
+/// only the counts of rays, triangles, doubts and busy clocks.
 class LinkedCore : public CoreUnit {
  public:
   LinkedCore(std::unique_ptr<WordLink> link, std::size_t rays)
@@ -119,20 +119,19 @@ class LinkedCore : public CoreUnit {
 
  private:
   void load(std::span<const MemoryLine> lines);
-  /// The result that became whole with the words that came, if there is one.
+  /// Returns a result if all its words have arrived.
   std::optional<CoreResult> take_result();
   void count(const CoreResult& result);
 
   std::unique_ptr<WordLink> link_;
   std::size_t most_;
-  std::vector<MemoryLine> memory_;    ///< what the board holds
-  std::vector<std::uint32_t> words_;  ///< of a result that is not whole
+  std::vector<MemoryLine> memory_;    ///< contents of the board's memory
+  std::vector<std::uint32_t> words_;  ///< of an incomplete result
   CoreCounters counters_;
 };
 
-/// Words as four bytes, lowest first, 8N1, 2 Mbaud. Throws InputError, with the port's name, where
-/// it can't be opened, and where the board says nothing for kPatience seconds while something is
-/// expected of it.
+/// A serial port: words as four bytes, lowest first, 8N1, 2 Mbaud. Throws InputError with the
+/// port's name if it cannot be opened, or if the board does not answer within kPatience seconds.
 class SerialLink : public WordLink {
  public:
   explicit SerialLink(std::filesystem::path port);
@@ -146,7 +145,7 @@ class SerialLink : public WordLink {
 
  private:
   static constexpr int kPatience = 30;
-  static constexpr std::size_t kBuffer = 4096;  ///< bytes that wait to be written
+  static constexpr std::size_t kBuffer = 4096;  ///< bytes to be written
 
   [[noreturn]] void fail(const std::string& what) const;
   void write_some();

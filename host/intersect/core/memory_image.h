@@ -25,7 +25,7 @@ struct alignas(64) MemoryLine {
     if (first / 32 < 15) two |= std::uint64_t{words[first / 32 + 1]} << 32;
     return static_cast<std::uint32_t>(two >> first % 32 & ((std::uint64_t{1} << width) - 1));
   }
-  /// Into bits that were 0.
+  /// Writes `value`; the bits must be zero before.
   void set_bits(unsigned first, std::uint64_t value) {
     words[first / 32] |= static_cast<std::uint32_t>(value << first % 32);
     if (first % 32 != 0 && first / 32 < 15) {
@@ -36,23 +36,25 @@ struct alignas(64) MemoryLine {
 };
 static_assert(sizeof(MemoryLine) == 64);
 
-/// Up to seven children of an inner node, and their boxes on the node's grid: along axis k, q
-/// stands for origin[k] + q 2^(exponent[k] - 127), exactly.
+/// Up to seven children of an inner node with their boxes on the node's grid: on axis k, q means
+/// exactly origin[k] + q 2^(exponent[k] - 127).
 struct NodeLine {
   static constexpr int kChildren = 7;
-  static constexpr std::uint32_t kAbsent = 0, kInner = 8;  ///< kinds; others: a leaf's triangles
+  static constexpr std::uint32_t kAbsent = 0,
+                                 kInner =
+                                     8;  ///< kinds; other values: number of triangles of a leaf
 
   struct Child {
     std::uint32_t kind = kAbsent;
     std::array<std::uint8_t, 3> low{}, high{};
 
-    /// Lines in memory.
+    /// Number of lines in memory.
     [[nodiscard]] std::uint32_t size() const { return kind == kInner ? 1 : kind; }
   };
 
   glm::vec3 origin{0.0f};
   std::array<int, 3> exponent{1, 1, 1};  ///< 1 to 254
-  std::uint32_t base = 0;                ///< line of the first child; the others' follow
+  std::uint32_t base = 0;                ///< line of the first child; the others follow
   std::array<Child, kChildren> child{};
 
   NodeLine() = default;
@@ -88,12 +90,12 @@ struct NodeLine {
   }
 };
 
-/// A triangle, and what it is called.
+/// A triangle with its indices.
 struct TriangleLine {
   Corners corners{};
-  std::uint32_t index = 0;      ///< its name: the number of this line
-  std::uint32_t rank = 0;       ///< of hits at the same t the lowest is the nearest
-  std::uint32_t primitive = 0;  ///< the host's number of it, which the core does not read
+  std::uint32_t index = 0;      ///< the number of this line
+  std::uint32_t rank = 0;       ///< for hits at equal t the lowest rank is the nearest
+  std::uint32_t primitive = 0;  ///< the host's primitive index, not read by the core
 
   TriangleLine() = default;
   explicit TriangleLine(const MemoryLine& line)
@@ -113,19 +115,18 @@ struct TriangleLine {
   }
 };
 
-/// The lines of a scene, the root's at kRoot. Triangles are named by their lines, and ranked as the
-/// Bvh's scene numbers them. The same whatever the number of threads that make it.
+/// The memory lines of a scene, with the root at kRoot. Triangles are ranked by their index in the
+/// scene. The image does not depend on the number of threads.
 class MemoryImage {
  public:
   static constexpr std::uint32_t kRoot = 0;
   static constexpr int kMostDepth = Bvh::kMaxDepth;  ///< ray_core_pkg::Levels
 
-  /// Throws std::invalid_argument for a tree with instances: they are to be written out.
+  /// Throws std::invalid_argument for a tree with instances, which must be flattened.
   explicit MemoryImage(const Bvh& bvh, int threads = 1);
 
   [[nodiscard]] std::span<const MemoryLine> lines() const { return lines_; }
-  /// The triangle's line of a primitive of the Bvh, and the other way round: kNoTriangle for what
-  /// is none.
+  /// Convert between a primitive of the Bvh and the line of its triangle; kNoTriangle: none.
   static constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
   [[nodiscard]] std::uint32_t line_of(std::uint32_t primitive) const {
     return primitive < primitive_lines_.size() ? primitive_lines_[primitive] : kNoTriangle;
@@ -135,9 +136,9 @@ class MemoryImage {
         line < lines_.size() ? TriangleLine(lines_[line]).primitive : kNoTriangle;
     return line_of(primitive) == line ? primitive : kNoTriangle;
   }
-  /// The memory byte by byte, as --dump-image writes it: line n is at byte 64 n.
+  /// Returns the bytes of the memory, as --dump-image writes them: line n is at byte 64 n.
   [[nodiscard]] std::string_view bytes() const;
-  /// Nodes on the longest way from the root to a leaf; 1 at least, kMostDepth at most.
+  /// Number of nodes on the longest path from the root to a leaf, from 1 to kMostDepth.
   [[nodiscard]] int depth() const { return depth_; }
 
  private:

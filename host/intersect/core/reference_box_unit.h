@@ -9,15 +9,15 @@
 
 namespace raygate {
 
-/// What box_unit reads of a ray.
+/// The fields of a ray that box_unit reads.
 struct BoxRay {
   glm::vec3 origin{0.0f};
-  glm::vec3 inverse{0.0f};  ///< 1 / I_k, rounded to nearest; infinite where I_k is 0
-  float t_max = 0.0f;       ///< positive, or +infinity: hits beyond it are not wanted
-  bool no_cull = false;     ///< all children are entered, whatever their boxes
+  glm::vec3 inverse{0.0f};  ///< 1 / I_k, rounded to nearest; infinite if I_k is 0
+  float t_max = 0.0f;       ///< positive or +infinity: hits beyond it do not count
+  bool no_cull = false;     ///< all children are entered
 };
 
-/// Children that a ray enters, the nearest first: hw/ray_core/ray_core_pkg.sv, "group".
+/// The children that a ray enters, nearest first (a group in hw/ray_core/ray_core_pkg.sv).
 struct BoxGroup {
   struct Entry {
     std::uint32_t enter = 0;   ///< lower bound of t, in units of 2^(exponent - 127 - 12)
@@ -36,7 +36,7 @@ struct BoxGroup {
 
 [[nodiscard]] BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray);
 
-/// Whether the entry begins surely beyond `limit` (not negative; +infinity for none).
+/// Whether the entry surely starts beyond `limit`, which is not negative; +infinity: no limit.
 [[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
 
 }  // namespace raygate

@@ -5,9 +5,9 @@
 
 namespace raygate {
 
-/// Boxes, records and tests have the bits of the hardware's. The order of its tests is that of a
-/// core which waits for each; so the hardware, which does not, may test more, and leave other
-/// doubts. Lines beyond those that trace() is given come with an error.
+/// Boxes, records and tests have the hardware's bits. Tests are done one after the other; the
+/// hardware overlaps them, so it can do more tests and leave other doubts. Lines that trace() is
+/// not given are memory errors.
 class ReferenceCore : public CoreUnit {
  public:
   /// `stack_depth`, `exact`: see ray_core.sv.

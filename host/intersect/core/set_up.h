@@ -1,4 +1,4 @@
-// Reference model of the ray core's set-up unit: a triangle and an origin in, a polygon record out.
+// Reference model of the ray core's set-up unit, which makes polygon records.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace raygate {
 
-/// A record with less exact words than make_record's, which runs in double: its bounds say how much
-/// less. d is NaN where its sign is not sure, or N or d are too far off for a hit.
+/// A record computed in binary32, with larger bounds than make_record's. d is NaN if its sign is
+/// not sure, or if N or d are too inaccurate for a hit.
 struct SetUpRecord {
   PolygonRecord record;
-  std::uint32_t normal_error = 0;    ///< how many bits cancelled in N, where d is a number
+  std::uint32_t normal_error = 0;    ///< number of bits that cancelled in N, unless d is NaN
   std::uint32_t distance_error = 0;  ///< likewise in d
 };
 
-/// set_up_unit in binary32, bit for bit. Takes any floats, NaN and infinities too.
+/// Returns the record of set_up_unit, bit for bit, for any floats including NaN and infinities.
 [[nodiscard]] SetUpRecord set_up(const glm::vec3& origin, const Corners& triangle);
 
 /// Whether a hit of such a record is sure: set_up_pkg::is_good_hit. `grazing` is

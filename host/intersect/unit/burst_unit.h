@@ -1,4 +1,4 @@
-// Burst unit: the interface of the pipelined hit-test unit, bursts of tests in, nearest hits out.
+// Interfaces of the pipelined hit-test unit (bursts in, nearest hits out) and of the paper's unit.
 #pragma once
 
 #include <algorithm>
@@ -12,22 +12,22 @@
 
 namespace raygate {
 
-/// The nearest sure hit of a burst, as far as float32 can tell: near ties are reported beside it.
+/// The nearest sure hit of a burst in binary32; near ties are reported separately.
 struct BurstHit {
-  std::uint32_t bundle = 0, lane = 0;  ///< whose burst: index into the batch, lane of the bundle
-  std::uint32_t record = 0;            ///< which of the bundle's records
+  std::uint32_t bundle = 0, lane = 0;  ///< index of the bundle in the batch, and lane
+  std::uint32_t record = 0;            ///< index into the bundle's records
   float t = 0.0f;                      ///< d / (I . N), positive and normal
-  std::uint32_t t_error = 0;  ///< at most 2^(6 + t_error) floats lie between t and the truth
+  std::uint32_t t_error = 0;  ///< at most 2^(6 + t_error) floats lie between t and the exact t
   glm::vec3 point{0.0f};      ///< P = d I / (I . N)
 
-  friend bool operator==(const BurstHit& a, const BurstHit& b);  ///< of all bits
+  friend bool operator==(const BurstHit& a, const BurstHit& b);  ///< compares all bits
 };
 
-/// A test that float32 leaves open.
+/// A test that binary32 leaves open.
 struct TestReport {
   enum class Kind : std::uint8_t {
-    kDoubt = 1,    ///< neither surely hit nor surely missed, or its t cannot be had
-    kNearTie = 2,  ///< a sure hit that may be nearer than the one that was kept
+    kDoubt = 1,    ///< neither a sure hit nor a sure miss, or t cannot be computed
+    kNearTie = 2,  ///< a sure hit that may be nearer than the one in BurstHit
   };
   std::uint32_t bundle = 0, lane = 0, record = 0;
   Kind kind = Kind::kDoubt;
@@ -35,8 +35,8 @@ struct TestReport {
   friend bool operator==(const TestReport&, const TestReport&) = default;
 };
 
-/// What a batch of bursts gave. Both in the order of the batch, bundle by bundle and in it lane by
-/// lane; the reports of a burst in the order in which they arose.
+/// The results of a batch of bursts, in the order of bundles and lanes; the reports of a burst are
+/// in the order of its tests.
 struct BurstResults {
   std::vector<BurstHit> hits;
   std::vector<TestReport> reports;
@@ -47,19 +47,19 @@ struct BurstResults {
   }
 };
 
-/// What a unit has done since it was made. Clocks are 0 where nothing is simulated; idle clocks and
-/// stalls are counted for each lane of the hardware, so that they add up to lanes * clocks - tests.
+/// The counts of a unit since its construction. Clocks are 0 without simulation. Idle clocks and
+/// stalls are counted per lane of the hardware; together they are lanes * clocks - tests.
 struct BurstCounters {
   std::uint64_t tests = 0;          ///< misses + hits + doubts
-  std::uint64_t misses = 0;         ///< surely missed
-  std::uint64_t hits = 0;           ///< surely hit, near ties included
-  std::uint64_t doubts = 0;         ///< neither
-  std::uint64_t near_ties = 0;      ///< sure hits reported beside the one that was kept
+  std::uint64_t misses = 0;         ///< sure misses
+  std::uint64_t hits = 0;           ///< sure hits, including near ties
+  std::uint64_t doubts = 0;         ///< neither sure hits nor sure misses
+  std::uint64_t near_ties = 0;      ///< sure hits reported as near ties
   std::uint64_t distances = 0;      ///< divisions for t
   std::uint64_t coordinates = 0;    ///< divisions for the coordinates of P
   std::uint64_t clocks = 0;         ///< simulated clock cycles
-  std::uint64_t idle_clocks = 0;    ///< no test was there
-  std::uint64_t output_stalls = 0;  ///< a result was not taken
+  std::uint64_t idle_clocks = 0;    ///< clocks without a test
+  std::uint64_t output_stalls = 0;  ///< clocks stalled by the consumer
 
   friend bool operator==(const BurstCounters&, const BurstCounters&) = default;
 };
@@ -81,19 +81,19 @@ struct BurstCounters {
 /// than the sum of their errors, the one that isn't kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResults> {
  public:
-  /// Not between a start and its finish.
+  /// Must not be called between start and finish.
   [[nodiscard]] virtual BurstCounters counters() const = 0;
 };
 
-/// Thrown by require_same. Its text is ready to replay: the burst's direction and the 16 words of
-/// each record in hex, and what each unit made of them.
+/// Thrown by require_same. The text can be replayed: the burst's direction, the 16 words of each
+/// record in hexadecimal, and the results of both units.
 class BurstUnitMismatch : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws BurstUnitMismatch at the first burst where `actual` is not `expected`, bit for bit; both
-/// are results of `batch`.
+/// Throws BurstUnitMismatch at the first burst of `batch` for which `actual` and `expected` differ
+/// in any bit.
 void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
                   const BurstResults& expected);
 
@@ -112,7 +112,7 @@ class PlaneUnit {
  public:
   virtual ~PlaneUnit() = default;
 
-  /// `points[i]` becomes the result of `tests[i]`; both spans have one size.
+  /// Sets points[i] to the result of tests[i]; the spans have the same size.
   virtual void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) = 0;
 
   /// Simulated clock cycles since construction; 0 where nothing is simulated.

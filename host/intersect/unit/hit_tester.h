@@ -1,4 +1,4 @@
-// Hit tester: decides batches of rays against polygon records, by a hit-test unit and software.
+// Hit tester: tests batches of rays against polygon records with a hit-test unit and software.
 #pragma once
 
 #include <cassert>
@@ -15,14 +15,15 @@
 
 namespace raygate {
 
-/// Up to eight rays that meet the same run of records: eight bursts of tests, stored as one.
-/// The burst of lane k is direction k against records[0 .. record_count), in this order.
+/// Up to eight rays to test against the same records: eight bursts, stored together. The burst of
+/// lane k tests direction k against records [0, record_count), in this order.
 struct alignas(32) RayBundle {
   float direction[3][kLanes];              ///< x, y, z of each lane; scaled (see is_scaled)
   const PolygonRecord* records = nullptr;  ///< made for the origin of these rays
   std::uint32_t record_count = 0;
-  std::uint32_t first_tag = 0;  ///< the caller's name of records[0]; records[i] is first_tag + i
-  LaneMask lanes = 0;           ///< bit k: lane k holds a ray
+  std::uint32_t first_tag =
+      0;               ///< the caller's tag of records[0]; that of records[i] is first_tag + i
+  LaneMask lanes = 0;  ///< bit k: lane k holds a ray
 
   [[nodiscard]] glm::vec3 lane_direction(int lane) const {
     return {direction[0][lane], direction[1][lane], direction[2][lane]};
@@ -36,21 +37,22 @@ struct SureHit {
   std::uint32_t tag = 0;
   glm::vec3 point{0.0f};     ///< P = d I / (I . N) relative to the origin, in the unit's bits
   float point_error = 0.0f;  ///< as NearestHit has it
-  Interval t{};              ///< high = +infinity where float32 says nothing
+  Interval t{};              ///< high = +infinity if binary32 gives no bound
 };
 
-/// A polygon that float32 can neither call hit nor missed: for exact arithmetic to resolve.
+/// A polygon that binary32 finds neither hit nor missed; exact arithmetic resolves it.
 struct Doubt {
   std::uint32_t bundle = 0;
   std::uint32_t lane = 0;
   std::uint32_t tag = 0;
-  glm::vec3 point{0.0f};     ///< as in SureHit, should it be a hit
+  glm::vec3 point{0.0f};     ///< as in SureHit, if it is a hit
   float point_error = 0.0f;  ///< likewise
 };
 
-/// What a batch gave. Bursts without a hit or doubt leave nothing here.
+/// The results of a batch. Bursts without a hit or doubt have none.
 struct HitResults {
-  /// The sure hits that may be their burst's nearest: one, or as many as float32 cannot order.
+  /// The sure hits that may be the nearest of their burst: one, or several that binary32 cannot
+  /// order.
   std::vector<SureHit> hits;
   std::vector<Doubt> doubts;
 
@@ -60,27 +62,27 @@ struct HitResults {
   }
 };
 
-/// Tests batches of bundles, either at once (run) or in two steps (start and finish), so that a
-/// unit need not run empty while its user thinks.
+/// Tests batches of bundles, either at once (run) or in two steps (start and finish), so that the
+/// unit is busy while the caller prepares the next batch.
 template <class Results>
 class BatchTester {
  public:
   virtual ~BatchTester() = default;
 
-  /// Tests all bursts of `batch` and adds what it found to `results`, in the order of the batch.
-  /// Not between a start and its finish.
+  /// Tests all bursts of `batch` and appends the results, in the order of the batch. Must not be
+  /// called between start and finish.
   virtual void run(std::span<const RayBundle> batch, Results& results) = 0;
 
-  /// At most two batches may be started and not finished; each must live until its finish. A finish
-  /// is that of the oldest one. Where two steps gain nothing, all is done in finish.
+  /// Starts a batch, which must live until its finish(). At most two batches may be started and not
+  /// finished; finish() completes the oldest. By default all work is done in finish().
   virtual void start(std::span<const RayBundle> batch) {
     assert(started_count_ < 2);
     started_[started_count_++] = batch;
   }
   virtual void finish(Results& results) { run(pop_started(), results); }
 
-  /// Batches of fewer tests leave the unit mostly empty: they are worth lengthening by tests that
-  /// may turn out to be behind a hit.
+  /// Number of tests below which a batch leaves the unit mostly idle, so that it is worth adding
+  /// tests that may turn out to be behind a hit.
   [[nodiscard]] virtual std::size_t enough_tests() const { return 0; }
 
  protected:
@@ -95,11 +97,11 @@ class BatchTester {
   int started_count_ = 0;
 };
 
-/// A hit-test unit and the software around it. One thread each.
+/// A hit-test unit and the software around it. Each thread has its own.
 ///
-/// Promises: a sure hit is a hit and an unreported pair a miss (or farther than a sure hit
-/// of its burst) in exact arithmetic on the records' coordinates; P has the unit's bits.
-/// Which pairs are in doubt may differ between engines; decisions made from the reports do not.
+/// Guarantees: in exact arithmetic on the records' coordinates, a sure hit is a hit, and a pair
+/// that is not reported is a miss or farther than a sure hit of its burst. P has the unit's bits.
+/// Engines may differ in which pairs are in doubt, but not in the decisions that follow.
 class HitTester : public BatchTester<HitResults> {
  public:
   [[nodiscard]] virtual HitCounters counters() const = 0;

@@ -1,4 +1,4 @@
-// Record cache: the polygon records of a common origin, each made on first touch.
+// Record cache: the polygon records of a common origin, each made on first use.
 #pragma once
 
 #include <array>
@@ -14,17 +14,16 @@
 
 namespace raygate {
 
-/// Room for a record per primitive of the tree, filled leaf by leaf. Threads may ask at once: the
-/// first one makes a record, the others wait for it. 65 bytes a primitive; pages nobody touches
-/// cost nothing.
+/// One record per primitive of the tree, made leaf by leaf. Thread-safe: the first thread makes a
+/// record, others wait for it. 65 bytes per primitive; untouched pages take no memory.
 class RecordCache {
  public:
   RecordCache(const Bvh& bvh, const glm::vec3& origin);
 
   [[nodiscard]] const glm::vec3& origin() const { return origin_; }
 
-  /// The records of the primitives first .. first + count, at least one. Adds to `made` the number
-  /// of those that had to be made.
+  /// Returns the records of primitives [first, first + count), at least one. Adds the number of
+  /// records that had to be made to `made`.
   [[nodiscard]] const PolygonRecord* leaf(std::uint32_t first, std::uint32_t count,
                                           std::uint64_t& made) {
     for (std::uint32_t primitive = first; primitive < first + count; ++primitive) {
@@ -52,16 +51,15 @@ class RecordCache {
   std::unique_ptr<std::atomic<State>[]> states_;  // of the primitives
 };
 
-/// The caches of all common origins of a scene, each made when it is first asked for. For any
-/// number of threads.
+/// The caches of all common origins of a scene, each made on first use. Thread-safe.
 class RecordCaches {
  public:
-  /// `on_first_touch`: whether records are made when a ray comes near their polygon, or all of an
-  /// origin at once. The tree must outlive this.
+  /// `on_first_touch`: records are made when a ray comes near their polygon, otherwise all records
+  /// of an origin at once. The tree must outlive this.
   explicit RecordCaches(const Bvh& bvh, bool on_first_touch = true)
       : bvh_(bvh), on_first_touch_(on_first_touch) {}
 
-  /// Adds to `made` the number of records that had to be made.
+  /// Returns the cache of an origin. Adds the number of records that had to be made to `made`.
   [[nodiscard]] RecordCache& at(const glm::vec3& origin, std::uint64_t& made);
 
  private:

@@ -14,10 +14,11 @@
 
 namespace raygate {
 
-/// What the unit says of a single test.
+/// The unit's verdict on a single test.
 enum class UnitVerdict : std::uint8_t { kMiss, kHit, kDoubt };
 
-/// The distance of a hit, and how many numbers of the format it may be off: 2^(6 + error).
+/// The distance of a hit; at most 2^(6 + error) numbers of the format lie between it and the exact
+/// t.
 struct HitDistance {
   float t = 0.0f;
   std::uint32_t error = 0;
@@ -43,7 +44,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
 
   [[nodiscard]] BurstCounters counters() const override { return counters_; }
 
-  /// The verdict on one test, as in `run`.
+  /// Returns the verdict on one test, as in `run`.
   [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction) const {
     const float v = math_.dot(record.normal, direction);
     const UnitVerdict decided = decide(record, direction, v);
@@ -51,8 +52,9 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return math_.is_normal(math_.divide(record.d, v)) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// What the edges alone say: a hit is one if it is ahead, which those of d's sign are. Where d is
-  /// a NaN, nobody knows its sign: edges of opposite signs are a miss, all else is in doubt.
+  /// Returns the verdict of the edges alone; kHit if the triangle is hit provided it is ahead, that
+  /// is, of d's sign. If d is NaN, edges of opposite signs are a miss and everything else is in
+  /// doubt.
   [[nodiscard]] UnitVerdict edges_verdict(const PolygonRecord& record,
                                           const glm::vec3& direction) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -71,13 +73,13 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return all_sure ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// BurstUnit's t and its error, for a record that the ray surely hits.
+  /// Returns BurstUnit's t and its error for a record that the ray surely hits.
   [[nodiscard]] HitDistance distance(const PolygonRecord& record,
                                      const glm::vec3& direction) const {
     return distance(record, math_.dot(record.normal, direction));
   }
 
-  /// BurstUnit's P, equation 10; any NaN is 0x7FC00000.
+  /// Returns BurstUnit's P (equation 10); any NaN is 0x7FC00000.
   [[nodiscard]] glm::vec3 point(const PolygonRecord& record, const glm::vec3& direction) const {
     // The paper's accumulator starts from +0, which matters where V is a zero.
     const float v = math_.add(0.0f, math_.dot(record.normal, direction));
@@ -89,7 +91,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
  private:
   static constexpr int kTErrorUnit = 6;  // hit_test_pkg::TErrorUnit
 
-  /// How far V's exponent is below the largest of N's.
+  /// Returns how far V's exponent is below the largest of N's.
   [[nodiscard]] int grazing(const glm::vec3& n, float v) const {
     return std::max(
                {math_.exponent_field(n.x), math_.exponent_field(n.y), math_.exponent_field(n.z)}) -
@@ -104,7 +106,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
             static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
   }
 
-  /// Before the division: whether the edges decide, and whether V may divide.
+  /// Returns the verdict before the division: from the edges and the range of V.
   [[nodiscard]] UnitVerdict decide(const PolygonRecord& record, const glm::vec3& direction,
                                    float v) const {
     const UnitVerdict inside = edges_verdict(record, direction);
@@ -114,7 +116,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return divisible ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// Whether two distances (positive) are as close as their errors add up to.
+  /// Whether two positive distances differ by no more than the sum of their errors.
   [[nodiscard]] bool near_tie(const HitDistance& a, const BurstHit& b) const {
     const std::int64_t margin = (std::int64_t{1} << (kTErrorUnit + a.error)) +
                                 (std::int64_t{1} << (kTErrorUnit + b.t_error));
@@ -168,14 +170,14 @@ class BasicReferenceBurstUnit : public BurstUnit {
   BurstCounters counters_;
 };
 
-/// In the machine's own float arithmetic.
+/// In the host's float arithmetic.
 extern template class BasicReferenceBurstUnit<Binary32>;
 using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
 
 /// As BasicReferenceBurstUnit::distance, in binary32.
 [[nodiscard]] HitDistance hit_distance(const PolygonRecord& record, const glm::vec3& direction);
 
-/// P, and how far off it may be: see NearestHit.
+/// P and its error bound, as in NearestHit.
 struct UnitPoint {
   glm::vec3 point;
   float error;
@@ -184,12 +186,12 @@ struct UnitPoint {
 /// As BasicReferenceBurstUnit::point, in binary32.
 [[nodiscard]] UnitPoint plane_point(const PolygonRecord& record, const glm::vec3& direction);
 
-/// The error of a P that the unit gave. `grazing`: what it says of that, or nothing where it does
-/// not say.
+/// Returns the error bound of a P of the unit. `grazing`: the value that the unit reported, or
+/// none.
 [[nodiscard]] float point_error(const PolygonRecord& record, const glm::vec3& direction,
                                 std::optional<std::uint32_t> grazing = std::nullopt);
 
-/// The reference model: BurstUnit's point has the same bits.
+/// The reference model of the paper's unit; its points have the same bits as BurstUnit's.
 class ReferencePlaneUnit : public PlaneUnit {
  public:
   void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override {

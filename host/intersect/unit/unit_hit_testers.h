@@ -12,8 +12,8 @@
 
 namespace raygate {
 
-/// Everything but the doubts is decided by the unit. What it only reports (doubts, and the farther
-/// one of a near tie) gets its P and t here, by the same formulas.
+/// The pipelined unit decides everything except doubts. P and t of reported tests (doubts and the
+/// farther one of a near tie) are computed here by the same formulas.
 class PipelineHitTester : public HitTester {
  public:
   explicit PipelineHitTester(std::unique_ptr<BurstUnit> unit);
@@ -29,17 +29,17 @@ class PipelineHitTester : public HitTester {
   BurstResults found_;  // kept from batch to batch
 };
 
-/// What a burst unit has counted, in a hit tester's terms: three coordinates are a plane test.
+/// Converts the counts of a burst unit; three coordinates are one plane test.
 [[nodiscard]] HitCounters hit_counters(const BurstCounters& unit);
 
-/// The unit finds where a ray meets a polygon's plane; whether that is inside the polygon, and
-/// which hit is nearest, is found here, in software, as in the paper.
+/// The paper's unit intersects a ray with a polygon's plane; software decides whether the point is
+/// inside the polygon and which hit is nearest, as in the paper.
 class SerialHitTester : public HitTester {
  public:
-  /// Which pairs go through the unit.
+  /// Which pairs are sent to the unit.
   enum class Order {
-    kEdgesFirst,   ///< those that the edge planes do not rule out: a miss costs no clocks
-    kPlanesFirst,  ///< every one, as in the paper
+    kEdgesFirst,   ///< pairs that the edge planes do not exclude: a miss costs no clocks
+    kPlanesFirst,  ///< all pairs, as in the paper
   };
 
   explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit, Order order = Order::kEdgesFirst);
@@ -48,7 +48,7 @@ class SerialHitTester : public HitTester {
   [[nodiscard]] HitCounters counters() const override;
 
  private:
-  /// A pair on its way through the unit.
+  /// A pair in the unit.
   struct Pair {
     std::uint32_t bundle, lane, record;
     UnitVerdict verdict;

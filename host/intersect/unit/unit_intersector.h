@@ -1,4 +1,4 @@
-// Unit intersector: batches of leaf tests for a hit-test unit, while other rays traverse the tree.
+// Unit intersector: collects leaf tests in batches for a hit-test unit while other rays traverse.
 #pragma once
 
 #include <array>
@@ -16,22 +16,21 @@
 namespace raygate {
 
 /// In each round every packet of eight rays traverses the tree to its next leaf. The tests of all
-/// these leaves are one batch for the tester, and its answers shorten the rays. There are two
-/// halves of packets: while the tester works on one, the other traverses.
+/// these leaves form a batch for the tester, whose results shorten the rays. Packets are split into
+/// two halves: one traverses while the tester works on the other.
 ///
-/// Polygon records of a common origin come from a cache. Other records are made for the leaf that a
-/// ray reaches, once for all rays of its packet that share an origin.
+/// Polygon records of a common origin are cached. Other records are made when a ray reaches a leaf,
+/// once for all rays of its packet with the same origin.
 class UnitIntersector : public Intersector {
  public:
-  /// `caches`: those that intersectors share; without them this one has its own. The tree must
-  /// outlive this.
+  /// `caches` can be shared by intersectors; null: own caches. The tree must outlive this.
   UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester,
                   std::shared_ptr<RecordCaches> caches = nullptr);
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
 
-  /// More where several lanes share a batch.
+  /// Larger if several lanes share a batch.
   [[nodiscard]] std::size_t preferred_batch() const override;
 
   [[nodiscard]] IntersectCounters counters() const override;
@@ -48,7 +47,7 @@ class UnitIntersector : public Intersector {
     std::uint32_t next_primitive = 0;  // without culling
   };
 
-  /// Half of the packets, and their batch.
+  /// Half of the packets, with their batch.
   struct Half {
     std::vector<std::uint32_t> active;  // packets still on their way
     std::vector<RayBundle> batch;
