@@ -1,5 +1,10 @@
 # A thin front: CMake does the work, in build/. `make` alone lists the targets. Every target installs
 # what it needs (.ci/setup) and works on its own, in any order.
+
+# An empty value on the command line (`make synth TOP=`) counts as not given, for every target.
+given := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(name))),$(name)))
+$(foreach name,$(given),$(if $($(name)),,$(eval override undefine $(name))))
+
 JOBS ?= $(shell nproc)
 SCENE ?= scenes/cornell.obj
 PIXEL ?= 64,64
@@ -187,6 +192,5 @@ include synth/synth.mk
 include host/lab/lab.mk
 
 # A variable of the command line that no makefile reads is misspelt, unless CMake reads it from the environment.
-given := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(name))),$(name)))
 known := $(if $(given),$(shell grep -ohE '\b[A-Z][A-Z_0-9]+\b' $(MAKEFILE_LIST) | sort -u))
 $(foreach name,$(filter-out $(known) CC CXX CFLAGS CXXFLAGS LDFLAGS -%,$(given)),$(error $(name): no target reads it; `make` lists what targets read))

@@ -1,5 +1,5 @@
 """The Markdown pages: links lead to files and headings that are there, and `make` targets that they name exist. And `make`
-refuses variables that it does not know."""
+refuses variables that it does not know, and reads an empty one as none."""
 
 import pathlib
 import re
@@ -55,6 +55,14 @@ class Pages(unittest.TestCase):
             done = subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, status, words)
             self.assertEqual("FRACWIDTH: no target reads it" in done.stderr, status == 2)
+
+    def test_an_empty_variable_of_make_counts_as_not_given(self) -> None:
+        def recipe(words: str) -> str:
+            return subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False).stdout
+
+        for target, names in (("wave", "SCENE PIXEL ARGS"), ("synth", "TOP JOBS SYNTH_JOBS SYNTH_BUDGET"), ("variant", "ADDER FRAC_WIDTH SCENE"),
+                              ("verilog TOP=adder", "PARAMS"), ("mutate", "COUNT QUICK"), ("fuzz", "FUZZ_SECONDS"), ("test", "LONG")):
+            self.assertEqual(recipe(" ".join([target, *(f"{name}=" for name in names.split())])), recipe(target), target)
 
 
 if __name__ == "__main__":
