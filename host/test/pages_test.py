@@ -21,6 +21,11 @@ def anchors(text: str) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", re.sub(r"\[(.*?)\]\(.*?\)", r"\1", head).lower()).replace(" ", "-") for head in heads}
 
 
+def recipe(words: str) -> str:
+    """What `make` would run."""
+    return subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False).stdout
+
+
 class Pages(unittest.TestCase):
     def setUp(self) -> None:
         self.texts = {page: page.read_text() for page in pages()}
@@ -56,10 +61,12 @@ class Pages(unittest.TestCase):
             self.assertEqual(done.returncode, status, words)
             self.assertEqual("FRACWIDTH: no target reads it" in done.stderr, status == 2)
 
-    def test_an_empty_variable_of_make_counts_as_not_given(self) -> None:
-        def recipe(words: str) -> str:
-            return subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False).stdout
+    def test_make_variant_lints_a_file_first(self) -> None:
+        lines = recipe("variant ADDER=my_adder.sv FRAC_WIDTH=15").splitlines()
+        self.assertEqual(lines[:2], ["true lint", "python3 -B -m synth.brought ADDER=my_adder.sv"])
+        self.assertNotIn("synth.brought", recipe("variant ADDER=prefix FRAC_WIDTH=15"))
 
+    def test_an_empty_variable_of_make_counts_as_not_given(self) -> None:
         for target, names in (("wave", "SCENE PIXEL ARGS"), ("synth", "TOP JOBS SYNTH_JOBS SYNTH_BUDGET"), ("variant", "ADDER FRAC_WIDTH SCENE"),
                               ("verilog TOP=adder", "PARAMS"), ("mutate", "COUNT QUICK"), ("fuzz", "FUZZ_SECONDS"), ("test", "LONG")):
             self.assertEqual(recipe(" ".join([target, *(f"{name}=" for name in names.split())])), recipe(target), target)
