@@ -17,11 +17,13 @@ PYTHON := build/venv/bin/python3
 # VARIANTS: of another table than host/variants/variants.json (`make variant`).
 configure = cmake -S . -B build -G Ninja --log-level=WARNING \
   -DRAYGATE_VARIANTS=$(VARIANTS) -DRAYGATE_SIMULATION=ON
-# $(call build,KIND,TARGETS): sets up and builds these programs.
+# $(call alone,FILE,WHO): runs the command that follows when no other make holds the lock FILE, and says that it waits for WHO.
+alone = mkdir -p build; flock -n $(1) true || echo 'Waiting for $(2) in this folder to finish' >&2; flock -o $(1)
+# $(call build,KIND,TARGETS): sets up and builds these programs. One make at a time, as another one may configure build/
+# otherwise, with another table of variants for example.
 define build
 @$(SETUP) $(1)
-@$(configure) >/dev/null
-@cmake --build build -j $(JOBS) --target $(2)
+@$(call alone,build/lock,another build) sh -c '$(configure) >/dev/null && cmake --build build -j $(JOBS) --target $(2)'
 endef
 
 .PHONY: help cpu verilate example page wave render gallery denoise frames test python wheel check mutate fuzz lint format clean

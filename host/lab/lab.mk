@@ -1,6 +1,6 @@
 # What the lab measures: host/lab/README.md. Rows are kept in build/results/, reports written to build/reports/. An interrupted
 # run goes on when it is started again.
-.PHONY: stress bench variant peers speed core scaling dates claims
+.PHONY: stress bench variant card peers speed core scaling dates claims
 
 comma := ,
 # $(call of,PARTS): those of PARTS that were asked for; all without ONLY.
@@ -10,7 +10,7 @@ ifdef MPIRUN
 stress bench: configure += -DRAYGATE_MPI=ON
 endif
 define measure
-@$(PYTHON) -B -m host.lab $@ $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
+@$(PYTHON) -B -m host.lab $(@:card=variant) $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
   $(if $(SCENES),--scenes '$(SCENES)') $(if $(RENDER),--render '$(RENDER)') $(if $(BEFORE),--before '$(BEFORE)') \
   $(if $(BASE),--base '$(BASE)') $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS) \
   $(if $(MPIRUN),--launcher '$(MPIRUN)')
@@ -33,8 +33,6 @@ bench: ## measure: run time against error, adder to picture: make bench [QUICK=1
 
 variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),$(word)=$($(word))))
 brought_words = $(filter %.sv %.v,$(variant_words))
-variant: VARIANTS = $(CURDIR)/build/results/variant.json
-variant: SCENES = $(SCENE)
 variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial WIRES=1]
 ifneq ($(brought_words),)
 	@$(SETUP) lint
@@ -43,6 +41,13 @@ ifneq ($(brought_words),)
 endif
 	@$(SETUP) bench
 	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
+	@$(call alone,build/variant.lock,another make variant) $(MAKE) --no-print-directory card
+
+# Of `make variant`, one at a time: its table, its build/lab-variant and its card.
+card: VARIANTS = $(CURDIR)/build/results/variant.json
+card: SCENES = $(SCENE)
+card: export RAYGATE_LAB = lab-variant
+card:
 	@$(PYTHON) -B -m host.lab.targets.variant $(if $(KEEP_GOING),--keep-going) $(variant_words)
 	$(call build,bench,lab)
 	$(measure) $(if $(ENERGY),--energy) $(if $(WIRES),--wires) --variant $(variant_words)

@@ -1,9 +1,12 @@
 """The Markdown pages: links lead to files and headings that are there, and `make` targets that they name exist. And `make`
-refuses variables that it does not know, and reads an empty one as none."""
+refuses variables that it does not know, reads an empty one as none, and builds one thing at a time."""
 
+import fcntl
+import os
 import pathlib
 import re
 import subprocess
+import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -60,6 +63,20 @@ class Pages(unittest.TestCase):
             done = subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, status, words)
             self.assertEqual("FRACWIDTH: no target reads it" in done.stderr, status == 2)
+
+    def test_builds_in_one_folder_take_turns(self) -> None:
+        with tempfile.TemporaryDirectory() as name, (ROOT / "build" / "lock").open("w") as lock:
+            folder = pathlib.Path(name)
+            (folder / "cmake").write_text(f"#!/bin/sh\necho $1 >>{folder}/called\n")
+            (folder / "cmake").chmod(0o755)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            with subprocess.Popen(["make", "SETUP=true", "cpu"], cwd=ROOT, stderr=subprocess.PIPE, text=True,
+                                  env=os.environ | {"PATH": f"{folder}:{os.environ['PATH']}"}) as make:
+                self.assertEqual(make.stderr.readline(), "Waiting for another build in this folder to finish\n")
+                self.assertFalse((folder / "called").exists())
+                fcntl.flock(lock, fcntl.LOCK_UN)
+                self.assertEqual(make.wait(), 0)
+            self.assertEqual((folder / "called").read_text(), "-S\n--build\n")
 
     def test_make_variant_lints_a_file_first(self) -> None:
         lines = recipe("variant ADDER=my_adder.sv FRAC_WIDTH=15").splitlines()
