@@ -194,5 +194,5 @@ include synth/synth.mk
 include host/lab/lab.mk
 
 # A variable of the command line that no makefile reads is misspelt, unless CMake reads it from the environment.
-known := $(if $(given),$(shell grep -ohE '\b[A-Z][A-Z_0-9]+\b' $(MAKEFILE_LIST) | sort -u))
+known := $(if $(given),$(shell grep -ohE '\b[A-Z][A-Z_0-9]+\b|\([A-Z]\)' $(MAKEFILE_LIST) | tr -d '()' | sort -u))
 $(foreach name,$(filter-out $(known) CC CXX CFLAGS CXXFLAGS LDFLAGS -%,$(given)),$(error $(name): no target reads it; `make` lists what targets read))
