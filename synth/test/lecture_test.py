@@ -61,7 +61,7 @@ class Page(unittest.TestCase):
         """The rows as they are shown, and the two that the last adder takes."""
         numbers = random.Random(3)
         for a, b in [(181, 90), (0, 7), *((numbers.getrandbits(8), numbers.getrandbits(8)) for _ in range(5))]:
-            page = re.sub(r"</?(?:b|code)>|\u2009", "", lecture.page(given(a=a, b=b)))
+            page = re.sub(r"</?(?:b|code)>|\u2009", "", lecture.booth_section(given(a=a, b=b)))
             rows = re.findall(r"<tr><td>(row \d|sum)</td><td>([01]{16})</td><td>(\d+)", page)
             self.assertEqual([name for name, _, _ in rows], [*(f"row {k}" for k in range(5)), "sum"])
             self.assertTrue(all(int(bits, 2) == int(number) for _, bits, number in rows))
@@ -74,7 +74,7 @@ class Page(unittest.TestCase):
     def test_float_words_end_with_the_result(self) -> None:
         for y, said, bits in ((-0.3, "one integer bit, ten fraction bits, two guard bits", "0 01111 0011001101"),
                               (0.7, "two integer bits, ten fraction bits, one guard bit", "0 10000 0001100110")):
-            page = lecture.page(given(y=y))
+            page = lecture.float_section(given(y=y))
             self.assertIn(said, page)
             self.assertIn(f"<code>result_o</code></td><td><code>{bits.replace(' ', chr(0x2009))}</code>", page)
 
