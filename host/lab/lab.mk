@@ -39,6 +39,7 @@ ifneq ($(brought_words),)
 	@python3 -B -m synth.brought $(brought_words)
 	@$(SETUP) prove
 endif
+	@echo 'One card: proofs of files of yours, models, tests and pictures by both, synthesis. The first takes 8 to 10 minutes on two processors, others 3 to 5.' >&2
 	@$(SETUP) bench
 	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
 	@$(call alone,build/variant.lock,another make variant) $(MAKE) --no-print-directory card
