@@ -33,6 +33,7 @@ help:
 	  echo "$$group:"; \
 	  sed -nE "s/^([a-z-]+):.*## $$group: /  \1\t/p" $(MAKEFILE_LIST) | expand -t 13; \
 	done
+	@echo 'An empty value (TOP=) counts as not given.'
 
 cpu: ## use: build ./render, ./trace, ./compare, ./merge without Verilator and the simulated hardware
 	$(call build,cpu,render trace compare merge scenes)

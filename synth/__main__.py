@@ -24,7 +24,7 @@ def arguments() -> argparse.Namespace:
 
 
 # How long one design takes on two processors the first time, by its folder; what was measured before is kept.
-DURATIONS = {"arith": "about a minute", "fp": "about two minutes", "hit_test": "about five minutes"}
+DURATIONS = {"arith": "about a minute", "fp": "about a minute", "hit_test": "about five minutes"}
 
 
 def announce(what: str, rows: list[catalogue.Row], targets: measure.Targets, duration: str) -> None:

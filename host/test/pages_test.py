@@ -79,6 +79,14 @@ class Pages(unittest.TestCase):
                 self.assertEqual(make.wait(), 0)
             self.assertEqual((folder / "called").read_text(), "-S\n--build\n")
 
+    def test_set_ups_in_one_folder_take_turns(self) -> None:
+        with (ROOT / "build" / "setup.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            with subprocess.Popen([".ci/setup", "lint"], cwd=ROOT, stderr=subprocess.PIPE, text=True) as setup:
+                self.assertEqual(setup.stderr.readline(), "Waiting for another set-up in this folder to finish\n")
+                fcntl.flock(lock, fcntl.LOCK_UN)
+                self.assertEqual(setup.wait(), 0)
+
     def test_make_variant_lints_a_file_first(self) -> None:
         lines = recipe("variant ADDER=my_adder.sv FRAC_WIDTH=15").splitlines()
         self.assertEqual(lines[:2], ["true lint", "python3 -B -m synth.brought ADDER=my_adder.sv"])
