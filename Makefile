@@ -1,5 +1,10 @@
 # A thin front: CMake does the work, in build/. `make` alone lists the targets. Every target installs
 # what it needs (.ci/setup) and works on its own, in any order.
+
+# An empty value on the command line (`make synth TOP=`) counts as not given, for every target.
+given := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(name))),$(name)))
+$(foreach name,$(given),$(if $($(name)),,$(eval override undefine $(name))))
+
 JOBS ?= $(shell nproc)
 SCENE ?= scenes/cornell.obj
 PIXEL ?= 64,64
@@ -12,11 +17,13 @@ PYTHON := build/venv/bin/python3
 # VARIANTS: of another table than host/variants/variants.json (`make variant`).
 configure = cmake -S . -B build -G Ninja --log-level=WARNING \
   -DRAYGATE_VARIANTS=$(VARIANTS) -DRAYGATE_SIMULATION=ON
-# $(call build,KIND,TARGETS): sets up and builds these programs.
+# $(call alone,FILE,WHO): runs the command that follows when no other make holds the lock FILE, and says that it waits for WHO.
+alone = mkdir -p build; flock -n $(1) true || echo 'Waiting for $(2) in this folder to finish' >&2; flock -o $(1)
+# $(call build,KIND,TARGETS): sets up and builds these programs. One make at a time, as another one may configure build/
+# otherwise, with another table of variants for example.
 define build
 @$(SETUP) $(1)
-@$(configure) >/dev/null
-@cmake --build build -j $(JOBS) --target $(2)
+@$(call alone,build/lock,another build) sh -c '$(configure) >/dev/null && cmake --build build -j $(JOBS) --target $(2)'
 endef
 
 .PHONY: help cpu verilate example page wave render gallery test python wheel check mutate fuzz lint format clean
@@ -26,6 +33,7 @@ help:
 	  echo "$$group:"; \
 	  sed -nE "s/^([a-z-]+):.*## $$group: /  \1\t/p" $(MAKEFILE_LIST) | expand -t 13; \
 	done
+	@echo 'An empty value (TOP=) counts as not given.'
 
 cpu: ## use: build ./render, ./trace, ./compare, ./merge without Verilator and the simulated hardware
 	$(call build,cpu,render trace compare merge scenes)
@@ -65,7 +73,8 @@ wave: ## use: the waveform of one pixel's ray through the ray core: make wave PI
 
 # Long runs of single tests: ten million tests of the pipelined unit; the core's AXI ports by random traffic; renders and
 # ranks that are killed; each allocation, write, sync and rename failing in turn; the intervals of --error; a fault under
-# each guard of .ci/guards.toml, in a clone.
+# each guard of .ci/guards.toml, in a clone; every command of the README and the tutorials, in a clone and with nothing built before; the
+# image of Dockerfile, from a base that debootstrap makes.
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
 LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test
@@ -73,12 +82,14 @@ LONG_kills = RAYGATE_KILLS=$(or $(KILLS),100) build/run_test --gtest_filter='*Su
 LONG_faults = RAYGATE_FAULTS=0 build/faults_test
 LONG_ranks = RAYGATE_KILLS=$(or $(KILLS),20) build/ranks_test --gtest_filter='KilledRanks.*'
 LONG_guards = python3 .ci/guards.py try $(GUARDS)
+LONG_commands = python3 -B host/docs/commands.py
+LONG_image = .ci/image
 LONG_page = $(PYTHON) -m unittest sim/page/test/page_test.py
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=page | LONG=error SEEDS=1000 | LONG=guards GUARDS='mutation pip'
+test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=page | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page, error or guards))
-	$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test,$(LONG_$(LONG)))),worked_example))
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page, error, commands, image or guards))
+	$(if $(filter commands image,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test,$(LONG_$(LONG)))),worked_example)))
 	@$(LONG_$(LONG))
 else
 	$(call build,test,all)
@@ -180,6 +191,5 @@ include synth/synth.mk
 include host/lab/lab.mk
 
 # A variable of the command line that no makefile reads is misspelt, unless CMake reads it from the environment.
-given := $(foreach name,$(.VARIABLES),$(if $(findstring command line,$(origin $(name))),$(name)))
-known := $(if $(given),$(shell grep -ohE '\b[A-Z][A-Z_0-9]+\b' $(MAKEFILE_LIST) | sort -u))
+known := $(if $(given),$(shell grep -ohE '\b[A-Z][A-Z_0-9]+\b|\([A-Z]\)' $(MAKEFILE_LIST) | tr -d '()' | sort -u))
 $(foreach name,$(filter-out $(known) CC CXX CFLAGS CXXFLAGS LDFLAGS -%,$(given)),$(error $(name): no target reads it; `make` lists what targets read))

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <string>
 
 #include "Vhit_test_unit_open.h"
@@ -24,7 +25,7 @@ constexpr const char* kUsage =
     R"(usage: worked_example [--paper-divider] [--trace FILE]
 
 Sends the paper's worked example through the simulated hit-test unit and prints what every register
-holds after each clock edge, as IEEE binary32 words.
+holds after each clock edge, as IEEE binary32 words; - where it holds no word of the example.
 
   --paper-divider  cut quotients off after 21 significand bits, as the paper's divider did
   --trace FILE     write the waveform to FILE (VCD, for GTKWave and others)
@@ -34,6 +35,17 @@ holds after each clock edge, as IEEE binary32 words.
 constexpr std::array<float, 7> kWords = {3.3125f,  5.875f,    2.921875f, 15.1875f,
                                          0.46875f, 2.109375f, 1.75f};
 constexpr std::array<const char*, 7> kNames = {"Ix", "Iy", "Iz", "a", "b", "c", "d"};
+
+// What a register holds, and the edges after which it holds a word of the example: before and after
+// them it holds what it was reset to, or what the bus carries between tests.
+void print_register(std::uint32_t word, std::uint64_t edge, std::uint64_t first,
+                    std::uint64_t last = std::numeric_limits<std::uint64_t>::max()) {
+  if (first <= edge && edge <= last) {
+    std::printf(" %08X", word);
+  } else {
+    std::printf(" %-8s", "-");
+  }
+}
 
 struct Options {
   bool paper_divider = false;
@@ -55,12 +67,15 @@ void run(const Options& options) {
   const auto* inside = unit->rootp;
   const auto results = raygate::stream_tests(unit, std::vector{test}, [&] {
     const std::uint64_t edge = unit.clocks();
-    std::printf(
-        "%4d  %-2s  %08X %08X %08X %08X %08X %08X %08X", static_cast<int>(edge),
-        edge <= kNames.size() ? kNames[edge - 1] : "", inside->hit_test_unit__DOT__direction_1_q,
-        inside->hit_test_unit__DOT__direction_2_q, inside->hit_test_unit__DOT__direction_3_q,
-        inside->hit_test_unit__DOT__normal_q, inside->hit_test_unit__DOT__d_q,
-        inside->hit_test_unit__DOT__accumulator_q, inside->hit_test_unit__DOT__divisor_q);
+    std::printf("%4d  %-2s ", static_cast<int>(edge),
+                edge <= kNames.size() ? kNames[edge - 1] : "");
+    print_register(inside->hit_test_unit__DOT__direction_1_q, edge, 4, 10);
+    print_register(inside->hit_test_unit__DOT__direction_2_q, edge, 3, 9);
+    print_register(inside->hit_test_unit__DOT__direction_3_q, edge, 2, 8);
+    print_register(inside->hit_test_unit__DOT__normal_q, edge, 1, 7);
+    print_register(inside->hit_test_unit__DOT__d_q, edge, 7);
+    print_register(inside->hit_test_unit__DOT__accumulator_q, edge, 4);
+    print_register(inside->hit_test_unit__DOT__divisor_q, edge, 7);
     if (unit->valid_o) std::printf(" %08X", unit->bus_o);
     std::printf("\n");
   });

@@ -1,1 +1,15 @@
 """What each adder, core and unit of hw/ costs, measured with Yosys, ABC, OpenSTA and nextpnr."""
+
+import sys
+from types import TracebackType
+
+
+def _tell(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """Prints one line for Ctrl-C, after which Python exits with status 130, and a traceback for any other exception."""
+    if issubclass(kind, KeyboardInterrupt):
+        print("interrupted; what was finished is kept", file=sys.stderr)
+    else:
+        sys.__excepthook__(kind, error, trace)
+
+
+sys.excepthook = _tell

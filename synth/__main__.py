@@ -23,9 +23,19 @@ def arguments() -> argparse.Namespace:
     return chosen.parse(parser)
 
 
-def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
+# How long one design takes on two processors the first time, by its folder; what was measured before is kept.
+DURATIONS = {"arith": "about a minute", "fp": "about a minute", "hit_test": "about five minutes"}
+
+
+def announce(what: str, rows: list[catalogue.Row], targets: measure.Targets, duration: str) -> None:
+    """Says what is measured and about how long it takes."""
+    count = sum(len(flows) for row in rows for target, flows in row.flows.items() if target in targets.names)
+    print(f"{what}: {count} netlists on {', '.join(targets.names)}; {duration} the first time on two processors, less where results "
+          "are kept", file=sys.stderr, flush=True)
+
+
+def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
     """Measures one design and prints it; an adder beside the other kinds of its width."""
-    design = chosen.design(given)
     cells = design.top == "adder"
     flows = (("cells", "kept", "default", "fast") if cells else
              ("blocks",) if design.clock and design.folder in ("exact", "ray_core") else
@@ -37,12 +47,13 @@ def run_one(given: argparse.Namespace, targets: measure.Targets) -> int:
     rows = [catalogue.Row(design.name, design, plan)]
     if cells:
         width = dict(design.parameters).get("Width", adder_study.WIDTH)
-        libraries = {target: flows for target, flows in plan.items() if flows != catalogue.PLACED}
         others = [catalogue.design("adder", adder=kind, look_ahead=False if kind == "uniform" else None, Width=width)
                   for kind in ("ripple", "uniform", "prefix", catalogue.BEHAVIOURAL)]
-        rows += [catalogue.Row(design.name, other, libraries) for other in others if other.name != design.name]
+        rows += [catalogue.Row(design.name, other, plan) for other in others if other.name != design.name]
+    announce(design.name + f", beside {len(rows) - 1} other adders" * cells, rows, targets, DURATIONS.get(design.folder, "about ten minutes"))
     records, failures = measure.measure(rows, targets)
     print(report.section_tables(records, design.name))
+    print(report.legend(records))
     records = [record for record in records if record["design"] == design.name]
     for record in records:
         if "blocks" in record:
@@ -79,6 +90,7 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     rows = catalogue.report_rows()
     if given.top == "adders":
         rows = [row for row in rows if row.design.top == "adder"]
+    announce("All adders" if given.top else "The whole report", rows, targets, f"about {5 if given.top else 20} minutes")
     records, failures = measure.measure(rows, targets)
     sections = [("The paper's delay model", adder_study.model_table()),
                 ("Clock rates", report.clock_table(records)), ("Corners", report.corner_table(records))]
@@ -109,12 +121,12 @@ def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
     try:
-        one = bool(given.top) and given.top != "adders"
+        one = chosen.design(given) if given.top and given.top != "adders" else None
         targets = measure.Targets(
             measure.available(given.targets.split(",") if given.targets else None, whole=not one),
             int(given.jobs))
         if one:
-            return run_one(given, targets)
+            return run_one(one, targets)
         return run_all(given, targets)
     except (tools.MissingTool, FileNotFoundError, ValueError) as error:
         print(f"synth: {error}", file=sys.stderr)

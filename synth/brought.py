@@ -3,6 +3,7 @@
 A brought module has the ports of the module it replaces, and its parameters that say how wide they are; its name is free.
 It may use modules of hw/ and of its own file. `bring` writes a folder with a file of the replaced module's name, which
 Verilator (PATCHES of sim/verilate.cmake) and all of synth (`in_place`) then read instead of hw/'s.
+`python3 -m synth.brought ADDER=my.sv ...` lints the files alone, with Verilator and no Python package.
 """
 
 import contextlib
@@ -13,6 +14,7 @@ import json
 import pathlib
 import re
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 
 from synth import catalogue, cores, float_proofs, mapping, prove, store, tools
@@ -82,16 +84,22 @@ def bring(files: dict[str, str]) -> pathlib.Path:
     folder = folder_of(files)
     for word, name in files.items():
         original = next(catalogue.HW.glob(f"*/{PLACES[word].module}.sv"))
-        text, top = _own_names(name)
-        if re.search(rf"\b{original.stem}\b", _bare(text)):
-            _fail(name, text, top, f"uses {original.stem}, whose place it takes")
-        _lint(name, text, top, folder / "lint")
+        text, top = linted(word, name, folder / "lint")
         _fits(name, text, top, original, folder / "lint")
         header = re.search(r"^module .*?^\);", original.read_text(), re.M | re.S)[0]
         parameters = ", ".join(f".{one}({one})" for one in _parameters(header) if one in _parameters(text))
         ports = ", ".join(f".{port}({port})" for port in _ports(original.stem, original, folder / "lint"))
         store.replace(folder / original.name, f"{header}\n  {top} #({parameters}) u_brought ({ports});\nendmodule\n{text}")
     return folder
+
+
+def linted(word: str, name: str, folder: pathlib.Path) -> tuple[str, str]:
+    """The text of a file and the module that is meant. Raises ValueError, "FILE:LINE: what is wrong"."""
+    text, top = _own_names(name)
+    if re.search(rf"\b{PLACES[word].module}\b", _bare(text)):
+        _fail(name, text, top, f"uses {PLACES[word].module}, whose place it takes")
+    _lint(name, text, top, folder)
+    return text, top
 
 
 def _bare(text: str) -> str:
@@ -219,3 +227,21 @@ def judge(files: dict[str, str], unit: catalogue.Design) -> list[dict]:
                 if not row["holds"]:
                     break
     return rows
+
+
+def main() -> int:
+    """Lints the files of words such as ADDER=my.sv; 2 where one is refused."""
+    files = dict(word.split("=", 1) for word in sys.argv[1:])
+    try:
+        for word, name in files.items():
+            if word not in PLACES:
+                raise ValueError(f"{word}={name}: found a file, expected one of {', '.join(PLACES)} with it")
+            linted(word, name, folder_of(files) / "lint")
+    except (ValueError, tools.MissingTool) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

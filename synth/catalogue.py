@@ -242,9 +242,32 @@ def group_widths(widths: list[int]) -> str:
     return f"128'h{sum(width << 8 * place for place, width in enumerate(widths)):032x}"
 
 
+MOST_BITS = 4080  # of an operand: 16 groups of 255
+
+
+def check(top: str, source: str, given: dict[str, str]) -> None:
+    """Raises ValueError for a parameter that module `top` does not have, and for a value that it cannot have."""
+    declared = {name: (default, note) for name, default, note in re.findall(
+        r"^ +parameter [^=\n]*?(\w+) *= *([^,/\n]+),?[^/\n]*(.*)$", source, re.M)}
+    for name, value in given.items():
+        if name not in declared:
+            raise ValueError(f"{top}: found parameter {name}, expected one of {', '.join(declared)}")
+        stated = re.search(r"at least (\d+)", declared[name][1])
+        least = int(stated[1]) if stated else name.endswith("Width")
+        number = re.fullmatch(r"\d+", value)
+        if not number and not re.fullmatch(r"\d+'[bdh][\da-fA-F_]+", value):
+            raise ValueError(f"{top}: found {name}={value}, expected a whole number, or a constant such as 3'd1")
+        if number and not (least <= int(value) <= (MOST_BITS if name.endswith("Width") else 2**31 - 1)):
+            raise ValueError(f"{top}: found {name}={value}, expected at least {least:d}"
+                             + f" and at most {MOST_BITS}" * name.endswith("Width"))
+    exponent, fraction = (given.get(name, declared.get(name, ("",))[0].strip()) for name in ("ExpWidth", "FracWidth"))
+    if exponent.isdigit() and fraction.isdigit() and not 2 <= int(fraction) <= 2 ** min(int(exponent) - 1, 12):
+        raise ValueError(f"{top}: found ExpWidth={exponent} and FracWidth={fraction}, expected 2 <= FracWidth <= 2^(ExpWidth-1)")
+
+
 def design(top: str, name: str = "", adder: str = "", widths: list[int] | None = None,
            look_ahead: bool | None = None, **parameters: object) -> Design:
-    """A design of hw/ by its module's name; unknown modules raise FileNotFoundError.
+    """A design of hw/ by its module's name. Raises FileNotFoundError for an unknown module, ValueError where `check` does.
 
     `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: carry-select groups. The others: as in the RTL,
     but for carry-select groups of an `adder` alone, which ripple, as ADDERS and all pages have it.
@@ -264,12 +287,14 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
         look_ahead = False
     if look_ahead is not None:
         text["LookAhead"] = f"1'b{look_ahead:d}"
+    source = (HW / folder / f"{top}.sv").read_text()
+    check(top, source, text)
     if not name:
         words = [top, adder, "_".join(map(str, widths or [])),
                  {None: "", True: "look_ahead", False: "" if top == "adder" else "ripple_groups"}[look_ahead],
                  *(f"{key}{value}" for key, value in parameters.items())]
         name = "-".join(word for word in words if word)
-    clocked = folder in ("exact", "hit_test", "ray_core") and " clk_i," in (HW / folder / f"{top}.sv").read_text()
+    clocked = folder in ("exact", "hit_test", "ray_core") and " clk_i," in source
     return Design(name, top, folder, tuple(text.items()), clock="clk_i" if clocked else "")
 
 

@@ -28,17 +28,18 @@ def whole_numbers(text: str) -> str:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options that `design` reads; an empty value counts as not given, so that a Makefile can pass all."""
-    parser.add_argument("--adder", help="ripple, uniform, graded, prefix or tool")
-    parser.add_argument("--width", type=whole(1, 4080), help="bits of an adder or a multiplier")
+    parser.add_argument("--adder", help="ripple, uniform, graded, prefix or behavioural")
+    parser.add_argument("--width", type=whole(1, catalogue.MOST_BITS), help="bits of an adder or a multiplier")
     parser.add_argument("--groups", type=whole_numbers, help="carry-select groups, least significant first: 4,5,7,...")
     parser.add_argument("--look-ahead", type=whole(0, 1), help="1: groups add by carry look-ahead, 0: by ripple carry, as those of an adder do if not given")
     parser.add_argument("--exp-width", type=whole(2, 15), help="exponent bits of a float core")
-    parser.add_argument("--frac-width", type=whole(1, 112), help="fraction bits of a float core")
+    parser.add_argument("--frac-width", type=whole(2, 112), help="fraction bits of a float core")
     parser.add_argument("--exact", type=whole(0, 64), help="exact_units of the ray core")
 
 
 def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
-    """The command line, None in place of what is empty."""
+    """The command line, None in place of what is empty. A wrong value is told in one line, without all options."""
+    parser.print_usage = lambda *_: None
     given = parser.parse_args()
     for name, value in vars(given).items():
         setattr(given, name, value or None)

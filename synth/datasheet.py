@@ -24,8 +24,8 @@ DIAGRAMS = cores.HW / "diagrams"
 MARK = re.compile(r"<!-- (?!end)(\w+) -->\n(.*?)<!-- end -->", re.S)
 MODULES = cores.HW / "modules.csv"
 FIGURES = ["mm2", "ns", "MHz"]
-# Design of the catalogue -> the flow that is shown.
-SHOWN = {"adder-graded": "fast", "booth-graded-ripple-groups": "fast", "fp-multiplier": "fast",
+# Design of the catalogue -> the flow that is shown. Adders have look-ahead groups, as in the units.
+SHOWN = {"adder-graded-look-ahead": "fast", "booth-graded": "fast", "fp-multiplier": "fast",
          "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
          "hit_test_pipeline": "parts", "iterative_hit_test_unit-RowsPerClock1": "parts", "exact_unit": "blocks"}
 
@@ -106,13 +106,20 @@ def lint(text: str) -> None:
                *cores.files("hit_test"), file], file.with_suffix(".log"))
 
 
+def say(what: str) -> None:
+    """A line of progress."""
+    print(f"datasheet: {what}", file=sys.stderr, flush=True)
+
+
 def write() -> None:
     """Fills the text and draws the diagrams."""
     from synth import diagram  # by graphviz
 
     for file, text in registers.made(registers.PAGE.read_text()).items():
         file.write_text(text)
+    say(f"measuring {len(SHOWN)} designs for {MODULES.relative_to(tools.ROOT)}: about ten minutes the first time on two processors")
     MODULES.write_text(modules(measured_figures()))
+    say("filling the pages of hw, drawing timing and block diagrams: about a minute")
     fpgas = fpga.table()
     for page in pages():
         page.write_text(filled(page, page.read_text(), fpgas))

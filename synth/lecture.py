@@ -120,11 +120,11 @@ def wire(begin: tuple[float, float], end: tuple[float, float], value: int) -> st
     return f'<path class="w{value}" d="M{x0} {y0}C{x0} {y0 + bend} {x1} {y1 - bend} {x1} {y1}"/>'
 
 
-def binary(number: int, width: int) -> str:
-    """In groups of four bits, from the lowest."""
-    digits = f"{number:0{width}b}"
-    first = width % 4
-    return "\u2009".join(filter(None, [digits[:first], *(digits[k:k + 4] for k in range(first, width, 4))]))
+def binary(number: int, width: int, marked: range = range(0)) -> str:
+    """In groups of four bits, from the lowest; the bits of places `marked` are in <b>."""
+    bits = [f"<b>{number >> place & 1}</b>" if place in marked else f"{number >> place & 1}" for place in range(width)]
+    groups = ["".join(reversed(bits[k:k + 4])) for k in range(0, width, 4)]
+    return "\u2009".join(reversed(groups)).replace("</b><b>", "")
 
 
 def table(header: list[str], rows: list[list[str]]) -> str:
@@ -158,28 +158,37 @@ def booth_section(given: argparse.Namespace) -> str:
     number = lambda name: word(module["names"][name], values)  # noqa: E731
     digits = width // 2 + 1
     one, two, negative = (number(name) for name in ("one", "two", "negative"))
-    rows = []
-    for k in range(digits):
-        size = (one >> 2 * k & 1) + 2 * (two >> 2 * k & 1)
-        row = number(f"gen_row[{k}].row")
-        rows.append([str(k), ("-" if negative >> 2 * k & 1 else "") + str(size), f"4<sup>{k}</sup>",
-                     f"<code>{binary(row, width + 1)}</code>"])
     queue = number("u_tree.queue")
     count = len(module["names"]["u_tree.queue"]) // (2 * width)
     words = [queue >> 2 * width * k & (1 << 2 * width) - 1 for k in range(count)]
-    steps = []
-    for k in range((count - digits) // 2):
-        into, out = words[3 * k:3 * k + 3], words[digits + 2 * k:digits + 2 * k + 2]
-        steps += [[str(k) if first else "", what, f"<code>{binary(row, 2 * width)}</code>"]
-                  for row, what, first in zip((*into, *out), ("row", "row", "row", "sum", "carry"), (1, 0, 0, 0, 0), strict=True)]
     product = word(module["ports"]["product_o"]["bits"], values)
-    total, carry = words[-2:]
+    bits = lambda number: f"<code>{binary(number, 2 * width)}</code>"  # noqa: E731
+    multiples, rows = [], []
+    for k in range(digits):
+        size, sign = (one >> 2 * k & 1) + 2 * (two >> 2 * k & 1), "-" * (negative >> 2 * k & 1)
+        multiple = number(f"gen_row[{k}].row")
+        multiples.append([str(k), f"{sign}{size}", f"{sign}{size * given.a} x 4<sup>{k}</sup>", f"<code>{binary(multiple, width + 1)}</code>"])
+        marked = binary(words[k], 2 * width, range(2 * k, 2 * k + width + 1))
+        rows.append([f"row {k}", f"<code>{marked}</code>", str(words[k])])
+    above, total = divmod(sum(words[:digits]), 1 << 2 * width)
+    rows.append(["sum", bits(total), f"{total} + {above} x 2<sup>{2 * width}</sup>"])
+    names = [*(f"row {k}" for k in range(digits)), *(f"{what} {k}" for k in range((count - digits) // 2) for what in ("sum", "carry"))]
+    steps = [[str(k) if place == 3 * k else "", names[place], bits(words[place]), str(words[place])]
+             for k in range((count - digits) // 2) for place in (*range(3 * k, 3 * k + 3), *range(digits + 2 * k, digits + 2 * k + 2))]
+    steps += [["last" if place == count - 2 else "", names[place], bits(words[place]), str(words[place])] for place in (count - 2, count - 1)]
+    steps.append(["", "product", bits(product), f"<b>{product}</b>"])
     return (f"<section><h2>Booth multiplier, {width} x {width} bits</h2><p>{given.a} x {given.b} = <b>{product}</b>: "
-            f"the digits of {given.b} in radix 4 are -2 to 2, and each makes one partial product of {given.a}.</p>"
-            + table(["digit", "value", "weight", "partial product (complement where negative)"], rows)
-            + "<p>Carry-save tree: each adder makes two rows of three, without passing a carry on.</p>"
-            + table(["adder", "", "bits"], steps)
-            + f"<p>The last adder: {total} + {carry} = <b>{product}</b> modulo 2<sup>{2 * width}</sup>.</p></section>")
+            f"the digits of {given.b} in radix 4 are -2 to 2, and each makes one partial product of {given.a}. A negative one is given "
+            f"as the complement of its bits: 1 too little, and without its sign, which is -2<sup>{width + 1}</sup>.</p>"
+            + table(["digit", "value", "stands for", "partial product"], multiples)
+            + f"<p>The rows that are added hold the partial products in their places (marked) and, in free places around them, what "
+              f"those lack. Below the last one stands a 1 for each negative digit k, of weight 4<sup>k</sup>. Call n the sum of these ones. "
+              f"The signs together are -n x 2<sup>{width + 1}</sup>, which modulo 2<sup>{2 * width}</sup> is 2<sup>{width + 1}</sup> plus the "
+              f"complement of n times 2<sup>{width + 1}</sup>: those bits stand above row 0, and one of them above row 1. So the rows "
+              f"add up to the product, modulo 2<sup>{2 * width}</sup>:</p>"
+            + table(["", "bits", "number"], rows)
+            + "<p>Carry-save tree: each adder makes two rows of three, without passing a carry on. The last adder passes carries on.</p>"
+            + table(["adder", "", "bits", "number"], steps) + "</section>")
 
 
 def float_section(given: argparse.Namespace) -> str:
@@ -198,14 +207,18 @@ def float_section(given: argparse.Namespace) -> str:
     way = ([row("near path", "near_difference", "difference of neighbours, exact"), row("", "near_count", "zeros before the leading one"),
             row("", "near_normal", "shifted left by as many places")] if near else
            [row("far path", "far_aligned", "the smaller one, shifted right by the distance"),
-            row("", "far_sticky", "1 where a bit was lost on the way"), row("", "far_sum", "the sum, with a guard bit"),
+            row("", "far_sticky", "1 where a bit was lost on the way"),
+            row("", "far_sum", "the difference: one integer bit, ten fraction bits, two guard bits" if values[names["u_stages.subtract"][0]]
+                else "the sum: two integer bits, ten fraction bits, one guard bit"),
             row("round", "u_round.increment", "1 where the result is rounded up")])
     result = word(module["ports"]["result_o"]["bits"], values)
+    fields = "\u2009".join((f"{result >> 15}", f"{result >> 10 & 31:05b}", f"{result & 1023:010b}"))
     (shown,) = struct.unpack("<e", struct.pack("<H", result))
     operands = [struct.unpack("<e", struct.pack("<H", bits))[0] for bits in packed]
     rows = [row("unpack", "a_exp", "exponent of the first, biased by 15"), row("", "a_sig", "its significand with the leading one"),
             row("", "b_exp", "of the second"), row("", "b_sig", ""), row("order", "swap", "1 where the second is the larger one"),
-            row("", "distance", "between the exponents"), *way]
+            row("", "distance", "between the exponents"), *way,
+            ["result", "<code>result_o</code>", f"<code>{fields}</code>", str(result), f"sign, exponent, fraction: <b>{shown!r}</b>"]]
     return (f"<section><h2>Float adder, binary16</h2><p>{operands[0]!r} + {operands[1]!r} = <b>{shown!r}</b>, rounded to the nearest; "
             f"words <code>{packed[0]:04x}</code>, <code>{packed[1]:04x}</code> and <code>{result:04x}</code>.</p>"
             + table(["step", "word", "bits", "number", "what it is"], rows) + "</section>")
@@ -221,7 +234,7 @@ text { font: 11px system-ui, sans-serif; text-anchor: middle; fill: var(--ink); 
 text.v1, text.v0, text.name { font-size: 15px; } text.v1 { font-weight: 700; fill: var(--one); }
 rect.cell { fill: var(--paper); stroke: var(--faint); } rect.slow { stroke: var(--ink); stroke-width: 2.5; }
 path { fill: none; stroke-width: 1.2; } path.w0 { stroke: var(--faint); } path.w1 { stroke: var(--one); stroke-width: 1.8; }
-table { border-collapse: collapse; font-size: 14px; } td, th { padding: 2px 12px 2px 0; text-align: left; white-space: nowrap; }
+table { border-collapse: collapse; font-size: 14px; } code b { background: color-mix(in srgb, var(--one) 25%, transparent); font-weight: inherit; } td, th { padding: 2px 12px 2px 0; text-align: left; white-space: nowrap; }
 @media print { body { max-width: none; margin: 0; } }
 </style></head><body><h1>What happens in an adder</h1>
 <p>a = $a = <code>$a_bits</code>, b = $b = <code>$b_bits</code>. Drawn from the netlists of <code>hw/arith</code> and <code>hw/fp</code>: time runs

@@ -29,12 +29,21 @@ def cost(record: dict | None) -> str:
 def section_tables(records: list[dict], section: str) -> str:
     """A table for each library (a column for each flow), and one for the FPGAs."""
     mine = [record for record in records if record["section"] == section]
-    groups = [(f"{library.title}: area / ns", [(library.name, flow) for flow in FLOWS])
+    groups = [(f"{library.title}: um2 / ns", [(library.name, flow) for flow in FLOWS])
               for library in LIBRARIES]
     groups.append(("LUTs / MHz", [(device.name, "placed") for device in FPGAS]))
     return "\n".join(_table(mine, f"{section}, {title}", columns)
                      for title, columns in groups if any(
                          (record["target"], record["flow"]) in columns for record in mine))
+
+
+def legend(records: list[dict]) -> str:
+    """What the numbers and the flows of the tables are, a line each."""
+    flows = [flow for flow in FLOWS if any(record["flow"] == flow for record in records)]
+    parts = ["um2 / ns: of the cells alone; the slowest path at the typical corner, without wires"] if flows else []
+    if any("mhz" in record for record in records):
+        parts.append("LUTs / MHz: placed and routed between registers; the median of the seeds")
+    return "\n".join([*parts, *(f"{flow}: {FLOWS[flow]}" for flow in flows)]) + "\n"
 
 
 def _table(records: list[dict], title: str, columns: list[tuple[str, str]]) -> str:

@@ -75,7 +75,7 @@ def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple
         file.unlink(missing_ok=True)  # a run that fails must not leave an older answer behind
         folder.mkdir(parents=True, exist_ok=True)
         result = make()
-        file.write_text(json.dumps({"key": wanted, "result": result}, indent=1))
+        replace(file, json.dumps({"key": wanted, "result": result}, indent=1))  # in one step: Ctrl-C leaves no half of it
         return json.loads(file.read_text())["result"], False
 
 

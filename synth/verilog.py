@@ -5,7 +5,6 @@ such as Icarus Verilog. Exit status 2 for a module or a parameter that there isn
 """
 
 import pathlib
-import re
 import sys
 
 from synth import catalogue, mapping, tools
@@ -21,27 +20,15 @@ def write(design: catalogue.Design, out: pathlib.Path) -> None:
               {**mapping.elaboration(design), "OUT": str(out)})
 
 
-def parameters(words: list[str], source: str) -> dict[str, str]:
-    """Name=value words as a dictionary; raises ValueError for what is none of `source`'s parameters."""
-    known = re.findall(r"^ +parameter .*?(\w+) *=", source, re.M)
-    given = dict(word.split("=", 1) if "=" in word else (word, "") for word in words)
-    for name, value in given.items():
-        if name not in known or not value:
-            raise ValueError(f"{name}={value}: expected Name=value, with one of {', '.join(known)}")
-    return given
-
-
 def main() -> int:
     """Runs the command line."""
     try:
         if len(sys.argv) < 2 or not sys.argv[1]:
             raise ValueError("expected TOP, a module of hw/: make verilog TOP=fp_adder_stages "
                              "[PARAMS='ExpWidth=5 FracWidth=10']")
-        design = catalogue.design(sys.argv[1])
-        (source,) = [file for file in design.sources() if file.stem == design.top]
-        given = parameters(" ".join(sys.argv[2:]).split(), source.read_text())
-        out = OUT / f"{design.top}.v"
-        write(catalogue.design(design.top, **given), out)
+        words = [word.partition("=") for word in " ".join(sys.argv[2:]).split()]
+        out = OUT / f"{sys.argv[1]}.v"
+        write(catalogue.design(sys.argv[1], **{name: value for name, _, value in words}), out)
     except (tools.MissingTool, tools.ToolFailed, FileNotFoundError, ValueError) as error:
         print(f"verilog: {error}", file=sys.stderr)
         return 2

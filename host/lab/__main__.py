@@ -100,6 +100,9 @@ def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     try:
         return run(arguments())
+    except KeyboardInterrupt:
+        print("interrupted; the same command goes on from here", file=sys.stderr)
+        return 130
     except subprocess.CalledProcessError as error:  # which has said why, or had its standard error kept
         print(f"{error.stderr or ''}error: {shlex.join(map(str, error.cmd))}: ended with status {error.returncode}",
               file=sys.stderr)

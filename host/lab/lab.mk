@@ -1,12 +1,12 @@
 # What the lab measures: host/lab/README.md. Rows are kept in build/results/, reports written to build/reports/. An interrupted
 # run goes on when it is started again.
-.PHONY: stress bench variant peers speed core
+.PHONY: stress bench variant card peers speed core
 
 comma := ,
 # $(call of,PARTS): those of PARTS that were asked for; all without ONLY.
 of = $(if $(ONLY),$(filter $(1),$(subst $(comma), ,$(ONLY))),$(1))
 define measure
-@$(PYTHON) -B -m host.lab $@ $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
+@$(PYTHON) -B -m host.lab $(@:card=variant) $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
   $(if $(SCENES),--scenes '$(SCENES)') $(if $(RENDER),--render '$(RENDER)') $(if $(BEFORE),--before '$(BEFORE)') \
   $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS)
 endef
@@ -25,12 +25,23 @@ bench: ## measure: run time against error, adder to picture: make bench [QUICK=1
 	$(measure)
 
 variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),$(word)=$($(word))))
-variant: VARIANTS = $(CURDIR)/build/results/variant.json
-variant: SCENES = $(SCENE)
+brought_words = $(filter %.sv %.v,$(variant_words))
 variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial WIRES=1]
+ifneq ($(brought_words),)
+	@$(SETUP) lint
+	@python3 -B -m synth.brought $(brought_words)
+	@$(SETUP) prove
+endif
+	@echo 'One card: proofs of files of yours, models, tests and pictures by both, synthesis. The first takes 8 to 10 minutes on two processors, others 3 to 5.' >&2
 	@$(SETUP) bench
-	@$(if $(filter %.sv %.v,$(variant_words)),$(SETUP) prove)
 	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
+	@$(call alone,build/variant.lock,another make variant) $(MAKE) --no-print-directory card
+
+# Of `make variant`, one at a time: its table, its build/lab-variant and its card.
+card: VARIANTS = $(CURDIR)/build/results/variant.json
+card: SCENES = $(SCENE)
+card: export RAYGATE_LAB = lab-variant
+card:
 	@$(PYTHON) -B -m host.lab.targets.variant $(if $(KEEP_GOING),--keep-going) $(variant_words)
 	$(call build,bench,lab)
 	$(measure) $(if $(ENERGY),--energy) $(if $(WIRES),--wires) --variant $(variant_words)

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from host.lab import machine, rows as kept
 from host.lab.rows import KEPT, ROOT
 
-LAB = ROOT / "build" / "lab"
+LAB = ROOT / "build" / os.environ.get("RAYGATE_LAB", "lab")  # `make variant` has its own
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Step:
 
     def command(self, target: str) -> str:
         """What makes its rows again."""
-        return shlex.join(["build/lab", *map(str, self.words)]) if self.words else f"make {target} ONLY={self.part}"
+        return shlex.join([f"build/{LAB.name}", *map(str, self.words)]) if self.words else f"make {target} ONLY={self.part}"
 
 
 def _measure(step: Step, file: pathlib.Path) -> None:

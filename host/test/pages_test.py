@@ -1,9 +1,12 @@
 """The Markdown pages: links lead to files and headings that are there, and `make` targets that they name exist. And `make`
-refuses variables that it does not know."""
+refuses variables that it does not know, reads an empty one as none, and builds one thing at a time."""
 
+import fcntl
+import os
 import pathlib
 import re
 import subprocess
+import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -19,6 +22,11 @@ def anchors(text: str) -> set[str]:
     """What GitHub makes of the headings."""
     heads = re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", re.sub(r"\[(.*?)\]\(.*?\)", r"\1", head).lower()).replace(" ", "-") for head in heads}
+
+
+def recipe(words: str) -> str:
+    """What `make` would run."""
+    return subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False).stdout
 
 
 class Pages(unittest.TestCase):
@@ -51,10 +59,45 @@ class Pages(unittest.TestCase):
             self.assertIn(target, targets, f"{page.relative_to(ROOT)}: make {target}")
 
     def test_make_refuses_a_misspelt_variable(self) -> None:
-        for words, status in (("variant FRACWIDTH=15", 2), ("variant FRAC_WIDTH=15 ARGS=--a=1", 0), ("cpu CXX=clang++", 0)):
+        for words, status in (("variant FRACWIDTH=15", 2), ("variant FRAC_WIDTH=15 ARGS=--a=1", 0), ("cpu CXX=clang++", 0), ("lecture A=1365 B=2731 X=1.5 Y=-0.3", 0),
+                              ("lecture Z=1", 2)):
             done = subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, status, words)
-            self.assertEqual("FRACWIDTH: no target reads it" in done.stderr, status == 2)
+            self.assertEqual(": no target reads it" in done.stderr, status == 2)
+
+    def test_builds_in_one_folder_take_turns(self) -> None:
+        with tempfile.TemporaryDirectory() as name, (ROOT / "build" / "lock").open("w") as lock:
+            folder = pathlib.Path(name)
+            (folder / "cmake").write_text(f"#!/bin/sh\necho $1 >>{folder}/called\n")
+            (folder / "cmake").chmod(0o755)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            with subprocess.Popen(["make", "SETUP=true", "cpu"], cwd=ROOT, stderr=subprocess.PIPE, text=True,
+                                  env=os.environ | {"PATH": f"{folder}:{os.environ['PATH']}"}) as make:
+                self.assertEqual(make.stderr.readline(), "Waiting for another build in this folder to finish\n")
+                self.assertFalse((folder / "called").exists())
+                fcntl.flock(lock, fcntl.LOCK_UN)
+                self.assertEqual(make.wait(), 0)
+            self.assertEqual((folder / "called").read_text(), "-S\n--build\n")
+
+    def test_set_ups_in_one_folder_take_turns(self) -> None:
+        with (ROOT / "build" / "setup.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            with subprocess.Popen([".ci/setup", "lint"], cwd=ROOT, stderr=subprocess.PIPE, text=True) as setup:
+                self.assertEqual(setup.stderr.readline(), "Waiting for another set-up in this folder to finish\n")
+                fcntl.flock(lock, fcntl.LOCK_UN)
+                self.assertEqual(setup.wait(), 0)
+
+    def test_make_variant_lints_a_file_first(self) -> None:
+        lines = recipe("variant ADDER=my_adder.sv FRAC_WIDTH=15").splitlines()
+        self.assertEqual(lines[:2], ["true lint", "python3 -B -m synth.brought ADDER=my_adder.sv"])
+        lines = recipe("variant ADDER=prefix FRAC_WIDTH=15").splitlines()
+        self.assertRegex(lines[0], "^echo 'One card: .*8 to 10 minutes")
+        self.assertNotIn("synth.brought", " ".join(lines))
+
+    def test_an_empty_variable_of_make_counts_as_not_given(self) -> None:
+        for target, names in (("wave", "SCENE PIXEL ARGS"), ("synth", "TOP JOBS SYNTH_JOBS SYNTH_BUDGET"), ("variant", "ADDER FRAC_WIDTH SCENE"),
+                              ("verilog TOP=adder", "PARAMS"), ("mutate", "COUNT QUICK"), ("fuzz", "FUZZ_SECONDS"), ("test", "LONG")):
+            self.assertEqual(recipe(" ".join([target, *(f"{name}=" for name in names.split())])), recipe(target), target)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 //
 // Arith: Structural is booth_multiplier, whose the other parameters are; Behavioural is `*`.
 module multiplier #(
-  parameter int unsigned Width = 24,
+  parameter int unsigned Width = 24,  // at least 2
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter bit ConstantRow = 1'b0

@@ -1,7 +1,10 @@
 """Modules brought along: what is no such module is refused with its line, what does not compute is refuted in words."""
 
+import contextlib
+import io
 import pathlib
 import re
+import sys
 import tempfile
 import unittest
 import unittest.mock
@@ -58,6 +61,16 @@ class Brought(unittest.TestCase):
                 brought.bring({"ADDER": self.file(text)})
         with self.assertRaisesRegex(ValueError, "nowhere.sv: No such file"):
             brought.bring({"ADDER": "nowhere.sv"})
+
+    def test_a_file_alone_is_linted(self) -> None:
+        bad = self.file(f"{HEAD}  assign sum_o = a_i\nendmodule\n")
+        for words, status, said in (([f"ADDER={bad}"], 2, rf"error: {bad}:7:1: syntax error.*\n"),
+                                    ([f"UNIT={bad}"], 2, r"error: UNIT=.*: found a file, expected one of ADDER, MULTIPLIER, .*\n"),
+                                    ([f"ADDER={EXERCISES}/carry_skip_adder.sv"], 0, "")):
+            told = io.StringIO()
+            with contextlib.redirect_stderr(told), unittest.mock.patch.object(sys, "argv", ["brought", *words]):
+                self.assertEqual(brought.main(), status, words)
+            self.assertRegex(told.getvalue(), f"^{said}$")
 
     def test_a_counterexample_in_words(self) -> None:
         row = self.judged(ADDER=self.file(HEAD + FORGETS))[-1]

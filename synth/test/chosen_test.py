@@ -1,6 +1,8 @@
 """A name on the command line is the design that the report and the layouts have under that name."""
 
 import argparse
+import contextlib
+import io
 import sys
 import unittest
 from unittest import mock
@@ -30,6 +32,25 @@ class Chosen(unittest.TestCase):
 
     def test_groups_of_a_multiplier_are_as_in_the_rtl(self) -> None:
         self.assertNotIn("LookAhead", dict(design("--top=booth_multiplier", "--adder=graded").parameters))
+
+    def test_parameters_that_a_module_cannot_have(self) -> None:
+        for words, said in (("--top=fp_adder --groups=4,5", "fp_adder: found parameter GroupWidths, expected one of ExpWidth, FracWidth, Arith, Adder"),
+                            ("--top=fp_adder --exp-width=4", r"fp_adder: found ExpWidth=4 and FracWidth=23, expected 2 <= FracWidth <= 2\^"),
+                            ("--top=booth_multiplier --width=1", "booth_multiplier: found Width=1, expected at least 2 and at most 4080"),
+                            ("--top=booth_multiplier --adder=behavioural", "found parameter Arith, expected one of Width, ")):
+            with self.subTest(words), self.assertRaisesRegex(ValueError, said):
+                design(*words.split())
+        for name, value, said in (("Width", "0", "expected at least 1"), ("Width", "-3", "expected a whole number"), ("Width", "", "expected a whole"),
+                                  ("Depth", "2", "found parameter Depth, expected one of Width, Arith, Adder, GroupWidths, LookAhead")):
+            with self.subTest(name, value=value), self.assertRaisesRegex(ValueError, f"^adder: .*{said}"):
+                catalogue.design("adder", **{name: value})
+
+    def test_a_wrong_value_is_told_in_one_line(self) -> None:
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said), self.assertRaises(SystemExit) as ended:
+            design("--top=fp_adder", "--frac-width=1")
+        self.assertEqual((ended.exception.code, said.getvalue().count("\n")), (2, 1))
+        self.assertRegex(said.getvalue(), "--frac-width: expected a whole number from 2 to 112, got '1'")
 
 
 if __name__ == "__main__":

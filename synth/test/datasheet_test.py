@@ -2,7 +2,7 @@
 
 import unittest
 
-from synth import cores, datasheet
+from synth import catalogue, cores, datasheet
 
 
 class Datasheet(unittest.TestCase):
@@ -30,6 +30,13 @@ module m;
         self.assertEqual(found["adder"], ["0.064", "2.27", ""])
         modules = {file.stem for core in cores.names() for file in cores.files(core) if not file.stem.endswith("_pkg")}
         self.assertEqual(modules ^ found.keys(), set())
+
+    def test_figures_are_of_adders_that_units_have(self):
+        """Their groups add by look-ahead."""
+        ripple = {row.design.name for row in catalogue.report_rows() if dict(row.design.parameters).get("LookAhead") == "1'b0"}
+        self.assertEqual(ripple & datasheet.SHOWN.keys(), set())
+        self.assertTrue(ripple)
+        self.assertEqual(set(datasheet.SHOWN) - {row.design.name for row in catalogue.report_rows()}, set())
 
     def test_marks(self):
         """Old text gives way to the new; what was not measured stays; an unknown mark is refused."""

@@ -57,6 +57,27 @@ class Page(unittest.TestCase):
     def test_has_a_name_for_every_word_of_the_near_path(self) -> None:
         self.assertIn("near_difference", lecture.page(given(x=1.0, y=-0.99)))
 
+    def test_booth_rows_add_up(self) -> None:
+        """The rows as they are shown, and the two that the last adder takes."""
+        numbers = random.Random(3)
+        for a, b in [(181, 90), (0, 7), *((numbers.getrandbits(8), numbers.getrandbits(8)) for _ in range(5))]:
+            page = re.sub(r"</?(?:b|code)>|\u2009", "", lecture.booth_section(given(a=a, b=b)))
+            rows = re.findall(r"<tr><td>(row \d|sum)</td><td>([01]{16})</td><td>(\d+)", page)
+            self.assertEqual([name for name, _, _ in rows], [*(f"row {k}" for k in range(5)), "sum"])
+            self.assertTrue(all(int(bits, 2) == int(number) for _, bits, number in rows))
+            *parts, total = (int(number) for _, _, number in rows)
+            self.assertEqual((sum(parts) % 2**16, total), (a * b, a * b))
+            last = re.search(r"<td>last</td><td>sum \d</td><td>\d+</td><td>(\d+)</td></tr><tr><td></td><td>carry \d</td><td>\d+</td>"
+                             r"<td>(\d+)</td></tr><tr><td></td><td>product</td><td>\d+</td><td>(\d+)</td>", page)
+            self.assertEqual((sum(map(int, last.groups()[:2])) % 2**16, int(last[3])), (a * b, a * b))
+
+    def test_float_words_end_with_the_result(self) -> None:
+        for y, said, bits in ((-0.3, "one integer bit, ten fraction bits, two guard bits", "0 01111 0011001101"),
+                              (0.7, "two integer bits, ten fraction bits, one guard bit", "0 10000 0001100110")):
+            page = lecture.float_section(given(y=y))
+            self.assertIn(said, page)
+            self.assertIn(f"<code>result_o</code></td><td><code>{bits.replace(' ', chr(0x2009))}</code>", page)
+
     def test_opens_and_closes_each_element(self) -> None:
         opened: list[str] = []
 

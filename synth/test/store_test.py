@@ -2,6 +2,9 @@
 
 import concurrent.futures
 import pathlib
+import signal
+import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -26,6 +29,12 @@ class Cached(unittest.TestCase):
         self.assertEqual(len(made), 1)
         self.assertEqual(sorted(kept for _, kept in results), [False, True, True, True])
         self.assertTrue(all(result == {"area": 7} for result, _ in results))
+
+    def test_ctrl_c_prints_one_line(self):
+        done = subprocess.run([sys.executable, "-c", "import synth\nraise KeyboardInterrupt"], cwd=tools.ROOT, capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(done.returncode, -signal.SIGINT)  # a shell says 130
+        self.assertEqual(done.stderr, "interrupted; what was finished is kept\n")
 
     def test_another_key_makes_it_anew(self):
         with tempfile.TemporaryDirectory() as folder:

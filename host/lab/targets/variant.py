@@ -67,7 +67,7 @@ def table(words: list[str]) -> list[dict]:
     """Lines of variants.json: binary32's, that of binary32 in the same unit, and the one that the words describe, which
     may have an `adder`, too."""
     files = brought_files(words)
-    mine: dict = dict(read_word(word) for word in words if not word.endswith(FILES))
+    mine: dict = dict(read_word(word) for word in words if word.partition("=")[0] not in files)
     if files:
         mine |= {"brought": str(brought.folder_of(files))} | ({"adder": "prefix"} if "ADDER" in files else {})
     exponent_bits, digits = mine.get("exponent_bits", 8), mine.get("digits", 24)

@@ -37,6 +37,14 @@ class WorkedExample(unittest.TestCase):
         self.assertEqual(lines()[0], "I = (3.3125, 5.875, 2.921875), N = (15.1875, 0.46875, 2.109375), "
                          "d = 1.75: the words 1 to 7")
 
+    def test_noise_of_the_bus_is_not_shown(self):
+        """Between tests the bus carries noise, which goes through N into I-3, I-2 and I-1."""
+        rows = [line.split() for line in lines()[2:-1]]
+        self.assertEqual(rows[0], "1 Ix - - - 40540000 - - -".split())
+        self.assertEqual(rows[6][2:], "40540000 40BC0000 403B0000 40070000 3FE00000 426CE740 426CE740".split())
+        self.assertEqual(rows[7][1:5], "40BC0000 403B0000 40070000 -".split())
+        self.assertEqual(rows[9][1:5], "40070000 - - -".split())
+
     def test_waveform(self):
         """Every signal of the save file is in the waveform, with its width."""
         with tempfile.TemporaryDirectory() as folder:

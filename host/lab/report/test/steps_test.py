@@ -4,11 +4,12 @@ import contextlib
 import io
 import json
 import pathlib
+import sys
 import tempfile
 import unittest
 from unittest import mock
 
-from host.lab import rows, steps
+from host.lab import __main__, rows, steps
 
 
 class Steps(unittest.TestCase):
@@ -57,6 +58,13 @@ class Steps(unittest.TestCase):
             self.run_steps("QUICK=1")
         self.assertEqual(said.getvalue().splitlines(), [
             "[1/2] part: a", "[2/2] part: b, c", "[1/2] part: a, about 10 min left", "[2/2] part: b, c, about 7 min left"])
+
+    def test_ctrl_c_prints_one_line(self) -> None:
+        said = io.StringIO()
+        with (contextlib.redirect_stderr(said), mock.patch.object(sys, "argv", ["host.lab", "speed"]),
+              mock.patch.object(__main__, "run", side_effect=KeyboardInterrupt)):
+            self.assertEqual(__main__.main(), 130)
+        self.assertEqual(said.getvalue(), "interrupted; the same command goes on from here\n")
 
     def test_another_run_does_not(self) -> None:
         self.fails = "b, c"

@@ -1,0 +1,130 @@
+"""Runs the commands of README.md and the tutorials as they are written, in their order.
+
+`python3 host/docs/commands.py`: in a clone of this commit, build/commands, all of them, from installing to proving: hours.
+With --quick: of the programs of this build and of the Python module alone, pictures being small. What they print is kept in
+build/commands-PAGE.log. Exit status 1 where one fails.
+"""
+
+import argparse
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGES = ["README.md", "host/docs/hardware.md", "host/docs/pictures.md", "host/docs/python.md"]
+QUICK = ("./render", "./trace", "./compare", "./merge", "echo", "mkdir", "cat", "python3 page.py")
+PROGRAMS = ("render", "trace", "compare", "merge")
+SERVED = 20  # seconds until a page that --serve shows is closed as Ctrl-C does
+
+
+def commands(text: str) -> list[str]:
+    """The commands of a page, each line of a block of `sh` and each block of `python` one, and a JSON file where the text
+    before it names one. All blocks of Python are one program, in the place of the last."""
+    found: list[str] = []
+    programs: list[str] = []
+    for before, kind, block in re.findall(r"(.*?)^```(\w*)\n(.*?)^```$", text, re.M | re.S):
+        if kind == "sh":
+            found += [line for line in block.splitlines() if line and not line.startswith("#")]
+        elif kind == "json":
+            file = re.findall(r"`([\w-]+\.json)`", before)[-1]
+            found.append(f"cat >{file} <<'END'\n{block}END")
+        elif kind == "python":
+            programs.append(block)
+            found = [command for command in found if not command.startswith("cat >page.py")]
+            found.append(f"cat >page.py <<'END'\n{''.join(programs)}END\npython3 page.py")
+    return found
+
+
+def script(page: list[str]) -> str:
+    """The commands in one shell, which says at file descriptor 3 which one begins and with what status it ended."""
+    lines = []
+    for number, command in enumerate(page):
+        if "--serve" in command:
+            command = f"timeout --signal=INT {SERVED} {command.partition(' #')[0]}; [ $? = 124 ]"
+        if "KEEP_GOING=1" in command:  # of a module that is refuted, which the status says at the end
+            command = f"{command.partition(' #')[0]}; [ $? = 2 ]"
+        lines.append(f"echo begin {number} >&3\n{command}\necho end {number} $? >&3\n")
+    return "".join(lines)
+
+
+def prepare(folder: pathlib.Path) -> None:
+    """Writes the files that the tutorials take for the reader's own."""
+    for name in ("cornell.obj", "cornell.mtl"):
+        shutil.copy(ROOT / "scenes" / name, folder / name.replace("cornell.obj", "model.obj"))
+    shutil.copy(ROOT / "host/film/fuzz/seeds/flat.hdr", folder / "sky.hdr")
+    shutil.copy(ROOT / "host/film/fuzz/seeds/sums.exr", folder / "good.exr")
+    shutil.copy(ROOT / "host/film/fuzz/seeds/sums.exr", folder / "fast.exr")
+    (folder / "rays.csv").write_text("0,1,5,0,0,-1\n")
+    header = b"{'descr': '<f4', 'fortran_order': False, 'shape': (1, 6)}".ljust(117) + b"\n"
+    (folder / "rays.npy").write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + struct.pack("<6f", 0, 1, 5, 0, 0, -1))
+
+
+def run(name: str, page: list[str], folder: pathlib.Path, environment: dict[str, str]) -> list[str]:
+    """Runs the commands of a page in `folder` and returns those that failed."""
+    log = ROOT / "build" / f"commands-{pathlib.Path(name).stem}.log"
+    said, saying = os.pipe()
+    with log.open("w") as out, os.fdopen(said) as told:
+        shell = subprocess.Popen(["bash", "-c", f"exec 3>&{saying}\n{script(page)}"], cwd=folder, env=environment, pass_fds=[saying],
+                                 stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT)
+        os.close(saying)
+        failed = []
+        for event in told:
+            kind, number, *status = event.split()
+            command = page[int(number)].splitlines()[0]
+            if kind == "begin":
+                print(f"{name}: {command}", flush=True)
+            elif status != ["0"]:
+                failed.append(f"{name}: {command}: ended with status {status[0]}; see {log.relative_to(ROOT)}")
+        if shell.wait() and not failed:
+            failed.append(f"{name}: the shell ended with status {shell.returncode}; see {log.relative_to(ROOT)}")
+    return failed
+
+
+def quick(name: str, text: str, folder: pathlib.Path) -> list[str]:
+    """The quick commands of a page, in small pictures, and by the C++ engine where the page builds that alone."""
+    for entry in ROOT.iterdir():
+        if entry.name not in PROGRAMS and not entry.name.startswith("."):
+            (folder / entry.name).symlink_to(entry)
+    engine = "--engine cpu" if "\nmake cpu" in text else ""
+    for program in PROGRAMS:
+        more = f'case "$*" in *--size*|*--help*) ;; *) set -- "$@" --size 64x48 ;; esac\ncase "$*" in *--engine*) ;; *) set -- "$@" {engine} ;; esac\n'
+        (folder / program).write_text(f'#!/bin/sh\n{more if program == "render" else ""}exec {shlex.quote(str(ROOT / "build" / program))} "$@"\n')
+        (folder / program).chmod(0o755)
+    (folder / "python3").symlink_to(sys.executable)
+    prepare(folder)
+    page = [command for command in commands(text) if command.split("\n")[-1].startswith(QUICK) or command.startswith(QUICK)]
+    return run(name, page, folder, os.environ | {"PATH": f"{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}",
+                                                "PYTHONPATH": str(ROOT / "build/host/python")})
+
+
+def main() -> int:
+    """Runs the pages."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("pages", nargs="*", default=PAGES)
+    given = parser.parse_args()
+    failed = []
+    if not given.quick:
+        clone = ROOT / "build/commands"
+        shutil.rmtree(clone, ignore_errors=True)
+        subprocess.run(["git", "clone", "-q", ROOT, clone], check=True)
+        prepare(clone)
+    for name in given.pages:
+        text = (ROOT / name).read_text()
+        if given.quick:
+            with tempfile.TemporaryDirectory() as folder:
+                failed += quick(name, text, pathlib.Path(folder))
+        else:
+            failed += run(name, commands(text), clone, os.environ | {"HOME": str(clone / "build/home")})
+    print(*(f"failed: {line}" for line in failed), sep="\n", end="\n" if failed else "", file=sys.stderr)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
