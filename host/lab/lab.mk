@@ -31,12 +31,13 @@ bench: ## measure: run time against error, adder to picture: make bench [QUICK=1
 	$(call build,bench,lab render scenes unit_bench $(if $(MPIRUN),share))
 	$(measure)
 
-variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),$(word)=$($(word))))
+# In quotes: names of files may hold blanks.
+variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),'$(word)=$(subst ','\'',$($(word)))'))
 variant: VARIANTS = $(CURDIR)/build/results/variant.json
 variant: SCENES = $(SCENE)
 variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial WIRES=1]
 	@$(SETUP) bench
-	@$(if $(filter %.sv %.v,$(variant_words)),$(SETUP) prove)
+	@$(if $(filter %.sv' %.v',$(variant_words)),$(SETUP) prove)
 	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
 	@$(PYTHON) -B -m host.lab.targets.variant $(if $(KEEP_GOING),--keep-going) $(variant_words)
 	$(call build,bench,lab)
