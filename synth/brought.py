@@ -3,25 +3,32 @@
 A brought module has the ports of the module it replaces, and its parameters that say how wide they are; its name is free.
 It may use modules of hw/ and of its own file. `bring` writes a folder with a file of the replaced module's name, which
 Verilator (PATCHES of sim/verilate.cmake) and all of synth (`in_place`) then read instead of hw/'s.
-`python3 -m synth.brought ADDER=my.sv ...` lints the files alone, with Verilator and no Python package.
+`python3 -m synth.brought ADDER=my.sv ...` does that alone.
 """
 
+import codecs
 import contextlib
 import dataclasses
 import functools
 import hashlib
+import itertools
 import json
 import pathlib
 import re
 import subprocess
 import sys
+import urllib.parse
 from collections.abc import Callable, Iterator
+from typing import NoReturn
 
-from synth import catalogue, cores, float_proofs, mapping, prove, store, tools
+from pyslang import driver, syntax
+
+from synth import catalogue, cores, float_proofs, prove, store, tools
 from synth.assertions import Proof, holds
 
 # What they are checked with, so that a width written as a number is found.
 SAMPLES = {"Width": 13, "ExpWidth": 6, "FracWidth": 13}
+FOLDERS = "common", "arith", "fp"  # of hw/: what a module may use
 SAT_WIDTH, MOST_PRODUCTS = 5, 11  # of multipliers: bits that SAT does in one piece; bits of which every product is tried
 
 
@@ -71,11 +78,8 @@ CALLED = {"carry": "carry in", "carry_out": "carry out"}  # ports of the proofs,
 
 
 def folder_of(files: dict[str, str]) -> pathlib.Path:
-    """Where `bring` puts them; raises ValueError where one cannot be read."""
-    try:
-        texts = {word: [name, pathlib.Path(name).read_text()] for word, name in files.items()}
-    except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"{getattr(error, 'filename', '')}: {getattr(error, 'strerror', None) or 'expected text'}") from error
+    """The folder that `bring` writes for these files. Raises ValueError where one cannot be read."""
+    texts = {word: [name, _read(name)] for word, name in files.items()}
     return store.OUT.parent / "brought" / hashlib.sha256(json.dumps(texts, sort_keys=True).encode()).hexdigest()[:12]
 
 
@@ -84,96 +88,123 @@ def bring(files: dict[str, str]) -> pathlib.Path:
     folder = folder_of(files)
     for word, name in files.items():
         original = next(catalogue.HW.glob(f"*/{PLACES[word].module}.sv"))
-        text, top = linted(word, name, folder / "lint")
-        _fits(name, text, top, original, folder / "lint")
+        module = _module(name, original.stem)
+        file = folder / "lint" / f"{module.top}.sv"
+        store.replace(file, module.text)
+        (wanted, right), (parameters, ports) = _elaborated(original.stem, original), _elaborated(module.top, file)
+        _lint(module.top, file, parameters)
+        expected = f"expected as in hw/{original.parent.name}/{original.name}"
+        for size in SAMPLES:
+            if size in wanted and size not in parameters:
+                module.fail(f"has no parameter {size}, {expected}")
+        sizes = ", ".join(f"{key} = {SAMPLES[key]}" for key in SAMPLES if key in parameters)
+        for port in {**right, **ports}:
+            if ports.get(port) != right.get(port):
+                found, other = (each.get(port, "no such port") for each in (ports, right))
+                module.fail(f"{port}: found {found}, {expected}: {other} ({sizes})")
         header = re.search(r"^module .*?^\);", original.read_text(), re.M | re.S)[0]
-        parameters = ", ".join(f".{one}({one})" for one in _parameters(header) if one in _parameters(text))
-        ports = ", ".join(f".{port}({port})" for port in _ports(original.stem, original, folder / "lint"))
-        store.replace(folder / original.name, f"{header}\n  {top} #({parameters}) u_brought ({ports});\nendmodule\n{text}")
+        overrides, connections = (", ".join(f".{one}({one})" for one in names)
+                                  for names in ([one for one in wanted if one in parameters], right))
+        store.replace(folder / original.name,
+                      f"{header}\n  {module.top} #({overrides}) u_brought ({connections});\nendmodule\n{module.text}")
     return folder
 
 
-def linted(word: str, name: str, folder: pathlib.Path) -> tuple[str, str]:
-    """The text of a file and the module that is meant. Raises ValueError, "FILE:LINE: what is wrong"."""
-    text, top = _own_names(name)
-    if re.search(rf"\b{PLACES[word].module}\b", _bare(text)):
-        _fail(name, text, top, f"uses {PLACES[word].module}, whose place it takes")
-    _lint(name, text, top, folder)
-    return text, top
+@dataclasses.dataclass(frozen=True)
+class _Module:
+    """A user's file: its text, whose modules have no names of hw/'s, and the module that is meant, with the line of its name."""
+    file: str
+    text: str
+    top: str
+    line: int
+
+    def fail(self, what: str) -> NoReturn:
+        raise ValueError(f"{self.file}:{self.line}: module {self.top.removesuffix('_brought')}: {what}")
 
 
-def _bare(text: str) -> str:
-    """Without comments, each line where it was."""
-    return re.sub(r"//[^\n]*|/\*.*?\*/", lambda found: "\n" * found[0].count("\n"), text, flags=re.S)
+def _read(name: str) -> str:
+    """The text of a file in UTF-8 or UTF-16, with or without a byte order mark; other bytes can stand in comments."""
+    try:
+        data = pathlib.Path(name).read_bytes()
+    except OSError as error:
+        raise ValueError(f"{name}: {error.strerror}") from error
+    text = data.decode("utf-16" if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else "utf-8-sig", "replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _own_names(name: str) -> tuple[str, str]:
-    """The file's text, its modules of hw/'s names renamed, and the module that is meant: the one of the file's name, or the
-    last that no other of them uses."""
-    text = pathlib.Path(name).read_text()
-    declared = re.findall(r"^\s*module\s+(?:automatic\s+)?(\w+)", _bare(text), re.M)
-    if not declared:
+def _module(name: str, replaced: str) -> _Module:
+    """Reads a user's file. The module that is meant has the file's name, or is the last that no other of them uses. Leaves out
+    time scales, as the modules of hw/ have none and tools want them everywhere or nowhere."""
+    text = _read(name).encode()
+    tree = syntax.SyntaxTree.fromText(text.decode(), name)
+    modules, instances = {}, []
+    edits = [(*found.span(), b"") for found in re.finditer(rb"`timescale\s+\d+\s*\w+\s*/\s*\d+\s*\w+", text)]
+
+    def take(node: object) -> None:
+        kind = getattr(node, "kind", None)
+        if kind == syntax.SyntaxKind.ModuleDeclaration:
+            modules[node.header.name.valueText] = [node.header.name, *([node.blockName.name] if node.blockName else [])]
+        elif kind == syntax.SyntaxKind.HierarchyInstantiation:
+            instances.append(node.type)
+        elif kind == syntax.SyntaxKind.TimeUnitsDeclaration:
+            edits.append((node.sourceRange.start.offset, node.sourceRange.end.offset, b""))
+
+    tree.root.visit(take)
+    if not modules:
         raise ValueError(f"{name}:1: found no module")
-    tops = [module for module in declared if not re.search(rf"(?<!module) \b{module}\s*(#\s*\(|\w+\s*\()", _bare(text))]
-    top = pathlib.Path(name).stem if pathlib.Path(name).stem in declared else (tops or declared)[-1]
-    for module in declared:
-        if any(catalogue.HW.glob(f"*/{module}.sv")):
-            text = re.sub(rf"(?<![.\w]){module}\b", f"{module}_brought", text)
-            top = f"{module}_brought" if top == module else top
-    return f'`line 1 "{name}" 0\n{text}\n', top
+    used = [token.valueText for token in instances]
+    tops = [each for each in modules if each not in used] or [*modules]
+    top = pathlib.Path(name).stem if pathlib.Path(name).stem in modules else tops[-1]
+    for token in [*itertools.chain(*modules.values()), *instances]:
+        if token.valueText in modules and any(catalogue.HW.glob(f"*/{token.valueText}.sv")):
+            edits.append((token.range.end.offset, token.range.end.offset, b"_brought"))
+    for start, end, by in sorted(edits, reverse=True):
+        text = text[:start] + by + text[end:]
+    # Yosys reads no blank in the name of a file.
+    module = _Module(name, f'`line 1 "{urllib.parse.quote(name)}" 0\n{text.decode()}\n`resetall\n',
+                     f"{top}_brought" if any(catalogue.HW.glob(f"*/{top}.sv")) else top,
+                     tree.sourceManager.getLineNumber(modules[top][0].location))
+    if replaced in used and replaced not in modules:
+        module.fail(f"uses {replaced}, whose place it takes")
+    return module
 
 
-def _parameters(text: str) -> list[str]:
-    return re.findall(r"\bparameter\b[^=;]*?(\w+)\s*=", _bare(text))
+def _packages() -> list[pathlib.Path]:
+    return [*dict.fromkeys(each for core in ("arith", "fp") for each in cores.files(core) if each.stem.endswith("_pkg"))]
 
 
-def _fail(name: str, text: str, top: str, what: str) -> None:
-    """At the line of the module."""
-    line = next(number for number, line in enumerate(_bare(text).splitlines()) if re.search(rf"\bmodule\s+.*?{top}\b", line))
-    raise ValueError(f"{name}:{line}: module {top.removesuffix('_brought')}: {what}")
+def _elaborated(top: str, file: pathlib.Path) -> tuple[list[str], dict[str, str]]:
+    """A module's parameters, and its ports with directions and widths at the sizes of SAMPLES, as slang elaborates it with those
+    of hw/ that it uses. Raises ValueError for the first error."""
+    slang = driver.Driver()
+    slang.sourceManager.setDisableProximatePaths(True)
+    slang.addStandardArgs()
+    words = [f"--top={top}", "-DSYNTHESIS", *(f"-G{key}={value}" for key, value in SAMPLES.items()),
+             *(f'-y"{catalogue.HW / each}"' for each in FOLDERS), *(f'"{each}"' for each in (*_packages(), file))]
+    _ = slang.parseCommandLine(" ".join(["slang", *words])) and slang.processOptions() and slang.parseAllSources()
+    compilation, place = slang.createCompilation(), slang.sourceManager
+    for error in compilation.getAllDiagnostics():
+        if error.isError():
+            at = error.location
+            raise ValueError(f"{urllib.parse.unquote(place.getFileName(at))}:{place.getLineNumber(at)}:{place.getColumnNumber(at)}: "
+                             f"{slang.diagEngine.formatMessage(error)}")
+    body = compilation.getRoot().topInstances[0].body
+    directions = {"In": "input", "Out": "output"}
+    return ([each.name for each in body.parameters if not each.isLocalParam],
+            {port.name: f"{directions.get(port.direction.name, 'inout')} of {port.type.bitWidth} bits" for port in body.portList})
 
 
-def _lint(name: str, text: str, top: str, folder: pathlib.Path) -> None:
+def _lint(top: str, file: pathlib.Path, parameters: list[str]) -> None:
     """Verilator's lint, without what a beginner may leave as it is: widths, which the proof judges, and words that feed
     themselves, which are slow to simulate."""
-    file = folder / f"{top}.sv"
-    store.replace(file, text)
-    packages = [each for core in ("arith", "fp") for each in cores.files(core) if each.stem.endswith("_pkg")]
-    sizes = [f"-G{key}={value}" for key, value in SAMPLES.items() if key in _parameters(text)]
     done = subprocess.run(
-        [tools.find("verilator"), "--lint-only", "-Wno-style", "-Wno-WIDTH", "-Wno-UNOPTFLAT", "--top-module", top, *sizes,
-         *(f"-I{catalogue.HW / each}" for each in ("common", "arith", "fp")), *dict.fromkeys(packages), file],
+        [tools.find("verilator"), "--lint-only", "-Wno-style", "-Wno-WIDTH", "-Wno-UNOPTFLAT", "--top-module", top,
+         *(f"-G{key}={value}" for key, value in SAMPLES.items() if key in parameters),
+         *(f"-I{catalogue.HW / each}" for each in FOLDERS), *_packages(), file],
         capture_output=True, text=True, check=False)
     found = re.search(r"^%(?:Error|Warning)(?:-\w+)?: (\S+?:\d+:\d+: .*)$", done.stderr, re.M)
     if found or done.returncode:
-        raise ValueError(found[1] if found else f"{name}: {done.stderr}")
-
-
-def _ports(top: str, file: pathlib.Path, folder: pathlib.Path) -> dict[str, tuple[str, int]]:
-    """Directions and widths of a module's ports, by Yosys, at the sizes of SAMPLES. Raises ValueError where it cannot read it."""
-    files = {each.stem: each for core in ("arith", "fp") for each in cores.files(core)} | {file.stem: file}
-    sizes = " ".join(f"-chparam {key} {value}" for key, value in SAMPLES.items() if key in _parameters(file.read_text()))
-    out = folder / f"{top}.json"
-    try:
-        tools.run(["yosys", "-p", f"read_verilog -sv -defer -DSYNTHESIS {' '.join(map(str, cores.used(file.stem, [*files.values()])))}; "
-                   f"hierarchy -check -top {top} {sizes}; proc; write_json {out}"], folder / f"{top}.log")
-    except tools.ToolFailed as error:
-        said = re.search(r"^(\S+:\d+): ERROR: (.*)$", str(error), re.M) or re.search(r"^(ERROR): (.*)$", str(error), re.M)
-        raise ValueError(f"{said[1]}: {said[2]}" if said else str(error)) from error
-    return {port: (each["direction"], len(each["bits"])) for port, each in mapping.top_module(out)["ports"].items()}
-
-
-def _fits(name: str, text: str, top: str, original: pathlib.Path, folder: pathlib.Path) -> None:
-    wanted = _ports(original.stem, original, folder)
-    expected = f"expected as in hw/{original.parent.name}/{original.name}"
-    for size in SAMPLES.keys() & set(_parameters(original.read_text())) - set(_parameters(text)):
-        _fail(name, text, top, f"has no parameter {size}, {expected}")
-    mine = _ports(top, folder / f"{top}.sv", folder)
-    for port in {**wanted, **mine}:
-        found, right = (f"{each[port][0]} of {each[port][1]} bits" if port in each else "no such port" for each in (mine, wanted))
-        if found != right:
-            sizes = ", ".join(f"{key} = {SAMPLES[key]}" for key in SAMPLES if key in _parameters(text))
-            _fail(name, text, top, f"{port}: found {found}, {expected}: {right} ({sizes})")
+        raise ValueError(urllib.parse.unquote(found[1]) if found else f"{file}: {done.stderr}")
 
 
 @contextlib.contextmanager
@@ -230,13 +261,12 @@ def judge(files: dict[str, str], unit: catalogue.Design) -> list[dict]:
 
 
 def main() -> int:
-    """Lints the files of words such as ADDER=my.sv; 2 where one is refused."""
-    files = dict(word.split("=", 1) for word in sys.argv[1:])
+    """Checks the files among words such as ADDER=my.sv; 2 where one is refused."""
+    files = {word: name for word, _, name in (each.partition("=") for each in sys.argv[1:]) if name.endswith((".sv", ".v"))}
     try:
-        for word, name in files.items():
-            if word not in PLACES:
-                raise ValueError(f"{word}={name}: found a file, expected one of {', '.join(PLACES)} with it")
-            linted(word, name, folder_of(files) / "lint")
+        for word in files.keys() - PLACES.keys():
+            raise ValueError(f"{word}={files[word]}: found a file, expected one of {', '.join(PLACES)} with it")
+        bring(files)
     except (ValueError, tools.MissingTool) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

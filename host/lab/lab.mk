@@ -24,12 +24,12 @@ bench: ## measure: run time against error, adder to picture: make bench [QUICK=1
 	$(call build,bench,lab scenes unit_bench)
 	$(measure)
 
-variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),$(word)=$($(word))))
-brought_words = $(filter %.sv %.v,$(variant_words))
+# In quotes: names of files may hold blanks.
+variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),'$(word)=$(subst ','\'',$($(word)))'))
 variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial WIRES=1]
-ifneq ($(brought_words),)
+ifneq ($(filter %.sv' %.v',$(variant_words)),)
 	@$(SETUP) lint
-	@python3 -B -m synth.brought $(brought_words)
+	@$(PYTHON) -B -m synth.brought $(variant_words)
 	@$(SETUP) prove
 endif
 	@echo 'One card: proofs of files of yours, models, tests and pictures by both, synthesis. The first takes 8 to 10 minutes on two processors, others 3 to 5.' >&2

@@ -173,8 +173,10 @@ struct EnvironmentSetting {
   double strength = 1.0;       ///< times what the file has; 0 or more
 };
 
-/// Corners that binary32 does not hold as their files have them, and the largest error of one of
-/// their coordinates, in the unit of its file.
+/// Number of corners that binary32 does not hold as their files have them, and the largest error of
+/// one of their coordinates, in the unit of its file. The corners of a mesh with instances are
+/// counted once, in the mesh's own coordinates; their rounding after an instance's transform is not
+/// counted.
 struct CornerRounding {
   std::uint64_t corners = 0;
   double most = 0.0;

@@ -19,6 +19,7 @@ PORTS = """(
   output logic carry_o);
 """
 HEAD = f"module mine #(parameter int unsigned Width = 48) {PORTS}"
+ADDS = "  assign {carry_o, sum_o} = a_i + b_i + (Width + 1)'(carry_i);\nendmodule\n"
 # A sum that forgets the carry into bit 3.
 FORGETS = """
   logic [Width-1:0] right;
@@ -37,40 +38,59 @@ class Brought(unittest.TestCase):
         patch.start()
         self.addCleanup(patch.stop)
 
-    def file(self, text: str, name: str = "mine.sv") -> str:
-        (self.folder / name).write_text(text)
-        return str(self.folder / name)
+    def file(self, text: str | bytes, name: str = "mine.sv") -> str:
+        file = self.folder / name
+        file.parent.mkdir(exist_ok=True)
+        file.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return str(file)
 
     def judged(self, **files: str) -> list[dict]:
         brought.bring(files)
         return brought.judge(files, catalogue.design("hit_test_pipeline", Adder=3))
 
     def test_what_is_no_such_module(self) -> None:
-        body = "  assign {carry_o, sum_o} = a_i + b_i + (Width + 1)'(carry_i);\nendmodule\n"
         for text, said in {
                 "": ":1: found no module",
-                f"{HEAD}  assign sum_o = a_i\nendmodule\n": r":7:1: syntax error",
-                f"{HEAD}  other u_other();\nendmodule\n": r":6:3: Cannot find file containing module: 'other'",
+                f"{HEAD}  assign sum_o = a_i\nendmodule\n": ":6:21: expected ';'",
+                f"{HEAD}  other u_other();\nendmodule\n": ":6:3: unknown module 'other'",
                 f"{HEAD}  prefix_adder u_a (.*);\nendmodule\n": ":1: module mine: uses prefix_adder, whose place it takes",
-                f"module mine {PORTS.replace('Width', '48')}{body.replace('Width', '48')}": ":1: module mine: has no parameter Width, expected as in",
-                f"// mine\n{HEAD.replace('carry_i', 'cin')}{body.replace('carry_i', 'cin')}":
+                f"module mine {PORTS.replace('Width', '48')}{ADDS.replace('Width', '48')}": ":1: module mine: has no parameter Width, expected as in",
+                f"// mine\n{HEAD.replace('carry_i', 'cin')}{ADDS.replace('carry_i', 'cin')}":
                     ":2: module mine: carry_i: found no such port, expected as in hw/arith/prefix_adder.sv: input of 1 bits",
-                f"{HEAD.replace('output logic [Width-1:0]', 'output logic [47:0]')}{body}":
+                f"{HEAD.replace('output logic [Width-1:0]', 'output logic [47:0]')}{ADDS}":
                     r"sum_o: found output of 48 bits, expected as in .*: output of 13 bits \(Width = 13\)"}.items():
             with self.subTest(said), self.assertRaisesRegex(ValueError, f"^{self.folder}/mine.sv.*{said}"):
                 brought.bring({"ADDER": self.file(text)})
         with self.assertRaisesRegex(ValueError, "nowhere.sv: No such file"):
             brought.bring({"ADDER": "nowhere.sv"})
 
-    def test_a_file_alone_is_linted(self) -> None:
+    def test_files_alone(self) -> None:
         bad = self.file(f"{HEAD}  assign sum_o = a_i\nendmodule\n")
-        for words, status, said in (([f"ADDER={bad}"], 2, rf"error: {bad}:7:1: syntax error.*\n"),
+        for words, status, said in (([f"ADDER={bad}"], 2, rf"error: {bad}:6:21: expected ';'\n"),
                                     ([f"UNIT={bad}"], 2, r"error: UNIT=.*: found a file, expected one of ADDER, MULTIPLIER, .*\n"),
                                     ([f"ADDER={EXERCISES}/carry_skip_adder.sv"], 0, "")):
             told = io.StringIO()
             with contextlib.redirect_stderr(told), unittest.mock.patch.object(sys, "argv", ["brought", *words]):
                 self.assertEqual(brought.main(), status, words)
             self.assertRegex(told.getvalue(), f"^{said}$")
+
+    def test_files_as_other_tools_write_them(self) -> None:
+        """Byte order marks, encodings, line ends, time scales, default net types, names; the last one is proven, too, by each tool."""
+        module = f"`timescale 1ns / 1ps\n`default_nettype none\n{HEAD.replace('logic', 'wire')}{ADDS}"
+        multiplier = ("// prefix_adder, booth_multiplier\r\n`timescale 1ps/1ps\r\nmodule half_adder(input a, b, output s); timeunit 1ns; assign s = a ^ b; "
+                      "endmodule : half_adder\r\nmodule times #(parameter Width = 24) (input [Width-1:0] a_i, b_i, output [2*Width-1:0] "
+                      "product_o);\r\n  half_adder u_half_adder (.a(a_i[0]), .b(b_i[0]), .s());\r\n  assign product_o = a_i * b_i;\r\n"
+                      "endmodule\r\n")
+        for adder, name in ((f"\ufeff{module}".encode(), "mark.sv"), (module.encode("utf-16"), "wide.sv"),
+                            (module.replace("\n", "\r\n").encode(), "lines.sv"), (module.replace("\n", "\r").encode(), "returns.sv"),
+                            (f"// Gr\u00f6\u00dfe\n{module}".encode("latin-1"), "my prefix_adder/prefix_adder \"100%\".sv")):
+            with self.subTest(name):
+                files = {"ADDER": self.file(adder, name), "MULTIPLIER": self.file(multiplier, "times.v")}
+                brought.bring(files)
+        rows = brought.judge(files, catalogue.design("hit_test_pipeline", Adder=3))
+        self.assertEqual({(row["word"], row["holds"]) for row in rows}, {("ADDER", True), ("MULTIPLIER", True)})
+        with self.assertRaisesRegex(ValueError, r'/my prefix_adder/a "b" 7%.sv:7:1: expected expression'):
+            brought.bring({"ADDER": self.file(f"{HEAD}  assign sum_o = a_i - \nendmodule\n", 'my prefix_adder/a "b" 7%.sv')})
 
     def test_a_counterexample_in_words(self) -> None:
         row = self.judged(ADDER=self.file(HEAD + FORGETS))[-1]

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shlex
 import signal
 import socket
@@ -111,6 +112,18 @@ class Http(unittest.TestCase):
                 self.assertEqual(text.count(b"\n"), 1)
             status, _, text = served.get("/picture", headers={"Host": "elsewhere.example"})
             self.assertEqual(status, 403)
+
+    def test_no_thread_is_free(self):
+        with Served() as served:
+            pid = served.process.pid
+            pages = int(pathlib.Path(f"/proc/{pid}/statm").read_text().split()[0])
+            # No more memory than a new thread's stack takes.
+            resource.prlimit(pid, resource.RLIMIT_AS, (pages * resource.getpagesize() + 2**20, resource.RLIM_INFINITY))
+            status, _, text = served.get("/pixel", x=1, y=1)
+            self.assertEqual((status, text), (503, b"found no thread that is free\n"))
+            resource.prlimit(pid, resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+            self.assertEqual(served.get("/pixel", x=1, y=1)[0], 200)
+        self.assertEqual((served.status, served.said[1]), (0, ""))
 
     def test_other_sites_and_methods_are_refused(self):
         with Served() as served:

@@ -107,6 +107,21 @@ TEST_F(Render, AFirstLookFromAboveStandsOnAGround) {
   EXPECT_TRUE(ground({"--camera", "3,3,3,0,0,0", "--ground", "on"}));
 }
 
+TEST_F(Render, IdsAreTheNumbersOfFacesInTheFile) {
+  // The first face has no area; the second and third are a square, there and in another place.
+  folder_.write("flat.obj",
+                "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 3 -1 0\nf 1 2 5\nf 1 2 3 4\n");
+  folder_.write("flat.json", R"({"instances": [{"model": "flat.obj", "places": [[4, 0, 0]]}]})");
+  for (const char* how : {"keep", "write"}) {
+    render({"flat.json", "--size", "40x30", "--engine", "cpu", "--instances", how, "--ground",
+            "off", "--camera", "2,0,9,2,0,0", "--up", "y", "-o", "a.exr"});
+    const auto ids = ExrReader(folder_.read("a.exr")).read<std::uint32_t>("id", Imf::UINT);
+    EXPECT_EQ(std::set<std::uint32_t>(ids.begin(), ids.end()),
+              (std::set<std::uint32_t>{1, 2, 4, 5, 0xFFFF'FFFF}))
+        << how;
+  }
+}
+
 TEST_F(Render, AnExrSaysHowItIsMadeAgain) {
   render({kCornell, "--size",       "24x20", "--engine",     "cpu",          "--spp",
           "3",      "--depth",      "2",     "--fov",        "41.1",         "--filter",

@@ -28,8 +28,8 @@ struct PointTree::Question {
     return true;
   }
 
-  // Separating axes: true if the box is wholly beside the triangle's own box, or on the outer side
-  // of one of its sides (then even the box's corner that is farthest to the inner side is).
+  // Separating axes: the box is disjoint from the triangle's bounds, or all of it, including the
+  // corner that is farthest inwards, is on the outer side of an edge.
   [[nodiscard]] bool misses(const glm::vec2& low, const glm::vec2& high) const {
     for (int axis = 0; axis < 2; ++axis) {
       const auto [least, most] =
@@ -56,7 +56,7 @@ void PointTree::build(std::span<const Point> points, std::size_t id_limit) {
   for (std::uint32_t i = 0; i < nodes_.size(); ++i) place_[nodes_[i].point.id] = i;
 }
 
-// Puts the median along the box's longer side in the middle, and the rest on its two sides.
+// Partitions the points around the median along the longer side of their box.
 void PointTree::split(const Range& range) {
   if (range.last - range.first < 2) return;
   glm::vec2 low = nodes_[range.first].point.position;
@@ -102,7 +102,7 @@ bool PointTree::ask(const Question& question, const Range& range) const {
   return ask(question, range.lower()) || ask(question, range.upper());
 }
 
-// Fills ring_ with the corners, repeated ones left out; false if the polygon has no area.
+// Fills ring_ with the corners, without repeated ones. Returns false if the polygon has no area.
 bool EarClipper::project(std::span<const glm::vec3> corners) {
   ring_.clear();
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
@@ -113,8 +113,8 @@ bool EarClipper::project(std::span<const glm::vec3> corners) {
     ring_.pop_back();
   }
 
-  // Project along the axis that leaves the largest area. Two coordinates in the order that makes
-  // the polygon counter-clockwise: no number changes, so what follows is exact.
+  // Project along the axis that gives the largest area, by keeping two coordinates, in the order
+  // that makes the polygon counter-clockwise. No coordinate changes, so predicates stay exact.
   int best_sign = 0;
   double best_area = 0.0;
   int best_axis = 0;
@@ -155,9 +155,9 @@ int EarClipper::turn_at(std::uint32_t corner) const {
   return orient2d(ring_[c.previous].position, c.position, ring_[c.next].position);
 }
 
-// An ear: a strictly convex corner whose triangle holds no other corner, not even on its border.
-// Only reflex (or straight) corners need to be looked at. One at the same place as a corner of the
-// triangle is not in the way: it is the other end of a bridge to a hole.
+// An ear is a strictly convex corner whose triangle contains no other corner, not even on its
+// border. Only reflex (or straight) corners need to be tested. A corner at the position of one of
+// the triangle's corners is allowed: it is the other end of a bridge to a hole.
 bool EarClipper::is_ear(std::uint32_t corner) const {
   if (turn_at(corner) <= 0) return false;
   if (!mind_obstacles_) return true;
@@ -171,8 +171,8 @@ void EarClipper::cut_off(std::uint32_t corner) {
   c.gone = true;
   ring_[c.previous].next = c.next;
   ring_[c.next].previous = c.previous;
-  // Cutting an ear off only narrows its neighbours: a reflex one may become convex, never the
-  // other way round. (Without ears, where a reflex corner may go, nobody minds obstacles.)
+  // Cutting off an ear narrows its neighbours, so a reflex corner may become convex, but not vice
+  // versa. (Obstacles are ignored when there is no ear, so a reflex corner may be cut off then.)
   for (const std::uint32_t neighbour : {c.previous, c.next}) {
     if (!ring_[neighbour].reflex || turn_at(neighbour) <= 0) continue;
     ring_[neighbour].reflex = false;
@@ -188,9 +188,9 @@ void EarClipper::list_all_left() {
   }
 }
 
-// Rounds: in each, cut off the ears among the candidates, but no two neighbours (better shapes
-// than a fan); the neighbours are the candidates of the next round. A simple polygon always has an
-// ear (Meisters 1975; corners on straight sides change nothing, as an ear may not contain them).
+// Each round cuts off the ears among the candidates, but no two neighbours, which gives better
+// shapes than a fan. The neighbours are the candidates of the next round. A simple polygon always
+// has an ear (Meisters 1975), also if it has corners on straight sides, which no ear may contain.
 PolygonKind EarClipper::clip_ears() {
   PolygonKind kind = PolygonKind::kSimple;
   std::size_t left = ring_.size();
@@ -214,17 +214,17 @@ PolygonKind EarClipper::clip_ears() {
     if (!candidates_.empty()) {
       listed_all = false;
     } else if (!listed_all) {
-      list_all_left();  // an obstacle may have gone that was nobody's neighbour
+      list_all_left();  // a corner may be an ear since an obstacle is gone
       listed_all = true;
     } else if (mind_obstacles_) {
-      kind = PolygonKind::kSelfTouching;  // no ear anywhere: not a simple polygon
+      kind = PolygonKind::kSelfTouching;  // there is no ear, so the polygon is not simple
       mind_obstacles_ = false;
       list_all_left();
     } else {
-      break;  // not one convex corner
+      break;  // there is no convex corner
     }
   }
-  // The last three corners; or, of a polygon that is not simple, a fan of what is left.
+  // The last three corners or, for a polygon that is not simple, a fan of the remaining ones.
   list_all_left();
   if (candidates_.back() == 0) {
     candidates_.pop_back();

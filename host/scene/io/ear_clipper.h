@@ -1,4 +1,4 @@
-// Cuts polygons into triangles: ear clipping with exact decisions.
+// EarClipper: triangulates polygons by ear clipping with exact predicates.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace raygate {
 
-/// A kd-tree of points of the plane, from which points are only removed: is one of them in a
-/// triangle? Building n takes O(n log n); a question about a
-/// thin or small triangle looks at far fewer than n of them. All decisions are exact.
+/// A kd-tree of points in the plane that tells whether a triangle contains any of them. Points can
+/// be removed, not added. Building it for n points takes O(n log n); a query with a thin or small
+/// triangle visits far fewer than n points. All predicates are exact.
 class PointTree {
  public:
   struct Point {
@@ -19,14 +19,14 @@ class PointTree {
     std::uint32_t id;
   };
 
-  /// Replaces the points. Their ids are different, and less than `id_limit`.
+  /// Replaces the points. Their ids are unique and less than `id_limit`.
   void build(std::span<const Point> points, std::size_t id_limit);
 
-  /// Takes the point with this id, which must be there, out.
+  /// Removes the point with this id, which must be in the tree.
   void remove(std::uint32_t id);
 
-  /// True if a point is inside the counter-clockwise triangle or on its border; one at the same
-  /// place as a corner of the triangle does not count.
+  /// Returns whether a point is inside the counter-clockwise triangle or on its border, except at
+  /// the triangle's corners.
   [[nodiscard]] bool any_in_triangle(const std::array<glm::vec2, 3>& triangle) const;
 
  private:
@@ -48,24 +48,25 @@ class PointTree {
 };
 
 enum class PolygonKind {
-  kSimple,        ///< cut; every triangle keeps the winding (and covers what overlaps twice)
-  kSelfTouching,  ///< crosses or touches itself: cut as well as that can be, with overlaps
-  kZeroArea,      ///< exactly no area: nothing to cut
+  kSimple,        ///< triangulated; every triangle has the polygon's winding
+  kSelfTouching,  ///< crosses or touches itself; the triangles may overlap
+  kZeroArea,      ///< has exactly no area; there are no triangles
 };
 
-/// One clipper serves many polygons one after the other, so that its storage is allocated once.
+/// Triangulates polygons one after another and reuses its storage.
 class EarClipper {
  public:
-  /// Cuts the polygon with these corners (at least three, any finite floats; concave, not quite
-  /// flat, with corners in the middle of straight sides, or holes joined by a bridge as may be)
-  /// into triangles() of corner numbers. They keep the polygon's winding and use all of its
-  /// corners, but for repeated ones; a convex quad is cut from its first to its third corner.
+  /// Triangulates the polygon with these corners (at least three, finite) into triangles(). The
+  /// polygon may be concave or not quite flat, and have corners within straight sides or holes that
+  /// are joined by a bridge. The triangles have the polygon's winding and use all corners except
+  /// repeated ones. A convex quad is cut from its first to its third corner.
   ///
-  /// The corners are projected along the coordinate axis along which the polygon is largest, and
-  /// decided upon there, exactly: no triangle has zero area. Time is near n log n for n corners.
+  /// Predicates are exact for the projection along the coordinate axis in which the projected area
+  /// is largest, so no triangle has zero area. The time is about n log n for n corners.
   PolygonKind cut(std::span<const glm::vec3> corners);
 
-  /// What the last cut() left: n - 2 triangles for n corners of a simple polygon.
+  /// Returns the triangles of the last cut(), as corner numbers: n - 2 for a simple polygon of n
+  /// corners.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 3>> triangles() const {
     return triangles_;
   }
@@ -76,7 +77,7 @@ class EarClipper {
     std::uint32_t number = 0;              // among the polygon's corners
     std::uint32_t previous = 0, next = 0;  // in ring_
     std::uint32_t round = 0;               // in which a neighbour was cut off last
-    bool reflex = false;  // not a strictly convex corner: may be in the way of an ear
+    bool reflex = false;                   // not strictly convex, so it may lie in an ear
     bool gone = false;
   };
 

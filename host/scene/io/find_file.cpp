@@ -14,7 +14,11 @@ std::string in_small_letters(std::string text) {
   return text;
 }
 
+/// Returns the name with '/' in place of '\', and without the quotes around it, if any.
 std::string with_slashes(std::string_view name) {
+  if (name.size() > 2 && name.front() == '"' && name.back() == '"') {
+    name = name.substr(1, name.size() - 2);
+  }
   std::string slashed(name);
   std::ranges::replace(slashed, '\\', '/');
   return slashed;

@@ -9,13 +9,14 @@
 
 namespace raygate {
 
-/// Returns the file that a model in `folder` means by `name`: of that name, with '\' read as '/',
-/// too; nullopt where there is none.
+/// Returns the file that a model in `folder` means by `name`: the file of that name or, if there is
+/// none, of the name without quotes and with '/' for '\'. Returns nullopt if there is neither.
 [[nodiscard]] std::optional<std::filesystem::path> find_exact_file(
     const std::filesystem::path& folder, std::string_view name);
 
-/// Returns the same, or else a file whose name is the last part of `name` in any letter case, in
-/// the folder of `name` or in `folder`. Such a file costs a warning that begins with `place`.
+/// Returns the same or, if there is none, the file that is called like the last part of `name` in
+/// any letter case, in the folder of `name` or in `folder`, with a warning that begins with
+/// `place`.
 [[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
                                                              std::string_view name,
                                                              const std::string& place,

@@ -6,13 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <optional>
-#include <string_view>
+#include <utility>
 
 #include "host/base/file_bytes.h"
 #include "host/scene/io/find_file.h"
+#include "host/scene/io/gltf_mending.h"
 #include "host/scene/io/tokens.h"
 
 namespace raygate {
@@ -26,21 +28,22 @@ constexpr std::string_view kRead[] = {
     "KHR_materials_transmission", "KHR_materials_unlit",
     "KHR_mesh_quantization",      "KHR_texture_transform"};
 
-/// Extensions without which a file that requires them looks plainer, and no worse.
+/// Extensions that are not read and whose absence only makes surfaces plainer, so that a file may
+/// require them.
 constexpr std::string_view kDispensable[] = {"KHR_materials_sheen", "KHR_materials_variants",
                                              "KHR_materials_volume"};
 
 constexpr std::string_view kCompressions[] = {"KHR_draco_mesh_compression",
                                               "EXT_meshopt_compression", "KHR_meshopt_compression"};
 
-/// Files that are read beside the first one.
+/// State of the callbacks that read buffers and images.
 struct Reading {
   std::string folder, place;
   std::vector<std::filesystem::path>* files;
   std::size_t* bytes;
   std::vector<std::string>* warnings;
 
-  /// Returns the file of a path that the library made of the folder and a name.
+  /// Returns the file for a path, which tinygltf has composed of the folder and a name.
   [[nodiscard]] std::optional<std::filesystem::path> find(
       const std::string& path, std::vector<std::string>& found_warnings) const {
     const std::string prefix = folder.empty() ? "" : folder + "/";
@@ -55,7 +58,7 @@ tinygltf::FsCallbacks callbacks(Reading& reading) {
     std::vector<std::string> ignored;
     return static_cast<const Reading*>(user)->find(path, ignored).has_value();
   };
-  // As it stands: the library's own would let a shell expand it.
+  // Paths are not expanded: tinygltf's default passes them to a shell.
   calls.ExpandFilePath = [](const std::string& path, void*) { return path; };
   calls.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error,
                            const std::string& path, void* user) {
@@ -78,14 +81,29 @@ tinygltf::FsCallbacks callbacks(Reading& reading) {
   return calls;
 }
 
-/// Keeps a picture's file as it is.
+/// Keeps an image's file undecoded. An image in a buffer view stays there, as tinygltf does not
+/// check the view.
 bool keep_picture(tinygltf::Image* image, int, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void*) {
-  image->image.assign(bytes, bytes + size);
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
   return true;
 }
 
-/// The library goes through JSON by recursion: not through a million levels.
+constexpr std::size_t kJsonLength = 12, kJson = 20;  // offsets in a GLB file
+
+/// Returns a GLB file with other JSON in place of the first `old_size` bytes of its own.
+std::string glb_with(std::string_view glb, std::size_t old_size, std::string json) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string result(glb.substr(0, kJson));
+  result.append(json).append(glb.substr(kJson + old_size));
+  const std::uint32_t size[] = {static_cast<std::uint32_t>(result.size())},
+                      json_size[] = {static_cast<std::uint32_t>(json.size())};
+  std::memcpy(result.data() + kJsonLength - sizeof size, size, sizeof size);
+  std::memcpy(result.data() + kJsonLength, json_size, sizeof json_size);
+  return result;
+}
+
+/// Returns whether JSON is nested so deeply that tinygltf's recursion could exhaust the stack.
 bool is_deep(std::string_view json) {
   constexpr int kMost = 64;
   int depth = 0;
@@ -114,7 +132,6 @@ GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), fi
   bytes_ = bytes.size();
   const bool is_binary = bytes.starts_with("glTF");
   if (bytes_ > std::numeric_limits<unsigned>::max()) fail("more than 4 GB, expected less");
-  constexpr std::size_t kJsonLength = 12, kJson = 20;
   std::string_view json = bytes;
   if (is_binary) {
     if (bytes_ < kJson) fail("a GLB file that ends too soon");
@@ -122,24 +139,42 @@ GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), fi
   }
   if (is_deep(json)) fail("JSON of more than 64 levels, expected fewer");
   const std::string folder = file.parent_path().string();
-  Reading reading{folder, name_ + ": ", &files_, &bytes_, &warnings_};
-  tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks(callbacks(reading));
-  loader.SetImageLoader(keep_picture, nullptr);
-  std::string error, warning;
-  bool is_read = false;
-  try {
-    is_read = is_binary ? loader.LoadBinaryFromMemory(
-                              &model_, &error, &warning,
-                              reinterpret_cast<const unsigned char*>(bytes.data()),
-                              static_cast<unsigned>(bytes.size()), folder)
-                        : loader.LoadASCIIFromString(&model_, &error, &warning, bytes.data(),
-                                                     static_cast<unsigned>(bytes.size()), folder);
-  } catch (const std::exception& thrown) {
-    error = thrown.what();
+  std::string error;
+  const auto load = [&](const std::string& from) {
+    model_ = {};
+    files_ = {file};
+    bytes_ = bytes.size();
+    warnings_.clear();
+    error.clear();
+    Reading reading{folder, name_ + ": ", &files_, &bytes_, &warnings_};
+    tinygltf::TinyGLTF loader;
+    loader.SetFsCallbacks(callbacks(reading));
+    loader.SetImageLoader(keep_picture, nullptr);
+    std::string ignored;
+    const auto size = static_cast<unsigned>(from.size());
+    try {
+      return is_binary
+                 ? loader.LoadBinaryFromMemory(&model_, &error, &ignored,
+                                               reinterpret_cast<const unsigned char*>(from.data()),
+                                               size, folder)
+                 : loader.LoadASCIIFromString(&model_, &error, &ignored, from.data(), size, folder);
+    } catch (const std::exception& thrown) {
+      error = thrown.what();
+      return false;
+    }
+  };
+  bool is_read = load(bytes);
+  if (!is_read) {
+    std::vector<std::string> mended;
+    std::string text = mend_gltf(json, mended);
+    if (is_binary) text = glb_with(bytes, json.size(), text);
+    const std::string first_error = std::exchange(error, "");
+    is_read = load(text);
+    if (!is_read) error = first_error;
+    for (const std::string& what : mended) warn_once(what, warnings_);
   }
   if (!is_read) {
-    // The library may stumble over what only the extension explains.
+    // The error may be due to a compression, which is then the better message.
     for (const std::string_view extension : kCompressions) {
       if (json.find(extension) != std::string_view::npos) fail_extension(std::string(extension));
     }
@@ -191,8 +226,12 @@ void GltfFile::fail_index(const char* what, int index, std::size_t count) const 
        std::to_string(count));
 }
 
-std::string GltfFile::picture_bytes(const tinygltf::Image& image) {
+std::string GltfFile::picture_bytes(int number) const {
   constexpr std::string_view kBase64 = ";base64,";
+  const tinygltf::Image& image = at(model_.images, number, "image");
+  if (image.bufferView >= 0) {
+    return std::string(stored(image.bufferView, "image " + std::to_string(number) + ": "));
+  }
   const std::size_t at = image.uri.find(kBase64);
   if (image.image.empty() && image.uri.starts_with("data:") && at != std::string::npos) {
     return tinygltf::base64_decode(image.uri.substr(at + kBase64.size()));
@@ -204,39 +243,48 @@ std::size_t GltfFile::count(int accessor) const {
   return at(model_.accessors, accessor, "accessor").count;
 }
 
-/// A type of numbers, and what stands for 1 where they are normalized.
+/// A component type, with the code that stands for 1 in normalized accessors.
 struct GltfFile::Component {
   int code;
   NumberType type;
   double one;
 };
 
-/// Where an accessor's elements are, all within their buffer.
+/// The location of an accessor's elements, which is within their buffer.
 struct GltfFile::Elements {
   const char* first;
   std::size_t stride, count;
   const Component* component;
   int components;
   bool normalized;
-  std::vector<char> own;  // the elements, where no buffer has them as they are
+  std::vector<char> own;  // the elements, if they are sparse or have no buffer
 
   [[nodiscard]] std::size_t size() const {
     return bytes_of(component->type) * static_cast<std::size_t>(components);
   }
 };
 
+std::string_view GltfFile::stored(int buffer_view, const std::string& place) const {
+  if (buffer_view < 0) fail(place + "found no buffer view, expected its number");
+  const tinygltf::BufferView& view = at(model_.bufferViews, buffer_view, "buffer view");
+  const std::vector<unsigned char>& data = at(model_.buffers, view.buffer, "buffer").data;
+  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
+    fail(place + "beyond its buffer, which ends too soon");
+  }
+  return {reinterpret_cast<const char*>(data.data()) + view.byteOffset, view.byteLength};
+}
+
 void GltfFile::find_stored(int buffer_view, std::size_t offset, const std::string& number,
                            Elements& elements) const {
-  const tinygltf::BufferView& view = at(model_.bufferViews, buffer_view, "buffer view");
-  const tinygltf::Buffer& buffer = at(model_.buffers, view.buffer, "buffer");
-  const std::size_t element = elements.size(), whole = buffer.data.size();
-  elements.stride = view.byteStride == 0 ? element : view.byteStride;
-  const bool is_within =
-      view.byteOffset <= whole && view.byteLength <= whole - view.byteOffset &&
-      offset <= view.byteLength && elements.count > 0 && element <= view.byteLength - offset &&
-      elements.count - 1 <= (view.byteLength - offset - element) / elements.stride;
+  const std::string_view bytes = stored(buffer_view, number);
+  const std::size_t element = elements.size(),
+                    stride = at(model_.bufferViews, buffer_view, "buffer view").byteStride;
+  elements.stride = stride == 0 ? element : stride;
+  const bool is_within = offset <= bytes.size() && elements.count > 0 &&
+                         element <= bytes.size() - offset &&
+                         elements.count - 1 <= (bytes.size() - offset - element) / elements.stride;
   if (!is_within) fail(number + "beyond its buffer, which ends too soon");
-  elements.first = reinterpret_cast<const char*>(buffer.data.data() + view.byteOffset + offset);
+  elements.first = bytes.data() + offset;
 }
 
 GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
@@ -259,7 +307,7 @@ GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
             a.count);
   if (a.bufferView >= 0) find_stored(a.bufferView, a.byteOffset, number, result);
   if (a.bufferView >= 0 && !a.sparse.isSparse) return result;
-  // Elements of no buffer are 0; sparse ones are replaced.
+  // Elements without a buffer are 0; then the sparse ones are replaced.
   constexpr std::size_t kMost = 1'000'000;
   if (a.count > kMost + bytes_) fail(number + "too many elements without a buffer");
   const std::size_t size = result.size();

@@ -1,4 +1,4 @@
-// A glTF 2.0 file as tinygltf parses it, and the numbers of its accessors, each checked.
+// GltfFile: a glTF 2.0 file as tinygltf parses it, with checked access to its accessors.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -7,39 +7,41 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/base/input_error.h"
 
 namespace raygate {
 
-/// .gltf or .glb, with its buffers and the bytes of its pictures. (tinygltf because Debian 12 has
-/// it, under the MIT licence, in one header that the sanitizers can see through; it parses, and
-/// leaves all that indices and lengths say unchecked, which is done here.)
+/// A .gltf or .glb file with its buffers and the bytes of its images. tinygltf is used because
+/// Debian 12 has it, under the MIT licence, as one header that is compiled with the sanitizers. It
+/// does not check indices and lengths; this class does.
 class GltfFile {
  public:
-  /// Throws InputError: what cannot be read, is no glTF 2.0, or needs an extension that is not
-  /// known.
+  /// Throws InputError if the file cannot be read, is not glTF 2.0 or requires an extension that is
+  /// not read.
   explicit GltfFile(const std::filesystem::path& file);
 
   [[nodiscard]] const tinygltf::Model& model() const { return model_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// All that were read.
+  /// Returns the paths of all files that were read.
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
-  /// Warnings about them.
+  /// Returns the warnings about these files.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Of all of them together.
+  /// Returns the size of all these files together.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
+  /// Throws InputError, "file: what".
   [[noreturn]] void fail(const std::string& what) const;
-  /// Appends "file: what" to warnings that do not have it yet.
+  /// Appends "file: what" to the warnings unless they contain it.
   void warn_once(const std::string& what, std::vector<std::string>& warnings) const;
 
-  /// Appends an error about something optional, and what is done about it, likewise.
+  /// Appends the error and, after a comma, what is done instead, unless the warnings contain it.
   static void warn_once(const InputError& error, const char* instead,
                         std::vector<std::string>& warnings);
 
-  /// The element of `list` with this number; `what` is for messages.
+  /// Returns element `index` of `list`. Throws InputError, which calls it `what`, if there is none.
   template <class T>
   [[nodiscard]] const T& at(const std::vector<T>& list, int index, const char* what) const {
     if (index >= 0 && static_cast<std::size_t>(index) < list.size()) {
@@ -48,30 +50,36 @@ class GltfFile {
     fail_index(what, index, list.size());
   }
 
-  /// Returns `width` finite numbers of each element of an accessor: of the vector's first
-  /// components. Throws InputError where there are none such.
+  /// Returns the first `width` components of each element of an accessor. Throws InputError if they
+  /// cannot be read or are not finite.
   [[nodiscard]] std::vector<double> vectors(int accessor, int width, const char* what) const;
-  /// Returns the same of an attribute that a primitive of `vertices` can do without, NaN for what
-  /// is not finite. Empty for accessor -1 and, with a warning, for one that cannot be read.
+  /// Returns the same for an optional attribute of a primitive of so many vertices, except that the
+  /// numbers may be infinite or NaN. Returns an empty list for accessor -1 and, with a warning, for
+  /// an accessor that cannot be read.
   [[nodiscard]] std::vector<double> optional_vectors(int accessor, int width, const char* what,
                                                      std::size_t vertices,
                                                      std::vector<std::string>& warnings) const;
-  /// The whole numbers of an accessor of indices.
+  /// Returns the numbers of an accessor of indices.
   [[nodiscard]] std::vector<std::uint32_t> indices(int accessor) const;
-  /// Returns a picture's file; empty where it is missing. The library decodes data URIs of a few
-  /// types alone.
-  [[nodiscard]] static std::string picture_bytes(const tinygltf::Image& image);
-  /// How many elements an accessor has.
+  /// Returns the file of a picture as it stands; empty if it is missing. Decodes data URIs of types
+  /// that tinygltf does not know. Throws InputError for a picture beyond its buffer.
+  [[nodiscard]] std::string picture_bytes(int image) const;
+  /// Returns the number of elements of an accessor.
   [[nodiscard]] std::size_t count(int accessor) const;
 
-  /// Where a node has its mesh, in its own coordinates: once, or as EXT_mesh_gpu_instancing says.
+  /// Returns the transforms of a node's mesh to the node's coordinates: those of
+  /// EXT_mesh_gpu_instancing or, without it, the identity alone.
   [[nodiscard]] std::vector<glm::dmat4> instance_transforms(const tinygltf::Node& node) const;
 
  private:
   struct Component;
   struct Elements;
   [[nodiscard]] Elements elements(int accessor, const char* what) const;
-  /// Sets where elements of that type and count are stored; fails where their buffer ends too soon.
+  /// Returns the bytes of a buffer view. Throws InputError, which names `place`, if it has none or
+  /// is not within its buffer.
+  [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;
+  /// Sets where elements of that type and count are stored. Throws InputError if they are not
+  /// within their buffer view.
   void find_stored(int buffer_view, std::size_t offset, const std::string& number,
                    Elements& elements) const;
   [[nodiscard]] std::vector<double> numbers(int accessor, int width, const char* what) const;
@@ -85,7 +93,7 @@ class GltfFile {
   tinygltf::Model model_;
 };
 
-/// From a node's coordinates to its parent's.
+/// Returns the transform from a node's coordinates to its parent's.
 [[nodiscard]] glm::dmat4 local_matrix(const tinygltf::Node& node);
 
 }  // namespace raygate

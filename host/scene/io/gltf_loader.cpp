@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "host/base/input_error.h"
@@ -14,6 +15,7 @@
 #include "host/scene/io/gltf_meshes.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
+#include "host/scene/io/tokens.h"
 
 namespace raygate {
 namespace {
@@ -31,31 +33,31 @@ bool has_finite_elements(const glm::dmat4& m) {
   return true;
 }
 
-/// A mesh by number, with the weights of its morph targets.
+/// The index of a mesh, and the weights of its morph targets.
 using Shape = std::pair<int, std::vector<double>>;
 
-/// A mesh that stands in several places.
+/// A mesh with several instances.
 struct SharedMesh {
-  Scene part;                              // until it is the scene's
-  Bounds3 box;                             // of its positions
-  std::optional<MeshInstancer> instancer;  // then
+  Scene part;   // moved to `instancer` at the first instance
+  Bounds3 box;  // of its positions
+  std::optional<MeshInstancer> instancer;
 };
 
-/// One of these places.
+/// An instance of a mesh.
 struct MeshInstance {
   Shape shape;
   glm::dmat4 world;
   std::uint32_t object;
 };
 
-/// A point or spot light, where its node puts it in the world.
+/// A point or spot light in world coordinates.
 struct PlacedLight {
   glm::dvec3 position;
   glm::dvec3 intensity;
   std::optional<SpotCone> spot;
 };
 
-/// glTF 2.0, 3.7.2.1: what has no normals is flat.
+/// glTF 2.0, 3.7.2.1: primitives without normals are flat.
 LoadOptions as_specified(LoadOptions options) {
   options.smooth_if_unsaid = false;
   return options;
@@ -151,7 +153,7 @@ class GltfReader {
     uses_[shape_of(node)] += many ? 2 : 1;
   }
 
-  /// Returns where the joints of a skin take their vertices.
+  /// Returns the transforms of a skin's joints, from the mesh's coordinates to the world's.
   [[nodiscard]] std::vector<glm::dmat4> joints_of(int number) {
     const tinygltf::Model& model = file_.model();
     const tinygltf::Skin& skin = file_.at(model.skins, number, "skin");
@@ -203,7 +205,7 @@ class GltfReader {
     }
   }
 
-  /// Reads something that costs a warning where it is bad.
+  /// Calls `read` and turns an InputError into a warning.
   template <class Read>
   void optionally(const Read& read) {
     try {
@@ -213,7 +215,7 @@ class GltfReader {
     }
   }
 
-  /// The mesh of an instance, read when it is first asked for: in its own coordinates.
+  /// Returns the mesh of an instance, in its own coordinates, which is read at the first call.
   SharedMesh& shared(const Shape& shape) {
     const auto [at, is_new] = shared_.try_emplace(shape);
     if (!is_new) return at->second;
@@ -227,7 +229,8 @@ class GltfReader {
     return at->second;
   }
 
-  /// The whole scene is recentred. And what will be flattened is counted.
+  /// Includes an instance in the bounds for recentring, and counts its vertices if it will be
+  /// flattened.
   void expand_extent(const MeshInstance& instance) {
     const auto& [part, own_box, ignored] = shared(instance.shape);
     if (is_empty(part)) return;
@@ -242,7 +245,12 @@ class GltfReader {
   void add_instance(const MeshInstance& instance) {
     SharedMesh& mesh = shared(instance.shape);
     if (!mesh.instancer) {
-      if (is_empty(mesh.part)) return;
+      if (is_empty(mesh.part)) {
+        for (const std::string& warning : std::exchange(mesh.part.warnings, {})) {
+          scene_.warnings.push_back(warning);
+        }
+        return;
+      }
       mesh.instancer.emplace(scene_, std::move(mesh.part));
     }
     if (!mesh.instancer->add(instance.world, instance.object)) {
@@ -250,10 +258,10 @@ class GltfReader {
     }
   }
 
-  /// Gives a scene that has none yet this camera, with a target ahead.
+  /// Sets the scene's camera, with a target ahead of it, unless there is one.
   void read_camera(const tinygltf::Camera& camera, const glm::dmat4& world) {
     const bool is_orthographic = camera.type == "orthographic";
-    // An orthographic picture is as large as a perspective one has it at the target.
+    // An orthographic picture has the size of a perspective one at the target.
     const double fov = is_orthographic ? 90.0 : camera.perspective.yfov * kDegrees;
     const double distance = is_orthographic ? camera.orthographic.ymag : 1.0;
     if (!(fov > 0.0 && fov < 180.0)) {
@@ -271,8 +279,8 @@ class GltfReader {
     if (is_orthographic) scene_.camera->lens.projection = Projection::kOrthographic;
   }
 
-  /// Moves the camera's target along the view to the middle of the scene, which is whole by now;
-  /// the picture stays as large.
+  /// Moves the camera's target along the view to the depth of the scene's middle, without changing
+  /// the size of the picture. The scene is complete by now.
   void aim_camera() {
     if (!scene_.camera) return;
     CameraSetting& camera = *scene_.camera;
@@ -302,6 +310,10 @@ class GltfReader {
     }
     const double length = glm::length(glm::dvec3(world[2]));
     const bool is_directional = light.type == "directional", is_spot = light.type == "spot";
+    if (!is_directional && !is_spot && light.type != "point") {
+      file_.fail("found a light of the type " + in_quotes(light.type) +
+                 ", expected directional, point or spot");
+    }
     if ((is_directional || is_spot) && !(length > 0.0 && std::isfinite(length))) {
       return warn_once("a light without a direction is left out");
     }
@@ -314,7 +326,7 @@ class GltfReader {
     if (!is_spot) return;
     const double inner = light.spot.innerConeAngle * kDegrees,
                  outer = light.spot.outerConeAngle * kDegrees;
-    // 90 degrees are pi / 2 but for rounding.
+    // pi / 2 may be rounded to more than 90 degrees.
     if (!(inner >= 0.0 && inner <= outer && outer <= 90.0 + 1e-9)) {
       warn_once("a spot light's angles are limited to 0 <= inner <= outer <= pi / 2");
     }
@@ -323,7 +335,7 @@ class GltfReader {
     cone.inner = inner >= 0.0 ? std::min(inner, cone.outer) : 0.0;
   }
 
-  /// Gives the scene its point lights, when its origin is known.
+  /// Adds the point lights to the scene, whose origin is known by now.
   void place_lights() {
     for (const PlacedLight& light : lights_) {
       const glm::vec3 rounded(light.position - scene_.origin);
@@ -337,9 +349,9 @@ class GltfReader {
   const GltfFile file_;
   const LoadOptions options_;
   Scene scene_;
-  MeshBuilder builder_;  // of meshes that stand in one place
+  MeshBuilder builder_;  // of meshes with one instance
   GltfMeshes meshes_;
-  std::vector<std::pair<const tinygltf::Node*, glm::dmat4>> nodes_;  // in their order
+  std::vector<std::pair<const tinygltf::Node*, glm::dmat4>> nodes_;  // depth first
   std::map<Shape, int> uses_;
   std::map<Shape, SharedMesh> shared_;
   std::vector<MeshInstance> instances_;

@@ -16,7 +16,7 @@ constexpr std::int64_t kMostTexels = std::int64_t{1} << 27;
 
 double in_unit(double x) { return x >= 0.0 ? std::min(x, 1.0) : 0.0; }
 
-/// The first three numbers, limited to 1; 1 where there are none.
+/// Returns the first three numbers, clamped to [0, most]; 1 for missing ones.
 glm::vec3 colour_of(const std::vector<double>& numbers, double most = 1.0) {
   glm::vec3 colour(1.0f);
   for (int k = 0; k < 3 && static_cast<std::size_t>(k) < numbers.size(); ++k) {
@@ -47,7 +47,7 @@ glm::vec2 pair_in(const tinygltf::Value& value, const char* key, const glm::vec2
   return pair;
 }
 
-/// Three numbers, none negative; 1 each where they are not there.
+/// Returns the three numbers at a key, with negative ones as 0; 1 for missing ones.
 glm::vec3 three_in(const tinygltf::Value& value, const char* key) {
   std::vector<double> numbers;
   if (!value.Has(key) || !value.Get(key).IsArray()) return glm::vec3(1.0f);
@@ -58,7 +58,7 @@ glm::vec3 three_in(const tinygltf::Value& value, const char* key) {
   return colour_of(numbers, std::numeric_limits<float>::max());
 }
 
-/// A texture that an extension names; index -1: it names none.
+/// Returns the texture at a key of an extension, with index -1 if there is none.
 tinygltf::TextureInfo texture_in(const tinygltf::Material& material, const char* extension,
                                  const char* key) {
   tinygltf::TextureInfo info;
@@ -77,13 +77,7 @@ tinygltf::TextureInfo texture_in(const tinygltf::Material& material, const char*
   return info;
 }
 
-Wrap wrap_of(int mode) {
-  return mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE     ? Wrap::kClamp
-         : mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::kMirror
-                                                         : Wrap::kRepeat;
-}
-
-/// The number of the set of coordinates that a texture asks for.
+/// Returns the number of the set of coordinates that a texture uses.
 template <class TextureInfo>
 int set_of(const TextureInfo& info) {
   const double set = number_in(info.extensions, "KHR_texture_transform", "texCoord", info.texCoord);
@@ -149,13 +143,11 @@ std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content cont
     file_.warn_once("a texture without a PNG or JPEG picture is left out", scene_.warnings);
     return std::nullopt;
   }
-  const tinygltf::Image& image = file_.at(model.images, source, "image");
-  const std::string bytes = GltfFile::picture_bytes(image);
+  const std::string bytes = file_.picture_bytes(source);
   if (bytes.empty()) {
-    file_.warn_once(
-        "the texture " + in_quotes(image.uri) + " is missing, its material is plain instead",
-        scene_.warnings);
-    return std::nullopt;
+    const std::string& uri = model.images[static_cast<std::size_t>(source)].uri;
+    file_.fail(uri.empty() ? "image " + std::to_string(source) + " has no picture"
+                           : "the texture " + in_quotes(uri) + " is missing");
   }
   Texture result =
       Texture::decode(bytes, file_.name() + ": image " + std::to_string(source), content);
@@ -195,6 +187,16 @@ MaterialMap GltfMaterials::read_map(const TextureInfo& info, Texture::Content co
   map.texture = entry->second;
   if (from.sampler >= 0) {
     const tinygltf::Sampler& sampler = file_.at(model.samplers, from.sampler, "sampler");
+    const auto wrap_of = [&](int mode) {
+      if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::kClamp;
+      if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::kMirror;
+      if (mode != TINYGLTF_TEXTURE_WRAP_REPEAT) {
+        file_.warn_once("sampler " + std::to_string(from.sampler) + ": found the wrap mode " +
+                            std::to_string(mode) + ", expected 10497, 33071 or 33648; repeated",
+                        scene_.warnings);
+      }
+      return Wrap::kRepeat;
+    };
     map.mapping.sampling.u = wrap_of(sampler.wrapS);
     map.mapping.sampling.v = wrap_of(sampler.wrapT);
     map.mapping.sampling.is_nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
@@ -202,7 +204,7 @@ MaterialMap GltfMaterials::read_map(const TextureInfo& info, Texture::Content co
   const auto transform = info.extensions.find("KHR_texture_transform");
   if (transform == info.extensions.end()) return map;
   map.mapping.scale = pair_in(transform->second, "scale", glm::vec2(1.0f));
-  // The file's v runs down: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o.
+  // The file's v points down: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o.
   const glm::vec2 offset = pair_in(transform->second, "offset", glm::vec2(0.0f));
   const double angle = number_in(info.extensions, "KHR_texture_transform", "rotation", 0.0);
   map.mapping.turn = {std::cos(angle), std::sin(angle)};
@@ -231,13 +233,13 @@ void GltfMaterials::use_vertex_opacity(int material) {
     to.opacity_cutoff = static_cast<float>(std::max(from.alphaCutoff, 0.0) / factor);
 }
 
-/// Opacity: as it is, by a factor; or a mask, which the base colour's texture is, too.
+/// Sets the opacity from the base colour's factor and texture, which blend or are a mask.
 void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& material) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
   if (from.alphaMode != "MASK" && from.alphaMode != "BLEND") return;
   const bool is_mask = from.alphaMode == "MASK";
   const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
-  const double cutoff = std::max(from.alphaCutoff, 0.0);  // above 1 nothing is left
+  const double cutoff = std::max(from.alphaCutoff, 0.0);  // above 1 nothing is visible
   if (!is_mask) material.opacity = static_cast<float>(factor);
   if (is_mask && factor < cutoff) material.opacity = 0.0f;
   const tinygltf::TextureInfo& base = pbr.baseColorTexture;
@@ -269,6 +271,10 @@ Material GltfMaterials::translated(const tinygltf::Material& from) {
   material.normal_scale =
       static_cast<float>(std::isfinite(from.normalTexture.scale) ? from.normalTexture.scale : 1.0);
   set_opacity(from, material);
+  if (from.occlusionTexture.index >= 0) {
+    file_.warn_once("occlusionTexture is not read: the rays of the scene find what is in shade",
+                    scene_.warnings);
+  }
 
   const double strength = std::clamp(
       number_in(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0), 0.0,

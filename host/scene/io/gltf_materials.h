@@ -1,4 +1,4 @@
-// Materials and textures of a glTF file as those of a Scene.
+// GltfMaterials: converts the materials and textures of a glTF file to those of a Scene.
 #pragma once
 
 #include <array>
@@ -12,46 +12,48 @@
 
 namespace raygate {
 
-/// Turns materials into those of a scene, each once, with their textures.
-///
-/// Their terms are glTF's own. KHR_materials_unlit has no shading (illum 0).
+/// Converts each material that is used, and its textures, once. A material with
+/// KHR_materials_unlit is not shaded (illumination model 0).
 class GltfMaterials {
  public:
-  /// Without `textures` none is decoded.
+  /// `file` and `scene` must outlive this object. If `textures` is false, no image is decoded.
   GltfMaterials(const GltfFile& file, Scene& scene, bool textures)
       : file_(file), scene_(scene), textures_(textures) {}
 
-  /// The scene's number of the file's material; -1 is the default.
+  /// Returns the index in the scene of a material of the file, which is converted at its first use;
+  /// -1 is the default material.
   std::uint32_t number_of(int material);
-  /// Returns the sets of texture coordinates that its textures ask for, two at most; -1: none.
+  /// Returns the numbers of the sets of texture coordinates that a material uses; -1: none. Warns
+  /// about a third set.
   using Sets = std::array<int, 2>;
   [[nodiscard]] Sets texcoord_sets(int material);
-  /// Whether the opacity of its vertices counts.
+  /// Returns whether a material uses the opacity of its vertices.
   [[nodiscard]] bool has_opacity(int material) const;
-  /// Multiplies its opacity by that of its vertices.
+  /// Makes a material of the scene use the opacity of its vertices.
   void use_vertex_opacity(int material);
 
  private:
   Material translated(const tinygltf::Material& from);
   void set_opacity(const tinygltf::Material& from, Material& material);
   [[nodiscard]] Sets sets_of(const tinygltf::Material& from);
-  /// Returns the texture in the scene, and how it lies; none for index -1.
+  /// Returns the texture's index in the scene and its mapping; no texture for index -1.
   template <class TextureInfo>
   MaterialMap read_map(const TextureInfo& info, Texture::Content content);
-  /// Returns the same; none, with a warning, where it cannot be read.
+  /// Returns the same, or no texture, with a warning, if it cannot be read.
   template <class TextureInfo>
   MaterialMap map_of(const TextureInfo& info, Texture::Content content);
-  /// Decoded; nothing, and a warning, where there is none.
+  /// Returns a decoded image; nullopt, with a warning, if the texture has none. Throws InputError
+  /// if it cannot be decoded or the images have too many pixels.
   std::optional<Texture> picture(int texture, Texture::Content content);
 
   const GltfFile& file_;
   Scene& scene_;
   const bool textures_;
-  std::map<int, std::uint32_t> numbers_;  // of materials
+  std::map<int, std::uint32_t> numbers_;  // from materials of the file to those of the scene
   Sets sets_{-1, -1};                     // of the material that is being read
-  /// In the scene; kNoIndex: there is none.
+  /// Textures of the scene by image of the file; kNoIndex: it could not be read.
   std::map<std::pair<int, Texture::Content>, std::uint32_t> texture_of_image_;
-  std::int64_t texels_ = 0;  // that were decoded
+  std::int64_t texels_ = 0;  // decoded so far
 };
 
 }  // namespace raygate

@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kMostVertices = 12'000'000;  // besides one for each byte
+constexpr std::size_t kMostVertices = 12'000'000;  // plus the number of bytes of the file
 
 }  // namespace
 
@@ -54,7 +54,7 @@ std::vector<std::uint32_t> GltfMeshes::corners_of(const tinygltf::Primitive& pri
 
 void GltfMeshes::warn_of_attributes(const tinygltf::Primitive& primitive) {
   constexpr std::string_view kRead[] = {"POSITION", "NORMAL", "TANGENT", "COLOR_0"};
-  // Sets of texture coordinates that no texture asks for, and joints without a skin, show nowhere.
+  // Texture coordinates that no texture uses, and joints without a skin, change no picture.
   constexpr std::string_view kNumbered[] = {"TEXCOORD_", "JOINTS_", "WEIGHTS_"};
   for (const auto& [name, accessor] : primitive.attributes) {
     const auto begins_name = [&](std::string_view start) { return name.starts_with(start); };
@@ -77,7 +77,7 @@ std::vector<double> GltfMeshes::attribute(const tinygltf::Primitive& primitive,
   std::vector<double> all = name == "POSITION"
                                 ? file_.vectors(accessor(primitive.attributes), width, "POSITION")
                                 : optional(accessor(primitive.attributes), width);
-  const int moved = std::min(width, 3);  // of a tangent its direction alone
+  const int moved = std::min(width, 3);  // targets move a tangent's direction, not its sign
   for (std::size_t target = 0; target < std::min(weights.size(), primitive.targets.size());
        ++target) {
     if (weights[target] == 0.0 || all.empty()) continue;
@@ -147,7 +147,7 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const GltfPlacement&
   std::vector<double> texcoords = read_set(set);
   const std::vector<double> seconds = read_set(second_set);
   const bool is_clear = has_alpha && !colors.empty() && materials_.has_opacity(primitive.material);
-  if (is_clear && set < 0) texcoords.resize(2 * vertices);  // which opacities go by
+  if (is_clear && set < 0) texcoords.resize(2 * vertices);  // opacities need them
   const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
   count(corners.size());
   if (corners.size() % 3 != 0)
@@ -174,7 +174,7 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const GltfPlacement&
       to.add_color({rgb[0], rgb[1], rgb[2]});
     }
     if (!normals.empty()) {
-      // The inverse transpose but for a factor, which a flat matrix has, too.
+      // The inverse transpose up to a factor; cofactors also exist for a singular matrix.
       const glm::dmat3 cofactors(glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]),
                                  glm::cross(turn[0], turn[1]));
       to.add_normal(

@@ -1,4 +1,4 @@
-// The meshes of a glTF file as vertices and faces of a MeshBuilder.
+// GltfMeshes: passes the meshes of a glTF file to a MeshBuilder.
 #pragma once
 
 #include <cstddef>
@@ -14,50 +14,52 @@
 
 namespace raygate {
 
-/// Where a node has its mesh, and in what shape.
+/// The transform and the shape of a node's mesh.
 struct GltfPlacement {
-  glm::dmat4 world;
+  glm::dmat4 world;                    ///< from the mesh's coordinates to the world's
   const std::vector<double>* weights;  ///< of the mesh's morph targets
-  std::vector<glm::dmat4> joints;  ///< of its skin, which take the place of `world`; none: empty
+  std::vector<glm::dmat4> joints;      ///< transforms of a skin, which replace `world`; or empty
 };
 
-/// Reads meshes, with their materials, and counts what they have of vertices and corners.
+/// Reads meshes with their materials, and limits the number of their vertices and corners.
 class GltfMeshes {
  public:
-  /// Both must outlive this.
+  /// `file` and `scene` must outlive this object.
   GltfMeshes(const GltfFile& file, Scene& scene, bool textures)
       : file_(file), scene_(scene), materials_(file, scene, textures) {}
 
-  /// Appends a mesh in a place, faces of an object. Warns and leaves out points, lines
-  /// and what has no positions. Throws InputError: what is no geometry, or too much of it.
+  /// Appends the faces of a mesh, which belong to object number `object`. Leaves out points, lines
+  /// and primitives without positions, with a warning. Throws InputError for invalid geometry and
+  /// as count() does.
   void read(const tinygltf::Mesh& mesh, const GltfPlacement& placement, std::uint32_t object,
             MeshBuilder& to);
 
-  /// Counts vertices and corners, so that what is written out does not fill the memory. Throws
-  /// InputError where there are too many for a file of this size.
+  /// Adds `more` vertices and corners to the count. Throws InputError if there are too many for a
+  /// file of this size, before flattened instances exhaust the memory.
   void count(std::size_t more);
 
  private:
   void read(const tinygltf::Primitive& primitive, const GltfPlacement& placement,
             std::uint32_t object, MeshBuilder& to);
+  /// Warns about attributes that are not read.
   void warn_of_attributes(const tinygltf::Primitive& primitive);
-  /// Returns the numbers of an attribute with its morph targets, times their weights, added.
+  /// Returns the numbers of an attribute plus the weighted sum of its morph targets.
   [[nodiscard]] std::vector<double> attribute(const tinygltf::Primitive& primitive,
                                               const std::string& name, int width,
                                               std::size_t vertices,
                                               const std::vector<double>& weights);
-  /// Returns the transform of each vertex to the world by the joints of its skin.
+  /// Returns the transform of each vertex to the world: the weighted mean of its joints.
   [[nodiscard]] std::vector<glm::dmat4> skinned(const tinygltf::Primitive& primitive,
                                                 const GltfPlacement& placement,
                                                 std::size_t vertices);
-  /// The triangles' corners, as numbers of the primitive's vertices.
+  /// Returns the corners of the triangles as indices into the primitive's vertices.
   [[nodiscard]] std::vector<std::uint32_t> corners_of(const tinygltf::Primitive& primitive,
                                                       std::size_t vertices);
 
   const GltfFile& file_;
   Scene& scene_;
   GltfMaterials materials_;
-  std::size_t vertices_ = 0;  // and corners, so far
+  std::size_t vertices_ = 0;  // of vertices and corners that were counted
 };
 
 }  // namespace raygate

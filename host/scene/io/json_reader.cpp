@@ -18,7 +18,7 @@ namespace {
 
 using Kind = JsonNode::Kind;
 
-/// Characters for the parser, counted in lines as it takes them.
+/// Passes characters to the parser and counts lines.
 class LineCounter {
  public:
   using difference_type = std::ptrdiff_t;
@@ -27,12 +27,12 @@ class LineCounter {
   using reference = const char&;
   using iterator_category = std::input_iterator_tag;
 
-  /// `line` becomes the line of the character taken last.
+  /// Keeps `line` at the line of the last character that was passed.
   LineCounter(const char* at, std::size_t* line) : at_(at), line_(line) {}
 
   reference operator*() const { return *at_; }
   LineCounter& operator++() {
-    // A line feed counts from the next character on: the parser reads one past a number's end.
+    // A line feed counts at the next character, as the parser reads one beyond a number's end.
     if (was_line_feed_) ++*line_;
     was_line_feed_ = *at_++ == '\n';
     return *this;
@@ -51,7 +51,7 @@ class LineCounter {
   bool was_line_feed_ = false;
 };
 
-/// Builds the tree of values: what the parser calls for each.
+/// Handler of the parser's events, which builds the tree of values.
 class TreeBuilder {
  public:
   TreeBuilder(const std::string& file, const std::size_t& line, JsonNode& root)
@@ -114,11 +114,11 @@ class TreeBuilder {
   const std::size_t& line_;
   JsonNode& root_;
   static constexpr std::size_t kLevels = 64;
-  std::vector<JsonNode*> open_;  // from the root down to where values are added
-  std::array<std::unordered_set<std::string>, kLevels + 1> seen_;  // keys of the objects in it
+  std::vector<JsonNode*> open_;  // from the root down to the node to which values are added
+  std::array<std::unordered_set<std::string>, kLevels + 1> seen_;  // keys of the open objects
 };
 
-/// "[1, 2]", "'text'", "an object": for messages.
+/// Returns a value for a message: "[1, 2]", "'text'", "an object".
 std::string shown(const JsonNode& node) {
   switch (node.kind) {
     case Kind::kNull:

@@ -1,4 +1,4 @@
-// JSON values that know their line and their path, asked for by what they must be.
+// JsonFile: JSON values with their lines and paths, and access that checks their types.
 #pragma once
 
 #include <cstddef>
@@ -13,55 +13,57 @@
 
 namespace raygate {
 
-/// A value as it stands in a JSON file.
+/// A value of a JSON file.
 struct JsonNode {
   enum class Kind { kNull, kBool, kNumber, kString, kArray, kObject };
 
   Kind kind = Kind::kNull;
-  std::size_t line = 0;  ///< from 1: where it ends or is opened
-  double number = 0.0;   ///< of a bool 0 or 1; may be infinite for 1e999
-  std::string text;      ///< of a string; of a number as it stands in the file
+  std::size_t line = 0;  ///< from 1: of an array's or object's beginning, of another value's end
+  double number = 0.0;   ///< a bool is 0 or 1; 1e999 is infinite
+  std::string text;      ///< of a string, or of a number as written in the file
   std::vector<JsonNode> elements;
   std::vector<std::string> keys;  ///< of an object, in the file's order: those of `elements`
 };
 
-/// A value of a JsonFile, which must outlive this. A value that is not what it is asked for throws
-/// InputError: "a.json:7: camera.eye[1]: 'up', expected a number within the range of float".
+/// A value of a JsonFile, which must outlive this object. Functions throw InputError for a value of
+/// another type: "a.json:7: camera.eye[1]: 'up', expected a number within the range of float".
 class JsonValue {
  public:
   [[noreturn]] void fail(const std::string& expected) const;
   [[nodiscard]] std::size_t line() const { return node_->line; }
 
-  /// An object that has no other keys than these.
+  /// Requires an object without other keys than these.
   void require_keys(std::span<const char* const> known) const;
   void require_keys(std::initializer_list<const char*> known) const {
     require_keys(std::span(known.begin(), known.size()));
   }
   [[nodiscard]] const std::vector<std::string>& keys() const { return node_->keys; }
-  /// The value of a key of an object; nothing if it is not there.
+  /// Returns the value of a key of an object, or nullopt if the key is missing.
   [[nodiscard]] std::optional<JsonValue> find(const std::string& key) const;
-  /// The value of a key that must be there.
+  /// Returns the value of a required key.
   [[nodiscard]] JsonValue at(const std::string& key) const;
 
-  /// Of an array.
+  /// Returns the elements of an array.
   [[nodiscard]] std::vector<JsonValue> elements() const;
-  /// Of the array of a key; none if it is not there.
+  /// Returns the elements of the array at a key; none if the key is missing.
   [[nodiscard]] std::vector<JsonValue> elements(const std::string& key) const;
 
-  /// Within the range of float.
+  /// Returns a number within the range of float.
   [[nodiscard]] double number() const;
-  /// Of a key, from `low` to `high`, or what a missing key stands for; `expected` says so.
+  /// Returns the number at a key, which is from `low` to `high`, or `missing` if there is no such
+  /// key. `expected` describes the range in messages.
   [[nodiscard]] double number_in(const std::string& key, double low, double high,
                                  const std::string& expected, double missing) const;
-  /// Not empty; `expected` says what it names.
+  /// Returns a string that is not empty; `expected` describes it in messages.
   [[nodiscard]] const std::string& string(const std::string& expected) const;
-  /// A number or a string as it stands in the file.
+  /// Returns a string, or a number as written in the file.
   [[nodiscard]] const std::string& word(const std::string& expected) const;
-  /// [x, y, z]
+  /// Returns the vector of an array [x, y, z].
   [[nodiscard]] glm::dvec3 vector() const;
-  /// Of unit length; in the file of any length but 0.
+  /// Returns the unit vector in the direction of an array [x, y, z] that is not zero.
   [[nodiscard]] glm::dvec3 direction() const;
-  /// [red, green, blue], or one number for all three; none negative.
+  /// Returns the colour of an array [red, green, blue], or of one number for all three; none is
+  /// negative.
   [[nodiscard]] glm::vec3 light() const;
 
  private:
@@ -78,8 +80,8 @@ class JsonValue {
 
 class JsonFile {
  public:
-  /// Parses `file`. Throws InputError, "file:line: what": what cannot be read or is not JSON (RFC
-  /// 8259), a key that an object has twice, more than 64 levels.
+  /// Parses `file`. Throws InputError, "file:line: what", if it cannot be read or is not JSON (RFC
+  /// 8259), for an object with a key twice, and for more than 64 levels.
   explicit JsonFile(const std::filesystem::path& file);
 
   [[nodiscard]] JsonValue root() const { return {root_, file_, ""}; }

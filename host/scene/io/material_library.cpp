@@ -18,10 +18,13 @@ void MaterialLibrary::load_library(std::string_view names) {
   }
   std::vector<std::string_view> words;
   std::string_view rest = names;
-  for (std::string_view name = take_token(rest); !name.empty(); name = take_token(rest)) {
-    words.push_back(name);
+  while (!rest.empty()) {
+    const std::size_t end = rest.starts_with('"') ? rest.find('"', 1) : rest.npos;
+    words.push_back(rest.substr(0, end == rest.npos ? rest.find_first_of(" \t") : end + 1));
+    rest.remove_prefix(words.back().size());
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
   }
-  // One name of several words may be on another machine, too.
+  // One name may have several words, also if its file has another spelling here.
   const bool are_several = std::ranges::all_of(
       words, [&](std::string_view name) { return find_exact_file(folder_, name).has_value(); });
   if (!are_several || find_exact_file(folder_, names)) {
@@ -84,7 +87,7 @@ class TextureLoader {
     if (map.texture == kNoIndex) map.texture = number_of(map.file, content);
   }
 
-  /// Roughness is the green code, metalness the blue one.
+  /// Combines the textures: roughness is the green channel, metalness the blue one.
   void load_pair(MetallicRoughness& shares) {
     if (shares.map.texture != kNoIndex) return;
     const std::uint32_t rough = number_of(shares.map.file, Texture::Content::kColour);

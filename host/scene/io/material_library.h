@@ -1,4 +1,4 @@
-// The materials of an OBJ file, by name, from the MTL files that it names; and their textures.
+// MaterialLibrary: the materials of an OBJ file, from its MTL files; and loading of textures.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,21 @@ namespace raygate {
 
 class MaterialLibrary {
  public:
-  /// MTL files are looked for in `folder`. `obj` says where the OBJ file is being read. Both
-  /// references must outlive this.
+  /// Searches for MTL files in `folder`. `obj` gives the place of warnings. `obj` and `warnings`
+  /// must outlive this object.
   MaterialLibrary(std::filesystem::path folder, const TextLines& obj,
                   std::vector<std::string>& warnings)
       : folder_(std::move(folder)), obj_(obj), warnings_(warnings) {}
 
-  /// Loads what a mtllib statement names: one file whose name may hold spaces, or several files
-  /// with spaces between, as find_file does. Warns of one that is missing, throws InputError for
-  /// one that is wrong.
+  /// Loads the files that a mtllib statement names, which find_file finds: one file whose name may
+  /// hold spaces, or several names, separated by spaces, some perhaps in quotes. Warns about a file
+  /// that is missing. Throws InputError for a file with an error.
   void load_library(std::string_view names);
 
-  /// Index into materials() of the first material with this name.
+  /// Returns the index in materials() of the first material with this name.
   [[nodiscard]] std::optional<std::uint32_t> find(const std::string& name) const;
   [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
-  /// The files that were read.
+  /// Returns the paths of the files that were read.
   [[nodiscard]] const std::set<std::filesystem::path>& files() const { return loaded_; }
 
  private:
@@ -45,10 +45,9 @@ class MaterialLibrary {
   std::vector<Material> materials_;
 };
 
-/// Loads the textures that materials of triangles name by files, each file once for each use;
-/// fills Scene::textures and the materials' indices. Pictures of roughness and of metalness
-/// become one. Masks that hide nothing are left out. Warns of a file that is missing or that
-/// Texture::load refuses.
+/// Loads the texture files of all materials that triangles use, once for each kind of content, into
+/// Scene::textures, and sets the materials' indices. Combines textures of roughness and metalness.
+/// Leaves out opacity maps that hide nothing. Warns about a file that is missing or cannot be read.
 void load_textures(Scene& scene);
 
 }  // namespace raygate

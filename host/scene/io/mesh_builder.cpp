@@ -15,12 +15,12 @@ namespace raygate {
 namespace {
 
 constexpr glm::vec3 kNoColor(-1.0f);
-/// Index of a corner whose index in the file names nothing.
+/// Index of a corner whose index in the file is out of range.
 constexpr std::uint32_t kBadIndex = kNoIndex - 1;
 
 }  // namespace
 
-// Counts what happens often, and says so once, with the first line where it did.
+// Counts a frequent problem, for one warning with its first line.
 class MeshBuilder::WarningCount {
  public:
   void note(std::size_t line) {
@@ -43,7 +43,7 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
   const glm::dvec3 half = 0.5 * high - 0.5 * low;
   const double radius = std::max({half.x, half.y, half.z});
   if (radius == 0.0) return low;
-  // The least power of two that is not below 4 radius.
+  // The least power of two that is at least 4 radius.
   int exponent = 0;
   const double part = std::frexp(4.0 * radius, &exponent);
   const double step = std::ldexp(1.0, part == 0.5 ? exponent - 1 : exponent);
@@ -51,7 +51,7 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
   glm::dvec3 origin;
   for (int axis = 0; axis < 3; ++axis) {
     const double steps = std::nearbyint(centre[axis] / step);
-    // + 0.0: no negative zero. Beyond 2^53 steps the centre is on the grid already, and the
+    // + 0.0 avoids a negative zero. Beyond 2^53 steps the centre is already on the grid, and the
     // quotient may overflow.
     origin[axis] = std::abs(steps) < 0x1p53 ? steps * step + 0.0 : centre[axis];
   }
@@ -166,7 +166,7 @@ void MeshBuilder::fail_far(std::size_t position) const {
       "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
 }
 
-// Keeps the positions that some face uses, relative to the origin, and renumbers the corners.
+// Keeps the positions that a face uses, relative to the origin, and renumbers the corners.
 void MeshBuilder::recentre(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const Corner& corner : corners_) new_index[corner.position] = 0;
@@ -195,7 +195,8 @@ void MeshBuilder::recentre(Scene& scene) {
   for (Corner& corner : corners_) corner.position = new_index[corner.position];
 }
 
-// Whether a polygon has no area in its file either: at most what decimals become in double.
+// Returns whether a polygon has no area in its file either, except for the rounding of decimals to
+// double.
 bool MeshBuilder::was_flat(std::span<const Corner> corners) const {
   const glm::dvec3& first = positions_[corners[0].position];
   glm::dvec3 area(0.0), size(0.0), reach = glm::abs(first);

@@ -1,4 +1,4 @@
-// MeshBuilder: collects the vertices and polygons of a file and triangulates them into a scene.
+// MeshBuilder: collects the vertices and polygons of a file and builds a scene of triangles.
 #pragma once
 
 #include <cstddef>
@@ -14,42 +14,42 @@
 
 namespace raygate {
 
-/// One corner of a polygon: indices as the file has them, from 1, or below 0 counted from the last
-/// one so far; 0: none.
+/// One corner of a polygon. Indices are as in an OBJ file: positive ones count from 1, negative
+/// ones from the last element so far (-1); 0 stands for none.
 struct FileCorner {
   std::int32_t position = 0, texcoord = 0, normal = 0;
 };
 
-/// Collects what a file holds, in its order, and builds the scene at its end: only then are the
-/// extent (to recentre) and the number of vertices (faces may come before theirs) known.
+/// Collects vertices and polygons in the file's order and builds the scene at the end, when the
+/// bounds (to recentre) and the number of vertices (which may follow their faces) are known.
 class MeshBuilder {
  public:
   explicit MeshBuilder(std::string file_name) : file_name_(std::move(file_name)) {}
 
   void add_position(const glm::dvec3& position) { positions_.push_back(position); }
-  /// Gives the last position a colour: of sRGB codes from 0 to 1 or, where the file has one above
-  /// 1, to 255; or scene-linear.
+  /// Sets the colour of the last position: sRGB codes from 0 to 1, or to 255 if any colour of the
+  /// file exceeds 1; scene-linear RGB after colors_are_linear().
   void add_color(const glm::vec3& color);
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
   void add_normal(const glm::dvec3& normal);
-  /// Gives the last normal a tangent; the last texture coordinate those of a second set, or an
-  /// opacity (as Scene has them).
+  /// Set the tangent of the last normal, and the second texture coordinates and the opacity of the
+  /// last texture coordinates, in the format of Scene.
   void add_tangent(const glm::vec4& tangent);
   void add_second_texcoord(const glm::vec2& texcoord);
   void add_opacity(float opacity);
 
-  /// Adds a polygon. One of fewer than three corners is left out by build(), with a warning; a
-  /// corner whose normal or texture coordinate does not exist costs the face all of these. `line`
-  /// is for messages; 0 in a file without lines.
+  /// Adds a polygon. build() leaves out polygons of fewer than three corners, and the normals or
+  /// texture coordinates of a face if one of its corners has none, with a warning. `line` is for
+  /// messages; 0 in a file without lines.
   void add_face(std::span<const FileCorner> corners, std::size_t line);
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
-  /// Gives faces by number, from `begin` to `end`, their material, object and smoothing group; 0
-  /// before. Group 0 is flat.
+  /// Sets the material, object and smoothing group (0: flat) of the faces in [begin, end). All
+  /// three are 0 by default.
   void assign_faces(std::size_t begin, std::size_t end, std::uint32_t material,
                     std::uint32_t object, std::uint32_t group = 0);
 
-  /// What a file has of vertices.
+  /// Numbers of positions, texture coordinates and normals.
   struct Counts {
     std::size_t positions = 0, texcoords = 0, normals = 0;
 
@@ -63,25 +63,27 @@ class MeshBuilder {
   [[nodiscard]] Counts counts() const {
     return {positions_.size(), texcoords_.size(), normals_.size()};
   }
-  /// Where the file's earlier parts, which have so many, go to other builders: before all else.
+  /// Makes indices count from the start of a file of which other builders have the earlier part,
+  /// with so many elements. To be called first.
   void begin_after(const Counts& earlier) { earlier_ = earlier; }
-  /// Adds what the file's next part gave, whose builder began after this one's counts.
+  /// Appends the next part of the file, whose builder began after this one's counts.
   void append(MeshBuilder&& part);
 
-  /// Recentres the scene with this box, too.
+  /// Includes this box in the bounds by which the scene is recentred.
   void expand_extent(const Bounds3& box) {
     others_.expand(box.low);
     others_.expand(box.high);
   }
-  /// The file says what is smooth, if only that nothing is.
+  /// Notes that the file defines smoothing, so that none is guessed.
   void smoothing_is_said() { is_smoothing_said_ = true; }
-  /// No face with an area is no error.
+  /// Makes build() accept a scene in which no face has an area.
   void allow_empty() { may_be_empty_ = true; }
 
-  /// Fills positions, normals, texcoords, triangles and origin, and appends to the warnings.
-  /// Throws InputError: an index of nothing, a face without area, no face at all.
+  /// Sets the scene's vertices, triangles and origin, and appends to its warnings. Throws
+  /// InputError for an index out of range, if there is no face with an area, and with
+  /// options.strict for any face without an area.
   void build(const LoadOptions& options, Scene& scene);
-  /// The same where all faces are one object of a default material: a whole scene of one file.
+  /// Does the same and makes all faces one object of a default material.
   void build_plain(const LoadOptions& options, Scene& scene);
 
  private:
@@ -122,9 +124,10 @@ class MeshBuilder {
   std::vector<Face> faces_;
 };
 
-/// A point to subtract from all others, on a power-of-two grid about as coarse as the box is
-/// large: zero for a box near the world's origin; and for a coordinate farther from it than three
-/// times the box's extent the subtraction is exact. No result exceeds three times the extent.
+/// Returns the origin of a scene with these bounds, which is subtracted from all positions: a point
+/// on a grid whose step is a power of two about the box's size. It is zero for a box near the
+/// world's origin. The subtraction is exact for coordinates that exceed three times the box's
+/// extent, and no difference exceeds three times the extent.
 [[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
 
 }  // namespace raygate

@@ -17,14 +17,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Statements of one number and the range it is clamped to.
+/// A statement of one number, and the range to which it is clamped.
 struct Value {
   std::string_view keyword;
-  double low, high, instead;  // what stands in for a number below `low`
+  double low, high, instead;  // `instead` replaces a number below `low`
 };
 constexpr std::array<Value, 7> kValues{{
     {"Ns", 0.0, kInfinity, 0.0},
-    {"Ni", 0.001, kInfinity, 1.0},  // an index of 0 is what some exporters write for "none"
+    {"Ni", 0.001, kInfinity, 1.0},  // some exporters write an index of 0 for "none"
     {"d", 0.0, 1.0, 0.0},
     {"Tr", 0.0, 1.0, 0.0},
     {"illum", 0.0, 10.0, 2.0},
@@ -32,7 +32,7 @@ constexpr std::array<Value, 7> kValues{{
     {"Pm", 0.0, 1.0, 0.0},
 }};
 
-/// Options of maps and how many words may follow each; all but the first must be numbers.
+/// An option of maps, and how many words may follow it; all but the first must be numbers.
 struct TextureOption {
   std::string_view name;
   int words;
@@ -52,7 +52,7 @@ constexpr std::array<TextureOption, 14> kTextureOptions{{{"-blendu", 1},
                                                          {"-cc", 1},
                                                          {"-colorspace", 1}}};
 
-/// Pictures: of colour, emission, roughness, metalness, opacity and normals.
+/// Statements that name textures.
 constexpr std::array<std::string_view, 6> kMaps{"map_Kd", "map_Ke", "map_Pr",
                                                 "map_Pm", "map_d",  "norm"};
 
@@ -62,7 +62,8 @@ std::string shortest(double number) {
   return text;
 }
 
-/// The material's member of a colour statement; Ka is read and not used.
+/// Returns the member of the material that a colour statement sets; nullptr for another statement.
+/// Ka is parsed and not used.
 glm::vec3* colour_of(Material& material, glm::vec3& unused, std::string_view keyword) {
   if (keyword == "Kd") return &material.diffuse;
   if (keyword == "Ks") return &material.specular;
@@ -71,7 +72,7 @@ glm::vec3* colour_of(Material& material, glm::vec3& unused, std::string_view key
   return keyword == "Ka" ? &unused : nullptr;
 }
 
-/// Models of glass, of which an opacity of 1 says nothing.
+/// Returns whether an illumination model is one of glass, whose opacity of 1 means nothing.
 bool is_clear(int model) { return model == 4 || model == 6 || model == 7 || model == 9; }
 
 }  // namespace
@@ -105,8 +106,9 @@ void MtlReader::read_statement(std::string_view statement) {
   }
 }
 
-/// Tr is the transparency; MeshLab and others write the opacity. That is told by a comment that
-/// names MeshLab, or by a Tr 1, which would hide a surface altogether, in a file without a Tr 0.
+/// Decides whether Tr is the transparency, as specified, or the opacity, as MeshLab and others
+/// write it: if a comment names MeshLab, or the file has a Tr 1, which would make a surface
+/// invisible, and no Tr 0.
 void MtlReader::settle_transparency() {
   const auto any = [&](double tr) {
     return std::ranges::find(transparencies_, tr, &Transparency::tr) != transparencies_.end();
@@ -120,14 +122,14 @@ void MtlReader::settle_transparency() {
   warn("Tr is read as the opacity, as MeshLab writes it, in all of the file");
 }
 
-/// Any of the PBR statements makes a material metallic and rough. What they leave out is what
-/// exporters have that write them: no metal, and Ns = 1000 (1 - roughness)^2.
+/// Completes a material. Any PBR statement selects the metallic-roughness model. Defaults are those
+/// of the exporters that write such statements: no metal, and Ns = 1000 (1 - roughness)^2.
 void MtlReader::finish_material() {
   if (!is_kept_) return;
   if (transparency_ && !has_opacity_ && !is_clear(material_.illumination_model)) {
     transparencies_.push_back(*transparency_);
   }
-  // A highlight that covers the half of all directions has no shape: exporters write Ns 0 for none.
+  // Exporters write Ns 0 for "no highlight".
   if (material_.illumination_model == 2 && has_no_shine_) material_.specular = glm::vec3(0.0f);
   const bool has_maps = material_.metallic_roughness.has_value();  // begun by map_Pr or map_Pm
   if (has_maps || roughness_ || metallic_) {
@@ -200,7 +202,7 @@ void MtlReader::read_value(std::string_view keyword, std::string_view words) {
   }
   const std::string_view more = take_token_before_comment(words);
   if (word.empty() || !more.empty()) {
-    // Tr of three numbers is what old exporters write for Tf; its meaning is anyone's guess.
+    // Old exporters write three numbers at Tr in place of Tf, with an unknown meaning.
     lines().fail(std::string(keyword) + ": expected one number");
   }
   double number = lines().number(word, keyword);
@@ -277,7 +279,7 @@ void MtlReader::read_map(std::string_view keyword, std::string_view words) {
   } else if (keyword == "map_d") {
     material_.opacity_map = {file, mapping};
   } else if (keyword == "map_Kd") {
-    // Without a Kd of its own the texture's colours stand as they are. (A later Kd still counts.)
+    // Without a Kd the texture is not tinted. (A later Kd still counts.)
     if (!has_diffuse_) material_.diffuse = glm::vec3(1.0f);
     has_diffuse_ = true;
     material_.diffuse_map = file;
@@ -292,7 +294,7 @@ void MtlReader::read_map(std::string_view keyword, std::string_view words) {
 
 glm::vec2 MtlReader::take_texture_vector(const std::string& of_what,
                                          std::string_view& words) const {
-  // One to three numbers; the third is for solid textures.
+  // There are one to three numbers; the third is for solid textures.
   std::array<double, 3> uvw{};
   uvw.fill(of_what.ends_with("-s") ? 1.0 : 0.0);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Reader of an MTL file: its materials.
+// MtlReader: reads the materials of an MTL file.
 #pragma once
 
 #include <optional>
@@ -8,16 +8,16 @@
 
 namespace raygate {
 
-/// Reads what Material holds. Values out of range are clamped with a warning; what Material does
-/// not hold is left out, with a warning where that shows in a picture. All else that is wrong is an
-/// InputError.
+/// Reads the statements that Material has members for. Clamps values out of range, with a warning.
+/// Ignores other statements, with a warning if they would change a picture. Throws InputError for
+/// other errors.
 class MtlReader final : public StatementReader {
  public:
-  /// Textures are looked for in the file's folder, as find_file does.
+  /// Searches for textures in the file's folder, by find_file. `warnings` must outlive this object.
   MtlReader(const std::filesystem::path& file, std::vector<std::string>& warnings)
       : StatementReader(file, warnings), folder_(file.parent_path()) {}
 
-  /// The materials in the file's order, each name once: the first of a name stands.
+  /// Returns the materials in the file's order. Of several with one name the first is kept.
   [[nodiscard]] std::vector<Material> read();
 
  private:
@@ -33,16 +33,15 @@ class MtlReader final : public StatementReader {
   std::filesystem::path folder_;
   std::vector<Material> materials_;
   std::set<std::string, std::less<>> names_;
-  Material material_;          // the one that is being read
-  bool in_material_ = false;   // there is one
-  bool is_kept_ = false;       // it has a name that is new
-  bool has_emission_ = false;  // Ke was there
-  bool has_diffuse_ = false;   // Kd was there, or stands in for it
-  bool has_opacity_ = false;   // d was there, which Tr does not change
-  bool has_no_shine_ = false;  // Ns 0 was there
-  // Of the PBR statements.
-  std::optional<float> roughness_, metallic_;
-  /// What Tr says of a material whose model is not clear and that has no d.
+  Material material_;                          // the material that is being read
+  bool in_material_ = false;                   // whether there was a newmtl
+  bool is_kept_ = false;                       // whether its name is new
+  bool has_emission_ = false;                  // whether there was a Ke
+  bool has_diffuse_ = false;                   // whether there was a Kd or map_Kd
+  bool has_opacity_ = false;                   // whether there was a d, which Tr does not change
+  bool has_no_shine_ = false;                  // whether there was an Ns 0
+  std::optional<float> roughness_, metallic_;  // Pr and Pm
+  /// Tr of a material without d whose illumination model is not transparent.
   struct Transparency {
     std::size_t material, line;
     double tr;

@@ -14,13 +14,13 @@ bool is_one_of(const std::array<std::string_view, size>& list, std::string_view 
   return std::find(list.begin(), list.end(), keyword) != list.end();
 }
 
-// Shapes that are not polygons, and what belongs to them.
+// Statements of shapes that are not polygons.
 constexpr std::array<std::string_view, 26> kOtherShapes{
     "p",     "l",    "vp",   "cstype", "deg",  "bmat", "step", "curv", "curv2",
     "surf",  "parm", "trim", "hole",   "scrv", "sp",   "end",  "con",  "ctech",
     "stech", "bsp",  "bzp",  "cdc",    "cdp",  "res",  "t",    "vw"};
 
-// What changes no polygon and no material: merging groups, display attributes.
+// Statements that change no polygon and no material: merging groups, display attributes.
 constexpr std::array<std::string_view, 9> kOfNoConsequence{
     "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "usemap", "maplib"};
 
@@ -85,7 +85,7 @@ void ObjChunk::keep(std::string_view statement) {
   rest_.push_back({std::string(statement), lines_.line(), mesh_.face_count()});
 }
 
-/// The first statement with this keyword alone, and of it the keyword.
+/// Keeps the keyword of the first statement with this keyword.
 void ObjChunk::keep_once(std::string_view keyword) {
   if (kept_.emplace(keyword).second) keep(keyword);
 }
@@ -95,7 +95,7 @@ std::span<const double> ObjChunk::read_numbers(std::string_view keyword, std::st
   for (std::string_view word = take_token_before_comment(words); !word.empty();
        word = take_token_before_comment(words)) {
     if (count == numbers_.size()) lines_.fail("too many numbers after " + in_quotes(keyword));
-    // A normal, texture coordinate or colour that is no number costs its faces theirs.
+    // MeshBuilder leaves out normals, texture coordinates and colours that are not finite.
     const bool must_be_finite = keyword == "v" && count < 3;
     numbers_[count++] = must_be_finite
                             ? lines_.number(word, keyword)

@@ -1,4 +1,4 @@
-// Chunk of an OBJ file, parsed by one thread: its vertices and faces; other statements are kept.
+// ObjChunk: a part of an OBJ file that one thread parses.
 #pragma once
 
 #include <array>
@@ -16,30 +16,30 @@
 
 namespace raygate {
 
-/// Parts can be read at the same time, on several threads. What a part says of materials, groups
-/// and other files hangs on the parts before it: such statements are kept for ObjReader.
+/// Parses vertices and faces. Chunks can be read concurrently. Statements about materials, groups
+/// and other files depend on earlier chunks, so they are kept for ObjReader.
 class ObjChunk {
  public:
   /// A statement that is neither of a vertex nor of a face.
   struct Rest {
     std::string statement;
     std::size_t line;
-    std::size_t faces;  ///< of the part, that come before it
+    std::size_t faces;  ///< of the chunk that precede it
   };
 
   explicit ObjChunk(TextLines lines) : lines_(std::move(lines)), mesh_(lines_.file_name()) {}
 
-  /// What the part has of lines and vertices: it reads all, but understands little.
+  /// Numbers of lines and vertices, which count() finds without parsing the numbers in them.
   struct Counts {
     std::size_t lines = 0;
     MeshBuilder::Counts mesh;
   };
   [[nodiscard]] Counts count() const;
-  /// What the parts before it have; before read().
+  /// Sets the counts of all earlier chunks. To be called before read().
   void begin_after(const Counts& counts);
 
-  /// Reads v, vt, vn and f: the right count of numbers, those of vertices finite, corners without
-  /// vertex index 0. Stops at a statement that is wrong.
+  /// Reads v, vt, vn and f. Checks the count of numbers, that those of vertices are finite, and
+  /// that no vertex index is 0. Stops at the first error.
   void read();
 
   [[nodiscard]] MeshBuilder& mesh() { return mesh_; }

@@ -31,10 +31,10 @@ class NameTable {
   std::vector<std::string> names_;
 };
 
-/// Reads v, vt, vn, f, g, o, s, usemtl and mtllib; vertices and faces chunk by chunk (see
-/// ObjChunk), on several threads. Points, lines and free-form curves and surfaces are left out with
-/// a warning, what only concerns a modeller without one; all else is an InputError. (B. Wavefront's
-/// "Object Files", version 3.0, is the source of the statements.)
+/// Reads v, vt, vn, f, g, o, s, usemtl and mtllib; vertices and faces on several threads (see
+/// ObjChunk). Leaves out points, lines and free-form curves and surfaces, with a warning, and
+/// statements that only concern a modelling program, without one. Throws InputError for any other
+/// statement. (The statements are those of Wavefront's "Object Files", version 3.0.)
 class ObjReader final : public StatementReader {
  public:
   ObjReader(const std::filesystem::path& file, Scene& scene)
@@ -54,8 +54,8 @@ class ObjReader final : public StatementReader {
   }
 
  private:
-  // Lines and vertices are counted before they are read, so that each chunk knows its line numbers
-  // and what indices below 0 mean.
+  // Lines and vertices are counted first, so that each chunk knows its line numbers and can resolve
+  // negative indices.
   void read_statements(const LoadOptions& options) {
     const std::size_t most = options.threads > 1 ? std::size_t{4} * options.threads : 1;
     std::vector<ObjChunk> chunks;
@@ -91,7 +91,7 @@ class ObjReader final : public StatementReader {
     chunk.rethrow();
   }
 
-  /// Gives the faces from `begin` to `end` the material and the object that are in force.
+  /// Sets the material and the object of the faces in [begin, end) to the current ones.
   void assign_faces(std::size_t begin, std::size_t end) {
     if (begin == end) return;
     if (!object_is_known_) {
@@ -125,7 +125,7 @@ class ObjReader final : public StatementReader {
     }
   }
 
-  /// "a b" may be one group or two: it is one name here.
+  /// Sets the group. "a b" may be one name or two; it is taken as one.
   void set_group(std::string_view names) {
     group_.clear();
     for (std::string_view name = take_token(names); !name.empty(); name = take_token(names)) {
@@ -148,10 +148,10 @@ class ObjReader final : public StatementReader {
     }
   }
 
-  /// Names become materials at the end of the file, so that mtllib may come after usemtl.
+  /// Resolves the names of materials at the end of the file, as mtllib may come after usemtl.
   void assign_materials() {
     scene_.materials = mtl_.materials();
-    // Scanners write a texture and the same colours once more.
+    // Scanners write the colours of a texture once more at the vertices.
     for (Material& material : scene_.materials) {
       material.has_vertex_colors = material.diffuse_map.empty();
     }
@@ -182,9 +182,9 @@ class ObjReader final : public StatementReader {
   MaterialLibrary mtl_;
   Scene& scene_;
   NameTable objects_;
-  NameTable materials_;                  // of usemtl, which faces have numbers of (kNoIndex: none)
+  NameTable materials_;                  // of usemtl; faces have their indices (kNoIndex: none)
   std::vector<std::string> first_uses_;  // "file:line: " of the first use of each material
-  std::string object_, group_;           // in force; empty: none
+  std::string object_, group_;           // the current ones; empty: none
   std::uint32_t object_number_ = 0;
   bool object_is_known_ = false;
   std::uint32_t material_number_ = kNoIndex;

@@ -7,6 +7,8 @@
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
+#include "host/scene/io/find_file.h"
+#include "host/scene/io/material_library.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/tokens.h"
@@ -64,27 +66,34 @@ class PlyReader {
         }
       }
     }
+    if (!texture_.empty() && !has_texcoords_) {
+      unread_.push_back("texture " + in_quotes(texture_) + " without texture coordinates");
+    }
     if (!unread_.empty()) {
       std::string all;
       for (const std::string& one : unread_) all.append(all.empty() ? "" : ", ").append(one);
       scene.warnings.push_back(name_ + ": not read: " + all);
     }
     mesh_.build_plain(options, scene);
+    if (has_texcoords_) add_texture(options, scene);
     return scene;
   }
 
  private:
-  /// In the header its line; of the next number behind it, 0 in a binary file.
+  /// Returns the current line of the header, or of the next number after it; 0 in a binary file.
   [[nodiscard]] std::size_t line() const {
     return in_header_ ? line_ : format_ == Format::kAscii ? tokens_.line() : 0;
   }
   [[noreturn]] void fail(const std::string& what) const { throw InputError(name_, line(), what); }
 
-  // The header.
+  // Header
 
   std::string_view next_line() {
     ++line_;
-    const std::size_t end = text_.find('\n', at_);
+    // The first line tells the kind of line ends, as binary data after the header can look like
+    // one.
+    const bool is_old_mac = text_.starts_with("ply\r") && !text_.starts_with("ply\r\n");
+    const std::size_t end = text_.find(is_old_mac ? '\r' : '\n', at_);
     if (end == std::string_view::npos) fail("the header has no end_header");
     std::string_view line = text_.substr(at_, end - at_);
     at_ = end + 1;
@@ -106,7 +115,12 @@ class PlyReader {
         if (elements_.empty()) fail("a property before the first element");
         elements_.back().properties.push_back(read_property(line));
       } else if (keyword == "comment") {
-        if (take_token(line) == "TextureFile") unread_.push_back("texture " + in_quotes(line));
+        if (take_token(line) != "TextureFile") continue;
+        if (texture_.empty()) {
+          texture_ = line;
+        } else {
+          unread_.push_back("texture " + in_quotes(line));
+        }
       } else if (keyword != "obj_info" && !keyword.empty()) {
         warnings.push_back(InputError::location(name_, line_) + in_quotes(keyword) +
                            " is no word of a PLY header, ignored");
@@ -162,9 +176,9 @@ class PlyReader {
     return property;
   }
 
-  // The numbers behind it.
+  // Data
 
-  /// A finite number within the range of float.
+  /// Takes a finite number within the range of float.
   double take(NumberType type, std::string_view of_what) {
     if (format_ == Format::kAscii) return tokens_.number(of_what);
     const double number = take_any(type);
@@ -174,7 +188,7 @@ class PlyReader {
     return number;
   }
 
-  /// Whatever is there; NaN for what is no number.
+  /// Takes any number; NaN for a word that is no number.
   double take_any(NumberType type) {
     if (format_ == Format::kAscii) {
       return to_number(tokens_.take()).value_or(std::numeric_limits<double>::quiet_NaN());
@@ -185,7 +199,7 @@ class PlyReader {
     return number_at(bytes, type, format_ == Format::kBig);
   }
 
-  /// How long a list is; a list of so many numbers is there, or the reading fails at its end.
+  /// Takes the length of a list. If the file is shorter, taking its elements fails.
   long long take_count(const Property& list) {
     const double count = take(*list.count_type, "a list's length");
     if (!(count >= 0.0 && count <= 0xFFFF'FFFF) || std::floor(count) != count) {
@@ -200,8 +214,10 @@ class PlyReader {
   }
 
   void read_vertices(const Element& element) {
-    constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
-    constexpr int kColor = 6, kCount = 9;
+    constexpr std::string_view kNames[] = {"x",  "y",   "z",     "nx",        "ny",
+                                           "nz", "red", "green", "blue",      "s",
+                                           "t",  "u",   "v",     "texture_u", "texture_v"};
+    constexpr int kColor = 6, kTexcoord = 9, kCount = 15;
     std::vector<int> place(element.properties.size(), -1);
     int found = 0;
     for (int i = 0; i < kCount; ++i) {
@@ -213,8 +229,15 @@ class PlyReader {
     if ((found & 7) != 7) fail("vertices without x, y and z");
     has_normals_ = (found & 070) == 070;
     const bool has_colors = (found & 0700) == 0700;
+    int s = kTexcoord;  // index of the name of the first texture coordinate, if there are any
+    while (s < kCount && (texture_.empty() || (found >> s & 3) != 3)) s += 2;
+    has_texcoords_ = s < kCount;
     for (std::size_t p = 0; p < place.size(); ++p) {
-      if (place[p] >= kColor ? !has_colors : place[p] >= 3 && !has_normals_) place[p] = -1;
+      const bool is_read = place[p] < 3           ? true
+                           : place[p] < kColor    ? has_normals_
+                           : place[p] < kTexcoord ? has_colors
+                                                  : place[p] == s || place[p] == s + 1;
+      if (!is_read) place[p] = -1;
       if (place[p] < 0) note_unread(element, p);
     }
     for (long long i = 0; i < element.count; ++i) {
@@ -224,21 +247,20 @@ class PlyReader {
         const int at = place[p];
         if (at < 0) {
           skip(property);
-        } else if (at >= kColor) {
+        } else if (at >= kColor && at < kTexcoord) {
           values[at] = take_any(property.type) / largest_code(property.type);
         } else {
-          values[place[p]] =
-              place[p] < 3 ? take(property.type, property.name) : take_any(property.type);
+          values[at] = at < 3 ? take(property.type, property.name) : take_any(property.type);
         }
       }
       mesh_.add_position({values[0], values[1], values[2]});
       if (has_colors) mesh_.add_color({values[kColor], values[kColor + 1], values[kColor + 2]});
-      if (!has_normals_) continue;
-      mesh_.add_normal({values[3], values[4], values[5]});
+      if (has_normals_) mesh_.add_normal({values[3], values[4], values[5]});
+      if (has_texcoords_) mesh_.add_texcoord({values[s], values[s + 1]});
     }
   }
 
-  /// What stands for 1 in a colour of that type.
+  /// Returns the code of 1 in a colour of that type.
   [[nodiscard]] static double largest_code(NumberType type) {
     return type == NumberType::kUint8 ? 255.0 : type == NumberType::kUint16 ? 65535.0 : 1.0;
   }
@@ -247,20 +269,22 @@ class PlyReader {
     unread_.push_back(in_quotes(element.properties[property].name) + " of " + element.name);
   }
 
-  /// Returns which property lists the vertices of a face or a strip; others are not read.
-  [[nodiscard]] std::size_t index_list(const Element& element) {
+  /// Returns the index of the property with the vertices of a face or a strip. Notes all other
+  /// properties except `also` as unread.
+  [[nodiscard]] std::size_t index_list(const Element& element,
+                                       std::optional<std::size_t> also = std::nullopt) {
     auto list = element.find("vertex_indices");
     if (!list) list = element.find("vertex_index");
     if (!list || !element.properties[*list].count_type) {
       fail("element " + element.name + " without a list vertex_indices");
     }
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
-      if (p != *list) note_unread(element, p);
+      if (p != *list && p != also) note_unread(element, p);
     }
     return *list;
   }
 
-  /// From 1, as a face's corner has it.
+  /// Returns a vertex index counted from 1, as in FileCorner.
   [[nodiscard]] std::int32_t position_of(double index) const {
     if (!(index >= 0.0 && index < 2147483647.0) || std::floor(index) != index) {
       fail("a vertex index: expected a whole number from 0 to 2147483646");
@@ -269,11 +293,11 @@ class PlyReader {
   }
 
   [[nodiscard]] FileCorner corner_of(std::int32_t position) const {
-    return {position, 0, has_normals_ ? position : 0};
+    return {position, has_texcoords_ ? position : 0, has_normals_ ? position : 0};
   }
 
-  /// Strips of triangles: each vertex makes one with the two before it, every second one turned
-  /// round; -1 begins another strip.
+  /// Reads strips: each vertex makes a triangle with the two before it, and every second triangle
+  /// is reversed; -1 begins another strip.
   void read_strips(const Element& element) {
     const std::size_t list = index_list(element);
     for (long long i = 0; i < element.count; ++i) {
@@ -298,7 +322,7 @@ class PlyReader {
           const std::int32_t position = position_of(index);
           const bool is_flat =
               position == before[0] || position == before[1] || before[0] == before[1];
-          if (known == 2 && !is_flat) {  // such only lead to where the strip goes on
+          if (known == 2 && !is_flat) {  // flat ones connect parts of a strip
             const FileCorner corners[] = {corner_of(before[is_odd ? 1 : 0]),
                                           corner_of(before[is_odd ? 0 : 1]), corner_of(position)};
             mesh_.add_face(corners, strip_line);
@@ -313,37 +337,67 @@ class PlyReader {
   }
 
   void read_faces(const Element& element) {
-    const std::size_t list = index_list(element);
+    // The texture coordinates of corners, in pairs, replace those of vertices.
+    std::optional<std::size_t> texcoords = element.find("texcoord");
+    if (texture_.empty() || !texcoords || !element.properties[*texcoords].count_type) {
+      texcoords.reset();
+    }
+    const std::size_t list = index_list(element, texcoords);
     std::vector<FileCorner> corners;
+    std::vector<double> pairs;
     for (long long i = 0; i < element.count; ++i) {
       const std::size_t face_line = line();
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const Property& property = element.properties[p];
-        if (p != list) {
+        if (p == list) {
+          corners.clear();
+          const long long count = take_count(property);
+          for (long long k = 0; k < count; ++k) {
+            const double index = take(property.type, "a vertex index");
+            corners.push_back(corner_of(position_of(index)));
+          }
+        } else if (p == texcoords) {
+          pairs.clear();
+          const long long count = take_count(property);
+          for (long long k = 0; k < count; ++k) pairs.push_back(take_any(property.type));
+        } else {
           skip(property);
-          continue;
         }
-        corners.clear();
-        const long long count = take_count(property);
-        for (long long k = 0; k < count; ++k) {
-          const double index = take(property.type, "a vertex index");
-          corners.push_back(corner_of(position_of(index)));
-        }
+      }
+      for (std::size_t k = 0; texcoords && k < corners.size(); ++k) {
+        corners[k].texcoord = 0;
+        if (2 * k + 1 >= pairs.size()) continue;
+        mesh_.add_texcoord({pairs[2 * k], pairs[2 * k + 1]});
+        corners[k].texcoord = static_cast<std::int32_t>(mesh_.counts().texcoords);
       }
       mesh_.add_face(corners, face_line);
     }
+    has_texcoords_ = has_texcoords_ || texcoords;
+  }
+
+  /// Sets the texture of the material.
+  void add_texture(const LoadOptions& options, Scene& scene) {
+    const std::filesystem::path folder = std::filesystem::path(name_).parent_path();
+    Material& material = scene.materials[0];
+    material.diffuse = glm::vec3(1.0f);
+    material.has_vertex_colors = false;  // scanners write the colours of the picture once more
+    material.diffuse_map = find_file(folder, texture_, name_ + ": ", scene.warnings)
+                               .value_or(folder / texture_)
+                               .string();
+    if (options.textures) load_textures(scene);
   }
 
   std::string name_;
   std::string_view text_;
-  std::size_t at_ = 0, line_ = 0;  // that are read: bytes; lines of the header
+  std::size_t at_ = 0, line_ = 0;  // numbers of bytes, and of lines of the header, that were read
   bool in_header_ = true;
   Format format_ = Format::kAscii;
   std::vector<Element> elements_;
-  std::vector<std::string> unread_;  // what the file has besides, for a warning
+  std::vector<std::string> unread_;  // properties and elements to warn about
   MeshBuilder mesh_;
-  TokenReader tokens_;  // of an ASCII file, behind the header
-  bool has_normals_ = false;
+  TokenReader tokens_;        // of an ASCII file, after the header
+  std::string_view texture_;  // the file of the header's first "comment TextureFile"
+  bool has_normals_ = false, has_texcoords_ = false;
 };
 
 }  // namespace

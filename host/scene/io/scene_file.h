@@ -1,4 +1,5 @@
-// scene.json: what an OBJ file cannot say of a scene; host/docs/reference.md has its format.
+// SceneFile: a scene.json, with the camera, lights, instances and options of a scene. Its format is
+// described in host/docs/reference.md.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@
 
 namespace raygate {
 
-/// A parallelogram that emits to both sides: corner, corner + edges[0], ...
+/// A parallelogram that emits to both sides, with a corner and two edges from it.
 struct AreaLightSetting {
   glm::dvec3 corner{0.0};
   glm::dvec3 edges[2]{};     ///< not parallel
@@ -36,45 +37,44 @@ struct LightSettings {
   std::optional<glm::vec3> background;  ///< radiance, scene-linear RGB, none negative
 };
 
-/// A model, and where it stands.
+/// A model and the transforms of its instances.
 struct InstanceSetting {
   std::filesystem::path model;
   std::vector<glm::dmat4> transforms;  ///< from the model's coordinates to the world's
   std::size_t line = 0;
 };
 
-/// A command-line option that the file sets, unless the command line does.
+/// A default for a command-line option.
 struct OptionSetting {
   std::string name;   ///< "size": --size
   std::string value;  ///< as it would be typed
   std::size_t line = 0;
 };
 
-/// A scene file as it stands; every value is possible, but options are not looked into.
+/// The contents of a scene file, whose values were checked, except those of options.
 struct SceneFile {
   std::filesystem::path file = {};
   std::filesystem::path obj = {};
   std::optional<CameraSetting> camera = {};
-  std::optional<glm::dvec3> up = {};  ///< "camera.up", also without a camera: of views
-  std::optional<double> fov = {};     ///< the same of "camera.fov"
-  LensSetting lens = {};              ///< and of what the camera looks through
-  std::vector<CameraSetting> path =
-      {};  ///< what the camera passes, in order; at least two, or none
+  std::optional<glm::dvec3> up = {};     ///< "camera.up"; also used by --view, without a camera
+  std::optional<double> fov = {};        ///< "camera.fov", likewise
+  LensSetting lens = {};                 ///< of "camera", likewise
+  std::vector<CameraSetting> path = {};  ///< the camera's keyframes in order: none, or at least two
   LightSettings lights = {};
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionSetting> options = {};
 };
 
-/// Reads a scene file (.json); a file of any other ending is a model, with nothing to add. Throws
-/// InputError, "file:line: what: found, expected ...": what cannot be read or is not JSON, unknown
-/// keys, values of a wrong type or out of range.
+/// Reads a scene file (.json). For a file with another ending, returns a SceneFile with that model
+/// alone. Throws InputError, "file:line: what: found, expected ...", if the file cannot be read or
+/// is not JSON, for unknown keys, and for values of a wrong type or out of range.
 [[nodiscard]] SceneFile read_scene_file(const std::filesystem::path& file);
 
-/// Loads the scene that the file is about and adds the file's lights and instances of its models:
-/// an object for each of a model's in each place; lights and cameras of models are left out. Area
-/// lights become two triangles each of an object and a material of their own, "light 1" and on. The
-/// environment is left for load_environment. Throws InputError as load_scene does, and where an
-/// instance or a light is beyond the range of float, or a light too small for it.
+/// Loads the model of a scene file and adds the file's lights and instances. Each instance adds
+/// all objects of its model, without the model's lights and cameras. Each area light adds two
+/// triangles, an object and a material, "light 1" and so on. load_environment() loads the
+/// environment. Throws InputError as load_scene(file) does, and if an instance or a light is beyond
+/// the range of float or a light is too small for it.
 [[nodiscard]] Scene load_scene(const SceneFile& file, const LoadOptions& options = {});
 
 }  // namespace raygate

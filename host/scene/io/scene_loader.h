@@ -1,4 +1,4 @@
-// Scene files of every format that is read, into a Scene.
+// load_scene: reads models of all supported formats into a Scene.
 #pragma once
 
 #include <cstddef>
@@ -10,61 +10,62 @@
 namespace raygate {
 
 struct LoadOptions {
-  /// A face of exactly zero area (after rounding to float) is an error; false: it is left out, and
-  /// one warning counts them.
+  /// Whether a face of exactly zero area, after rounding to float, is an error. Otherwise it is
+  /// left out, with one warning for all of them.
   bool strict = false;
-  bool keep_instances = false;  ///< false: they are flattened (see host/scene/instances.h)
-  bool textures = true;         ///< false: none is decoded
-  /// Faces without normals are smooth over edges at which they are at most so far apart, in degrees
-  /// from 0 to 180; none: as the file's smoothing groups say, where it can have any.
+  bool keep_instances = false;  ///< otherwise they are flattened (see host/scene/instances.h)
+  bool textures = true;         ///< whether textures are decoded
+  /// Largest angle between the normals of two faces without vertex normals that are smoothed over
+  /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
   std::optional<double> smooth = {};
-  /// Without `smooth`, of an OBJ, PLY or STL file that has no normals and says nothing of
-  /// smoothing: faces that bend are smooth as by kSmoothAngle.
+  /// Whether curved surfaces of an OBJ, PLY or STL file without normals and smoothing groups are
+  /// smoothed as by kSmoothAngle, unless `smooth` is given.
   bool smooth_if_unsaid = false;
   static constexpr double kSmoothAngle = 30.0;
-  int threads = 1;                    ///< that read an OBJ file; the scene does not depend on them
-  std::size_t chunk_size = 1u << 18;  ///< least bytes of the file that are worth a thread
+  int threads = 1;                    ///< to read an OBJ file; the scene does not depend on it
+  std::size_t chunk_size = 1u << 18;  ///< smallest part of an OBJ file for a thread, in bytes
 };
 
-/// Loads `file` as what its name ends in: .obj (or nothing), .gltf, .glb, .ply or .stl, in small or
-/// capital letters.
+/// Loads a model. The ending of its name gives the format: .obj (or none), .gltf, .glb, .ply or
+/// .stl, in small or capital letters.
 ///
-/// Triangles keep the order of the file's faces; polygons, also concave ones, are cut into
-/// triangles of non-zero area; only vertices that some face uses are kept; the scene is recentred
-/// as scene.h says. Numbers are read as in the C locale, to the nearest double.
+/// Triangles have the order of the file's faces. Polygons, which may be concave, are cut into
+/// triangles of non-zero area. Vertices that no face uses are left out. The scene is recentred; see
+/// Scene. Numbers are read to the nearest double, as in the C locale.
 ///
-/// Throws InputError, with a line of what is text, for any other ending, with what to do about it;
-/// for what cannot be read or breaks its format; an index of no vertex, a number that is not
-/// finite in a position; no face with an area. Warns (Scene::warnings) and goes on where a material
-/// or texture is missing or damaged, a normal or texture coordinate is bad, or something is left
-/// out.
+/// Throws InputError, with the line of a text file, for another ending, a file that cannot be read
+/// or breaks its format, a vertex index out of range, a position that is not finite, and a file in
+/// which no face has an area. Warns (Scene::warnings) about a material or texture that is missing
+/// or damaged, a bad normal or texture coordinate, and all that is left out.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// The file of this stem that is there, by the first of those endings: "room" gives "room.obj",
-/// also where there is none.
+/// Returns the existing file with this stem and the first of these endings; "STEM.obj" if there is
+/// none.
 [[nodiscard]] std::filesystem::path find_scene_file(const std::filesystem::path& stem);
 
-/// Wavefront OBJ, with the MTL files that it names (relative to its own folder) and their textures.
+/// Loads a Wavefront OBJ file, with its MTL files (relative to its folder) and their textures.
 [[nodiscard]] Scene load_obj(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// glTF 2.0 (.gltf and .glb): triangles, strips and fans of all nodes, in their order, an object
-/// for each; materials as GltfMaterials says; the first camera; lights (KHR_lights_punctual: 683
-/// candela are 1 watt per steradian). +y is up. Positions are transformed in double. Skins and
-/// morph targets are as their nodes have them; animations are not read.
-/// Refuses, too: a node with two parents, more than 12 million vertices and corners of faces, and
-/// as many again as there are bytes, once instances are flattened.
+/// Loads a glTF 2.0 file (.gltf or .glb): the triangles, strips and fans of all nodes in order,
+/// with an object for each node; materials (see GltfMaterials); the first camera; lights
+/// (KHR_lights_punctual; 683 candela are 1 watt per steradian). +y is up. Positions are transformed
+/// in double. Skins and morph targets are applied as posed by the nodes; animations are not read.
+/// Throws InputError also for a node with two parents, and if vertices and corners, with flattened
+/// instances, exceed 12 million plus the number of bytes of the file.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// PLY, ASCII and binary: the polygons of the element "face", as one object of a default material.
-/// Of vertices x, y, z count, and where they are there nx, ny, nz and red, green, blue. All other
-/// elements and properties are skipped with a warning.
+/// Loads a PLY file, ASCII or binary: the polygons of the element "face" and the strips of
+/// "tristrips", as one object of one material. Vertices have x, y, z and may have nx, ny, nz, and
+/// red, green, blue. If the header has a "comment TextureFile NAME", texture coordinates are s, t
+/// (or u, v, or texture_u, texture_v) of vertices, or the list texcoord of faces. Warns about other
+/// elements and properties.
 ///
-/// (No library that Debian 12 has reads PLY: assimp 5.2 crashed on damaged files, and keeps
-/// positions as float alone, with which a scene far from its origin is lost.)
+/// (assimp 5.2, the only library of Debian 12 that reads PLY, crashed on damaged files and keeps
+/// positions in float, which is too coarse for a scene far from its origin.)
 [[nodiscard]] Scene load_ply(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// STL, binary and ASCII: one object of a default material; +z is up, as STL files mostly have it.
-/// Normals, colours and attributes in the file are ignored.
+/// Loads an STL file, binary or ASCII, as one object of a default material. +z is up, as in most
+/// STL files. Ignores the normals, colours and attributes in the file.
 [[nodiscard]] Scene load_stl(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace raygate

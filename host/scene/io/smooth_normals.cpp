@@ -11,10 +11,10 @@
 namespace raygate {
 namespace {
 
-/// A corner of a triangle: 3 times its number, and which.
+/// A corner of a triangle: 3 times the triangle's index plus 0, 1 or 2.
 using Corner = std::uint32_t;
 
-/// The edge from a corner to the next one, by the places of its ends.
+/// The edge from a corner to the next one, by the positions of its ends.
 struct Edge {
   std::uint32_t low, high;
   Corner corner;
@@ -63,7 +63,7 @@ class Smoother {
     return corner % 3 == 2 ? corner - 2 : corner + 1;
   }
 
-  /// Numbers vertices so that those at one place have one number.
+  /// Numbers vertices so that those with equal positions have one number.
   void find_places() {
     std::vector<std::uint32_t> order(scene_.positions.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -93,7 +93,7 @@ class Smoother {
         edges_, {}, [](const Edge& edge) { return std::tuple(edge.low, edge.high, edge.corner); });
   }
 
-  /// Joins the corners at both ends of an edge that is smooth.
+  /// Joins the corners at both ends of a smooth edge.
   void look_at(const Edge& a, const Edge& b) {
     if (a.is_forward == b.is_forward || !is_smooth(a.corner / 3, b.corner / 3)) return;
     join(a.corner, next(b.corner));
@@ -127,7 +127,8 @@ class Smoother {
     joined_[std::max(a, b)] = std::min(a, b);
   }
 
-  /// The face's normal there, weighted by the sine of its angle over the lengths of both sides.
+  /// Returns the face's normal at a corner, weighted by the sine of its angle over the lengths of
+  /// both sides.
   [[nodiscard]] glm::dvec3 weighted_normal(Corner corner) const {
     const glm::dvec3 at(position(corner));
     const glm::dvec3 u = glm::dvec3(position(next(corner))) - at;
@@ -135,7 +136,7 @@ class Smoother {
     return glm::cross(u, v) / (glm::dot(u, u) * glm::dot(v, v));
   }
 
-  /// Whether the normals at a triangle's corners are its own.
+  /// Returns whether the normals at a triangle's corners equal its own.
   [[nodiscard]] bool is_flat(Corner first, const std::vector<glm::dvec3>& sums) {
     constexpr double kFlat = 1.0 - 1e-7;  // 0.03 degrees
     const glm::dvec3 own = face_normal(first / 3);
@@ -162,7 +163,7 @@ class Smoother {
         const Corner kept = root(first + k);
         if (numbers[kept] == kNoIndex) {
           numbers[kept] = static_cast<std::uint32_t>(scene_.normals.size());
-          // Where the faces cancel out, that of one of them.
+          // If the normals of the faces cancel out, use that of one of them.
           const double length = glm::length(sums[kept]);
           scene_.normals.emplace_back(
               length > 0.0 && std::isfinite(length) ? sums[kept] / length : face_normal(kept / 3));
@@ -181,7 +182,7 @@ class Smoother {
   bool by_angle_;
   double least_cosine_;
   Scene& scene_;
-  std::vector<std::uint32_t> places_;  // of vertices
+  std::vector<std::uint32_t> places_;  // numbers of the vertices' positions
   std::vector<Edge> edges_;
   std::vector<Corner> joined_;  // to a corner before it, or itself
   std::vector<bool> is_joined_;

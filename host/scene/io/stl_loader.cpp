@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kHeader = 80, kStart = kHeader + 4, kFacet = 50, kNormal = 12;
 
-/// Three corners of their own.
+/// Adds a facet with three vertices of its own.
 void add_facet(const std::array<glm::dvec3, 3>& corners, std::size_t line, MeshBuilder& mesh,
                std::int32_t& positions) {
   std::array<FileCorner, 3> face;
@@ -51,14 +51,14 @@ void read_binary(const std::string& name, std::string_view bytes, std::size_t fa
   }
 }
 
-/// Whether the next word is this one, but for capital letters.
+/// Returns whether the next word is this one, in capital or small letters.
 bool is_next(std::string_view word, const TokenReader& tokens) {
   return std::ranges::equal(word, tokens.peek(), [](char small, char letter) {
     return letter == small || (letter >= 'A' && letter <= 'Z' && letter - 'A' + 'a' == small);
   });
 }
 
-/// Takes a word that must be this one, but for capital letters.
+/// Takes the next word, which must be this one, in capital or small letters.
 void expect(std::string_view word, TokenReader& tokens) {
   if (is_next(word, tokens)) {
     (void)tokens.take();
@@ -77,8 +77,8 @@ void expect_end(const std::string& word, TokenReader& tokens) {
   }
 }
 
-/// Reads solid NAME, facets, endsolid NAME; names may have several words. Several
-/// solids become one. The last endsolid may be missing: then a warning says so.
+/// Reads solids (solid NAME, facets, endsolid NAME), which become one; names may have several
+/// words. Warns if the last endsolid is missing.
 void read_ascii(const std::string& name, std::string_view text, MeshBuilder& mesh,
                 std::vector<std::string>& warnings) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -125,7 +125,7 @@ Scene load_stl(const std::filesystem::path& file, const LoadOptions& options) {
   const std::size_t facets =
       bytes.size() < kStart ? 0 : number_at<std::uint32_t>(bytes.data() + kHeader);
   const std::size_t length = kStart + facets * kFacet;
-  // A binary file may begin with "solid", too. It soon has a byte of value 0, which text has not.
+  // A binary file may also begin with "solid". Unlike text, it has a zero byte near its beginning.
   const bool has_zero = bytes.find('\0') < 1024;
   if (facets > 0 && (bytes.size() == length || (has_zero && bytes.size() > length))) {
     read_binary(name, bytes, facets, mesh);  // perhaps with something after it

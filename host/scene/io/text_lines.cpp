@@ -42,9 +42,9 @@ TextLines::TextLines(const std::filesystem::path& file)
   }
 }
 
-// One line without its end; text_ must not be exhausted.
+// Takes one line without its end. There must be one.
 std::string_view TextLines::take_line() {
-  // Looked for only once each, lest a file whose lines end in CR alone be searched again and again.
+  // Each LF is searched once, so that a file whose lines end in CR alone takes linear time.
   if (newline_ == kNotLooked || newline_ < position_) {
     newline_ = std::min(text_.find('\n', position_), text_.size());
   }
@@ -79,7 +79,7 @@ std::optional<std::string_view> TextLines::next() {
   return std::nullopt;
 }
 
-// Parts begin behind a LF, but not where a backslash may join the lines.
+// Parts begin after an LF that no backslash precedes, as that may join two lines.
 std::vector<TextLines> TextLines::split(std::size_t most, std::size_t size) const {
   std::vector<TextLines> parts;
   const std::size_t step = std::max(size, (text_.size() - position_) / most + 1);

@@ -1,4 +1,4 @@
-// The statements of a text file, one at a time, with the line on which each begins.
+// TextLines: the statements of a text file, with their line numbers.
 #pragma once
 
 #include <cstddef>
@@ -12,43 +12,43 @@
 
 namespace raygate {
 
-/// A file read as a whole and handed out as statements of the OBJ and MTL kind:
+/// A text file as a sequence of OBJ or MTL statements:
 /// * a line ends with LF, CR or CR LF; a UTF-8 byte order mark is skipped;
 /// * a backslash at the end of a line joins the next line to it, with a space between;
 /// * a line whose first character is # is a comment. A line with a # that begins a word is never
 ///   continued: the comment may end in a backslash by chance, as in "# C:\models\".
 class TextLines {
  public:
-  /// Throws InputError: what cannot be read, is a folder, is empty, or is not 8-bit text.
+  /// Throws InputError if the file cannot be read, is a folder, is empty, or is not 8-bit text.
   explicit TextLines(const std::filesystem::path& file);
 
-  /// The next statement, without spaces and tabs at either end; never empty. nullopt at the end of
-  /// the file. Valid until the next call.
+  /// Returns the next statement that is not empty, without spaces and tabs at its ends, or nullopt
+  /// at the end of the file. The result is valid until the next call.
   [[nodiscard]] std::optional<std::string_view> next();
 
-  /// Cuts what has not been read into parts, at most so many and of about `size` bytes at least,
-  /// that have the same statements one after the other. Their lines are counted from 1 again.
+  /// Splits the unread rest, between statements, into at most `most` parts of at least about `size`
+  /// bytes. Each part counts its lines from 1.
   [[nodiscard]] std::vector<TextLines> split(std::size_t most, std::size_t size) const;
-  /// Lines are counted on from there; before the first next().
+  /// Counts lines from lines + 1. To be called before the first next().
   void begin_after(std::size_t lines) { lines_taken_ = lines; }
   [[nodiscard]] std::size_t lines_taken() const { return lines_taken_; }
 
-  /// Whether the file has `text` anywhere, comments included.
+  /// Returns whether the file contains `text` anywhere, comments included.
   [[nodiscard]] bool has(std::string_view text) const { return text_.find(text) != text_.npos; }
 
-  /// Makes line() and all that names it that of a statement given earlier.
+  /// Sets line(), and thus the line in messages, to that of an earlier statement.
   void go_to(std::size_t line) { statement_line_ = line; }
-  /// The line (from 1) on which the statement begins that next() gave last.
+  /// Returns the line, from 1, on which the last statement begins.
   [[nodiscard]] std::size_t line() const { return statement_line_; }
   [[nodiscard]] const std::string& file_name() const { return name_; }
 
-  /// "file:line: " of the last statement.
+  /// Returns "file:line: " for the last statement.
   [[nodiscard]] std::string place() const;
 
   /// Throws InputError that names the file and the line of the last statement.
   [[noreturn]] void fail(const std::string& what) const;
-  /// The word as a finite number within the range of float; else fails and says what it is the
-  /// number of ("Kd").
+  /// Returns the word as a finite number within the range of float. Otherwise fails with a message
+  /// that names `of_what`, such as "Kd".
   [[nodiscard]] double number(std::string_view word, std::string_view of_what) const;
 
  private:
@@ -69,22 +69,21 @@ class TextLines {
   std::size_t statement_line_ = 0;
 };
 
-/// What readers of OBJ and MTL files share: their statements, and warnings about them.
+/// Base of the readers of OBJ and MTL files: their statements, and warnings about them.
 class StatementReader {
  public:
-  /// `warnings` must outlive this.
+  /// `warnings` must outlive this object.
   StatementReader(const std::filesystem::path& file, std::vector<std::string>& warnings)
       : lines_(file), warnings_(warnings) {}
 
  protected:
-  /// Where the reading is.
   [[nodiscard]] const TextLines& lines() const { return lines_; }
   [[nodiscard]] TextLines& lines() { return lines_; }
 
   [[nodiscard]] std::vector<std::string>& warnings() { return warnings_; }
   void warn(const std::string& what) { warnings_.push_back(lines_.place() + what); }
 
-  /// Warns of the first statement with this keyword alone.
+  /// Warns at the first call for this keyword and does nothing at later ones.
   void warn_once(std::string_view keyword, const std::string& what) {
     if (warned_of_.emplace(keyword).second) warn(what);
   }

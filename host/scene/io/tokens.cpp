@@ -58,7 +58,7 @@ std::optional<double> to_number(std::string_view word) {
   const auto [rest, error] = std::from_chars(word.data(), end, value);
   if (error == std::errc::invalid_argument || rest != end) return std::nullopt;
   if (error == std::errc::result_out_of_range) {
-    // from_chars does not say whether it is too large or too small; strtod does.
+    // from_chars does not tell overflow from underflow; strtod does.
     static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
     value = strtod_l(std::string(word).c_str(), nullptr, c_locale);
   }
@@ -70,7 +70,7 @@ TokenReader::TokenReader(std::string name, std::string_view text, std::size_t li
   find_word(0);
 }
 
-/// Makes the first word from there on the next one.
+/// Sets the next word to the first one at or after `from`.
 void TokenReader::find_word(std::size_t from) {
   std::size_t at = from;
   for (; at < text_.size() && kBetween.find(text_[at]) != std::string_view::npos; ++at) {

@@ -1,4 +1,4 @@
-// Tokens of text files: taken one by one, as numbers, and quoted in messages.
+// Tokens of text files, as words, as numbers and in messages.
 #pragma once
 
 #include <cstddef>
@@ -8,44 +8,44 @@
 
 namespace raygate {
 
-/// Takes the first word (up to a space or tab) off `text`, and the spaces and tabs after it.
-/// An empty word: nothing was left.
+/// Removes the first word (up to a space or tab) from `text`, with the spaces and tabs after it,
+/// and returns it. Returns an empty word if `text` is empty.
 [[nodiscard]] std::string_view take_token(std::string_view& text);
 
-/// The same, but a word that begins with # ends the statement: the rest is a comment.
+/// Does the same, but treats a word that begins with # and all text after it as a comment.
 [[nodiscard]] std::string_view take_token_before_comment(std::string_view& text);
 
-/// 'word' for a message: cut to 40 characters, what cannot be printed as \xHH.
+/// Returns the word in quotes for a message: its first 40 characters, with unprintable ones as
+/// \xHH.
 [[nodiscard]] std::string in_quotes(std::string_view word);
 
-/// A decimal number to the nearest double, whatever the locale; too small a one is 0. nullopt: not
-/// a number as a whole. "nan" and "inf" are numbers, and so is one that overflows to infinity.
+/// Returns a decimal number as the nearest double, in any locale, or nullopt if the whole word is
+/// not a number. "nan" and "inf" are numbers; a magnitude too large gives infinity, too small 0.
 [[nodiscard]] std::optional<double> to_number(std::string_view word);
 
-/// Reads a text token by token, across lines; spaces, tabs and ends of lines (LF, CR LF) are
-/// between them.
+/// Reads a text token by token. Spaces, tabs and ends of lines (LF, CR LF) separate tokens.
 class TokenReader {
  public:
-  /// `name` of the file and `line` of the text's first one are for messages.
+  /// The file's name and the number of the text's first line are for messages.
   TokenReader(std::string name, std::string_view text, std::size_t line = 1);
 
-  /// The next word, which stays; empty at the end.
+  /// Returns the next word without taking it; an empty word at the end.
   [[nodiscard]] std::string_view peek() const { return word_; }
   [[nodiscard]] bool at_end() const { return word_.empty(); }
-  /// The next word; throws InputError at the end.
+  /// Takes the next word. Throws InputError at the end.
   std::string_view take();
-  /// Takes a word that must be this one.
+  /// Takes the next word. Throws InputError if it is another one.
   void expect(std::string_view word);
   /// Takes a finite number within the range of float.
   [[nodiscard]] double number(std::string_view of_what);
   /// Takes a whole number from `low` to `high`.
   [[nodiscard]] long long whole(std::string_view of_what, long long low, long long high);
-  /// Takes what is left of the line of the word taken last.
+  /// Skips the rest of the line of the last word that was taken.
   void skip_line();
 
-  /// Of the next word, from 1.
+  /// Returns the line of the next word, from 1.
   [[nodiscard]] std::size_t line() const { return line_; }
-  /// Throws InputError at the next word.
+  /// Throws InputError with the line of the next word.
   [[noreturn]] void fail(const std::string& what) const;
 
  private:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "host/base/file_bytes.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/binary.h"
@@ -40,10 +41,12 @@ TEST_P(LoadForeign, IsRead) {
   (void)folder.write("cut.png",
                      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\2\0\0\0\x90wS\xde"s);
   (void)folder.write("pic.webp", "RIFF");
+  (void)folder.write("empty.png", "");
   const ForeignFile& with = GetParam();
   (void)folder.write("beside.tga", test::tga(1, 1, {{255, 0, 0}}));
   for (const auto& [name, map] : {std::pair{"webp.mtl", "pic.webp"},
                                   {"cut.mtl", "cut.png"},
+                                  {"my colours.mtl", "\"maps/pic.tga\""},
                                   {"inner.mtl", "maps\\PIC.tga"},
                                   {"windows.mtl", "D:\\My Work\\Beside.TGA"}}) {
     (void)folder.write(name, "newmtl m\nmap_Kd "s + map + "\n");
@@ -88,6 +91,15 @@ std::string gltf(const std::string& more, const std::string& nodes = R"([{"mesh"
   return test::glb(test::square_json(nodes, more, material), buffer);
 }
 
+/// Returns the file with one part replaced, which changes its JSON's length.
+std::string with(const std::string& glb, const std::string& part, const std::string& instead) {
+  constexpr std::size_t kJson = 20;
+  const std::size_t size = number_at<std::uint32_t>(glb.data() + 12);
+  std::string json = glb.substr(kJson, size);
+  json.replace(json.find(part), part.size(), instead);
+  return test::glb(json, glb.substr(kJson + size + 8));
+}
+
 std::string with_image(const std::string& image) {
   return gltf(R"(, "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
       "textures": [{"source": 0}], "images": [)" +
@@ -99,6 +111,18 @@ std::string with_spot(const std::string& light) {
       "extensions": {"KHR_lights_punctual": {"lights": [)" +
                   light + "]}}",
               R"([{"mesh": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}])", 0, "");
+}
+
+/// A triangle with a texture, two properties of its vertices and, unless that is empty, a list of
+/// six numbers of its face.
+std::string ply(const std::string& u, const std::string& v, const std::string& list) {
+  return "ply\nformat ascii 1.0\ncomment TextureFile maps/pic.tga\nelement vertex 3\n"
+         "property float x\nproperty float y\nproperty float z\nproperty float " +
+         u + "\nproperty float " + v +
+         "\nelement face 1\nproperty list uchar int vertex_indices\n" +
+         (list.empty() ? "" : "property list uchar float " + list + "\n") +
+         "end_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2" +
+         (list.empty() ? "" : " 6 0 0 1 0 0 1") + "\n";
 }
 
 constexpr const char* kPly =
@@ -135,15 +159,26 @@ INSTANTIATE_TEST_SUITE_P(
                     ":14: face of fewer than 3 corners, left out"},
         ForeignFile{"EmptyFacePly", ".ply", kPly + "0\n"s, "1 0 0 0",
                     ":14: face of fewer than 3 corners, left out"},
+        ForeignFile{"CarriageReturnsPly", ".ply",
+                    "ply\rformat binary_little_endian 1.0\relement vertex 3\rproperty float x\r"
+                    "property float y\rproperty float z\relement face 1\r"
+                    "property list uchar int vertex_indices\rend_header\r" +
+                        test::bytes_of(0x1p-100f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f) + "\3" +
+                        test::bytes_of(0, 1, 2),
+                    "1 0 0 0", ""},
         ForeignFile{
-            "TexturePly", ".ply",
-            "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\n"
-            "property float x\nproperty float y\nproperty float z\nproperty float s\n"
-            "element face 1\nproperty list uchar int vertex_indices\n"
-            "property list uchar float texcoord\nelement edge 1\nproperty int vertex1\n"
-            "end_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2 0\n0\n",
-            "1 0 0 0",
-            ": not read: texture 'a.png', 's' of vertex, 'texcoord' of face, element 'edge'"},
+            "FallbackOfAWebpGltf", ".glb",
+            with(with_image(R"({"uri": "beside.tga"}, {"uri": "pic.webp"})"), R"({"source": 0})",
+                 R"({"source": 0, "extensions": {"EXT_texture_webp": {"source": 1}}})"),
+            "2 2 2 1", ""},
+        ForeignFile{"TexturePly", ".ply", ply("s", "t", ""), "1 0 1 1", ""},
+        ForeignFile{"TextureUvPly", ".ply", ply("u", "v", ""), "1 0 1 1", ""},
+        ForeignFile{"TextureOfNoCoordinatesPly", ".ply", ply("s", "v", ""), "1 0 0 0",
+                    ": not read: 's' of vertex, 'v' of vertex, texture 'maps/pic.tga' without"},
+        ForeignFile{"TextureOfCornersPly", ".ply", ply("w", "texture_u", "texcoord"), "1 0 1 1",
+                    ": not read: 'w' of vertex, 'texture_u' of vertex"},
+        ForeignFile{"TextureOfNoCornerPly", ".ply", ply("texture_u", "texture_v", "weights"),
+                    "1 0 1 1", ": not read: 'weights' of face"},
         ForeignFile{"TextureOfUnknownType", ".obj", textured("webp.mtl"), "1 1 1 0",
                     "pic.webp: not a PNG, JPEG, TGA or BMP picture"},
         ForeignFile{"TextureCutOff", ".obj", textured("cut.mtl"), "1 1 1 0",
@@ -158,6 +193,54 @@ INSTANTIATE_TEST_SUITE_P(
         ForeignFile{"WebpGltf", ".glb",
                     with_image(R"({"bufferView": 0, "mimeType": "image/webp"})"), "2 2 2 0",
                     "image 0: not a PNG, JPEG, TGA or BMP picture"},
+        ForeignFile{"ImageOfNothing", ".glb", with_image("{}"), "2 2 2 0",
+                    "image 0 has no picture, its material is plain instead"},
+        ForeignFile{"ImageWithoutData", ".glb", with_image(R"({"uri": "data:image/png;base64,"})"),
+                    "2 2 2 0", "image 0 has no picture"},
+        ForeignFile{"ImageOfAnEmptyFile", ".glb", with_image(R"({"uri": "empty.png"})"), "2 2 2 0",
+                    "the texture 'empty.png' is missing"},
+        ForeignFile{"ImageInNoBufferView", ".glb", with_image(R"({"bufferView": 9})"), "2 2 2 0",
+                    "image 0 has no picture"},
+        ForeignFile{"ImageBeyondItsBuffer", ".glb",
+                    with(with_image(R"({"bufferView": 4})"), R"("byteLength": 12})",
+                         R"("byteLength": 12}, {"buffer": 0, "byteLength": 9999999})"),
+                    "2 2 2 0", "image 0: beyond its buffer"},
+        ForeignFile{"MaterialOfOtherLengths", ".glb",
+                    gltf(R"(, "materials": [{"emissiveFactor": [1], "normalTexture": {}}])"),
+                    "2 2 0 0", "material 0: 'emissiveFactor' is not as glTF has it, left out"},
+        ForeignFile{
+            "OcclusionTexture", ".glb",
+            gltf(R"(, "materials": [{"occlusionTexture": {"index": 0}}], "textures": [{}])"),
+            "2 2 0 0", "occlusionTexture is not read"},
+        ForeignFile{"UnknownWrapMode", ".glb",
+                    with(with_image(R"({"uri": "beside.tga"})"), R"({"source": 0})",
+                         R"({"source": 0, "sampler": 0}], "samplers": [{"wrapT": 10242})"),
+                    "2 2 2 1", "sampler 0: found the wrap mode 10242, expected 10497, 33071 or"},
+        ForeignFile{"TexcoordSetOfNoInteger", ".glb",
+                    with(with_image(R"({"uri": "beside.tga"})"), R"({"index": 0})",
+                         R"({"index": 0, "extensions": {"KHR_texture_transform":
+                             {"texCoord": 1e300}}})"),
+                    "2 2 0 1", ""},
+        ForeignFile{"TexcoordSetBelowZero", ".glb",
+                    with(with_image(R"({"uri": "beside.tga"})"), R"({"index": 0})",
+                         R"({"index": 0, "texCoord": -7})"),
+                    "2 2 0 1", ""},
+        ForeignFile{"SparseNormalsOfNoPlace", ".glb",
+                    with(gltf("", R"([{"mesh": 0}])", 0, ""), R"({"bufferView": 1,)",
+                         R"({"sparse": {"count": 1, "indices": {"componentType": 5123},
+                             "values": {"bufferView": 1}},)"),
+                    "2 0 0 0",
+                    "accessor 1 (NORMAL): found no buffer view, expected its number, left out"},
+        ForeignFile{"CameraWithoutNumbers", ".glb",
+                    gltf(R"(, "cameras": [{"type": "perspective"}])",
+                         R"([{"mesh": 0, "camera": 0}])", 0, ""),
+                    "2 2 0 0", "a camera's yfov: expected more than 0 and less than pi, left out"},
+        ForeignFile{"SkinWithoutJoints", ".glb",
+                    gltf(R"(, "skins": [{}])", R"([{"mesh": 0, "skin": 0}])", 0, ""), "2 2 0 0",
+                    "skin 0 has no joints, left out"},
+        ForeignFile{"AnimationOfNothing", ".glb",
+                    gltf(R"(, "animations": [{"samplers": [{}]}])", R"([{"mesh": 0}])", 0, ""),
+                    "2 2 0 0", "animations are not read"},
         ForeignFile{"NoSuchTextureGltf", ".glb",
                     gltf(R"(, "materials": [{"normalTexture": {"index": 3}}])"), "2 2 2 0",
                     "texture 3, but the file has 0, its material is plain instead"},
@@ -171,6 +254,10 @@ INSTANTIATE_TEST_SUITE_P(
                     with_spot(R"({"type": "spot", "spot": {"innerConeAngle": 0.5,
                                   "outerConeAngle": 3}})"),
                     "2 2 0 0", "a spot light's angles"},
+        ForeignFile{"SpotWithoutSpot", ".glb", with_spot(R"({"type": "spot"})"), "2 2 0 0",
+                    "light 0 is a spot without 'spot', its cone is the usual"},
+        ForeignFile{"LightOfNoType", ".glb", with_spot("{}"), "2 2 0 0",
+                    "found a light of the type '', expected directional, point or spot, left out"},
         ForeignFile{"NegativeLight", ".glb", with_spot(R"({"type": "point", "intensity": -1})"),
                     "2 2 0 0", "a light's intensity: expected no negative"},
         ForeignFile{"StlIndented", ".stl", "\n \tsolid a\n" + facet() + "endsolid a\n", "1 0 0 0",
@@ -194,6 +281,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "windows.mtl:2: 'D:\\My Work\\Beside.TGA' is missing, "},
         ForeignFile{"TextureInOtherCase", ".obj", textured("inner.mtl"), "1 1 1 1",
                     "'maps\\PIC.tga' is missing, "},
+        ForeignFile{"NamesInQuotes", ".obj", textured("\"my colours.mtl\" \"cut.mtl\""), "1 1 1 1",
+                    ""},
         ForeignFile{"LibraryInOtherCase", ".obj", textured("C:\\My Work\\CUT.MTL"), "1 1 1 0",
                     ":8: 'C:\\My Work\\CUT.MTL' is missing, "},
         ForeignFile{"ImageInOtherCase", ".glb",

@@ -121,6 +121,23 @@ TEST_F(LoadGltf, InstancesOfAnExtension) {
   EXPECT_EQ(corner(scene, 4, 0).z, 3.0);
 }
 
+TEST_F(LoadGltf, InstancesOfAMeshWithoutAreaTakeNoNumbers) {
+  std::string json = square_json(
+      R"([{"children": [1, 2, 3, 4]}, {"mesh": 1}, {"mesh": 1}, {"mesh": 0}, {"mesh": 0}])");
+  const std::string_view end = "],\n      \"accessors\"";
+  json.insert(json.find(end),
+              R"(, {"primitives": [{"attributes": {"POSITION": 1}, "indices": 3}]})");
+  for (const bool keeps : {false, true}) {
+    const Scene scene = load(json, square_buffer(), {.keep_instances = keeps});
+    EXPECT_EQ(triangle_count(scene), 4u);
+    EXPECT_EQ(scene.instances.size(), keeps ? 2u : 0u);
+    EXPECT_EQ(object_at(scene, keeps ? FaceRef{0, 0} : FaceRef{kNoIndex, 0}), 2u)
+        << "objects are numbered by nodes";
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("face of zero area, left out"), std::string::npos);
+  }
+}
+
 TEST_F(LoadGltf, AMirroredNodeKeepsItsFront) {
   const Scene scene = load(square_json(R"([{"mesh": 0, "scale": [-1, 1, 1]}])"));
   const glm::dvec3 normal = glm::cross(corner(scene, 0, 1) - corner(scene, 0, 0),
@@ -239,36 +256,6 @@ TEST_F(LoadGltf, Materials) {
   EXPECT_EQ(dull.metallic_roughness->specular_color, glm::vec3(1, 2, 0));
 }
 
-/// A BMP of one row: red, then blue.
-std::string two_pixels() {
-  const std::string pixels("\x00\x00\xFF\xFF\x00\x00\x00\x00", 8);
-  return "BM" +
-         test::bytes_of(std::uint32_t{62}, std::uint32_t{0}, std::uint32_t{54}, std::uint32_t{40},
-                        std::int32_t{2}, std::int32_t{1}, std::uint16_t{1}, std::uint16_t{24},
-                        std::uint32_t{0}, std::uint32_t{8}, 0, 0, 0, 0) +
-         pixels;
-}
-
-TEST_F(LoadGltf, TexturesAreRightSideUp) {
-  const std::string picture = two_pixels();
-  std::string json = square_json(
-      kOneNode,
-      R"(, "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0}}],
-         "textures": [{"source": 0}], "images": [{"bufferView": 4, "mimeType": "image/bmp"}])",
-      R"(, "material": 0)");
-  const std::string last = R"({"buffer": 0, "byteOffset": 128, "byteLength": 12})";
-  json.replace(json.find(last), last.size(),
-               last + R"(, {"buffer": 0, "byteOffset": 140, "byteLength": 62})");
-  json.replace(json.find(R"("byteLength": 140)"), 17, R"("byteLength": 202)");
-  const Scene scene = load(json, square_buffer() + picture);
-  ASSERT_EQ(scene.textures.size(), 1u);
-  // The square's lower left corner has texture coordinates (0, 1) in the file: the picture's foot.
-  EXPECT_EQ(scene.texcoords[scene.triangles[0].texcoords[0]], glm::vec2(0, 0));
-  EXPECT_EQ(scene.texcoords[scene.triangles[0].texcoords[2]], glm::vec2(1, 1));
-  const glm::vec3 left = diffuse_at(scene, scene.triangles[0], {0.75, 0.0, 0.25});
-  EXPECT_EQ(left, glm::vec3(1, 0, 0));
-}
-
 TEST_F(LoadGltf, ColorsOfVertices) {
   std::string json = square_json(kOneNode);
   const std::string position = R"("POSITION": 0)";
@@ -294,21 +281,45 @@ std::string half_clear() {
   return bytes + std::string("\x00\x00\xFF\xFF\xFF\x00\x00\x10", 8);
 }
 
-TEST_F(LoadGltf, TexturesOfRoughnessNormalsAndOpacity) {
-  const std::string picture = half_clear();
-  std::string json = square_json(kOneNode,
-                                 R"(, "materials": [{"alphaMode": "MASK", "alphaCutoff": 0.25,
-           "normalTexture": {"index": 0, "scale": 0.5},
-           "emissiveTexture": {"index": 0}, "emissiveFactor": [1, 0.5, 0],
-           "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5],
-                                    "metallicRoughnessTexture": {"index": 0}}}],
-         "textures": [{"source": 0}], "images": [{"bufferView": 4, "mimeType": "image/tga"}])",
-                                 R"(, "material": 0)");
-  const std::string last = R"({"buffer": 0, "byteOffset": 128, "byteLength": 12})";
-  json.replace(json.find(last), last.size(),
-               last + R"(, {"buffer": 0, "byteOffset": 140, "byteLength": 26})");
-  json.replace(json.find(R"("byteLength": 140)"), 17, R"("byteLength": 166)");
-  const Scene scene = load(json, square_buffer() + picture);
+class LoadGltfPicture : public LoadGltf {
+ protected:
+  /// A square with one material, and a picture that is red and opaque on the left, blue and nearly
+  /// clear on the right.
+  [[nodiscard]] Scene with_picture(const std::string& material, const std::string& texture = "",
+                                   const std::string& more = "",
+                                   const LoadOptions& options = {}) const {
+    std::string json = square_json(kOneNode,
+                                   R"(, "materials": [{)" + material + R"(}], "textures": [{)" +
+                                       texture + R"("source": 0}],
+         "images": [{"bufferView": 4, "mimeType": "image/tga"}])" +
+                                       more,
+                                   R"(, "material": 0)");
+    const std::string last = R"({"buffer": 0, "byteOffset": 128, "byteLength": 12})";
+    json.replace(json.find(last), last.size(),
+                 last + R"(, {"buffer": 0, "byteOffset": 140, "byteLength": 26})");
+    json.replace(json.find(R"("byteLength": 140)"), 17, R"("byteLength": 166)");
+    return load(json, square_buffer() + half_clear(), options);
+  }
+};
+
+TEST_F(LoadGltfPicture, TexturesAreRightSideUp) {
+  const Scene scene = with_picture(
+      R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0})");
+  ASSERT_EQ(scene.textures.size(), 1u);
+  // The square's lower left corner has texture coordinates (0, 1) in the file: the picture's foot.
+  EXPECT_EQ(scene.texcoords[scene.triangles[0].texcoords[0]], glm::vec2(0, 0));
+  EXPECT_EQ(scene.texcoords[scene.triangles[0].texcoords[2]], glm::vec2(1, 1));
+  const glm::vec3 left = diffuse_at(scene, scene.triangles[0], {0.75, 0.0, 0.25});
+  EXPECT_EQ(left, glm::vec3(1, 0, 0));
+}
+
+TEST_F(LoadGltfPicture, TexturesOfRoughnessNormalsAndOpacity) {
+  const std::string with = R"("alphaMode": "MASK", "alphaCutoff": 0.25,
+      "normalTexture": {"index": 0, "scale": 0.5},
+      "emissiveTexture": {"index": 0}, "emissiveFactor": [1, 0.5, 0],
+      "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5],
+                               "metallicRoughnessTexture": {"index": 0}})";
+  const Scene scene = with_picture(with);
   ASSERT_EQ(scene.textures.size(), 2u) << "colour and opacity of one picture";
   const Material& material = scene.materials[0];
   EXPECT_EQ(material.diffuse_texture, 0u);
@@ -321,31 +332,11 @@ TEST_F(LoadGltf, TexturesOfRoughnessNormalsAndOpacity) {
   EXPECT_EQ(material.opacity_cutoff, 0.5f) << "of the texture alone";
   EXPECT_EQ(scene.textures[1].min_code(), 16 / 255.0);
   EXPECT_TRUE(scene.warnings.empty());
-  const Scene bare = load(json, square_buffer() + picture, {.textures = false});
+  const Scene bare = with_picture(with, "", "", {.textures = false});
   EXPECT_TRUE(bare.textures.empty());
   EXPECT_EQ(bare.materials[0].opacity_map.texture, kNoIndex);
   EXPECT_EQ(bare.triangles.size(), scene.triangles.size());
 }
-
-class LoadGltfPicture : public LoadGltf {
- protected:
-  /// A square with one material, and a picture that is red and opaque on the left, blue and nearly
-  /// clear on the right.
-  [[nodiscard]] Scene with_picture(const std::string& material, const std::string& texture = "",
-                                   const std::string& more = "") const {
-    std::string json = square_json(kOneNode,
-                                   R"(, "materials": [{)" + material + R"(}], "textures": [{)" +
-                                       texture + R"("source": 0}],
-         "images": [{"bufferView": 4, "mimeType": "image/tga"}])" +
-                                       more,
-                                   R"(, "material": 0)");
-    const std::string last = R"({"buffer": 0, "byteOffset": 128, "byteLength": 12})";
-    json.replace(json.find(last), last.size(),
-                 last + R"(, {"buffer": 0, "byteOffset": 140, "byteLength": 26})");
-    json.replace(json.find(R"("byteLength": 140)"), 17, R"("byteLength": 166)");
-    return load(json, square_buffer() + half_clear());
-  }
-};
 
 TEST_F(LoadGltfPicture, TexturesOfExtensions) {
   const Scene scene = with_picture(R"("extensions": {
@@ -467,6 +458,8 @@ TEST_F(LoadGltf, SparseAccessors) {
   EXPECT_EQ(corner(part, 0, 2), glm::dvec3(1, 1, 0));
   expect_error(sparse(json, "{", R"("count": 9, "values": {"bufferView": 0})"),
                "accessor 0 (POSITION): beyond its buffer");
+  expect_error(sparse(json, "{", R"("count": 1, "values": {})"),
+               "accessor 0 (POSITION): found no buffer view, expected its number");
 }
 
 TEST_F(LoadGltf, SkinsAtRest) {
