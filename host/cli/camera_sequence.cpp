@@ -4,7 +4,7 @@
 #include <initializer_list>
 
 #include "host/cli/camera_options.h"
-#include "host/cli/report.h"
+#include "host/cli/format.h"
 #include "host/exact/exact.h"
 #include "host/light/default_lights.h"
 #include "host/scene/camera.h"

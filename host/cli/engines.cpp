@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "host/base/input_error.h"
+#include "host/cli/format.h"
 #include "host/cli/process.h"
-#include "host/cli/report.h"
 #include "host/film/atomic_file.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "host/cli/report.h"
+#include "host/cli/format.h"
 
 namespace raygate {
 namespace {

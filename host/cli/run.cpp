@@ -14,6 +14,7 @@
 #include "host/bvh/bvh.h"
 #include "host/cli/camera_sequence.h"
 #include "host/cli/engines.h"
+#include "host/cli/format.h"
 #include "host/cli/output_files.h"
 #include "host/cli/picture_server.h"
 #include "host/cli/process.h"

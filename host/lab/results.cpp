@@ -8,7 +8,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/vectors.h"
-#include "host/cli/report.h"
+#include "host/cli/format.h"
 #include "host/film/atomic_file.h"
 
 namespace raygate::lab {

@@ -11,7 +11,7 @@
 
 #include "host/base/triple.h"
 #include "host/bvh/bvh.h"
-#include "host/light/default_lights.h"
+#include "host/light/camera_lights.h"
 #include "host/light/environment.h"
 #include "host/light/light_tree.h"
 #include "host/light/sampler.h"

@@ -1,21 +1,13 @@
-// The threads that render tiles, and the coordinator (rank 0 or the only process) that hands out
-// tiles.
+// Coordinator: hands out tiles on rank 0, or in the only process.
 #pragma once
 
-#include <condition_variable>
-#include <exception>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <span>
-#include <thread>
-#include <vector>
 
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
 #include "host/render/emitter_supersampler.h"
 #include "host/render/render_job.h"
-#include "host/render/tile_renderer.h"
 #include "host/render/tiles.h"
 
 namespace raygate {
@@ -27,80 +19,5 @@ void run_coordinator(const RenderJob& job, const Tiles& tiles,
                      std::unique_ptr<Intersector> first_intersector,
                      const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
                      Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats);
-
-/// Renders the tiles that rank 0 sends on options.threads threads, until rank 0 ends the render or
-/// `monitor` stops it. `film`, which has sums, holds this rank's tiles. Rethrows exceptions of
-/// intersectors; throws RunIsOver.
-void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
-                const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
-                Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats);
-
-/// Samples of a tile to render: up to sample `end`, then in steps of `step` up to `last`.
-struct TileWork {
-  int number;
-  PixelRect rect;
-  int end, step, last;
-  double seconds;          ///< time of the thread that rendered it
-  std::size_t splats = 0;  ///< number of splats in a message about it
-};
-
-/// The threads of a render, on rank 0 and on others. Derived classes supply the tiles and take the
-/// results; their destructors call join().
-class TileWorkers {
- public:
-  TileWorkers(const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
-              const IntersectorFactory& make_intersector, Film& film,
-              std::span<HistoryMask> emitter_histories, RenderStats& stats)
-      : job_(job),
-        film_(film),
-        stats_(stats),
-        first_intersector_(std::move(first_intersector)),
-        make_intersector_(make_intersector),
-        emitter_histories_(emitter_histories) {}
-  TileWorkers(const TileWorkers&) = delete;
-  TileWorkers& operator=(const TileWorkers&) = delete;
-  virtual ~TileWorkers() = default;
-
- protected:
-  // Called with the lock held:
-  virtual std::optional<TileWork> take() = 0;      ///< returns a tile, or none for now
-  [[nodiscard]] virtual bool is_over() const = 0;  ///< whether no more tiles will come
-  virtual void done(const TileWork& work) = 0;     ///< the tile is in the film
-  /// Takes the splats of a part of a tile that has just been written into the film.
-  virtual void add(int tile, std::span<const Splat> splats) = 0;
-  /// Called without the lock by each thread between its batches.
-  virtual void between_batches() {}
-
-  /// Starts up to `count` threads; fewer if the system has no more.
-  void start(int count);
-  /// Renders tiles until there are no more; the body of a thread.
-  void work();
-  /// Tells the threads to stop.
-  void stop();
-  void fail(std::exception_ptr error);
-  void join() {
-    stop();
-    threads_.clear();
-  }
-
-  const RenderJob& job_;
-  std::mutex mutex_;  // guards the members below, except pixels of a tile that is being rendered
-  std::condition_variable changed_;
-  Film& film_;
-  RenderStats& stats_;
-  int gone_ = 0;  // threads that have ended
-  bool stopped_ = false;
-  std::exception_ptr error_;
-  std::vector<std::jthread> threads_;
-
- private:
-  [[nodiscard]] std::unique_ptr<Intersector> take_intersector();
-  [[nodiscard]] std::optional<TileWork> next();
-  [[nodiscard]] bool render(TileRenderer& renderer, const TileWork& work);
-
-  std::unique_ptr<Intersector> first_intersector_;  // for the first thread
-  const IntersectorFactory& make_intersector_;
-  std::span<HistoryMask> emitter_histories_;
-};
 
 }  // namespace raygate

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "host/base/stopwatch.h"
-#include "host/render/tile_renderer.h"
+#include "host/render/tiles.h"
 
 namespace raygate {
 namespace {

@@ -16,7 +16,6 @@
 #include "host/base/input_error.h"
 #include "host/base/stopwatch.h"
 #include "host/film/film.h"
-#include "host/render/coordinator.h"
 
 namespace raygate {
 namespace {

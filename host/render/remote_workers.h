@@ -1,6 +1,7 @@
 // Remote workers: the other ranks as seen by rank 0, and the messages about tiles.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,8 +9,8 @@
 
 #include "host/film/film.h"
 #include "host/ranks/ranks.h"
-#include "host/render/coordinator.h"
 #include "host/render/splat_layer.h"
+#include "host/render/tile_workers.h"
 #include "host/render/tiles.h"
 
 namespace raygate {
@@ -64,5 +65,12 @@ class RemoteWorkers {
   bool told_ = false;
   int heard_ = 0;  // number of ranks whose statistics have come
 };
+
+/// Renders the tiles that rank 0 sends on options.threads threads, until rank 0 ends the render or
+/// `monitor` stops it. `film`, which has sums, holds this rank's tiles. Rethrows exceptions of
+/// intersectors; throws RunIsOver.
+void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
+                const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
+                Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats);
 
 }  // namespace raygate

@@ -12,6 +12,7 @@
 #include "host/ranks/ranks.h"
 #include "host/render/coordinator.h"
 #include "host/render/emitter_supersampler.h"
+#include "host/render/remote_workers.h"
 #include "host/render/tiles.h"
 #include "host/scene/camera.h"
 

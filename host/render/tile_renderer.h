@@ -89,13 +89,4 @@ class TileRenderer {
   std::vector<Splat> splats_;
 };
 
-/// Whether a camera ray through `tile`, or up to `margin` pixels beside it, may enter a leaf of the
-/// tree. Conservative: false only if no ray does, including all rounding.
-[[nodiscard]] bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film,
-                                    const PixelRect& tile, double margin);
-
-/// The same for the box from `low` to `high`.
-[[nodiscard]] bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
-                               const Film& film, const PixelRect& tile, double margin);
-
 }  // namespace raygate

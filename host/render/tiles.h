@@ -6,11 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <glm/glm.hpp>
 #include <numeric>
 #include <optional>
 #include <vector>
 
+#include "host/bvh/bvh.h"
 #include "host/film/film.h"
+#include "host/scene/camera.h"
 
 namespace raygate {
 
@@ -128,5 +131,14 @@ class TileQueue {
   std::deque<int> waiting_;
   std::vector<Tile> tiles_;
 };
+
+/// Whether a camera ray through `tile`, or up to `margin` pixels beside it, may enter a leaf of the
+/// tree. Conservative: false only if no ray does, including all rounding.
+[[nodiscard]] bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film,
+                                    const PixelRect& tile, double margin);
+
+/// The same for the box from `low` to `high`.
+[[nodiscard]] bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
+                               const Film& film, const PixelRect& tile, double margin);
 
 }  // namespace raygate

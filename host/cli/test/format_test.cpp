@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "host/cli/process.h"
-#include "host/cli/report.h"
+#include "host/cli/format.h"
 
 namespace raygate {
 namespace {
