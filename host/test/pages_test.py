@@ -5,6 +5,7 @@ import fcntl
 import os
 import pathlib
 import re
+import shlex
 import subprocess
 import tempfile
 import unittest
@@ -89,7 +90,8 @@ class Pages(unittest.TestCase):
 
     def test_make_variant_lints_a_file_first(self) -> None:
         lines = recipe("variant ADDER=my_adder.sv FRAC_WIDTH=15").splitlines()
-        self.assertEqual(lines[:2], ["true lint", "python3 -B -m synth.brought ADDER=my_adder.sv"])
+        self.assertEqual([shlex.split(line)[-4:] for line in lines[:2]],
+                         [["true", "lint"], ["-m", "synth.brought", "FRAC_WIDTH=15", "ADDER=my_adder.sv"]])
         lines = recipe("variant ADDER=prefix FRAC_WIDTH=15").splitlines()
         self.assertRegex(lines[0], "^echo 'One card: .*8 to 10 minutes")
         self.assertNotIn("synth.brought", " ".join(lines))
