@@ -1,13 +1,11 @@
 #include "host/render/tile_renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <utility>
 
 #include "host/base/counts.h"
 #include "host/base/stopwatch.h"
-#include "host/bvh/traversal.h"
 #include "host/film/film.h"
 #include "host/render/tiles.h"
 

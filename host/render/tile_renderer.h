@@ -10,7 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "host/bvh/bvh.h"
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
 #include "host/light/integrator.h"
@@ -20,7 +19,6 @@
 #include "host/render/emitter_supersampler.h"
 #include "host/render/render_job.h"
 #include "host/render/splat_layer.h"
-#include "host/scene/camera.h"
 
 namespace raygate {
 
