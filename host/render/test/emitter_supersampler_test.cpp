@@ -52,12 +52,12 @@ struct Panel {
 
 RenderOptions options(int samples, ReconstructionFilter filter = ReconstructionFilter::kBox,
                       IntegratorKind integrator = IntegratorKind::kPath) {
-  return {.width = kSide,
-          .height = kSide,
-          .window = {},
-          .samples = samples,
-          .filter = filter,
-          .integrator = integrator};
+  RenderOptions options;
+  options.width = options.height = kSide;
+  options.samples = samples;
+  options.filter = filter;
+  options.integrator = integrator;
+  return options;
 }
 
 struct Found {
