@@ -1,3 +1,5 @@
+#include "host/cli/format.h"
+
 #include <gtest/gtest.h>
 
 #include <exception>
@@ -5,7 +7,6 @@
 #include <stdexcept>
 
 #include "host/cli/process.h"
-#include "host/cli/format.h"
 
 namespace raygate {
 namespace {

@@ -1,9 +1,9 @@
 // Every pass of every tile once, a tile's in their order, and no tile waits for another.
-#include "host/render/tiles.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "host/render/tiles.h"
 
 namespace raygate {
 namespace {

@@ -12,11 +12,11 @@
 
 #include "Vray_core_axi.h"
 #include "host/intersect/core/memory_image.h"
-#include "sim/test/ray_core/pixel_grid.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "hw/ray_core/registers.h"
 #include "sim/core_port.h"
+#include "sim/test/ray_core/pixel_grid.h"
 
 namespace raygate {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "Vray_generator_behavioural.h"
 #include "Vray_generator_structural.h"
-#include "sim/test/ray_core/pixel_grid.h"
 #include "sim/model.h"
+#include "sim/test/ray_core/pixel_grid.h"
 
 namespace raygate {
 namespace {
