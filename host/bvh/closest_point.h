@@ -1,4 +1,4 @@
-// Closest point: of a scene's triangles, the point that is nearest to a given one.
+// Closest point: the point of a scene's triangles that is nearest to a given one.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,9 @@ struct ClosestPoint {
   glm::dvec3 point{0.0};
 };
 
-/// For a finite point, in double: off by its rounding. Of triangles at the same distance the one of
-/// the lower number. The tree has a triangle.
+/// Returns the nearest point to a finite point; errors are those of rounding in double. Of
+/// triangles at the same distance the one of the lowest number is returned. The tree must have a
+/// triangle.
 [[nodiscard]] ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point);
 
 }  // namespace raygate
