@@ -24,7 +24,11 @@ struct FileCorner {
 /// extent (to recentre) and the number of vertices (faces may come before theirs) known.
 class MeshBuilder {
  public:
-  explicit MeshBuilder(std::string file_name) : file_name_(std::move(file_name)) {}
+  /// Where faces come from, for messages: "scene.obj:12: ..." or, of an array, "faces[12]: ...".
+  enum class Source { kFile, kArray };
+
+  explicit MeshBuilder(std::string file_name, Source source = Source::kFile)
+      : file_name_(std::move(file_name)), source_(source) {}
 
   void add_position(const glm::dvec3& position) { positions_.push_back(position); }
   /// Gives the last position a colour: of sRGB codes from 0 to 1 or, where the file has one above
@@ -41,7 +45,7 @@ class MeshBuilder {
 
   /// Adds a polygon. One of fewer than three corners is left out by build(), with a warning; a
   /// corner whose normal or texture coordinate does not exist costs the face all of these. `line`
-  /// is for messages; 0 in a file without lines.
+  /// is for messages: 0 in a file without lines; of an array the row, counted from 1.
   void add_face(std::span<const FileCorner> corners, std::size_t line);
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
   /// Gives faces by number, from `begin` to `end`, their material, object and smoothing group; 0
@@ -96,6 +100,11 @@ class MeshBuilder {
   class WarningCount;
 
   [[nodiscard]] static std::uint32_t resolve(std::int32_t index, std::size_t count);
+  /// Throws the InputError of a face; what --strict refuses says so.
+  [[noreturn]] void fail(std::size_t line, const std::string& what) const;
+  [[noreturn]] void fail_strictly(std::size_t line, const std::string& what) const;
+  /// The beginning of messages about the face of this line.
+  [[nodiscard]] std::string location(std::size_t line) const;
   void check_indices() const;
   void recentre(Scene& scene);
   [[noreturn]] void fail_far(std::size_t position) const;
@@ -106,6 +115,7 @@ class MeshBuilder {
                                                        Scene& scene) const;
 
   std::string file_name_;
+  Source source_;
   Bounds3 others_;
   bool may_be_empty_ = false, is_smoothing_said_ = false;
   Counts earlier_;
