@@ -48,8 +48,8 @@ def rays(origins: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Array, Arra
         directions = np.broadcast_to(directions, (len(origins), 3))
     origins, directions = vectors("origins", origins), vectors("directions", directions)
     if len(directions) != len(origins):
-        raise InputError(f"directions: found an array of shape {directions.shape}, expected {origins.shape}, as many as "
-                         "origins")
+        raise InputError(f"directions: found an array of shape {directions.shape}, expected {origins.shape}, "
+                         "as many as origins")
     return origins, directions
 
 
@@ -58,8 +58,8 @@ def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
     wrong = ~(np.abs(array) <= 2.0 ** exponent).all(axis=tuple(range(1, array.ndim)))
     if wrong.any():
         row = int(wrong.argmax())
-        raise InputError(f"{name}: found {array[row].tolist()} in {each} {row}, expected finite numbers of magnitude at "
-                         f"most 2^{exponent}")
+        raise InputError(f"{name}: found {array[row].tolist()} in {each} {row}, expected finite numbers of magnitude "
+                         f"at most 2^{exponent}")
 
 
 def triangles(name: str, corners: Array) -> Array:
@@ -76,12 +76,12 @@ def vertex_numbers(faces: npt.ArrayLike | None, count: int) -> Array:
         raise InputError("faces: found None, expected the numbers of three vertices in each row")
     array = plain("faces", faces)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind == "f" or not len(array):
-        raise InputError(f"faces: found an array of {array.dtype} of shape {array.shape}, expected whole numbers of shape "
-                         "(M, 3), M at least 1")
+        raise InputError(f"faces: found an array of {array.dtype} of shape {array.shape}, expected whole numbers of "
+                         "shape (M, 3), M at least 1")
     wrong = ((array < 0) | (array >= count)).any(axis=1)
     if wrong.any():
-        raise InputError(f"faces: found {array[wrong.argmax()].tolist()} in face {wrong.argmax()}, expected numbers from 0 "
-                         f"to {count - 1}")
+        raise InputError(f"faces: found {array[wrong.argmax()].tolist()} in face {wrong.argmax()}, expected numbers "
+                         f"from 0 to {count - 1}")
     return array
 
 

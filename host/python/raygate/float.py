@@ -6,15 +6,16 @@
     rf.fp_add(np.float32(1), np.float32(2 ** -24), rounding="up")   # 1.0000001, INEXACT
     rf.fp_multiply(np.uint32([0x7F7FFFFF]), np.uint32([0x40000000])).flag_names  # OVERFLOW|INEXACT
 
-Operands are of one of three kinds. Python's numbers, or lists of them, are rounded to the nearest number of the format,
-with a RoundingWarning. NumPy's arrays and scalars of floats or signed integers must be numbers of the format, as round_to
-returns them. NumPy's unsigned integers are words of the format: sign, exponent, fraction. Results are of the kind of the
-operands. Arrays of any shape are broadcast; empty ones give empty results. Masked elements and other operands raise an
-InputError.
+Operands are of one of three kinds. Python's numbers, or lists of them, are rounded to the nearest number of the
+format, with a RoundingWarning. NumPy's arrays and scalars of floats or signed integers must be numbers of the format,
+as round_to returns them. NumPy's unsigned integers are words of the format: sign, exponent, fraction. Results are of
+the kind of the operands. Arrays of any shape are broadcast; empty ones give empty results. Masked elements and other
+operands raise an InputError.
 
 Results are those of the reference model that this repository's tests (sim/test/fp) compare with the simulated cores of
 hw/fp, bit by bit. With `cores`, the path of this repository's program float_cores (cmake --build build --target
-float_cores), the Verilated cores compute them, in the four formats below. A NaN result is always the positive quiet NaN.
+float_cores), the Verilated cores compute them, in the four formats below. A NaN result is always the positive quiet
+NaN.
 """
 
 from __future__ import annotations
@@ -47,8 +48,8 @@ _OPERATIONS = ("+", "-", "*", "/", *RELATIONS)
 
 @dataclasses.dataclass(frozen=True)
 class Format:
-    """A binary format: a sign, `exponent_bits` of biased exponent (2 to 11) and `fraction_bits` of fraction (1 to 29), at
-    most 32 bits in all."""
+    """A binary format: a sign, `exponent_bits` of biased exponent (2 to 11) and `fraction_bits` of fraction (1 to 29),
+    at most 32 bits in all."""
 
     exponent_bits: int
     fraction_bits: int
@@ -102,9 +103,10 @@ class Result(NamedTuple):
 @in_context
 def fp_add(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
            tininess: Tininess = "after", cores: _Path | None = None) -> Result:
-    """Returns a + b. `rounding`: one of ROUNDINGS. `tininess`: whether the size of a result is judged "before" or "after"
-    rounding; it affects the flag UNDERFLOW alone. `cores`: path of the program float_cores, to compute with the simulated
-    cores. Raises InputError for operands that are no numbers of the format, and for shapes that cannot be broadcast."""
+    """Returns a + b. `rounding`: one of ROUNDINGS. `tininess`: whether the size of a result is judged "before" or
+    "after" rounding; it affects the flag UNDERFLOW alone. `cores`: path of the program float_cores, to compute with
+    the simulated cores. Raises InputError for operands that are no numbers of the format, and for shapes that cannot
+    be broadcast."""
     return _run("+", a, b, format, rounding, tininess, cores)
 
 
@@ -132,8 +134,8 @@ def fp_divide(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rou
 @in_context
 def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: Format = BINARY32,
                cores: _Path | None = None) -> Result:
-    """Returns whether a `relation` b, as bool. `relation`: one of RELATIONS; "==" is quiet, the others signal INVALID for
-    any NaN. Other arguments as of fp_add."""
+    """Returns whether a `relation` b, as bool. `relation`: one of RELATIONS; "==" is quiet, the others signal INVALID
+    for any NaN. Other arguments as of fp_add."""
     _one_of("relation", relation, RELATIONS)
     return _run(relation, a, b, format, "nearest-even", "after", cores)
 
@@ -141,8 +143,8 @@ def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: F
 @in_context
 def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
              tininess: Tininess = "after") -> Result:
-    """Returns numbers rounded to the format, as floats of their own type if it holds the format and else float64, and the
-    flags of the rounding. Arguments as of fp_add."""
+    """Returns numbers rounded to the format, as floats of their own type if it holds the format and else float64, and
+    the flags of the rounding. Arguments as of fp_add."""
     x = _numbers(x)
     bits, flags = encode(x, format, rounding, tininess)
     return Result(_held(decode(bits, format), x.dtype, format), flags)
@@ -151,7 +153,8 @@ def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "
 @in_context
 def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
            tininess: Tininess = "after") -> Result:
-    """Returns numbers rounded to the format, as words, uint32, and the flags of the rounding. Arguments as of fp_add."""
+    """Returns numbers rounded to the format, as words, uint32, and the flags of the rounding. Arguments as of
+    fp_add."""
     x = _numbers(x)
     if x.dtype.kind != "f" or x.dtype.itemsize > 8:
         raise InputError(f"found an array of {x.dtype}, expected one of float16, float32 or float64")

@@ -4,8 +4,8 @@
     raygate.results.synth()                   # from `make synth`: area and delay of each design and flow
     raygate.results.published("synth/results/README.md")["The 48-bit adders"]   # any table of a page
 
-Needs pandas: pip install 'raygate[results]'. Paths are relative to the working directory; the defaults fit the root of the
-repository. Raises InputError, which names the file and the line, for what cannot be read.
+Needs pandas: pip install 'raygate[results]'. Paths are relative to the working directory; the defaults fit the root of
+the repository. Raises InputError, which names the file and the line, for what cannot be read.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ def synth(file: _Path = "build/synth/results.json") -> pandas.DataFrame:
 
 
 def published(page: _Path) -> dict[str, pandas.DataFrame]:
-    """Returns the tables of a Markdown page: a dictionary of data frames by the headings above them (the first table below
-    each). Cells are text without thousands separators; a column of numbers is float64."""
+    """Returns the tables of a Markdown page: a dictionary of data frames by the headings above them (the first table
+    below each). Cells are text without thousands separators; a column of numbers is float64."""
     frames: dict[str, pandas.DataFrame] = {}
     heading = ""
     rows: list[list[str]] = []
