@@ -96,12 +96,15 @@ else
 	@ctest --test-dir build -j $(JOBS) --output-on-failure --no-tests=error $${SKIP:+-E "$$SKIP"}
 endif
 
+python: SHELL := /bin/bash -o pipefail
 python: ## use: install the Python module into build/python, test it and its notebook
 	$(call build,build,float_cores)
 	@$(SETUP) python
 	@test -e build/python/bin/pip || python3 -m venv build/python
-	@rm -rf build-pip  # beside build, so that ccache sees the same relative paths as there
-	@build/python/bin/pip install --quiet --disable-pip-version-check -Cbuild-dir=build-pip . -r host/python/requirements.txt
+	@rm -rf build-pip
+	@build/python/bin/pip install --quiet --disable-pip-version-check -r host/python/requirements.txt
+	@build/python/bin/pip install -v --disable-pip-version-check . 2>&1 | tee build/python/log | \
+	  sed -un '/^ *\[[0-9]*\/[0-9]*\]/p' || { tail -n 30 build/python/log; exit 1; }
 	@build/python/bin/python -m unittest discover -s host/python/test -p '*_test.py'
 
 wheel: ## use: a wheel of the Python module and its commands, for other Linux machines, into build/wheel; tested in a fresh environment

@@ -2,6 +2,17 @@
 # is looked for: before CMake looks for a compiler in words of its own.
 include(CheckLanguage)
 set(missing)
+# scikit-build-core asks for g++. CMake would take c++, which ccache holds for another compiler although it is the same file.
+if(RAYGATE_PYTHON AND "$ENV{CXX}" STREQUAL "g++")
+  foreach(name c++ g++)
+    find_program(raygate_${name} ${name})
+    mark_as_advanced(raygate_${name})
+    file(REAL_PATH "${raygate_${name}}" program_${name})
+  endforeach()
+  if(program_c++ STREQUAL program_g++)
+    set(ENV{CXX} c++)
+  endif()
+endif()
 check_language(CXX)
 if(NOT CMAKE_CXX_COMPILER)
   list(APPEND missing g++)

@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "host/base/checkpoint.h"
+
 namespace raygate {
 
 /// Calls `work` on up to `threads` threads at once, including the caller's, and waits for all. Uses
@@ -37,13 +39,21 @@ void on_threads(int threads, const Work& work) {
   if (error) std::rethrow_exception(error);
 }
 
-/// Calls work(i) once for each i below `count`, in any order.
+/// Calls work(i) once for each i below `count`, in any order. An exception ends the others early.
 template <class Work>
 void for_each_on_threads(int threads, std::size_t count, const Work& work) {
   std::atomic<std::size_t> next = 0;
   const auto most = static_cast<int>(std::min<std::size_t>(count, 1 << 16));
   on_threads(std::min(threads, most), [&] {
-    for (std::size_t i = next++; i < count; i = next++) work(i);
+    try {
+      for (std::size_t i = next++; i < count; i = next++) {
+        checkpoint();
+        work(i);
+      }
+    } catch (...) {
+      next = count;
+      throw;
+    }
   });
 }
 

@@ -1,5 +1,7 @@
 #include "host/bvh/closest_point.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <queue>
 
@@ -39,12 +41,22 @@ struct Waiting {
   bool operator<(const Waiting& other) const { return bound > other.bound; }  // the nearest first
 };
 
-}  // namespace
+/// Largest magnitude of the coordinates of the tree's boxes.
+double size_of(const BvhView& tree) {
+  double size = 0.0;
+  Bvh::Node room;
+  const Bvh::Node& root = tree.node(0, room);
+  for (int i = 0; i < Bvh::kWidth; ++i) {
+    const auto [low, high] = root.box(i);
+    if (low.x > high.x) continue;  // no child
+    size = std::max({size, largest(glm::dvec3(low)), largest(glm::dvec3(high))});
+  }
+  return size;
+}
 
 /// A best-first search: nearer boxes first, until none can hold anything nearer.
-ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point) {
+ClosestPoint search(const BvhView& tree, const Bvh& bvh, const glm::dvec3& point) {
   constexpr double kRounding = 1.0 - 0x1p-40;  // of distances in double
-  const BvhView tree(bvh);
   ClosestPoint best;
   best.distance = std::numeric_limits<double>::infinity();
   std::priority_queue<Waiting> waiting;
@@ -75,6 +87,22 @@ ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point) {
     nearest = waiting.top();
     waiting.pop();
   }
+  return best;
+}
+
+}  // namespace
+
+/// Seen from 2^27 times the tree's size or more, the differences of the distances to its triangles
+/// are lost in rounding: the search would visit the whole tree. It begins at a point of that
+/// distance in the same direction, from which the nearest triangle is farther from `point` than its
+/// nearest one by less than the rounding of the distance.
+ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point) {
+  const BvhView tree(bvh);
+  const double far = 0x1p27 * size_of(tree);
+  if (largest(point) <= far) return search(tree, bvh, point);
+  ClosestPoint best = search(tree, bvh, point / largest(point) * far);
+  const glm::dvec3 way = best.point - point;
+  best.distance = std::hypot(way.x, way.y, way.z);
   return best;
 }
 

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <span>
 
+#include "host/base/checkpoint.h"
 #include "host/base/threads.h"
 
 namespace raygate {
@@ -239,6 +240,7 @@ class SahBuilder {
       waiting_.pop_back();
       ++busy_;
       lock.unlock();
+      checkpoint();
       Run sides[2];
       if (run.size() <= kTaskSize) {
         split_all(run);

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "host/base/checkpoint.h"
 #include "host/base/elementary.h"
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
@@ -95,6 +96,7 @@ Image8 to_display(const Film& film, const DisplayOptions& options) {
   picture.pixels.reserve(film.color.size());
   const auto gain = static_cast<float>(gain_of(options.exposure));
   for (const glm::vec4& color : film.color) {
+    if (picture.pixels.size() % 4096 == 0) checkpoint();
     Rgb8& codes = picture.pixels.emplace_back();
     for (int k = 0; k < 3; ++k) {
       codes[static_cast<std::size_t>(k)] = linear_to_srgb(tone_map(gain * color[k], options.tone));
@@ -110,6 +112,7 @@ std::string encode_png(const Image8& picture) {
   writer.write_header(picture);
   const auto width = static_cast<std::size_t>(picture.window.width());
   for (std::size_t start = 0; start < picture.pixels.size(); start += width) {
+    checkpoint();
     writer.write_row(picture.pixels.data() + start);
   }
   writer.finish();

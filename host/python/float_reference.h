@@ -1,4 +1,4 @@
-// Float arithmetic for the Python module: what sim/'s tests compare the float cores with.
+// Float arithmetic for the Python module: the reference model of the float cores' tests.
 #pragma once
 
 #include <nanobind/nanobind.h>

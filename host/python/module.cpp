@@ -1,4 +1,4 @@
-// The Python module `raygate`, its C++ half: scenes, rays, pictures as NumPy arrays.
+// The C++ half of the Python module `raygate`: scenes, rays and pictures as NumPy arrays.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/checkpoint.h"
 #include "host/base/input_error.h"
 #include "host/bvh/bvh.h"
 #include "host/bvh/closest_point.h"
@@ -52,11 +53,14 @@ namespace {
 using Vectors3 = nb::ndarray<nb::ro, nb::shape<-1, 3>, nb::device::cpu, nb::c_contig>;
 using Numbers = nb::ndarray<nb::ro, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
 using Three = std::array<double, 3>;
+using Texts = nb::typed<nb::list, nb::str>;
+template <class T, std::size_t kAxes>
+using Result = nb::ndarray<nb::numpy, T, nb::ndim<kAxes>>;
 
-/// Keywords and their values as text.
+/// Keyword arguments and their values as text.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
-/// Options of a function of the module, read from its keywords.
+/// Options of a function of the module, set by its keyword arguments.
 struct Keywords : OptionTable {
   Keywords() { number("--threads", "", "", threads, kThreadRange, kInPython); }
   void add_engine() {
@@ -67,10 +71,10 @@ struct Keywords : OptionTable {
   }
 
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool uses_model = false;  // the unit's reference model
+  bool uses_model = false;  // use the reference model of the hit-test unit
 };
 
-/// Elements of an array of float32 or float64, as they lie there.
+/// Read access to an array of float32 or float64, without a copy.
 class Elements {
  public:
   template <class Array>
@@ -93,26 +97,39 @@ class Elements {
   bool is_double_ = false;
 };
 
-/// False where Python has a signal to handle: the exception that it raised is thrown on.
-bool keep_going() {
-  const nb::gil_scoped_acquire gil;
-  if (PyErr_CheckSignals() != 0) throw nb::python_error();
-  return true;
-}
+/// Number of rays that a thread traces between two checkpoints: about 50 ms of work.
+class BlockSize {
+ public:
+  [[nodiscard]] std::size_t value() const { return value_; }
 
-/// As Python has what the system gives it: bytes that are not UTF-8 become surrogates.
+  /// Adapts the size to the time since the last call.
+  void end_round() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> round = now - last_;
+    last_ = now;
+    const double factor = std::clamp(0.05 / std::max(round.count(), 1e-6), 0.1, 4.0);
+    value_ =
+        static_cast<std::size_t>(std::clamp(factor * static_cast<double>(value_), 16.0, 0x1p14));
+  }
+
+ private:
+  std::size_t value_ = 256;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// Returns text from the system as a str: bytes that are not UTF-8 become surrogates.
 nb::object text_of(const std::string& text) {
   return nb::steal(
       PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<Py_ssize_t>(text.size())));
 }
 
-nb::list texts_of(const std::vector<std::string>& texts) {
-  nb::list list;
+Texts texts_of(const std::vector<std::string>& texts) {
+  Texts list;
   for (const std::string& text : texts) list.append(text_of(text));
   return list;
 }
 
-/// An array of what `owner` holds.
+/// Returns an array of data that `owner` keeps alive.
 template <class T>
 nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
                     std::initializer_list<std::size_t> shape) {
@@ -123,7 +140,7 @@ nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
       nb::ndarray<nb::numpy, T>(const_cast<T*>(static_cast<const T*>(data)), shape, capsule));
 }
 
-/// The bytes that `encode` makes, without Python's lock.
+/// Returns the result of `encode`, which runs without Python's lock.
 template <class Encode>
 nb::bytes bytes_of(const Encode& encode) {
   std::string text;
@@ -134,13 +151,13 @@ nb::bytes bytes_of(const Encode& encode) {
   return nb::bytes(text.data(), text.size());
 }
 
-/// A film, to be encoded.
+/// A film and what its files say about it.
 struct PythonFilm {
   std::shared_ptr<const Film> film;
   ExrMetadata metadata;
 };
 
-/// A scene and the tree around it.
+/// A scene and its tree.
 class PythonScene {
  public:
   PythonScene(const nb::bytes& file, bool strict, const Settings& settings) {
@@ -160,42 +177,43 @@ class PythonScene {
     build(keywords.threads);
   }
 
-  /// Triangles alone: their corners, one after the other.
-  PythonScene(const Vectors3& corners, bool strict, const Settings& settings) {
+  /// Triangles alone, from their corners, one after the other. `name`: of the array, for messages.
+  PythonScene(const std::string& name, const Vectors3& corners, bool strict,
+              const Settings& settings) {
     std::optional<double> smooth;
     Keywords keywords;
     keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
     keywords.read(settings);
     const Elements points("triangles", corners);
     const nb::gil_scoped_release release;
-    MeshBuilder mesh("triangles");
+    MeshBuilder mesh(name, MeshBuilder::Source::kArray);
     for (std::size_t i = 0; i + 2 < corners.shape(0); i += 3) {
       std::array<FileCorner, 3> face;
       for (std::size_t k = 0; k < 3; ++k) {
         mesh.add_position(points.vector(i + k));
         face[k].position = static_cast<std::int32_t>(i + k + 1);
       }
-      mesh.add_face(face, 0);
+      mesh.add_face(face, i / 3 + 1);
     }
     mesh.build_plain({.strict = strict, .smooth = smooth}, scene_);
     build(keywords.threads);
   }
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
-  [[nodiscard]] nb::list material_names() const {
-    nb::list names;
+  [[nodiscard]] Texts material_names() const {
+    Texts names;
     for (const Material& material : scene_.materials) names.append(text_of(material.name));
     return names;
   }
 
-  /// The rows of HitTable as bytes, and what their fields are.
-  nb::object trace_rays(const Vectors3& origins, const Vectors3& directions,
-                        const std::optional<Numbers>& limits,
-                        const std::vector<std::string>& columns, const Settings& settings) const {
+  /// Returns the rows of HitTable as bytes, and the names and types of their fields. There are as
+  /// many directions and limits as origins.
+  std::pair<Result<std::uint8_t, 1>, Settings> trace_rays(const Vectors3& origins,
+                                                          const Vectors3& directions,
+                                                          const std::optional<Numbers>& limits,
+                                                          const std::vector<std::string>& columns,
+                                                          const Settings& settings) const {
     const std::size_t count = origins.shape(0);
-    if (directions.shape(0) != count || (limits && limits->shape(0) != count)) {
-      throw InputError("trace: expected as many directions and limits as origins");
-    }
     Hits asked = Hits::kNearest;
     Keywords keywords;
     keywords.choice("--hits", "", "", asked,
@@ -208,12 +226,17 @@ class PythonScene {
     if (limits) limit.emplace("limits", *limits);
     const HitTable answers(scene_, *bvh_, columns_of(columns, asked, !keywords.uses_model, ""),
                            TableFormat::kNpy);
+    BlockSize size;
     const auto read = [&, next = std::size_t{0}](std::size_t most, RayTable& block) mutable {
       block.clear(next);
-      for (; block.rays.size() < most && next < count; ++next) {
-        const char* const wrong = block.add(
-            from.vector(next), way.vector(next),
-            limit ? (*limit)[next] : std::numeric_limits<double>::infinity(), scene_.origin);
+      for (; block.rays.size() < std::min(most, size.value()) && next < count; ++next) {
+        const glm::dvec3 direction = way.vector(next);
+        const char* const wrong =
+            direction == glm::dvec3(0.0)
+                ? "found the direction (0, 0, 0), expected another one"
+                : block.add(from.vector(next), direction,
+                            limit ? (*limit)[next] : std::numeric_limits<double>::infinity(),
+                            scene_.origin);
         if (wrong != nullptr) throw InputError("ray " + std::to_string(next) + ": " + wrong);
       }
       return !block.rays.empty();
@@ -225,44 +248,44 @@ class PythonScene {
       (void)trace(
           read, asked, *bvh_, answers, intersectors(keywords.uses_model),
           static_cast<unsigned>(keywords.threads),
-          [&](std::string_view bytes) { rows->append(bytes); }, keep_going);
+          [&](std::string_view bytes) { rows->append(bytes); },
+          [&] {
+            size.end_round();
+            checkpoint();
+            return true;
+          });
     }
     std::string* const kept = rows.release();
     const nb::capsule capsule(kept, [](void* p) noexcept { delete static_cast<std::string*>(p); });
-    return nb::make_tuple(
-        nb::ndarray<nb::numpy, std::uint8_t>(kept->data(), {kept->size()}, capsule),
-        answers.fields());
+    return {Result<std::uint8_t, 1>(kept->data(), {kept->size()}, capsule), answers.fields()};
   }
 
-  /// A row for each point: triangle, distance, x, y, z.
-  [[nodiscard]] nb::object closest_points(const Vectors3& points) const {
+  /// Returns a row for each point: triangle, distance, x, y, z.
+  [[nodiscard]] Result<double, 2> closest_points(const Vectors3& points) const {
     const Elements from("points", points);
     const std::size_t count = points.shape(0), width = 5;
     auto rows = std::make_unique<std::vector<double>>();
     {
       const nb::gil_scoped_release release;
       rows->reserve(count * width);
-      auto looked = std::chrono::steady_clock::now();
       for (std::size_t i = 0; i < count; ++i) {
+        checkpoint();
         const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
         const glm::dvec3 at = found.point + scene_.origin;
         const double triangle = bvh_->triangle_of(found.primitive);
         rows->insert(rows->end(), {triangle, found.distance, at.x, at.y, at.z});
-        const auto now = std::chrono::steady_clock::now();
-        if (now - looked < std::chrono::milliseconds(50)) continue;
-        looked = now;
-        (void)keep_going();
       }
     }
     std::vector<double>* const kept = rows.release();
     const nb::capsule capsule(
         kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-    return nb::cast(nb::ndarray<nb::numpy, double>(kept->data(), {count, width}, capsule));
+    return Result<double, 2>(kept->data(), {count, width}, capsule);
   }
 
-  /// The film's channels by name, and the film. `settings`: options and their values as text.
-  nb::object render_film(const std::optional<Three>& eye, const std::optional<Three>& target,
-                         const std::optional<Three>& up, const Settings& settings) const {
+  /// Returns the film's channels by name, and the film.
+  std::pair<nb::typed<nb::dict, nb::str, nb::ndarray<nb::numpy>>, PythonFilm> render_film(
+      const std::optional<Three>& eye, const std::optional<Three>& target,
+      const std::optional<Three>& up, const Settings& settings) const {
     RenderOptions options;
     options.channels = {.position = true, .albedo = true, .object = true};
     std::optional<double> fov;
@@ -291,7 +314,10 @@ class PythonScene {
       const nb::gil_scoped_release release;
       RenderStats stats;
       *film = render(*prepared_, camera, options, intersectors(keywords.uses_model), stats,
-                     {.progress = [](double) { return keep_going(); }});
+                     {.progress = [](double) {
+                       checkpoint();
+                       return true;
+                     }});
     }
     const auto h = static_cast<std::size_t>(height), w = static_cast<std::size_t>(width);
     nb::dict channels;
@@ -305,11 +331,11 @@ class PythonScene {
     ExrMetadata metadata;
     metadata.software = kSoftware;
     metadata.seed = options.seed;
-    return nb::make_tuple(channels, PythonFilm{film, std::move(metadata)});
+    return {std::move(channels), PythonFilm{film, std::move(metadata)}};
   }
 
  private:
-  /// The tree, when the scene is there.
+  /// Builds the tree of the scene.
   void build(int threads) {
     bvh_ = std::make_unique<Bvh>(scene_, threads);
     prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);
@@ -356,9 +382,38 @@ class PythonScene {
   std::unique_ptr<PreparedScene> prepared_;
 };
 
-/// IeeeFloats as a context of Python's `with`.
-struct FloatsContext {
-  std::optional<IeeeFloats> floats;
+/// Runs Python's signal handlers, at most every 20 ms, during work that does not hold Python's
+/// lock. Throws the exception of a handler, such as KeyboardInterrupt.
+class SignalCheck {
+ public:
+  void operator()() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::milliseconds(20)) return;
+    last_ = now;
+    const nb::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// A context of Python's `with`: IEEE 754 arithmetic, and signal handlers at the checkpoints of
+/// long work.
+class CallContext {
+ public:
+  void enter() {
+    floats_.emplace();
+    signals_.emplace(SignalCheck());
+  }
+  void exit() {
+    signals_.reset();
+    floats_.reset();
+  }
+
+ private:
+  std::optional<IeeeFloats> floats_;
+  std::optional<CheckpointScope> signals_;
 };
 
 }  // namespace
@@ -371,11 +426,14 @@ NB_MODULE(_raygate, m) {
     const raygate::IeeeFloats floats;
     raygate::require_ieee_floats();
   }
-  using raygate::FloatsContext;
-  nb::class_<FloatsContext>(m, "IeeeFloats")
+  using raygate::CallContext;
+  nb::class_<CallContext>(m, "CallContext")
       .def(nb::init<>())
-      .def("__enter__", [](FloatsContext& context) { context.floats.emplace(); })
-      .def("__exit__", [](FloatsContext& context, const nb::args&) { context.floats.reset(); });
+      .def("__enter__", &CallContext::enter)
+      .def(
+          "__exit__",
+          [](CallContext& context, nb::handle, nb::handle, nb::handle) { context.exit(); },
+          "kind"_a.none(), "value"_a.none(), "traceback"_a.none());
   static const nb::object input_error =
       nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
   nb::register_exception_translator([](const std::exception_ptr& error, void*) {
@@ -400,7 +458,7 @@ NB_MODULE(_raygate, m) {
       });
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())
-      .def(nb::init<const raygate::Vectors3&, bool, const raygate::Settings&>())
+      .def(nb::init<const std::string&, const raygate::Vectors3&, bool, const raygate::Settings&>())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })
       .def_prop_ro("objects",

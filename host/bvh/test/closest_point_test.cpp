@@ -45,5 +45,25 @@ TEST(ClosestPoint, IsTheLeastOfAll) {
   }
 }
 
+TEST(ClosestPoint, OfFarPointsIsTheFarthestInTheirDirection) {
+  test::Random random;
+  const std::vector<Corners> triangles = test::sphere(3);
+  const Bvh bvh(test::scene_of(triangles));
+  for (const double far : {0x1p26, 0x1p28, 0x1p60, 0x1p1000}) {
+    for (int i = 0; i < 100; ++i) {
+      const glm::dvec3 direction = unit(glm::dvec3(random.point(1.0f)));
+      const ClosestPoint found = closest_point(bvh, far * direction);
+      double most = -1.0;
+      for (const Corners& triangle : triangles) {
+        for (const glm::vec3& corner : triangle) {
+          most = std::max(most, glm::dot(direction, glm::dvec3(corner)));
+        }
+      }
+      ASSERT_NEAR(glm::dot(direction, found.point), most, 0x1p-24);
+      ASSERT_NEAR(found.distance, far - most, 0x1p-51 * far);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace raygate

@@ -6,30 +6,39 @@
     rf.fp_add(np.float32(1), np.float32(2 ** -24), rounding="up")   # 1.0000001, INEXACT
     rf.fp_multiply(np.uint32([0x7F7FFFFF]), np.uint32([0x40000000])).flag_names  # OVERFLOW|INEXACT
 
-Operands are Python's numbers or lists of them, which are rounded to nearest to the format, with a
-RoundingWarning; NumPy's arrays and scalars of floats or signed integers, which must be numbers of
-the format (round_to makes them so); or of unsigned integers, which are the format's words: sign,
-exponent, fraction. Results are of the kind of the operands. Arrays of different shapes are
-broadcast.
+Operands are of one of three kinds. Python's numbers, or lists of them, are rounded to the nearest number of the
+format, with a RoundingWarning. NumPy's arrays and scalars of floats or signed integers must be numbers of the format,
+as round_to returns them. NumPy's unsigned integers are words of the format: sign, exponent, fraction. Results are of
+the kind of the operands. Arrays of any shape are broadcast; empty ones give empty results. Masked elements and other
+operands raise an InputError.
 
-What computes here is the reference that the simulated cores of hw/fp are compared with, bit by bit,
-by this repository's tests (sim/test/fp). With `cores`, the path of the program float_cores of this
-repository (cmake --build build --target float_cores), the cores themselves do, Verilated, in the
-four formats below. NaNs that come out are the cores' only one, positive and quiet.
+Results are those of the reference model that this repository's tests (sim/test/fp) compare with the simulated cores of
+hw/fp, bit by bit. With `cores`, the path of this repository's program float_cores (cmake --build build --target
+float_cores), the Verilated cores compute them, in the four formats below. A NaN result is always the positive quiet
+NaN.
 """
+
+from __future__ import annotations
 
 import dataclasses
 import enum
 import os
 import subprocess
-import typing
 import warnings
+from typing import Any, Literal, NamedTuple, Sequence, Union
 
 import numpy as np
+import numpy.typing as npt
 
-from . import _raygate
-from ._arithmetic import in_ieee_floats
+from . import _arrays, _raygate
+from ._context import in_context
+from ._arrays import Array
 from ._raygate import InputError
+
+Rounding = Literal["nearest-even", "toward-zero", "down", "up", "nearest-away"]
+Tininess = Literal["after", "before"]
+Relation = Literal["==", "<", "<="]
+_Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 
 ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")
 RELATIONS = ("==", "<", "<=")
@@ -39,21 +48,21 @@ _OPERATIONS = ("+", "-", "*", "/", *RELATIONS)
 
 @dataclasses.dataclass(frozen=True)
 class Format:
-    """A sign, biased exponents of `exponent_bits` (2 to 11), fractions of `fraction_bits` (1 to
-    29); 32 bits at most."""
+    """A binary format: a sign, `exponent_bits` of biased exponent (2 to 11) and `fraction_bits` of fraction (1 to 29),
+    at most 32 bits in all."""
 
     exponent_bits: int
     fraction_bits: int
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (2 <= self.exponent_bits <= 11 and 1 <= self.fraction_bits <= 29
                 and self.width <= 32):
             raise InputError(f"found {self}, expected 2 to 11 exponent bits, 1 to 29 fraction bits "
                              "and at most 32 bits in all")
 
     @property
-    def width(self):
-        """Bits of a word."""
+    def width(self) -> int:
+        """Number of bits of a word."""
         return 1 + self.exponent_bits + self.fraction_bits
 
 
@@ -64,7 +73,7 @@ FLOAT8 = Format(4, 3)
 
 
 class Flags(enum.IntFlag):
-    """Exceptions, as the bits of `flags`."""
+    """Exceptions of IEEE 754, the bits of `flags`."""
 
     INEXACT = 1
     UNDERFLOW = 2
@@ -74,68 +83,78 @@ class Flags(enum.IntFlag):
 
 
 class RoundingWarning(UserWarning):
-    """A number of Python's is none of the format, and was rounded to one."""
+    """A Python number was rounded to the nearest number of the format."""
 
 
-class Result(typing.NamedTuple):
-    """What an operation gives."""
+class Result(NamedTuple):
+    """The result of an operation."""
 
-    value: np.ndarray
-    flags: np.ndarray  #: of one result Flags; of several uint8, their bits
+    value: Any  #: a NumPy scalar, or an array of the operands' shape
+    flags: Any  #: Flags for a scalar; for an array their bits, uint8, of the same shape
 
     @property
-    def flag_names(self):
-        """The flags in words, "OVERFLOW|INEXACT": a str, or an array of them."""
-        names = np.array(["|".join(flag.name for flag in reversed(Flags) if bits & flag)
+    def flag_names(self) -> Any:
+        """The flags as text, "OVERFLOW|INEXACT": a str, or an array of str."""
+        names = np.array(["|".join(str(flag.name) for flag in reversed(Flags) if bits & flag)
                           for bits in range(32)])
         return names[np.asarray(self.flags)]
 
 
-@in_ieee_floats
-def fp_add(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
-    """a + b. `rounding` is one of ROUNDINGS; `tininess`, "before" or "after" rounding, is when a
-    result counts as subnormal, which changes the flag UNDERFLOW alone. `cores`: the program
-    float_cores, if the simulated cores are to compute."""
+@in_context
+def fp_add(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
+           tininess: Tininess = "after", cores: _Path | None = None) -> Result:
+    """Returns a + b. `rounding`: one of ROUNDINGS. `tininess`: whether the size of a result is judged "before" or
+    "after" rounding; it affects the flag UNDERFLOW alone. `cores`: path of the program float_cores, to compute with
+    the simulated cores. Raises InputError for operands that are no numbers of the format, and for shapes that cannot
+    be broadcast."""
     return _run("+", a, b, format, rounding, tininess, cores)
 
 
-@in_ieee_floats
-def fp_subtract(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
-    """a - b, as fp_add."""
+@in_context
+def fp_subtract(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
+                tininess: Tininess = "after", cores: _Path | None = None) -> Result:
+    """Returns a - b; arguments as of fp_add."""
     return _run("-", a, b, format, rounding, tininess, cores)
 
 
-@in_ieee_floats
-def fp_multiply(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
-    """a * b, as fp_add."""
+@in_context
+def fp_multiply(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
+                tininess: Tininess = "after", cores: _Path | None = None) -> Result:
+    """Returns a * b; arguments as of fp_add."""
     return _run("*", a, b, format, rounding, tininess, cores)
 
 
-@in_ieee_floats
-def fp_divide(a, b, format=BINARY32, rounding="nearest-even", tininess="after", cores=None):
-    """a / b, as fp_add."""
+@in_context
+def fp_divide(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
+              tininess: Tininess = "after", cores: _Path | None = None) -> Result:
+    """Returns a / b; arguments as of fp_add."""
     return _run("/", a, b, format, rounding, tininess, cores)
 
 
-@in_ieee_floats
-def fp_compare(a, b, relation, format=BINARY32, cores=None):
-    """Whether a `relation` b, one of RELATIONS, as an array of bool. "==" is quiet, the others
-    signal INVALID for any NaN."""
+@in_context
+def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: Format = BINARY32,
+               cores: _Path | None = None) -> Result:
+    """Returns whether a `relation` b, as bool. `relation`: one of RELATIONS; "==" is quiet, the others signal INVALID
+    for any NaN. Other arguments as of fp_add."""
     _one_of("relation", relation, RELATIONS)
     return _run(relation, a, b, format, "nearest-even", "after", cores)
 
 
-@in_ieee_floats
-def round_to(x, format=BINARY32, rounding="nearest-even", tininess="after"):
-    """Numbers rounded to the format: floats, and the flags of it."""
+@in_context
+def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
+             tininess: Tininess = "after") -> Result:
+    """Returns numbers rounded to the format, as floats of their own type if it holds the format and else float64, and
+    the flags of the rounding. Arguments as of fp_add."""
     x = _numbers(x)
     bits, flags = encode(x, format, rounding, tininess)
     return Result(_held(decode(bits, format), x.dtype, format), flags)
 
 
-@in_ieee_floats
-def encode(x, format=BINARY32, rounding="nearest-even", tininess="after"):
-    """As round_to, but the format's words, uint32."""
+@in_context
+def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
+           tininess: Tininess = "after") -> Result:
+    """Returns numbers rounded to the format, as words, uint32, and the flags of the rounding. Arguments as of
+    fp_add."""
     x = _numbers(x)
     if x.dtype.kind != "f" or x.dtype.itemsize > 8:
         raise InputError(f"found an array of {x.dtype}, expected one of float16, float32 or float64")
@@ -147,10 +166,10 @@ def encode(x, format=BINARY32, rounding="nearest-even", tininess="after"):
     return Result(bits.reshape(x.shape)[()], _flags(flags.reshape(x.shape)))
 
 
-@in_ieee_floats
-def decode(bits, format):
-    """The numbers, float64, that words of the format stand for."""
-    bits = _words(np.asarray(bits), format)
+@in_context
+def decode(bits: npt.ArrayLike, format: Format) -> Any:
+    """Returns the values, float64, of words of the format, unsigned integers."""
+    bits = _words(_arrays.plain("bits", bits), format)
     field = bits >> format.fraction_bits & (1 << format.exponent_bits) - 1
     fraction = (bits & (1 << format.fraction_bits) - 1).astype(np.float64)
     bias = (1 << format.exponent_bits - 1) - 1
@@ -162,14 +181,15 @@ def decode(bits, format):
     return np.where(bits >> format.width - 1 == 1, -size, size)[()]
 
 
-def _run(operation, a, b, format, rounding, tininess, cores):
+def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rounding: Rounding, tininess: Tininess,
+         cores: _Path | None) -> Result:
     _one_of("rounding", rounding, ROUNDINGS)
     _one_of("tininess", tininess, _TININESS)
     operands = a, b
     a, b = _numbers(a), _numbers(b)
     kinds = {a.dtype.kind, b.dtype.kind}
     if kinds == {"u"}:
-        words = _words(a, format), _words(b, format)
+        words: tuple[Array, ...] = _words(a, format), _words(b, format)
     elif kinds == {"f"}:
         words = tuple(_exact(array, format, is_pythons=not isinstance(x, (np.ndarray, np.generic)))
                       for array, x in zip((a, b), operands))
@@ -195,13 +215,13 @@ def _run(operation, a, b, format, rounding, tininess, cores):
     return Result(value.reshape(x.shape)[()], _flags(flags.reshape(x.shape)))
 
 
-def _flags(flags):
+def _flags(flags: Array) -> Any:
     return Flags(int(flags)) if flags.ndim == 0 else flags
 
 
-def _numbers(x):
-    """An array; of whole numbers with a sign as floats."""
-    array = np.asarray(x)
+def _numbers(x: npt.ArrayLike) -> Array:
+    """Returns an array; signed integers become float64."""
+    array = _arrays.plain("operand", x)
     if array.dtype.kind == "i":
         wide = array.astype(np.float64)
         if array.size and (np.abs(wide) >= 2.0 ** 53).any():
@@ -211,22 +231,23 @@ def _numbers(x):
     return array
 
 
-def _by_cores(cores, operation, x, y, format, rounding, tininess):
-    """Result and flags, by the program float_cores."""
+def _by_cores(cores: _Path, operation: str, x: Array, y: Array, format: Format, rounding: Rounding,
+              tininess: Tininess) -> tuple[Array, Array]:
+    """Returns results and flags that the program float_cores computes."""
     words = [os.fsdecode(cores), operation, str(format.exponent_bits), str(format.fraction_bits),
              str(ROUNDINGS.index(rounding)), str(int(tininess == "before"))]
     try:
         done = subprocess.run(words, input=np.stack([x, y], axis=1).astype("<u4").tobytes(),
                               capture_output=True)
     except OSError as error:
-        raise InputError(f"cores: found {cores}, expected the program float_cores ({error.strerror})") from None
+        raise InputError(f"cores: found {words[0]}, expected the program float_cores ({error.strerror})") from None
     if done.returncode != 0:
         raise InputError(done.stderr.decode(errors="replace").strip())
     pairs = np.frombuffer(done.stdout, "<u4").reshape(-1, 2).astype(np.uint32)
     return pairs[:, 0].copy(), pairs[:, 1].astype(np.uint8)
 
 
-def _words(array, format):
+def _words(array: Array, format: Format) -> Array:
     if array.dtype.kind != "u":
         raise InputError(f"found an array of {array.dtype}, expected one of unsigned integers")
     if array.size and int(array.max()) >> format.width:
@@ -234,8 +255,8 @@ def _words(array, format):
     return array.astype(np.uint32)
 
 
-def _exact(array, format, is_pythons):
-    """The words of floats: those of Python rounded, others must be numbers of the format."""
+def _exact(array: Array, format: Format, is_pythons: bool) -> Array:
+    """Returns the words of floats. Rounds Python's numbers; others must be numbers of the format."""
     bits, flags = encode(array, format)
     if np.any(flags):
         wrong = np.atleast_1d(array)[np.atleast_1d(flags) != 0].flat[0]
@@ -247,13 +268,13 @@ def _exact(array, format, is_pythons):
     return np.asarray(bits)
 
 
-def _held(values, dtype, format):
-    """As `dtype`, if that holds the format's numbers; else float64."""
+def _held(values: Array, dtype: np.dtype[Any], format: Format) -> Any:
+    """Returns `values` as `dtype` if it holds all numbers of the format, else as float64."""
     info = np.finfo(dtype)
     fits = format.fraction_bits <= info.nmant and format.exponent_bits <= info.nexp
     return np.asarray(values).astype(dtype if fits else np.float64)[()]
 
 
-def _one_of(name, found, expected):
+def _one_of(name: str, found: str, expected: Sequence[str]) -> None:
     if found not in expected:
         raise InputError(f"{name}: found {found!r}, expected one of {', '.join(expected)}")

@@ -1,24 +1,33 @@
-"""What this repository's own measurements have found, as pandas data frames.
+"""Measurements of this repository, as pandas data frames.
 
-    raygate.results.bench()["pictures"]       # of `make bench`, by table
-    raygate.results.synth()                   # of `make synth`: area, delay of each design and flow
+    raygate.results.bench()["pictures"]       # a table of `make bench`
+    raygate.results.synth()                   # from `make synth`: area and delay of each design and flow
     raygate.results.published("synth/results/README.md")["The 48-bit adders"]   # any table of a page
 
-pandas is needed: pip install 'raygate[results]'. Paths are relative to the repository's root.
+Needs pandas: pip install 'raygate[results]'. Paths are relative to the working directory; the defaults fit the root of
+the repository. Raises InputError, which names the file and the line, for what cannot be read.
 """
 
+from __future__ import annotations
+
 import json
+import os
 import pathlib
 import re
+from typing import TYPE_CHECKING, Any, Sequence, Union
 
 from ._raygate import InputError
 
+if TYPE_CHECKING:
+    import pandas  # type: ignore[import-untyped, unused-ignore]
 
-def bench(file="build/results/bench.jsonl"):
-    """The tables of `make bench` (also of `make stress`, stress.jsonl): a dictionary of data
-    frames by name. Nested columns are named
-    outer.inner."""
-    frames = {}
+_Path = Union[str, "os.PathLike[str]"]
+
+
+def bench(file: _Path = "build/results/bench.jsonl") -> dict[str, pandas.DataFrame]:
+    """Returns the tables of `make bench` (also of `make stress`, stress.jsonl): a dictionary of data frames by name.
+    Nested columns are named outer.inner."""
+    frames: dict[str, list[Any]] = {}
     for number, line in enumerate(_text(file, "make bench").splitlines(), 1):
         try:
             row = json.loads(line)
@@ -29,9 +38,9 @@ def bench(file="build/results/bench.jsonl"):
     return {name: _pandas().json_normalize(rows) for name, rows in frames.items()}
 
 
-def synth(file="build/synth/results.json"):
-    """The designs that `make synth` has measured: a row for each design, target and flow; `area` in
-    the library's units, `delay_ns`, `luts`, `mhz`."""
+def synth(file: _Path = "build/synth/results.json") -> pandas.DataFrame:
+    """Returns the results of `make synth`: a row for each design, target and flow; `area` in the library's units,
+    `delay_ns`, `luts`, `mhz`."""
     text = _text(file, "make synth")
     try:
         records = json.loads(text)["results"]
@@ -42,10 +51,12 @@ def synth(file="build/synth/results.json"):
     return _pandas().DataFrame(records)
 
 
-def published(page):
-    """The tables of a Markdown page: a dictionary of data frames by the headings above them (the
-    first table below each). Cells are text, without thousands' commas; numbers where all are."""
-    frames, heading, rows = {}, "", []
+def published(page: _Path) -> dict[str, pandas.DataFrame]:
+    """Returns the tables of a Markdown page: a dictionary of data frames by the headings above them (the first table
+    below each). Cells are text without thousands separators; a column of numbers is float64."""
+    frames: dict[str, pandas.DataFrame] = {}
+    heading = ""
+    rows: list[list[str]] = []
     for line in [*_text(page, "").splitlines(), ""]:
         if line.startswith("|"):
             rows.append([cell.strip() for cell in line.strip()[1:].removesuffix("|").split("|")])
@@ -59,21 +70,20 @@ def published(page):
     return frames
 
 
-def _frame(names, rows):
+def _frame(names: list[str], rows: list[list[str]]) -> pandas.DataFrame:
     columns = [[re.sub(r"(?<=\d),(?=\d{3})", "", row[i]) for row in rows]
                for i in range(len(names))]
-    rows = zip(*(_numbers(column) for column in columns))
-    return _pandas().DataFrame(list(rows), columns=names)
+    return _pandas().DataFrame(list(zip(*map(_numbers, columns))), columns=names)
 
 
-def _numbers(cells):
+def _numbers(cells: list[str]) -> Sequence[str | float]:
     try:
         return [float(cell) for cell in cells]
     except ValueError:
         return cells  # text
 
 
-def _text(file, command):
+def _text(file: _Path, command: str) -> str:
     try:
         return pathlib.Path(file).read_text()
     except (OSError, UnicodeDecodeError) as error:
@@ -81,9 +91,9 @@ def _text(file, command):
         raise InputError(f"{file}: cannot be read: {getattr(error, 'strerror', error)}{hint}") from None
 
 
-def _pandas():
+def _pandas() -> Any:
     try:
-        import pandas
+        import pandas  # type: ignore[import-untyped, unused-ignore]
     except ImportError:
         raise ImportError("raygate.results needs pandas: pip install 'raygate[results]'") from None
     return pandas

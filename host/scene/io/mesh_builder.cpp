@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "host/base/checkpoint.h"
 #include "host/base/input_error.h"
 #include "host/base/srgb.h"
 #include "host/exact/exact.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr glm::vec3 kNoColor(-1.0f);
 /// Index of a corner whose index in the file is out of range.
 constexpr std::uint32_t kBadIndex = kNoIndex - 1;
+constexpr std::size_t kCheckpointFaces = 4096;
 
 }  // namespace
 
@@ -26,9 +28,9 @@ class MeshBuilder::WarningCount {
   void note(std::size_t line) {
     if (count_++ == 0) first_line_ = line;
   }
-  void report(const std::string& file, const std::string& what, Scene& scene) const {
+  void report(const MeshBuilder& mesh, const std::string& what, Scene& scene) const {
     if (count_ == 0) return;
-    scene.warnings.push_back(InputError::location(file, first_line_) + what +
+    scene.warnings.push_back(mesh.location(first_line_) + what +
                              (count_ > 1 ? ", here and in " + std::to_string(count_ - 1) +
                                                " later face" + (count_ > 2 ? "s" : "")
                                          : ""));
@@ -102,13 +104,13 @@ std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count) {
 }
 
 void MeshBuilder::add_face(std::span<const FileCorner> corners, std::size_t line) {
+  if (faces_.size() % kCheckpointFaces == 0) checkpoint();
   for (const FileCorner& corner : corners) {
     const std::size_t vertices = earlier_.positions + positions_.size();
     const std::uint32_t position = resolve(corner.position, vertices);
     if (position == kBadIndex) {
-      throw InputError(file_name_, line,
-                       "vertex index " + std::to_string(corner.position) +
-                           " in a face, but the file has " + std::to_string(vertices) + " so far");
+      fail(line, "vertex index " + std::to_string(corner.position) +
+                     " in a face, but the file has " + std::to_string(vertices) + " so far");
     }
     corners_.push_back({position, resolve(corner.texcoord, earlier_.texcoords + texcoords_.size()),
                         resolve(corner.normal, earlier_.normals + normals_.size())});
@@ -145,14 +147,26 @@ void MeshBuilder::append(MeshBuilder&& part) {
   add(faces_, part.faces_);
 }
 
+std::string MeshBuilder::location(std::size_t line) const {
+  if (source_ == Source::kFile) return InputError::location(file_name_, line);
+  return file_name_ + "[" + std::to_string(line - 1) + "]: ";
+}
+
+void MeshBuilder::fail(std::size_t line, const std::string& what) const {
+  throw InputError(location(line) + what);
+}
+
+void MeshBuilder::fail_strictly(std::size_t line, const std::string& what) const {
+  fail(line, what + (source_ == Source::kFile ? ", as --strict asks" : ", as strict=True asks"));
+}
+
 void MeshBuilder::check_indices() const {
   std::size_t i = 0;
   for (const Face& face : faces_) {
     for (; i < face.end; ++i) {
       if (corners_[i].position < positions_.size()) continue;
-      throw InputError(file_name_, face.line,
-                       "vertex index " + std::to_string(corners_[i].position + std::uint64_t{1}) +
-                           " in a face, but the file has " + std::to_string(positions_.size()));
+      fail(face.line, "vertex index " + std::to_string(corners_[i].position + std::uint64_t{1}) +
+                          " in a face, but the file has " + std::to_string(positions_.size()));
     }
   }
 }
@@ -161,9 +175,8 @@ void MeshBuilder::fail_far(std::size_t position) const {
   std::size_t i = 0;
   while (corners_[i].position != position) ++i;
   const auto face = std::ranges::upper_bound(faces_, i, {}, &Face::end);
-  throw InputError(
-      file_name_, face->line,
-      "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
+  fail(face->line,
+       "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
 }
 
 // Keeps the positions that a face uses, relative to the origin, and renumbers the corners.
@@ -232,11 +245,11 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
   for (const Face& face : faces_) {
     const std::span<const Corner> corners(corners_.data() + begin, face.end - begin);
     begin = face.end;
+    if (scene.triangles.size() % kCheckpointFaces == 0) checkpoint();
     if (corners.size() < 3) {
       if (options.strict) {
-        throw InputError(file_name_, face.line,
-                         "face with " + std::to_string(corners.size()) +
-                             " corners, expected at least 3, as --strict asks");
+        fail_strictly(face.line, "face with " + std::to_string(corners.size()) +
+                                     " corners, expected at least 3");
       }
       too_short.note(face.line);
       continue;
@@ -256,11 +269,11 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
     if (kind == PolygonKind::kZeroArea) {
       const bool is_flat = was_flat(corners);
       if (options.strict) {
-        throw InputError(file_name_, face.line,
-                         is_flat ? "face of zero area (its corners are on one line, or cancel "
-                                   "out), expected one with an area, as --strict asks"
-                                 : "face flattened by rounding to binary32, expected one with an "
-                                   "area, as --strict asks");
+        fail_strictly(face.line,
+                      is_flat
+                          ? "face of zero area (its corners are on one line, or cancel out), "
+                            "expected one with an area"
+                          : "face flattened by rounding to binary32, expected one with an area");
       }
       (is_flat ? dropped : flattened).note(face.line);
       Triangle left_out{.material = face.material, .object = face.object};
@@ -305,19 +318,19 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
       }
     }
   }
-  dropped.report(file_name_, "face of zero area, left out", scene);
-  too_short.report(file_name_, "face of fewer than 3 corners, left out", scene);
-  flattened.report(file_name_, "face flattened by rounding to binary32, left out", scene);
+  dropped.report(*this, "face of zero area, left out", scene);
+  too_short.report(*this, "face of fewer than 3 corners, left out", scene);
+  flattened.report(*this, "face flattened by rounding to binary32, left out", scene);
   char most[32];
   std::snprintf(most, sizeof most, "%.3g", scene.rounding.most);
-  moved.report(file_name_,
+  moved.report(*this,
                std::string("corners moved by up to ") + most +
                    ", more than a hundredth of their face, by rounding to binary32",
                scene);
-  touching.report(file_name_, "polygon crosses or touches itself, cut as well as can be", scene);
-  no_direction.report(file_name_, "normal without a direction, the face is taken as flat", scene);
-  no_normal.report(file_name_, "face corner without a normal, the face is taken as flat", scene);
-  no_texcoord.report(file_name_, "face corner without texture coordinates, the face has no texture",
+  touching.report(*this, "polygon crosses or touches itself, cut as well as can be", scene);
+  no_direction.report(*this, "normal without a direction, the face is taken as flat", scene);
+  no_normal.report(*this, "face corner without a normal, the face is taken as flat", scene);
+  no_texcoord.report(*this, "face corner without texture coordinates, the face has no texture",
                      scene);
   return groups;
 }
@@ -334,7 +347,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   recentre(scene);
   const std::vector<std::uint32_t> groups = triangulate(options, scene);
   if (is_empty(scene) && !may_be_empty_) {
-    throw InputError(file_name_, faces_.empty() ? 0 : faces_[0].line, "no face has an area");
+    fail(faces_.empty() ? 0 : faces_[0].line, "no face has an area");
   }
   scene.normals = std::move(normals_);
   scene.tangents = std::move(tangents_);

@@ -24,7 +24,11 @@ struct FileCorner {
 /// bounds (to recentre) and the number of vertices (which may follow their faces) are known.
 class MeshBuilder {
  public:
-  explicit MeshBuilder(std::string file_name) : file_name_(std::move(file_name)) {}
+  /// Where faces come from, for messages: "scene.obj:12: ..." or, of an array, "faces[12]: ...".
+  enum class Source { kFile, kArray };
+
+  explicit MeshBuilder(std::string file_name, Source source = Source::kFile)
+      : file_name_(std::move(file_name)), source_(source) {}
 
   void add_position(const glm::dvec3& position) { positions_.push_back(position); }
   /// Sets the colour of the last position: sRGB codes from 0 to 1, or to 255 if any colour of the
@@ -41,7 +45,7 @@ class MeshBuilder {
 
   /// Adds a polygon. build() leaves out polygons of fewer than three corners, and the normals or
   /// texture coordinates of a face if one of its corners has none, with a warning. `line` is for
-  /// messages; 0 in a file without lines.
+  /// messages: 0 in a file without lines; of an array the row, counted from 1.
   void add_face(std::span<const FileCorner> corners, std::size_t line);
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
   /// Sets the material, object and smoothing group (0: flat) of the faces in [begin, end). All
@@ -98,6 +102,11 @@ class MeshBuilder {
   class WarningCount;
 
   [[nodiscard]] static std::uint32_t resolve(std::int32_t index, std::size_t count);
+  /// Throws the InputError of a face; what --strict refuses says so.
+  [[noreturn]] void fail(std::size_t line, const std::string& what) const;
+  [[noreturn]] void fail_strictly(std::size_t line, const std::string& what) const;
+  /// The beginning of messages about the face of this line.
+  [[nodiscard]] std::string location(std::size_t line) const;
   void check_indices() const;
   void recentre(Scene& scene);
   [[noreturn]] void fail_far(std::size_t position) const;
@@ -108,6 +117,7 @@ class MeshBuilder {
                                                        Scene& scene) const;
 
   std::string file_name_;
+  Source source_;
   Bounds3 others_;
   bool may_be_empty_ = false, is_smoothing_said_ = false;
   Counts earlier_;

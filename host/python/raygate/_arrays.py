@@ -1,0 +1,96 @@
+"""Checks of the arrays that callers pass. What cannot be used raises an InputError of one line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._raygate import InputError
+
+Array = npt.NDArray[Any]
+
+
+def plain(name: str, values: npt.ArrayLike) -> Array:
+    """Returns `values` as an array of numbers. Raises InputError for masked elements and for anything but numbers."""
+    if np.ma.is_masked(values):
+        raise InputError(f"{name}: found masked elements, expected none: leave their rows out or fill them")
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise InputError(f"{name}: found rows of different lengths, expected an array of numbers") from None
+    if array.dtype.kind not in "fiu":
+        raise InputError(f"{name}: found an array of {array.dtype}, expected numbers")
+    return array
+
+
+def reals(name: str, values: npt.ArrayLike) -> Array:
+    """Returns `values` as an array of float32 or float64. Other kinds of numbers become float64."""
+    array = plain(name, values)
+    return array if array.dtype in (np.float32, np.float64) else array.astype(np.float64)
+
+
+def vectors(name: str, values: npt.ArrayLike) -> Array:
+    """Returns `values` as float32 or float64 of shape (N, 3), in C order."""
+    array = reals(name, values)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise InputError(f"{name}: found an array of shape {array.shape}, expected (N, 3)")
+    return np.ascontiguousarray(array)
+
+
+def rays(origins: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Array, Array]:
+    """Returns origins and directions, each of shape (N, 3). One vector, of shape (3,) or (1, 3), serves all rays."""
+    origins, directions = reals("origins", origins), reals("directions", directions)
+    if origins.shape in ((3,), (1, 3)) and directions.ndim == 2:
+        origins = np.broadcast_to(origins, (len(directions), 3))
+    elif directions.shape in ((3,), (1, 3)) and origins.ndim == 2:
+        directions = np.broadcast_to(directions, (len(origins), 3))
+    origins, directions = vectors("origins", origins), vectors("directions", directions)
+    if len(directions) != len(origins):
+        raise InputError(f"directions: found an array of shape {directions.shape}, expected {origins.shape}, "
+                         "as many as origins")
+    return origins, directions
+
+
+def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
+    """Raises InputError unless all numbers are finite and of magnitude at most 2^exponent. `each`: a word for a row."""
+    wrong = ~(np.abs(array) <= 2.0 ** exponent).all(axis=tuple(range(1, array.ndim)))
+    if wrong.any():
+        row = int(wrong.argmax())
+        raise InputError(f"{name}: found {array[row].tolist()} in {each} {row}, expected finite numbers of magnitude "
+                         f"at most 2^{exponent}")
+
+
+def triangles(name: str, corners: Array) -> Array:
+    """Returns corners of triangles, of shape (N, 3, 3), as rows of shape (3 N, 3), in C order."""
+    if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not 0 < len(corners) < 2 ** 29:
+        raise InputError(f"{name}: found an array of shape {corners.shape}, expected (N, 3, 3), N from 1 to 2^29 - 1")
+    check_finite(name, corners, "triangle", 125)
+    return np.ascontiguousarray(corners).reshape(-1, 3)
+
+
+def vertex_numbers(faces: npt.ArrayLike | None, count: int) -> Array:
+    """Returns faces, of shape (M, 3): numbers from 0 to `count` - 1."""
+    if faces is None:
+        raise InputError("faces: found None, expected the numbers of three vertices in each row")
+    array = plain("faces", faces)
+    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind == "f" or not len(array):
+        raise InputError(f"faces: found an array of {array.dtype} of shape {array.shape}, expected whole numbers of "
+                         "shape (M, 3), M at least 1")
+    wrong = ((array < 0) | (array >= count)).any(axis=1)
+    if wrong.any():
+        raise InputError(f"faces: found {array[wrong.argmax()].tolist()} in face {wrong.argmax()}, expected numbers "
+                         f"from 0 to {count - 1}")
+    return array
+
+
+def point(name: str, values: npt.ArrayLike | None) -> list[float] | None:
+    """Returns three finite numbers, or None for None."""
+    if values is None:
+        return None
+    array = reals(name, values)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise InputError(f"{name}: found {array.tolist()}, expected three finite numbers")
+    numbers: list[float] = array.tolist()
+    return numbers

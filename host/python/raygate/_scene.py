@@ -1,0 +1,214 @@
+"""Scenes of triangles: traced, asked about points, rendered."""
+
+from __future__ import annotations
+
+import functools
+import os
+from typing import Any, Iterable, Literal, Union, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arrays, _raygate
+from ._context import in_context
+from ._arrays import Array
+from ._raygate import InputError
+
+Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+Engine = Literal["cpu", "model"]
+
+
+class Picture(dict[str, Array]):
+    """A rendered picture: a dictionary of arrays by name, from Scene.render. A notebook shows it as a PNG."""
+
+    def __init__(self, channels: dict[str, Array], film: _raygate.Film) -> None:
+        super().__init__(channels)
+        self._film = film
+
+    @in_context
+    def save(self, file: Path, exposure: float = 0.0) -> None:
+        """Writes a PNG or an OpenEXR file, depending on the ending of the name, .png or .exr. `exposure`: in stops, of
+        a PNG; +1 doubles the brightness. Raises InputError for another ending, and OSError if the file cannot be
+        written."""
+        ending = os.path.splitext(os.fsdecode(file))[1].lower()
+        if ending not in (".png", ".exr"):
+            raise InputError(f"save: found {os.fsdecode(file)!r}, expected a name that ends in .png or .exr")
+        data = self._film.exr() if ending == ".exr" else self.png(exposure)
+        with open(file, "wb") as output:
+            output.write(data)
+
+    @in_context
+    def png(self, exposure: float = 0.0) -> bytes:
+        """Returns the bytes of a PNG file. `exposure`: in stops; +1 doubles the brightness."""
+        return self._film.png(exposure)
+
+    _repr_png_ = png
+
+
+class Scene:
+    """Triangles, materials and lights. Pickling a scene keeps the absolute name of its file or copies of its arrays,
+    and its options; unpickling reads the file or builds the scene again."""
+
+    @overload
+    def __init__(self, file: Path, /, *, strict: bool = False, smooth: float | None = None,
+                 threads: int | None = None) -> None: ...
+
+    @overload
+    def __init__(self, vertices: npt.ArrayLike, /, faces: npt.ArrayLike, *, strict: bool = False,
+                 smooth: float | None = None, threads: int | None = None) -> None: ...
+
+    @in_context
+    def __init__(self, file: Any, /, faces: npt.ArrayLike | None = None, *, strict: bool = False,
+                 smooth: float | None = None, threads: int | None = None) -> None:
+        """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Or takes arrays: vertices of shape (N, 3), float32
+        or float64, and faces of shape (M, 3), whole numbers: three vertices, counted from 0, in each row.
+
+        Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them, and
+        `warnings` counts them; `strict` refuses them. `smooth`: faces without normals that meet at no more than so
+        many degrees are shaded smoothly. `threads`: how many build the scene, one per processor by default. Raises
+        InputError, a ValueError, which names the file and line, or the face, that cannot be used."""
+        options = {"strict": bool(strict), "smooth": smooth, "threads": threads}
+        if faces is None and isinstance(file, (str, bytes, os.PathLike)):
+            name = os.fsencode(file)
+            if b"\0" in name:
+                raise InputError(f"file: found {file!r}, expected a name without a null byte")
+            self._recipe: tuple[Any, ...] = Scene, (os.path.abspath(name),), options
+            self._scene = _raygate.Scene(name, bool(strict), _settings(smooth=smooth, threads=threads))
+            return
+        vertices = np.array(_arrays.vectors("vertices", file))
+        numbers = np.array(_arrays.vertex_numbers(faces, len(vertices)))
+        self._recipe = Scene, (vertices, numbers), options
+        self._scene = _raygate.Scene("faces", _arrays.triangles("faces", vertices[numbers]), bool(strict),
+                                     _settings(smooth=smooth, threads=threads))
+
+    @classmethod
+    @in_context
+    def of_triangles(cls, corners: npt.ArrayLike, *, threads: int | None = None) -> Scene:
+        """Returns a scene of grey triangles from their corners, of shape (N, 3, 3), float32 or float64. Triangles
+        without area keep their numbers, but no ray hits them. Raises InputError, which names the triangle that cannot
+        be used."""
+        scene = cls.__new__(cls)
+        kept = np.array(_arrays.reals("triangles", corners), order="C")
+        scene._recipe = cls.of_triangles, (kept,), {"threads": threads}
+        scene._scene = _raygate.Scene("triangles", _arrays.triangles("triangles", kept), False,
+                                      _settings(threads=threads))
+        return scene
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        make, arguments, options = self._recipe
+        return functools.partial(make, **options), arguments
+
+    @property
+    def triangle_count(self) -> int:
+        """Number of triangles, including those without area."""
+        return self._scene.triangle_count
+
+    @property
+    def objects(self) -> list[str]:
+        """Names of the objects (`o` and `g` of an OBJ file), by the numbers in the field "object" of hits."""
+        return self._scene.objects
+
+    @property
+    def materials(self) -> list[str]:
+        """Names of the materials, by the numbers in the field "material" of hits."""
+        return self._scene.materials
+
+    @property
+    def warnings(self) -> list[str]:
+        """A line for each thing in the file that was ignored or changed."""
+        return self._scene.warnings
+
+    @property
+    def rounding(self) -> tuple[int, float]:
+        """How many corners of faces binary32 cannot hold as they were given, and the largest error of one coordinate,
+        in the scene's unit of length."""
+        return self._scene.rounding
+
+    @property
+    def origin(self) -> Array:
+        """The point that binary32 positions are relative to: float64, shape (3,)."""
+        return np.array(self._scene.origin)
+
+    @in_context
+    def trace(self, origins: npt.ArrayLike, directions: npt.ArrayLike, limits: npt.ArrayLike | None = None, *,
+              hits: Literal["nearest", "any", "all"] = "nearest", columns: str | Iterable[str] | None = None,
+              engine: Engine = "cpu", threads: int | None = None) -> Array:
+        """Returns the hits of rays: a structured array with a field for each answer.
+
+        origins, directions: shape (N, 3), float32 or float64, read without a copy if they are in C order. One of them
+        may be one vector for all rays, of shape (3,) or (1, 3). Hits are at origin + t direction, 0 < t < limit;
+        directions need not have length 1. limits: shape (N,), or one number for all rays; none by default. hits:
+        "nearest", a row for each ray; "any", a row for each ray that says whether it hits anything, which takes less
+        time; "all", a row for each hit of each ray, near before far. columns: one or several of ray, hit, triangle,
+        object, material, t, point (fields x, y, z), uv (u, v), normal (nx, ny, nz), side, doubts, unit-point,
+        unit-error; host/docs/reference.md explains them. engine: "cpu", or "model", the reference model of the
+        hit-test unit. threads: one per processor by default.
+
+        No rays, shape (0, 3), give no rows. Raises InputError for other shapes, masked elements and unknown names; for
+        inf, NaN, directions of 0, limits that are not above 0 and origins farther than 2^126 from the scene it names
+        the ray."""
+        origins, directions = _arrays.rays(origins, directions)
+        if limits is not None:
+            limits = _arrays.reals("limits", limits)
+            if limits.ndim == 0:
+                limits = np.broadcast_to(limits, (len(origins),))
+            if limits.shape != (len(origins),):
+                raise InputError(f"limits: found an array of shape {limits.shape}, expected one number or one for each "
+                                 f"ray, ({len(origins)},)")
+            limits = np.ascontiguousarray(limits)
+        if not isinstance(columns, (str, Iterable, type(None))):
+            raise InputError(f"columns: found {columns!r}, expected a name or several names")
+        names = [columns] if isinstance(columns, str) else [str(column) for column in columns or []]
+        rows, fields = self._scene.trace(origins, directions, limits, names,
+                                         _settings(hits=hits, engine=engine, threads=threads))
+        return rows.view(np.dtype(fields))
+
+    @in_context
+    def render(self, width: int | None = None, height: int | None = None, *, eye: npt.ArrayLike | None = None,
+               target: npt.ArrayLike | None = None, up: npt.ArrayLike | None = None, engine: Engine = "cpu",
+               **options: Any) -> Picture:
+        """Returns a Picture: a dictionary of arrays of `height` rows, the top one first, and `width` columns, in
+        pixels.
+
+        "color", shape (height, width, 4): scene-linear R, G, B, A, premultiplied. "normal", "point", "albedo", shape
+        (height, width, 3); "depth", shape (height, width): float32. "triangle" and "object", shape (height, width):
+        uint32, 4294967295 where nothing is hit. eye, target, up: three numbers each, in the file's coordinates; the
+        camera of the scene file by default, or one that sees the whole scene. Other keywords are options of ./render,
+        with its defaults: spp, integrator, fov (degrees), depth, seed, filter, threshold, ambient, threads. engine: as
+        in trace(). Raises InputError, which names the option, for values that cannot be used."""
+        channels, film = self._scene.render(_arrays.point("eye", eye), _arrays.point("target", target),
+                                            _arrays.point("up", up),
+                                            _settings(width=width, height=height, engine=engine, **options))
+        return Picture(channels, film)
+
+    @in_context
+    def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        """Returns whether points, of shape (N, 3), are inside of closed surfaces: an array of bool, of shape (N,). The
+        answers are exact: they count how often a ray from the point leaves and enters surfaces. They have no meaning
+        for an open surface or for a point on a surface. Raises InputError, which names the point, for inf, NaN and
+        coordinates beyond 2^125."""
+        points = _arrays.vectors("points", points)
+        _arrays.check_finite("points", points, "point", 125)
+        direction = np.array([0.36, 0.48, 0.8], np.float32)  # as good as any
+        hits = self.trace(points, direction, hits="all", columns=["ray", "side"])
+        is_inside: npt.NDArray[np.bool_] = np.bincount(hits["ray"], hits["side"], minlength=len(points)) != 0
+        return is_inside
+
+    @in_context
+    def closest(self, points: npt.ArrayLike) -> Array:
+        """Returns the nearest points of the surface to points of shape (N, 3): a structured array of N rows with the
+        fields triangle, int64, and distance, x, y and z, float64, in the scene's unit of length. Errors are those of
+        rounding in float64. Of triangles at the same distance the lowest number is returned. Raises InputError, which
+        names the point, for inf, NaN and coordinates beyond 2^1000."""
+        points = _arrays.vectors("points", points)
+        _arrays.check_finite("points", points, "point", 1000)
+        rows = np.empty(len(points), [("triangle", "<i8"), *((name, "<f8") for name in ("distance", "x", "y", "z"))])
+        numbers = self._scene.closest(points)
+        for k, name in enumerate(("triangle", "distance", "x", "y", "z")):
+            rows[name] = numbers[:, k]
+        return rows
+
+
+def _settings(**options: object) -> list[tuple[str, str]]:
+    """Returns keywords as the options of ./render: names and text, without those that are None."""
+    return [(name, str(value)) for name, value in options.items() if value is not None]
