@@ -35,10 +35,12 @@ def seeds() -> dict[str, list[tuple[str, bytes]]]:
     def stored(folder: str, *names: str) -> list[tuple[str, bytes]]:
         return [(name, (HOST / folder / name).read_bytes()) for name in names]
     scenes, films, rays = "render/fuzz/seeds", "film/fuzz/seeds", "trace/fuzz/rays"
+    obj, mtl = stored(scenes, "smooth.obj")[0][1].split(b"\x1e")
+    lights = stored(scenes, "places.json")[0][1].replace(b"model.obj", b"a.obj")
     return {
-        "obj": stored(scenes, "smooth.obj"), "mtl": [("a.mtl", MATERIAL)], "ply": stored(scenes, "ascii.ply", "binary.ply"),
+        "obj": [("b.obj", obj)], "mtl": [("a.mtl", MATERIAL), ("a.mtl", mtl.replace(b"newmtl a", b"newmtl m"))], "ply": stored(scenes, "ascii.ply", "binary.ply"),
         "stl": stored(scenes, "ascii.stl", "binary.stl"), "gltf": stored(scenes, "square.gltf"), "glb": stored(scenes, "square.glb"),
-        "json": stored(scenes, "places.json"), "exr": stored(films, "sums.exr", "error.exr"), "hdr": stored(films, "flat.hdr", "runs.hdr"),
+        "json": [("a.json", lights)], "exr": stored(films, "sums.exr", "error.exr"), "hdr": stored(films, "flat.hdr", "runs.hdr"),
         "png": [("pic.png", png())], "csv": stored(rays, "rays.csv"), "npy": stored(rays, "rays.npy")}
 
 

@@ -114,7 +114,7 @@ class Http(unittest.TestCase):
             self.assertEqual(status, 403)
 
     def test_no_thread_is_free(self):
-        with Served() as served:
+        with Served("--threads=1") as served:
             pid = served.process.pid
             pages = int(pathlib.Path(f"/proc/{pid}/statm").read_text().split()[0])
             # No more memory than a new thread's stack takes.

@@ -31,13 +31,12 @@ bool has_integers(const Json& object, std::initializer_list<const char*> keys) {
          });
 }
 
-bool has_picture(const Json& image, const Json& file) {
+bool has_picture(const Json& image, std::size_t buffer_views) {
   const bool has_view = image.contains("bufferView");
   if (has_view == image.contains("uri")) return false;
   if (has_view) {
-    const Json views = file.value("bufferViews", Json::array());
     return has_integers(image, {"bufferView"}) && image["bufferView"] >= 0 &&
-           image["bufferView"] < views.size();
+           image["bufferView"] < buffer_views;
   }
   if (!image["uri"].is_string()) return false;
   const auto uri = image["uri"].get<std::string>();
@@ -63,22 +62,21 @@ std::string mend_gltf(std::string_view json, std::vector<std::string>& warnings)
   if (!file.is_object()) return std::string(json);
   const auto each = [](Json& parent, const char* list, const auto& mend) {
     if (!parent.is_object() || !parent.contains(list) || !parent[list].is_array()) return;
-    int number = 0;
-    for (Json& part : parent[list]) mend(as_object(part), std::to_string(number++));
+    for (Json& part : parent[list]) mend(as_object(part));
   };
 
-  each(file, "images", [&](Json& image, const std::string&) {
-    if (!has_picture(image, file)) image = {{"uri", ""}};
+  const std::size_t views = file.contains("bufferViews") ? file["bufferViews"].size() : 0;
+  each(file, "images", [&](Json& image) {
+    if (!has_picture(image, views)) image = {{"uri", ""}};
   });
-  each(file, "cameras", [](Json& camera, const std::string&) { mend_camera(camera); });
-  each(as_object(as_object(file["extensions"])["KHR_lights_punctual"]), "lights",
-       [&](Json& light, const std::string& number) {
-         if (!light["type"].is_string()) light["type"] = "";
-         if (light["type"] != "spot" || light["spot"].is_object()) return;
-         light["spot"] = Json::object();
-         warnings.push_back("light " + number + " is a spot without 'spot', its cone is the usual");
-       });
-  each(file, "accessors", [](Json& accessor, const std::string&) {
+  each(file, "cameras", mend_camera);
+  each(as_object(as_object(file["extensions"])["KHR_lights_punctual"]), "lights", [&](Json& light) {
+    if (!light["type"].is_string()) light["type"] = "";
+    if (light["type"] != "spot" || light["spot"].is_object()) return;
+    light["spot"] = Json::object();
+    warnings.emplace_back("a spot light without 'spot' has the usual cone");
+  });
+  each(file, "accessors", [](Json& accessor) {
     if (!accessor.contains("sparse")) return;
     const Json& sparse = accessor["sparse"];
     if (has_integers(sparse, {"count"}) && sparse.contains("indices") &&
@@ -90,12 +88,11 @@ std::string mend_gltf(std::string_view json, std::vector<std::string>& warnings)
                           {"indices", {{"bufferView", -1}, {"componentType", 5125}}},
                           {"values", {{"bufferView", -1}}}};
   });
-  each(file, "materials", [&](Json& material, const std::string& number) {
+  each(file, "materials", [&](Json& material) {
     const auto leave_out = [&](Json& from, const char* key, const auto& is_right) {
       if (!from.is_object() || !from.contains(key) || is_right(from[key])) return;
       from.erase(key);
-      warnings.push_back("material " + number + ": " + in_quotes(key) +
-                         " is not as glTF has it, left out");
+      warnings.push_back(in_quotes(key) + " of a material is not as glTF has it, left out");
     };
     const auto is_object = [](const Json& value) { return value.is_object(); };
     const auto is_texture = [](const Json& value) { return has_integers(value, {"index"}); };
@@ -114,13 +111,12 @@ std::string mend_gltf(std::string_view json, std::vector<std::string>& warnings)
       leave_out(pbr, key, is_texture);
     }
   });
-  each(file, "skins", [&](Json& skin, const std::string& number) {
+  each(file, "skins", [&](Json& skin) {
     if (skin["joints"].is_array()) return;
     skin["joints"] = Json::array();
-    warnings.push_back("skin " + number + " has no joints, left out");
+    warnings.emplace_back("a skin without joints is left out");
   });
-  for (const char* const list : {"textures", "samplers"})
-    each(file, list, [](Json&, const std::string&) {});
+  for (const char* const list : {"textures", "samplers"}) each(file, list, [](Json&) {});
   if (file.contains("animations")) warnings.emplace_back("animations are not read");
   file.erase("animations");
   return file.dump(-1, ' ', false, Json::error_handler_t::replace);
