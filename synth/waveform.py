@@ -49,8 +49,15 @@ def groups(save_file: str) -> list[tuple[str, list[tuple[str, str]]]]:
     return found
 
 
-def lane(name: str, changes: list[tuple[int, str]], edges: list[int]) -> dict:
-    """A signal as WaveDrom wants it, a column for each of `edges`: as it is right after that edge."""
+def noise(changes: dict[str, list[tuple[int, str]]], edges: list[int]) -> set[str]:
+    """What the paper's unit finds on its bus at edges that take no word: neither the first one nor those after it."""
+    bus, valid, taken = (changes.get(f"top.hit_test_unit.{name}", []) for name in ("bus_i[31:0]", "valid_i", "word[2:0]"))
+    return {at(bus, edge) for edge in edges if at(valid, edge) == "0" and set(at(taken, edge - 1)) == {"0"}}
+
+
+def lane(name: str, changes: list[tuple[int, str]], edges: list[int], noise: set[str]) -> dict:
+    """A signal as WaveDrom wants it, a column for each of `edges`: as it is right after that edge; crossed out where it holds
+    `noise`."""
     wave, data, last = "", [], None
     for edge in edges:
         bits = at(changes, edge)
@@ -58,6 +65,8 @@ def lane(name: str, changes: list[tuple[int, str]], edges: list[int]) -> dict:
             wave += "."
         elif all(len(value) == 1 for _, value in changes):
             wave += bits
+        elif bits in noise:
+            wave += "x"
         else:
             wave += "="
             value = int(bits, 2)
@@ -77,7 +86,8 @@ def diagram(trace: str, save_file: str) -> dict:
     edges = [when for when, bits in changes[clock] if bits == "1"]
     if not edges:
         raise ValueError(f"{clock} never rises")
-    signal = [[group, *(lane(name, changes[signal], edges) for name, signal in signals)]
+    idle = noise(changes, edges)
+    signal = [[group, *(lane(name, changes[signal], edges, idle) for name, signal in signals)]
               for group, signals in chosen]
     signal[0][1] = {"name": "clock", "wave": "p" + "." * (len(edges) - 1)}
     return {"signal": signal, "config": {"hscale": 2},

@@ -17,8 +17,8 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PAGES = ["README.md", "host/docs/hardware.md", "host/docs/pictures.md", "host/docs/python.md"]
-QUICK = ("./render", "./trace", "./compare", "./merge", "echo", "mkdir", "cat", "python3 page.py")
+PAGES = ["host/docs/hardware.md", "host/docs/pictures.md", "host/docs/python.md", "README.md"]  # which uses the module that python.md installs
+QUICK = ("./render", "./trace", "./compare", "./merge", "echo", "mkdir", "cat", '"$PYTHON"')
 PROGRAMS = ("render", "trace", "compare", "merge")
 SERVED = 20  # seconds until a page that --serve shows is closed as Ctrl-C does
 
@@ -37,7 +37,7 @@ def commands(text: str) -> list[str]:
         elif kind == "python":
             programs.append(block)
             found = [command for command in found if not command.startswith("cat >page.py")]
-            found.append(f"cat >page.py <<'END'\n{''.join(programs)}END\npython3 page.py")
+            found.append(f"cat >page.py <<'END'\n{''.join(programs)}END\n\"$PYTHON\" page.py")
     return found
 
 
@@ -96,11 +96,9 @@ def quick(name: str, text: str, folder: pathlib.Path) -> list[str]:
         more = f'case "$*" in *--size*|*--help*) ;; *) set -- "$@" --size 64x48 ;; esac\ncase "$*" in *--engine*) ;; *) set -- "$@" {engine} ;; esac\n'
         (folder / program).write_text(f'#!/bin/sh\n{more if program == "render" else ""}exec {shlex.quote(str(ROOT / "build" / program))} "$@"\n')
         (folder / program).chmod(0o755)
-    (folder / "python3").symlink_to(sys.executable)
     prepare(folder)
     page = [command for command in commands(text) if command.split("\n")[-1].startswith(QUICK) or command.startswith(QUICK)]
-    return run(name, page, folder, os.environ | {"PATH": f"{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}",
-                                                "PYTHONPATH": str(ROOT / "build/host/python")})
+    return run(name, page, folder, os.environ | {"PYTHON": sys.executable, "PYTHONPATH": str(ROOT / "build/host/python")})
 
 
 def main() -> int:
@@ -121,7 +119,8 @@ def main() -> int:
             with tempfile.TemporaryDirectory() as folder:
                 failed += quick(name, text, pathlib.Path(folder))
         else:
-            failed += run(name, commands(text), clone, os.environ | {"HOME": str(clone / "build/home")})
+            failed += run(name, commands(text), clone, os.environ | {
+                "HOME": str(clone / "build/home"), "PYTHON": str(clone / "build/home/raygate-python/bin/python3")})
     print(*(f"failed: {line}" for line in failed), sep="\n", end="\n" if failed else "", file=sys.stderr)
     return 1 if failed else 0
 

@@ -44,7 +44,7 @@ class Commands(unittest.TestCase):
     def test_are_lines_of_shells_files_and_one_program(self) -> None:
         self.assertEqual(commands.commands(PAGE), [
             "echo one   # a comment", "false", "test -f model.obj; ./render --serve  # shown", "cat >model.json <<'END'\n{\"a\": 1}\nEND",
-            "grep -q a model.json", "cat >page.py <<'END'\na = 1\nassert a == 1\nEND\npython3 page.py"])
+            "grep -q a model.json", "cat >page.py <<'END'\na = 1\nassert a == 1\nEND\n\"$PYTHON\" page.py"])
 
     def test_what_fails_is_told_and_the_rest_runs(self) -> None:
         said = io.StringIO()
@@ -52,8 +52,8 @@ class Commands(unittest.TestCase):
             folder = pathlib.Path(name)
             commands.prepare(folder)
             page = [command for command in commands.commands(PAGE) if "serve" not in command]
-            (failed,) = commands.run("a page.md", page, folder, dict(os.environ))
-        self.assertRegex(failed, "^a page.md: false: ended with status 1; see build/commands-a page.log$")
+            (failed,) = commands.run("a.md", page, folder, os.environ | {"PYTHON": sys.executable})
+        self.assertRegex(failed, "^a.md: false: ended with status 1; see build/commands-a.log$")
         self.assertEqual(said.getvalue().count("\n"), len(page))
 
     def test_pages_have_some(self) -> None:

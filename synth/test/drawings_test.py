@@ -4,7 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
-from synth import diagram, ray_timeline
+from synth import diagram, ray_timeline, waveform
 
 
 def port(direction, *bits):
@@ -88,6 +88,20 @@ class Timeline(unittest.TestCase):
             self.assertIn("<!-- busy -->", out.read_text())
         with self.assertRaises(KeyError):
             ray_timeline.draw(TRACE, SAVE_FILE.replace("busy[", "idle["), out)
+
+
+class Noise(unittest.TestCase):
+    def test_words_that_the_unit_does_not_take_are_crossed_out(self) -> None:
+        """Edges at 10, 20, ...: a first word, one after it, then what the bus carries between tests."""
+        word = [f"{number:032b}" for number in (7, 8, 9)]
+        changes = {"top.hit_test_unit.bus_i[31:0]": [(0, word[0]), (15, word[1]), (25, word[2])],
+                   "top.hit_test_unit.valid_i": [(0, "1"), (15, "0")],
+                   "top.hit_test_unit.word[2:0]": [(0, "000"), (10, "001"), (20, "000")]}
+        edges = [10, 20, 30]
+        idle = waveform.noise(changes, edges)
+        self.assertEqual(idle, {word[2]})
+        self.assertEqual(waveform.lane("in", changes["top.hit_test_unit.bus_i[31:0]"], edges, idle),
+                         {"name": "in", "wave": "==x", "data": ["00000007", "00000008"]})
 
 
 if __name__ == "__main__":
