@@ -2,6 +2,7 @@
 
 import pathlib
 import re
+import shutil
 import tempfile
 import unittest
 
@@ -31,14 +32,21 @@ WRONG = {  # mypy's code for a line that it refuses
 
 
 class Types(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        # mypy does not check packages where they are installed.
+        shutil.copytree(PACKAGE, cls.folder / "raygate", ignore=shutil.ignore_patterns("*.so"))
+
     def mypy(self, text):
         """Returns mypy's lines on a program, and on the package that it imports."""
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder) / "program.py"
-            file.write_text(text)
-            # The generated _raygate.pyi has arrays of any type.
-            lines, errors, _ = mypy.api.run(["--strict", "--allow-any-generics", f"--cache-dir={PACKAGE.parent}/mypy_cache", "--no-error-summary",
-                                             str(file), str(PACKAGE)])
+        (self.folder / "program.py").write_text(text)
+        # The generated _raygate.pyi has arrays of any type.
+        lines, errors, _ = mypy.api.run(["--strict", "--allow-any-generics", "--no-error-summary",
+                                         f"--cache-dir={self.folder}/cache", str(self.folder / "program.py"),
+                                         str(self.folder / "raygate")])
         self.assertEqual(errors, "")
         return lines.splitlines()
 
