@@ -26,6 +26,8 @@ bench: ## measure: run time against error, adder to picture: make bench [QUICK=1
 
 # In quotes: names of files may hold blanks.
 variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),'$(word)=$(subst ','\'',$($(word)))'))
+# By this name, `make -n` does not run it and wait for the lock.
+again := $(MAKE)
 variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial WIRES=1]
 ifneq ($(filter %.sv' %.v',$(variant_words)),)
 	@$(SETUP) lint
@@ -35,7 +37,7 @@ endif
 	@echo 'One card: proofs of files of yours, models, tests and pictures by both, synthesis. The first takes 8 to 10 minutes on two processors, others 3 to 5.' >&2
 	@$(SETUP) bench
 	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
-	@$(call alone,build/variant.lock,another make variant) $(MAKE) --no-print-directory card
+	@$(call alone,build/variant.lock,another make variant) $(again) --no-print-directory card
 
 # Of `make variant`, one at a time: its table, its build/lab-variant and its card.
 card: VARIANTS = $(CURDIR)/build/results/variant.json

@@ -26,8 +26,9 @@ def anchors(text: str) -> set[str]:
 
 
 def recipe(words: str) -> str:
-    """What `make` would run."""
-    return subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False).stdout
+    """What `make` would run, also where another make runs this test."""
+    return subprocess.run(["make", "--no-print-directory", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True,
+                          check=False, env={name: value for name, value in os.environ.items() if name != "MAKEFLAGS"}).stdout
 
 
 class Pages(unittest.TestCase):
