@@ -1,7 +1,6 @@
 #include "host/film/display.h"
 
 #include <png.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +12,6 @@
 
 #include "host/base/checkpoint.h"
 #include "host/base/elementary.h"
-#include "host/base/file_bytes.h"
-#include "host/base/input_error.h"
 #include "host/base/srgb.h"
 
 namespace raygate {
@@ -117,31 +114,6 @@ std::string encode_png(const Image8& picture) {
   }
   writer.finish();
   return bytes;
-}
-
-bool is_whole_png(const std::filesystem::path& file) {
-  constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
-  constexpr std::size_t kAround = 12;  // a chunk's length, type and checksum
-  std::string contents;
-  try {
-    contents = read_file(file);
-  } catch (const InputError&) {
-    return false;
-  }
-  std::string_view bytes = contents;
-  if (!bytes.starts_with(kSignature)) return false;
-  bytes.remove_prefix(kSignature.size());
-  while (bytes.size() >= kAround) {
-    const std::size_t length = number_at<std::uint32_t>(bytes.data(), true);
-    if (length > bytes.size() - kAround) return false;
-    const std::string_view checked = bytes.substr(4, 4 + length);
-    const auto* const first = reinterpret_cast<const Bytef*>(checked.data());
-    const auto sum = number_at<std::uint32_t>(checked.data() + checked.size(), true);
-    if (crc32_z(0, first, checked.size()) != sum) return false;
-    bytes.remove_prefix(kAround + length);
-    if (checked.starts_with("IEND")) return bytes.empty();
-  }
-  return false;
 }
 
 namespace {

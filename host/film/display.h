@@ -50,10 +50,6 @@ struct DisplayOptions {
 /// libpng fails.
 [[nodiscard]] std::string encode_png(const Image8& picture);
 
-/// Whether a file is an undamaged PNG: its chunks are complete up to IEND and have right checksums
-/// (PNG, Third Edition, 5.3 to 5.6). The contents of chunks are not read.
-[[nodiscard]] bool is_whole_png(const std::filesystem::path& file);
-
 /// Returns a message on why nothing can be seen in a film, and what to try: no pixel hits anything,
 /// all are black, or all have one colour. Returns "" for other films, and for crops and films of
 /// fewer than 16 x 16 pixels, where that is normal.

@@ -334,20 +334,6 @@ ChannelPicture read_exr(const std::filesystem::path& path, std::span<const std::
   });
 }
 
-ExrSummary read_summary(const std::filesystem::path& path) {
-  return with_file(path, [&](Imf::InputFile& file) {
-    const Imf::Header& header = file.header();
-    ExrSummary summary;
-    read_windows(header, summary.width, summary.height, summary.window);
-    for (auto at = header.channels().begin(); at != header.channels().end(); ++at) {
-      summary.channels.emplace_back(at.name());
-    }
-    summary.metadata = metadata_of(header);
-    summary.is_complete = file.isComplete();
-    return summary;
-  });
-}
-
 FilmFile read_film(const std::filesystem::path& path) {
   return with_file(path, [&](Imf::InputFile& file) {
     const Imath::V2i& corner = file.header().displayWindow().min;

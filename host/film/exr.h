@@ -70,19 +70,6 @@ struct FilmFile {
   ExrMetadata metadata;
 };
 
-/// The header of a picture file.
-struct ExrSummary {
-  int width = 0, height = 0;
-  PixelRect window;
-  std::vector<std::string> channels;  ///< sorted by name
-  ExrMetadata metadata;
-  bool is_complete = false;  ///< all rows are in the file
-};
-
-/// Reads a header. Throws InputError if the file cannot be read, is not OpenEXR, or has more than
-/// 2^26 pixels.
-[[nodiscard]] ExrSummary read_summary(const std::filesystem::path& file);
-
 /// Reads a film with its sums. Throws InputError if the file cannot be read, is not OpenEXR, has no
 /// sums, is damaged, or has more than 2^26 pixels.
 [[nodiscard]] FilmFile read_film(const std::filesystem::path& file);

@@ -1,7 +1,7 @@
 // lab: everything that is measured on the host, one subcommand each. `lab --help` lists them.
 #include <CLI/CLI.hpp>
 
-#include "host/cli/process.h"
+#include "host/app/process.h"
 #include "host/exact/ieee_floats.h"
 #include "host/lab/commands.h"
 

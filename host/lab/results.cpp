@@ -6,9 +6,9 @@
 #include <system_error>
 #include <utility>
 
+#include "host/app/format.h"
 #include "host/base/input_error.h"
 #include "host/base/vectors.h"
-#include "host/cli/format.h"
 #include "host/film/atomic_file.h"
 
 namespace raygate::lab {

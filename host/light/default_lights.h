@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "host/light/camera_lights.h"
+#include "host/light/lights.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

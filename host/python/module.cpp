@@ -18,29 +18,27 @@
 #include <utility>
 #include <vector>
 
+#include "host/app/framing.h"
+#include "host/app/load.h"
+#include "host/app/render_options.h"
+#include "host/app/version.h"
 #include "host/base/checkpoint.h"
 #include "host/base/input_error.h"
 #include "host/bvh/bvh.h"
 #include "host/bvh/closest_point.h"
 #include "host/exact/ieee_floats.h"
 #include "host/film/display.h"
-#include "host/film/environment_file.h"
 #include "host/film/exr.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/record_cache.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_hit_testers.h"
 #include "host/intersect/unit/unit_intersector.h"
-#include "host/light/default_lights.h"
 #include "host/light/prepared_scene.h"
-#include "host/options/light_options.h"
-#include "host/options/version.h"
 #include "host/python/float_reference.h"
 #include "host/render/renderer.h"
-#include "host/scene/camera.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_file.h"
-#include "host/scene/view.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table.h"
 #include "host/trace/tracer.h"
@@ -168,11 +166,10 @@ class PythonScene {
     const std::filesystem::path path = std::string(file.c_str(), file.size());
     const nb::gil_scoped_release release;
     file_ = read_scene_file(path);
-    const LoadOptions options{.strict = strict, .keep_instances = true, .smooth = smooth};
-    scene_ = load_scene(file_, options);
-    if (const auto& environment = file_.lights.environment) {
-      load_environment(*environment, file_.up.value_or(guess_up_axis(scene_)), scene_);
-    }
+    scene_ = load(
+        file_,
+        {.strict = strict, .keep_instances = true, .smooth = smooth, .threads = keywords.threads},
+        file_.lights.environment);
     resolve_instances(scene_, InstanceMode::kFlatten, path);
     build(keywords.threads);
   }
@@ -286,35 +283,37 @@ class PythonScene {
   std::pair<nb::typed<nb::dict, nb::str, nb::ndarray<nb::numpy>>, PythonFilm> render_film(
       const std::optional<Three>& eye, const std::optional<Three>& target,
       const std::optional<Three>& up, const Settings& settings) const {
-    RenderOptions options;
-    options.channels = {.position = true, .albedo = true, .object = true};
-    std::optional<double> fov;
+    RenderSettings chosen;
+    chosen.channels = {.position = true, .albedo = true, .object = true};
+    CameraRequest camera = camera_request(file_);
     Keywords keywords;
-    keywords.number("--width", "", "", options.width, kSideRange, kInPython);
-    keywords.number("--height", "", "", options.height, kSideRange, kInPython);
-    keywords.number("--fov", "", "", fov, kFovRange, kInPython);
+    keywords.number("--width", "", "", chosen.width, kSideRange, kInPython);
+    keywords.number("--height", "", "", chosen.height, kSideRange, kInPython);
+    keywords.number("--fov", "", "", camera.fov, kFovRange, kInPython);
     keywords.add_engine();
-    add_light_options(keywords, options);
+    add_light_options(keywords, chosen);
     keywords.read(settings);
     const auto is_given = [&](const char* name) {
       return std::ranges::any_of(settings, [&](const auto& word) { return word.first == name; });
     };
-    options.choose_integrator(scene_.environment.has_value(), is_given("integrator"),
-                              is_given("spp"));
-    options.threads = keywords.threads;
-    const int width = options.width, height = options.height;
+    chosen.choose_integrator(scene_.environment.has_value(), is_given("integrator"),
+                             is_given("spp"));
+    chosen.threads = keywords.threads;
+    const int width = chosen.width, height = chosen.height;
     if (std::int64_t{width} * height > kMaxPixels) {
       throw InputError("width, height: expected at most " + std::to_string(kMaxPixels) + " pixels");
     }
-    const Camera camera = camera_of(eye, target, up, fov, static_cast<double>(width) / height);
-    options.lights =
-        eye || given_camera() ? default_lights(scene_, camera) : preview_lights(scene_, camera);
+    const auto vector = [](const Three& v) { return glm::dvec3(v[0], v[1], v[2]); };
+    if (eye) camera.eye = vector(*eye);
+    if (target) camera.target = vector(*target);
+    if (up) camera.up = vector(*up);
+    const Framing framing = frame_picture(camera, scene_, static_cast<double>(width) / height);
     const auto film = std::make_shared<Film>();
     {
       const nb::gil_scoped_release release;
       RenderStats stats;
-      *film = render(*prepared_, camera, options, intersectors(keywords.uses_model), stats,
-                     {.progress = [](double) {
+      *film = render({*prepared_, framing.camera, chosen, framing.lights},
+                     intersectors(keywords.uses_model), stats, {.progress = [](double) {
                        checkpoint();
                        return true;
                      }});
@@ -330,7 +329,7 @@ class PythonScene {
     channels["object"] = array_of<std::uint32_t>(film, film->object.data(), {h, w});
     ExrMetadata metadata;
     metadata.software = kSoftware;
-    metadata.seed = options.seed;
+    metadata.seed = chosen.seed;
     return {std::move(channels), PythonFilm{film, std::move(metadata)}};
   }
 
@@ -350,30 +349,6 @@ class PythonScene {
       };
     }
     return [this] { return std::make_unique<CpuIntersector>(*bvh_); };
-  }
-
-  [[nodiscard]] std::optional<CameraSetting> given_camera() const {
-    return file_.camera ? file_.camera : scene_.camera;
-  }
-
-  [[nodiscard]] Camera camera_of(const std::optional<Three>& eye,
-                                 const std::optional<Three>& target, const std::optional<Three>& up,
-                                 std::optional<double> fov, double aspect) const {
-    CameraSetting setting;
-    if (const auto given = given_camera()) {
-      setting = *given;
-      setting.eye -= scene_.origin;
-      setting.target -= scene_.origin;
-    } else {
-      setting = frame_scene(scene_, aspect, fov.value_or(Camera::kDefaultFov),
-                            default_view(scene_, guess_up_axis(scene_)));
-    }
-    const auto vector = [](const Three& v) { return glm::dvec3(v[0], v[1], v[2]); };
-    if (eye) setting.eye = vector(*eye) - scene_.origin;
-    if (target) setting.target = vector(*target) - scene_.origin;
-    if (up) setting.up = vector(*up);
-    if (fov) setting.fov = fov;
-    return Camera::look_at(setting, aspect);
   }
 
   SceneFile file_;

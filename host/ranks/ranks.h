@@ -1,8 +1,7 @@
-// Ranks: the processes of a run (in MPI's terms), their messages, and a queue of jobs.
+// Ranks: the processes of a run (in MPI's terms) and their messages.
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <exception>
@@ -10,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <stop_token>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -24,8 +22,6 @@ enum class About : int {
   kTraced,   ///< to rank 0: the rendered tile
   kFinish,   ///< from rank 0: all tiles are complete
   kCounts,   ///< to rank 0: the sender's statistics
-  kNext,     ///< to rank 0: requests the next job
-  kJob,      ///< from rank 0: the number of the job
   kFailure,  ///< to rank 0: the Ending of a rank that failed
   kEnd,      ///< from rank 0: the run ends at once
 };
@@ -119,30 +115,6 @@ struct RunIsOver : std::exception {};
 /// rank 0, which reports it and determines the exit status.
 void run_rank(Ranks& ranks, const std::function<void()>& work,
               const std::function<Ending(std::exception_ptr)>& ending);
-
-/// A queue of jobs 0 to count - 1; each goes to the next rank that requests one. Rank 0 serves the
-/// queue on a separate thread while it works on jobs itself. All ranks construct a queue of the
-/// same count; `ranks` must not be used otherwise during its lifetime.
-class JobQueue {
- public:
-  JobQueue(Ranks& ranks, int count) : ranks_(ranks), count_(count) {}
-  JobQueue(const JobQueue&) = delete;
-  JobQueue& operator=(const JobQueue&) = delete;
-
-  /// Returns a job for this rank, or none when all have begun. On rank 0 it returns none only after
-  /// the jobs of the other ranks have ended; throws like receive().
-  [[nodiscard]] std::optional<int> next();
-
- private:
-  void serve(const std::stop_token& stop);
-
-  Ranks& ranks_;
-  int count_;
-  std::atomic<int> next_ = 0;
-  std::atomic<bool> has_failed_ = false;
-  std::exception_ptr error_;
-  std::jthread server_;  // last: it uses the others
-};
 
 /// Whether a launcher of MPI programs started this process: mpirun, or Slurm's srun by PMI or PMIx.
 [[nodiscard]] bool is_launched();

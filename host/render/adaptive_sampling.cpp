@@ -25,21 +25,22 @@ void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit
   }
 }
 
-/// Whether the pixels of a block need no more, by RenderOptions::error.
-bool needs_no_more(const RenderOptions& options, const Film& film, const PixelRect& block) {
-  if (options.error == 0.0) return false;
+/// Whether the pixels of a block need no more, by RenderSettings::error.
+bool needs_no_more(const RenderSettings& settings, const Film& film, const PixelRect& block) {
+  if (settings.error == 0.0) return false;
   const std::size_t index = film.index_of(block.x0, block.y0);
   return has_converged(film.sums.error[index], static_cast<int>(film.sums.samples[index]),
-                       options.error);
+                       settings.error);
 }
 
 /// How many samples each pixel that needs more may take at once.
-int samples_ahead(const RenderOptions& options, const Film& film, const PixelRect& tile, int end) {
-  if (options.error == 0.0) return 0;
+int samples_ahead(const RenderSettings& settings, const Film& film, const PixelRect& tile,
+                  int end) {
+  if (settings.error == 0.0) return 0;
   std::size_t pixels = 0;
   for_blocks(tile, kErrorBlock, kErrorBlock, [&](const PixelRect& block) {
     const std::size_t index = film.index_of(block.x0, block.y0);
-    if (static_cast<int>(film.sums.samples[index]) >= end || needs_no_more(options, film, block))
+    if (static_cast<int>(film.sums.samples[index]) >= end || needs_no_more(settings, film, block))
       return;
     pixels += static_cast<std::size_t>(block.width() * block.height());
   });
@@ -98,20 +99,21 @@ double fraction_done(const Film& film, int most, double wanted) {
   return taken + left > 0.0 ? std::clamp(taken / (taken + left), 0.0, 1.0) : 1.0;
 }
 
-std::vector<PixelSamples> samples_to_trace(const RenderOptions& options, const Film& film,
+std::vector<PixelSamples> samples_to_trace(const RenderSettings& settings, const Film& film,
                                            const PixelRect& tile, int end) {
   std::vector<PixelSamples> pixels;
-  const int ahead = samples_ahead(options, film, tile, end);
+  const int ahead = samples_ahead(settings, film, tile, end);
   const std::vector<std::uint32_t>& done = film.sums.samples;
   for_blocks(tile, kSquare, kSquare, [&](const PixelRect& square) {
     for_blocks(square, kBlockWidth, kBlockHeight, [&](const PixelRect& block) {
-      if (needs_no_more(options, film, block)) return;
+      if (needs_no_more(settings, film, block)) return;
       for_blocks(block, 1, 1, [&](const PixelRect& pixel) {
         const std::size_t index = film.index_of(pixel.x0, pixel.y0);
-        const int first = options.first_sample + (done.empty() ? 0 : static_cast<int>(done[index]));
+        const int first =
+            settings.first_sample + (done.empty() ? 0 : static_cast<int>(done[index]));
         if (first >= end) return;
         const int last =
-            std::max(end, std::min({first + ahead, next_error_check(first), options.samples}));
+            std::max(end, std::min({first + ahead, next_error_check(first), settings.samples}));
         pixels.push_back(
             {.x = pixel.x0, .y = pixel.y0, .index = index, .first = first, .end = last});
       });

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/film/film.h"
-#include "host/render/render_options.h"
+#include "host/render/render_settings.h"
 
 namespace raygate {
 
@@ -32,7 +32,7 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
   return samples >= kFirstErrorCheck && (samples & (samples - 1)) == 0;
 }
 
-/// Whether pixels need no more samples. `error` is FilmSums::error, `wanted` RenderOptions::error.
+/// Whether pixels need no more samples. `error` is FilmSums::error, `wanted` RenderSettings::error.
 ///
 /// A pixel with 16 samples stops if its error is at most `wanted`; with n samples, if it is at most
 /// n / 16 times that. One more sample reduces an error e by e / 2n, and this rule stops every pixel
@@ -73,11 +73,11 @@ struct PixelSamples {
   [[nodiscard]] std::size_t path_count() const { return static_cast<std::size_t>(end - first); }
 };
 
-/// Returns the samples below `end` that the pixels of `tile` lack. With RenderOptions::error,
+/// Returns the samples below `end` that the pixels of `tile` lack. With RenderSettings::error,
 /// pixels that have converged are left out, and if few are left they take samples beyond `end`, so
 /// that batches have many rays. Pixels are ordered in squares of 8 x 8 and within these in blocks
 /// of 4 x 2, which become the cones and packets of intersectors.
-[[nodiscard]] std::vector<PixelSamples> samples_to_trace(const RenderOptions& options,
+[[nodiscard]] std::vector<PixelSamples> samples_to_trace(const RenderSettings& settings,
                                                          const Film& film, const PixelRect& tile,
                                                          int end);
 

@@ -34,19 +34,19 @@ HistoryMask with_prefixes(HistoryMask histories) {
 
 }  // namespace
 
-EmitterSupersampler::EmitterSupersampler(const RenderJob& job, Intersector& intersector,
+EmitterSupersampler::EmitterSupersampler(const RenderContext& context, Intersector& intersector,
                                          bool counts_work)
-    : job_(job),
+    : context_(context),
       intersector_(intersector),
-      integrator_(IntegratorKind::kEmitters, job.prepared, job.lights, job.options),
+      integrator_(IntegratorKind::kEmitters, context.prepared, context.lights, context.settings),
       counts_work_(counts_work),
       all_(kDirect) {
   // Whitted's pictures have few samples: finding more histories would take longer than it saves.
-  if (job.options.integrator == IntegratorKind::kPath &&
-      std::ranges::any_of(job.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
+  if (context.settings.integrator == IntegratorKind::kPath &&
+      std::ranges::any_of(context.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
     all_ = kAllHistories;
   }
-  for (const AreaLight& light : job.lights.areas()) {
+  for (const AreaLight& light : context.lights.areas()) {
     least_ = std::max(least_, kLeastShare * largest(glm::vec3(light.radiance)));
   }
 }
@@ -71,7 +71,7 @@ void EmitterSupersampler::trace() {
     stats_.rays += rays;
     hits_.resize(rays);
     work_.resize(counts_work_ ? rays : 0);
-    intersector_.intersect(batch_.rays, query_of(job_, batch_, work_), hits_);
+    intersector_.intersect(batch_.rays, query_of(context_, batch_, work_), hits_);
     watch.lap();
     for (std::size_t i = 0; i < work_.size(); ++i) {
       ray_work_[batch_.states[i].sample / kSpecularHistories] += work_[i];
@@ -88,11 +88,11 @@ void EmitterSupersampler::trace() {
 void EmitterSupersampler::find(const Film& film, const PixelRect& tile,
                                std::span<HistoryMask> histories, std::span<RayWork> work) {
   // Corners of pixels, up to so many beyond the tile's own.
-  const int beyond = static_cast<int>(std::ceil(filter_radius(job_.options.filter) - 0.5));
+  const int beyond = static_cast<int>(std::ceil(filter_radius(context_.settings.filter) - 0.5));
   const auto may_see = [&](const AreaLight& light) {
-    return may_see_box(light.low, light.high, job_.camera, film, tile, beyond + 1.0);
+    return may_see_box(light.low, light.high, context_.camera, film, tile, beyond + 1.0);
   };
-  if (all_ == kDirect && std::ranges::none_of(job_.lights.areas(), may_see)) {
+  if (all_ == kDirect && std::ranges::none_of(context_.lights.areas(), may_see)) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       const auto row = histories.subspan(film.index_of(tile.x0, y), std::size_t(tile.width()));
       std::ranges::fill(row, 0);
@@ -103,8 +103,8 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile,
   batch_.clear();
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < columns; ++x) {
-      add(job_.camera.ray(double(tile.x0 - beyond + x) / film.width,
-                          double(tile.y0 - beyond + y) / film.height, {}),
+      add(context_.camera.ray(double(tile.x0 - beyond + x) / film.width,
+                              double(tile.y0 - beyond + y) / film.height, {}),
           all_);
     }
   }
@@ -166,9 +166,9 @@ void EmitterSupersampler::supersample(std::span<const PixelSamples> pixels,
   for (std::size_t p = 0; p < pixels.size(); ++p) {
     const PixelSamples& pixel = pixels[p];
     if (histories[pixel.index] == 0) continue;
-    const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
+    const Sampler sampler(context_.settings.seed, pixel.x, pixel.y);
     for (int i = pixel.first * kRaysPerSample; i < pixel.end * kRaysPerSample; ++i) {
-      add(camera_ray(job_, pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(i),
+      add(camera_ray(context_, pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(i),
                      kEmitterStream),
           histories[pixel.index]);
       pixel_of.push_back(p);

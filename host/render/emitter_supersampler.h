@@ -12,7 +12,7 @@
 #include "host/light/integrator.h"
 #include "host/light/ray_batch.h"
 #include "host/render/adaptive_sampling.h"
-#include "host/render/render_job.h"
+#include "host/render/render_context.h"
 
 namespace raygate {
 
@@ -32,7 +32,7 @@ inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 class EmitterSupersampler {
  public:
   /// The references must outlive this. `counts_work`: counts tests and doubts of each ray.
-  EmitterSupersampler(const RenderJob& job, Intersector& intersector, bool counts_work);
+  EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work);
 
   /// Sets the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
   /// Adds its work to `work`, by pixel of the tile, unless that is empty.
@@ -54,7 +54,7 @@ class EmitterSupersampler {
     return output_.radiance[ray * kSpecularHistories + history];
   }
 
-  RenderJob job_;
+  RenderContext context_;
   Intersector& intersector_;
   Integrator integrator_;
   bool counts_work_;

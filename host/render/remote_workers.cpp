@@ -148,7 +148,7 @@ class Worker : public TileWorkers {
 
   void run(Ranks& ranks, const RenderMonitor& monitor) {
     const double busy = processor_seconds();
-    start(job_.options.threads);
+    start(context_.settings.threads);
     if (threads_.empty()) throw std::runtime_error("no thread could be started");
     // One tile more than threads: there is something to do while messages travel.
     ranks.send(0, About::kRoom, bytes_of(static_cast<int>(threads_.size()) + 1));
@@ -211,10 +211,11 @@ class Worker : public TileWorkers {
 
 }  // namespace
 
-void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
+void run_worker(Ranks& ranks, const RenderContext& context,
+                std::unique_ptr<Intersector> first_intersector,
                 const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
                 Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats) {
-  Worker(job, std::move(first_intersector), make_intersector, film, emitter_histories, stats)
+  Worker(context, std::move(first_intersector), make_intersector, film, emitter_histories, stats)
       .run(ranks, monitor);
 }
 

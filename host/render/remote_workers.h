@@ -69,7 +69,8 @@ class RemoteWorkers {
 /// Renders the tiles that rank 0 sends on options.threads threads, until rank 0 ends the render or
 /// `monitor` stops it. `film`, which has sums, holds this rank's tiles. Rethrows exceptions of
 /// intersectors; throws RunIsOver.
-void run_worker(Ranks& ranks, const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
+void run_worker(Ranks& ranks, const RenderContext& context,
+                std::unique_ptr<Intersector> first_intersector,
                 const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
                 Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats);
 

@@ -16,27 +16,28 @@ constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
 
 }  // namespace
 
-TileRenderer::TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
+TileRenderer::TileRenderer(const RenderContext& context, Intersector& intersector, Film& film,
                            std::span<HistoryMask> emitter_histories)
-    : job_(job),
+    : context_(context),
       intersector_(intersector),
       film_(film),
       emitter_histories_(emitter_histories),
-      integrator_(job.options.integrator, job.prepared, job.lights, job.options, job.light_paths),
-      shadow_rays_(job.prepared, job.lights, intersector, job.options.skips,
+      integrator_(context.settings.integrator, context.prepared, context.lights, context.settings,
+                  context.light_paths),
+      shadow_rays_(context.prepared, context.lights, intersector, context.settings.skips,
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {
-  if (!emitter_histories.empty()) emitter_supersampler_.emplace(job, intersector, is_counting_);
-  if (job.light_paths == nullptr) return;
-  light_integrator_.emplace(IntegratorKind::kLight, job.prepared, job.lights, job.options,
-                            job.light_paths);
+  if (!emitter_histories.empty()) emitter_supersampler_.emplace(context, intersector, is_counting_);
+  if (context.light_paths == nullptr) return;
+  light_integrator_.emplace(IntegratorKind::kLight, context.prepared, context.lights,
+                            context.settings, context.light_paths);
 }
 
 void TileRenderer::make_camera_rays() {
   batch_.clear();
   batch_.depth = 0;
   for (const PixelSamples& pixel : pixels_) {
-    const Sampler sampler(job_.options.seed, pixel.x, pixel.y);
+    const Sampler sampler(context_.settings.seed, pixel.x, pixel.y);
     for (int i = pixel.first; i < pixel.end; ++i) {
       const auto index = static_cast<std::uint32_t>(i);
       PathState& state = batch_.states.emplace_back();
@@ -45,7 +46,7 @@ void TileRenderer::make_camera_rays() {
       state.index = index;
       if (!emitter_histories_.empty()) state.supersampled = emitter_histories_[pixel.index];
       const Ray& ray = batch_.rays.emplace_back(
-          camera_ray(job_, pixel.x, pixel.y, sampler, index, kFilterStream));
+          camera_ray(context_, pixel.x, pixel.y, sampler, index, kFilterStream));
       state.scattered_at = ray.origin;
     }
   }
@@ -54,7 +55,7 @@ void TileRenderer::make_camera_rays() {
 bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going) {
   Stopwatch watch;
   splats_.clear();
-  pixels_ = samples_to_trace(job_.options, film_, tile, end);
+  pixels_ = samples_to_trace(context_.settings, film_, tile, end);
   if (pixels_.empty()) return true;
   tile_ = tile;
   pixel_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
@@ -74,10 +75,10 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
 
 /// Whether camera rays can meet nothing but the background.
 bool TileRenderer::is_empty_tile() const {
-  const RenderOptions& options = job_.options;
-  const double margin = 1.0 + (options.samples > 1 ? filter_radius(options.filter) : 0.0);
-  return options.skips.empty_tiles && !integrator_.sees_environment(0) &&
-         !may_see_anything(job_.prepared.bvh, job_.camera, film_, tile_, margin);
+  const RenderSettings& settings = context_.settings;
+  const double margin = 1.0 + (settings.samples > 1 ? filter_radius(settings.filter) : 0.0);
+  return settings.skips.empty_tiles && !integrator_.sees_environment(0) &&
+         !may_see_anything(context_.prepared.bvh, context_.camera, film_, tile_, margin);
 }
 
 bool TileRenderer::trace_camera_rays(const std::function<bool()>& keep_going) {
@@ -108,15 +109,15 @@ bool TileRenderer::trace_batch(Integrator& integrator, const std::function<bool(
 bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   if (!light_integrator_) return true;
   constexpr std::size_t kManyPaths = 1 << 16;  // at once
-  const std::uint64_t paths = job_.light_paths->count(), window = film_.color.size();
+  const std::uint64_t paths = context_.light_paths->count(), window = film_.color.size();
   std::size_t camera_path = 0;  // the work is counted with
   batch_.clear();
   for (const PixelSamples& pixel : pixels_) {
     for (int i = pixel.first; i < pixel.end; ++i, ++camera_path) {
       for (std::uint64_t path = pixel.index * paths / window;
            path < (pixel.index + 1) * paths / window; ++path) {
-        const auto start = job_.light_paths->start(static_cast<std::uint64_t>(i) * paths + path,
-                                                   job_.options.seed);
+        const auto start = context_.light_paths->start(static_cast<std::uint64_t>(i) * paths + path,
+                                                       context_.settings.seed);
         if (!start) continue;
         batch_.rays.push_back(start->ray);
         batch_.states.push_back(start->state);
@@ -145,7 +146,7 @@ void TileRenderer::intersect_batch() {
   stats_.rays += batch_.rays.size();
   hits_.resize(batch_.rays.size());
   work_.resize(is_counting_ ? batch_.rays.size() : 0);
-  intersector_.intersect(batch_.rays, query_of(job_, batch_, work_), hits_);
+  intersector_.intersect(batch_.rays, query_of(context_, batch_, work_), hits_);
 }
 
 /// The rays of one depth, and the shadow rays from where they end: these in several batches where
@@ -190,10 +191,10 @@ void TileRenderer::trace_shadows() {
 /// Where what is seen of a surface through a point of the lens comes to in the frame.
 void TileRenderer::add_splat(const ShadowRay& way) {
   if (way.radiance == glm::vec3(0.0f)) return;
-  const auto place = job_.camera.place_of(glm::dvec3(way.surface), glm::dvec3(way.target));
+  const auto place = context_.camera.place_of(glm::dvec3(way.surface), glm::dvec3(way.target));
   if (!place) return;
-  splats_.push_back(
-      {*place * glm::dvec2(job_.options.width, job_.options.height), glm::dvec3(way.radiance)});
+  splats_.push_back({*place * glm::dvec2(context_.settings.width, context_.settings.height),
+                     glm::dvec3(way.radiance)});
 }
 
 void TileRenderer::count_work(const RayWork& work, std::uint32_t sample) {
@@ -231,14 +232,14 @@ void TileRenderer::write() {
     color[3].add(hits);
     for (int k = 0; k < 3; ++k) color[k] += emitter_sums_[p][k];
     if (is_counting_) count(pixel_work_[place_in_tile(pixel)]);
-    const int samples = pixel.end - job_.options.first_sample;
+    const int samples = pixel.end - context_.settings.first_sample;
     if (!kept.samples.empty()) kept.samples[at] = static_cast<std::uint32_t>(samples);
     if (!kept.color.empty()) kept.color[at] = color;
     if (!kept.albedo.empty()) kept.albedo[at] = albedo;
     film_.color[at] = mean_of(color, samples);
     if (has_albedo) film_.albedo[at] = mean_of(albedo, samples);
   }
-  if (job_.options.error > 0.0) update_errors();
+  if (context_.settings.error > 0.0) update_errors();
   stats_.shade_seconds += watch.lap();
 }
 
@@ -247,7 +248,7 @@ void TileRenderer::update_errors() {
   for (const PixelSamples& pixel : pixels_) {
     if (pixel.x % kErrorBlock != 0 || pixel.y % kErrorBlock != 0 || !is_error_check(pixel.end))
       continue;
-    update_block_error(film_, pixel.x, pixel.y, job_.options.exposure);
+    update_block_error(film_, pixel.x, pixel.y, context_.settings.exposure);
   }
 }
 
@@ -255,18 +256,18 @@ void TileRenderer::update_errors() {
 void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
   const FirstSurface& first = output_.first_surface[sample];
   if (first.primitive == NearestHit::kNone) return;
-  const std::uint32_t triangle = job_.prepared.bvh.triangle_of(first.primitive);
+  const std::uint32_t triangle = context_.prepared.bvh.triangle_of(first.primitive);
   const glm::dvec3 origin(first.origin), point(first.point);
-  const glm::dvec3 from_eye = origin - glm::dvec3(job_.camera.eye()) + point;
-  film_.depth[pixel] = static_cast<float>(job_.camera.depth(from_eye));
+  const glm::dvec3 from_eye = origin - glm::dvec3(context_.camera.eye()) + point;
+  film_.depth[pixel] = static_cast<float>(context_.camera.depth(from_eye));
   film_.normal[pixel] = first.normal;
   film_.primitive[pixel] = triangle;
   if (!film_.position.empty()) {
-    film_.position[pixel] = glm::vec3(job_.prepared.scene.origin + origin + point);
+    film_.position[pixel] = glm::vec3(context_.prepared.scene.origin + origin + point);
   }
   if (!film_.object.empty())
     film_.object[pixel] =
-        object_at(job_.prepared.scene, job_.prepared.bvh.face_of(first.primitive));
+        object_at(context_.prepared.scene, context_.prepared.bvh.face_of(first.primitive));
 }
 
 void TileRenderer::add_to(RenderStats& stats) const {

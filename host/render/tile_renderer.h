@@ -17,7 +17,7 @@
 #include "host/light/shadow_rays.h"
 #include "host/render/adaptive_sampling.h"
 #include "host/render/emitter_supersampler.h"
-#include "host/render/render_job.h"
+#include "host/render/render_context.h"
 #include "host/render/splat_layer.h"
 
 namespace raygate {
@@ -29,7 +29,7 @@ class TileRenderer {
  public:
   /// `emitter_histories`: by pixel of the film, shared by all tiles and passes; empty: emitters are
   /// not supersampled.
-  TileRenderer(const RenderJob& job, Intersector& intersector, Film& film,
+  TileRenderer(const RenderContext& context, Intersector& intersector, Film& film,
                std::span<HistoryMask> emitter_histories);
 
   /// Traces the samples that samples_to_trace() returns. `keep_going` is polled between batches; if
@@ -62,7 +62,7 @@ class TileRenderer {
            std::size_t(pixel.x - tile_.x0);
   }
 
-  RenderJob job_;
+  RenderContext context_;
   Intersector& intersector_;
   Film& film_;
   std::span<HistoryMask> emitter_histories_;

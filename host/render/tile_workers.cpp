@@ -18,7 +18,7 @@ void TileWorkers::start(int count) {
 void TileWorkers::work() {
   try {
     const auto intersector = take_intersector();
-    TileRenderer renderer(job_, *intersector, film_, emitter_histories_);
+    TileRenderer renderer(context_, *intersector, film_, emitter_histories_);
     while (auto work = next()) {
       Stopwatch watch;
       if (!render(renderer, *work)) break;

@@ -13,7 +13,7 @@
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
 #include "host/render/emitter_supersampler.h"
-#include "host/render/render_job.h"
+#include "host/render/render_context.h"
 #include "host/render/tile_renderer.h"
 
 namespace raygate {
@@ -31,10 +31,10 @@ struct TileWork {
 /// results; their destructors call join().
 class TileWorkers {
  public:
-  TileWorkers(const RenderJob& job, std::unique_ptr<Intersector> first_intersector,
+  TileWorkers(const RenderContext& context, std::unique_ptr<Intersector> first_intersector,
               const IntersectorFactory& make_intersector, Film& film,
               std::span<HistoryMask> emitter_histories, RenderStats& stats)
-      : job_(job),
+      : context_(context),
         film_(film),
         stats_(stats),
         first_intersector_(std::move(first_intersector)),
@@ -66,7 +66,7 @@ class TileWorkers {
     threads_.clear();
   }
 
-  const RenderJob& job_;
+  const RenderContext& context_;
   std::mutex mutex_;  // guards the members below, except pixels of a tile that is being rendered
   std::condition_variable changed_;
   Film& film_;

@@ -189,19 +189,9 @@ CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const V
     for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
       for (const glm::vec3& corner : triangle) show(glm::dvec3(corner) - centre);
     });
-  } else if (filling == FrameFit::kBox) {
+  } else {
     for (int corner = 0; corner < 8; ++corner) {
       show(half * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
-    }
-  } else {
-    const glm::dvec3 height = glm::dot(half, glm::abs(axes.up)) * axes.up;
-    const double radius = glm::length(half - half * glm::abs(axes.up));
-    constexpr int kSides = 32;
-    for (int side = 0; side < kSides; ++side) {
-      const SineCosine<double> turn = sine_cosine(static_cast<double>(side) / kSides);
-      const glm::dvec3 outwards = radius * (turn.cosine * axes.front + turn.sine * axes.right);
-      show(outwards + height);
-      show(outwards - height);
     }
   }
   return {centre + distance * towards_eye, centre, up, fov};

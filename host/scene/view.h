@@ -35,11 +35,10 @@ inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
 /// lies in one plane of the axes is as usual.
 [[nodiscard]] glm::dvec3 guess_up_axis(const Scene& scene);
 
-/// What fills the picture.
+/// The part of a scene that fills the picture.
 enum class FrameFit {
-  kVertices,  ///< of the scene
-  kBox,       ///< around them
-  kCylinder,  ///< upright around the box, so that the camera may go round it
+  kVertices,  ///< the vertices of the scene
+  kBox,       ///< their bounding box
 };
 
 /// A camera that shows all of `scene` from one side, in the scene's coordinates: `filling` fills

@@ -57,13 +57,14 @@ class CoreBench {
       if (!is_asked(kind)) continue;
       run(bvh, image, kind, [&](const IntersectorFactory& make_intersector) {
         const Camera camera = front_camera(scene, 1.0);
-        RenderOptions options;
+        RenderSettings options;
         options.width = options.height = options_.size / options_.every;
         options.samples = 1;
         options.integrator = integrator;
-        options.lights = default_lights(scene, camera);
         RenderStats stats;
-        (void)render(scene, bvh, camera, options, make_intersector, stats);
+        const PreparedScene prepared(scene, bvh);
+        (void)render({prepared, camera, options, default_lights(scene, camera)}, make_intersector,
+                     stats);
         return static_cast<std::size_t>(stats.rays);
       });
     }

@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/app/engines.h"
 #include "host/base/input_error.h"
 #include "host/bvh/bvh.h"
-#include "host/cli/engines.h"
 #include "host/film/atomic_file.h"
 #include "host/film/compare.h"
 #include "host/film/display.h"
@@ -136,7 +136,7 @@ class TimedRun {
 
   /// Renders once more; what was first is only kept as the picture where there are more repeats.
   void render_once() {
-    RenderOptions options;
+    RenderSettings options;
     options.width = run_.width;
     options.height = run_.height;
     options.threads = run_.threads;
@@ -146,10 +146,10 @@ class TimedRun {
                            return std::string(kind.first);
                          })->second;
     options.max_depth = run_.depth;
-    options.lights = stage_.lights;
     options.point_error = run_.point_error < 0.0 ? std::numeric_limits<float>::max()
                                                  : static_cast<float>(run_.point_error);
-    const Film film = render(stage_.scene, stage_.bvh, camera_, options,
+    const PreparedScene prepared(stage_.scene, stage_.bvh);
+    const Film film = render({prepared, camera_, options, stage_.lights},
                              factory_of(run_, variant_, stage_.bvh), stats_);
     if (film_ && !same_picture(*film_, film)) {
       throw std::logic_error("two pictures of one run differ: " + row_of(run_).dump());

@@ -62,7 +62,7 @@ TEST(DefaultLights, LeaveWhiteBelowOne) {
   for (const double side : {-3.0, 0.0, 3.0}) {
     const Camera camera = camera_from({side, 1.5, 4});
     for (const bool is_first_look : {false, true}) {
-      RenderOptions options = test::light(IntegratorKind::kWhitted, 32, 32, 1);
+      RenderSettings options = test::light(IntegratorKind::kWhitted, 32, 32, 1);
       options.lights =
           is_first_look ? preview_lights(scene, camera) : default_lights(scene, camera);
       float most = 0.0f;
@@ -113,7 +113,7 @@ TEST(DefaultLights, CastSoftShadows) {
     add(scene, rectangle({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}), matte(glm::vec3(0.5f)));
     if (has_roof) add(scene, rectangle({0, 1, -9}, {0, 0, 18}, {9, 0, 0}), matte(glm::vec3(0.0f)));
     const Camera camera = Camera::look_at({x - 1, 0.5, 0.1}, {x, 0, 0}, {0, 1, 0}, 1e-3, 1.0);
-    RenderOptions options = test::light(integrator, 1, 1, 4096);
+    RenderSettings options = test::light(integrator, 1, 1, 4096);
     options.ambient = 0.0;
     options.max_depth = 1;
     options.lights = CameraLights{{{{0, 101, 0}, glm::dvec3(1e4)}}, glm::vec3(0.0f), {}, 10.0};

@@ -122,7 +122,7 @@ double floor_under(const EnvironmentMap& map, const Material& material, int samp
   Scene scene;
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), material);
   scene.environment = map;
-  RenderOptions options = light(IntegratorKind::kPath, 1, 1, samples);
+  RenderSettings options = light(IntegratorKind::kPath, 1, 1, samples);
   options.max_depth = 1;
   return film_of(scene, camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3), options).color[0].r;
 }

@@ -32,13 +32,13 @@ class ManyAtOnce : public CpuIntersector {
 
 class EveryIntegrator : public testing::TestWithParam<IntegratorKind> {
  protected:
-  RenderOptions options(int width = 40, int height = 30) const {
+  RenderSettings options(int width = 40, int height = 30) const {
     return light(GetParam(), width, height, 5);  // two passes
   }
-  Film film(const RenderOptions& options, RenderStats& stats) const {
+  Film film(const RenderSettings& options, RenderStats& stats) const {
     return render(scene_, bvh_, camera_, options, pipeline_model(bvh_), stats);
   }
-  Film film(const RenderOptions& options) const {
+  Film film(const RenderSettings& options) const {
     RenderStats stats;
     return film(options, stats);
   }
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryIntegrator,
 TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
   const Film one = film(options(150, 100));
   for (const int threads : {2, 8}) {
-    RenderOptions more = options(150, 100);
+    RenderSettings more = options(150, 100);
     more.threads = threads;
     EXPECT_TRUE(same(one, film(more))) << threads;
   }
@@ -102,7 +102,7 @@ TEST_P(EveryIntegrator, RaysNameTheTriangleThatTheyLeave) {
     return std::make_unique<SourceGuard>(bvh_, named, unnamed);
   };
   RenderStats stats;
-  RenderOptions one_thread = options(150, 100);
+  RenderSettings one_thread = options(150, 100);
   one_thread.threads = 1;
   one_thread.caustics = Caustics::kOff;  // paths from lights begin off them, and have no source
   EXPECT_TRUE(same(film(one_thread), render(scene_, bvh_, camera_, one_thread, guard, stats)));
@@ -113,7 +113,7 @@ TEST_P(EveryIntegrator, RaysNameTheTriangleThatTheyLeave) {
 
 // The baseline shades one hit at a time, the others as many as they have lanes.
 TEST_P(EveryIntegrator, VectorsChangeNoByte) {
-  RenderOptions all = options(80, 60);
+  RenderSettings all = options(80, 60);
   all.channels.albedo = true;
   std::optional<Film> expected;
   for (const Vectors vectors : machine_vectors()) {
@@ -127,7 +127,7 @@ TEST_P(EveryIntegrator, VectorsChangeNoByte) {
 
 // The unit's P in place of the host's: another picture, but not one that can be told from it.
 TEST_P(EveryIntegrator, TheUnitsPointsAreGoodEnough) {
-  RenderOptions host = options(80, 60), unit = host;
+  RenderSettings host = options(80, 60), unit = host;
   host.channels.position = unit.channels.position = true;
   host.point_error = 0.0f;
   unit.point_error = std::numeric_limits<float>::max();
@@ -148,7 +148,7 @@ TEST_P(EveryIntegrator, TheUnitsPointsAreGoodEnough) {
 
 TEST_P(EveryIntegrator, WindowsArePartsOfTheWhole) {
   const Film whole = film(options());
-  RenderOptions cropped = options();
+  RenderSettings cropped = options();
   cropped.window = {7, 5, 29, 26};
   const Film part = film(cropped);
   for (int y = 5; y < 26; ++y) {
@@ -166,7 +166,7 @@ TEST(ManyLights, WindowsArePartsOfTheWhole) {
   }
   const Bvh bvh(scene);
   const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
-  RenderOptions options = light(IntegratorKind::kWhitted, 96, 96, 1);
+  RenderSettings options = light(IntegratorKind::kWhitted, 96, 96, 1);
   options.max_depth = 1;
   RenderStats stats;
   const Film whole = render(scene, bvh, camera, options, pipeline_model(bvh), stats);
@@ -186,7 +186,7 @@ TEST(ManyLights, ShadowsAreTheSameFromEitherEnd) {
   Scene many = few;
   for (int i = 0; i < 70; ++i) many.lights.push_back({{0.0f, 1.0f, 0.0f}, glm::vec3(0.0f)});
   const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
-  const RenderOptions options = light(IntegratorKind::kWhitted, 96, 96, 1);
+  const RenderSettings options = light(IntegratorKind::kWhitted, 96, 96, 1);
   const Film a = film_of(few, camera, options), b = film_of(many, camera, options);
   int different = 0;
   for (std::size_t i = 0; i < a.color.size(); ++i) different += a.color[i] != b.color[i];
@@ -204,9 +204,9 @@ TEST_P(EveryIntegrator, SkipsChangeNoByteAndSaveWork) {
     }
     RenderStats all_on;
     const Film expected = film(options(20, 15), all_on);
-    RenderOptions none = options(20, 15);
+    RenderSettings none = options(20, 15);
     for (const auto skip : kSkips) {
-      RenderOptions one = options(20, 15);
+      RenderSettings one = options(20, 15);
       one.skips.*skip = false;
       none.skips.*skip = false;
       RenderStats stats;
@@ -214,7 +214,7 @@ TEST_P(EveryIntegrator, SkipsChangeNoByteAndSaveWork) {
       EXPECT_GE(stats.intersect.hit.tests, all_on.intersect.hit.tests);
     }
     none.max_depth = 1;  // weightless rays are many
-    RenderOptions some = options(20, 15);
+    RenderSettings some = options(20, 15);
     some.max_depth = 1;
     RenderStats stats;
     EXPECT_TRUE(same(film(some), film(none, stats)));
@@ -224,7 +224,7 @@ TEST_P(EveryIntegrator, SkipsChangeNoByteAndSaveWork) {
 }
 
 TEST_P(EveryIntegrator, SeedsChangeTheNoiseAlone) {
-  RenderOptions other = options();
+  RenderSettings other = options();
   other.seed = 1;
   const Film a = film(options()), b = film(other);
   EXPECT_TRUE(same_bytes(a.color, film(options()).color));
@@ -253,7 +253,7 @@ TEST_P(EveryIntegrator, EveryPixelIsFinite) {
       scene.lights.push_back({{-2, -2, -2}, glm::vec3(extreme)});     // in a corner
       scene.lights.push_back({scene.positions[0], glm::vec3(1.0f)});  // on a vertex
       scene.lights.push_back({glm::vec3(camera_.eye()), glm::vec3(0.0f)});
-      RenderOptions small = light(GetParam(), 10, 8, 2);
+      RenderSettings small = light(GetParam(), 10, 8, 2);
       small.max_depth = 3;
       for (const glm::vec4& colour : film_of(scene, camera_, small).color) {
         for (int k = 0; k < 4; ++k)
@@ -269,7 +269,7 @@ TEST(Skips, AreCounted) {
   for (const int clear : {4, 6, 7}) scene.materials[clear] = matte(glm::vec3(0.4f));
   const Bvh bvh(scene);
   const Camera camera = camera_at({0.6, 0.4, 60}, {12, 12, 0}, 40.0);
-  RenderOptions options = light(IntegratorKind::kWhitted, 400, 400, 1);
+  RenderSettings options = light(IntegratorKind::kWhitted, 400, 400, 1);
   RenderStats stats;
   const Film film = render(scene, bvh, camera, options, pipeline_model(bvh), stats);
   EXPECT_GT(stats.skipped.culled_tests, 100 * stats.intersect.hit.tests);
@@ -300,7 +300,7 @@ TEST(Threshold, SavesRaysThatHardlyCount) {
   Scene scene = everything();
   const Bvh bvh(scene);
   const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
-  RenderOptions options = light(IntegratorKind::kWhitted, 64, 64, 1);
+  RenderSettings options = light(IntegratorKind::kWhitted, 64, 64, 1);
   RenderStats all, some;
   options.threshold = 0.0;
   const Film exact = render(scene, bvh, camera, options, pipeline_model(bvh), all);
@@ -319,7 +319,7 @@ TEST(Threshold, SavesRaysThatHardlyCount) {
 // Snapshots show what is there, while the threads go on.
 TEST(Snapshots, AreTakenOnTheWay) {
   const Scene scene = everything();
-  const RenderOptions options = light(IntegratorKind::kPath, 40, 30, 400);
+  const RenderSettings options = light(IntegratorKind::kPath, 40, 30, 400);
   RenderMonitor monitor;
   int snapshots = 0;
   float seen = 0.0f;
@@ -341,7 +341,7 @@ TEST(Snapshots, AreTakenOnTheWay) {
 // A copy that there is no memory for is told of, and the render goes on.
 TEST(Snapshots, WithoutMemoryForACopyTheRenderGoesOn) {
   const Scene scene = everything();
-  const RenderOptions options = light(IntegratorKind::kPath, 40, 30, 100);
+  const RenderSettings options = light(IntegratorKind::kPath, 40, 30, 100);
   RenderMonitor monitor;
   int missing = 0;
   monitor.progress = [&](double fraction) {

@@ -80,8 +80,8 @@ inline IntersectorFactory pipeline_model(const Bvh& bvh) {
   return [&bvh] { return pipeline_intersector(bvh); };
 }
 
-inline RenderOptions light(IntegratorKind integrator, int width, int height, int samples) {
-  RenderOptions options;
+inline RenderSettings light(IntegratorKind integrator, int width, int height, int samples) {
+  RenderSettings options;
   options.width = width;
   options.height = height;
   options.samples = samples;
@@ -90,10 +90,12 @@ inline RenderOptions light(IntegratorKind integrator, int width, int height, int
   return options;
 }
 
-inline Film film_of(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+inline Film film_of(const Scene& scene, const Camera& camera, const RenderSettings& options,
+                    const std::optional<CameraLights>& lights = {}) {
   RenderStats stats;
   const Bvh bvh(scene);
-  return render(scene, bvh, camera, options, pipeline_model(bvh), stats);
+  const PreparedScene prepared(scene, bvh);
+  return render({prepared, camera, options, lights}, pipeline_model(bvh), stats);
 }
 
 /// Of all pixels.
@@ -150,7 +152,7 @@ inline Camera camera_at(const glm::dvec3& eye, const glm::dvec3& target, double 
 inline float floor_radiance(Scene scene, IntegratorKind integrator, int samples) {
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
   const Camera camera = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
-  RenderOptions options = light(integrator, 1, 1, samples);
+  RenderSettings options = light(integrator, 1, 1, samples);
   options.max_depth = 0;
   options.ambient = 0.0;
   return film_of(scene, camera, options).color[0].r;

@@ -1,13 +1,11 @@
-// What ranks are told without MPI, and jobs that ranks of one process share.
+// What ranks are told without MPI, and failures that reach rank 0.
 #include "host/ranks/ranks.h"
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstdlib>
 #include <deque>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 #include "host/base/input_error.h"
@@ -57,28 +55,7 @@ class ThreadRanks : public Ranks {
   int index_;
 };
 
-TEST(JobQueue, EachIsTakenOnce) {
-  for (const int count : {1, 2, 5}) {
-    for (const int jobs : {0, 1, 40}) {
-      Post post(count);
-      std::vector<std::atomic<int>> taken(static_cast<std::size_t>(jobs));
-      {
-        std::vector<std::jthread> ranks;
-        ranks.reserve(static_cast<std::size_t>(count));
-        for (int rank = 0; rank < count; ++rank) {
-          ranks.emplace_back([&, rank] {
-            ThreadRanks own(post, rank);
-            JobQueue shared(own, jobs);
-            while (const auto job = shared.next()) ++taken[static_cast<std::size_t>(*job)];
-          });
-        }
-      }
-      for (const auto& times : taken) EXPECT_EQ(times, 1);
-    }
-  }
-}
-
-TEST(JobQueue, TroubleOfOneEndsRank0) {
+TEST(RankGuard, TroubleOfOneReachesRank0) {
   Post post(2);
   ThreadRanks first(post, 0), second(post, 1);
   run_rank(
@@ -86,10 +63,8 @@ TEST(JobQueue, TroubleOfOneEndsRank0) {
       [](const std::exception_ptr&) {
         return Ending{7, "no room"};
       });
-  JobQueue shared(first, 1);
   try {
-    while (shared.next()) {
-    }
+    (void)first.receive();
     ADD_FAILURE();
   } catch (const RankFailure& trouble) {
     EXPECT_EQ(trouble.status(), 7);

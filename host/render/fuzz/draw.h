@@ -22,14 +22,15 @@ inline void draw(const Scene& scene) {
   const Camera camera =
       Camera::look_at(frame_scene(scene, 1.0, Camera::kDefaultFov, default_view(scene, up)), 1.0);
   const Bvh bvh(scene);
-  RenderOptions options;
+  RenderSettings options;
   options.width = options.height = 4;
   options.samples = 2;
-  options.lights = default_lights(scene, camera);
   options.integrator = IntegratorKind::kPath;
   RenderStats stats;
+  const PreparedScene prepared(scene, bvh);
   const Film film = render(
-      scene, bvh, camera, options, [&] { return std::make_unique<CpuIntersector>(bvh); }, stats);
+      {prepared, camera, options, default_lights(scene, camera)},
+      [&] { return std::make_unique<CpuIntersector>(bvh); }, stats);
   for (const glm::vec4& colour : film.color) {
     for (int k = 0; k < 4; ++k) {
       if (!(std::isfinite(colour[k]) && colour[k] >= 0.0f)) std::abort();

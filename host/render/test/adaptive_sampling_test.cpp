@@ -29,8 +29,8 @@ int seeds() {
   return given == nullptr ? 100 : std::max(1, std::atoi(given));
 }
 
-RenderOptions adaptive(int width, int height, int most, double error) {
-  RenderOptions options = light(IntegratorKind::kPath, width, height, most);
+RenderSettings adaptive(int width, int height, int most, double error) {
+  RenderSettings options = light(IntegratorKind::kPath, width, height, most);
   options.error = error;
   return options;
 }
@@ -40,7 +40,7 @@ IntersectorFactory cpu(const Bvh& bvh) {
 }
 
 /// Of one scene, with each seed.
-void with_seeds(const Scene& scene, const Camera& camera, RenderOptions options,
+void with_seeds(const Scene& scene, const Camera& camera, RenderSettings options,
                 const std::function<void(const Film&)>& each) {
   const Bvh bvh(scene);
   const PreparedScene prepared(scene, bvh);
@@ -70,7 +70,7 @@ struct Coverage {
 
 Coverage coverage_of(const Scene& scene, const Camera& camera, int samples, double known) {
   int held[kErrorBlock * kErrorBlock] = {};
-  RenderOptions options = adaptive(kErrorBlock, kErrorBlock, samples, kNever);
+  RenderSettings options = adaptive(kErrorBlock, kErrorBlock, samples, kNever);
   const double truth = display_steps(glm::vec3(static_cast<float>(known)), 0.0);
   with_seeds(scene, camera, options, [&](const Film& film) {
     for (std::size_t i = 0; i < film.color.size(); ++i) {
@@ -159,14 +159,15 @@ struct Uneven {
   Scene scene = everything();
   Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 45.0, 44.0 / 34.0);
   Bvh bvh{scene};
-  Film film(RenderOptions options, const IntersectorFactory& intersectors,
-            RenderStats& stats) const {
+  PreparedScene prepared{scene, bvh};
+  Film film(RenderSettings options, const IntersectorFactory& intersectors, RenderStats& stats,
+            const Film* unfinished = nullptr) const {
     options.channels.sums = true;
-    return render(scene, bvh, camera, options, intersectors, stats);
+    return render({prepared, camera, options, {}, unfinished}, intersectors, stats);
   }
-  Film film(const RenderOptions& options) const {
+  Film film(const RenderSettings& options, const Film* unfinished = nullptr) const {
     RenderStats stats;
-    return film(options, cpu(bvh), stats);
+    return film(options, cpu(bvh), stats, unfinished);
   }
 };
 
@@ -207,16 +208,16 @@ TEST(AdaptiveSampling, GivesSamplesWhereTheErrorIs) {
 
 TEST(AdaptiveSampling, FilmDoesNotDependOnThreadsTilesOrEngine) {
   const Uneven uneven;
-  const RenderOptions options = adaptive(44, 34, 72, 1.0);
+  const RenderSettings options = adaptive(44, 34, 72, 1.0);
   const Film whole = uneven.film(options);
   for (const int threads : {3, 8}) {  // which changes the tiles, too
-    RenderOptions other = options;
+    RenderSettings other = options;
     other.threads = threads;
     EXPECT_TRUE(same_film(whole, uneven.film(other)));
   }
   RenderStats stats;
   EXPECT_TRUE(same_film(whole, uneven.film(options, pipeline_model(uneven.bvh), stats)));
-  RenderOptions part = options;
+  RenderSettings part = options;
   part.window = {8, 12, 44, 32};
   const Film window = uneven.film(part);
   for (int y = part.window.y0; y < part.window.y1; ++y) {
@@ -231,23 +232,19 @@ TEST(AdaptiveSampling, FilmDoesNotDependOnThreadsTilesOrEngine) {
 
 TEST(AdaptiveSampling, GoesOnFromAnyFilm) {
   const Uneven uneven;
-  const RenderOptions options = adaptive(44, 34, 150, 0.5);
+  const RenderSettings options = adaptive(44, 34, 150, 0.5);
   const Film whole = uneven.film(options);
   for (const int fewer : {17, 22, 64, 90}) {
-    RenderOptions first = options;
+    RenderSettings first = options;
     first.samples = fewer;
     const Film begun = uneven.film(first);
-    RenderOptions rest = options;
-    rest.unfinished = &begun;
-    EXPECT_TRUE(same_film(whole, uneven.film(rest))) << fewer;
+    EXPECT_TRUE(same_film(whole, uneven.film(options, &begun))) << fewer;
   }
   int reports = 0;
   RenderStats stats;
   const Film broken_off = render(uneven.scene, uneven.bvh, uneven.camera, options, cpu(uneven.bvh),
                                  stats, {.progress = [&](double) { return ++reports < 3; }});
-  RenderOptions rest = options;
-  rest.unfinished = &broken_off;
-  EXPECT_TRUE(same_film(whole, uneven.film(rest)));
+  EXPECT_TRUE(same_film(whole, uneven.film(options, &broken_off)));
 }
 
 // Blocks stop where they happen to have a small error, which could favour values on one side.

@@ -14,15 +14,15 @@ using namespace test;  // NOLINT(google-build-using-namespace)
 
 using std::numbers::pi;
 
-Film caustics_of(const Scene& scene, const Camera& camera, RenderOptions options) {
+Film caustics_of(const Scene& scene, const Camera& camera, RenderSettings options) {
   RenderStats stats;
   const Bvh bvh(scene);
   const IntersectorFactory cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
   return render(scene, bvh, camera, options, cpu, stats);
 }
 
-RenderOptions options_of(int size, int samples, Caustics caustics = Caustics::kOn) {
-  RenderOptions options = light(IntegratorKind::kPath, size, size, samples);
+RenderSettings options_of(int size, int samples, Caustics caustics = Caustics::kOn) {
+  RenderSettings options = light(IntegratorKind::kPath, size, size, samples);
   options.caustics = caustics;
   return options;
 }
@@ -91,7 +91,7 @@ TEST(Caustics, ASlabBendsALampsLightAsSnellSays) {
           irradiance(std::hypot((x + 0.5) / 32 - 0.5, (y + 0.5) / 32 - 0.5)) / 1024 * 0.1 / pi;
     }
   }
-  RenderOptions options = options_of(16, 8192);
+  RenderSettings options = options_of(16, 8192);
   options.filter = ReconstructionFilter::kBox;
   EXPECT_NEAR(mean_colour(caustics_of(scene, above_floor(), options)).x, expected, 0.01 * expected);
 }
@@ -123,7 +123,7 @@ void expect_same_means(const Scene& scene, const Camera& camera, int samples) {
   const auto sums_of = [&](Caustics caustics, int spp) {
     Sums sums;
     for (int seed = 0; seed < kSeeds; ++seed) {
-      RenderOptions options = options_of(kSize, spp, caustics);
+      RenderSettings options = options_of(kSize, spp, caustics);
       options.seed = std::uint64_t(1000 * int(caustics) + seed);
       const Film film = caustics_of(scene, camera, options);
       double means[12] = {};
@@ -252,11 +252,14 @@ TEST(Caustics, AreTheSameBytesWhoeverTraces) {
   Scene scene = everything();
   const Bvh bvh(scene);
   const IntersectorFactory cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
-  const auto picture = [&](const RenderOptions& options, const IntersectorFactory& engine) {
+  const PreparedScene prepared(scene, bvh);
+  const Camera camera = into_room();
+  const auto picture = [&](const RenderSettings& options, const IntersectorFactory& engine,
+                           const Film* unfinished = nullptr) {
     RenderStats stats;
-    return render(scene, bvh, into_room(), options, engine, stats);
+    return render({prepared, camera, options, {}, unfinished}, engine, stats);
   };
-  RenderOptions options = options_of(72, 8);
+  RenderSettings options = options_of(72, 8);
   const Film whole = picture(options, cpu);
   options.caustics = Caustics::kOff;
   EXPECT_FALSE(same(picture(options, cpu), whole));
@@ -285,17 +288,14 @@ TEST(Caustics, AreTheSameBytesWhoeverTraces) {
   const Film first = picture(options, cpu);
   options.end_sample = 0;
   options.threads = 1;
-  options.unfinished = &first;
-  EXPECT_TRUE(same(picture(options, cpu), whole));
+  EXPECT_TRUE(same(picture(options, cpu, &first), whole));
   // Any part of it, whose tiles have not come to the same samples.
   RenderStats stats;
   int asked = 0;
-  options.unfinished = nullptr;
   const Film part = render(scene, bvh, into_room(), options, cpu, stats,
                            {.progress = [&](double) { return ++asked < 2; }});
   ASSERT_TRUE(stats.cancelled);
-  options.unfinished = &part;
-  EXPECT_TRUE(same(picture(options, cpu), whole));
+  EXPECT_TRUE(same(picture(options, cpu, &part), whole));
 }
 
 }  // namespace

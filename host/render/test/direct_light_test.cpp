@@ -93,7 +93,7 @@ TEST(DirectLight, ManyLightsAddUp) {
     add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), floor);
     const Camera camera = camera_at({0.2, 1e-3, 0}, {0.2, 0, 0}, 1e-3);
     const auto seen = [&](IntegratorKind integrator, int samples) {
-      RenderOptions options = light(integrator, 1, 1, samples);
+      RenderSettings options = light(integrator, 1, 1, samples);
       options.max_depth = 0;
       options.ambient = 0.0;
       return double{film_of(scene, camera, options).color[0].r};
@@ -112,7 +112,7 @@ TEST(DirectLight, ALightBeforeASkyAddsUp) {
     add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
     scene.background = glm::vec3(1.0f);
     const Camera camera = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
-    RenderOptions options = light(kPath, 1, 1, 1 << 14);
+    RenderSettings options = light(kPath, 1, 1, 1 << 14);
     options.max_depth = 0;
     // The form factor of a square of side 1 at distance 1, of four quarters.
     const double x = 0.5, r = std::sqrt(1 + x * x), form = 4 * x / r * std::atan(x / r) / pi;
@@ -170,7 +170,7 @@ TEST(DirectLight, FacetsReflectALight) {
     add(scene, rectangle({-1, 2, -2}, {2, 0, 0}, {0, 0, 1.5f}), emitter(glm::vec3(3.0f)));
     add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), material);
     const Camera camera = camera_at({0, 1, 1.5}, {0, 0, 0}, 1e-3);
-    RenderOptions options = light(kPath, 1, 1, 4096);
+    RenderSettings options = light(kPath, 1, 1, 4096);
     options.max_depth = 1;
     const Bvh bvh(scene);
     const glm::vec3 eye(camera.eye());
@@ -209,7 +209,7 @@ TEST(DirectLight, RoughGlassShowsTheLightsBehindIt) {
     Scene scene;
     add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), material);
     const Camera camera = camera_at({0, 1, 1.5}, {0, 0, 0}, 1e-3);
-    RenderOptions options = light(kPath, 1, 1, 4096);
+    RenderSettings options = light(kPath, 1, 1, 4096);
     options.max_depth = 1;
     options.ambient = 0.0;
     const Bvh bvh(scene);
@@ -290,7 +290,7 @@ TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
     } else {
       scene.lights.push_back({glm::vec3(light_at), glm::vec3(10.0f)});
     }
-    RenderOptions options = light(integrator, 96, 96, 1);
+    RenderSettings options = light(integrator, 96, 96, 1);
     options.max_depth = 0;
     const Film film = film_of(scene, camera, options);
     int lit = 0, dark = 0;
@@ -321,7 +321,7 @@ TEST(DirectLight, PathAndWhittedAgreeAboutDirectLight) {
   // Of what is of glass shadows differ.
   scene.materials[4] = scene.materials[7] = matte(glm::vec3(0.5f));
   const Camera camera = camera_at({0.6, 0.2, 5}, {0, -0.3, 0}, 40.0);
-  RenderOptions options = light(kWhitted, 24, 24, 256);
+  RenderSettings options = light(kWhitted, 24, 24, 256);
   options.max_depth = 0;
   options.ambient = 0.0;
   const glm::dvec3 whitted = mean_colour(film_of(scene, camera, options));

@@ -50,9 +50,9 @@ struct Panel {
   }
 };
 
-RenderOptions options(int samples, ReconstructionFilter filter = ReconstructionFilter::kBox,
-                      IntegratorKind integrator = IntegratorKind::kPath) {
-  RenderOptions options;
+RenderSettings options(int samples, ReconstructionFilter filter = ReconstructionFilter::kBox,
+                       IntegratorKind integrator = IntegratorKind::kPath) {
+  RenderSettings options;
   options.width = options.height = kSide;
   options.samples = samples;
   options.filter = filter;
@@ -65,7 +65,7 @@ struct Found {
   std::uint64_t rays = 0;
 };
 
-Found find(const Scene& scene, const Camera& camera, const RenderOptions& asked) {
+Found find(const Scene& scene, const Camera& camera, const RenderSettings& asked) {
   const Bvh bvh(scene);
   const PreparedScene prepared(scene, bvh);
   const Lights lights(scene, bvh);
@@ -75,8 +75,8 @@ Found find(const Scene& scene, const Camera& camera, const RenderOptions& asked)
   film.window = {0, 0, kSide, kSide};
   Found found;
   found.ways.resize(std::size_t{kSide} * kSide, kUnknownHistories);
-  const RenderJob job{prepared, camera, asked, lights, {}};
-  EmitterSupersampler emitters(job, intersector, false);
+  const RenderContext context{prepared, camera, asked, lights};
+  EmitterSupersampler emitters(context, intersector, false);
   emitters.find(film, film.window, found.ways, {});
   RenderStats stats;
   emitters.add_to(stats);
@@ -126,7 +126,7 @@ TEST(EmitterSupersampler, GoStraightThroughWhatIsClear) {
 // Whose rays end at the first surface, clear or not.
 TEST(EmitterSupersampler, SeesOfThePrimaryIntegratorWhatThatSees) {
   Panel panel(2.5f, 1.5f, 6.5f, 5.5f);
-  const RenderOptions asked = options(4, ReconstructionFilter::kBox, IntegratorKind::kPrimary);
+  const RenderSettings asked = options(4, ReconstructionFilter::kBox, IntegratorKind::kPrimary);
   expect_around(find(panel.scene, panel.camera, asked).ways, kDirect);
   Material pane = test::matte(glm::vec3(0.0f));
   pane.opacity = 0.0f;
@@ -170,7 +170,7 @@ TEST(EmitterSupersampler, HaveTheSameMean) {
   for (const int lens : {0, 1}) {
     double sum = 0.0, squares = 0.0;
     for (int seed = 0; seed < kSeeds; ++seed) {
-      RenderOptions asked = options(256);
+      RenderSettings asked = options(256);
       RenderStats stats;
       asked.seed = static_cast<std::uint64_t>(seed);
       asked.caustics = Caustics::kOff;

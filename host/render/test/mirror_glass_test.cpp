@@ -27,7 +27,7 @@ TEST(MirrorGlass, AMirrorShowsTheMirroredScene) {
   const Camera front = camera_at({0.5, 0.6, 4}, {0.2, 0.3, 0}, 30.0);
   const Camera behind = camera_at({0.5, 0.6, -4}, {0.2, 0.3, 0}, 30.0);
   for (const IntegratorKind integrator : {kWhitted, kPath}) {
-    RenderOptions options = light(integrator, kSize, kSize, 1);
+    RenderSettings options = light(integrator, kSize, kSize, 1);
     options.max_depth = 1;
     options.ambient = 0.0;
     const Film in_mirror = film_of(mirrored, front, options);
@@ -64,7 +64,7 @@ TEST(MirrorGlass, ASlabOfGlassShiftsWhatIsBehindIt) {
   add(scene, rectangle({0, -30, -2}, {30, 0, 0}, {0, 60, 0}), shown({0, 1, 0}));
   add(scene, box({-20, -20, -float(thickness)}, {20, 20, 0}), glass(float(index)));
   const Camera camera = camera_at({4, 0.3, 3}, {1, 0, 0}, 50.0);
-  RenderOptions options = light(kWhitted, 80, 80, 1);
+  RenderSettings options = light(kWhitted, 80, 80, 1);
   options.max_depth = 2;  // no light that the glass has reflected inside
   options.threshold = 0.0;
   const Film film = film_of(scene, camera, options);
@@ -102,7 +102,7 @@ TEST(MirrorGlass, TotalReflectionShowsTheGround) {
   const auto seen = [&](double degrees) {
     const double angle = glm::radians(degrees);
     const Camera camera = camera_at({0, -1, 0}, {std::sin(angle), -1 + std::cos(angle), 0}, 1e-3);
-    RenderOptions options = light(kWhitted, 1, 1, 1);
+    RenderSettings options = light(kWhitted, 1, 1, 1);
     options.max_depth = 1;
     options.ambient = 0.0;
     return film_of(scene, camera, options).color[0];
@@ -152,7 +152,7 @@ TEST(MirrorGlass, ALampInAPondIsAsBrightAsFresnelSays) {
   add(scene, rectangle({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}), glass(1.5f));
   add(scene, rectangle({-20, 10, -20}, {40, 0, 0}, {0, 0, 40}), emitter(glm::vec3(10.0f)));
   const Camera camera = camera_at({0, 3, 0.3}, {0, 0, 0}, 20.0);
-  RenderOptions options = light(kPath, 16, 16, 16);
+  RenderSettings options = light(kPath, 16, 16, 16);
   options.filter = ReconstructionFilter::kBox;
   const Film film = film_of(scene, camera, options);
   double sum = 0.0, squares = 0.0;

@@ -30,8 +30,8 @@ IntersectorFactory serial(const Bvh& bvh, Order order = Order::kEdgesFirst) {
   };
 }
 
-RenderOptions size(int width, int height, int threads = 1) {
-  RenderOptions options;
+RenderSettings size(int width, int height, int threads = 1) {
+  RenderSettings options;
   options.width = width;
   options.height = height;
   options.threads = threads;
@@ -120,7 +120,7 @@ TEST(Renderer, WindowIsAPartOfTheWhole) {
   const Bvh bvh(scene);
   RenderStats stats;
   const Film whole = render(scene, bvh, kCamera, size(100, 80), serial(bvh), stats);
-  RenderOptions options = size(100, 80);
+  RenderSettings options = size(100, 80);
   options.window = {13, 7, 60, 71};
   const Film part = render(scene, bvh, kCamera, options, serial(bvh), stats);
   ASSERT_EQ(part.color.size(), 47u * 64u);
@@ -179,7 +179,7 @@ TEST(Renderer, ExtraChannelsOnDemand) {
   for (const auto wanted :
        {&ExtraChannels::position, &ExtraChannels::albedo, &ExtraChannels::object,
         &ExtraChannels::tests, &ExtraChannels::doubts}) {
-    RenderOptions options = size(64, 64);
+    RenderSettings options = size(64, 64);
     options.channels.*wanted = true;
     const Film film = render(scene, bvh, kCamera, options, serial(bvh), stats);
     EXPECT_TRUE(same(film, plain));
@@ -262,7 +262,7 @@ class Counting : public CpuIntersector {
 TEST(Renderer, CountsStayAtTheLargestNumber) {
   const Scene scene = sphere_in_box();
   const Bvh bvh(scene);
-  RenderOptions options = size(9, 9);
+  RenderSettings options = size(9, 9);
   options.samples = 3;
   options.channels.tests = options.channels.doubts = true;
   RenderStats stats;

@@ -76,7 +76,7 @@ TEST(Surface, AMaskHidesHalfOfASquare) {
   };
   const Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 25.0);
   for (const IntegratorKind integrator : {kWhitted, kPath}) {
-    const RenderOptions options = light(integrator, 40, 40, integrator == kPath ? 64 : 1);
+    const RenderSettings options = light(integrator, 40, 40, integrator == kPath ? 64 : 1);
     const Film with = film_of(scene_with(true), camera, options);
     const Film without = film_of(scene_with(false), camera, options);
     int hidden = 0, seen = 0;
@@ -116,7 +116,7 @@ TEST(Surface, ManyMasksHideNothing) {
         scene.positions[k].z += 0.1f * static_cast<float>(i);
     }
     scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
-    RenderOptions options = light(integrator, 1, 1, integrator == kPath ? 256 : 4);
+    RenderSettings options = light(integrator, 1, 1, integrator == kPath ? 256 : 4);
     options.ambient = 0.0;
     return film_of(scene, camera_at({0, 0, 6}, {0, 0, 0}, 1e-2), options).color[0].r;
   };
@@ -141,7 +141,7 @@ TEST(Surface, ChannelsShowWhatIsBehindHoles) {
       }
     }
     scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
-    RenderOptions options = light(integrator, 9, 8, 4);
+    RenderSettings options = light(integrator, 9, 8, 4);
     options.channels = {.position = true, .albedo = true, .object = true};
     return film_of(scene, camera_at({0, 0, 6}, {0, 0, 0}, 12.0), options);
   };
@@ -178,7 +178,7 @@ TEST(Surface, OpacityOfATextureBlends) {
       add_picture(scene, veil);
       scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
       const Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 1e-2);
-      RenderOptions options = light(integrator, 1, 1, integrator == kPath ? 16384 : 1);
+      RenderSettings options = light(integrator, 1, 1, integrator == kPath ? 16384 : 1);
       options.ambient = 0.0;
       options.max_depth = 1;
       return film_of(scene, camera, options).color[0].r;
@@ -201,7 +201,7 @@ TEST(Surface, ColoursOfVerticesAreBetweenThem) {
   scene.colors = {{1, 0, 0}, {1, 1, 0}, {1, 1, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0, 0}};
   scene.background = glm::vec3(1.0f);
   const Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 15.0);
-  RenderOptions options = light(kWhitted, 5, 5, 1);
+  RenderSettings options = light(kWhitted, 5, 5, 1);
   options.channels.albedo = true;
   const Film film = film_of(scene, camera, options);
   const float half = 6.0f * std::tan(7.5f * 3.14159265f / 180.0f);
@@ -245,9 +245,7 @@ TEST(Surface, SizeDoesNotMatter) {
                   glm::vec3(0, 0, 4) * scale),
         mirror(0.5f));
     const Camera camera = camera_at(glm::dvec3(0.5, 0.7, 4) * double(scale), glm::dvec3(0), 40.0);
-    RenderOptions options = light(integrator, 24, 24, 2);
-    options.lights = default_lights(scene, camera);
-    return film_of(scene, camera, options);
+    return film_of(scene, camera, light(integrator, 24, 24, 2), default_lights(scene, camera));
   };
   for (const IntegratorKind integrator : {kWhitted, kPath}) {
     const Film plain = picture(1.0f, integrator);

@@ -68,22 +68,11 @@ CameraSetting read_camera(const JsonValue& value) {
 }
 
 void read_cameras(const JsonValue& value, SceneFile& scene) {
-  value.require_keys({"eye", "target", "up", "fov", "projection", "aperture", "focus", "path"});
+  value.require_keys({"eye", "target", "up", "fov", "projection", "aperture", "focus"});
   if (value.find("eye") || value.find("target")) scene.camera = read_camera(value);
   scene.up = read_up(value);
   scene.fov = read_fov(value);
   scene.lens = read_lens(value);
-  const auto path = value.find("path");
-  if (!path) return;
-  for (const JsonValue& place : path->elements()) {
-    place.require_keys({"eye", "target", "up", "fov"});
-    CameraSetting& camera = scene.path.emplace_back(read_camera(place));
-    if (scene.camera) continue;
-    if (!camera.up) camera.up = scene.up;
-    if (!camera.fov) camera.fov = scene.fov;
-  }
-  if (scene.path.size() < 2) path->fail("at least two places");
-  if (!scene.camera) scene.camera = scene.path.front();
 }
 
 std::vector<InstanceSetting> read_instances(const JsonValue& scene,

@@ -56,10 +56,9 @@ struct SceneFile {
   std::filesystem::path file = {};
   std::filesystem::path obj = {};
   std::optional<CameraSetting> camera = {};
-  std::optional<glm::dvec3> up = {};     ///< "camera.up"; also used by --view, without a camera
-  std::optional<double> fov = {};        ///< "camera.fov", likewise
-  LensSetting lens = {};                 ///< of "camera", likewise
-  std::vector<CameraSetting> path = {};  ///< the camera's keyframes in order: none, or at least two
+  std::optional<glm::dvec3> up = {};  ///< "camera.up"; also used by --view, without a camera
+  std::optional<double> fov = {};     ///< "camera.fov", likewise
+  LensSetting lens = {};              ///< of "camera", likewise
   LightSettings lights = {};
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionSetting> options = {};

@@ -22,7 +22,7 @@ Outcome look_around(const std::vector<Corners>& walls, const glm::dvec3& eye) {
   test::add(scene, walls, test::mirror(1.0f));
   scene.background = glm::vec3(1.0f);
   const Bvh bvh(scene);
-  RenderOptions options = test::light(IntegratorKind::kWhitted, kSize, kSize, kSamples);
+  RenderSettings options = test::light(IntegratorKind::kWhitted, kSize, kSize, kSamples);
   options.max_depth = kDepth;
   Outcome outcome;
   RenderStats stats;

@@ -1,0 +1,76 @@
+// The program `merge`: joins parts of a picture that were rendered apart.
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/app/output_files.h"
+#include "host/app/output_options.h"
+#include "host/app/process.h"
+#include "host/base/input_error.h"
+#include "host/film/film.h"
+#include "host/film/merge.h"
+
+namespace raygate {
+namespace {
+
+constexpr const char* kAbout = R"(Usage: ./merge PART.exr... -o NAME [options]
+
+Makes one picture of parts that `render` made of it: ranges of its samples
+(--samples A:B), crops (--crop) with their sums (--channels sums), or both. The
+picture is bit for bit what one run would have rendered.
+
+  ./render scenes/cornell.obj --spp 64 --samples 0:32 -o a.exr
+  ./render scenes/cornell.obj --spp 64 --samples 32:64 -o b.exr
+  ./merge a.exr b.exr -o cornell
+)";
+
+constexpr const char* kFooter =
+    R"(The EXR keeps its sums with --channels sums, and while samples are missing.
+
+Exit status: 0 done; 2 the parts do not make a picture, or the command line or
+an output cannot be used.)";
+
+int run(int argc, char** argv) {
+  std::vector<std::string> parts;
+  OutputOptions options;
+  OptionTable table(kAbout, kFooter);
+  table.positionals(parts);
+  table.group("Options");
+  add_picture_options(table, options);
+  const std::string information = table.parse({argv + 1, argv + argc}, "");
+  if (!information.empty()) {
+    print(information);
+    return 0;
+  }
+  if (parts.empty() || table.typed("output").empty()) {
+    throw InputError("expected parts of a picture and -o NAME (see --help)");
+  }
+  name_outputs(table, parts.front(), options);
+  const std::vector<std::filesystem::path> inputs(parts.begin(), parts.end());
+  require_distinct(options.paths(), inputs);
+  for (const auto& path : options.paths()) require_writable(path);
+
+  std::vector<NamedFilm> films;
+  films.reserve(parts.size());
+  for (const std::string& part : parts) films.emplace_back(part, read_film(part));
+  FilmFile whole = merge(std::move(films));
+  const bool is_part = std::ranges::find(whole.metadata.options, kSamplesAttribute,
+                                         &std::pair<std::string, std::string>::first) !=
+                       whole.metadata.options.end();
+  whole.film.keeps_sums = options.channels.sums || is_part;
+  StagedFiles ready = stage_files(options, whole.film, whole.metadata);
+  for (AtomicFile& file : ready.files) file.commit();
+  const SampleRange samples = samples_of(whole.metadata);
+  print("wrote " + listed(ready.paths) + ": samples " + to_string(samples) +
+        (is_part ? ", of a picture that has more\n" : "\n"));
+  flush_standard_output();
+  return 0;
+}
+
+}  // namespace
+}  // namespace raygate
+
+int main(int argc, char** argv) {
+  return raygate::run_guarded([&] { return raygate::run(argc, argv); }, 1);
+}

@@ -1,0 +1,54 @@
+// The options of ./render.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/app/engines.h"
+#include "host/app/framing.h"
+#include "host/app/output_options.h"
+#include "host/app/render_options.h"
+#include "host/scene/io/scene_file.h"
+
+namespace raygate {
+
+/// Checked options: every value is in its range. Files are not checked.
+struct Options : EngineOptions {
+  /// Text that --help or --version asked for; if not empty nothing else here is of use.
+  std::string information;
+
+  std::vector<std::string> words;  ///< as typed, without the program's name
+  std::filesystem::path scene;     ///< the file that was named: a model or a scene file
+  SceneFile scene_file;            ///< that scene file or the one beside the model; else the model
+  RenderSettings render;
+  CameraRequest camera;
+  std::optional<EnvironmentSetting> environment;
+  OutputOptions output;
+  CoreFileOptions core_files;
+  std::filesystem::path resume;  ///< a picture to resume; empty: none
+  bool serve = false;            ///< the scene in a page, in place of files
+  int port = 0;                  ///< of that page; 0: any that is free
+  bool quiet = false, verbose = false;
+  bool strict = false;           ///< faces without area are refused
+  std::optional<double> smooth;  ///< degrees, as LoadOptions has it
+  bool is_bare_model = false;    ///< there is no scene file, not even an ignored one
+};
+
+/// Parses the command line of main() after the options of the scene file, which it overrides.
+/// `processors`: the default of --threads; 0: the machine's. Throws InputError, one line that names
+/// the option (or file and line), the value and what was expected.
+[[nodiscard]] Options parse_options(int argc, const char* const* argv, unsigned processors = 0);
+
+/// Name/value pairs of the options shown at `place`.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> option_values(Options options,
+                                                                             OptionPlaces place);
+
+/// Name/value pairs, for the EXR, of all options that render the same picture of the same scene.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> picture_options(
+    const Options& options, const Framing& framing);
+
+}  // namespace raygate

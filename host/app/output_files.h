@@ -1,0 +1,68 @@
+// Output files: the pictures of a film, finished or not.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/app/options.h"
+#include "host/app/output_options.h"
+#include "host/app/progress_bar.h"
+#include "host/film/atomic_file.h"
+#include "host/film/exr.h"
+#include "host/film/film.h"
+
+namespace raygate {
+
+/// Pictures of a film under temporary names.
+struct StagedFiles {
+  std::vector<AtomicFile> files;
+  std::vector<std::filesystem::path> paths;
+  std::vector<std::string> legends;  ///< of the false-colour pictures
+};
+
+/// Encodes and writes all pictures. Partial ones say so (ExrMetadata::partial). Throws InputError
+/// as AtomicFile does; then no file is left.
+[[nodiscard]] StagedFiles stage_files(const OutputOptions& options, const Film& film,
+                                      const ExrMetadata& metadata, int threads = 1);
+
+/// "a.exr, a.png".
+[[nodiscard]] std::string listed(const std::vector<std::filesystem::path>& paths);
+
+/// Saves an unfinished picture periodically and when a signal ends the run. The files are marked as
+/// partial.
+class Checkpointer {
+ public:
+  /// The references must outlive this.
+  Checkpointer(const OutputOptions& outputs, const ExrMetadata& metadata, int threads,
+               ProgressBar& bar)
+      : outputs_(outputs), metadata_(metadata), threads_(threads), bar_(bar) {}
+
+  /// Writes the unfinished pictures. Failures cost a warning; the next save tries again. `film` is
+  /// null if there was no memory for a copy of it.
+  void save(const Film* film) { save(film, outputs_); }
+
+  /// Writes only the EXR, from which a later run can resume, because a rank may have died.
+  void save_urgently(const Film* film);
+
+  /// Writes the unfinished pictures, unless nothing was rendered, and throws Interrupted.
+  [[noreturn]] void end_interrupted(const Film& film) const;
+
+ private:
+  void save(const Film* film, const OutputOptions& outputs);
+  void write(const Film& film, const OutputOptions& outputs) const;
+
+  const OutputOptions& outputs_;
+  const ExrMetadata& metadata_;
+  int threads_;
+  ProgressBar& bar_;
+  std::string last_trouble_;
+};
+
+/// Reads a film to resume, with the channels that this run's outputs need. `metadata`: of this
+/// run's picture. Throws InputError if the file cannot be read, has no sums, or is of another
+/// picture; only --spp may be larger.
+[[nodiscard]] Film read_unfinished(const Options& options, const std::filesystem::path& file,
+                                   const ExrMetadata& metadata);
+
+}  // namespace raygate

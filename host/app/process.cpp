@@ -1,0 +1,182 @@
+#include "host/app/process.h"
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+
+#include "host/base/input_error.h"
+#include "host/base/vectors.h"
+#include "host/ranks/ranks.h"
+
+namespace raygate {
+namespace {
+
+constexpr int kUserError = 2;
+constexpr const char* kOutOfMemory = "out of memory";
+constexpr int kSignalBase = 128;  // as shells report a death by signal
+
+int why_output_failed = 0;  // errno of a failed print; 0: none failed
+std::atomic<int> noted_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
+
+std::atomic<bool> noted_warning = false;
+
+/// Given back when memory runs out for the first time, so that there is some to end with: for the
+/// line that says so, and for destructors that allocate, as those of JSON values do.
+constexpr std::size_t kReserve = std::size_t{1} << 20;
+std::atomic<void*> reserve = nullptr;
+
+void give_reserve_back() {
+  void* const memory = reserve.exchange(nullptr);
+  if (memory == nullptr) throw std::bad_alloc();
+  ::operator delete(memory);
+}
+
+void note(int signal) { noted_signal = signal; }
+void note_warning(int /*signal*/) { noted_warning = true; }
+
+/// The length of the UTF-8 character that `text` begins with, if it is one that a terminal shows;
+/// else 0.
+std::size_t shown_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if (byte(i) < 0x80 || byte(i) > 0xbf) return 0;
+  }
+  return first == 0xc2 && byte(1) < 0xa0 ? 0 : length;  // U+0080 to U+009F are controls
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, bool newlines) {
+  std::string shown;
+  while (!text.empty()) {
+    std::size_t length = shown_length(text);
+    if (length == 0 && newlines && text[0] == '\n') length = 1;
+    if (length > 0) {
+      shown += text.substr(0, length);
+    } else {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\x%02X", static_cast<unsigned char>(text[0]));
+      shown += code;
+      length = 1;
+    }
+    text.remove_prefix(length);
+  }
+  return shown;
+}
+
+void print(std::string_view text, std::FILE* stream) {
+  errno = 0;
+  if (std::fputs(printable(text, true).c_str(), stream) < 0 && stream == stdout) {
+    why_output_failed = errno;
+  }
+}
+
+void print_warning(std::string_view what) {
+  std::fprintf(stderr, "warning: %s\n", printable(what).c_str());
+}
+
+void flush_standard_output() {
+  errno = 0;
+  const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+  if (!failed) return;
+  const int why = why_output_failed != 0 ? why_output_failed : errno;
+  if (why == EPIPE) {  // `| head` ends it without a word
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+  }
+  const std::string reason = why != 0 ? std::strerror(why) : "an earlier write failed";
+  throw InputError("standard output: cannot write: " + reason);
+}
+
+void choose_vectors() {
+  try {
+    use_vectors(wanted_vectors());
+  } catch (const std::runtime_error& error) {
+    throw InputError(error.what());
+  }
+}
+
+Ending ending_of(const std::exception_ptr& error, int internal_error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const InputError& unusable) {
+    return {kUserError, unusable.what()};
+  } catch (const Interrupted& interrupted) {
+    return {kSignalBase + interrupted.signal(), interrupted.what()};
+  } catch (const std::bad_alloc&) {
+    return {kUserError, kOutOfMemory};
+  } catch (const std::length_error&) {  // more than any memory has
+    return {kUserError, kOutOfMemory};
+  } catch (const RankFailure& trouble) {
+    return {trouble.status(), trouble.what()};
+  } catch (const std::exception& fault) {
+    return {internal_error, fault.what()};
+  }
+}
+
+int run_guarded(const std::function<int()>& program, int internal_error) {
+  // A file that grows past the user's limit, or a pipe whose reader is gone, becomes a failed
+  // write, not a death.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    // Without one this goes on, too; a second call of this, which ends a run, may find no memory.
+    ::operator delete(reserve.exchange(::operator new(kReserve, std::nothrow)));
+    std::set_new_handler(give_reserve_back);
+    const int status = program();
+    flush_standard_output();
+    return status;
+  } catch (...) {
+    const std::exception_ptr error = std::current_exception();
+    try {
+      const Ending ending = ending_of(error, internal_error);
+      std::fprintf(stderr, "error: %s\n", printable(ending.line).c_str());
+      return ending.status;
+    } catch (const std::bad_alloc&) {  // no memory for the line itself
+      std::fprintf(stderr, "error: %s\n", kOutOfMemory);
+      return kUserError;
+    }
+  }
+}
+
+void work_as_rank(Ranks& ranks, const std::function<void()>& work) {
+  if (ranks.index() == 0) {
+    work();
+  } else {
+    run_rank(ranks, work, [](const std::exception_ptr& error) { return ending_of(error, 1); });
+  }
+}
+
+void note_interruptions() {
+  struct sigaction action {};
+  action.sa_handler = note;
+  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second one kills
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction old {};
+    if (::sigaction(signal, nullptr, &old) == 0 && old.sa_handler == SIG_DFL) {
+      ::sigaction(signal, &action, nullptr);
+    }
+  }
+}
+
+int interruption() { return noted_signal; }
+
+void note_warnings() {
+  struct sigaction action {};
+  action.sa_handler = note_warning;
+  action.sa_flags = SA_RESTART;
+  ::sigaction(SIGCONT, &action, nullptr);
+}
+
+bool take_warning() { return noted_warning.exchange(false); }
+
+}  // namespace raygate

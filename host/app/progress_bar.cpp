@@ -1,0 +1,89 @@
+#include "host/app/progress_bar.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "host/app/format.h"
+
+namespace raygate {
+namespace {
+
+constexpr int kWidestBar = 40;
+constexpr std::string_view kEraseLine = "\r\x1b[K";
+
+int terminal_columns() {
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
+void show(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+/// An estimate deserves no more than whole seconds.
+std::string time_left(double seconds) {
+  return seconds < 59.5 ? std::to_string(std::lround(seconds)) + " s" : format_duration(seconds);
+}
+
+/// " 45 %, 12 s left".
+std::string state_of(double fraction, double elapsed) {
+  std::string percent = std::to_string(static_cast<int>(100.0 * fraction));
+  percent.insert(0, 3 - percent.size(), ' ');
+  std::string state = percent + " %";
+  // The first hundredth says little about the rest.
+  if (fraction >= 0.01) {
+    state += ", " + time_left(elapsed * (1.0 - fraction) / fraction) + " left";
+  }
+  return state;
+}
+
+}  // namespace
+
+std::string progress_line(double fraction, double elapsed, int columns) {
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  const std::string state = state_of(fraction, elapsed);
+  const std::string title = "rendering ";
+  // Room is kept for the usual lengths of the state, so that the bar doesn't change its own.
+  const int taken = static_cast<int>(title.size() + 3 + std::max<std::size_t>(state.size(), 24));
+  const int room = std::min(kWidestBar, columns - 1 - taken);
+  if (room < 5) return state.substr(0, static_cast<std::size_t>(std::max(0, columns - 1)));
+  const auto done = static_cast<std::size_t>(fraction * room);
+  std::string bar(done, '=');
+  if (done < static_cast<std::size_t>(room)) bar += '>';
+  bar.resize(static_cast<std::size_t>(room), ' ');
+  return title + "[" + bar + "] " + state;
+}
+
+ProgressBar::ProgressBar(bool enabled, Style style)
+    : enabled_(enabled && (style == Style::kLines || ::isatty(STDERR_FILENO) != 0)),
+      style_(style) {}
+
+void ProgressBar::erase() {
+  if (drawn_) show(kEraseLine);
+  drawn_ = false;
+}
+
+void ProgressBar::update(double fraction) {
+  if (!enabled_) return;
+  const Clock::time_point now = Clock::now();
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  if (style_ == Style::kLines) {
+    const int tenths = static_cast<int>(10.0 * fraction);
+    if (tenths > std::exchange(tenths_, tenths))
+      show("rendering: " + state_of(fraction, elapsed) + "\n");
+    return;
+  }
+  if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
+  drawn_ = true;
+  show(std::string(kEraseLine) + progress_line(fraction, elapsed, terminal_columns()));
+}
+
+}  // namespace raygate

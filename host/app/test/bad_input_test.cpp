@@ -1,0 +1,309 @@
+// What cannot be rendered: one clear line, exit status 2, and every old file as it was. Run with
+// the sanitizers too, where a crash or a leak fails the test by its exit status.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <regex>
+
+#include "host/app/test/program.h"
+
+namespace raygate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kGoodScene = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
+
+class BadInput : public testing::Test {
+ protected:
+  /// Pictures of an earlier run, and statistics: not to be touched.
+  void SetUp() override {
+    for (const char* name : {"scene.exr", "scene.png", "stats.json"}) {
+      folder_.write(name, std::string("old ") + name);
+    }
+  }
+
+  [[nodiscard]] Outcome render(std::vector<std::string> arguments) const {
+    Invocation invocation{
+        .arguments = {"--engine", "cpu", "--size", "8x6", "--stats", "stats.json"},
+        .folder = folder_.path()};
+    invocation.arguments.insert(invocation.arguments.end(), arguments.begin(), arguments.end());
+    return run_program(invocation);
+  }
+
+  void expect_old_files() const {
+    for (const char* name : {"scene.exr", "scene.png", "stats.json"}) {
+      EXPECT_EQ(folder_.read(name), std::string("old ") + name);
+    }
+    for (const std::string& name : folder_.list()) {
+      EXPECT_NE(name[0], '.') << "a temporary file was left: " << name;
+    }
+  }
+
+  /// Status 2; the one line on standard error, after "error: ", matches `pattern`.
+  void expect_refused(const Outcome& outcome, const std::string& pattern) const {
+    EXPECT_EQ(outcome.status, 2) << "signal " << outcome.signal << "\n" << outcome.err;
+    EXPECT_TRUE(std::regex_match(outcome.err, std::regex("error: " + pattern + "\n")))
+        << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    expect_old_files();
+  }
+
+  /// The scene is refused, at that line of the file.
+  void expect_refused_scene(const std::string& text, int line) const {
+    SCOPED_TRACE(text);
+    folder_.write("scene.obj", text);
+    expect_refused(render({"scene.obj"}), "scene\\.obj:" + std::to_string(line) + ": [^\n]+");
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(BadInput, TheGoodSceneIsGood) {
+  folder_.write("scene.obj", kGoodScene);
+  const Outcome outcome = render({"scene.obj"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(folder_.read("scene.png").substr(0, 4), "\x89PNG");
+  EXPECT_EQ(folder_.read("scene.exr").substr(0, 4), "\x76\x2f\x31\x01");
+  EXPECT_EQ(folder_.read("stats.json").substr(0, 1), "{");
+  EXPECT_EQ(folder_.list().size(), 4u);
+}
+
+TEST_F(BadInput, MissingFile) { expect_refused(render({"missing.obj"}), "missing\\.obj: [^\n]+"); }
+
+TEST_F(BadInput, FolderAsScene) {
+  fs::create_directory(folder_.path() / "scene.obj");
+  expect_refused(render({"scene.obj"}), "scene\\.obj: [^\n]+");
+}
+
+TEST_F(BadInput, UnreadableFile) {
+  folder_.write("scene.obj", kGoodScene);
+  ::chmod((folder_.path() / "scene.obj").c_str(), 0);
+  ::chmod(folder_.path().c_str(), 0777);
+  for (const char* name : {"scene.exr", "scene.png", "stats.json"}) {
+    ::chmod((folder_.path() / name).c_str(), 0666);
+  }
+  const Outcome outcome = run_program({.arguments = {"scene.obj", "--engine", "cpu"},
+                                       .folder = folder_.path(),
+                                       .without_rights = true});
+  expect_refused(outcome, "scene\\.obj: [^\n]+");
+}
+
+/// What stands beside the scene, in a folder that may not be entered, is not missing.
+TEST_F(BadInput, UnreadableFolder) {
+  ::chmod(folder_.path().c_str(), 0777);
+  folder_.write("scene.obj", std::string("mtllib locked/m.mtl\n") + kGoodScene);
+  fs::create_directory(folder_.path() / "locked");
+  folder_.write("scene.json", R"({"obj": "scene.obj", "environment": {"file": "locked/sky.hdr"}})");
+  ::chmod((folder_.path() / "locked").c_str(), 0);
+  for (const std::string scene : {"scene.json", "scene.obj"}) {
+    std::vector<std::string> words{scene, "--engine", "cpu", "--size", "8x6", "-o", "new"};
+    if (scene == "scene.obj")
+      words.insert(words.end(), {"--no-scene-file", "--environment", "locked/sky.hdr"});
+    const Outcome outcome =
+        run_program({.arguments = words, .folder = folder_.path(), .without_rights = true});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("error: locked/sky.hdr: cannot read: Permission denied\n"),
+              std::string::npos)
+        << outcome.err;
+    expect_old_files();
+  }
+  const Outcome outcome = run_program({.arguments = {"scene.obj", "--no-scene-file", "--engine",
+                                                     "cpu", "--size", "8x6", "-o", "new"},
+                                       .folder = folder_.path(),
+                                       .without_rights = true});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("'locked/m.mtl' cannot be read: Permission denied"), std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(BadInput, EmptyFile) {
+  folder_.write("scene.obj", "");
+  expect_refused(render({"scene.obj"}), "scene\\.obj(:1)?: [^\n]+");
+}
+
+TEST_F(BadInput, SceneWithoutFaces) {
+  folder_.write("scene.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  expect_refused(render({"scene.obj"}), "scene\\.obj(:[0-9]+)?: [^\n]+");
+}
+
+TEST_F(BadInput, KindsOfFilesThatAreNotRead) {
+  folder_.write("scene.fbx", "Kaydara FBX Binary");
+  expect_refused(render({"scene.fbx"}),
+                 "scene\\.fbx: found a \\.fbx file, expected \\.obj, [^\n]+ Blender writes [^\n]+");
+  for (const char* name : {"scene.glb", "scene.gltf", "scene.ply", "scene.stl"}) {
+    folder_.write(name, kGoodScene);
+    expect_refused(render({name, "-o", "scene"}), std::string(name) + "(:1)?: [^\n]+");
+  }
+}
+
+TEST_F(BadInput, TextThatIsNoObj) {
+  expect_refused_scene("Dear reader,\nthis is a letter.\n", 1);
+  expect_refused_scene("{\"a\": 1}\n", 1);
+  expect_refused_scene(std::string("\0\1\2\3\n", 5), 1);
+  expect_refused_scene(std::string(kGoodScene) + "fish and chips\n", 7);
+}
+
+TEST_F(BadInput, IndexOutOfRange) {
+  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", 4);
+  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", 4);
+  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", 4);
+  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n", 4);
+}
+
+TEST_F(BadInput, NumbersThatAreNotFinite) {
+  for (const char* number : {"nan", "NaN", "inf", "-inf", "1e999", "infinity"}) {
+    expect_refused_scene(std::string("v 0 0 0\nv 1 0 ") + number + "\nv 0 1 0\nf 1 2 3\n", 2);
+  }
+}
+
+TEST_F(BadInput, NumbersThatAreNone) {
+  expect_refused_scene("v 0 0 0\nv 1 0 zero\nv 0 1 0\nf 1 2 3\n", 2);
+  expect_refused_scene("v 0 0 0\nv 1 0\nv 0 1 0\nf 1 2 3\n", 2);
+  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3x\n", 4);
+  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", 4);
+}
+
+TEST_F(BadInput, FacesWithoutArea) {
+  folder_.write("scene.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\nf 3 3 1\n");
+  expect_refused(render({"scene.obj", "--strict"}), "scene\\.obj:5: face of zero area [^\n]+");
+  const Outcome outcome = render({"scene.obj", "-o", "new"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(std::regex_match(outcome.err, std::regex("warning: scene\\.obj[^\n]+\n")))
+      << outcome.err;
+  EXPECT_NE(folder_.read("new.png"), "");
+}
+
+TEST_F(BadInput, UnwritableOutputs) {
+  folder_.write("scene.obj", kGoodScene);
+  fs::create_directory(folder_.path() / "folder.png");
+  const auto refused = [&](const std::string& option, const std::string& path,
+                           const std::string& reason) {
+    expect_refused(render({"scene.obj", option, path}), path + "[^\n]*: cannot write: " + reason);
+  };
+  refused("-o", "missing/new", "No such file or directory");
+  refused("-o", "scene.obj/new.png", "Not a directory");
+  refused("--stats", "folder.png", "Is a directory");
+  refused("-o", std::string(300, 'n'), "File name too long");
+}
+
+TEST_F(BadInput, OutputWithoutPermission) {
+  folder_.write("scene.obj", kGoodScene);
+  ::chmod(folder_.path().c_str(), 0555);
+  const Outcome outcome = run_program({.arguments = {"scene.obj", "--engine", "cpu", "-o", "new"},
+                                       .folder = folder_.path(),
+                                       .without_rights = true});
+  ::chmod(folder_.path().c_str(), 0755);
+  expect_refused(outcome, "new\\.exr: cannot write: Permission denied");
+}
+
+/// An unwritable output is found before time is spent on the scene.
+TEST_F(BadInput, OutputIsCheckedFirst) {
+  expect_refused(render({"missing.obj", "-o", "missing/new"}),
+                 "missing/new\\.exr: cannot write: No such file or directory");
+}
+
+TEST_F(BadInput, FullDisk) {
+  folder_.write("scene.obj", kGoodScene);
+  for (const long limit : {1L, 200L, 600L}) {
+    const Outcome outcome = run_program({.arguments = {"scene.obj", "--engine", "cpu"},
+                                         .folder = folder_.path(),
+                                         .file_size_limit = limit});
+    expect_refused(outcome, "scene\\.exr: cannot write: File too large");
+  }
+  // The pictures are ready when this one fails; they may not take their names.
+  expect_refused(render({"scene.obj", "--stats", "/dev/full"}),
+                 "/dev/full: cannot write: No space left on device");
+}
+
+TEST_F(BadInput, ImpossibleOptions) {
+  folder_.write("scene.obj", kGoodScene);
+  const auto refused = [&](const std::string& option, const std::string& value) {
+    expect_refused(render({"scene.obj", option, value}), option + ": expected [^\n]+");
+  };
+  refused("--size", "0x0");
+  refused("--size", "1000000000x1000000000");
+  refused("--size", "-5x5");
+  refused("--crop", "0,0,9,6");
+  refused("--engine", "gpu");
+  refused("--unit", "warp");
+  refused("--threads", "0");
+  refused("--camera", "0,0,0,0,0,0");
+  refused("--seed", "dice");
+  expect_refused(render({"scene.obj", "--frobnicate"}),
+                 "--frobnicate: unknown option \\(see --help\\)");
+  expect_refused(render({"scene.obj", "scene.obj"}), "scene\\.obj: a second scene; [^\n]+");
+  expect_refused(render({}), "no scene given; [^\n]+");
+}
+
+TEST_F(BadInput, SceneFiles) {
+  folder_.write("scene.obj", kGoodScene);
+  const auto refused = [&](const std::string& text, int line) {
+    folder_.write("scene.json", text);
+    for (const char* scene : {"scene.obj", "scene.json"}) {
+      expect_refused(render({scene}), "scene\\.json:" + std::to_string(line) + ": [^\n]+");
+    }
+  };
+  refused("{", 1);
+  refused("{\"colour\": 1}", 1);
+  refused("{\"camera\": {\n\"eye\": [0, 0, 1],\n\"target\": [0, 0, 1]}}", 3);
+  refused("{\"render\":\n{\"size\": \"0x0\"}}", 2);
+  folder_.write("scene.json", "{\"obj\": \"none.obj\"}");
+  expect_refused(render({"scene.json"}), "scene\\.json: found no none\\.obj, expected [^\n]+");
+  folder_.write("make_scene.py", "");
+  expect_refused(render({"scene.json"}),
+                 "scene\\.json: found no none\\.obj, [^\n]+ `python3 make_scene\\.py none\\.obj`");
+}
+
+/// More triangles than there are numbers: told before anybody looks at them all.
+TEST_F(BadInput, TooManyInstances) {
+  constexpr int kSide = 300, kPlaces = 12100;
+  std::string model, places;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      model += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+      if (x == 0 || y == 0) continue;
+      const int a = y * kSide + x + 1;  // its number; of its neighbours, those before it
+      for (const int b : {a - kSide - 1, a - 1}) {
+        model += "f " + std::to_string(a) + " " + std::to_string(b) + " " +
+                 std::to_string(b == a - 1 ? a - kSide - 1 : a - kSide) + "\n";
+      }
+    }
+  }
+  for (int i = 0; i < kPlaces; ++i) places += (i == 0 ? "[" : ",\n[") + std::to_string(i) + ",0,0]";
+  folder_.write("model.obj", model);
+  folder_.write("scene.obj", kGoodScene);
+  folder_.write("scene.json",
+                R"({"instances": [{"model": "model.obj", "places": [)" + places + "]}]}");
+  expect_refused(render({"scene.obj"}),
+                 "scene\\.obj: found 2163504202 triangles with all instances, expected fewer than "
+                 "2\\^31");
+}
+
+/// Numbers so large that differences, products or the camera's distance leave float's range.
+TEST_F(BadInput, VectorsThatNoMachineHas) {
+  folder_.write("scene.obj", kGoodScene);
+  setenv("RAYGATE_VECTORS", "sse9", 1);
+  expect_refused(render({"scene.obj"}), "RAYGATE_VECTORS: found sse9, expected one .*: baseline.*");
+  unsetenv("RAYGATE_VECTORS");
+  expect_old_files();
+}
+
+TEST_F(BadInput, ExtremeCoordinatesNeverCrash) {
+  for (const char* size : {"1e-40", "1e-30", "1e15", "1e30", "3e38", "1e300"}) {
+    SCOPED_TRACE(size);
+    const std::string s = size;
+    folder_.write("scene.obj", "v 0 0 0\nv " + s + " 0 0\nv 0 " + s + " 0\nf 1 2 3\n");
+    const Outcome outcome = render({"scene.obj", "-o", "new"});
+    EXPECT_EQ(outcome.signal, 0);
+    EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << outcome.err;
+    EXPECT_EQ(outcome.err.find("runtime error"), std::string::npos) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace raygate

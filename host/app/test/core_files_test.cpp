@@ -1,0 +1,108 @@
+// What ./render writes of a ray core.
+#include "host/app/test/render_run.h"
+
+namespace raygate {
+namespace {
+
+class CoreFiles : public Render {
+ protected:
+  Outcome run(std::vector<std::string> more) {
+    std::vector<std::string> words{kCornell, "--unit", "core", "--arith", "behavioural",
+                                   "--size", "16x16",  "-o",   "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program({.arguments = words, .folder = folder_.path()});
+  }
+  Outcome read_image(std::vector<std::string> more = {}) {
+    std::vector<std::string> words{"-B", RAYGATE_READ_IMAGE, "image"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(
+        {.arguments = words, .folder = folder_.path(), .program = "/usr/bin/python3"});
+  }
+};
+
+TEST_F(CoreFiles, TheMemoryImageIsWhatItsReaderExpects) {
+  const Outcome dumped = run({"--dump-image", "image"});
+  ASSERT_EQ(dumped.status, 0) << dumped.err;
+  EXPECT_EQ(dumped.out, "wrote image, 42 lines\n");
+  EXPECT_EQ(folder_.list(), std::vector{"image"s}) << "nothing is rendered";
+  const std::string image = folder_.read("image");
+  EXPECT_EQ(image.size(), 42u * 64u);
+  const Outcome whole = read_image({"--hex", "image.hex"});
+  EXPECT_EQ(whole.status, 0) << whole.err;
+  EXPECT_EQ(whole.out, "42 lines, 4 nodes, 38 triangles, 2 depth\n");
+  EXPECT_EQ(folder_.read("image.hex").size(), 42u * 129u);
+
+  folder_.write("image", image.substr(0, image.size() - 1));
+  EXPECT_EQ(read_image().status, 2);
+  folder_.write("image", image.substr(0, image.size() - 64));
+  EXPECT_NE(read_image().err.find("found none"), std::string::npos);
+  std::string moved = image;
+  moved[64 * 41 + 3] = '~';  // a corner's x is far away
+  folder_.write("image", moved);
+  EXPECT_NE(read_image().err.find("outside the box"), std::string::npos);
+  EXPECT_EQ(read_image({"--hex", "image.hex"}).status, 2);
+  moved = image;
+  moved[64 * 41 + 36] ^= 1;  // its name
+  folder_.write("image", moved);
+  EXPECT_NE(read_image().err.find("expected its line"), std::string::npos);
+  moved[64 * 41 + 36] ^= 1;
+  moved[64 * 41 + 40] = moved[64 * 40 + 40];  // its rank
+  folder_.write("image", moved);
+  EXPECT_NE(read_image().err.find("expected it once"), std::string::npos);
+}
+
+TEST_F(CoreFiles, NoImageThatCannotBeWrittenIsBegun) {
+  EXPECT_EQ(run({"--dump-image", "absent/image"}).status, 2);
+  EXPECT_TRUE(folder_.list().empty());
+}
+
+TEST_F(CoreFiles, CoresBehindOneMemoryDrawTheSamePicture) {
+  const std::string scene =
+      RAYGATE_SCENES "/paper.obj";  // in this size it has doubts and near ties
+  render({scene, "--size", "32x24", "--engine", "cpu", "--spp", "1", "-o", "cpu"});
+  std::vector<double> clocks;
+  for (const char* cores : {"1", "3"}) {
+    render({scene, "--size", "32x24", "--spp", "1", "--unit", "core", "--arith", "behavioural",
+            "--threads", "1", "--cores", cores, "-o", "core"});
+    expect_same_pictures("cpu", "core");
+    clocks.push_back(stats_.at("clocks"));
+    EXPECT_GT(stats_.at("edge_doubts"), 0);
+    EXPECT_GT(stats_.at("depth_doubts"), 0);
+    EXPECT_GT(stats_.at("exact_clocks"), 0);
+    EXPECT_EQ(stats_.at("host_decisions"), 0);
+  }
+  EXPECT_LT(clocks[1], clocks[0]);
+}
+
+TEST_F(CoreFiles, ABoardDrawsTheSamePicture) {
+  const std::string scene = RAYGATE_SCENES "/paper.obj";
+  render({scene, "--size", "32x24", "--engine", "cpu", "--spp", "1", "-o", "cpu"});
+  render(
+      {scene, "--size", "32x24", "--spp", "1", "--unit", "board", "--threads", "1", "-o", "board"});
+  expect_same_pictures("cpu", "board");
+  EXPECT_GT(stats_.at("clocks"), 11 * stats_.at("unit_tests").get<int>());
+}
+
+TEST_F(CoreFiles, APortThatIsNoneIsAnInputError) {
+  const Outcome outcome = run_program(
+      {.arguments = {kCornell, "--unit", "board", "--board-port", "/dev/null", "-o", "out"},
+       .folder = folder_.path()});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("/dev/null: expected a serial port"), std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(CoreFiles, TheWaveOfAPixelsRay) {
+  folder_.write("link.vcd.unfinished", "of another program");
+  std::filesystem::create_symlink("pixel.vcd", folder_.path() / "link.vcd");
+  const Outcome outcome = run({"--trace-pixel", "8,8", "--trace", "link.vcd"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("the ray of pixel 8,8 hits triangle "), std::string::npos);
+  EXPECT_EQ(folder_.list(), (std::vector{"link.vcd"s, "link.vcd.unfinished"s, "pixel.vcd"s}));
+  EXPECT_EQ(folder_.read("link.vcd.unfinished"), "of another program");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_.path() / "link.vcd"));
+  EXPECT_NE(folder_.read("pixel.vcd").find("ray_core"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace raygate

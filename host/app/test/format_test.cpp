@@ -1,0 +1,60 @@
+#include "host/app/format.h"
+
+#include <gtest/gtest.h>
+
+#include <exception>
+#include <limits>
+#include <stdexcept>
+
+#include "host/app/process.h"
+
+namespace raygate {
+namespace {
+
+// A file may ask for a list longer than any memory.
+TEST(Ending, OfAListThatIsTooLong) {
+  const Ending ending = ending_of(std::make_exception_ptr(std::length_error("vector")), 1);
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_EQ(ending.line, "out of memory");
+}
+
+TEST(Format, Counts) {
+  EXPECT_EQ(format_count(0), "0");
+  EXPECT_EQ(format_count(999), "999");
+  EXPECT_EQ(format_count(1000), "1,000");
+  EXPECT_EQ(format_count(123456), "123,456");
+  EXPECT_EQ(format_count(18446744073709551615u), "18,446,744,073,709,551,615");
+  EXPECT_EQ(format_count(0, "hit"), "0 hits");
+  EXPECT_EQ(format_count(1, "hit"), "1 hit");
+  EXPECT_EQ(format_count(2000, "hit"), "2,000 hits");
+}
+
+TEST(Format, Durations) {
+  EXPECT_EQ(format_duration(0.0), "0.00 ms");
+  EXPECT_EQ(format_duration(0.0001234), "0.12 ms");
+  EXPECT_EQ(format_duration(0.0123), "12.3 ms");
+  EXPECT_EQ(format_duration(0.9994), "999 ms");
+  EXPECT_EQ(format_duration(0.9996), "1.00 s");
+  EXPECT_EQ(format_duration(9.994), "9.99 s");
+  EXPECT_EQ(format_duration(9.996), "10.0 s");
+  EXPECT_EQ(format_duration(59.94), "59.9 s");
+  EXPECT_EQ(format_duration(59.96), "1 min 00 s");
+  EXPECT_EQ(format_duration(245.0), "4 min 05 s");
+  EXPECT_EQ(format_duration(3599.4), "59 min 59 s");
+  EXPECT_EQ(format_duration(3599.6), "1 h 00 min");
+  EXPECT_EQ(format_duration(7620.0), "2 h 07 min");
+}
+
+TEST(Format, DurationsThatSayNothing) {
+  EXPECT_EQ(format_duration(-1.0), "?");
+  EXPECT_EQ(format_duration(std::numeric_limits<double>::quiet_NaN()), "?");
+  EXPECT_EQ(format_duration(std::numeric_limits<double>::infinity()), "?");
+}
+
+TEST(Format, Fixed) {
+  EXPECT_EQ(format_fixed(7.0, 2), "7.00");
+  EXPECT_EQ(format_fixed(std::numeric_limits<double>::max(), 0).size(), 309u);
+}
+
+}  // namespace
+}  // namespace raygate

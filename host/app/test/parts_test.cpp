@@ -1,0 +1,342 @@
+// Pictures that are rendered in parts, merged, broken off and gone on with: the bytes of one run.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <thread>
+
+#include "host/app/test/render_run.h"
+
+namespace raygate {
+namespace {
+
+class Parts : public Render {
+ protected:
+  /// 12 samples a pixel of a small Cornell box, and more arguments.
+  Outcome part(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {kCornell,       "--size", "60x44",     "--spp", "12",
+                                          "--integrator", "path",   "--threads", "1"};
+    if (std::ranges::find(more, "--engine") == more.end()) {
+      arguments.insert(arguments.end(), {"--engine", "cpu"});
+    }
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program({.arguments = arguments, .folder = folder_.path()});
+  }
+  void make(const std::vector<std::string>& more) {
+    const Outcome outcome = part(more);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  Outcome merge(std::vector<std::string> arguments) {
+    return run_program(
+        {.arguments = std::move(arguments), .folder = folder_.path(), .program = RAYGATE_MERGE});
+  }
+  void expect_merged(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"-o", "merged"});
+    const Outcome outcome = merge(arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    expect_same_pictures("merged", "whole");
+  }
+  /// Renders, is killed at any time, goes on from what was saved last, and so on.
+  void expect_to_survive(const std::vector<std::string>& long_run) {
+    std::vector<std::string> arguments = long_run;
+    arguments.insert(arguments.end(), {"-o", "whole"});
+    make(arguments);
+    std::mt19937 random(20261122);
+    int killed = 0;
+    const char* const wanted = std::getenv("RAYGATE_KILLS");  // make test LONG=kills
+    const int kills = wanted == nullptr ? 4 : std::atoi(wanted);
+    for (int runs = 0; killed < kills && runs < 2 * kills; ++runs) {
+      arguments = {kCornell, "--integrator", "path", "--threads", "2",    "--engine",
+                   "cpu",    "--save-every", "0.1",  "-o",        "a.exr"};
+      arguments.insert(arguments.end(), long_run.begin(), long_run.end());
+      if (!folder_.read("a.exr").empty()) arguments.insert(arguments.end(), {"--resume", "a.exr"});
+      const Outcome outcome =
+          run_program({.arguments = arguments,
+                       .folder = folder_.path(),
+                       .terminal = true,
+                       .when_said = {{"rendering [", [&](int process) {
+                                        std::this_thread::sleep_for(
+                                            std::chrono::milliseconds(150 + random() % 300));
+                                        ::kill(process, SIGKILL);
+                                      }}}});
+      if (outcome.signal == SIGKILL) {
+        ++killed;
+        continue;
+      }
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+      ASSERT_TRUE(folder_.read("a.exr") == folder_.read("whole.exr"));
+      fs::remove(folder_.path() / "a.exr");
+    }
+    EXPECT_GT(killed, 0);
+    std::printf("killed %d times\n", killed);
+    arguments = long_run;
+    arguments.insert(arguments.end(), {"-o", "resumed"});
+    if (!folder_.read("a.exr").empty()) arguments.insert(arguments.end(), {"--resume", "a.exr"});
+    make(arguments);
+    expect_same_pictures("resumed", "whole");
+  }
+  void expect_refused(const Outcome& outcome, const std::string& line) const {
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find("error: " + line), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_EQ(folder_.read("merged.exr"), "");
+  }
+};
+
+TEST_F(Parts, OfItsSamplesMakeThePicture) {
+  make({"-o", "whole", "--channels", "Albedo,objectId"});
+  for (const std::vector<int>& cuts :
+       {std::vector{0, 5, 12}, {0, 1, 4, 12}, {0, 2, 3, 5, 6, 11, 12}}) {
+    std::vector<std::string> names;
+    for (std::size_t i = 1; i < cuts.size(); ++i) {
+      names.push_back(std::to_string(i) + ".exr");
+      make({"-o", names.back(), "--samples",
+            std::to_string(cuts[i - 1]) + ":" + std::to_string(cuts[i]), "--channels",
+            "Albedo,objectId", "--engine", i % 2 == 0 ? "cpu" : "model"});
+    }
+    std::ranges::reverse(names);
+    expect_merged(names);
+  }
+}
+
+TEST_F(Parts, OfItsPixelsMakeThePicture) {
+  make({"-o", "whole"});
+  const std::vector<std::string> crops = {"0,0,31,20", "31,0,60,20", "0,20,60,21", "0,21,60,44"};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < crops.size(); ++i) {
+    for (const char* samples : {"0:7", "7:12"}) {
+      names.push_back(std::to_string(i) + samples[0] + ".exr");
+      make({"-o", names.back(), "--crop", crops[i], "--samples", samples});
+    }
+  }
+  expect_merged(names);
+}
+
+/// Light paths bring light to the pixels of other parts.
+TEST_F(Parts, WithLightPathsMakeThePicture) {
+  const auto render = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {kPaper, "--size",       "60x44", "--spp",
+                                          "6",    "--integrator", "path",  "--engine",
+                                          "cpu",  "--exposure",   "0"};  // as merge has it
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_program({.arguments = arguments, .folder = folder_.path()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  };
+  render({"-o", "whole", "--threads", "1"});
+  render({"-o", "chance", "--caustics", "off"});
+  EXPECT_NE(folder_.read("chance.png"), folder_.read("whole.png"));
+  std::vector<std::string> names;
+  for (const char* crop : {"0,0,31,44", "31,0,60,44"}) {
+    for (const char* samples : {"0:2", "2:6"}) {
+      names.push_back(std::to_string(names.size()) + ".exr");
+      render({"-o", names.back(), "--crop", crop, "--samples", samples, "--threads", "3"});
+    }
+  }
+  expect_merged(names);
+  render({"-o", "few.exr", "--spp", "3", "--channels", "sums"});
+  render({"-o", "more", "--resume", "few.exr"});
+  expect_same_pictures("more", "whole");
+}
+
+TEST_F(Parts, ThatAreNotAllKeepTheirSums) {
+  make({"-o", "whole", "--channels", "sums"});
+  make({"-o", "a.exr", "--samples", "0:3"});
+  make({"-o", "b.exr", "--samples", "3:7"});
+  make({"-o", "c.exr", "--samples", "7:12"});
+  ASSERT_EQ(merge({"b.exr", "c.exr", "-o", "d.exr"}).status, 0);
+  const Outcome outcome = merge({"a.exr", "d.exr", "-o", "merged", "--channels", "sums"});
+  EXPECT_EQ(outcome.out, "wrote merged.exr, merged.png: samples 0:12\n");
+  expect_same_pictures("merged", "whole");
+}
+
+TEST_F(Parts, GoOnWhereTheyWere) {
+  make({"-o", "whole"});
+  make({"-o", "a.exr", "--samples", "0:5"});
+  make({"-o", "b.exr", "--resume", "a.exr", "--samples", "0:8"});
+  make({"-o", "resumed", "--resume", "b.exr", "--engine", "model", "--threads", "2"});
+  expect_same_pictures("resumed", "whole");
+  // With fewer samples, all of which were taken, and with more.
+  make({"-o", "few.exr", "--spp", "4", "--channels", "sums"});
+  make({"-o", "more", "--resume", "few.exr"});
+  expect_same_pictures("more", "whole");
+}
+
+/// A picture that goes on and is interrupted again keeps what it went on from, whether or not the
+/// one that is asked for has sums.
+TEST_F(Parts, KeepTheirSumsWhenInterruptedAgain) {
+  const std::vector<std::string> picture = {kCornell, "--size",       "200x150", "--spp",
+                                            "4000",   "--integrator", "path",    "--threads",
+                                            "2",      "--engine",     "cpu"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = picture;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  ASSERT_EQ(run_program(
+                {.arguments = with({"--samples", "0:4", "-o", "a.exr"}), .folder = folder_.path()})
+                .status,
+            0);
+  for (const char* from : {"a.exr", "b.exr"}) {
+    const Outcome outcome = run_program({.arguments = with({"--resume", from, "-o", "b.exr"}),
+                                         .folder = folder_.path(),
+                                         .terminal = true,
+                                         .signal_when_busy = SIGINT});
+    EXPECT_EQ(outcome.status, 128 + SIGINT) << outcome.err;
+    EXPECT_NE(outcome.err.find("--resume b.exr goes on from there"), std::string::npos)
+        << outcome.err;
+  }
+}
+
+TEST_F(Parts, SurviveBeingKilled) {
+  expect_to_survive({"--size", "200x150", "--spp", "48", "--channels", "sums"});
+}
+
+TEST_F(Parts, WithSamplesByErrorSurviveBeingKilled) {
+  expect_to_survive({"--size", "200x150", "--spp", "256", "--error", "0.6", "--channels", "sums"});
+}
+
+TEST_F(Parts, WithSamplesByErrorMakeThePicture) {
+  const std::vector<std::string> by_error = {"--error", "0.5", "--channels", "sums"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), by_error.begin(), by_error.end());
+    return more;
+  };
+  make(with({"-o", "whole", "--spp", "70"}));
+  make(with({"-o", "a.exr", "--spp", "70", "--crop", "0,0,32,20"}));
+  make(with({"-o", "b.exr", "--spp", "70", "--crop", "32,0,60,20", "--engine", "model"}));
+  make(with({"-o", "c.exr", "--spp", "70", "--crop", "0,20,60,44", "--threads", "3"}));
+  const Outcome outcome = merge({"c.exr", "a.exr", "b.exr", "--channels", "sums", "-o", "merged",
+                                 "--false-colour", "samples=samples.png"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  expect_same_pictures("merged", "whole");
+  EXPECT_NE(folder_.read("samples.png"), "");
+  // With fewer samples at most, which some pixels all have and some have not, and with more.
+  make(with({"-o", "few.exr", "--spp", "37"}));
+  make(with({"-o", "more", "--spp", "70", "--resume", "few.exr"}));
+  expect_same_pictures("more", "whole");
+}
+
+TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
+  make({"-o", "a.exr", "--spp", "20", "--error", "2", "--channels", "sums"});
+  expect_refused(part({"--resume", "a.exr", "--spp", "20", "--error", "3"}),
+                 "a.exr: found error 2, expected error 3 as this run has it");
+  expect_refused(part({"--resume", "a.exr", "--spp", "20"}),
+                 "a.exr: found error 2, expected no error as this run has it");
+  expect_refused(part({"--spp", "20", "--error", "2", "--crop", "0,0,30,44"}),
+                 "--crop: expected multiples of 4, or the frame's edge, with --error");
+  expect_refused(part({"--spp", "20", "--error", "2", "--samples", "0:18"}),
+                 "--samples and --error exclude each other");
+  expect_refused(part({"--error", "2"}), "--spp: expected more than the 16 that --error begins");
+  for (const char* error : {"0", "-1", "256", "nan", "few"}) {
+    expect_refused(part({"--error", error}), "--error: expected steps of an 8-bit display");
+  }
+  expect_refused(part({"--false-colour", "samples=b.png"}),
+                 "--false-colour: expected --error for the channel samples");
+  make({"-o", "b.exr", "--samples", "0:5"});
+  expect_refused(merge({"b.exr", "-o", "merged", "--false-colour", "error=b.png"}),
+                 "--false-colour: found no channel error in the picture");
+}
+
+/// The same options of a scene that somebody has edited make another picture.
+TEST_F(Parts, OfAnEditedSceneAreRefused) {
+  const auto write_scene = [&](const char* height, const char* colour) {
+    folder_.write("s.obj",
+                  "mtllib s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 "s + height + "\nusemtl m\nf 1 2 3\n");
+    folder_.write("s.mtl", "newmtl m\nKd "s + colour + "\n");
+  };
+  const auto render_part = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"s.obj",  "--engine", "cpu",
+                                          "--size", "20x15",    "--spp",
+                                          "4",      "--camera", "0.3,0.3,3,0.3,0.3,0,30"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program({.arguments = arguments, .folder = folder_.path()});
+  };
+  const std::string line = ".exr: found another geometry, material or light, expected those";
+  write_scene("0", "0.5 0.5 0.5");
+  ASSERT_EQ(render_part({"--samples", "0:2", "-o", "a.exr"}).status, 0);
+  for (const auto& [height, colour] : {std::pair{"0.01", "0.5 0.5 0.5"}, {"0", "0.5 0.5 0.6"}}) {
+    write_scene(height, colour);
+    ASSERT_EQ(render_part({"--samples", "2:4", "-o", "b.exr"}).status, 0);
+    expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}), "b" + line + " as in a.exr");
+    expect_refused(render_part({"--resume", "a.exr", "-o", "c"}),
+                   "a" + line + " as this run has it");
+  }
+}
+
+TEST_F(Parts, OfAnotherCameraAreRefused) {
+  folder_.write("s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string camera = R"({"camera": {"eye": [0.3, 0.3, 3], "target": [0.3, 0.3, 0],
+      "up": [0, 1, 0], "fov": 30, "aperture": 0.125, "focus": 2}})";
+  const auto render_part = [&](const std::string& text, const char* samples, const char* name) {
+    folder_.write("s.json", text);
+    return run_program({.arguments = {"s.json", "--engine", "cpu", "--size", "8x6", "--spp", "4",
+                                      "--samples", samples, "-o", name},
+                        .folder = folder_.path()});
+  };
+  ASSERT_EQ(render_part(camera, "0:2", "a.exr").status, 0);
+  ASSERT_EQ(render_part(camera, "2:4", "b.exr").status, 0);
+  EXPECT_EQ(merge({"a.exr", "b.exr", "-o", "both"}).status, 0);
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"3, 3]", "3, 4]"},
+           {"3, 0]", "31, 0]"},
+           {"1, 0]", "1, 1]"},
+           {"30", "31"},
+           {"125", "25"},
+           {"2}", "2.5}"},
+           {R"("fov")", R"("projection": "orthographic", "fov")"}}) {
+    std::string other = camera;
+    ASSERT_EQ(render_part(other.replace(other.find(from), from.size(), to), "2:4", "b.exr").status,
+              0);
+    expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}), "b.exr: found");
+  }
+}
+
+TEST_F(Parts, NothingButAFilmReplacesWhatTheyGoOnFrom) {
+  make({"-o", "a.exr", "--samples", "0:5"});
+  const std::string before = folder_.read("a.exr");
+  fs::create_symlink("a.exr", folder_.path() / "b.json");
+  expect_refused(part({"--resume", "a.exr", "-o", "c", "--stats", "a.exr"}),
+                 "a.exr: would overwrite a.exr");
+  expect_refused(part({"--resume", "a.exr", "-o", "c", "--stats", "b.json"}),
+                 "b.json: would overwrite a.exr");
+  EXPECT_EQ(folder_.read("a.exr"), before);
+  make({"-o", "a.exr", "--resume", "a.exr"});
+}
+
+TEST_F(Parts, OfDifferentPicturesAreRefused) {
+  make({"-o", "a.exr", "--samples", "0:5"});
+  make({"-o", "b.exr", "--samples", "5:12", "--seed", "3"});
+  expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
+                 "b.exr: found seed 3, expected seed 0 as in a.exr");
+  make({"-o", "b.exr", "--samples", "6:12"});
+  expect_refused(
+      merge({"a.exr", "b.exr", "-o", "merged"}),
+      "b.exr: found samples 6:12 beside 0:5 of the same pixels, expected some from 5 on");
+  make({"-o", "b.exr", "--samples", "0:5", "--crop", "0,0,9,9"});
+  expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
+                 "a.exr: found pixels 0,0,60,44, some of which are in b.exr, expected others");
+  make({"-o", "a.exr", "--samples", "0:5", "--crop", "9,9,60,44"});
+  expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
+                 "b.exr: found that all parts together lack some pixels of 0,0,60,44");
+  make({"-o", "c.exr"});
+  expect_refused(merge({"a.exr", "c.exr", "-o", "merged"}), "c.exr: found no sums of samples");
+  expect_refused(merge({"a.exr", "none.exr", "-o", "merged"}), "none.exr: cannot read");
+  expect_refused(merge({"a.exr"}), "expected parts of a picture and -o NAME");
+  expect_refused(part({"--resume", "a.exr"}), "a.exr: found another frame or crop");
+  expect_refused(part({"--resume", "c.exr"}), "c.exr: found no sums of samples");
+  make({"-o", "b.exr", "--samples", "0:5"});
+  expect_refused(part({"--resume", "b.exr", "--seed", "1"}),
+                 "b.exr: found seed 0, expected seed 1 as this run has it");
+  expect_refused(part({"--resume", "b.exr", "--samples", "0:3"}),
+                 "b.exr: found samples 0:5, expected the first of 0:3");
+  expect_refused(part({"--resume", "b.exr", "--channels", "Albedo"}),
+                 "b.exr: found no channel Albedo");
+  expect_refused(part({"--samples", "0:13"}), "--samples: expected some of the 12 of --spp");
+  expect_refused(part({"--samples", "5"}), "--samples: expected A:B");
+}
+
+}  // namespace
+}  // namespace raygate

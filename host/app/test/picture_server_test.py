@@ -1,0 +1,319 @@
+"""--serve, by HTTP and in a browser without a window (Debian's Chromium).
+
+usage: RAYGATE_PROGRAM=build/render python3 -m unittest host/app/test/picture_server_test.py
+"""
+
+import http.client
+import json
+import os
+import pathlib
+import re
+import resource
+import shlex
+import signal
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+import urllib.error
+import urllib.parse
+import urllib.request
+
+from selenium import webdriver
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import Select, WebDriverWait
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+PROGRAM = pathlib.Path(os.environ.get("RAYGATE_PROGRAM", ROOT / "build" / "render")).resolve()
+PAGE = ROOT / "host" / "app" / "picture_page.html"
+
+
+class Served:
+    """A program that serves a scene, until the block ends."""
+
+    def __init__(self, *arguments):
+        self.arguments = [str(ROOT / "scenes" / "cornell.json"), "--engine=cpu", "--size", "64x48",
+                          *arguments]
+
+    def __enter__(self):
+        self.process = subprocess.Popen([PROGRAM, *self.arguments, "--serve"], text=True,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        line = self.process.stdout.readline()
+        self.address = re.match(r"http://127\.0\.0\.1:\d+", line)[0]
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        self.said = self.process.communicate(timeout=20)
+        self.status = self.process.returncode
+
+    def get(self, path, headers=None, **options):
+        """Status, headers and bytes of an answer."""
+        query = "?" + urllib.parse.urlencode(options) if options else ""
+        request = urllib.request.Request(self.address + path + query, headers=headers or {})
+        try:
+            with urllib.request.urlopen(request, timeout=60) as reply:
+                return reply.status, reply.headers, reply.read()
+        except urllib.error.HTTPError as error:
+            return error.code, error.headers, error.read()
+
+
+class Http(unittest.TestCase):
+    def test_pictures_are_those_of_the_command(self):
+        with Served("--spp", "2", "--seed=7") as served:
+            for options in ({}, {"spp": 1, "size": "31x17"}, {"view": "30,20"},
+                            {"camera": "278,273,1300,100,300,0,30", "up": "y", "engine": "model"},
+                            {"engine": "model", "variant": "e8p9-raw"}, {"false-colour": "Z=it's.png"}, {"integrator": "path", "exposure": 1}):
+                with self.subTest(options), tempfile.TemporaryDirectory() as folder:
+                    status, headers, picture = served.get("/picture", **options)
+                    self.assertEqual(status, 200, picture)
+                    words = shlex.split(headers["X-Command"])
+                    self.assertEqual(words[0], "./render")
+                    out = [] if "false-colour" in options else ["-o", "picture.png"]
+                    subprocess.run([PROGRAM, *words[1:], *out, "-q"], cwd=folder, check=True)
+                    name = options.get("false-colour", "=picture.png").split("=")[1]
+                    self.assertEqual(picture, (pathlib.Path(folder) / name).read_bytes())
+                    self.assertGreater(json.loads(headers["X-Statistics"])["rays"], 0)
+        self.assertEqual((served.status, served.said[1]), (0, ""))
+
+    def test_a_ground_stays_where_it_was(self):
+        with tempfile.TemporaryDirectory() as folder:
+            box = pathlib.Path(folder) / "box.obj"
+            box.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n")
+            run = Served()
+            run.arguments[0] = str(box)
+            with run as served:
+                for options in ({}, {"camera": "4,3,5,0,0,0"}):
+                    status, headers, picture = served.get("/picture", **options)
+                    self.assertIn("--ground=on", headers["X-Command"])
+                    subprocess.run([PROGRAM, *shlex.split(headers["X-Command"])[1:], "-o", "a.png",
+                                    "-q"], cwd=folder, check=True)
+                    self.assertEqual(picture, (pathlib.Path(folder) / "a.png").read_bytes())
+
+    def test_what_is_wrong_is_one_line(self):
+        with Served() as served:
+            for path, options, said in (
+                    ("/picture", {"width": 3}, "width: expected an option"),
+                    ("/picture", {"output": "a.png"}, "output: expected an option"),
+                    ("/picture", {"size": "3"}, "--size: expected WIDTHxHEIGHT"),
+                    ("/picture", {"size": "5000x5000"}, "--size: expected at most 16777216 pixels"),
+                    ("/picture", {"spp": 100000}, "--spp: expected at most 65536"),
+                    ("/picture", {"slot": "left"}, "turn: expected the number"),
+                    ("/picture", {"false-colour": "nothing=a.png"}, "nothing"),
+                    ("/picture", {"variant": "e8p9-raw"}, "--engine: expected model with --variant e8p9-raw, got cpu"),
+                    ("/pixel", {"x": 64, "y": 0}, "a pixel of 64x48, got '64'"),
+                    ("/pixel", {"x": "1e9", "y": 0}, "a pixel of 64x48, got '1e9'")):
+                status, _, text = served.get(path, **options)
+                self.assertEqual(status, 400)
+                self.assertIn(said, text.decode())
+                self.assertEqual(text.count(b"\n"), 1)
+            status, _, text = served.get("/picture", headers={"Host": "elsewhere.example"})
+            self.assertEqual(status, 403)
+
+    def test_no_thread_is_free(self):
+        with Served("--threads=1") as served:
+            pid = served.process.pid
+            pages = int(pathlib.Path(f"/proc/{pid}/statm").read_text().split()[0])
+            # No more memory than a new thread's stack takes.
+            resource.prlimit(pid, resource.RLIMIT_AS, (pages * resource.getpagesize() + 2**20, resource.RLIM_INFINITY))
+            status, _, text = served.get("/pixel", x=1, y=1)
+            self.assertEqual((status, text), (503, b"found no thread that is free\n"))
+            resource.prlimit(pid, resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+            self.assertEqual(served.get("/pixel", x=1, y=1)[0], 200)
+        self.assertEqual((served.status, served.said[1]), (0, ""))
+
+    def test_other_sites_and_methods_are_refused(self):
+        with Served() as served:
+            host = served.address.removeprefix("http://")
+            for method, headers, expected in (
+                    ("GET", {"Origin": "http://elsewhere.example"}, 403),
+                    ("GET", {"Origin": "null"}, 403),
+                    ("GET", {"Sec-Fetch-Site": "cross-site"}, 403),
+                    ("GET", {"Sec-Fetch-Site": "same-site"}, 403),
+                    ("GET", {"Sec-Fetch-Site": "same-origin", "Origin": served.address}, 200),
+                    ("PUT", {}, 405), ("DELETE", {}, 405), ("POST", {}, 405), ("HEAD", {}, 200)):
+                with self.subTest(method=method, headers=headers):
+                    connection = http.client.HTTPConnection(host, timeout=30)
+                    connection.request(method, "/camera", headers=headers)
+                    self.assertEqual(connection.getresponse().status, expected)
+                    connection.close()
+            with socket.create_connection(host.split(":"), timeout=30) as plain:
+                plain.sendall(f"HEAD / HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
+                self.assertTrue(plain.makefile("rb").read().endswith(b"\r\n\r\n"), "without a body")
+
+    def test_a_picture_ends_with_its_connection(self):
+        with Served() as served:
+            host = served.address.removeprefix("http://")
+            with socket.create_connection(host.split(":"), timeout=30) as left:
+                left.sendall(f"GET /picture?spp=60000&size=640x480 HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
+                time.sleep(0.5)
+            self.assertEqual(served.get("/picture", spp=1)[0], 200)
+
+    def test_connections_that_say_nothing_block_nobody(self):
+        with Served() as served:
+            host = served.address.removeprefix("http://").split(":")
+            silent = [socket.create_connection(host, timeout=30) for _ in range(20)]
+            begin = time.monotonic()
+            self.assertEqual(served.get("/camera")[0], 200)
+            self.assertLess(time.monotonic() - begin, 15)
+            for connection in silent:
+                connection.close()
+
+    def test_a_pixel_by_two_engines(self):
+        with Served() as served:
+            ray = json.loads(served.get("/pixel", x=20, y=40, engine="model")[2])
+            self.assertEqual(ray["engine"]["triangle"], ray["cpu"]["triangle"])
+            self.assertEqual(ray["engine"]["P"], ray["cpu"]["P"])
+            self.assertGreater(ray["engine"]["tests"], 0)
+            self.assertNotIn("triangle", json.loads(served.get(
+                "/pixel", x=0, y=0, camera="278,273,2000,278,273,3000")[2])["cpu"])
+
+    def test_a_newer_request_ends_an_older_one(self):
+        with Served() as served:
+            old = []
+            thread = threading.Thread(target=lambda: old.append(
+                served.get("/picture", spp=60000, size="640x480", slot="left", turn=3)[0]))
+            thread.start()
+            time.sleep(0.3)
+            begin = time.monotonic()
+            self.assertEqual(served.get("/picture", spp=1, slot="left", turn=4)[0], 200)
+            self.assertLess(time.monotonic() - begin, 30)
+            thread.join(60)
+            self.assertEqual(old, [204])
+            # One that was sent earlier and comes later.
+            self.assertEqual(served.get("/picture", spp=1, slot="left", turn=3)[0], 204)
+
+    def test_command_lines_that_are_refused(self):
+        with Served() as served:
+            port = served.address.rpartition(":")[2]
+            for words, said in ((["--serve", "--port", port], "--port: expected a port"),
+                                (["--port", port], "--port: expected with --serve"),
+                                (["--serve", "--crop", "0,0,8,8"], "--crop and --serve exclude")):
+                run = subprocess.run([PROGRAM, *served.arguments, *words], capture_output=True,
+                                     text=True, check=False, timeout=60)
+                self.assertEqual(run.returncode, 2)
+                self.assertIn(said, run.stderr)
+
+    def test_all_choices_of_the_page_are_options(self):
+        with Served("--spp", "1") as served:
+            selects = re.findall(r'<select name="([\w-]+)">(.*?)</select>', PAGE.read_text())
+            self.assertGreater(len(selects), 4)
+            for name, choices in selects:
+                for value, text in re.findall(r'<option(?: value="([^"]*)")?>([^<]*)', choices):
+                    value = value or text
+                    if value in ("as started", "the picture"):
+                        continue
+                    if name == "false-colour":
+                        value += "=a.png"
+                    status, _, text = served.get("/camera", **{name: value})
+                    self.assertEqual(status, 200, text)
+
+
+class Browser(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        options = webdriver.ChromeOptions()
+        options.binary_location = "/usr/bin/chromium"
+        for word in ("--headless", "--no-sandbox", "--disable-gpu", "--window-size=1200,900"):
+            options.add_argument(word)
+        cls.browser = webdriver.Chrome(options, webdriver.ChromeService("/usr/bin/chromedriver"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.quit()
+
+    def wait(self, what):
+        WebDriverWait(self.browser, 60).until(what)
+
+    def wait_drawn(self, side="a"):
+        """Until the last, full pass is drawn."""
+        said = f"[data-side={side}] [data-role=said]"
+        self.wait(lambda b: b.find_element(By.CSS_SELECTOR, said).text.startswith("64x48"))
+
+    def command(self, side="a"):
+        return self.browser.find_element(By.CSS_SELECTOR, f"[data-side={side}] [data-role=command]").text
+
+    def pixels(self, canvas):
+        return self.browser.execute_script(
+            "const c = document.getElementById(arguments[0]);"
+            "return [...c.getContext('2d').getImageData(0, 0, c.width, c.height).data]", canvas)
+
+    def test_the_page(self):
+        with Served("--spp", "1") as served:
+            browser = self.browser
+            browser.get(served.address)
+            self.wait_drawn()
+            self.assertGreater(max(self.pixels("canvas-a")[:-1:4]), 100)
+            frame = browser.find_element(By.ID, "frame")
+
+            # Turned, approached, moved: the command has a camera, and the picture is another one.
+            # A fast wheel ends the pictures before the last.
+            before = self.pixels("canvas-a")
+            ActionChains(browser).drag_and_drop_by_offset(frame, 60, 10).perform()
+            self.wait(lambda _: "--camera=" in self.command())
+            self.wait_drawn()
+            self.assertNotEqual(before, self.pixels("canvas-a"))
+            turned = self.command()
+            browser.execute_script("for (let i = 0; i < 20; ++i)"
+                                   "  arguments[0].dispatchEvent(new WheelEvent('wheel', {deltaY: 1}))", frame)
+            self.wait(lambda _: self.command() != turned)
+            self.wait_drawn()
+            browser.find_element(By.ID, "home").click()
+            self.wait(lambda _: "--camera=" not in self.command())
+            self.wait_drawn()
+            self.assertEqual(before, self.pixels("canvas-a"))
+
+            # A pixel's ray.
+            ActionChains(browser).move_to_element(frame).click().perform()
+            self.wait(lambda b: b.find_elements(By.CSS_SELECTOR, "#pixel td"))
+            shown = browser.find_element(By.ID, "pixel").text
+            self.assertIn("triangle", shown)
+            x, y = re.match(r"pixel (\d+), (\d+)", shown).groups()
+            ray = json.loads(served.get("/pixel", x=x, y=y)[2])
+            self.assertIn(ray["cpu"]["P"]["words"], shown)
+
+            # Two engines under the rule do not differ; numbers of nine digits and two exposures do.
+            browser.find_element(By.ID, "both").click()
+            side = browser.find_element(By.CSS_SELECTOR, "[data-side=b]")
+            side.find_element(By.NAME, "variant").send_keys("e8p9-raw\t")
+            self.wait(lambda _: "--variant=e8p9-raw" in self.command("b"))
+            self.wait_drawn("b")
+            browser.find_element(By.ID, "differ").click()
+            self.assertGreater(sum(self.pixels("difference")), 64 * 48 * 255)
+            browser.find_element(By.ID, "differ").click()
+            side.find_element(By.NAME, "variant").clear()
+            self.wait(lambda _: "--variant" not in self.command("b"))
+            self.wait_drawn("b")
+            Select(side.find_element(By.NAME, "engine")).select_by_visible_text("model")
+            self.wait(lambda _: "--engine=model" in self.command("b"))
+            self.wait_drawn("b")
+            browser.find_element(By.ID, "differ").click()
+            self.assertEqual(set(self.pixels("difference")), {0, 255})
+            self.assertEqual(sum(self.pixels("difference")), 64 * 48 * 255)
+            side.find_element(By.NAME, "exposure").send_keys("2\t")
+            self.wait(lambda _: "--exposure=2" in self.command("b"))
+            self.wait_drawn("b")
+            self.assertGreater(sum(self.pixels("difference")), 64 * 48 * 255)
+
+            # What is chosen is in the address; no request leaves the page.
+            address = browser.current_url
+            self.assertIn("b.engine=model", address)
+            browser.get("about:blank")
+            browser.get(address)
+            self.wait(lambda _: "--engine=model" in self.command("b"))
+            names = browser.execute_script("return performance.getEntriesByType('resource').map(e => e.name)")
+            self.assertTrue(names)
+            self.assertTrue(all(name.startswith(served.address) for name in names), names)
+
+            # What the program says of a bad value.
+            side = browser.find_element(By.CSS_SELECTOR, "[data-side=b]")
+            side.find_element(By.NAME, "exposure").send_keys("e9\t")
+            self.assertFalse([entry for entry in browser.get_log("browser")
+                              if entry["level"] == "SEVERE" and "400" not in entry["message"]])
+
+
+if __name__ == "__main__":
+    unittest.main()

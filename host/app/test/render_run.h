@@ -1,0 +1,60 @@
+// What the tests of whole runs share.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "host/app/test/program.h"
+
+namespace raygate {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using namespace std::string_literals;
+
+inline const std::string kCornell = RAYGATE_SCENES "/cornell.obj";
+inline const std::string kPaper = RAYGATE_SCENES "/paper_room.json";
+
+/// Runs of ./render, each test in a folder of its own.
+class Render : public testing::Test {
+ protected:
+  /// Runs, expects success, and keeps the statistics in `stats_`.
+  Outcome render(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--stats", "stats.json"});
+    const Outcome outcome = run_program({.arguments = arguments, .folder = folder_.path()});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    stats_ = json::parse(folder_.read("stats.json"), nullptr, false);
+    EXPECT_FALSE(stats_.is_discarded());
+    return outcome;
+  }
+
+  /// Both pictures of two runs are the same bytes.
+  void expect_same_pictures(const std::string& a, const std::string& b) const {
+    EXPECT_NE(folder_.read(a + ".exr"), "");
+    EXPECT_NE(folder_.read(a + ".png"), "");
+    EXPECT_TRUE(folder_.read(a + ".exr") == folder_.read(b + ".exr")) << a << " " << b;
+    EXPECT_TRUE(folder_.read(a + ".png") == folder_.read(b + ".png")) << a << " " << b;
+  }
+
+  ScratchFolder folder_;
+  json stats_;
+};
+
+/// Pixels of a PNG file as 24-bit RGB; compressed bytes are a matter of zlib's version.
+inline std::vector<std::uint8_t> decode_png(const std::string& bytes, png_image* size = nullptr) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
+  image.format = PNG_FORMAT_RGB;
+  std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
+  EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
+  if (size != nullptr) *size = image;
+  return pixels;
+}
+
+}  // namespace raygate

@@ -1,0 +1,199 @@
+// What a run says on its way, and at its end.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "host/app/test/render_run.h"
+
+namespace raygate {
+namespace {
+
+TEST_F(Render, ProgressBarOnTerminalsOnly) {
+  const std::vector<std::string> arguments{kCornell, "--size", "64x48"};
+  const Outcome piped = run_program({.arguments = arguments, .folder = folder_.path()});
+  EXPECT_EQ(piped.status, 0);
+  EXPECT_EQ(piped.err, "");
+  const Outcome shown =
+      run_program({.arguments = arguments, .folder = folder_.path(), .terminal = true});
+  EXPECT_EQ(shown.status, 0);
+  EXPECT_NE(shown.err.find("rendering ["), std::string::npos) << shown.err;
+  const std::string erased = "\r\x1b[K";
+  ASSERT_GE(shown.err.size(), erased.size());
+  EXPECT_EQ(shown.err.substr(shown.err.size() - erased.size()), erased) << "the bar stays";
+  std::vector<std::string> quiet = arguments;
+  quiet.push_back("--quiet");
+  const Outcome silent =
+      run_program({.arguments = quiet, .folder = folder_.path(), .terminal = true});
+  EXPECT_EQ(silent.status, 0);
+  EXPECT_EQ(silent.err, "");
+  EXPECT_EQ(silent.out, "");
+}
+
+/// "seconds.load" for a key within a key.
+std::set<std::string> keys_of(const json& object) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : object.items()) {
+    if (!value.is_object()) keys.insert(key);
+    if (value.is_object()) {
+      for (const std::string& inner : keys_of(value)) keys.insert(key + "." + inner);
+    }
+  }
+  return keys;
+}
+
+/// Those in the first column of host/app/statistics.csv.
+std::set<std::string> documented_keys() {
+  std::ifstream table(RAYGATE_STATISTICS_TABLE);
+  std::set<std::string> keys;
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "keys,meaning");
+  while (std::getline(table, line)) {
+    std::istringstream words(line.substr(0, line.find(',')));
+    for (std::string key; words >> key;) {
+      EXPECT_TRUE(keys.insert(key).second) << key << " is documented twice";
+    }
+  }
+  return keys;
+}
+
+TEST_F(Render, StatisticsAreWholeDocumentedAndAgree) {
+  const Outcome outcome = render(
+      {kCornell, "--size", "60x50", "--spp", "1", "--threads", "2", "--seed", "9", "-o", "a.png"});
+  EXPECT_EQ(keys_of(stats_), documented_keys());
+  EXPECT_EQ(stats_.at("camera_rays"), 60 * 50);
+  EXPECT_GT(stats_.at("shadow_rays"), 0);
+  EXPECT_EQ(stats_.at("window"), (json{0, 0, 60, 50}));
+  EXPECT_EQ(stats_.at("engine"), "rtl");
+  EXPECT_EQ(stats_.at("unit"), "pipeline");
+  EXPECT_EQ(stats_.at("seed"), 9);
+  EXPECT_EQ(stats_.at("pictures"), json{"a.png"});
+  const auto count = [&](const char* key) { return stats_.at(key).get<std::uint64_t>(); };
+  EXPECT_EQ(count("misses") + count("hits") + count("edge_doubts"), count("tests"));
+  EXPECT_GT(count("hits"), 0u);
+  EXPECT_EQ(count("unit_tests"), count("tests"));
+  EXPECT_EQ(count("input_bytes"), 64 * count("tests"));
+  EXPECT_GE(count("clocks"), count("tests"));
+  EXPECT_DOUBLE_EQ(stats_.at("clocks_per_test").get<double>(),
+                   static_cast<double>(count("clocks")) / static_cast<double>(count("unit_tests")));
+  const json& seconds = stats_.at("seconds");
+  double parts = 0.0;
+  for (const char* part : {"load", "tree", "render", "write"}) {
+    EXPECT_GE(seconds.at(part), 0.0);
+    parts += seconds.at(part).get<double>();
+  }
+  EXPECT_LE(parts, seconds.at("total").get<double>() + 1e-3);
+  // The text says the same.
+  EXPECT_NE(outcome.out.find("cornell.obj: "), std::string::npos);
+  EXPECT_NE(outcome.out.find("60x50, engine rtl (pipeline, structural), 2 threads\n"),
+            std::string::npos);
+  for (const char* row : {"\nrays ", "\ntests ", "\nrounded ", "\nwrote "}) {
+    EXPECT_NE(outcome.out.find(row), std::string::npos) << row;
+  }
+  EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 5) << outcome.out;
+}
+
+TEST_F(Render, TheSummaryNamesNoUnitWhereNoneIsAtWork) {
+  const Outcome brief = render({kCornell, "--size", "60x50", "--engine", "cpu"});
+  EXPECT_EQ(std::ranges::count(brief.out, '\n'), 5) << brief.out;
+  EXPECT_EQ(brief.out.find("unit"), std::string::npos) << brief.out;
+  EXPECT_NE(brief.out.find(" rays/s\n"), std::string::npos) << brief.out;
+  EXPECT_NE(brief.out.find(" tests/s\n"), std::string::npos) << brief.out;
+  for (std::size_t start = 0; start < brief.out.size(); start = brief.out.find('\n', start) + 1) {
+    EXPECT_LE(brief.out.find('\n', start) - start, 80u) << brief.out;
+  }
+  const Outcome verbose = render({kCornell, "--size", "60x50", "--engine", "cpu", "--verbose"});
+  for (const char* row : {"\nhits ", "\ndoubts ", "\ntimes ", "\nthreads ", "\nWork skipped "}) {
+    EXPECT_NE(verbose.out.find(row), std::string::npos) << row;
+  }
+  EXPECT_EQ(verbose.out.find("unit"), std::string::npos) << verbose.out;
+}
+
+// `make cpu`.
+TEST_F(Render, WithoutVerilatorTheSimulatedUnitsAreNamed) {
+  const auto render_without = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {kCornell, "--size", "16x16"});
+    return run_program({.arguments = std::move(arguments),
+                        .folder = folder_.path(),
+                        .program = RAYGATE_WITHOUT_SIMULATION});
+  };
+  const Outcome plain = render_without({});
+  EXPECT_EQ(plain.status, 0) << plain.err;
+  EXPECT_NE(plain.out.find("engine cpu"), std::string::npos) << plain.out;
+  EXPECT_EQ(render_without({"--engine", "model"}).status, 0);
+  for (const char* unit : {"pipeline", "serial", "core"}) {
+    const Outcome outcome = render_without({"--engine", "rtl", "--unit", unit});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("which was built without Verilator; `make verilate`"),
+              std::string::npos)
+        << outcome.err;
+  }
+}
+
+TEST_F(Render, ACheckSaysThatTheEnginesAgreed) {
+  const Outcome outcome = render({kCornell, "--size", "16x16", "--engine", "check"});
+  EXPECT_NE(outcome.out.find("\ncheck    rtl and cpu agreed on all "), std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(Render, WarningsAreSaidOnce) {
+  folder_.write("a.obj",
+                "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
+                "usemtl red\nf 1 3 2\n");
+  const Outcome outcome = render({"a.obj", "--size", "4x4", "--engine", "cpu", "--quiet"});
+  std::multiset<std::string> lines;
+  for (std::size_t start = 0; start < outcome.err.size();) {
+    const std::size_t end = outcome.err.find('\n', start);
+    ASSERT_NE(end, std::string::npos);
+    lines.insert(outcome.err.substr(start, end - start));
+    start = end + 1;
+  }
+  EXPECT_FALSE(lines.empty());
+  for (const std::string& line : lines) {
+    EXPECT_EQ(line.substr(0, 15), "warning: a.obj:") << line;
+    EXPECT_EQ(lines.count(line), 1u) << line;
+  }
+}
+
+TEST_F(Render, WarningsOfOneKindAreOne) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 1; i <= 12; ++i) text += "usemtl m" + std::to_string(i) + "\nf 1 2 3\n";
+  folder_.write("a.obj", text + "l 1 2\n");
+  const char* const kUnknown = "material 'm1' is defined nowhere, the default instead";
+  const auto warnings = [&](const char* option) {
+    return render({"a.obj", "--size", "4x4", "--engine", "cpu", option}).err;
+  };
+  const std::string brief = warnings("--quiet");
+  EXPECT_EQ(std::count(brief.begin(), brief.end(), '\n'), 2) << brief;
+  EXPECT_NE(brief.find(kUnknown + std::string(" (and 11 more such; --verbose lists them)\n")),
+            std::string::npos)
+      << brief;
+  const std::string all = warnings("--verbose");
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 13) << all;
+}
+
+TEST_F(Render, SaysWhereNothingCanBeSeen) {
+  folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto warnings = [&](const char* camera) {
+    return render({"a.obj", "--size", "16x16", "--engine", "cpu", "--quiet", "--camera", camera})
+        .err;
+  };
+  EXPECT_EQ(warnings("0,0,5,0,0,9"),
+            "warning: the camera sees nothing of the scene; --view iso shows all of it\n");
+  EXPECT_EQ(warnings("0,0,5,0,0,0"), "");
+}
+
+TEST_F(Render, HelpAndVersionGoToStandardOutput) {
+  for (const char* option : {"--help", "-h", "--version"}) {
+    const Outcome outcome = run_program({.arguments = {option}, .folder = folder_.path()});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.out, "");
+    EXPECT_EQ(outcome.err, "");
+  }
+}
+
+}  // namespace
+}  // namespace raygate

@@ -1,0 +1,337 @@
+// The same picture, byte for byte, whatever the engine, the threads, the skips and the crop.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "host/app/test/render_run.h"
+#include "host/base/vectors.h"
+#include "host/film/test/exr_reader.h"
+
+namespace raygate {
+namespace {
+
+/// The scene files of the repository, the OBJ files without one, and a sphere of the build's.
+std::vector<std::string> all_scenes() {
+  std::vector<std::string> scenes{RAYGATE_MADE_SCENES "/sphere.obj"};
+  for (const auto& entry : fs::directory_iterator(RAYGATE_SCENES)) {
+    const fs::path& file = entry.path();
+    const bool is_obj =
+        file.extension() == ".obj" && !fs::exists(fs::path(file).replace_extension(".json"));
+    if (is_obj || file.extension() == ".json") scenes.push_back(file.string());
+  }
+  std::sort(scenes.begin(), scenes.end());
+  return scenes;
+}
+
+class EveryScene : public Render, public testing::WithParamInterface<std::string> {};
+
+TEST_P(EveryScene, EnginesGiveTheSameBytes) {
+  const std::string& scene = GetParam();
+  render({scene, "--size", "64x48", "--engine", "cpu", "--spp", "1", "-o", "cpu"});
+  const json cpu = stats_;
+  EXPECT_GT(cpu.at("hits"), 0) << "an empty picture shows nothing";
+  EXPECT_EQ(cpu.at("clocks"), 0);
+  render({scene, "--size", "64x48", "--engine", "rtl", "--spp", "1", "-o", "rtl"});
+  EXPECT_GT(stats_.at("clocks"), 0);
+  EXPECT_GT(stats_.at("quotients"), 0);  // how many each engine needs is its own affair
+  expect_same_pictures("cpu", "rtl");
+  render({scene, "--size", "64x48", "--lanes", "4", "--spp", "1", "-o", "lanes"});
+  expect_same_pictures("cpu", "lanes");
+  render({scene, "--size", "64x48", "--unit", "serial", "--engine", "model", "--spp", "1", "-o",
+          "serial"});
+  expect_same_pictures("cpu", "serial");
+  render({scene, "--size", "64x48", "--unit", "core", "--arith", "behavioural", "--spp", "1", "-o",
+          "core"});
+  expect_same_pictures("cpu", "core");
+}
+
+TEST_P(EveryScene, VectorsGiveTheSameBytes) {
+  const std::string& scene = GetParam();
+  for (const Vectors vectors : machine_vectors()) {
+    const std::string name(name_of(vectors));
+    setenv("RAYGATE_VECTORS", name.c_str(), 1);
+    render({scene, "--size", "64x48", "--engine", "cpu", "--spp", "1", "-o", name});
+    unsetenv("RAYGATE_VECTORS");
+    expect_same_pictures("baseline", name);
+  }
+}
+
+TEST_P(EveryScene, CheckFindsNoDifference) {
+  const std::string& scene = GetParam();
+  render({scene, "--size", "80x60", "--engine", "check"});
+  EXPECT_GT(stats_.at("plane_tests"), 0) << "nothing was compared";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(all_scenes()), [](const auto& info) {
+  std::string name = fs::path(info.param).stem().string();
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
+  return name;
+});
+
+/// A room with instances of a teapot, one of them mirrored, two in one place and two that cut each
+/// other, of a glass ball and of a light.
+class InstancedScene : public Render {
+ protected:
+  InstancedScene() {
+    folder_.write("lamp.mtl", "newmtl lamp\nKe 9 8 6\n");
+    folder_.write("lamp.obj",
+                  "mtllib lamp.mtl\nusemtl lamp\nv 0 0 0\nv 90 0 0\nv 0 0 90\nf 1 2 3\n");
+    folder_.write("glass.mtl", "newmtl glass\nillum 7\nNi 1.5\nd 0\n");
+    std::string ball = "mtllib glass.mtl\nusemtl glass\n", line;
+    std::ifstream sphere(RAYGATE_MADE_SCENES "/sphere.obj");
+    while (std::getline(sphere, line)) {
+      if (line.starts_with("v ") || line.starts_with("f ")) ball += line + "\n";
+    }
+    folder_.write("ball.obj", ball);
+    folder_.write("room.json", R"({"obj": ")" RAYGATE_SCENES R"(/cornell.obj",
+        "camera": {"eye": [278, 273, -800], "target": [278, 273, 0], "fov": 39},
+        "instances": [
+          {"model": ")" RAYGATE_SCENES R"(/teapot.obj", "places": [
+            [30, 0, 0, 150, 0, 30, 0, 0, 0, 0, 30, 90],
+            [-30, 0, 0, 150, 0, 30, 3, 120, 0, 0, 30, 90],
+            [21, 0, 21, 400, 5, 40, 0, 10, -21, 0, 21, 150],
+            [21, 0, 21, 420, 5, 40, 0, 10, -21, 0, 21, 160],
+            [21, 0, 21, 420, 5, 40, 0, 10, -21, 0, 21, 160],
+            [10, 20, 5, 300, -20, 10, 5, 300, 0, 3, 20, 250]]},
+          {"model": "lamp.obj", "places": [[100, 400, 100], [300, 420, 200]]},
+          {"model": "ball.obj", "places": [
+            [60, 0, 0, 350, 0, 60, 0, 420, 0, 0, 60, 150],
+            [0, 0, 50, 170, 50, 0, 0, 250, 0, 50, 0, 120]]}]})");
+  }
+};
+
+TEST_F(InstancedScene, IsTheSameKeptAndWrittenOut) {
+  for (const char* integrator : {"primary", "whitted", "path"}) {
+    const std::vector<std::string> words = {"room.json", "--size",     "96x96",     "--engine",
+                                            "cpu",       "--spp",      "4",         "--integrator",
+                                            integrator,  "--channels", "P,objectId"};
+    const auto render_as = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> all = words;
+      all.insert(all.end(), more.begin(), more.end());
+      render(all);
+    };
+    render_as({"--instances", "write", "-o", "written"});
+    render_as({"--instances", "keep", "-o", "kept"});
+    expect_same_pictures("written", "kept");
+    render_as({"--instances", "keep", "--threads", "3", "-o", "threads"});
+    expect_same_pictures("written", "threads");
+    render_as({"-o", "auto"});
+    expect_same_pictures("written", "auto");
+  }
+}
+
+TEST_F(InstancedScene, IsTheSameForEveryEngine) {
+  render({"room.json", "--size", "40x40", "--engine", "cpu", "--spp", "1", "--instances", "write",
+          "-o", "cpu"});
+  const json written = stats_;
+  for (const char* engine : {"rtl", "model", "check"}) {
+    render({"room.json", "--size", "40x40", "--engine", engine, "--spp", "1", "--instances", "keep",
+            "-o", engine});
+    EXPECT_EQ(stats_.at("triangles"), written.at("triangles"));
+    expect_same_pictures("cpu", engine);
+  }
+}
+
+std::string read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The gallery in scenes/README.md: commands that write a picture of scenes/gallery.
+std::vector<std::string> gallery_commands() {
+  std::ifstream readme(RAYGATE_SCENES "/README.md");
+  const std::string text{std::istreambuf_iterator<char>(readme), {}};
+  const std::regex command("`\\./render ([^`]*-o scenes/gallery/[^`]*)`");
+  std::vector<std::string> commands;
+  for (std::sregex_iterator i(text.begin(), text.end(), command), end; i != end; ++i) {
+    commands.push_back((*i)[1]);
+  }
+  return commands;
+}
+
+class Gallery : public Render, public testing::WithParamInterface<std::string> {};
+
+/// A crop of it is enough to tell, as a crop is that part of the whole.
+TEST_P(Gallery, PictureIsWhatItsCommandMakes) {
+  std::istringstream words(GetParam());
+  std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
+  ASSERT_GE(arguments.size(), 3u);
+  const std::string picture = arguments.back();
+  arguments.back() = (folder_.path() / "made.png").string();
+  png_image stored_size{};
+  const std::vector<std::uint8_t> stored =
+      decode_png(read_file(RAYGATE_SCENES "/../" + picture), &stored_size);
+  constexpr std::size_t kSide = 16;
+  const std::size_t x0 = stored_size.width / 3, y0 = stored_size.height / 2;
+  std::string crop;
+  for (const std::size_t edge : {x0, y0, x0 + kSide, y0 + kSide}) {
+    crop.append(crop.empty() ? "" : ",").append(std::to_string(edge));
+  }
+  arguments.insert(arguments.end(), {"--crop", crop});
+  const Outcome outcome = run_program({.arguments = arguments, .folder = RAYGATE_SCENES "/.."});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::vector<std::uint8_t> made = decode_png(folder_.read("made.png"));
+  ASSERT_EQ(made.size(), 3 * kSide * kSide);
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    const std::size_t x = x0 + i / 3 % kSide, y = y0 + i / 3 / kSide;
+    ASSERT_EQ(made[i], stored[3 * (y * stored_size.width + x) + i % 3]) << x << " " << y;
+  }
+  EXPECT_GT(std::set<std::uint8_t>(made.begin(), made.end()).size(), 3u) << "nothing to be seen";
+}
+
+INSTANTIATE_TEST_SUITE_P(Readme, Gallery, testing::ValuesIn(gallery_commands()),
+                         [](const auto& info) { return fs::path(info.param).stem().string(); });
+
+using Variants = Render;
+
+TEST_F(Variants, DrawTheirOwnPictures) {
+  const std::vector<std::string> cornell = {kCornell, "--size", "64x48", "--spp", "1"};
+  const auto picture = [&](const std::string& name, std::vector<std::string> words) {
+    words.insert(words.begin(), cornell.begin(), cornell.end());
+    words.insert(words.end(), {"-o", name + ".png"});
+    (void)render(words);
+    return folder_.read(name + ".png");
+  };
+  const std::string plain = picture("plain", {"--engine", "model"});
+  EXPECT_TRUE(picture("binary32", {"--variant", "binary32"}) == plain);
+  EXPECT_TRUE(picture("serial", {"--variant", "serial"}) ==
+              picture("unit", {"--engine", "model", "--unit", "serial"}));
+  EXPECT_FALSE(picture("raw", {"--variant", "e8p9-raw"}) == plain);
+  EXPECT_EQ(stats_["variant"], "e8p9-raw");
+  EXPECT_EQ(stats_["engine"], "model");
+  // Who decides matters, not digits: the same triangles, but for P and what is behind it.
+  (void)picture("few", {"--variant", "e8p12"});
+  EXPECT_GT(stats_["exact_inside"], 0);
+}
+
+TEST_F(Render, ThreadsChangeNoByte) {
+  for (const char* threads : {"1", "2", "8"}) {
+    render({kCornell, "--size", "100x75", "--threads", threads, "-o", threads});
+    EXPECT_EQ(stats_.at("threads"), std::stoi(threads));
+  }
+  expect_same_pictures("1", "2");
+  expect_same_pictures("1", "8");
+}
+
+// Rays that scatter at random, through glass too.
+TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
+  for (const std::string scene : {"cornell", "paper"}) {
+    const auto with = [&](std::vector<std::string> rest) {
+      rest.insert(rest.end(), {RAYGATE_SCENES "/" + scene + ".obj", "--integrator", "path",
+                               "--size", "24x18", "--spp", "2"});
+      return rest;
+    };
+    render(with({"-o", "cpu", "--engine", "cpu"}));
+    EXPECT_GT(stats_.at("shadow_rays"), 0);
+    render(with({"-o", "rtl", "--engine", "rtl"}));
+    EXPECT_GT(stats_.at("clocks"), 0);
+    expect_same_pictures("cpu", "rtl");
+    render(
+        with({"-o", "serial", "--engine", "model", "--unit", "serial", "--no-skip", "divisions"}));
+    expect_same_pictures("cpu", "serial");
+  }
+}
+
+// Rays with and without a common origin, in all directions.
+TEST_F(Render, EnginesGiveTheSameBytesThroughAnyLens) {
+  for (const std::string projection : {"perspective", "orthographic", "panorama"}) {
+    for (const std::string aperture : {"0", "20"}) {
+      const auto with = [&](std::vector<std::string> rest) {
+        rest.insert(rest.end(), {kCornell, "--projection", projection, "--aperture", aperture,
+                                 "--size", "24x18", "--spp", "2"});
+        return rest;
+      };
+      render(with({"-o", "cpu", "--engine", "cpu"}));
+      EXPECT_GT(stats_.at("hits"), 0);
+      render(with({"-o", "rtl", "--engine", "rtl"}));
+      expect_same_pictures("cpu", "rtl");
+      render(with({"-o", "all", "--engine", "model", "--no-skip", "all"}));
+      expect_same_pictures("cpu", "all");
+      const ExrReader exr(folder_.read("cpu.exr"));
+      EXPECT_EQ(exr.text("projection"), projection == "perspective" ? "(none)" : projection);
+      EXPECT_EQ(exr.text("aperture"), aperture == "0" ? "(none)" : aperture);
+    }
+  }
+}
+
+TEST_F(Render, SkipsChangeNoByte) {
+  const std::vector<std::string> arguments{RAYGATE_SCENES "/paper.obj",
+                                           "--size",
+                                           "40x30",
+                                           "--engine",
+                                           "cpu",
+                                           "--spp",
+                                           "1",
+                                           "--depth",
+                                           "2",
+                                           "-o"};
+  const auto with = [&](std::vector<std::string> rest) {
+    rest.insert(rest.begin(), arguments.begin(), arguments.end());
+    return rest;
+  };
+  render(with({"skips"}));
+  const json done = stats_;
+  for (const char* what : {"culled_tests", "lights_behind", "weightless"}) {
+    EXPECT_GT(done.at("skipped").at(what), 0) << what;
+  }
+  // Of the paper's 34 polygons each comes near some ray, of the teapot's 4,032 not.
+  render({RAYGATE_SCENES "/teapot.obj", "--size", "40x30", "--engine", "model", "-o", "teapot"});
+  EXPECT_GT(stats_.at("skipped").at("records"), 0);
+  render(with({"none", "--no-skip", "all"}));
+  EXPECT_GT(stats_.at("tests"), 20 * done.at("tests").get<std::uint64_t>());
+  EXPECT_EQ(stats_.at("skipped").at("culled_tests"), 0);
+  expect_same_pictures("skips", "none");
+}
+
+TEST_F(Render, RunsAreRepeatable) {
+  render({kCornell, "--size", "40x30", "-o", "first"});
+  render({kCornell, "--size", "40x30", "-o", "second"});
+  expect_same_pictures("first", "second");
+}
+
+TEST_F(Render, SavingInBetweenChangesNothingInTheEnd) {
+  const std::vector<std::string> scene{kCornell, "--size", "96x96", "--engine",
+                                       "cpu",    "--spp",  "16"};
+  std::vector<std::string> plain = scene, saving = scene;
+  plain.insert(plain.end(), {"-o", "plain"});
+  saving.insert(saving.end(), {"-o", "saving", "--save-every", "0.1"});
+  render(plain);
+  render(saving);
+  expect_same_pictures("plain", "saving");
+}
+
+TEST_F(Render, CropIsThatPartOfTheWhole) {
+  render({kCornell, "--size", "90x60", "--engine", "cpu", "--spp", "1", "-o", "whole.exr"});
+  render({kCornell, "--size", "90x60", "--engine", "cpu", "--spp", "1", "--crop", "31,7,58,44",
+          "-o", "part.exr"});
+  EXPECT_EQ(stats_.at("window"), (json{31, 7, 58, 44}));
+  EXPECT_EQ(stats_.at("camera_rays"), 27 * 37);
+  ExrReader whole(folder_.read("whole.exr"));
+  ExrReader part(folder_.read("part.exr"));
+  const auto expect_part = [&]<typename T>(const char* name, Imf::PixelType type, T) {
+    const std::vector<T> all = whole.read<T>(name, type);
+    const std::vector<T> some = part.read<T>(name, type);
+    ASSERT_EQ(all.size(), 90u * 60u);
+    ASSERT_EQ(some.size(), 27u * 37u);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const std::size_t place = (i / 27 + 7) * 90 + i % 27 + 31;
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(some[i]), std::bit_cast<std::uint32_t>(all[place]))
+          << name << " " << i;
+    }
+  };
+  for (const char* name : {"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z"}) {
+    expect_part(name, Imf::FLOAT, float{});
+  }
+  expect_part("id", Imf::UINT, std::uint32_t{});
+}
+
+}  // namespace
+}  // namespace raygate
