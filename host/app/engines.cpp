@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "host/app/format.h"
-#include "host/app/light_options.h"
+#include "host/app/render_options.h"
 #include "host/app/process.h"
 #include "host/base/input_error.h"
 #include "host/film/atomic_file.h"

@@ -43,7 +43,9 @@ std::string view_text(const CameraRequest& request, const Scene& scene, const Vi
 }  // namespace
 
 CameraRequest camera_request(const SceneFile& file) {
-  CameraRequest request{.camera = file.camera, .lens = file.lens};
+  CameraRequest request;
+  request.camera = file.camera;
+  request.lens = file.lens;
   if (!file.camera) {
     request.up = file.up;
     request.fov = file.fov;

@@ -41,18 +41,6 @@ float parse_point_error(const std::string& option, const std::string& text) {
   return float_below(*error);
 }
 
-/// The name of a skip for --no-skip, and its switch.
-struct SkipName {
-  const char* name;
-  bool Skips::*on;
-};
-constexpr SkipName kSkipNames[] = {
-    {"culling", &Skips::culling},           {"records", &Skips::records},
-    {"light-behind", &Skips::light_behind}, {"weightless", &Skips::weightless},
-    {"empty-tiles", &Skips::empty_tiles},   {"first-occluder", &Skips::first_occluder},
-    {"divisions", &Skips::divisions},
-};
-
 /// "records,culling" or "all".
 Skips parse_no_skip(const std::string& option, const std::string& text) {
   Skips skips;

@@ -26,4 +26,16 @@ void add_skip_options(OptionTable& table, RenderSettings& settings);
 void add_camera_options(OptionTable& table, CameraRequest& request);
 void add_environment_options(OptionTable& table, std::optional<EnvironmentSetting>& environment);
 
+/// The name of a skip for --no-skip, and its switch.
+struct SkipName {
+  const char* name;
+  bool Skips::*on;
+};
+inline constexpr SkipName kSkipNames[] = {
+    {"culling", &Skips::culling},           {"records", &Skips::records},
+    {"light-behind", &Skips::light_behind}, {"weightless", &Skips::weightless},
+    {"empty-tiles", &Skips::empty_tiles},   {"first-occluder", &Skips::first_occluder},
+    {"divisions", &Skips::divisions},
+};
+
 }  // namespace raygate

@@ -155,9 +155,7 @@ class OptionsOfASceneFile : public testing::Test {
 
 TEST_F(OptionsOfASceneFile, AreTakenWhereTheCommandLineHasNone) {
   const std::string json = write("a.json", R"({
-      "camera": {"eye": [1, 2, 3], "target": [0, 0, 0],
-                 "path": [{"eye": [1, 2, 3], "target": [0, 0, 0]},
-                          {"eye": [4, 2, 3], "target": [0, 0, 0]}]},
+      "camera": {"eye": [1, 2, 3], "target": [0, 0, 0]},
       "render": {"size": "20x10", "exposure": -1.5, "seed": 18446744073709551615}})");
   const std::string obj = (folder_.path() / "a.obj").string();
   for (const std::string& scene : {json, obj}) {
@@ -170,11 +168,8 @@ TEST_F(OptionsOfASceneFile, AreTakenWhereTheCommandLineHasNone) {
     EXPECT_EQ(options.render.seed, 18446744073709551615u);
     ASSERT_TRUE(options.camera.camera);
     EXPECT_EQ(options.camera.camera->eye, glm::dvec3(1, 2, 3));
-    EXPECT_EQ(options.camera.path.size(), 2u);
     const Options other = parse({scene.c_str(), "--camera", "0,0,9,0,0,0"});
     EXPECT_EQ(other.camera.camera->eye, glm::dvec3(0, 0, 9));
-    EXPECT_TRUE(other.camera.path.empty())
-        << "the camera of the command line goes round its target";
   }
   EXPECT_EQ(parse({obj.c_str(), "--no-scene-file"}).render.width, 640);
   expect_error({json.c_str(), "--no-scene-file"}, "--no-scene-file: expected an OBJ");

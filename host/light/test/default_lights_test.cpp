@@ -63,10 +63,10 @@ TEST(DefaultLights, LeaveWhiteBelowOne) {
     const Camera camera = camera_from({side, 1.5, 4});
     for (const bool is_first_look : {false, true}) {
       RenderSettings options = test::light(IntegratorKind::kWhitted, 32, 32, 1);
-      options.lights =
+      const auto lights =
           is_first_look ? preview_lights(scene, camera) : default_lights(scene, camera);
       float most = 0.0f;
-      for (const glm::vec4& color : test::film_of(scene, camera, options).color) {
+      for (const glm::vec4& color : test::film_of(scene, camera, options, lights).color) {
         most = std::max({most, color.r, color.g, color.b});
       }
       EXPECT_LE(most, 1.0f);
@@ -74,7 +74,7 @@ TEST(DefaultLights, LeaveWhiteBelowOne) {
       if (!is_first_look) continue;
       options.integrator = IntegratorKind::kPath;
       options.samples = 512;  // what is left is the mean
-      const Film film = test::film_of(scene, camera, options);
+      const Film film = test::film_of(scene, camera, options, lights);
       EXPECT_LT(std::ranges::count_if(film.color, [](const auto& color) { return color.b > 1.0f; }),
                 10);
     }
@@ -116,8 +116,8 @@ TEST(DefaultLights, CastSoftShadows) {
     RenderSettings options = test::light(integrator, 1, 1, 4096);
     options.ambient = 0.0;
     options.max_depth = 1;
-    options.lights = CameraLights{{{{0, 101, 0}, glm::dvec3(1e4)}}, glm::vec3(0.0f), {}, 10.0};
-    return double(test::film_of(scene, camera, options).color[0].r);
+    const CameraLights lights{{{{0, 101, 0}, glm::dvec3(1e4)}}, glm::vec3(0.0f), {}, 10.0};
+    return double(test::film_of(scene, camera, options, lights).color[0].r);
   };
   for (const IntegratorKind integrator : {IntegratorKind::kWhitted, IntegratorKind::kPath}) {
     for (const double part : {-0.8, -0.5, 0.0, 0.5}) {

@@ -47,7 +47,7 @@ void with_seeds(const Scene& scene, const Camera& camera, RenderSettings options
   for (int seed = 0; seed < seeds(); ++seed) {
     options.seed = static_cast<std::uint64_t>(seed);
     RenderStats stats;
-    each(render(prepared, camera, options, cpu(bvh), stats));
+    each(render({prepared, camera, options}, cpu(bvh), stats));
   }
 }
 
