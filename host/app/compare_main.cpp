@@ -74,7 +74,7 @@ std::vector<Measure> measures_of(const Comparison& c) {
           {"not_finite", static_cast<double>(c.not_finite), false}};
 }
 
-/// "MEASURE=VALUE" against the measures: whether it is kept. Throws InputError.
+/// Returns whether the measures meet a threshold "MEASURE=VALUE". Throws InputError.
 bool is_kept(const std::string& text, const std::vector<Measure>& measures) {
   const auto [name, number] = split_at_equals(text);
   const auto limit = parse_number<double>(number);
@@ -100,7 +100,7 @@ std::vector<std::string> channel_names(const std::string& list) {
   return names;
 }
 
-/// Numbers that JSON has no word for become strings.
+/// Returns a number as JSON; infinity and NaN become strings.
 nlohmann::ordered_json json_of(const std::optional<double>& value) {
   if (!value) return nullptr;
   if (std::isfinite(*value)) return *value;
@@ -123,7 +123,7 @@ void print_json(const Comparison& c, const std::vector<Measure>& measures) {
   std::printf("%s\n", json.dump(2, ' ', true).c_str());
 }
 
-/// The differences in false colours; black where one picture alone is not finite.
+/// Returns the differences in false colours; black where only one picture is finite.
 void write_difference(const CompareOptions& options, const ChannelPicture& picture,
                       const Comparison& comparison) {
   std::vector<float> values(comparison.difference.begin(), comparison.difference.end());

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "host/app/format.h"
-#include "host/app/render_options.h"
 #include "host/app/process.h"
+#include "host/app/render_options.h"
 #include "host/base/input_error.h"
 #include "host/film/atomic_file.h"
 #include "host/intersect/check_intersector.h"
@@ -40,7 +40,7 @@ Choices<Arith> arith_choices() {
   return {{"structural", Arith::kStructural}, {"behavioural", Arith::kBehavioural}};
 }
 
-/// A name of variants.json, or a format.
+/// Parses a name of variants.json or a format such as "e8p15".
 Variant parse_variant(const std::string& option, const std::string& text) {
   std::vector<std::string> names;
   for (const Variant& variant : all_variants_of_arithmetic()) {
@@ -55,7 +55,7 @@ Variant parse_variant(const std::string& option, const std::string& text) {
   fail_value(option, text, "exponent bits and digits as in e8p15 or e8p15-raw, " + listed(names));
 }
 
-/// "latency=100,bytes=16,cache=1024", each of them or not.
+/// Parses "latency=100,bytes=16,cache=1024"; each part is optional.
 MemoryTiming parse_memory(const std::string& option, const std::string& text) {
   MemoryTiming timing;
   for (const std::string& word : split_at_commas(text)) {
@@ -78,7 +78,7 @@ MemoryTiming parse_memory(const std::string& option, const std::string& text) {
   return timing;
 }
 
-/// The unit of an engine that has one, with what its host does around it: rtl's, or its model.
+/// Returns the tester for the simulated unit or its model.
 std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips& skips) {
   if (options.variant) return make_variant_tester(*options.variant);
   if (options.unit == "serial") {
@@ -93,7 +93,7 @@ std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips
   return std::make_unique<PipelineHitTester>(std::move(unit));
 }
 
-/// Cores for each thread, all of one image.
+/// Returns a factory of ray cores that share one memory image.
 IntersectorFactory make_core_factory(const EngineOptions& options, const Bvh& bvh,
                                      std::shared_ptr<const MemoryImage> image) {
   if (!image) {
@@ -116,7 +116,7 @@ IntersectorFactory make_core_factory(const EngineOptions& options, const Bvh& bv
   };
 }
 
-/// Of the unit in `options`.
+/// Returns a factory of intersectors that use the unit in `options`.
 IntersectorFactory make_unit_factory(const EngineOptions& options, const Bvh& bvh,
                                      const Skips& skips, std::shared_ptr<const MemoryImage> image) {
   if (options.has_core()) return make_core_factory(options, bvh, std::move(image));
@@ -147,34 +147,36 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
   table.choice("--engine", "NAME",
                "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster; check: "
                "rtl and cpu ({})",
-               options.engine, engine_choices(), kInStats);
+               options.engine, engine_choices(), kInStats | kInPage);
   table.choice<std::string>(
       "--unit", "NAME", "pipeline, serial (the paper's), core, board ({})", options.unit,
       {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}, {"board", "board"}},
-      kInStats);
+      kInStats | kInPage);
   table.add(
       "--variant", "NAME", "the model's format: e8p16; e8p16-raw: without bounds",
       [&options](const std::string& option, const std::string& text) {
         options.variant = parse_variant(option, text);
       },
-      [&options] { return options.variant ? options.variant->name : ""; }, kInExr);
+      [&options] { return options.variant ? options.variant->name : ""; }, kInExr | kInPage);
   table.choice("--arith", "NAME", "structural, or behavioural: + and * ({})", options.arith,
-               arith_choices(), kInStats);
+               arith_choices(), kInStats | kInPage);
   table.choice<int>("--lanes", "1|2|4|8", "pipelined units side by side, per thread ({})",
-                    options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats);
-  table.add("--memory", "latency=N,bytes=N,cache=N",
-            "ray core: clocks to a line (50), bytes per clock (64), cache lines (0)",
-            [&options](const std::string& option, const std::string& text) {
-              options.memory = parse_memory(option, text);
-            });
+                    options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats | kInPage);
+  table.add(
+      "--memory", "latency=N,bytes=N,cache=N",
+      "ray core: clocks to a line (50), bytes per clock (64), cache lines (0)",
+      [&options](const std::string& option, const std::string& text) {
+        options.memory = parse_memory(option, text);
+      },
+      {}, kInPage);
   table.number("--cores", "N", "ray cores behind one memory, per thread ({})", options.cores,
-               Range{1, 64, "a whole number, 1 to 64"}, kInStats);
+               Range{1, 64, "a whole number, 1 to 64"}, kInStats | kInPage);
   table.add("--board-port", "PATH", "the serial port of a real board (--unit board)",
             [&options](const std::string& /*option*/, const std::string& text) {
               options.board_port = text;
             });
   table.number("--threads", "N", "threads (one per processor)", options.threads, kThreadRange,
-               kInStats);
+               kInStats | kInPage);
   table.choice<InstanceMode>("--instances", "auto|keep|write",
                              "a repeated mesh: in memory once, or written out", options.instances,
                              {{"auto", InstanceMode::kAutomatic},

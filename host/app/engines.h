@@ -1,4 +1,4 @@
-// Engines: the options that say what finds the hits, and the intersectors behind them.
+// Engines: the options that choose what finds the hits, and the intersectors for them.
 #pragma once
 
 #include <filesystem>
@@ -20,27 +20,27 @@
 
 namespace raygate {
 
-/// Who tests rays against polygons.
+/// The engine that tests rays against triangles.
 enum class Engine {
   kRtl,    ///< the simulated hardware
-  kModel,  ///< its reference model in C++, in the hardware's place
-  kCpu,    ///< no unit: tests in place
+  kModel,  ///< the hardware's reference model in C++
+  kCpu,    ///< the host's own tests
   kCheck,  ///< rtl and cpu, compared ray by ray
 };
 
 struct EngineOptions {
   Engine engine = Engine::kRtl;
-  std::string unit = "pipeline";     ///< or "serial", "core", "board"
-  std::optional<Variant> variant{};  ///< of the reference model; none: binary32, as the hardware
+  std::string unit = "pipeline";     ///< "pipeline", "serial", "core" or "board"
+  std::optional<Variant> variant{};  ///< number format of the model; none: binary32
   Arith arith = Arith::kStructural;
-  int lanes = 1;             ///< of the pipelined unit: 1, 2, 4 or 8; 1 for others
-  MemoryTiming memory{};     ///< of a simulated core
-  std::string board_port{};  ///< of a board, for "board"; empty: it is simulated
-  int cores = 1;             ///< behind one memory, for each thread; 1 for other units
+  int lanes = 1;             ///< lanes of the pipelined unit: 1, 2, 4 or 8; 1 for other units
+  MemoryTiming memory{};     ///< memory of a simulated core
+  std::string board_port{};  ///< serial port of unit "board"; "": the board is simulated
+  int cores = 1;             ///< ray cores behind one memory, per thread; 1 for other units
   int threads = 1;
-  InstanceMode instances = InstanceMode::kAutomatic;  ///< what is in the tree
+  InstanceMode instances = InstanceMode::kAutomatic;
 
-  /// Whether rays go to ray cores, simulated or not.
+  /// Whether rays go to ray cores, simulated or modelled.
   [[nodiscard]] bool has_core() const {
     return (unit == "core" || unit == "board") && engine != Engine::kCpu;
   }
@@ -49,11 +49,11 @@ struct EngineOptions {
   }
 };
 
-/// Adds to a table what sets `options`.
+/// Adds the engine's options to a table.
 void add_engine_options(OptionTable& table, EngineOptions& options);
 
-/// Refuses what does not go together and settles what was left open; there are so many
-/// `processors`, 0: the machine's. Throws InputError, one line.
+/// Throws InputError for options that exclude each other, and sets defaults that depend on others.
+/// `processors`: the default number of threads; 0: the machine's.
 void check_engine_options(const OptionTable& table, EngineOptions& options,
                           unsigned processors = 0);
 
@@ -62,32 +62,32 @@ void check_engine_options(const OptionTable& table, EngineOptions& options,
 /// "structural" or "behavioural".
 [[nodiscard]] std::string to_string(Arith arith);
 
-/// Builds the simulated model that `options` ask for, if it isn't built: before threads wait for
-/// it. Throws InputError where it can't be built.
+/// Builds the simulated model of the engine unless it is built already, so that threads do not wait
+/// for it later. Throws InputError if it cannot be built.
 void prepare_engine(const EngineOptions& options);
 
-/// Makes intersectors of the engine, unit and number of lanes in `options`. Each one owns its
-/// simulated model; polygon records of common origins they share. Of `skips`, records and divisions
-/// count. The tree must outlive factory and intersectors. `image`: what cores read of that tree;
-/// null: it is made where it is needed.
+/// Returns a factory of intersectors of the engine. Each intersector owns its simulated model; all
+/// share the records of common origins. Only `skips.records` and `skips.divisions` are used. The
+/// tree must outlive factory and intersectors. `image`: the tree's memory image for ray cores;
+/// null: made if needed.
 [[nodiscard]] IntersectorFactory make_intersector_factory(
     const EngineOptions& options, const Bvh& bvh, const Skips& skips = {},
     std::shared_ptr<const MemoryImage> image = nullptr);
 
+/// Files about a ray core that are written instead of a picture.
 struct CoreFileOptions {
-  std::filesystem::path image;  ///< where the memory image goes; empty: nowhere
-  std::filesystem::path wave;   ///< where the waveform of `pixel`'s ray goes, in place of a picture
-  std::optional<glm::ivec2> pixel;  ///< there exactly with `wave`
+  std::filesystem::path image;      ///< memory image; "": none
+  std::filesystem::path wave;       ///< waveform of `pixel`'s ray; "": none
+  std::optional<glm::ivec2> pixel;  ///< set if and only if `wave` is
 
-  /// The files that are written.
+  /// The files that will be written.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
 };
 
-/// Adds to a table what sets `files`.
+/// Adds the options of these files to a table.
 void add_core_file_options(OptionTable& table, CoreFileOptions& files);
 
-/// Throws InputError, one line, where `engine` has no ray core, or the pixel is none of a frame of
-/// `size`.
+/// Throws InputError if the engine has no ray core or the pixel is outside a frame of `size`.
 void check_core_file_options(const CoreFileOptions& files, const EngineOptions& engine,
                              const glm::ivec2& size);
 
@@ -95,11 +95,11 @@ void check_core_file_options(const CoreFileOptions& files, const EngineOptions& 
 [[nodiscard]] std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine,
                                                                    const Bvh& bvh);
 
-/// Writes the image to its file. Returns a line that says so. Throws InputError.
+/// Writes the memory image to its file and returns a line for the console. Throws InputError.
 [[nodiscard]] std::string dump_image(const CoreFileOptions& files, const MemoryImage& image);
 
-/// Sends the ray through the middle of `files.pixel` into a core that writes its wave. What it
-/// found, one line. Throws InputError as make_core_wave does.
+/// Traces `ray`, of `files.pixel`, with a simulated core that writes its waveform. Returns a line
+/// for the console about the hit. Throws InputError as make_core_wave does.
 [[nodiscard]] std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& files,
                                       const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
                                       const Ray& ray);

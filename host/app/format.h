@@ -1,4 +1,4 @@
-// Numbers as people read them.
+// Formatting of numbers for people.
 #pragma once
 
 #include <cstdint>
@@ -6,20 +6,20 @@
 
 namespace raygate {
 
-/// "1,234,567".
+/// Returns "1,234,567".
 [[nodiscard]] std::string format_count(std::uint64_t count);
 
-/// "1 ray", "2,000 rays".
+/// Returns "1 ray" or "2,000 rays".
 [[nodiscard]] std::string format_count(std::uint64_t count, const std::string& noun);
 
-/// Three significant digits below a minute, then coarser: "0.123 ms", "12.3 s", "4 min 05 s",
-/// "2 h 07 min". Negative or NaN: "?".
+/// Returns "0.123 ms", "12.3 s" (three significant digits below a minute), "4 min 05 s" or
+/// "2 h 07 min"; "?" for negative values and NaN.
 [[nodiscard]] std::string format_duration(double seconds);
 
-/// `value` with `digits` decimals: "7.00".
+/// Returns `value` with `digits` decimals: "7.00".
 [[nodiscard]] std::string format_fixed(double value, int digits);
 
-/// `value` with at most seven digits that count: "35", "-0.125".
+/// Returns `value` with at most seven significant digits: "35", "-0.125".
 [[nodiscard]] std::string format_number(double value);
 
 }  // namespace raygate

@@ -30,8 +30,7 @@ std::string decoded(const std::string& text) {
   return result;
 }
 
-/// The descriptor of the socket whose other end has this port; -1: none. The library keeps it to
-/// itself.
+/// Returns the descriptor of the socket with this remote port, or -1; CivetWeb does not expose it.
 int socket_from(int port) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
     const int socket = std::stoi(entry.path().filename());
@@ -80,12 +79,12 @@ void send(mg_connection* connection, const HttpReply& reply) {
   if (method_of(connection) != "HEAD") mg_write(connection, reply.body.data(), reply.body.size());
 }
 
-/// A route, and the names that the server goes by.
+/// A route and the server's host names.
 struct Handler {
   const HttpRoute& route;
   const std::set<std::string>& names;
 
-  /// The answer to what is no request of the server's own page; none otherwise.
+  /// Returns the reply to a request that does not come from the server's own page, or none.
   [[nodiscard]] std::optional<HttpReply> refusal(mg_connection* connection) const {
     const auto header = [&](const char* name) -> std::string {
       const char* const value = mg_get_header(connection, name);
@@ -121,7 +120,7 @@ struct Handler {
 };
 
 int handle(mg_connection* connection, void* handler) {
-  // The library's threads have stacks of 100 kB, which parsing a command line nearly fills.
+  // Another thread, because stacks of CivetWeb's threads (100 kB) are too small.
   HttpReply reply{.status = 503, .body = "found no thread that is free\n"};
   try {
     reply = std::async(std::launch::async, &Handler::answer, static_cast<const Handler*>(handler),
@@ -137,13 +136,13 @@ int handle(mg_connection* connection, void* handler) {
 
 void serve_http(int port, const std::vector<HttpRoute>& routes) {
   const std::string wanted = "127.0.0.1:" + std::to_string(port);
-  // A connection that says nothing has a thread until its time is over.
+  // Idle connections occupy a thread until the time limit.
   const char* settings[] = {
       "listening_ports",    wanted.c_str(), "num_threads", "64", "enable_keep_alive", "yes",
       "request_timeout_ms", "5000",         nullptr};
   const mg_callbacks none{};
   std::set<std::string> names;
-  std::vector<Handler> handlers;  // outlive the server, which ends with its last answer
+  std::vector<Handler> handlers;  // outlive the server
   const std::unique_ptr<mg_context, void (*)(mg_context*)> server(
       mg_start(&none, nullptr, settings), mg_stop);
   mg_server_port bound{};
@@ -157,7 +156,7 @@ void serve_http(int port, const std::vector<HttpRoute>& routes) {
   handlers.reserve(routes.size());
   for (const HttpRoute& route : routes) {
     handlers.push_back({route, names});
-    // "$": the path alone, and nothing below it.
+    // "$": only this path, not the paths below it.
     mg_set_request_handler(server.get(), (route.path + "$").c_str(), handle, &handlers.back());
   }
   print("http://127.0.0.1:" + number + "/ shows the scene; Ctrl-C ends it\n");

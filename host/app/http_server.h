@@ -1,4 +1,4 @@
-// HTTP server: answers a browser on this machine until a signal comes.
+// HTTP server for a browser on this machine.
 #pragma once
 
 #include <functional>
@@ -9,12 +9,12 @@
 
 namespace raygate {
 
-/// What a browser asks: the query's names and values, decoded.
+/// A request with the decoded parameters of its query.
 struct HttpRequest {
   std::function<bool()> is_abandoned;  ///< whether the browser has closed the connection
   std::multimap<std::string, std::string> parameters;
 
-  /// The first of that name; empty where there is none.
+  /// Returns the first value of a name, or "".
   [[nodiscard]] std::string value(const std::string& name) const {
     const auto at = parameters.find(name);
     return at == parameters.end() ? "" : at->second;
@@ -27,20 +27,20 @@ struct HttpReply {
 
   int status = 200;
   const char* type = kText;
-  std::string body;  ///< none with kNoContent
+  std::string body;  ///< empty with kNoContent
   std::vector<std::pair<const char*, std::string>> headers{};
 };
 
-/// What answers a path; it is called on several threads at once.
+/// A path and the function that answers it, called on several threads at once.
 struct HttpRoute {
   std::string path;
   std::function<HttpReply(const HttpRequest&)> answer;
 };
 
-/// Serves the routes at 127.0.0.1 and to no other host until a signal comes, and says the address
-/// on standard output. `port`: 0 for any free one. An answer's InputError is one line of text,
-/// status 400, another exception status 500. Requests of pages of other sites have status 403,
-/// methods but GET and HEAD 405. Throws InputError where the port cannot be had.
+/// Serves the routes at 127.0.0.1 until a signal comes, and prints the address on standard output.
+/// `port`: 0 for any free port. InputError becomes one line of text with status 400, other
+/// exceptions status 500. Requests from pages of other sites get status 403, methods other than GET
+/// and HEAD 405. Throws InputError if the port is not available.
 void serve_http(int port, const std::vector<HttpRoute>& routes);
 
 }  // namespace raygate

@@ -171,6 +171,18 @@ void OptionTable::set(const std::string& name, const std::string& text) const {
   throw InputError(name + ": unknown option" + did_you_mean(name, names));
 }
 
+void OptionTable::require(const std::string& name, OptionPlaces place,
+                          const std::string& where) const {
+  std::vector<std::string> names;
+  for (const Row& row : rows_) {
+    if ((row.places & place) == 0) continue;
+    if (row.name == name) return;
+    names.push_back(row.name);
+  }
+  throw InputError(where + ": unknown key '" + name + "', expected some of " + listed(names, ", ") +
+                   did_you_mean(name, names));
+}
+
 std::string OptionTable::typed(const std::string& name) const {
   const auto& typed = std::ranges::find(rows_, name, &Row::name)->typed;
   return typed.empty() ? "" : typed.back();

@@ -15,8 +15,8 @@
 
 namespace raygate {
 
-/// All of `text` as a number of type T ("12", "-1.5e3"); nothing if it is not one or out of T's
-/// range. Floating-point numbers may come out infinite or NaN only where the text says so.
+/// Parses all of `text` as a number of type T ("12", "-1.5e3"). Returns none if it is not a number
+/// or out of T's range; floating-point numbers are infinite or NaN only if the text says so.
 template <typename T>
 [[nodiscard]] std::optional<T> parse_number(std::string_view text) {
   T value{};
@@ -26,17 +26,17 @@ template <typename T>
   return value;
 }
 
-/// The shortest text that parse_number reads as `value`.
+/// Returns the shortest text that parse_number reads as `value`.
 template <typename T>
 [[nodiscard]] std::string number_text(T value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// "a,b" as two words, which may be empty; at least one.
+/// Splits "a,b" into words, which may be empty; returns at least one.
 [[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
 
-/// "0,0,10,20" as four numbers; nothing if any of them is not one.
+/// Parses "0,0,10,20"; returns none if a word is not a number.
 template <typename T>
 [[nodiscard]] std::optional<std::vector<T>> parse_list(const std::string& text) {
   std::vector<T> values;
@@ -48,21 +48,20 @@ template <typename T>
   return values;
 }
 
-/// "name=value" as its two halves; a missing half is empty.
+/// Splits "name=value"; a missing half is empty.
 [[nodiscard]] std::pair<std::string, std::string> split_at_equals(const std::string& text);
 
-/// "a, b or c".
+/// Returns "a, b or c".
 [[nodiscard]] std::string listed(std::span<const std::string> words, const char* last = " or ");
 
-/// "; did you mean --size?" if `text` is likely to be a misspelling of one of `words`; else
-/// nothing.
+/// Returns "; did you mean --size?" if `text` is probably a misspelling of one of `words`, else "".
 [[nodiscard]] std::string did_you_mean(const std::string& text, std::span<const std::string> words);
 
-/// Throws InputError: "--size: expected WIDTHxHEIGHT, got 'big'", and `hint`.
+/// Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'", followed by `hint`.
 [[noreturn]] void fail_value(const std::string& option, const std::string& text,
                              const std::string& expected, const std::string& hint = "");
 
-/// The words that an option takes, and the value of each.
+/// The words that an option accepts and their values.
 template <typename T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
@@ -73,14 +72,14 @@ template <typename T>
   return names;
 }
 
-/// The name of `value`, which is one of the choices.
+/// Returns the name of `value`, which must be one of the choices.
 template <typename T>
 [[nodiscard]] std::string name_of(const Choices<T>& choices, const T& value) {
   return std::ranges::find(choices, value, &std::pair<std::string, T>::second)->first;
 }
 
-/// The value named `text`. Throws InputError: "--tone: expected clip or filmic, got 'flimic'; did
-/// you mean filmic?"
+/// Returns the value named `text`. Throws InputError "--tone: expected clip or filmic, got
+/// 'flimic'; did you mean filmic?"
 template <typename T>
 [[nodiscard]] T choose(const std::string& option, const std::string& text,
                        const Choices<T>& choices) {
@@ -91,7 +90,7 @@ template <typename T>
   fail_value(option, text, listed(names), did_you_mean(text, names));
 }
 
-/// The words of "a,b", each of which must be one of `names`.
+/// Splits "a,b" into words. Throws InputError if one is not in `names`.
 [[nodiscard]] std::vector<std::string> choose_some(const std::string& option,
                                                    const std::string& text,
                                                    std::span<const std::string> names);
@@ -99,9 +98,11 @@ template <typename T>
 /// Where an option appears besides the command line.
 enum OptionPlaces : unsigned {
   kNowhere = 0,
-  kInExr = 1,     ///< EXR attribute: --point-error as "pointError"
-  kInStats = 2,   ///< key in the JSON of --stats, under the option's name
-  kInPython = 4,  ///< keyword of the Python module
+  kInExr = 1,        ///< EXR attribute: --point-error as "pointError"
+  kInStats = 2,      ///< key in the JSON of --stats, under the option's name
+  kInPython = 4,     ///< keyword of the Python module
+  kInSceneFile = 8,  ///< key of "render" in scene files
+  kInPage = 16,      ///< parameter of requests to --serve
 };
 
 /// The closed range of a number. `expected` describes it in messages; null: "a number from 0 to 1".
@@ -197,6 +198,10 @@ class OptionTable {
 
   /// Returns the last value typed for an option, named without dashes; "" if there was none.
   [[nodiscard]] std::string typed(const std::string& name) const;
+
+  /// Throws InputError "WHERE: unknown key 'colour', expected some of ..." unless the option `name`
+  /// appears at `place`.
+  void require(const std::string& name, OptionPlaces place, const std::string& where) const;
 
   /// Name/value pairs of the options shown at `place`; options without a value are omitted.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> values(OptionPlaces place) const;

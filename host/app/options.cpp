@@ -51,7 +51,7 @@ void read_size(const std::string& option, const std::string& text, RenderSetting
   options.height = *height;
 }
 
-/// A command line's options: every one of ./render, in the order of --help.
+/// All options of ./render, in the order of --help.
 struct CommandLine {
   OptionTable table{kAbout, kFooter};
   std::string scene;
@@ -71,7 +71,7 @@ struct CommandLine {
         [&render](const std::string& option, const std::string& text) {
           read_size(option, text, render);
         },
-        [&render] { return size_text(render); });
+        [&render] { return size_text(render); }, kInSceneFile | kInPage);
     table.add("--crop", "X0,Y0,X1,Y1", "only this part of it; X1 and Y1 are not included",
               [&render](const std::string& /*option*/, const std::string& text) {
                 const auto n = parse_list<int>(text);
@@ -118,7 +118,7 @@ void check_crop(const OptionTable& table, RenderSettings& options) {
   require_pixels("--crop", typed, window.width(), window.height());
 }
 
-/// What --error asks of other options.
+/// Checks options that --error excludes or changes.
 void check_error(const OptionTable& table, RenderSettings& options) {
   if (options.error == 0.0) return;
   if (table.typed("spp").empty()) options.samples = kMostSamples;
@@ -136,7 +136,7 @@ void check_error(const OptionTable& table, RenderSettings& options) {
   }
 }
 
-/// What --caustics on asks of other options; its default does without where they say otherwise.
+/// Checks options that --caustics on excludes; --caustics auto does without caustics instead.
 void check_caustics(const RenderSettings& options) {
   if (options.caustics != Caustics::kOn) return;
   if (options.integrator != IntegratorKind::kPath) {
@@ -146,7 +146,7 @@ void check_caustics(const RenderSettings& options) {
   if (options.error > 0.0) throw InputError("--caustics on and --error exclude each other");
 }
 
-/// What options ask of each other.
+/// Checks options against each other and sets defaults that depend on others.
 void check(const OptionTable& table, Options& options, unsigned processors) {
   RenderSettings& render = options.render;
   render.choose_integrator(options.environment.has_value(), !table.typed("integrator").empty(),
@@ -189,7 +189,7 @@ SceneFile find_scene_file(const CommandLine& line) {
     return {.file = scene, .obj = scene};
   }
   SceneFile file = read_scene_file(beside);
-  // A scene that is made, somewhere else, goes by the name of its scene file.
+  // The model may be elsewhere, made by a script.
   if (!std::filesystem::exists(scene, ignored)) return file;
   if (file.obj.lexically_normal() != scene.lexically_normal()) {
     throw InputError(beside.string() + ": is about " + file.obj.string() + ", not " + line.scene +
@@ -198,14 +198,16 @@ SceneFile find_scene_file(const CommandLine& line) {
   return file;
 }
 
-/// The scene file's options as words of a command line, the value of each of them checked.
+/// Returns the scene file's options as words of a command line, after checking each value.
 std::vector<std::string> words_of(const SceneFile& file) {
   std::vector<std::string> words;
   for (const OptionSetting& setting : file.options) {
     words.push_back("--" + setting.name + "=" + setting.value);
     try {
       Options ignored;
-      (void)CommandLine(ignored).parse({words.back()});
+      CommandLine line(ignored);
+      line.table.require(setting.name, kInSceneFile, "render");
+      (void)line.parse({words.back()});
     } catch (const InputError& error) {
       throw InputError(file.file.string(), setting.line, error.what());
     }
@@ -213,7 +215,7 @@ std::vector<std::string> words_of(const SceneFile& file) {
   return words;
 }
 
-/// What the page of --serve cannot show.
+/// Throws InputError for options that exclude --serve.
 void check_serve(const OptionTable& table, const Options& options) {
   if (!options.serve) {
     if (!table.typed("port").empty()) throw InputError("--port: expected with --serve");
@@ -227,8 +229,8 @@ void check_serve(const OptionTable& table, const Options& options) {
   }
 }
 
-/// Reads the scene file's options and then what was typed, whose values take the place of the
-/// former. An error that goes away without an option of the file names its line.
+/// Parses the scene file's options and then the command line, which overrides them. If an error
+/// would not occur without an option of the file, the message names its line.
 Options read_options(const Options& begin, const std::vector<std::string>& typed,
                      unsigned processors) {
   const auto read = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
@@ -268,16 +270,16 @@ Options read_options(const Options& begin, const std::vector<std::string>& typed
   }
 }
 
-/// No output may take the place of the scene or of another output.
+/// Throws InputError if an output would overwrite the scene or another output.
 void require_distinct_outputs(const Options& options) {
-  // What cannot be resolved is refused where it is read or written.
+  // Paths that cannot be resolved are refused when they are read or written.
   const auto resolve = [](const std::filesystem::path& path) {
     std::error_code error;
     return target_of(path, error);
   };
   std::vector<std::filesystem::path> paths{options.scene, options.scene_file.obj,
                                            options.scene_file.file};
-  // A file of this name would be read with the scene next time.
+  // The next run would read a file of this name with the scene.
   paths.push_back(std::filesystem::path(options.scene_file.obj).replace_extension(".json"));
   std::vector<std::filesystem::path> outputs = options.output.paths();
   for (const auto& path : options.core_files.paths()) outputs.push_back(path);
@@ -299,7 +301,7 @@ Options parse_options(int argc, const char* const* argv, unsigned processors) {
   Options options;
   options.words = words;
   {
-    Options first;                // for the scene's name
+    Options first;                // to find the scene's name
     first.environment.emplace();  // the scene file may have one
     CommandLine line(first);
     options.information = line.parse(words);
@@ -327,6 +329,11 @@ Options parse_options(int argc, const char* const* argv, unsigned processors) {
 std::vector<std::pair<std::string, std::string>> option_values(Options options,
                                                                OptionPlaces place) {
   return CommandLine(options).table.values(place);
+}
+
+void require_page_option(const std::string& name) {
+  Options ignored;
+  CommandLine(ignored).table.require(name, kInPage, "request");
 }
 
 std::vector<std::pair<std::string, std::string>> picture_options(const Options& options,

@@ -18,7 +18,7 @@ namespace raygate {
 
 /// Checked options: every value is in its range. Files are not checked.
 struct Options : EngineOptions {
-  /// Text that --help or --version asked for; if not empty nothing else here is of use.
+  /// Output of --help or --version; if not empty, the other members are not valid.
   std::string information;
 
   std::vector<std::string> words;  ///< as typed, without the program's name
@@ -29,13 +29,13 @@ struct Options : EngineOptions {
   std::optional<EnvironmentSetting> environment;
   OutputOptions output;
   CoreFileOptions core_files;
-  std::filesystem::path resume;  ///< a picture to resume; empty: none
-  bool serve = false;            ///< the scene in a page, in place of files
-  int port = 0;                  ///< of that page; 0: any that is free
+  std::filesystem::path resume;  ///< EXR to resume; "": none
+  bool serve = false;            ///< serve a page instead of writing files
+  int port = 0;                  ///< of the page; 0: any free port
   bool quiet = false, verbose = false;
-  bool strict = false;           ///< faces without area are refused
-  std::optional<double> smooth;  ///< degrees, as LoadOptions has it
-  bool is_bare_model = false;    ///< there is no scene file, not even an ignored one
+  bool strict = false;           ///< refuse faces without area
+  std::optional<double> smooth;  ///< LoadOptions::smooth, in degrees
+  bool is_bare_model = false;    ///< whether there is no scene file, not even an ignored one
 };
 
 /// Parses the command line of main() after the options of the scene file, which it overrides.
@@ -46,6 +46,9 @@ struct Options : EngineOptions {
 /// Name/value pairs of the options shown at `place`.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> option_values(Options options,
                                                                              OptionPlaces place);
+
+/// Throws InputError unless requests to --serve may have this option.
+void require_page_option(const std::string& name);
 
 /// Name/value pairs, for the EXR, of all options that render the same picture of the same scene.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> picture_options(

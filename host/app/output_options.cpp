@@ -19,7 +19,7 @@ constexpr std::pair<std::string_view, bool ExtraChannels::*> kExtraChannels[] = 
 
 constexpr const char* kStandardOutput = "/dev/stdout";
 
-/// Marks a channel or layer as wanted; false if it is none of those on demand.
+/// Adds an extra channel or layer; returns false if it is always in the film.
 bool want(std::string_view name, ExtraChannels& channels) {
   for (const auto& [known, wanted] : kExtraChannels) {
     if (name != known) continue;
@@ -29,8 +29,8 @@ bool want(std::string_view name, ExtraChannels& channels) {
   return false;
 }
 
-/// The pictures to write: "a.exr" and "a.png" ask for that one alone, "a" for both; "" for both
-/// named after the scene in the current folder, and a folder for both named after it in there.
+/// Sets the names of the pictures: "a.exr" or "a.png" that file alone, "a" both, a folder both
+/// named after the scene in it, and "" both in the current folder.
 void parse_output(const std::string& text, const std::filesystem::path& scene,
                   OutputOptions& options) {
   std::filesystem::path stem = text;
@@ -108,9 +108,10 @@ void add_picture_options(OptionTable& table, OutputOptions& options) {
             [](const auto&, const auto&) {});  // see name_outputs()
   table.number("--exposure", "STOPS", "PNG exposure in stops: +1 is twice as bright ({})",
                options.display.exposure,
-               Range{-100.0, 100.0, "a number of stops from -100 to 100 (1 is twice as bright)"});
+               Range{-100.0, 100.0, "a number of stops from -100 to 100 (1 is twice as bright)"},
+               kInSceneFile | kInPage);
   table.choice<Tone>("--tone", "clip|filmic", "tone curve of the PNG ({})", options.display.tone,
-                     {{"clip", Tone::kClip}, {"filmic", Tone::kFilmic}});
+                     {{"clip", Tone::kClip}, {"filmic", Tone::kFilmic}}, kInSceneFile | kInPage);
   table.add("--channels", "NAMES",
             "extra EXR channels (AOVs): P, Albedo, objectId, tests, doubts; or sums, for --resume "
             "and ./merge",
@@ -127,7 +128,7 @@ void add_picture_options(OptionTable& table, OutputOptions& options) {
       [&options](const std::string& option, const std::string& text) {
         options.false_colors.push_back(parse_false_color(option, text));
       },
-      {}, kNowhere, true);
+      {}, kInPage, true);
 }
 
 void add_run_output_options(OptionTable& table, OutputOptions& options) {

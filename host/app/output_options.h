@@ -1,4 +1,4 @@
-// Output options: which files are written, and what they show.
+// Output options: the files that are written.
 #pragma once
 
 #include <filesystem>
@@ -13,16 +13,16 @@
 
 namespace raygate {
 
-/// One channel as a picture in false colours.
+/// A picture of one channel in false colours.
 struct FalseColorOutput {
-  std::string channel;         ///< as in the EXR file: "Z", "N.X", "tests"
-  std::optional<Scale> scale;  ///< none: from the least to the greatest number
+  std::string channel;         ///< name in the EXR: "Z", "N.X", "tests"
+  std::optional<Scale> scale;  ///< none: from the smallest to the largest value
   std::filesystem::path path;
 };
 
 /// The output files of a run.
 struct OutputOptions {
-  std::optional<std::filesystem::path> exr;  ///< at least one of the two pictures is there
+  std::optional<std::filesystem::path> exr;  ///< at least one of exr and png is set
   std::optional<std::filesystem::path> png;
   std::vector<FalseColorOutput> false_colors;
   std::optional<std::filesystem::path> stats;  ///< run statistics as JSON

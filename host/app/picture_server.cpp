@@ -8,7 +8,6 @@
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -26,20 +25,10 @@
 namespace raygate {
 namespace {
 
-/// The options that a request may have: what needs neither another scene nor files.
-const std::set<std::string>& request_options() {
-  static const std::set<std::string> kNames = {
-      "ambient",  "aperture",     "arith",       "camera",     "cores", "depth",      "engine",
-      "exposure", "false-colour", "filter",      "focus",      "fov",   "integrator", "lanes",
-      "memory",   "no-skip",      "point-error", "projection", "seed",  "size",       "spp",
-      "threads",  "threshold",    "tone",        "unit",       "up",    "variant",    "view"};
-  return kNames;
-}
-
 constexpr std::int64_t kMostServedPixels = std::int64_t{1} << 24;
 constexpr int kMostServedSamples = 1 << 16;
 
-/// As a shell takes it.
+/// Returns a word quoted for a shell.
 std::string quoted(const std::string& word) {
   const auto is_plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("-_=.,:/+^%@", c) != nullptr;
@@ -52,7 +41,7 @@ std::string quoted(const std::string& word) {
 
 Json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-/// A command line that a request stands for.
+/// The command line of a request.
 struct Command {
   std::vector<std::string> words;
   Options options;
@@ -82,7 +71,7 @@ class PictureServer {
   }
 
  private:
-  /// What was typed, with the request's options in place of those.
+  /// Returns the server's command line with the options of the request.
   [[nodiscard]] Command command_of(const HttpRequest& request) const {
     Command command{words_, {}};
     if (request.parameters.contains("camera") || request.parameters.contains("view")) {
@@ -91,15 +80,11 @@ class PictureServer {
     }
     for (const auto& [name, value] : request.parameters) {
       if (name == "slot" || name == "turn" || name == "x" || name == "y") continue;
-      if (!request_options().contains(name)) {
-        throw InputError(name +
-                         ": expected an option of ./render that changes neither the scene "
-                         "nor files");
-      }
+      require_page_option(name);
       erase_option(command.words, name);
       command.words.push_back(std::string("--").append(name).append("=").append(value));
     }
-    // Other cameras have none by default.
+    // The default depends on the camera, but the scene is built.
     erase_option(command.words, "ground");
     command.words.push_back(std::string("--ground=") + (scene_.has_ground ? "on" : "off"));
     std::vector<const char*> words{"render"};
@@ -174,7 +159,7 @@ class PictureServer {
     return {.status = HttpReply::kNoContent, .body = {}};
   }
 
-  /// The picture itself, or the last of its channels in false colours.
+  /// Returns the picture, or its last false-colour channel if there is one.
   static Image8 shown(const Film& film, const OutputOptions& output) {
     if (output.false_colors.empty()) return to_display(film, output.display);
     const FalseColorOutput& wanted = output.false_colors.back();
@@ -242,13 +227,13 @@ class PictureServer {
     return {.type = HttpReply::kJson, .body = json.dump()};
   }
 
-  /// A vector, in decimal and as binary32 words.
+  /// Returns a vector in decimal and as binary32 words.
   static Json words(const glm::vec3& v) {
     const std::array<float, 3> coordinates{v.x, v.y, v.z};
     return {{"decimal", coordinates}, {"words", hex_words(coordinates).substr(1)}};
   }
 
-  /// What an intersector makes of one ray.
+  /// Returns the hit and the statistics of one ray.
   [[nodiscard]] Json found(const Ray& ray, Intersector&& intersector) const {
     return found(ray, intersector);
   }
@@ -272,7 +257,7 @@ class PictureServer {
     return json;
   }
 
-  /// The number of a slot's request. Requests may come in another order than they were sent in.
+  /// Returns the number of a slot's request. Requests may arrive out of order.
   std::uint64_t take_turn(const std::string& slot, const std::string& number) {
     const auto turn = parse_number<std::uint64_t>(number);
     if (!turn) fail_value("turn", number, "the number of the slot's request");
@@ -289,11 +274,11 @@ class PictureServer {
 
   const Options& options_;
   const ServedScene scene_;
-  std::vector<std::string> words_;  // of the command line, but for --serve and --port
-  std::mutex rendering_;            // one picture has all threads
+  std::vector<std::string> words_;  // the command line without --serve and --port
+  std::mutex rendering_;            // one picture at a time, with all threads
   std::shared_ptr<const MemoryImage> image_;
   std::mutex turns_mutex_;
-  std::map<std::string, std::uint64_t> turns_;  // the newest request of each slot
+  std::map<std::string, std::uint64_t> turns_;  // newest request by slot
 };
 
 }  // namespace

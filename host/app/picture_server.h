@@ -1,5 +1,5 @@
-// Picture server: a page in the browser that shows one scene while its camera, engine and options
-// change, as --serve asks for.
+// Picture server of --serve: a page in the browser that shows one scene with any camera, engine and
+// options.
 #pragma once
 
 #include <memory>
@@ -11,28 +11,28 @@
 
 namespace raygate {
 
-/// What all pictures of the page share. The references must outlive the server.
+/// The scene of the page. The references must outlive the server.
 struct ServedScene {
-  const Scene& unframed;  ///< as its file has it, without a ground: cameras frame it
+  const Scene& unframed;  ///< without the ground, for framing
   const PreparedScene& prepared;
-  bool has_ground;  ///< in `prepared`
+  bool has_ground;  ///< whether `prepared` has the ground
 };
 
-/// Serves the page until a signal comes, at 127.0.0.1 and to no other host. What it answers:
+/// Serves the page at 127.0.0.1 until a signal comes. Requests:
 ///
 ///   GET /                    the page
-///   GET /picture?OPTIONS     a PNG, the bytes that ./render writes with these options; the header
-///                            X-Command has that command, X-Statistics what it took, as JSON
-///   GET /camera?OPTIONS      eye, target, up, field of view and size, as JSON; `view` where the
+///   GET /picture?OPTIONS     the PNG of ./render with these options; the header X-Command has the
+///                            command, X-Statistics its statistics as JSON
+///   GET /camera?OPTIONS      eye, target, up, field of view and size as JSON; also `view` if the
 ///                            options frame the whole scene
-///   GET /pixel?x=X&y=Y&OPTIONS  the camera ray through a pixel's middle: what it hits, in decimal
-///                            and as binary32 words, found by the options' engine and in place
+///   GET /pixel?x=X&y=Y&OPTIONS  the camera ray through a pixel's centre and its hits by the chosen
+///                            engine and by the cpu engine, in decimal and as binary32 words
 ///
-/// OPTIONS are those of ./render that change neither the scene nor files, without dashes:
-/// engine=cpu&size=80x60. They take the place of what `options` has. `slot=NAME&turn=N` ends the
-/// pictures of that slot with a smaller N (status 204, no picture); so does the end of a picture's
-/// connection. Pictures have at most 2^24 pixels of 2^16 samples. A bad option is one line of
-/// text, status 400. Throws InputError where the port cannot be had.
+/// OPTIONS are options of ./render that change neither the scene nor files, without dashes:
+/// engine=cpu&size=80x60. They override `options`. `slot=NAME&turn=N` cancels the slot's pictures
+/// with a smaller N (status 204); closing the connection cancels its picture. Pictures have at most
+/// 2^24 pixels of 2^16 samples. A bad option gets one line of text, status 400. Throws InputError
+/// if the port is not available.
 void serve_pictures(const Options& options, const ServedScene& scene);
 
 }  // namespace raygate

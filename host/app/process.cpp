@@ -25,8 +25,8 @@ static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use no
 
 std::atomic<bool> noted_warning = false;
 
-/// Given back when memory runs out for the first time, so that there is some to end with: for the
-/// line that says so, and for destructors that allocate, as those of JSON values do.
+/// Memory that is released when allocation fails for the first time, for the error message and for
+/// destructors that allocate, as those of JSON values do.
 constexpr std::size_t kReserve = std::size_t{1} << 20;
 std::atomic<void*> reserve = nullptr;
 
@@ -39,8 +39,7 @@ void give_reserve_back() {
 void note(int signal) { noted_signal = signal; }
 void note_warning(int /*signal*/) { noted_warning = true; }
 
-/// The length of the UTF-8 character that `text` begins with, if it is one that a terminal shows;
-/// else 0.
+/// Returns the length of the UTF-8 character at the start of `text` if it is printable, else 0.
 std::size_t shown_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -124,12 +123,11 @@ Ending ending_of(const std::exception_ptr& error, int internal_error) {
 }
 
 int run_guarded(const std::function<int()>& program, int internal_error) {
-  // A file that grows past the user's limit, or a pipe whose reader is gone, becomes a failed
-  // write, not a death.
+  // A file beyond the size limit, or a pipe without a reader, is a failed write, not a signal.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    // Without one this goes on, too; a second call of this, which ends a run, may find no memory.
+    // The reserve is optional: a second call of run_guarded may find no memory for it.
     ::operator delete(reserve.exchange(::operator new(kReserve, std::nothrow)));
     std::set_new_handler(give_reserve_back);
     const int status = program();

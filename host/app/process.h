@@ -1,4 +1,4 @@
-// The program as its shell sees it: standard streams, signals, exit status.
+// Process: standard streams, signals and exit status.
 #pragma once
 
 #include <cstdio>
@@ -11,54 +11,53 @@
 
 namespace raygate {
 
-/// `text` as a terminal may have it: control characters, which file names can hold, become "\x1B"
-/// and the like, and so do bytes that are not UTF-8. Newlines are kept if `newlines` says so.
+/// Returns text that is safe to print: control characters and bytes that are not UTF-8 become
+/// "\x1B" and the like. Newlines are kept if `newlines`.
 [[nodiscard]] std::string printable(std::string_view text, bool newlines = false);
 
-/// Prints `text`, made printable; newlines are kept.
+/// Prints printable(text), with its newlines.
 void print(std::string_view text, std::FILE* stream = stdout);
 
-/// Prints "warning: WHAT" on standard error, one line, made printable.
+/// Prints "warning: WHAT", one printable line, on standard error.
 void print_warning(std::string_view what);
 
-/// Throws InputError if what was printed cannot reach standard output: a full disk. A pipe that
-/// nobody reads any more ends the program as SIGPIPE does.
+/// Flushes standard output. Throws InputError if a write has failed, for example on a full disk. If
+/// standard output is a pipe without a reader, raises SIGPIPE.
 void flush_standard_output();
 
-/// What a program ends with that has thrown `error`: status 2 for InputError and where memory is
-/// short, `internal_error` for a fault of ours, 128 + signal for Interrupted, for RankFailure that
-/// rank's.
+/// Returns the exit status and message for an exception: 2 for InputError and out of memory, 128 +
+/// signal for Interrupted, the rank's status for RankFailure, else `internal_error`.
 [[nodiscard]] Ending ending_of(const std::exception_ptr& error, int internal_error);
 
-/// The body of main(): runs `program`, and turns what it throws into one line on standard error and
-/// an exit status.
+/// Body of main(): runs `program` and returns its exit status. Exceptions become one line on
+/// standard error.
 int run_guarded(const std::function<int()>& program, int internal_error);
 
-/// Runs `work` on one of the ranks of a run. What it throws on any of them rank 0 throws.
+/// Runs `work` on this rank. Exceptions of other ranks are rethrown on rank 0.
 void work_as_rank(Ranks& ranks, const std::function<void()>& work);
 
-/// Settles which vector code runs (host/base/vectors.h). Throws InputError where RAYGATE_VECTORS
-/// names none that this machine has.
+/// Chooses the vector code to run (host/base/vectors.h). Throws InputError if RAYGATE_VECTORS names
+/// code that this machine cannot run.
 void choose_vectors();
 
-/// From now on SIGINT, SIGTERM and SIGHUP are only noted; a second one ends the program at once.
-/// Signals that the program was started to ignore stay ignored.
+/// Installs handlers that note SIGINT, SIGTERM and SIGHUP; a second signal ends the program at
+/// once. Signals that are ignored stay ignored.
 void note_interruptions();
 
-/// From now on SIGCONT is noted. mpirun sends it to all ranks when one of them has died, a second
-/// before SIGTERM, which SIGKILL may follow within milliseconds.
+/// Installs a handler that notes SIGCONT. mpirun sends it to all ranks when one has died, a second
+/// before SIGTERM; SIGKILL may follow within milliseconds.
 void note_warnings();
 
-/// Whether one came since this was asked last: time to save.
+/// Returns whether SIGCONT came since the last call.
 [[nodiscard]] bool take_warning();
 
-/// The signal that was noted, or 0.
+/// Returns the noted signal of note_interruptions(), or 0.
 [[nodiscard]] int interruption();
 
-/// What ends a run that was interrupted.
+/// Thrown to end a run after a signal.
 class Interrupted : public std::exception {
  public:
-  /// `outcome` says what became of the files.
+  /// `outcome`: what happened to the output files, for the message.
   Interrupted(int signal, const std::string& outcome)
       : signal_(signal), what_("interrupted; " + outcome) {}
   [[nodiscard]] int signal() const { return signal_; }

@@ -27,7 +27,7 @@ void show(std::string_view text) {
   std::fflush(stderr);
 }
 
-/// An estimate deserves no more than whole seconds.
+/// Returns a duration in whole seconds, because it is an estimate.
 std::string time_left(double seconds) {
   return seconds < 59.5 ? std::to_string(std::lround(seconds)) + " s" : format_duration(seconds);
 }
@@ -37,7 +37,7 @@ std::string state_of(double fraction, double elapsed) {
   std::string percent = std::to_string(static_cast<int>(100.0 * fraction));
   percent.insert(0, 3 - percent.size(), ' ');
   std::string state = percent + " %";
-  // The first hundredth says little about the rest.
+  // An estimate from less than 1 % of the work would be too coarse.
   if (fraction >= 0.01) {
     state += ", " + time_left(elapsed * (1.0 - fraction) / fraction) + " left";
   }
@@ -50,7 +50,7 @@ std::string progress_line(double fraction, double elapsed, int columns) {
   fraction = std::clamp(fraction, 0.0, 1.0);
   const std::string state = state_of(fraction, elapsed);
   const std::string title = "rendering ";
-  // Room is kept for the usual lengths of the state, so that the bar doesn't change its own.
+  // The bar keeps its length while the text after it changes.
   const int taken = static_cast<int>(title.size() + 3 + std::max<std::size_t>(state.size(), 24));
   const int room = std::min(kWidestBar, columns - 1 - taken);
   if (room < 5) return state.substr(0, static_cast<std::size_t>(std::max(0, columns - 1)));

@@ -6,27 +6,28 @@
 
 namespace raygate {
 
-/// "rendering [=========>          ]  45 %, 12 s left", within `columns` characters (without the
-/// bar where it has no room). `fraction` in [0, 1]; `elapsed` seconds brought it there.
+/// Returns "rendering [=========>          ]  45 %, 12 s left" with at most `columns` characters,
+/// without the bar if it does not fit. `fraction`: the completed fraction, in [0, 1]; `elapsed`:
+/// seconds so far.
 [[nodiscard]] std::string progress_line(double fraction, double elapsed, int columns);
 
-/// A line on standard error that is redrawn as the work goes on, and gone when it is over. Silent
-/// where standard error is no terminal. Or, through a launcher that hands lines on, one at the
-/// beginning and one for each tenth of the work.
+/// A progress bar on standard error that is erased at the end. kBar: redrawn in place; silent if
+/// standard error is not a terminal. kLines, for launchers that forward lines: a line at the start
+/// and one for each tenth of the work.
 class ProgressBar {
  public:
   enum class Style { kBar, kLines };
 
-  /// `enabled` false: silent on terminals too. The clock starts here.
+  /// Starts the clock. Prints nothing unless `enabled`.
   explicit ProgressBar(bool enabled, Style style = Style::kBar);
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar() { erase(); }
 
-  /// Removes the line, for another one to be printed.
+  /// Erases the line so that another can be printed.
   void erase();
 
-  /// Redraws the line, at most ten times a second. From one thread at a time.
+  /// Redraws the line, at most ten times a second. Not thread-safe.
   void update(double fraction);
 
  private:
@@ -34,7 +35,7 @@ class ProgressBar {
 
   bool enabled_;
   Style style_;
-  int tenths_ = -1;  // printed
+  int tenths_ = -1;  // already printed
   bool drawn_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_;

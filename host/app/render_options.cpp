@@ -109,15 +109,16 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
   table.choice("--integrator", "NAME",
                "primary: camera rays alone; whitted: shadows, reflection, refraction; path: all "
                "global illumination ({}; path with an environment)",
-               settings.integrator, integrator_choices(), kInExr | kInStats | kInPython);
+               settings.integrator, integrator_choices(),
+               kInExr | kInStats | kInPython | kInSceneFile | kInPage);
   table.number("--spp", "N", "samples per pixel ({}; path by an environment: 16)", settings.samples,
-               Range{1, 1 << 20}, kInExr | kInStats | kInPython);
+               Range{1, 1 << 20}, kInExr | kInStats | kInPython | kInSceneFile | kInPage);
   table.number("--error", "X",
                "adaptive sampling to error X, in steps of an 8-bit display: stop a pixel after 16 "
                "samples if its error is X, after n if it is X n / 16",
                settings.error,
                Range{kAboveZero, 255.0, "steps of an 8-bit display, above 0 and up to 255"},
-               kInExr | kInStats);
+               kInExr | kInStats | kInSceneFile);
   table.add("--samples", "A:B", "render only samples A to B-1, for ./merge",
             [&settings](const std::string& option, const std::string& text) {
               const auto range = parse_sample_range(text);
@@ -128,7 +129,7 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
               settings.end_sample = range->end;
             });
   table.choice("--filter", "NAME", "pixel filter: box, tent, gauss or {}", settings.filter,
-               filter_choices(), kInExr | kInPython);
+               filter_choices(), kInExr | kInPython | kInSceneFile | kInPage);
   table.add(
       "--depth,--max-depth", "N", "reflections and refractions in a row (4; path: 64)",
       [&settings](const std::string& option, const std::string& text) {
@@ -137,7 +138,8 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
         if (!depth || !range.contains(*depth)) fail_value(option, text, range.text());
         settings.max_depth = depth;
       },
-      [&settings] { return std::to_string(settings.depth()); }, kInExr | kInStats | kInPython);
+      [&settings] { return std::to_string(settings.depth()); },
+      kInExr | kInStats | kInPython | kInSceneFile | kInPage);
   table.add(
       "--caustics", "WHEN", "path: light paths find caustics: on, off or auto",
       [&settings](const std::string& option, const std::string& text) {
@@ -151,12 +153,13 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
       },
       kInExr | kInPython);
   table.number("--threshold", "X", "whitted: ignore rays that weigh less ({})", settings.threshold,
-               Range{0.0, 1.0}, kInExr | kInPython);
+               Range{0.0, 1.0}, kInExr | kInPython | kInSceneFile | kInPage);
   table.number("--ambient", "X", "whitted: ambient radiance (background or lights)",
-               settings.ambient, Range{0.0, kFinite, "a radiance, 0 or more"}, kInExr | kInPython);
+               settings.ambient, Range{0.0, kFinite, "a radiance, 0 or more"},
+               kInExr | kInPython | kInSceneFile | kInPage);
   table.number("--seed", "N", "seed of the random numbers ({})", settings.seed,
                Range<std::uint64_t>{0, std::numeric_limits<std::uint64_t>::max()},
-               kInStats | kInPython);
+               kInStats | kInPython | kInSceneFile | kInPage);
 }
 
 void add_skip_options(OptionTable& table, RenderSettings& settings) {
@@ -167,47 +170,57 @@ void add_skip_options(OptionTable& table, RenderSettings& settings) {
       [&settings](const std::string& option, const std::string& text) {
         settings.point_error = parse_point_error(option, text);
       },
-      [&settings] { return number_text(double{settings.point_error}); }, kInExr);
-  table.add("--no-skip", "NAMES",
-            "do work that cannot change the picture: culling, records, light-behind, weightless, "
-            "empty-tiles, first-occluder, divisions or all",
-            [&settings](const std::string& option, const std::string& text) {
-              settings.skips = parse_no_skip(option, text);
-            });
+      [&settings] { return number_text(double{settings.point_error}); }, kInExr | kInPage);
+  table.add(
+      "--no-skip", "NAMES",
+      "do work that cannot change the picture: culling, records, light-behind, weightless, "
+      "empty-tiles, first-occluder, divisions or all",
+      [&settings](const std::string& option, const std::string& text) {
+        settings.skips = parse_no_skip(option, text);
+      },
+      {}, kInPage);
 }
 
 void add_camera_options(OptionTable& table, CameraRequest& request) {
-  table.add("--camera", "EX,EY,EZ,TX,TY,TZ[,FOV]",
-            "eye, target, vertical field of view (the scene's, or a view of it all)",
-            [&request](const std::string& option, const std::string& text) {
-              request.camera = parse_camera(option, text);
-            });
-  table.add("--view", "NAME|AZ,EL",
-            "the whole scene: front, back, left, right, top, bottom, iso, or azimuth and elevation "
-            "(33,24)",
-            [&request](const std::string& option, const std::string& text) {
-              request.angles = parse_view(option, text);
-              request.camera.reset();
-            });
+  table.add(
+      "--camera", "EX,EY,EZ,TX,TY,TZ[,FOV]",
+      "eye, target, vertical field of view (the scene's, or a view of it all)",
+      [&request](const std::string& option, const std::string& text) {
+        request.camera = parse_camera(option, text);
+      },
+      {}, kInPage);
+  table.add(
+      "--view", "NAME|AZ,EL",
+      "the whole scene: front, back, left, right, top, bottom, iso, or azimuth and elevation "
+      "(33,24)",
+      [&request](const std::string& option, const std::string& text) {
+        request.angles = parse_view(option, text);
+        request.camera.reset();
+      },
+      {}, kInPage);
   table.add("--up", "AXIS", "up axis: x, -x, y, -y, z or -z (guessed)",
             chosen<glm::dvec3>(request.up, {{"x", {1, 0, 0}},
                                             {"y", {0, 1, 0}},
                                             {"z", {0, 0, 1}},
                                             {"-x", {-1, 0, 0}},
                                             {"-y", {0, -1, 0}},
-                                            {"-z", {0, 0, -1}}}));
+                                            {"-z", {0, 0, -1}}}),
+            {}, kInPage);
   table.number("--fov", "DEGREES", "vertical field of view of any camera (35)", request.fov,
-               kFovRange);
+               kFovRange, kInPage);
   table.add(
       "--projection", "NAME", "perspective (default), orthographic or panorama",
       chosen<Projection>(request.lens.projection, {{"perspective", Projection::kPerspective},
                                                    {"orthographic", Projection::kOrthographic},
-                                                   {"panorama", Projection::kPanorama}}));
+                                                   {"panorama", Projection::kPanorama}}),
+      {}, kInPage);
   table.number("--aperture", "R", "lens radius for depth of field; needs --spp (0)",
-               request.lens.aperture, Range{0.0, kLargest, "the radius of a lens, 0 or more"});
+               request.lens.aperture, Range{0.0, kLargest, "the radius of a lens, 0 or more"},
+               kInPage);
   table.number(
       "--focus", "D", "focus distance (the target's)", request.lens.focus,
-      Range<double>{std::numeric_limits<float>::min(), kLargest, "a distance, more than 0"});
+      Range<double>{std::numeric_limits<float>::min(), kLargest, "a distance, more than 0"},
+      kInPage);
   table.add("--ground", "on|off", "shadow-catcher ground (on in default outdoor views)",
             chosen<bool>(request.ground, {{"on", true}, {"off", false}}));
 }

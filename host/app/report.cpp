@@ -16,13 +16,13 @@ namespace {
 
 double ratio(double a, double b) { return b > 0.0 ? a / b : 0.0; }
 
-/// "rays     " and the like: the width of all names.
+/// Returns a line of the summary: the name, padded, and the value.
 std::string row(std::string name, const std::string& value) {
   name.resize(9, ' ');
   return name + value + "\n";
 }
 
-/// "1,234 rays/s".
+/// Returns "1,234 rays/s".
 std::string rate(std::uint64_t count, double seconds, const char* of_what) {
   const double per_second = ratio(static_cast<double>(count), seconds);
   return format_count(static_cast<std::uint64_t>(per_second)) + " " + of_what + "/s";
@@ -55,7 +55,7 @@ std::string headline(const Report& report) {
   return line + " " + format_count(options.threads, "thread") + "\n";
 }
 
-/// "hit tests 80 %, boxes 15 %, ...": of the time of all threads.
+/// Returns the fractions of the threads' time: "hit tests 80 %, boxes 15 %, ...".
 std::string shares(const RenderStats& render) {
   const std::pair<const char*, double> parts[] = {{"hit tests", render.intersect.hit_tests},
                                                   {"boxes", render.intersect.traverse},
@@ -71,8 +71,8 @@ std::string shares(const RenderStats& render) {
   return text;
 }
 
-/// "testing 98.2 %, no input 1.8 %, ...": what the lanes of the pipelined unit did with their
-/// clocks.
+/// Returns how the lanes of the pipelined unit spent their clocks: "testing 98.2 %, no input 1.8
+/// %".
 std::string lane_clocks(const Report& report) {
   const HitCounters& hit = report.render.intersect.hit;
   const double all = static_cast<double>(hit.clocks) * report.options.lanes;
@@ -88,8 +88,8 @@ std::string lane_clocks(const Report& report) {
   return text;
 }
 
-/// A kind of work that was skipped, and about what it would have cost, by the mean cost of what was
-/// done. 0 where that is not known.
+/// Skipped work of one kind and its estimated cost, from the mean cost of the work done; 0:
+/// unknown.
 struct Skipped {
   std::uint64_t count;
   const char* what;
@@ -128,7 +128,7 @@ std::vector<Skipped> skipped(const Report& report) {
   return all;
 }
 
-/// "1,234,567, 12.3 % of 1,024 per pixel; the others where ...".
+/// Returns the line about the samples that --error took and saved.
 std::string samples_line(const Report& report) {
   const RenderSettings& light = report.options.render;
   const PixelRect& window = report.options.render.window;

@@ -1,4 +1,4 @@
-// The statistics of a run, for people and for programs.
+// Report: the statistics of a run as text and as JSON.
 #pragma once
 
 #include <cstddef>
@@ -13,31 +13,30 @@
 
 namespace raygate {
 
-/// Everything there is to say of a finished run. Times are seconds on the wall.
+/// Statistics of a finished run. Times are elapsed seconds.
 struct Report {
   Options options;
-  int ranks = 1;  ///< that shared the run
+  int ranks = 1;
   std::size_t triangles = 0;
-  CornerRounding rounding;  ///< of the scene's corners
+  CornerRounding rounding;
   RenderStats render;
-  double load_seconds = 0.0;   ///< reading OBJ and MTL
-  double tree_seconds = 0.0;   ///< building the tree of boxes
-  double write_seconds = 0.0;  ///< encoding the pictures and bringing them to disk
+  double load_seconds = 0.0;   ///< reading the scene
+  double tree_seconds = 0.0;   ///< building the tree
+  double write_seconds = 0.0;  ///< encoding and writing the pictures
   double total_seconds = 0.0;
   std::vector<std::filesystem::path> pictures;
-  std::string view;                  ///< what to type for the view, where none was asked for
-  std::vector<std::string> legends;  ///< what the colours of false-colour pictures mean
+  std::string view;                  ///< Framing::text
+  std::vector<std::string> legends;  ///< scales of the false-colour pictures
 };
 
-/// Simulated clocks for each test that the unit did; 0 where nothing is simulated.
+/// Returns the simulated clocks per hit test of the unit; 0 without simulation.
 [[nodiscard]] double clocks_per_test(const HitCounters& counters);
 
-/// The summary at the end of a run: four lines, one more for --engine check, for --error, for each
-/// legend, for a view and for rounded corners, and with --verbose all there is to say. Every line
-/// is ended.
+/// Returns the summary of a run: four lines, more for --engine check, --error, legends, views and
+/// rounded corners; all statistics with --verbose. Ends with a newline.
 [[nodiscard]] std::string to_text(const Report& report);
 
-/// The same and some more as a JSON object, for --stats. statistics.csv lists the keys.
+/// Returns all statistics as a JSON object, for --stats. statistics.csv lists the keys.
 [[nodiscard]] std::string to_json(const Report& report);
 
 }  // namespace raygate

@@ -108,7 +108,7 @@ TraceOptions parse(const std::vector<std::string>& words) {
   return options;
 }
 
-/// Where the rows go.
+/// The output file or standard output.
 class Table {
  public:
   Table(const TraceOptions& options, const HitTable& answers) : answers_(answers) {
@@ -131,14 +131,14 @@ class Table {
       flush_standard_output();
     }
   }
-  /// Now that they are counted.
+  /// Completes the file, given the number of rows.
   void finish(std::uint64_t rows, TableFormat format) {
     if (!file_) return;
     if (format == TableFormat::kNpy) file_->replace_start(answers_.header(rows));
     file_->commit();
   }
-  /// For the last thread of a program that ends: there is no file, and nothing is written any more.
-  /// A stream has no file to remove, and a write to it may never end.
+  /// Removes the unfinished file before the program ends; later writes block. Streams are left
+  /// alone, because a write to them may never end.
   void abandon() {
     if (!file_ || file_->is_stream()) return;
     mutex_.lock();
@@ -156,8 +156,7 @@ class Table {
                                                                     : "no file was changed");
 }
 
-/// Ends the program when the threads, deep in a search or waiting for rays, have not stopped half a
-/// second after a signal.
+/// Ends the program if the threads have not stopped half a second after a signal.
 void watch(const std::stop_token& is_over, const TraceOptions& options, Table& table) {
   std::mutex mutex;
   std::unique_lock lock(mutex);

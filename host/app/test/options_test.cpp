@@ -187,6 +187,9 @@ TEST_F(OptionsOfASceneFile, AreRefusedWithTheirPlace) {
   const std::string one = write("a.json", "{\"render\": {\n\"error\": 1}}");
   expect_error({one.c_str(), "--samples", "0:2"},
                "--samples and --error exclude each other (" + one + ":2 sets error)");
+  const std::string unknown = write("a.json", "{\"render\": {\"spp\": 2,\n\"threads\": 1}}");
+  expect_error({unknown.c_str()},
+               unknown + ":2: render: unknown key 'threads', expected some of exposure, tone, ");
   const std::string other = write("b.json", R"({"obj": "c.obj"})");
   const std::string scene = folder_.path() / "b.obj";
   EXPECT_EQ(parse({scene.c_str()}).scene_file.obj, folder_.path() / "c.obj") << "there is no b.obj";

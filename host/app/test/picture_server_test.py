@@ -96,8 +96,8 @@ class Http(unittest.TestCase):
     def test_what_is_wrong_is_one_line(self):
         with Served() as served:
             for path, options, said in (
-                    ("/picture", {"width": 3}, "width: expected an option"),
-                    ("/picture", {"output": "a.png"}, "output: expected an option"),
+                    ("/picture", {"width": 3}, "request: unknown key"),
+                    ("/picture", {"output": "a.png"}, "request: unknown key"),
                     ("/picture", {"size": "3"}, "--size: expected WIDTHxHEIGHT"),
                     ("/picture", {"size": "5000x5000"}, "--size: expected at most 16777216 pixels"),
                     ("/picture", {"spp": 100000}, "--spp: expected at most 65536"),

@@ -154,10 +154,7 @@ LightSettings read_lights(const JsonValue& scene, const std::filesystem::path& f
   return lights;
 }
 
-/// The options that change the picture.
 std::vector<OptionSetting> read_options(const JsonValue& render) {
-  render.require_keys({"size", "integrator", "spp", "depth", "threshold", "error", "ambient",
-                       "filter", "seed", "exposure", "tone"});
   std::vector<OptionSetting> options;
   for (const std::string& key : render.keys()) {
     const JsonValue value = render.at(key);

@@ -42,7 +42,7 @@ std::unique_ptr<Intersector> intersector_of(const Bvh& bvh, Arguments... argumen
 class WrongPointTest : public testing::Test {
  protected:
   Film film(const IntersectorFactory& intersector, float point_error, int scale = 1) {
-    RenderOptions options = test::light(IntegratorKind::kWhitted, 24 * scale, 18 * scale, 1);
+    RenderSettings options = test::light(IntegratorKind::kWhitted, 24 * scale, 18 * scale, 1);
     options.channels.position = true;
     options.point_error = point_error;
     RenderStats stats;
