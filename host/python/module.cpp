@@ -140,7 +140,7 @@ nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
 
 /// Returns the result of `encode`, which runs without Python's lock.
 template <class Encode>
-nb::bytes bytes_of(const Encode& encode) {
+nb::bytes python_bytes(const Encode& encode) {
   std::string text;
   {
     const nb::gil_scoped_release release;
@@ -424,12 +424,12 @@ NB_MODULE(_raygate, m) {
   nb::class_<PythonFilm>(m, "Film")
       .def("png",
            [](const PythonFilm& f, double exposure) {
-             return raygate::bytes_of([&] {
+             return raygate::python_bytes([&] {
                return raygate::encode_png(raygate::to_display(*f.film, {.exposure = exposure}));
              });
            })
       .def("exr", [](const PythonFilm& f) {
-        return raygate::bytes_of([&] { return raygate::encode_exr(*f.film, f.metadata); });
+        return raygate::python_bytes([&] { return raygate::encode_exr(*f.film, f.metadata); });
       });
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())

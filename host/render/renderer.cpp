@@ -23,6 +23,8 @@
 namespace raygate {
 namespace {
 
+int count_of(const Ranks* ranks) { return ranks == nullptr ? 1 : ranks->count(); }
+
 /// Renders a picture on rank 0: threads and other ranks take tiles from one queue. The calling
 /// thread reports progress and saves, so that no worker waits for a terminal or a disk.
 class Coordinator : public TileWorkers {
@@ -37,7 +39,7 @@ class Coordinator : public TileWorkers {
         monitor_(monitor),
         queue_(tiles.count, tiles.passes(), job.unfinished != nullptr) {
     if (context.light_paths != nullptr) splats_ = SplatLayer(film.window, context.settings.filter);
-    if (job.rank_count() == 1) return;
+    if (count_of(job.ranks) == 1) return;
     remote_.emplace(*job.ranks, tiles, context.settings.first_sample, film, splats_);
     grace_ = {};
   }
@@ -245,12 +247,13 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   const double busy = processor_seconds();
   stats = {};
   const Bvh& bvh = prepared.bvh;
-  const bool is_shared = job.rank_count() > 1;
+  const int rank_count = count_of(ranks);
+  const bool is_shared = rank_count > 1;
   Film film = empty_film(settings);
   auto first_intersector = make_intersector();
   const int end = settings.end_sample > 0 ? settings.end_sample : settings.samples;
   const Tiles tiles(film.window, end - settings.first_sample, first_intersector->preferred_batch(),
-                    settings.threads, job.rank_count(), settings.error > 0.0);
+                    settings.threads, rank_count, settings.error > 0.0);
   const bool is_path = settings.integrator == IntegratorKind::kPath;
   const auto sampling = is_path ? Lights::Sampling::kOne : Lights::Sampling::kAll;
   std::optional<Lights> own_lights;
@@ -288,8 +291,7 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   if (!stats.cancelled) film.keeps_sums = settings.channels.sums;
   if (stats.intersect.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
-    const std::uint64_t every_record =
-        bvh.primitive_count() * origins * std::uint64_t(job.rank_count());
+    const std::uint64_t every_record = bvh.primitive_count() * origins * std::uint64_t(rank_count);
     stats.skipped.records = every_record - stats.intersect.common_records;
   }
   const std::uint64_t every_test = stats.rays * bvh.triangle_count();

@@ -8,12 +8,13 @@
 #include "host/intersect/intersector.h"
 #include "host/light/default_lights.h"
 #include "host/light/prepared_scene.h"
-#include "host/ranks/ranks.h"
 #include "host/render/render_settings.h"
 #include "host/scene/camera.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
+
+class Ranks;
 
 /// A picture to render. The references must outlive the call of render().
 struct RenderJob {
@@ -28,8 +29,6 @@ struct RenderJob {
   /// Rank 0 returns the film; the others have parts of it and call only RenderMonitor::progress. If
   /// a rank fails, rank 0 calls `urgent_snapshot` and throws RankFailure.
   Ranks* ranks = nullptr;
-
-  [[nodiscard]] int rank_count() const { return ranks == nullptr ? 1 : ranks->count(); }
 };
 
 /// Renders a picture. Several renders can share the prepared scene, also at the same time. The film

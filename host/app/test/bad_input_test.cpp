@@ -280,7 +280,7 @@ TEST_F(BadInput, TooManyInstances) {
   folder_.write("scene.json",
                 R"({"instances": [{"model": "model.obj", "places": [)" + places + "]}]}");
   expect_refused(render({"scene.obj"}),
-                 "scene\\.obj: found 2163504202 triangles with all instances, expected fewer than "
+                 "scene\\.json: found 2163504202 triangles with all instances, expected fewer than "
                  "2\\^31");
 }
 
