@@ -19,6 +19,7 @@ struct Outcome {
 using AddCommand = void(CLI::App& lab, Outcome& outcome);
 
 AddCommand add_stress;      ///< engines and variants in hard cases
+AddCommand add_watertight;  ///< public tests of watertightness
 AddCommand add_predicates;  ///< what an exact decision costs
 AddCommand add_rays;        ///< rays per second, next to Embree's
 AddCommand add_core;        ///< clocks a ray of the ray core

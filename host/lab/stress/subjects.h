@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/exact/exact.h"
@@ -35,6 +36,7 @@ struct Answers {
   std::vector<std::optional<std::uint32_t>> nearest;  ///< shot by shot, ray by ray: its triangle
   /// The same: all triangles that the ray hits, near before far. Empty: the subject gives no order.
   std::vector<std::vector<std::uint32_t>> orders;
+  std::vector<bool> refused;  ///< likewise: rays out of the subject's range. Empty: none
 };
 
 class Subject {
@@ -47,10 +49,11 @@ class Subject {
 
 struct SubjectKind {
   std::string name{};
-  std::string what{};     ///< one line for the report
-  bool exact = false;     ///< it promises to be never wrong: the run fails where it is
-  bool binary32 = false;  ///< what errors.h says of t and P holds
-  double share = 0.1;     ///< of the number of tests asked for
+  std::string what{};      ///< one line for the report
+  bool exact = false;      ///< it promises to be never wrong: the run fails where it is
+  bool simulated = false;  ///< Verilated hardware
+  bool binary32 = false;   ///< what errors.h says of t and P holds
+  double share = 0.1;      ///< of the number of tests asked for
   std::function<std::unique_ptr<Subject>()> make{};  ///< one for each thread
 };
 
@@ -63,6 +66,21 @@ struct SubjectKind {
 [[nodiscard]] std::vector<SubjectKind> variant_subjects();  ///< of variants.json
 [[nodiscard]] std::vector<SubjectKind> float_subjects();    ///< what ray tracers do in float32
 [[nodiscard]] std::vector<SubjectKind> embree_subjects();   ///< none without Embree
+
+/// Hit tests in float32.
+using TriangleTest = Answer(const glm::vec3& origin, const glm::vec3& direction,
+                            const Corners& triangle);
+/// Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, both sides,
+/// without an epsilon.
+TriangleTest moeller_trumbore;
+/// Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013: the triangle is sheared so
+/// that the ray runs along an axis; edge functions of zero are computed again in double.
+TriangleTest woop;
+
+/// Returns the number of hits of each ray by Embree, in its default and its robust mode, by name;
+/// none without Embree.
+[[nodiscard]] std::vector<std::pair<std::string, std::vector<std::uint32_t>>> embree_hit_counts(
+    const Scene& scene, std::span<const Ray> rays);
 
 /// Fills `nearest` from the smallest t of each ray's hits, the first of equals.
 void nearest_by_t(std::span<const Shot> shots, Answers& answers);

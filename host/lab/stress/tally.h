@@ -13,15 +13,15 @@
 
 namespace raygate::lab {
 
-/// What one subject did in one suite.
+/// Results of one subject in one suite.
 struct Tally {
-  std::uint64_t tests = 0, rays = 0;
+  std::uint64_t tests = 0, rays = 0;  ///< without rays out of the subject's range
+  std::uint64_t refused = 0;          ///< rays out of the subject's range
   /// Tests decided otherwise than the truth, or hit at another t than they say, ties aside.
   std::uint64_t wrong = 0;
   std::uint64_t ties = 0;           ///< tests that only the tie-break decides
   std::uint64_t wrong_ties = 0;     ///< of these, decided otherwise: a sin of exact subjects only
-  std::uint64_t leaks = 0;          ///< rays from inside a closed mesh with an even number of hits
-  std::uint64_t escapes = 0;        ///< of these, rays with none
+  std::uint64_t escapes = 0;        ///< rays from inside a closed mesh without a hit
   std::uint64_t double_hits = 0;    ///< rays from inside with more hits than there are
   std::uint64_t wrong_nearest = 0;  ///< rays whose first triangle is another, ties aside
   std::uint64_t wrong_tied_nearest = 0;  ///< the same among ties

@@ -60,11 +60,22 @@ TEST_F(ResultsTest, ATableHasOneHeadForRowsOfTheSameColumns) {
 // A run passes only where exact subjects were judged, in tests that were done, and were never
 // wrong.
 TEST(Verdicts, OfRows) {
-  Row row = {{"suite", "a"},     {"subject", "b"},     {"exact", true},
-             {"spotless", true}, {"tests", 5},         {"wrong", 0},
-             {"wrong_ties", 0},  {"leaks", 0},         {"doubts", 1},
-             {"double_hits", 0}, {"wrong_nearest", 0}, {"wrong_tied_nearest", 0},
-             {"wrong_order", 0}, {"seconds", 1.0},     {"broken_claims", 0}};
+  Row row = {{"suite", "a"},
+             {"subject", "b"},
+             {"exact", true},
+             {"spotless", true},
+             {"tests", 5},
+             {"wrong", 0},
+             {"wrong_ties", 0},
+             {"escapes", 0},
+             {"doubts", 1},
+             {"simulated", false},
+             {"double_hits", 0},
+             {"wrong_nearest", 0},
+             {"wrong_tied_nearest", 0},
+             {"wrong_order", 0},
+             {"seconds", 1.0},
+             {"broken_claims", 0}};
   const auto verdict = [&](const char* key, const Row& value) {
     Row changed = row;
     changed[key] = value;
