@@ -1,20 +1,10 @@
-// Public acceptance tests of watertightness, by the engines and by other people's hit tests.
-//
-// nomiss: the Vulkan conformance tests' (ray_tracing_pipeline.watertightness.nomiss). A square of
-//   two triangles is refined to N by points in random triangles, at random heights; every ray of a
-//   grid along -z (256 x 256 for 65,536 triangles) must hit.
-// singlehit: theirs, too. A closed fan of N triangles; rays from its axis to its centre and to the
-//   middle of every inner edge. Its duplicates are hits of one triangle; here, more hits than one.
-// sphere: Embree's (tutorials/verify, watertight): random rays from around the centre of a sphere,
-//   far from the origin, must hit.
-// edges, vertices: as Woop, Benthin and Wald 2013 argue: rays from inside a sphere at its edges and
-//   vertices must hit.
-//
-// The random numbers and the sphere's triangles are ours, not theirs.
-#include <CLI/CLI.hpp>
+#include "host/lab/stress/watertight.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -28,7 +18,6 @@
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_hit_testers.h"
 #include "host/intersect/unit/unit_intersector.h"
-#include "host/lab/commands.h"
 #include "host/lab/stress/meshes.h"
 #include "host/lab/stress/random.h"
 #include "host/lab/stress/subjects.h"
@@ -38,10 +27,6 @@
 
 namespace raygate::lab {
 namespace {
-
-struct WatertightOptions {
-  int triangles = 65536, seeds = 10;
-};
 
 /// A mesh, and rays that must hit it exactly once.
 struct Watertight {
@@ -97,9 +82,9 @@ Watertight singlehit(int count) {
   return test;
 }
 
-enum class Aim { kAnywhere, kEdges, kVertices };
+enum class Targets { kAnywhere, kEdges, kVertices };
 
-Watertight from_inside(const char* name, const Placement& placement, int count, Aim aim,
+Watertight from_inside(const char* name, const Placement& placement, int count, Targets aim,
                        Random& random) {
   Watertight test{name, *sphere(5, placement), {}};
   const auto& triangles = test.mesh.triangles;
@@ -107,10 +92,11 @@ Watertight from_inside(const char* name, const Placement& placement, int count, 
     const glm::dvec3 origin = 0.25 * placement.scale * random.point() + placement.shift;
     const Corners& t =
         triangles[static_cast<std::size_t>(random.below(static_cast<int>(triangles.size())))];
-    const double along = aim == Aim::kEdges ? random.uniform(0, 1) : 0.0;
+    const double along = aim == Targets::kEdges ? random.uniform(0, 1) : 0.0;
     const glm::dvec3 target = glm::mix(glm::dvec3(t[0]), glm::dvec3(t[1]), along);
-    test.rays.push_back(ray_from(
-        origin, aim == Aim::kAnywhere ? random.unit() : target - glm::dvec3(glm::vec3(origin))));
+    test.rays.push_back(ray_from(origin, aim == Targets::kAnywhere
+                                             ? random.unit()
+                                             : target - glm::dvec3(glm::vec3(origin))));
   }
   return test;
 }
@@ -238,7 +224,10 @@ Row row_of(const std::string& test, const std::string& by, std::size_t triangles
           {"escapes", escapes},     {"double_hits", finds_all ? Row(doubles) : Row(nullptr)}};
 }
 
-void run(const WatertightOptions& asked, Outcome& outcome) {
+}  // namespace
+
+std::vector<Row> watertight_rows(const WatertightOptions& asked) {
+  std::vector<Row> rows;
   std::vector<Watertight> tests;
   for (int seed = 1; seed <= asked.seeds; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
@@ -247,9 +236,9 @@ void run(const WatertightOptions& asked, Outcome& outcome) {
   Random random(1);
   const Placement far{glm::dvec3(2.0), {148376.0, 1234.0, -223423.0}};
   tests.push_back(singlehit(asked.triangles));
-  tests.push_back(from_inside("sphere", far, asked.triangles, Aim::kAnywhere, random));
-  tests.push_back(from_inside("edges", {}, asked.triangles, Aim::kEdges, random));
-  tests.push_back(from_inside("vertices", {}, asked.triangles, Aim::kVertices, random));
+  tests.push_back(from_inside("sphere", far, asked.triangles, Targets::kAnywhere, random));
+  tests.push_back(from_inside("edges", {}, asked.triangles, Targets::kEdges, random));
+  tests.push_back(from_inside("vertices", {}, asked.triangles, Targets::kVertices, random));
   // The tests of one name are one row.
   for (std::size_t first = 0; first < tests.size();) {
     std::size_t end = first;
@@ -277,11 +266,8 @@ void run(const WatertightOptions& asked, Outcome& outcome) {
     const Watertight& test = tests[first];
     const auto add = [&](const std::string& name, bool is_exact, bool finds_all,
                          const auto& found) {
-      Row row = row_of(test.name, name, test.mesh.triangles.size(), is_exact, finds_all, found);
-      if (is_exact && (row["escapes"] != 0 || (finds_all && row["double_hits"] != 0))) {
-        outcome.status = 1;
-      }
-      outcome.results.add(std::move(row));
+      rows.push_back(
+          row_of(test.name, name, test.mesh.triangles.size(), is_exact, finds_all, found));
     };
     for (std::size_t i = 0; i < all.size(); ++i) {
       add(all[i].name, all[i].is_exact, all[i].finds_all, counts[i]);
@@ -291,18 +277,11 @@ void run(const WatertightOptions& asked, Outcome& outcome) {
     }
     first = end;
   }
+  return rows;
 }
 
-}  // namespace
-
-void add_watertight(CLI::App& lab, Outcome& outcome) {
-  auto* app = lab.add_subcommand("watertight",
-                                 "public tests of watertightness; exit status 1: an engine failed");
-  const auto asked = std::make_shared<WatertightOptions>();
-  app->add_option("--triangles", asked->triangles, "triangles of a mesh, and rays")
-      ->check(CLI::Range(4, 1 << 20));
-  app->add_option("--seeds", asked->seeds, "meshes of nomiss")->check(CLI::Range(1, 100));
-  app->callback([asked, &outcome] { run(*asked, outcome); });
+bool is_watertight(const Row& row) {
+  return row["escapes"] == 0 && (row["double_hits"].is_null() || row["double_hits"] == 0);
 }
 
 }  // namespace raygate::lab
