@@ -26,6 +26,19 @@ class Embree3Queries {
   void occluded(const int* valid, RTCScene scene, RTCRay8* rays) {
     rtcOccluded8(valid, scene, &context_, rays);
   }
+  void intersect(const int* valid, RTCScene scene, RTCRayHit16* query) {
+    rtcIntersect16(valid, scene, &context_, query);
+  }
+  void occluded(const int* valid, RTCScene scene, RTCRay16* rays) {
+    rtcOccluded16(valid, scene, &context_, rays);
+  }
+  void trace_stream(RTCScene scene, RTCRayHit* rays, unsigned count, bool any_hit) {
+    if (any_hit) {
+      rtcOccluded1M(scene, &context_, &rays->ray, count, sizeof *rays);
+    } else {
+      rtcIntersect1M(scene, &context_, rays, count, sizeof *rays);
+    }
+  }
 
  private:
   RTCIntersectContext context_{};

@@ -64,8 +64,8 @@ class Peer {
 /// This project's `cpu` engine.
 [[nodiscard]] std::unique_ptr<Peer> make_raygate(const Scene& scene);
 
-/// Embree 3, single rays and eight coherent ones at once, each in its default and its robust mode;
-/// none where this was built without Embree.
+/// Embree 3, single rays, packets of 8 and 16 and streams, each in its default and its robust mode,
+/// with trees of high quality; none if this was built without Embree.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees(const Scene& scene);
 /// The same of Embree 4, a shared library. Throws InputError where `file` is none.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene& scene,
