@@ -3,7 +3,7 @@
 // nomiss: the Vulkan conformance tests' (ray_tracing_pipeline.watertightness.nomiss). A square of
 //   two triangles is refined to N by points in random triangles, at random heights; every ray of a
 //   grid along -z (256 x 256 for 65,536 triangles) must hit.
-// singlehit: theirs, too. A closed fan of N triangles; rays from its axis to its centre and to the
+// singlehit: theirs, too. A closed fan of up to 1,024 triangles; rays from its axis to its centre and to the
 //   middle of every inner edge. Its duplicates are hits of one triangle; here, more hits than one.
 // sphere: Embree's (tutorials/verify, watertight): random rays from around the centre of a sphere,
 //   far from the origin, must hit.
