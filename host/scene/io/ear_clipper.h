@@ -76,7 +76,7 @@ class EarClipper {
     glm::vec2 position{0.0f};              // projected, so that the polygon runs counter-clockwise
     std::uint32_t number = 0;              // among the polygon's corners
     std::uint32_t previous = 0, next = 0;  // in ring_
-    std::uint32_t round = 0;               // in which a neighbour was cut off last
+    std::uint32_t round = 0;               // round in which a neighbour was cut off last
     bool reflex = false;                   // not strictly convex, so it may lie in an ear
     bool gone = false;
   };

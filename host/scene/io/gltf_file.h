@@ -27,9 +27,9 @@ class GltfFile {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns the paths of all files that were read.
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
-  /// Returns the warnings about these files.
+  /// Returns the warnings from reading them.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Returns the size of all these files together.
+  /// Returns the total size of these files in bytes.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   /// Throws InputError, "file: what".
@@ -61,8 +61,8 @@ class GltfFile {
                                                      std::vector<std::string>& warnings) const;
   /// Returns the numbers of an accessor of indices.
   [[nodiscard]] std::vector<std::uint32_t> indices(int accessor) const;
-  /// Returns the file of a picture as it stands; empty if it is missing. Decodes data URIs of types
-  /// that tinygltf does not know. Throws InputError for a picture beyond its buffer.
+  /// Returns the bytes of an image file, or an empty string if it is missing. Decodes data URIs of
+  /// types that tinygltf does not know. Throws InputError for an image beyond its buffer.
   [[nodiscard]] std::string picture_bytes(int image) const;
   /// Returns the number of elements of an accessor.
   [[nodiscard]] std::size_t count(int accessor) const;

@@ -16,13 +16,13 @@ namespace raygate {
 namespace {
 
 constexpr glm::vec3 kNoColor(-1.0f);
-/// Index of a corner whose index in the file is out of range.
+/// Marks a corner whose index in the file is out of range.
 constexpr std::uint32_t kBadIndex = kNoIndex - 1;
 constexpr std::size_t kCheckpointFaces = 4096;
 
 }  // namespace
 
-// Counts a frequent problem, for one warning with its first line.
+// Counts occurrences of a frequent problem, for one warning with its first line.
 class MeshBuilder::WarningCount {
  public:
   void note(std::size_t line) {

@@ -56,9 +56,9 @@ struct SceneFile {
   std::filesystem::path file = {};
   std::filesystem::path obj = {};
   std::optional<CameraSetting> camera = {};
-  std::optional<glm::dvec3> up = {};  ///< "camera.up"; also used by --view, without a camera
+  std::optional<glm::dvec3> up = {};  ///< "camera.up"; --view uses it even without a camera
   std::optional<double> fov = {};     ///< "camera.fov", likewise
-  LensSetting lens = {};              ///< of "camera", likewise
+  LensSetting lens = {};              ///< lens of "camera", likewise
   LightSettings lights = {};
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionSetting> options = {};

@@ -53,9 +53,9 @@ class TokenReader {
 
   std::string name_;
   std::string_view text_;
-  std::string_view word_;      // the next one
-  std::size_t last_ = 0;       // where the word before it ends
-  std::size_t last_line_ = 0;  // and its line
+  std::string_view word_;      // the next word
+  std::size_t last_ = 0;       // end of the word before it
+  std::size_t last_line_ = 0;  // line of the word before it
   std::size_t line_;
 };
 
