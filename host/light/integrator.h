@@ -25,9 +25,8 @@ namespace raygate {
 /// own rays.
 class Integrator {
  public:
-  /// The references must outlive this.
-  /// `kind` may differ from the settings' (kLight, kEmitters). `light_paths`: what kPath and kLight
-  /// are combined with, or null.
+  /// The references must outlive this object. `kind` may differ from that of `settings` (kLight,
+  /// kEmitters). `light_paths` are combined with kPath and kLight; may be null.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
              const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;
@@ -40,11 +39,11 @@ class Integrator {
   void shade(const RayBatch& batch, std::span<const NearestHit> hits, std::size_t begin,
              std::size_t end, ShadingOutput& output);
 
-  /// Radiance along rays that miss everything.
+  /// Returns the radiance along rays that miss all geometry.
   [[nodiscard]] glm::vec3 background() const {
     return sees_background() ? shading_.lights.background() : glm::vec3(0.0f);
   }
-  /// Whether such rays of that depth see an environment instead.
+  /// Returns whether such rays of this depth see an environment instead.
   [[nodiscard]] bool sees_environment(int depth) const {
     const Lights& lights = shading_.lights;
     return sees_background() && lights.environment() != nullptr &&
@@ -54,7 +53,7 @@ class Integrator {
   [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }
 
   [[nodiscard]] const SkipCounters& skipped() const { return block_.skipped; }
-  /// Number of hits whose P the host computed.
+  /// Number of hit points P that the host computed.
   [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 
  private:

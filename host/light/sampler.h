@@ -43,7 +43,7 @@ RAYGATE_INLINE W reversed_bits(W x) {
 template <class W>
 RAYGATE_INLINE W owen_scramble(W x, const W& key) {
   x += key;
-  x ^= x * 0x6C50B47Cu;  // even factors: a bit is changed by lower ones, never by itself
+  x ^= x * 0x6C50B47Cu;  // even factors: a bit depends only on lower ones
   x *= key | 1u;
   x ^= x * 0xB82F1E52u;
   x ^= x * 0xC7AFE638u;

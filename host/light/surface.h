@@ -19,9 +19,9 @@ namespace raygate {
 struct SurfaceHit {
   const Ray* ray = nullptr;
   std::uint32_t primitive = 0;
-  const Triangle* face = nullptr;      ///< the primitive's triangle
-  const glm::vec3* point = nullptr;    ///< the hit-test unit's P, relative to the ray's origin;
-                                       ///< null: the host computes it
+  const Triangle* face = nullptr;  ///< the primitive's triangle
+  /// The hit-test unit's P, relative to the ray's origin; null: computed by the host.
+  const glm::vec3* point = nullptr;
   const Instance* instance = nullptr;  ///< the triangle's instance, or null
 
   /// Returns the vertex colours, or null if there are none or the material ignores them.
@@ -30,7 +30,7 @@ struct SurfaceHit {
     return all.empty() || !scene.materials[face->material].has_vertex_colors ? nullptr : &all;
   }
 
-  /// Returns the normal of that index, in world space.
+  /// Returns the normal with this index, in scene coordinates.
   [[nodiscard]] glm::vec3 normal(const Scene& scene, std::uint32_t index) const {
     const glm::vec3& own = scene.normals[index];
     return instance == nullptr ? own : transform_normal(*instance, own);
@@ -179,7 +179,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   surface.own_normal = normal;
   surface.own_size = {size[0], size[1], size[2]};
 
-  // Which side was hit: double says it, or exact arithmetic does.
+  // Decide the side in double, or exactly where that is not sure.
   const typename Surface<T>::Slope slope(surface, direction);
   const auto values = unpack(slope.value);
   const auto is_sure = unpack(slope.is_sure);
@@ -195,7 +195,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
     const Triple<Wide> unscaled = unscaled_weights(wide(origin), wide(direction), corners);
     const Wide inverse = 1.0 / (unscaled.x + unscaled.y + unscaled.z);
     Triple<T> weights = narrow(unscaled * inverse);
-    const T third = spread<T>(1.0f / 3.0f);  // where nothing is left of the triangle
+    const T third = spread<T>(1.0f / 3.0f);  // for triangles without area
     const auto is_number = weights.x + weights.y + weights.z == weights.x + weights.y + weights.z;
     weights = {choose(is_number, at_least(weights.x, 0.0f), third),
                choose(is_number, at_least(weights.y, 0.0f), third),
@@ -270,7 +270,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   return surface;
 }
 
-/// Whether the mask of the face's material has a hole where the ray hits it.
+/// Returns whether the mask of the face's material has a hole at the hit.
 [[nodiscard]] inline bool is_masked_out(const Scene& scene, const Bvh& bvh,
                                         const SurfaceHit& place) {
   const Corners corners = bvh.corners_of(place.primitive);
