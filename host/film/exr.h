@@ -1,4 +1,4 @@
-// OpenEXR files: writing a film with all of its channels, reading films and other pictures.
+// OpenEXR files: writes films with all channels; reads films and other images.
 #pragma once
 
 #include <cstdint>
