@@ -1,4 +1,5 @@
-// libFuzzer target: any 60 bytes as a ray and a triangle; the predicates against rationals.
+// libFuzzer target: compares the predicates with rational arithmetic for any 60 bytes as a ray and
+// a triangle.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
