@@ -9,7 +9,7 @@ class App;
 
 namespace raygate::lab {
 
-/// What a command leaves behind.
+/// Results of a command.
 struct Outcome {
   Results results;
   int status = 0;  ///< the program's exit status
@@ -18,12 +18,12 @@ struct Outcome {
 /// Declares a command with its options; parsing its name runs it.
 using AddCommand = void(CLI::App& lab, Outcome& outcome);
 
-AddCommand add_stress;      ///< engines and variants in hard cases
-AddCommand add_predicates;  ///< what an exact decision costs
-AddCommand add_rays;        ///< rays per second, next to Embree's
-AddCommand add_core;        ///< clocks a ray of the ray core
+AddCommand add_stress;      ///< correctness of engines and variants in hard cases
+AddCommand add_predicates;  ///< cost of an exact decision
+AddCommand add_rays;        ///< rays per second, compared with Embree
+AddCommand add_core;        ///< clocks per ray of the ray core
 AddCommand add_variants;    ///< the table of variants
 AddCommand add_check;       ///< reference models against hardware
-AddCommand add_pictures;    ///< pictures by any variant, timed and judged
+AddCommand add_pictures;    ///< images by any variant, timed and audited
 
 }  // namespace raygate::lab

@@ -1,4 +1,4 @@
-// Embree's peers: both versions trace the same way, and are asked differently.
+// Embree peers: common code for Embree 3 and 4, which differ only in their query functions.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -16,7 +16,7 @@
 
 namespace raygate::lab {
 
-/// What makes a scene: of Embree 3, which the lab is linked with, or the same of Embree 4.
+/// Functions that build a scene, of Embree 3, which the lab is linked with, or of Embree 4.
 struct EmbreeFunctions {
   decltype(&rtcNewDevice) new_device = rtcNewDevice;
   decltype(&rtcReleaseDevice) release_device = rtcReleaseDevice;
@@ -31,12 +31,12 @@ struct EmbreeFunctions {
   decltype(&rtcAttachGeometry) attach_geometry = rtcAttachGeometry;
 };
 
-/// A device of one thread.
+/// Returns a device with one thread.
 inline std::shared_ptr<RTCDeviceTy> embree_device(const EmbreeFunctions& embree) {
   return {embree.new_device("threads=1"), embree.release_device};
 }
 
-/// The committed scene, which keeps its device; triangle i is primitive i.
+/// Returns the committed scene, which keeps its device alive. Triangle i is primitive i.
 inline std::shared_ptr<RTCSceneTy> embree_scene(const EmbreeFunctions& embree,
                                                 const std::shared_ptr<RTCDeviceTy>& device,
                                                 const Scene& scene, RTCSceneFlags flags) {
@@ -62,13 +62,13 @@ inline std::shared_ptr<RTCSceneTy> embree_scene(const EmbreeFunctions& embree,
   return loaded;
 }
 
-/// Embree 4's hits end with one more word a ray.
+/// A query with room for the additional word per ray of Embree 4's hits.
 template <class RayHit, std::size_t kWords>
 struct RoomForHit : RayHit {
   std::uint32_t more[kWords];
 };
 
-/// `Queries` asks Embree: set_coherent(), intersect() and occluded() for one ray or eight.
+/// `Queries` calls Embree: set_coherent(), intersect() and occluded() for one ray or eight.
 template <class Queries>
 class EmbreePeer : public Peer {
  public:
@@ -90,7 +90,7 @@ class EmbreePeer : public Peer {
   std::shared_ptr<RTCSceneTy> scene_;
 };
 
-/// rtcIntersect1 / rtcOccluded1.
+/// Traces rays one by one, by rtcIntersect1 and rtcOccluded1.
 template <class Queries>
 class SingleRays : public EmbreePeer<Queries> {
  public:
@@ -130,7 +130,7 @@ class SingleRays : public EmbreePeer<Queries> {
   std::vector<RTCRay> rays_;
 };
 
-/// The same eight at a time, coherent: its fastest way for rays of a picture.
+/// Traces eight coherent rays at a time, Embree's fastest mode for rays of an image.
 template <class Queries>
 class EightRays : public EmbreePeer<Queries> {
  public:
@@ -183,7 +183,7 @@ class EightRays : public EmbreePeer<Queries> {
   std::size_t count_ = 0;
 };
 
-/// Single rays and eight at once, each in its default and its robust mode.
+/// Returns peers for single rays and for eight at a time, each in default and robust mode.
 template <class Queries>
 std::vector<std::unique_ptr<Peer>> make_embree_peers(const std::string& name,
                                                      const EmbreeFunctions& embree,

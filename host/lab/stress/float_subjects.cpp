@@ -1,4 +1,4 @@
-// What ray tracers do in float32.
+// Common float32 intersection tests of ray tracers.
 #include <cmath>
 #include <utility>
 
@@ -9,8 +9,8 @@ namespace {
 
 using Test = Answer (*)(const glm::vec3& origin, const glm::vec3& direction, const Corners& t);
 
-/// Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, both sides,
-/// without an epsilon.
+/// Computes the test of Möller and Trumbore, "Fast, minimum storage ray/triangle intersection",
+/// 1997, for both sides, without an epsilon.
 Answer moeller_trumbore(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
   Answer answer;
   const glm::vec3 ab = t[1] - t[0], ac = t[2] - t[0], from_a = origin - t[0];
@@ -27,8 +27,9 @@ Answer moeller_trumbore(const glm::vec3& origin, const glm::vec3& direction, con
   return answer;
 }
 
-/// Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013: the triangle is sheared so
-/// that the ray runs along an axis; edge functions of zero are computed again in double.
+/// Computes the test of Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013:
+/// shears the triangle so that the ray runs along an axis; recomputes zero edge functions in
+/// double.
 Answer woop(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
   Answer answer;
   const glm::vec3 size = glm::abs(direction);

@@ -1,4 +1,4 @@
-// Tally: counts of wrong decisions of a subject, and its errors in units of the last place.
+// Tally: counts of a subject's wrong decisions, and its errors in ulps.
 #pragma once
 
 #include <array>
@@ -13,47 +13,48 @@
 
 namespace raygate::lab {
 
-/// What one subject did in one suite.
+/// Statistics of one subject in one suite.
 struct Tally {
   std::uint64_t tests = 0, rays = 0;
-  /// Tests decided otherwise than the truth, or hit at another t than they say, ties aside.
+  /// Tests with a wrong decision, or with an interval that does not contain t, except ties.
   std::uint64_t wrong = 0;
-  std::uint64_t ties = 0;           ///< tests that only the tie-break decides
-  std::uint64_t wrong_ties = 0;     ///< of these, decided otherwise: a sin of exact subjects only
-  std::uint64_t leaks = 0;          ///< rays from inside a closed mesh with an even number of hits
-  std::uint64_t escapes = 0;        ///< of these, rays with none
-  std::uint64_t double_hits = 0;    ///< rays from inside with more hits than there are
-  std::uint64_t wrong_nearest = 0;  ///< rays whose first triangle is another, ties aside
-  std::uint64_t wrong_tied_nearest = 0;  ///< the same among ties
-  std::uint64_t orders = 0;              ///< rays of which the subject gave all hits in order
-  std::uint64_t wrong_order = 0;         ///< of these, with another order or other hits
+  std::uint64_t ties = 0;        ///< tests that only the tie-break decides
+  std::uint64_t wrong_ties = 0;  ///< of these, wrong decisions; allowed unless the subject is exact
+  std::uint64_t leaks = 0;       ///< rays from inside a closed mesh with an even number of hits
+  std::uint64_t escapes = 0;     ///< of these, rays without hits
+  std::uint64_t double_hits = 0;         ///< rays from inside with too many hits
+  std::uint64_t wrong_nearest = 0;       ///< rays with a wrong nearest triangle, except ties
+  std::uint64_t wrong_tied_nearest = 0;  ///< likewise among ties
+  std::uint64_t orders = 0;              ///< rays for which the subject returned all hits in order
+  std::uint64_t wrong_order = 0;         ///< of these, those with a wrong order or wrong hits
   std::uint64_t hits = 0, doubts = 0;
-  /// Of hits that are hits, in ulp of the exact value: t, and the worst coordinate of P; and t's
-  /// relative error.
+  /// Errors of correct hits, in ulps of the exact value: t, and the worst coordinate of P; and the
+  /// relative error of t.
   Errors t_ulp, point_ulp, t_relative;
-  /// What the host makes of them in the end.
+  /// Errors of the hits that the host delivers.
   Errors delivered_t_ulp, delivered_point_ulp;
-  /// t_ulp of sure hits by the angle between ray and plane: decade k holds sines from 10^-k-1 to
+  /// t_ulp of sure hits by the angle between ray and plane: decade k has sines from 10^-k-1 to
   /// 10^-k.
   static constexpr int kDecades = 8;
   std::array<Errors, kDecades> t_ulp_by_angle;
-  /// The largest errors of sure hits over what errors.h allows binary32.
+  /// Largest errors of sure hits, relative to the bounds of errors.h for binary32.
   double t_of_bound = 0.0, point_of_bound = 0.0;
-  /// The largest error of P over what the hit itself says (NearestHit::point_error).
+  /// Largest error of P, relative to the reported bound (NearestHit::point_error).
   double point_of_said = 0.0;
-  std::vector<Case> failures;  ///< the first few, ties only of exact subjects
+  std::vector<Case> failures;  ///< the first few; ties only for exact subjects
 
-  /// Hit or miss, nearest and order, those on ties for exact subjects alone.
+  /// Returns the number of wrong decisions: hit or miss, nearest, order; ties only for exact
+  /// subjects.
   [[nodiscard]] std::uint64_t wrong_decisions(bool exact) const {
     return wrong + wrong_nearest + (exact ? wrong_ties + wrong_tied_nearest + wrong_order : 0);
   }
-  /// What an exact subject must be: never wrong, and no farther off than is proven.
+  /// Returns whether an exact subject passes: no wrong decision, and errors within proven bounds.
   [[nodiscard]] bool spotless() const;
-  /// A column for each member; errors as lists of [end of a bin, errors in it].
+  /// Returns a column for each member; errors as lists of [end of a bin, errors in it].
   [[nodiscard]] Row row() const;
 };
 
-/// Compares a subject's answers for some shots with the truth about them.
+/// Compares a subject's answers for some shots with the oracle's.
 void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
            const SubjectKind& subject, Tally& tally);
 
