@@ -255,7 +255,7 @@ RAYGATE_INLINE LaneMask sign_mask(const IntLanes& lanes) {
   return sign_mask(IntQuad(low_half(lanes))) | sign_mask(IntQuad(high_half(lanes))) << 4;
 }
 
-/// Whether any lane is set.
+/// Returns whether any lane is set.
 RAYGATE_INLINE bool any(bool mask) { return mask; }
 RAYGATE_INLINE bool any(const IntLanes& mask) { return sign_mask(mask) != 0; }
 

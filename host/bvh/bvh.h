@@ -127,7 +127,7 @@ class Bvh {
   /// Returns the stored nodes, without those of instances; nodes()[0] is the root.
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
 
-  /// Number of stored primitives, without those of instances.
+  /// Returns the number of stored primitives, without those of instances.
   [[nodiscard]] std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(triangles_.size());
   }
@@ -137,13 +137,13 @@ class Bvh {
     if (!has_instances()) return {primitive_count(), primitive_count()};
     return {instance_primitives_.begin(), instance_primitives_.end()};
   }
-  /// Whether a primitive or node number belongs to an instance.
+  /// Returns whether a primitive or node index belongs to an instance.
   [[nodiscard]] RAYGATE_INLINE bool is_instanced(std::uint32_t number) const {
     return number >= first_instanced_;
   }
   /// Returns the leaves of the BVH, including those of instances.
   [[nodiscard]] std::vector<Child> leaves() const;
-  /// Number of triangles, including those of instances.
+  /// Returns the number of triangles, including those of instances.
   [[nodiscard]] std::uint64_t triangle_count() const {
     return std::uint64_t{primitive_count()} +
            (instance_primitives_.end() - instance_primitives_.begin());

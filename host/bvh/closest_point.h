@@ -53,7 +53,7 @@ RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const gl
   return false;
 }
 
-/// Whether a triangle's axis-aligned box touches the closed box from `low` to `high`.
+/// Returns whether a triangle's axis-aligned box touches the closed box from `low` to `high`.
 [[nodiscard]] inline bool touches(const glm::vec3& low, const glm::vec3& high, const Corners& t) {
   return glm::all(glm::lessThanEqual(glm::min(glm::min(t[0], t[1]), t[2]), high)) &&
          glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2])));

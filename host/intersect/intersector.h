@@ -91,10 +91,10 @@ class Intersector {
   /// Returns the best number of rays per query: about 16,384 for each test done at the same time.
   [[nodiscard]] virtual std::size_t preferred_batch() const { return kBatch; }
 
-  /// Whether the engine benefits from RayQuery::source_ids that need exact arithmetic.
+  /// Returns whether the engine benefits from RayQuery::source_ids that need exact arithmetic.
   [[nodiscard]] virtual bool wants_sources() const { return false; }
 
-  /// Whether the engine calls RayQuery::is_enough.
+  /// Returns whether the engine calls RayQuery::is_enough.
   [[nodiscard]] virtual bool filters_hits() const { return false; }
 
   [[nodiscard]] virtual IntersectCounters counters() const = 0;

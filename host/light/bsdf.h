@@ -68,24 +68,24 @@ class Bsdf {
     return mirror_is_traced_;
   }
   [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& is_refracting() const { return is_refracting_; }
-  /// Index of refraction behind the interface over that in front of it.
+  /// Returns the index of refraction behind the interface over that in front of it.
   [[nodiscard]] RAYGATE_INLINE const T& eta() const { return eta_; }
-  /// Emitted radiance (Ke).
+  /// Returns the emitted radiance (Ke).
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& emission() const { return emission_; }
-  /// Radiance that is seen but lights nothing (illum 0).
+  /// Returns radiance that is visible but does not light anything (illum 0).
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& unlit() const { return unlit_; }
-  /// Whether there is a lobe that is not specular: diffuse, glossy, or rough glass.
+  /// Returns whether there is a lobe that is not specular: diffuse, glossy, or rough glass.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> scatters() const {
     return largest(diffuse_) + glossy_sum() > 0.0f;
   }
-  /// Whether lights are sampled: scatters(), or a mirror with a highlight of point lights.
+  /// Returns whether lights are sampled: scatters(), or a mirror with a highlight of point lights.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> answers_lights() const {
     const MaskOf<T> scatters = this->scatters();
     if (!has_highlight()) return scatters;
     const auto has_one = largest(highlight()) > 0.0f;
     return scatters | has_one;
   }
-  /// Approximate albedo of all lobes that are not specular.
+  /// Returns the approximate albedo of all lobes that are not specular.
   [[nodiscard]] RAYGATE_INLINE T scattered_share() const {
     return has_rough_glass() ? largest(diffuse_) + glossy_sum() : largest(diffuse_ + glossy_);
   }
@@ -131,7 +131,7 @@ class Bsdf {
   [[nodiscard]] RAYGATE_INLINE bool has_rough_glass() const {
     return (~kind_ & (kMetallicRoughness | kGlossy | kMirrors)) == 0;
   }
-  /// The lobes of a metallic-roughness material.
+  /// Returns the lobes of a metallic-roughness material.
   [[nodiscard]] RAYGATE_INLINE const MetallicRoughnessLobes<T>& facets() const { return facets_; }
 
  private:

@@ -37,7 +37,7 @@ struct IncidentLight {
   WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
 
   IncidentLight() = default;
-  /// From a point.
+  /// Sets the geometry of light from a point.
   RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
       : target(position) {
     constexpr float kNear = 1e-30f;  // the inverse is within the range of float
@@ -46,7 +46,7 @@ struct IncidentLight {
     direction = way * (1.0f / root(distance_squared));
     cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
   }
-  /// From a distant light in the direction of a unit vector.
+  /// Sets the geometry of a distant light in the direction of a unit vector.
   RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
       : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
 

@@ -40,7 +40,7 @@ class Environment {
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u) const;
 
-  /// Mean over all directions.
+  /// Returns the mean over all directions.
   [[nodiscard]] const glm::dvec3& mean_radiance() const { return mean_; }
 
  private:

@@ -66,8 +66,8 @@ RAYGATE_INLINE T flag_words(const Masks&... masks) {
   return float_of(flags);
 }
 
-/// Whether a path with this history adds the emission that it meets. Light that reaches a surface
-/// seen through mirrors or glass by further mirrors or glass is added by caustic rays only.
+/// Returns whether a path with this history adds the emission that it meets. Light that reaches a
+/// surface seen through mirrors or glass by further mirrors or glass is added by caustic rays only.
 template <class W>
 RAYGATE_INLINE auto sees_lights(const W& history) {
   return (history < (kAfterSeenSurface | kThenSpecular)) | (history > kCausticRay);
@@ -225,18 +225,19 @@ struct Hits {
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
     return choose((flat > 0.0f) == (cosine > 0.0f), absolute(cosine), T{});
   }
-  /// Normal for sampling lights: the shading normal, or 0 if light from both sides counts.
+  /// Returns the normal for sampling lights: the shading normal, or 0 if light from both sides
+  /// counts.
   [[nodiscard]] RAYGATE_INLINE Triple<T> lit_normal() const {
     return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
   }
 
-  /// Whether EmitterSupersampler adds the emission of the hit.
+  /// Returns whether EmitterSupersampler adds the emission of the hit.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
     const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
     const auto are_wanted = PathLanes<T>::has(path.supersampled, path.history);
     return are_even & are_wanted;
   }
-  /// Emission, without what EmitterSupersampler adds.
+  /// Returns the emission, without that added by EmitterSupersampler.
   [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
     if ((kind & kEmits) == 0) return bsdf.emission();
     return choose(are_supersampled(), zero<T>(), bsdf.emission());

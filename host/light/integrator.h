@@ -32,7 +32,7 @@ class Integrator {
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
-  /// Maximum number of rays per call of shade().
+  /// Returns the maximum number of rays per call of shade().
   [[nodiscard]] std::size_t block_size() const { return block_size_; }
 
   /// Shades hits [begin, end) of the batch, at most block_size(), and adds the results to `output`.
@@ -49,11 +49,11 @@ class Integrator {
     return sees_background() && lights.environment() != nullptr &&
            (depth > 0 || !lights.has_studio());
   }
-  /// Whether shadow rays pass glass as if it did not refract.
+  /// Returns whether shadow rays pass glass as if it did not refract.
   [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }
 
   [[nodiscard]] const SkipCounters& skipped() const { return block_.skipped; }
-  /// Number of hit points P that the host computed.
+  /// Returns the number of hit points P that the host computed.
   [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 
  private:

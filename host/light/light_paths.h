@@ -52,12 +52,12 @@ struct FrameView {
 /// out / in: common factors cancel, and mirrors and smooth glass have neither density.
 class LightPaths {
  public:
-  /// The references must outlive this.
+  /// The references must outlive this object.
   LightPaths(const PreparedScene& prepared, const Lights& lights, const FrameView& frame);
 
   /// Returns whether light paths exist: requires an emitting light, and a mirror or smooth glass.
   [[nodiscard]] bool exist() const { return !source_cdf_.empty(); }
-  /// Number of light paths for each sample of all pixels of the frame.
+  /// Returns the number of light paths for each sample of all pixels of the frame.
   [[nodiscard]] std::uint64_t count() const { return count_; }
 
   struct Start {

@@ -119,24 +119,24 @@ class Lights {
   [[nodiscard]] const Environment* environment() const {
     return environment_ ? &*environment_ : nullptr;
   }
-  /// Whether the environment is one of the camera lights, which the camera itself does not see.
+  /// Returns whether the environment is one of the camera lights, which the camera does not see.
   [[nodiscard]] bool has_studio() const { return own_.studio.has_value(); }
-  /// Uniform radiance that lights a floor as much as the background or the camera lights'
-  /// environment.
+  /// Returns the uniform radiance that lights a floor as much as the background or the camera
+  /// lights' environment.
   [[nodiscard]] const glm::vec3& light_from_above() const { return from_above_; }
-  /// Radiance of the background; for an environment, its mean.
+  /// Returns the radiance of the background; for an environment, its mean.
   [[nodiscard]] glm::vec3 background() const {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : own_.background;
   }
-  /// Uniform radiance that approximates interreflection: the background's or, if that is black, the
-  /// lights' flux after many reflections, spread evenly over all surfaces (the ambient term of "A
-  /// progressive refinement approach to fast radiosity image generation", Cohen, Chen, Wallace and
-  /// Greenberg 1988). 0 with Sampling::kOne.
+  /// Returns the uniform radiance that approximates interreflection: the background's or, if that
+  /// is black, the lights' flux after many reflections, spread evenly over all surfaces (the
+  /// ambient term of "A progressive refinement approach to fast radiosity image generation", Cohen,
+  /// Chen, Wallace and Greenberg 1988). 0 with Sampling::kOne.
   [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
-  /// Number of lights: first point lights, then area lights, directional lights, the environment.
+  /// Returns the number of lights: point, area and directional lights, then the environment.
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
 
-  /// 1 / the unit of length, a power of two about the size of the scene.
+  /// Returns 1 / the unit of length, a power of two of about the size of the scene.
   [[nodiscard]] float per_unit() const { return per_unit_; }
 
   enum class Kind : std::uint8_t { kNone, kPoint, kArea, kDirection, kEnvironment };
@@ -218,7 +218,7 @@ class Lights {
     return static_cast<std::uint32_t>(sources_.size() - 1);
   }
 
-  /// Whether any light emits.
+  /// Returns whether any light emits.
   [[nodiscard]] bool any_power() const { return any_power_; }
   /// Samples a source for a surface point and its unit normal (see LightTree). Requires
   /// any_power().

@@ -94,7 +94,7 @@ class NeighborClearanceSearch {
   [[nodiscard]] bool has_hope() const { return length_ > 0.0; }
   /// Returns the origin of relative coordinates.
   [[nodiscard]] const glm::dvec3& from() const { return from_; }
-  /// The box outside which triangles are irrelevant.
+  /// Return the corners of the box outside which triangles are irrelevant.
   [[nodiscard]] const glm::vec3& low() const { return low_; }
   [[nodiscard]] const glm::vec3& high() const { return high_; }
 

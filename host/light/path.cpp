@@ -151,7 +151,7 @@ struct ChosenLights {
   }
 };
 
-/// Next-event estimation: chooses one light for each hit, and samples it.
+/// Chooses one light for each hit, and samples it (next-event estimation).
 template <class T>
 RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                                      const LobeProbabilities<T>& lobes) {

@@ -40,7 +40,7 @@ struct LobeProbabilities {
     sum = mirror + transmission + scatter;
   }
 
-  /// Probability of diffuse or glossy reflection; 0 where the albedo of all lobes is 0.
+  /// Returns the probability of diffuse or glossy reflection; 0 if the albedo of all lobes is 0.
   [[nodiscard]] RAYGATE_INLINE T scatter_probability() const {
     return choose(sum > 0.0f, scatter / sum, T{});
   }

@@ -59,7 +59,7 @@ struct SpawnOrigin {
 /// the path ends there.
 class RaySpawner {
  public:
-  /// The clearances must outlive this.
+  /// `clearances` must outlive this object.
   explicit RaySpawner(const NeighborClearances& clearances)
       : clearances_(clearances), bvh_(clearances.bvh()) {}
 

@@ -37,7 +37,7 @@ struct SurfaceHit {
   }
 };
 
-/// Whether the face has a normal for each vertex.
+/// Returns whether the face has a normal for each vertex.
 [[nodiscard]] inline bool has_normals(const Triangle& face) {
   return face.normals[0] != kNoIndex && face.normals[1] != kNoIndex && face.normals[2] != kNoIndex;
 }

@@ -111,7 +111,8 @@ class MpiRanks : public Ranks {
     });
   }
 
-  /// Never waits for the rest of a message, as its sender may have died.
+  /// Returns a message that has arrived completely. Never waits for the rest of a message, as its
+  /// sender may have died.
   std::optional<Message> taken() {
     int there = 0;
     if (!coming_) {

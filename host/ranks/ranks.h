@@ -86,7 +86,7 @@ class Ranks {
 
   [[nodiscard]] virtual int index() const { return 0; }  ///< of this process
   [[nodiscard]] virtual int count() const { return 1; }
-  /// Number of processors for this rank.
+  /// Returns the number of processors for this rank.
   [[nodiscard]] virtual unsigned processors() const {
     return std::max(1u, std::thread::hardware_concurrency());
   }
@@ -116,13 +116,14 @@ struct RunIsOver : std::exception {};
 void run_rank(Ranks& ranks, const std::function<void()>& work,
               const std::function<Ending(std::exception_ptr)>& ending);
 
-/// Whether a launcher of MPI programs started this process: mpirun, or Slurm's srun by PMI or PMIx.
+/// Returns whether a launcher of MPI programs started this process: mpirun, or Slurm's srun by PMI
+/// or PMIx.
 [[nodiscard]] bool is_launched();
 
-/// Number of processes as reported by the launcher, or 0.
+/// Returns the number of processes as reported by the launcher, or 0.
 [[nodiscard]] int launched_count();
 
-/// This process's rank as reported by the launcher, or 0.
+/// Returns this process's rank as reported by the launcher, or 0.
 [[nodiscard]] int launched_index();
 
 /// Removes the launcher's variables from the environment, for programs that this one starts.

@@ -104,9 +104,9 @@ bool TileRenderer::trace_batch(Integrator& integrator, const std::function<bool(
   return true;
 }
 
-/// Each sample of a pixel has an equal fraction of the frame's light paths, which are traced with
-/// it, so the result does not depend on how work is distributed. The pixels of a window have all of
-/// them.
+/// Traces the light paths of the current samples. Each sample of a pixel has an equal fraction of
+/// the frame's light paths, so the result does not depend on how work is distributed. The pixels of
+/// a window have all of them.
 bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   if (!light_integrator_) return true;
   constexpr std::size_t kManyPaths = 1 << 16;  // per batch

@@ -113,7 +113,7 @@ class TileQueue {
 
   [[nodiscard]] bool all_begun() const { return begun_ == steps_; }
   [[nodiscard]] bool all_ended() const { return ended_ == steps_; }
-  /// Number of passes that have not begun.
+  /// Returns the number of passes that have not begun.
   [[nodiscard]] std::int64_t left() const { return steps_ - begun_; }
   [[nodiscard]] double fraction() const {
     return static_cast<double>(ended_) / static_cast<double>(steps_);

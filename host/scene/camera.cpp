@@ -96,7 +96,7 @@ Camera Camera::look_at(const CameraSetting& setting, double aspect) {
   return camera;
 }
 
-/// A thin lens: all rays of an image point meet in the plane of focus.
+/// Models a thin lens: all rays of an image point meet in the plane of focus.
 Ray Camera::ray(double x, double y, const glm::dvec2& lens) const {
   const double across = 2.0 * x - 1.0, along = 1.0 - 2.0 * y;
   glm::dvec3 origin(eye_), way = forward_;
@@ -136,7 +136,7 @@ glm::dvec3 Camera::lens_point(const glm::dvec2& lens) const {
          aperture_ * std::sqrt(lens.x) * (turn.cosine * right_ + turn.sine * up_);
 }
 
-/// The result is the image point whose ray through the lens's centre meets the same focus point.
+/// Finds the image point whose ray through the lens's centre meets the same focus point.
 std::optional<glm::dvec2> Camera::place_of(const glm::dvec3& point,
                                            const glm::dvec3& lens_point) const {
   const glm::dvec3 way = point - lens_point;

@@ -70,7 +70,7 @@ class Texture {
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
-  /// Row by row from the top.
+  /// Returns the texels, row by row from the top.
   [[nodiscard]] const std::vector<Texel>& texels() const { return texels_; }
 
  private:

@@ -101,7 +101,7 @@ class WordLink {
   virtual std::optional<std::uint32_t> receive() = 0;
   /// Waits: one clock in simulation. Throws if the board is silent for too long.
   virtual void wait() = 0;
-  /// Simulated clocks since construction; 0 without simulation.
+  /// Returns simulated clocks since construction; 0 without simulation.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
 };
 

@@ -48,7 +48,7 @@ struct NodeLine {
     std::uint32_t kind = kAbsent;
     std::array<std::uint8_t, 3> low{}, high{};
 
-    /// Number of lines in memory.
+    /// Returns the number of lines in memory.
     [[nodiscard]] std::uint32_t size() const { return kind == kInner ? 1 : kind; }
   };
 
@@ -138,7 +138,7 @@ class MemoryImage {
   }
   /// Returns the bytes of the memory, in the format of --dump-image: line n is at byte 64 n.
   [[nodiscard]] std::string_view bytes() const;
-  /// Number of nodes on the longest path from the root to a leaf, from 1 to kMostDepth.
+  /// Returns the number of nodes on the longest path from the root to a leaf, from 1 to kMostDepth.
   [[nodiscard]] int depth() const { return depth_; }
 
  private:

@@ -117,7 +117,7 @@ class Machine {
   }
 
  private:
-  /// Maximum number of products in a column.
+  /// Returns the maximum number of products in a column.
   static unsigned products(int width) { return static_cast<unsigned>(6 * count(253, width)); }
   static int count(int spread, int width) { return (spread + 27 + width - 1) / width; }
   [[nodiscard]] int count(int spread) const { return count(spread, width_); }

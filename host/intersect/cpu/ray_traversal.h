@@ -60,7 +60,7 @@ struct alignas(64) RayTraversal {
     children[0] = {0, Bvh::kMaxLeafSize + 1};
   }
 
-  /// The node or leaf that is visited.
+  /// Returns the node or leaf that is visited.
   [[nodiscard]] const Bvh::Child& at() const { return children[depth]; }
   [[nodiscard]] double t_scale() const { return std::abs(sheared.way); }
   /// Sets the bounds of t, or of the depth, of the nearest hit or the limit.

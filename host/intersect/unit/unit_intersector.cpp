@@ -230,8 +230,8 @@ void UnitIntersector::offer(const Half& half, const Report& report) {
   packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);
 }
 
-/// A burst does not report hits that are surely farther than another one. If that hit is ignored,
-/// tests all triangles of the bundle by exact arithmetic.
+/// Tests all triangles of the bundle exactly if its hit is ignored, since a burst does not report
+/// hits that are surely farther than another one.
 void UnitIntersector::offer_hidden(const Half& half, const SureHit& ignored) {
   const RayBundle& bundle = half.batch[ignored.bundle];
   const std::uint32_t number = packets_[half.owner[ignored.bundle]].rays[ignored.lane];

@@ -57,7 +57,7 @@ struct PlacedLight {
   std::optional<SpotCone> spot;
 };
 
-/// glTF 2.0, 3.7.2.1: primitives without normals are flat.
+/// Returns the options required by glTF 2.0, 3.7.2.1: primitives without normals are flat.
 LoadOptions as_specified(LoadOptions options) {
   options.smooth_if_unsaid = false;
   return options;
