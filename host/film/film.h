@@ -138,10 +138,9 @@ struct ExtraChannels {
 struct Film {
   int width = 0, height = 0;
   PixelRect window;
-  std::vector<glm::vec4>
-      color;                 ///< R G B A, scene-linear, premultiplied; A = 0 where nothing is hit
-  std::vector<float> depth;  ///< Z: distance along the camera's axis; +infinity for a miss
-  std::vector<glm::vec3> normal;         ///< unit shading normal towards the viewer; 0 for a miss
+  std::vector<glm::vec4> color;   ///< R G B A, scene-linear, premultiplied; A = 0 for a miss
+  std::vector<float> depth;       ///< Z: distance along the camera's axis; +infinity for a miss
+  std::vector<glm::vec3> normal;  ///< unit shading normal towards the viewer; 0 for a miss
   std::vector<std::uint32_t> primitive;  ///< triangle index of the scene; kNoPrimitive for a miss
 
   // Optional:

@@ -124,8 +124,9 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 bool take_if_nearer(const Bvh& bvh, const Ray& ray, float t_max, const NearestHit& hit,
                     NearestHit& best, IntersectCounters& counters);
 
-/// Does the same for a doubt, a triangle that binary32 finds neither hit nor missed; `doubt.t` is
-/// not read. Decides the distance first, which usually needs doubles only.
+/// Resolves a doubt, a triangle that binary32 finds neither hit nor missed, and updates `best` as
+/// take_if_nearer() does. `doubt.t` is not read. Decides the distance first, which usually needs
+/// doubles only.
 bool resolve_doubt(const Bvh& bvh, const Ray& ray, float t_max, NearestHit doubt, NearestHit& best,
                    IntersectCounters& counters);
 

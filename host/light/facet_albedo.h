@@ -27,7 +27,7 @@ class FacetAlbedo {
   [[nodiscard]] RAYGATE_INLINE Shares<T> at(const T& cosine, const T& alpha) const {
     return at<T>([&](int) RAYGATE_BODY -> const FacetAlbedo& { return *this; }, cosine, alpha);
   }
-  /// Does the same for several tables: lane k uses table_of(k).
+  /// Returns albedos from several tables: lane k uses table_of(k).
   template <class T, class TableOf>
   [[nodiscard]] RAYGATE_INLINE static Shares<T> at(const TableOf& table_of, const T& cosine,
                                                    const T& alpha) {

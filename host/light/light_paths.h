@@ -64,7 +64,7 @@ class LightPaths {
     Ray ray;
     PathState state;  ///< its throughput is flux
   };
-  /// Returns the start of path `number` of a picture, or none if the light emits nothing there.
+  /// Returns the start of path `number` of an image, or nullopt if the light does not emit there.
   [[nodiscard]] std::optional<Start> start(std::uint64_t number, std::uint64_t seed) const;
 
   /// Returns the density of light paths of a sample that start at `point` of a light in the

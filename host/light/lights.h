@@ -163,7 +163,7 @@ class Lights {
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(const std::uint32_t (&indices)[kLanesOf<T>],
                                                     const SquarePoint<T>& u) const;
-  /// Does the same for one patch per lane.
+  /// Samples points of one patch per lane, uniform in area.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
       const std::uint32_t (&numbers)[kLanesOf<T>], const SquarePoint<T>& u) const;

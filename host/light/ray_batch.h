@@ -38,7 +38,7 @@ struct alignas(16) PathState {
 inline constexpr std::uint32_t kSpecularHistories = 32;
 
 /// Histories after a scattering surface that the camera sees through mirrors or glass: of the path
-/// itself, and of the additional rays that look for caustics there (sample_seen_caustics).
+/// itself, and of the additional rays that search for caustics there (sample_seen_caustics).
 inline constexpr std::uint32_t kAfterSeenSurface = 32, kCausticRay = 34;
 /// Added to these codes once a mirror or glass follows.
 inline constexpr std::uint32_t kThenSpecular = 1;

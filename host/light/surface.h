@@ -66,12 +66,12 @@ struct Surface {
   T roughness, metallic, transmission, specular, coat, coat_roughness;
   Triple<T> specular_color;
   Triple<T> glow;  ///< factor of the emission texture; only of kinds that interpolate and emit
-  /// The ray comes from outside: from the side to which the file's normals point or, without
-  /// normals, from which the vertices are counter-clockwise.
+  /// Whether the ray arrives from outside: from the side to which the file's normals point or,
+  /// without normals, from which the vertices are counter-clockwise.
   MaskOf<T> outside;
 
-  /// Whether a direction leaves the triangle to the ray's side or, if `transmitted`, to the other
-  /// side. Exact where `is_sure`.
+  /// Result of leaving(): whether a direction leaves the triangle to the ray's side or, if
+  /// `transmitted`, to the other side. Exact in lanes with `is_sure`.
   struct Leaving {
     MaskOf<T> leaves, is_sure;
   };

@@ -59,9 +59,9 @@ struct RenderMonitor {
 /// Statistics of a render. Seconds of parts are sums over the threads; `wall_seconds` is elapsed
 /// time, `processor_seconds` the processor time of all threads of all ranks.
 struct RenderStats {
-  std::uint64_t rays = 0;          ///< of all kinds
-  std::uint64_t camera_rays = 0;   ///< of which camera rays
-  std::uint64_t shadow_rays = 0;   ///< of which shadow rays; the rest are reflected or refracted
+  std::uint64_t rays = 0;         ///< number of rays of all kinds
+  std::uint64_t camera_rays = 0;  ///< camera rays among `rays`
+  std::uint64_t shadow_rays = 0;  ///< shadow rays among `rays`; the rest are reflected or refracted
   std::uint64_t point_doubts = 0;  ///< hits whose P the host computed, without shadow rays
   SkipCounters skipped;
   IntersectCounters intersect;  ///< summed over the threads' intersectors

@@ -118,7 +118,7 @@ RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const Qu
   }
 }
 
-/// Does the same, one ray at a time.
+/// Tests as test_groups() does, but one ray at a time.
 RAYGATE_INLINE void PacketIntersector::test_rays(ConeTraversal& walk, const QuadRecord& record,
                                                  const Bvh::Child& leaf, LaneMask there,
                                                  std::uint64_t rays, LaneMask& changed) {

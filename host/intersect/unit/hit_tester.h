@@ -45,7 +45,7 @@ struct Doubt {
   std::uint32_t lane = 0;
   std::uint32_t tag = 0;
   glm::vec3 point{0.0f};     ///< as in SureHit, if it is a hit
-  float point_error = 0.0f;  ///< likewise
+  float point_error = 0.0f;  ///< as in SureHit
 };
 
 /// The results of a batch. Bursts without a hit or doubt have none.

@@ -21,7 +21,7 @@ struct RaySet {
   std::vector<Ray> rays;
   bool common_origin = false;  ///< all rays begin at rays[0].origin
   std::vector<float> t_max;    ///< empty, or one per ray: only hits with t < t_max[i] count
-  bool any_hit = false;        ///< only asks whether there is a hit
+  bool any_hit = false;        ///< the query is only whether there is a hit
 
   /// Returns the query for `count` rays from `first` on.
   [[nodiscard]] RayQuery query(std::size_t first, std::size_t count) const {

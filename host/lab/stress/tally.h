@@ -18,15 +18,16 @@ struct Tally {
   std::uint64_t tests = 0, rays = 0;
   /// Tests with a wrong decision, or with an interval that does not contain t, except ties.
   std::uint64_t wrong = 0;
-  std::uint64_t ties = 0;        ///< tests that only the tie-break decides
-  std::uint64_t wrong_ties = 0;  ///< of these, wrong decisions; allowed unless the subject is exact
-  std::uint64_t leaks = 0;       ///< rays from inside a closed mesh with an even number of hits
-  std::uint64_t escapes = 0;     ///< of these, rays without hits
-  std::uint64_t double_hits = 0;         ///< rays from inside with too many hits
-  std::uint64_t wrong_nearest = 0;       ///< rays with a wrong nearest triangle, except ties
+  std::uint64_t ties = 0;  ///< tests that only the tie-break decides
+  /// Wrong decisions among `ties`; allowed unless the subject is exact.
+  std::uint64_t wrong_ties = 0;
+  std::uint64_t leaks = 0;          ///< rays from inside a closed mesh with an even number of hits
+  std::uint64_t escapes = 0;        ///< rays without hits among `leaks`
+  std::uint64_t double_hits = 0;    ///< rays from inside with too many hits
+  std::uint64_t wrong_nearest = 0;  ///< rays with a wrong nearest triangle, except ties
   std::uint64_t wrong_tied_nearest = 0;  ///< likewise among ties
   std::uint64_t orders = 0;              ///< rays for which the subject returned all hits in order
-  std::uint64_t wrong_order = 0;         ///< of these, those with a wrong order or wrong hits
+  std::uint64_t wrong_order = 0;         ///< rays among `orders` with a wrong order or wrong hits
   std::uint64_t hits = 0, doubts = 0;
   /// Errors of correct hits, in ulps of the exact value: t, and the worst coordinate of P; and the
   /// relative error of t.

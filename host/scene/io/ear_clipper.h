@@ -9,9 +9,9 @@
 
 namespace raygate {
 
-/// A kd-tree of points in the plane that tells whether a triangle contains any of them. Points can
-/// be removed, not added. Building it for n points takes O(n log n); a query with a thin or small
-/// triangle visits far fewer than n points. All predicates are exact.
+/// A kd-tree of points in the plane, for finding whether a triangle contains any of them. Points
+/// can be removed, not added. Building it for n points takes O(n log n); a query with a thin or
+/// small triangle visits far fewer than n points. All predicates are exact.
 class PointTree {
  public:
   struct Point {

@@ -15,8 +15,9 @@ namespace raygate {
 [[nodiscard]] std::optional<std::filesystem::path> find_exact_file(
     const std::filesystem::path& folder, std::string_view name);
 
-/// Does the same or, if there is none, returns the file whose name matches the last part of `name`
-/// in any letter case, in the folder of `name` or in `folder`. A warning then begins with `place`.
+/// Returns the result of find_exact_file() or, if there is none, the file whose name matches the
+/// last part of `name` in any letter case, in the folder of `name` or in `folder`. Warns about the
+/// other spelling; the warning begins with `place`.
 [[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
                                                              std::string_view name,
                                                              const std::string& place,

@@ -53,8 +53,8 @@ class GltfFile {
   /// Returns the first `width` components of each element of an accessor. Throws InputError if they
   /// cannot be read or are not finite.
   [[nodiscard]] std::vector<double> vectors(int accessor, int width, const char* what) const;
-  /// Returns the same for an optional attribute of a primitive of so many vertices, except that the
-  /// numbers may be infinite or NaN. Returns an empty list for accessor -1 and, with a warning, for
+  /// Returns the vectors of an optional attribute of a primitive with this number of vertices,
+  /// which may be infinite or NaN. Returns an empty list for accessor -1 and, with a warning, for
   /// an accessor that cannot be read.
   [[nodiscard]] std::vector<double> optional_vectors(int accessor, int width, const char* what,
                                                      std::size_t vertices,
@@ -78,8 +78,8 @@ class GltfFile {
   /// Returns the bytes of a buffer view. Throws InputError, which names `place`, if it has none or
   /// is not within its buffer.
   [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;
-  /// Sets where elements of that type and count are stored. Throws InputError if they are not
-  /// within their buffer view.
+  /// Locates elements of this type and count. Throws InputError if they are not within their buffer
+  /// view.
   void find_stored(int buffer_view, std::size_t offset, const std::string& number,
                    Elements& elements) const;
   [[nodiscard]] std::vector<double> numbers(int accessor, int width, const char* what) const;

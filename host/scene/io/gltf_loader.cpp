@@ -279,8 +279,8 @@ class GltfReader {
     if (is_orthographic) scene_.camera->lens.projection = Projection::kOrthographic;
   }
 
-  /// Moves the camera's target along the view to the depth of the scene's middle, without changing
-  /// the size of the picture. The scene is complete by now.
+  /// Moves the camera's target along the view to the depth of the scene's centre, without changing
+  /// the size of the picture. The scene must be complete.
   void aim_camera() {
     if (!scene_.camera) return;
     CameraSetting& camera = *scene_.camera;
@@ -335,7 +335,7 @@ class GltfReader {
     cone.inner = inner >= 0.0 ? std::min(inner, cone.outer) : 0.0;
   }
 
-  /// Adds the point lights to the scene, whose origin is known by now.
+  /// Adds the point lights to the scene, whose origin must be set.
   void place_lights() {
     for (const PlacedLight& light : lights_) {
       const glm::vec3 rounded(light.position - scene_.origin);

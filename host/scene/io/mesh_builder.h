@@ -70,7 +70,7 @@ class MeshBuilder {
   /// Makes indices relative to a file whose earlier part has `earlier` elements, held by other
   /// builders. Must be called first.
   void begin_after(const Counts& earlier) { earlier_ = earlier; }
-  /// Appends the next part of the file, whose builder began after this one's counts.
+  /// Appends the next part of the file, whose builder was given the counts of this builder.
   void append(MeshBuilder&& part);
 
   /// Includes this box in the bounds by which the scene is recentred.
@@ -87,7 +87,7 @@ class MeshBuilder {
   /// InputError for an index out of range, if there is no face with an area, and with
   /// options.strict for any face without an area.
   void build(const LoadOptions& options, Scene& scene);
-  /// Does the same and makes all faces one object of a default material.
+  /// Builds a scene in which all faces belong to one object of a default material.
   void build_plain(const LoadOptions& options, Scene& scene);
 
  private:
