@@ -6,8 +6,7 @@
 
 namespace raygate {
 
-/// During the lifetime of this object, checkpoint() on its thread calls `check`, which may throw to
-/// end the work.
+/// During its lifetime, checkpoint() on its thread calls `check`, which may throw to end the work.
 class CheckpointScope {
  public:
   explicit CheckpointScope(std::function<void()> check)
@@ -28,8 +27,7 @@ class CheckpointScope {
   CheckpointScope* outer_;
 };
 
-/// Calls the check of the innermost scope of this thread, if any. Long work calls this several
-/// times per 100 ms.
+/// Calls this thread's innermost check, if any. Long work calls it several times per 100 ms.
 inline void checkpoint() {
   if (const CheckpointScope* const scope = CheckpointScope::innermost()) scope->check_();
 }

@@ -8,7 +8,6 @@
 
 namespace raygate {
 
-/// Sine and cosine of an angle.
 template <class D>
 struct SineCosine {
   D sine, cosine;

@@ -9,8 +9,8 @@
 
 namespace raygate {
 
-/// Returns the contents of a file. Throws InputError if it cannot be read, is a folder or a device,
-/// or is empty.
+/// Returns the contents of a file. Throws InputError if it is unreadable, a folder, a device or
+/// empty.
 [[nodiscard]] std::string read_file(const std::filesystem::path& file);
 
 /// Returns the number at `bytes`, in little-endian or big-endian byte order.

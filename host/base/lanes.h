@@ -21,8 +21,7 @@ namespace raygate {
 
 /// Number of rays handled at a time: one AVX register of floats.
 inline constexpr int kLanes = 8;
-/// Number of a leaf's triangles tested at a time: one SSE register of floats, one AVX register of
-/// doubles.
+/// Number of triangles tested at a time: one SSE register of floats, or AVX register of doubles.
 inline constexpr int kQuad = 4;
 
 /// A set of lanes; bit k belongs to lane k.
@@ -255,7 +254,6 @@ RAYGATE_INLINE LaneMask sign_mask(const IntLanes& lanes) {
   return sign_mask(IntQuad(low_half(lanes))) | sign_mask(IntQuad(high_half(lanes))) << 4;
 }
 
-/// Returns whether any lane is set.
 RAYGATE_INLINE bool any(bool mask) { return mask; }
 RAYGATE_INLINE bool any(const IntLanes& mask) { return sign_mask(mask) != 0; }
 

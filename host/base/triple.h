@@ -101,7 +101,6 @@ RAYGATE_INLINE auto gather(const Of& of) {
     return load<std::conditional_t<std::is_same_v<Element, float>, T, WordOf<T>>>(values);
   }
 }
-/// Gathers a member of each lane's object.
 template <class T, class Object, class Member>
 RAYGATE_INLINE auto gather(const Object* const (&objects)[kLanesOf<T>], Member Object::*member) {
   return gather<T>([&](int k) RAYGATE_BODY -> const Member& { return objects[k]->*member; });

@@ -26,8 +26,7 @@ inline constexpr std::array<std::string_view, 3> kVectorNames = {"baseline", "av
 template <Vectors kVectors>
 using VectorCode = std::integral_constant<Vectors, kVectors>;
 
-// The widest compiled instruction set, as a number of Vectors. Builds with sanitizers use fewer, to
-// compile faster.
+// The widest compiled instruction set, as a number of Vectors. Sanitizer builds use fewer sets.
 #ifndef RAYGATE_WIDEST_VECTORS
 #define RAYGATE_WIDEST_VECTORS 2
 #endif

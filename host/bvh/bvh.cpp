@@ -66,8 +66,7 @@ class BvhWriter {
   }
 
  private:
-  /// Numbers the primitives if there are instances, which have no primitives but are among the
-  /// triangles.
+  /// Numbers the primitives if instances, which have no primitives, are among the triangles.
   void number_primitives() {
     if (content_.others.empty()) return;
     first_primitives_.reserve(tree_.size());
@@ -226,8 +225,7 @@ class BvhWriter {
     }
   }
 
-  /// Writes the node `ref` to nodes[index], and its descendants behind. Large ones become tasks,
-  /// unless `tasks` is null.
+  /// Writes the node `ref` to nodes[index], and its descendants behind; large ones become `tasks`.
   void write_below(std::vector<Bvh::Node>& nodes, std::uint32_t index, Ref ref,
                    std::vector<Task>* tasks) {
     Ref children[Bvh::kWidth];

@@ -143,7 +143,6 @@ struct PacketVisitor {
   }
 };
 
-/// Advances to the next leaf.
 void advance(PacketTraversal& packet, LeafVisits& leaf) {
   in_vectors([&](auto) RAYGATE_BODY {
     PacketVisitor visitor(packet);

@@ -24,8 +24,7 @@ struct LeafVisit {
   LaneMask lanes = 0;
 };
 
-/// The primitives of a leaf whose boxes any ray of the packet meets, grouped by the rays that meet
-/// them.
+/// The primitives of a leaf whose boxes any ray meets, grouped by the rays that meet them.
 struct LeafVisits {
   std::array<LeafVisit, Bvh::kMaxLeafSize> visits;
   std::size_t count = 0;  ///< 0: the traversal has ended

@@ -65,8 +65,7 @@ struct Slices {
   }
 };
 
-/// A split of a range: primitives in bins below `part` go left; for few primitives, the first
-/// `part` ones.
+/// A split of a range: bins below `part` go left, or the first `part` of a few primitives.
 struct Cut {
   float cost = kNever;  ///< sum of area times count
   int axis = 0;

@@ -35,8 +35,7 @@ struct Primitive {
   std::uint32_t unused;
 
   RAYGATE_INLINE void get(Box& box) const { std::memcpy(&box, this, sizeof box); }
-  /// Returns the centre of the box along an axis. Sides are halved before they are added, so that
-  /// the sum is finite.
+  /// Returns the box's centre along an axis. Sides are halved first, so that the sum is finite.
   [[nodiscard]] RAYGATE_INLINE float middle(int axis) const {
     return 0.5f * low[axis] - 0.5f * turned_high[axis];
   }

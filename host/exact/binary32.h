@@ -14,8 +14,7 @@ struct Binary32 {
   static float add(float a, float b) { return canonical(a + b); }
   static float multiply(float a, float b) { return canonical(a * b); }
   static float divide(float a, float b) { return canonical(a / b); }
-  /// Returns (ax bx + ay by) + az bz. NaN results may differ from the hardware's; they are not
-  /// used.
+  /// Returns (ax bx + ay by) + az bz. NaN results are not used, and may differ from the hardware's.
   static float dot(const glm::vec3& a, const glm::vec3& b) {
     return (a.x * b.x + a.y * b.y) + a.z * b.z;
   }

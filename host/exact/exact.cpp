@@ -98,8 +98,7 @@ struct Fraction {
   }
 };
 
-/// Returns a * b with the errors of both and of the product (twice u, to cover rounding of the
-/// bound).
+/// Returns a * b with the errors of both and of the product (2 u, including that of the bound).
 Estimate product(const Estimate& a, const Estimate& b) {
   const double value = a.value * b.value;
   return {value, 1.000001 * (a.error * std::abs(b.value) + std::abs(a.value) * b.error +
@@ -154,8 +153,7 @@ bool is_scaled(const glm::vec3& direction) {
 }
 
 glm::vec3 scaled_direction(const glm::dvec3& direction) {
-  // Scales by a power of two, which is exact: from the bits, or in steps if its exponent is out of
-  // range.
+  // Scales by a power of two, which is exact: from the bits, or in steps for extreme exponents.
   constexpr std::uint64_t kExponent = 0x7FF0000000000000, kOne = 0x3FF0000000000000;
   const double size = largest(direction);
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(size) & kExponent;
@@ -337,8 +335,7 @@ int area_sign(std::span<const glm::vec2> polygon, double& area) {
     magnitude += std::abs(left) + std::abs(right);
   }
   area = 0.5 * twice_area;
-  // n differences and n additions, each with an error of at most one unit roundoff of the
-  // magnitudes.
+  // n differences and n additions, each with an error of at most u times the magnitudes.
   const double bound = 2.0 * static_cast<double>(polygon.size() + 1) * kUnitRoundoff * magnitude;
   if (std::abs(twice_area) > bound) return sign_of(twice_area);
 

@@ -46,8 +46,7 @@ struct RecentredPosition {
 /// with other directions hit nothing.
 [[nodiscard]] bool is_usable(const glm::vec3& direction);
 
-/// Returns the unit vector of `v`, which is not 0, even if the square of a component would overflow
-/// or underflow.
+/// Returns the unit vector of `v`, which is not 0, without overflow or underflow of squares.
 [[nodiscard]] inline glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest(v)); }
 
 template <class T>

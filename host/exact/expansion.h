@@ -182,7 +182,6 @@ class ExactSum {
     parts_.resize(kept);
     if (term != 0.0) parts_.push_back(term);
   }
-  /// Returns -1, 0 or 1.
   [[nodiscard]] int sign() const { return parts_.empty() ? 0 : (parts_.back() > 0.0 ? 1 : -1); }
 
  private:

@@ -21,7 +21,6 @@ namespace fs = std::filesystem;
   throw InputError(path.string() + ": cannot write: " + std::generic_category().message(error));
 }
 
-/// The target of a write.
 struct Target {
   fs::path path;                      ///< symbolic links resolved
   bool is_stream = false;             ///< a device, pipe or socket, or standard output

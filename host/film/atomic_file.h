@@ -31,7 +31,6 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();  ///< removes the temporary file unless it was committed
 
-  /// Appends `bytes`.
   void append(std::string_view bytes);
   /// Overwrites the start of the file, such as a header with a count. Not for streams.
   void replace_start(std::string_view bytes);

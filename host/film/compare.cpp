@@ -62,8 +62,7 @@ std::array<double, kSide> gaussian() {
   return weights;
 }
 
-/// Returns the Gaussian-weighted means of a(p) b(p) over all positions of the window: first along
-/// rows, then columns.
+/// Returns Gaussian-weighted means of a(p) b(p) over all window positions: by rows, then columns.
 template <typename Value>
 std::vector<double> blurred(Value value, std::size_t width, std::size_t height) {
   static const std::array<double, kSide> kWeights = gaussian();

@@ -28,7 +28,6 @@ enum class Tone {
   kFilmic,  ///< shadows and highlights are compressed, as by film
 };
 
-/// Display settings.
 struct DisplayOptions {
   double exposure = 0.0;  ///< in stops: the light is multiplied by 2^exposure first
   Tone tone = Tone::kClip;

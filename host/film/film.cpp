@@ -9,8 +9,7 @@
 namespace raygate {
 namespace {
 
-/// Calls `visit` with the first pixel of each row of `rect` in each non-empty array, and the number
-/// of bytes of the row.
+/// Calls visit(first pixel, bytes) for each row of `rect` in each non-empty array.
 template <class AnyFilm, class Visit>
 void for_each_row(AnyFilm& film, const PixelRect& rect, const Visit& visit) {
   const auto visit_rows = [&](const FilmField&, auto& values) {

@@ -44,8 +44,8 @@ struct RayWork {
   }
 };
 
-/// Options of a query for many rays. Spans have one element per ray or are empty; they must outlive
-/// the query.
+/// Options of a query for many rays. Spans must outlive it, and are empty or have one element per
+/// ray.
 struct RayQuery {
   /// All rays start at one point that other queries also use (the camera, a light), so that its
   /// polygon records are cached. Does not change results.
@@ -114,8 +114,7 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 /// Returns whether a hit has t < t_max (positive); exact.
 [[nodiscard]] bool is_before(const Bvh& bvh, const Ray& ray, const NearestHit& hit, float t_max);
 
-/// Returns whether hit `a` is nearer than hit `b`; exact. For equal t the lower triangle index is
-/// nearer.
+/// Returns whether hit `a` is nearer than `b`, exactly; for equal t, by the lower triangle index.
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a,
                              const NearestHit& b);
 

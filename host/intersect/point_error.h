@@ -23,8 +23,7 @@
 namespace raygate {
 
 /// Returns the grazing that the unit reports with a hit (BurstHit::t_error), from the largest
-/// exponent field of N and the bits of V, which is finite. `Bits`: std::int32_t or a vector of
-/// them.
+/// exponent field of N and the bits of V (finite). `Bits` is std::int32_t or a vector of it.
 template <class Bits>
 RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
   return maximum(Bits(largest - (v >> 23 & 0xFF)), Bits{});

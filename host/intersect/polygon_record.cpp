@@ -189,8 +189,7 @@ RAYGATE_INLINE Floats edge_bound(const Floats (&words)[3]) {
   return float_of(bits_in(nearest) - whole(wide(nearest) < exact));
 }
 
-/// Loads the corners of four triangles. (By lane: vector loads of words that were just stored one
-/// by one would stall.)
+/// Loads the corners of four triangles by lane, as vector loads after single stores would stall.
 RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
   const Corners(&of)[kBatch] = views.triangles;
   for (int v = 0; v < 3; ++v) {

@@ -9,7 +9,6 @@ class App;
 
 namespace raygate::lab {
 
-/// Results of a command.
 struct Outcome {
   Results results;
   int status = 0;  ///< the program's exit status

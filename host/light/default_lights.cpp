@@ -28,8 +28,7 @@ class LightPlaces {
 
   [[nodiscard]] bool is_inside() const { return is_inside_; }
   [[nodiscard]] double size() const { return size_; }
-  /// Returns the radius of spherical lights. The penumbra is about 1/8 as wide as the distance from
-  /// the occluding edge.
+  /// Returns the radius of spherical lights. Penumbras are 1/8 as wide as the occluder's distance.
   [[nodiscard]] double radius() const { return 0.5 * size_; }
 
   /// Returns the main light: to the upper left of the camera, or at a camera inside the scene.

@@ -10,9 +10,8 @@
 namespace raygate {
 namespace {
 
-// Points of the integral, denser at steep facets, where masking of reflections begins. By symmetry,
-// half of all azimuths suffice. Glass needs more points, as transmission is discontinuous at total
-// reflection.
+// Points of the integral, denser at steep facets, where masking begins. By symmetry, half of all
+// azimuths suffice. Glass needs more points, as total reflection begins abruptly.
 struct Points {
   int steps = 16, turns = 8;
 };
@@ -67,8 +66,7 @@ FacetAlbedo::FacetAlbedo(float index) {
       }
     }
   });
-  // Integrates the bilinear table, times 4 x^3 for the root x of the cosine, with two points per
-  // cell.
+  // Integrates the bilinear table times 4 x^3, x being the root of the cosine; two points per cell.
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column + 1 < kSize; ++column) {
       for (const float rest : {0.211324865f, 0.788675135f}) {

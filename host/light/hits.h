@@ -44,8 +44,7 @@ struct alignas(16) LightSample {
 struct alignas(16) ScatteredRay {
   PathState state;
   glm::vec3 direction{0.0f};  ///< scaled
-  /// Direction made with the geometric normal, for use if that of the shading normal leads to the
-  /// wrong side.
+  /// Direction made with the geometric normal, used if the other one leads to the wrong side.
   glm::vec3 flat{0.0f};
   std::uint32_t is_wanted : 1 = 0;
   std::uint32_t surely_leaves : 1 =
@@ -102,8 +101,7 @@ struct PathLanes {
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_caustic_rays() const { return history >= kCausticRay; }
-  /// Returns whether a bit mask of histories contains a history. Must not contain histories from
-  /// kSpecularHistories on.
+  /// Returns whether `mask` contains the history. Its histories are below kSpecularHistories.
   [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& mask,
                                                     const WordOf<T>& history) {
     return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
@@ -162,7 +160,7 @@ struct ShadingScene {
   const Lights& lights;
   const IntegratorSettings& settings;
   glm::vec3 ambient{0.0f};                  ///< radiance from all sides, before occlusion
-  int max_depth = 4;                        ///< rays of this depth are the last
+  int max_depth = 4;                        ///< maximum depth of rays
   const LightPaths* light_paths = nullptr;  ///< null: camera paths find all light
 };
 
@@ -225,8 +223,7 @@ struct Hits {
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
     return choose((flat > 0.0f) == (cosine > 0.0f), absolute(cosine), T{});
   }
-  /// Returns the normal for sampling lights: the shading normal, or 0 if light from both sides
-  /// counts.
+  /// Returns the shading normal for sampling lights, or 0 if light from both sides counts.
   [[nodiscard]] RAYGATE_INLINE Triple<T> lit_normal() const {
     return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
   }

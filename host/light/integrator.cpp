@@ -260,8 +260,7 @@ void Integrator::list_spawn_queries(std::size_t i) {
   }
 }
 
-/// Returns whether a scattered ray leaves its triangle. Falls back to the direction of the
-/// geometric normal.
+/// Returns whether a scattered ray leaves its triangle, if necessary in direction `flat`.
 bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const {
   const auto leaves = [&](const glm::vec3& direction) {
     return spawner_.leaves(*place.ray, place.primitive, scattered.side(), direction);

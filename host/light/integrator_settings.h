@@ -18,7 +18,6 @@ enum class IntegratorKind {
 /// The default relative error of the hit-test unit's P above which the host computes the point.
 inline constexpr float kPointError = 0x1p-16f;
 
-/// Treatment of caustics.
 enum class Caustics {
   kOff,   ///< found only by camera paths
   kOn,    ///< found by light paths; an error if that is not possible
@@ -74,8 +73,7 @@ struct IntegratorSettings {
   /// always; the largest float: only if the unit has no P.
   float point_error = kPointError;
 
-  /// Returns max_depth. Defaults: 4 for Whitted, as in the paper; 64 for paths, which end by
-  /// Russian roulette.
+  /// Returns max_depth. Defaults: 4 for Whitted, as in the paper; 64 for paths (Russian roulette).
   [[nodiscard]] int depth() const {
     return max_depth.value_or(integrator == IntegratorKind::kPath ? 64 : 4);
   }

@@ -110,8 +110,7 @@ void LightPaths::find_balls(const PreparedScene& prepared) {
   }
 }
 
-/// Sets the probabilities of sources by the flux that each sends to the spheres, as if from its
-/// centre.
+/// Sets the sources' probabilities by the flux that each sends to the spheres from its centre.
 void LightPaths::weigh_sources() {
   double sum = 0.0;
   for (std::uint32_t i = 0; i < lights_.source_count(); ++i) {

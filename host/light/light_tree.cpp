@@ -158,7 +158,6 @@ class LightTree::Builder {
                        [&](std::uint32_t number) { return bin_of(number, best_axis) < best_bin; });
   }
 
-  /// Returns bounds of all sources of a group.
   [[nodiscard]] LightBounds cluster(Group group) const {
     LightBounds all = sources_[group[0]];
     if (group.size() == 1) return all;

@@ -113,8 +113,7 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
   return std::nullopt;
 }
 
-/// Relative weight of the back of a closed light without other geometry in its bounding box: small,
-/// but positive.
+/// Weight of the back of a closed light without other geometry in its box: small, but positive.
 constexpr double kBackOfClosed = 1.0 / 16.0;
 
 /// Returns bounds with lengths in units of `unit`.

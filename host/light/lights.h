@@ -121,8 +121,7 @@ class Lights {
   }
   /// Returns whether the environment is one of the camera lights, which the camera does not see.
   [[nodiscard]] bool has_studio() const { return own_.studio.has_value(); }
-  /// Returns the uniform radiance that lights a floor as much as the background or the camera
-  /// lights' environment.
+  /// Returns the uniform radiance that lights a floor like the background or studio.
   [[nodiscard]] const glm::vec3& light_from_above() const { return from_above_; }
   /// Returns the radiance of the background; for an environment, its mean.
   [[nodiscard]] glm::vec3 background() const {
@@ -218,7 +217,6 @@ class Lights {
     return static_cast<std::uint32_t>(sources_.size() - 1);
   }
 
-  /// Returns whether any light emits.
   [[nodiscard]] bool any_power() const { return any_power_; }
   /// Samples a source for a surface point and its unit normal (see LightTree). Requires
   /// any_power().

@@ -26,8 +26,8 @@ inline constexpr HitKind kHitKinds = 512;  ///< number of masks
 /// Direction-independent parameters of a material: of MTL's illumination models (see Bsdf) or of
 /// the metallic-roughness model.
 struct MaterialParameters {
-  glm::vec3 diffuse{0.0f};  ///< factor of the texture, at most 1
-  glm::vec3 unlit{0.0f};    ///< factor of the texture
+  glm::vec3 diffuse{0.0f};  ///< multiplies the texture; at most 1
+  glm::vec3 unlit{0.0f};    ///< multiplies the texture
   glm::vec3 glossy{0.0f};
   glm::vec3 mirror{0.0f};         ///< reflectance at normal incidence
   glm::vec3 grazing{0.0f};        ///< additional reflectance at grazing angles

@@ -131,8 +131,7 @@ struct MetallicRoughnessLobes {
     return (~kind & (kGlossy | kMirrors)) == 0;
   }
 
-  /// Returns the BRDF, per steradian and without the cosine, for a direction in front of the
-  /// surface.
+  /// Returns the BRDF, per steradian without the cosine, for a direction in front.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     const T cosine = at_most(at_least(dot(ggx.normal, light), 0.0f), 1.0f);
     const Shares there = shares_at(cosine);
@@ -213,8 +212,7 @@ struct MetallicRoughnessLobes {
     return choose(sum > 0.0f, coat_specular / sum, T{});
   }
 
-  /// Returns the fraction of light that is not masked after a sampled facet reflects or refracts
-  /// it.
+  /// Returns the fraction of light that is not masked after leaving a sampled facet.
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const Triple<T>& way) const {
     const T cosine = dot(ggx.normal, way);
     return choose(cosine > 0.0f, ggx.g2_over_g1(view_cosine, cosine), T{});

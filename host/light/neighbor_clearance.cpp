@@ -30,7 +30,6 @@ RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_
   }
 }
 
-/// Returns the largest magnitude of a coordinate in the BVH.
 float largest_coordinate(const Bvh& bvh) {
   float size = 0.0f;
   for (int i = 0; i < Bvh::kWidth; ++i) {

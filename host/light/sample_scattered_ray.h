@@ -22,8 +22,7 @@ inline constexpr float kRouletteThroughput = 0.25f;
 // Of a direction; the inverse is within the range of float.
 inline constexpr float kMinPdf = 1e-20f;
 
-/// Probability of sampling each lobe, in proportion to its albedo; rough glass counts as
-/// scattering.
+/// Probability of sampling each lobe, in proportion to its albedo. Rough glass is in `scatter`.
 template <class T>
 struct LobeProbabilities {
   T mirror, transmission, scatter, sum;
@@ -205,7 +204,6 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.throughput =
         choose(next.is_transmitted, transmitted_throughput, next.path.throughput);
     next.path.pdf = choose(is_bent, T{}, next.path.pdf);
-    // Straight on, as without a surface.
     next.direction = choose(is_straight, -surface.view, next.direction);
     next.flat = choose(is_straight, -surface.view, next.flat);
     next.path.pdf = choose(is_straight, hits.path.pdf, next.path.pdf);

@@ -89,8 +89,7 @@ void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced
   while (!next_.empty()) trace_from_surface(rays);
 }
 
-/// Appends a segment. Fields are set one by one: copying a temporary would read it back before it
-/// is written.
+/// Appends a segment. Sets fields one by one, as copying a temporary would stall.
 void ShadowRays::next_from_surface(const ShadowRay& ray, std::uint32_t index) {
   const bool is_area = ray.point_light == ShadowRay::kNoPoint;
   Segment& segment = next_.emplace_back();

@@ -109,9 +109,8 @@ class ShadowRays {
 // because RaySpawner puts no origin on its wrong side. The triangle is opaque within this distance,
 // so the last ray ends there if none has ended before.
 
-/// Returns whether a hit blocks all light, by the argument above. `place` is a sure hit of a ray
-/// with t below t_max (+infinity: no limit), on a triangle whose material is opaque except for its
-/// mask.
+/// Returns whether a hit blocks all light, by the argument above. `place` is a sure hit with t
+/// below t_max (+infinity: no limit) on a triangle that is opaque except for its mask.
 [[nodiscard]] bool is_sure_occluder(const Scene& scene, const Bvh& bvh, const SurfaceHit& place,
                                     float t_max);
 

@@ -74,8 +74,7 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
   return false;
 }
 
-/// Returns the side of `other` on which the ray is just before or after it hits `hit`, or 0 if it
-/// is in the plane.
+/// Returns the side of `other` on which the ray is just before or after it hits `hit`; 0: coplanar.
 int side_of_ray(const Ray& ray, const Corners& hit, const Corners& other, SpawnSide side) {
   const int at_hit = plane_side_at_hit(ray, hit, other);
   if (at_hit != 0) return at_hit;

@@ -71,8 +71,7 @@ class RaySpawner {
   /// Prefetches the clearance of a primitive of a later query.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const { clearances_.prefetch(primitive); }
 
-  /// Sets origins[i] to O' for queries[i]: the results of find() above, several at a time and
-  /// faster.
+  /// Sets origins[i] to O' for queries[i], as find() above does, but several at a time.
   void find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin> origins);
 
   /// Returns whether `direction` leaves the triangle that `ray` hit on the side of O'. Directions

@@ -144,8 +144,7 @@ RAYGATE_INLINE T largest(const Triple<T>& v) {
 }  // namespace spawn
 
 /// Sets `point` to candidate 0 of each hit, on the incident side if `way` is -1 and on the
-/// transmitted side if it is 1. The candidate is valid if `is_clear` is -1 and no overlap is within
-/// `reach` of it.
+/// transmitted side if it is 1. Valid if `is_clear` is -1 and no overlap is within `reach`.
 template <Vectors kCode, class T>
 RAYGATE_INLINE void spawn_lanes(const SpawnHits<T>& hits, const T& way, float margin,
                                 Triple<T>& point, T& reach, MaskOf<T>& is_clear) {

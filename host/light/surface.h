@@ -30,7 +30,6 @@ struct SurfaceHit {
     return all.empty() || !scene.materials[face->material].has_vertex_colors ? nullptr : &all;
   }
 
-  /// Returns the normal with this index, in scene coordinates.
   [[nodiscard]] glm::vec3 normal(const Scene& scene, std::uint32_t index) const {
     const glm::vec3& own = scene.normals[index];
     return instance == nullptr ? own : transform_normal(*instance, own);

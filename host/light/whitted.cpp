@@ -20,7 +20,6 @@ RAYGATE_INLINE Triple<T> if_narrow(const Ggx<T>& ggx, const Triple<T>& reflected
   return choose(ggx.squared > kNarrow * kNarrow, zero<T>(), reflected);
 }
 
-/// Returns the incident light of light i.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits<T>& hits,
                                          std::uint32_t i) {

@@ -17,8 +17,8 @@ namespace raygate {
 /// decided exactly on the given floats (except for underflow, see below): a ray through an edge or
 /// a corner of a closed mesh hits exactly one of the triangles that meet there, without leaks. Of
 /// two hits at equal distance the one with the lower triangle index comes first. Queries are
-/// thread-safe and work in any rounding mode: each call sets IEEE 754 arithmetic and restores the
-/// thread's mode.
+/// thread-safe. They work in any rounding mode, by setting IEEE 754 arithmetic and restoring the
+/// mode.
 class Tracer {
  public:
   using Point = std::array<float, 3>;

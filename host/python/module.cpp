@@ -149,13 +149,11 @@ nb::bytes python_bytes(const Encode& encode) {
   return nb::bytes(text.data(), text.size());
 }
 
-/// A film with its metadata.
 struct PythonFilm {
   std::shared_ptr<const Film> film;
   ExrMetadata metadata;
 };
 
-/// A scene and its BVH.
 class PythonScene {
  public:
   PythonScene(const nb::bytes& file, bool strict, const Settings& settings) {
@@ -334,7 +332,6 @@ class PythonScene {
   }
 
  private:
-  /// Builds the BVH of the scene.
   void build(int threads) {
     bvh_ = std::make_unique<Bvh>(scene_, threads);
     prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);

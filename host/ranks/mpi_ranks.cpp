@@ -22,8 +22,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kPoll{1};  // polling interval while waiting for messages
 
-/// Returns this rank's share of the processors that it may use together with other ranks of its
-/// machine.
+/// Returns this rank's share of the processors that ranks of its machine may use together.
 unsigned count_processors() {
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
@@ -111,8 +110,7 @@ class MpiRanks : public Ranks {
     });
   }
 
-  /// Returns a message that has arrived completely. Never waits for the rest of a message, as its
-  /// sender may have died.
+  /// Returns a complete message. Does not wait for the rest of one, as its sender may have died.
   std::optional<Message> taken() {
     int there = 0;
     if (!coming_) {

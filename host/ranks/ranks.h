@@ -60,7 +60,6 @@ class RankFailure : public std::runtime_error {
  public:
   explicit RankFailure(const Message& message)
       : RankFailure(message, value_of<int>(message.bytes)) {}
-  /// Returns the bytes of the kFailure message.
   [[nodiscard]] static std::string message_of(const Ending& ending) {
     return bytes_of(ending.status) + ending.line;
   }
@@ -82,7 +81,7 @@ class Ranks {
   Ranks() = default;
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
-  virtual ~Ranks() = default;  ///< leaves, unless leave() was called
+  virtual ~Ranks() = default;  ///< calls leave() if that was not done
 
   [[nodiscard]] virtual int index() const { return 0; }  ///< of this process
   [[nodiscard]] virtual int count() const { return 1; }
@@ -116,8 +115,7 @@ struct RunIsOver : std::exception {};
 void run_rank(Ranks& ranks, const std::function<void()>& work,
               const std::function<Ending(std::exception_ptr)>& ending);
 
-/// Returns whether a launcher of MPI programs started this process: mpirun, or Slurm's srun by PMI
-/// or PMIx.
+/// Returns whether an MPI launcher started this process: mpirun, or Slurm's srun by PMI or PMIx.
 [[nodiscard]] bool is_launched();
 
 /// Returns the number of processes as reported by the launcher, or 0.

@@ -11,10 +11,9 @@
 
 namespace raygate {
 
-/// Error is estimated per block of 4 x 4 pixels, so that a pixel with an error that is small by
-/// chance does not stop early. Blocks form a grid from the frame's upper left corner. Whether a
-/// block gets more samples depends only on its own pixels, so it does not matter which blocks are
-/// rendered together.
+/// Error is estimated per block of 4 x 4 pixels, so that a pixel with a small error by chance does
+/// not stop early. Blocks form a grid from the frame's upper left corner. Blocks are independent of
+/// each other, so it does not matter which are rendered together.
 inline constexpr int kErrorBlock = 4;
 
 /// Errors are checked at 8, 16, 32, ... samples per pixel. The first check yields no error
@@ -44,8 +43,8 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
          error <= wanted * samples / kMinAdaptiveSamples;
 }
 
-/// Returns the expected number of samples until convergence, at least `samples` + 1, if the error
-/// falls as 1 / sqrt(n).
+/// Returns the expected samples until convergence, at least `samples` + 1, for errors ~ 1 /
+/// sqrt(n).
 [[nodiscard]] inline double expected_samples(float error, int samples, double wanted) {
   const double noise = double{error} * std::sqrt(samples);
   return std::max(samples + 1.0, std::cbrt(std::pow(kMinAdaptiveSamples * noise / wanted, 2.0)));
@@ -62,8 +61,7 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
 /// side (Student's t with 16 degrees of freedom).
 void update_block_error(Film& film, int x, int y, double exposure);
 
-/// Returns the estimated completed fraction of a render, in [0, 1]. `most` is the maximum number of
-/// samples per pixel.
+/// Returns the estimated completed fraction of a render. `most` is the maximum samples per pixel.
 [[nodiscard]] double fraction_done(const Film& film, int most, double wanted);
 
 struct PixelSamples {

@@ -23,7 +23,6 @@ void for_each(HistoryMask histories, const Visit& visit) {
   }
 }
 
-/// Returns the histories and all their prefixes.
 HistoryMask with_prefixes(HistoryMask histories) {
   HistoryMask all = histories;
   for_each(histories, [&](std::uint32_t history) {

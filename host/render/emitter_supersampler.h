@@ -31,8 +31,7 @@ inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 /// Emitters smaller than a pixel and between all corners are not found.
 class EmitterSupersampler {
  public:
-  /// The references must outlive this object. `counts_work` enables counting tests and doubts of
-  /// each ray.
+  /// The references must outlive this object. `counts_work`: counts tests and doubts of rays.
   EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work);
 
   /// Finds the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
@@ -40,8 +39,7 @@ class EmitterSupersampler {
   void find(const Film& film, const PixelRect& tile, std::span<HistoryMask> histories,
             std::span<RayWork> work);
 
-  /// Adds to sums[i] the emission that the samples of pixels[i] omit, and the work to work[i]
-  /// unless `work` is empty.
+  /// Adds to sums[i] the emission that samples of pixels[i] omit, and the work to work[i], if any.
   void supersample(std::span<const PixelSamples> pixels, std::span<const HistoryMask> histories,
                    std::span<std::array<ExactAccumulator, 3>> sums, std::span<RayWork> work);
 
@@ -50,7 +48,6 @@ class EmitterSupersampler {
  private:
   void add(const Ray& ray, HistoryMask histories);
   void trace();
-  /// Returns the radiance of a camera ray with a history.
   [[nodiscard]] const glm::vec3& radiance(std::size_t ray, std::uint32_t history) const {
     return output_.radiance[ray * kSpecularHistories + history];
   }
@@ -62,7 +59,6 @@ class EmitterSupersampler {
   HistoryMask all_;     // histories that can occur
   float least_ = 0.0f;  // dimmer emission is not supersampled
   RenderStats stats_;
-  // The current batch of rays.
   RayBatch batch_;
   ShadingOutput output_;
   std::vector<NearestHit> hits_;

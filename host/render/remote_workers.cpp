@@ -100,9 +100,8 @@ void RemoteWorkers::take(const Message& message, TileQueue& queue) {
   }
 }
 
-/// Returns the maximum number of passes per message. It decreases towards the end, so that all
-/// ranks end together. The work takes at most kSeconds, or longer if rank 0 could not receive from
-/// all ranks otherwise.
+/// Returns the maximum passes per message. It decreases towards the end, so that all ranks end
+/// together. The work takes at most kSeconds, or longer if rank 0 would be overloaded.
 int RemoteWorkers::most_passes(const TileQueue& queue) const {
   const double share = static_cast<double>(queue.left()) / (4.0 * most_room_);
   if (passes_ == 0) return 1;

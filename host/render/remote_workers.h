@@ -38,8 +38,7 @@ class RemoteWorkers {
   /// `first_sample` is that of the render. The references must outlive this object.
   RemoteWorkers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film, SplatLayer& splats);
 
-  /// Stores results that have arrived and sends work to ranks with free capacity. Returns whether a
-  /// tile arrived.
+  /// Stores results and sends work to ranks with free capacity. Returns whether a tile arrived.
   bool serve(TileQueue& queue);
 
   /// Tells the ranks that the render is complete and collects their statistics. Returns true once

@@ -47,8 +47,7 @@ struct RenderMonitor {
   /// for a copy. The threads continue meanwhile.
   std::function<void(const Film*)> snapshot{};
   double snapshot_seconds = 10.0;
-  /// With other ranks: polled for whether a rank may have died. If so, `urgent_snapshot` receives
-  /// the film.
+  /// With other ranks, polled: whether one may have died. Then `urgent_snapshot` receives the film.
   std::function<bool()> is_urgent{};
   std::function<void(const Film*)> urgent_snapshot{};
   /// Receives the film if the threads have not stopped within 0.5 s; with other ranks immediately,

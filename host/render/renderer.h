@@ -22,8 +22,8 @@ struct RenderJob {
   const Camera& camera;
   const RenderSettings& settings;
   std::optional<CameraLights> lights{};  ///< replace the scene's lights
-  /// An unfinished film to resume, or null. It must have sums and the same window, settings and
-  /// first sample.
+  /// An unfinished film to resume, or null. Has sums, and the job's window, settings and first
+  /// sample.
   const Film* unfinished = nullptr;
   /// The processes that share this render, called with the same job; null: only this process. Rank
   /// 0 returns the film; the others have parts of it and call only RenderMonitor::progress. If a
@@ -39,7 +39,6 @@ struct RenderJob {
 [[nodiscard]] Film render(const RenderJob& job, const IntersectorFactory& make_intersector,
                           RenderStats& stats, const RenderMonitor& monitor = {});
 
-/// Prepares and renders a scene.
 [[nodiscard]] inline Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
                                  const RenderSettings& settings,
                                  const IntersectorFactory& make_intersector, RenderStats& stats,

@@ -27,8 +27,7 @@ namespace raygate {
 /// tile: the light of each path is summed separately, depth by depth.
 class TileRenderer {
  public:
-  /// `emitter_histories`: by pixel of the film, shared by all tiles and passes; empty: emitters are
-  /// not supersampled.
+  /// `emitter_histories`: by pixel of the film, shared by all tiles; empty: no supersampling.
   TileRenderer(const RenderContext& context, Intersector& intersector, Film& film,
                std::span<HistoryMask> emitter_histories);
 

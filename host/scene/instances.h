@@ -19,7 +19,7 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   result = ((row[0] * point[0] + row[1] * point[1]) + row[2] * point[2]) + row[3];
 }
 
-/// Returns a mesh position transformed by an instance, rounded to float. All intersectors use these
+/// Returns a mesh position transformed by an instance, as float. All intersectors use these
 /// corners.
 [[nodiscard]] inline glm::vec3 transform_point(const double (&rows)[3][4],
                                                const glm::vec3& position) {
@@ -33,9 +33,8 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   return result;
 }
 
-/// Returns the unit normal of an instance for a normal of its mesh, or 0 if the transform collapses
-/// it. Uses cofactors, the inverse transpose up to a factor, which also exist for singular
-/// matrices.
+/// Returns the unit normal of an instance for a normal of its mesh, or 0 if it collapses. Uses
+/// cofactors, the inverse transpose up to a factor, which also exist for singular matrices.
 [[nodiscard]] inline glm::vec3 transform_normal(const Instance& instance, const glm::vec3& normal) {
   glm::dvec3 row[3];
   for (int k = 0; k < 3; ++k) {
@@ -112,8 +111,7 @@ class MeshInstancer {
   MeshInstancer(Scene& scene, Scene&& part);
 
   /// Adds an instance with this transform to the world. The scene's origin must be set. Mirrored
-  /// instances share a mirrored mesh. Returns false, without adding it, if it exceeds the range of
-  /// float.
+  /// instances share a mirrored mesh. Returns false, adding none, beyond the range of float.
   [[nodiscard]] bool add(const glm::dmat4& world, std::uint32_t object);
 
  private:

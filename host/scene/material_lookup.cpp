@@ -52,8 +52,7 @@ glm::vec3 codes_of(const MaterialMap& map, const Scene& scene, const Triangle& t
                                               map.mapping.sampling);
 }
 
-/// Returns the product of opacity map and vertex opacity. The triangle must have texture
-/// coordinates.
+/// Returns opacity map times vertex opacity. The triangle must have texture coordinates.
 float opacity_of(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
   const float mapped = codes_of(material.opacity_map, scene, triangle, weights).r;

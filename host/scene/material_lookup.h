@@ -37,8 +37,7 @@ namespace raygate {
                                       const Instance* instance, const glm::dvec3& weights,
                                       const glm::vec3& normal);
 
-/// Returns the factor of the emission map at a point: a colour, or 1 without a map or texture
-/// coordinates.
+/// Returns the emission map's colour at a point, or 1 without a map or texture coordinates.
 [[nodiscard]] glm::vec3 emission_factor_at(const Scene& scene, const Triangle& triangle,
                                            const glm::dvec3& weights);
 
@@ -50,8 +49,7 @@ namespace raygate {
 [[nodiscard]] float opacity_factor_at(const Scene& scene, const Triangle& triangle,
                                       const glm::dvec3& weights);
 
-/// Factors from the textures of a metallic-roughness material; 1 without a texture or texture
-/// coordinates.
+/// Factors from metallic-roughness textures; 1 without a texture or texture coordinates.
 struct MetallicRoughnessFactors {
   float roughness = 1.0f, metallic = 1.0f, transmission = 1.0f, specular = 1.0f, coat = 1.0f,
         coat_roughness = 1.0f;

@@ -57,8 +57,7 @@ class NameList {
   }
 
  private:
-  // A run covers the names from index `first` to the next run. They repeat the `period` texts from
-  // index `text` on.
+  // Names from index `first` to the next run repeat `period` texts from index `text` on.
   struct Run {
     std::size_t first, text, period;
   };

@@ -66,9 +66,8 @@ class Digest {
   template <class... Values>
   requires(sizeof...(Values) > 1) void add(const Values&... values) { (add(values), ...); }
 
-  // Structured bindings name all members, so that a new member does not compile until it is
-  // handled. Rarely used members are skipped at their defaults, so that digests of older scenes
-  // stay valid.
+  // Structured bindings name all members: a new one does not compile until it is handled. Rarely
+  // used members are skipped at their defaults, which keeps older digests valid.
   void add(const TextureMapping& m) {
     const auto& [scale, offset, sampling, turn, is_second] = m;
     const bool clamps = sampling == Sampling(Wrap::kClamp);

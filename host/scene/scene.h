@@ -23,8 +23,8 @@ inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::ma
 
 /// Maps a surface's texture coordinates to a texture: scale * (u, v), rotated, plus offset.
 struct TextureMapping {
-  glm::vec2 scale{1.0f};       ///< -s
-  glm::vec2 offset{0.0f};      ///< -o
+  glm::vec2 scale{1.0f};       ///< MTL option -s
+  glm::vec2 offset{0.0f};      ///< MTL option -o
   Sampling sampling;           ///< MTL's "-clamp on" is Wrap::kClamp
   glm::vec2 turn{1.0f, 0.0f};  ///< cosine and sine of a counter-clockwise rotation
   bool is_second = false;      ///< uses Scene::second_texcoords
@@ -196,8 +196,8 @@ struct CornerRounding {
 /// Faces without area have indices, too (see is_left_out).
 struct Scene {
   std::vector<glm::vec3> positions;
-  /// Colours of the first positions, scene-linear RGB. They multiply the diffuse colour; 1 if
-  /// missing.
+  /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour; default
+  /// 1.
   std::vector<glm::vec3> colors;
   std::vector<glm::vec3> normals;  ///< unit length if a triangle uses them
   /// Tangents of the first normals: the normal map's x direction, and the sign of its y axis (1 or

@@ -67,9 +67,8 @@ Neighbours neighbours(double coordinate, int size, Wrap wrap, bool is_nearest) {
   return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), is_nearest ? 0.0 : share};
 }
 
-/// Returns whether the bytes begin like a format that Texture::load() supports. The library
-/// supports more formats but never returns for some Radiance headers. TGA has no magic number, so
-/// its header is checked.
+/// Returns whether the bytes begin like a format that Texture::load() supports. The library has
+/// more formats, but hangs on some Radiance headers. TGA is detected by valid header fields.
 bool is_known_format(std::string_view bytes) {
   using namespace std::string_view_literals;
   if (bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff") ||

@@ -37,8 +37,7 @@ class Texture {
   Texture(int width, int height, std::vector<Texel> texels);
 
   /// Reads a PNG, JPEG, TGA or BMP file. Converts palettes, grey and 16 bits to 24-bit RGB. Throws
-  /// InputError for a file that cannot be read, is damaged or of another format, or has more than
-  /// 2^26 pixels.
+  /// InputError for an unreadable or damaged file, another format, or more than 2^26 pixels.
   [[nodiscard]] static Texture load(const std::filesystem::path& file,
                                     Content content = Content::kColour);
 

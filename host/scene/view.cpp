@@ -32,8 +32,7 @@ struct Face {
 
 /// Stability of a scene on the lower end of one axis.
 struct Stand {
-  /// Tangent of the smallest tilt angle at which the scene falls over; negative if it falls
-  /// untilted.
+  /// Tangent of the smallest tilt angle at which the scene falls; negative if it falls untilted.
   double steadiness = 0.0;
   double flat_share = 0.0;  ///< fraction of the lower face covered by triangles in it
 };

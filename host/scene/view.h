@@ -8,8 +8,7 @@
 
 namespace raygate {
 
-/// Direction from which a scene is seen, in degrees. The front faces +z or, where z is up, -y, as
-/// in modelling programs.
+/// Direction from which a scene is seen, in degrees. The front faces +z or, if z is up, -y.
 struct View {
   double azimuth = 0.0;          ///< 0 from the front, 90 from the right, counter-clockwise
   double elevation = 0.0;        ///< 0 level, 90 from straight above

@@ -103,8 +103,7 @@ std::vector<std::pair<std::string, std::string>> HitTable::fields() const {
   return fields;
 }
 
-/// Returns the NPY header, version 1.0, padded for any number of rows; rows start at a multiple of
-/// 64 bytes.
+/// Returns the NPY header, version 1.0, padded to a multiple of 64 bytes for any number of rows.
 std::string HitTable::header(std::uint64_t rows) const {
   std::string text;
   for (const auto& [name, type] : fields()) {

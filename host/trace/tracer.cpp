@@ -49,8 +49,7 @@ void find_one(Desk& desk, Hits asked, const HitTable& answers) {
   desk.next = count;
 }
 
-/// Finds a row for each hit, until there are kManyRows bytes: all rows of a block may exceed
-/// memory.
+/// Finds a row for each hit, up to kManyRows bytes: all rows of a block may exceed memory.
 void find_all(Desk& desk, const Bvh& bvh, const HitTable& answers) {
   for (; desk.next < desk.block.rays.size() && desk.rows.size() < kManyRows; ++desk.next) {
     RayWork work;

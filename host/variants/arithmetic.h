@@ -39,8 +39,8 @@ struct Arithmetic {
   /// Returns (ax bx + ay by) + az bz, rounded at each step or, if `fused`, once.
   [[nodiscard]] float dot(const glm::vec3& a, const glm::vec3& b) const;
 
-  /// Returns the relative error bound of rounding to nearest, half an ulp. Other directions have
-  /// twice this bound.
+  /// Returns the relative error bound of rounding to nearest, half an ulp; half of other
+  /// directions'.
   [[nodiscard]] double unit_roundoff() const;
   [[nodiscard]] int fraction_bits() const { return digits - 1; }
   /// Exponents of the smallest and the largest normal number.

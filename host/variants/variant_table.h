@@ -58,9 +58,8 @@ struct Variant {
 /// Returns the contents of variants.json at build time.
 [[nodiscard]] const std::vector<Variant>& all_variants_of_arithmetic();
 
-/// Returns the pipelined variant of a format such as e8p15 (8 exponent bits, 15 digits); the suffix
-/// -raw ignores doubts. Returns nullopt for other texts. Throws InputError for a format without
-/// hardware or bounds.
+/// Returns the pipelined variant of a format such as e8p15: 8 exponent bits, 15 digits; -raw at the
+/// end ignores doubts. Returns nullopt for other texts. Throws InputError for unsupported ones.
 [[nodiscard]] std::optional<Variant> variant_of_format(std::string_view text);
 
 /// Returns the variant with this name. Throws InputError, which lists the names, if there is none.

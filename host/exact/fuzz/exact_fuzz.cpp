@@ -1,5 +1,4 @@
-// libFuzzer target: compares the predicates with rational arithmetic for any 60 bytes as a ray and
-// a triangle.
+// libFuzzer target: compares the predicates with rationals, for any bytes as ray and triangle.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -92,8 +92,7 @@ class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
 
-  /// Traces the rays and appends all their results to `results`. `lines` are those of a
-  /// MemoryImage.
+  /// Traces the rays and appends their results to `results`. `lines` are those of a MemoryImage.
   virtual void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
                      std::vector<CoreResult>& results) = 0;
 

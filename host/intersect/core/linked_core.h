@@ -131,8 +131,7 @@ class LinkedCore : public CoreUnit {
 };
 
 /// A serial port: four bytes per word, lowest first, 8N1, 2 Mbaud. Throws InputError with the
-/// port's name if the port cannot be opened, or if the board does not answer within kPatience
-/// seconds.
+/// port's name if it cannot be opened, or if the board is silent for kPatience seconds.
 class SerialLink : public WordLink {
  public:
   explicit SerialLink(std::filesystem::path port);

@@ -14,8 +14,7 @@ constexpr std::int64_t kWhole = std::int64_t{1} << kFracBits;  // 2^E, in units
 
 int field(float x) { return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23 & 0xFF); }
 
-/// Returns the significand with its integer bit, also for zeros and subnormals, which are below all
-/// units.
+/// Returns the significand with its integer bit, also for zeros and subnormals (below all units).
 std::int64_t significand(float x) {
   return (std::bit_cast<std::uint32_t>(x) & 0x7FFFFF) | 0x800000;
 }

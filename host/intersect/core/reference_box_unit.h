@@ -36,8 +36,7 @@ struct BoxGroup {
 
 [[nodiscard]] BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray);
 
-/// Returns whether the entry surely starts beyond `limit`, which is not negative. +infinity: no
-/// limit.
+/// Returns whether the entry is surely beyond `limit`, at least 0; +infinity: no limit.
 [[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
 
 }  // namespace raygate

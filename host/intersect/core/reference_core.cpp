@@ -67,8 +67,7 @@ class DoubtResolver {
       candidate_ = line;
     }
   }
-  /// Returns the candidate if it is nearer than the nearest sure hit or the limit, else
-  /// kNoTriangle.
+  /// Returns the candidate if it is nearer than the sure hit or the limit, else kNoTriangle.
   std::uint32_t settle(const NearestSureHit& nearest) {
     if (candidate_ == CoreRay::kNoTriangle) return candidate_;
     limit_ = nearest.limit();

@@ -6,8 +6,7 @@
 namespace raygate {
 
 /// Boxes, records and tests are bit-exact. Tests are sequential, while the hardware overlaps them,
-/// so it may do more tests and report other doubts. Reading a line outside of `lines` is a memory
-/// error.
+/// so it may do more tests and report other doubts. Reading beyond `lines` is a memory error.
 class ReferenceCore : public CoreUnit {
  public:
   /// See ray_core.sv for `stack_depth` and `exact`.

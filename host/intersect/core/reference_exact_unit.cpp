@@ -193,8 +193,7 @@ class Machine {
     return vector;
   }
   /// Loads the limit for comparison with t = D / S in units of 2^(unit - direction's unit):
-  /// compares D times `one` with S times `limit`, both in the smaller unit. (`one` has one bit,
-  /// `limit` 24.)
+  /// compares D `one` with S `limit`, both in the smaller unit. (`one` has one bit, `limit` 24.)
   void load_limit(Number& limit, Number& one) {
     const Fields fields(request_.limit);
     const int gap = unit_ - (fields.exponent + direction_unit_ - 150);
@@ -250,8 +249,7 @@ class Machine {
     return {component(1, 2), component(2, 0), component(0, 1)};
   }
 
-  /// Returns the sign of the columns' sum, from the top down, as soon as lower columns cannot
-  /// change it.
+  /// Returns the sign of the columns' sum, from the top down, once lower columns cannot change it.
   int sign(std::initializer_list<Term> terms) {
     const auto top = static_cast<int>(terms.begin()->x.size() + terms.begin()->y.size()) - 2;
     const Wide sure = Wide{1} << sure_bit_;

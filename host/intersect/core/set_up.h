@@ -20,8 +20,7 @@ struct SetUpRecord {
 /// Returns the record of set_up_unit, bit for bit, for any floats including NaN and infinities.
 [[nodiscard]] SetUpRecord set_up(const glm::vec3& origin, const Corners& triangle);
 
-/// Returns whether a hit of such a record is sure (set_up_pkg::is_good_hit). `grazing` is
-/// HitDistance::error.
+/// Returns whether a hit is sure (set_up_pkg::is_good_hit). `grazing` is HitDistance::error.
 [[nodiscard]] bool is_good_hit(const SetUpRecord& set_up, std::uint32_t grazing);
 
 /// Returns e such that fewer than 2^e floats lie between t of a good hit and the exact t

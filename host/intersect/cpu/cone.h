@@ -44,8 +44,7 @@ struct Cones {
   PacketBounds whole;     ///< bounds of all groups
 };
 
-/// Computes the cones of the packet's rays in `cones.active`, which must be in this octant. Sets
-/// all other members.
+/// Computes all members for the packet's rays in `cones.active`, which must be in this octant.
 void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones);
 
 }  // namespace raygate

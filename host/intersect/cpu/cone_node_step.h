@@ -23,8 +23,7 @@ RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   walk.split |= 1u << group;
 }
 
-/// Returns the children that any of the rays, which belong to these groups, may meet; entry[i] is
-/// the distance.
+/// Returns the children that any of `rays`, in `groups`, may meet; entry[i] is the distance.
 template <Vectors kCode>
 RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& node,
                                  std::uint64_t rays, LaneMask groups, FloatLanes& entry) {

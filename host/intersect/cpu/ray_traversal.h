@@ -73,7 +73,6 @@ struct alignas(64) RayTraversal {
     cutoff = cutoff_beyond(highest);
   }
   [[nodiscard]] Interval t() const { return {low / t_scale(), high / t_scale()}; }
-  /// Ends the traversal.
   void end() { depth = 1; }
 };
 
@@ -157,8 +156,7 @@ inline constexpr auto kNumbersOf = [] {
   return numbers;
 }();
 
-/// Sorts eight keys in descending order by Batcher's bitonic network. All but `count` keys are
-/// negative, and last.
+/// Sorts eight keys in descending order (Batcher's bitonic network); all but `count` are negative.
 RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count) {
   IntLanes other, larger, smaller;
   const auto compare = [&]() __attribute__((always_inline)) {
@@ -219,8 +217,7 @@ RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk,
   met.mask = mask;
 }
 
-/// Pushes the children that the ray meets. Branches only for three or more, as the outcome is
-/// unpredictable.
+/// Pushes the children that the ray meets; branchless for up to two, as branches mispredict.
 template <Vectors kCode>
 RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   constexpr std::int32_t kNumber = Bvh::kWidth - 1;

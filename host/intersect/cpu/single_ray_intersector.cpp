@@ -109,7 +109,6 @@ RAYGATE_INLINE LaneMask SingleRayIntersector::begin(RayTraversal* const (&walks)
   return scaled;
 }
 
-/// Completes a ray.
 RAYGATE_INLINE void SingleRayIntersector::finish(const RayTraversal& walk) {
   HitCounters& counters = counters_.hit;
   counters.tests += walk.work.tests;

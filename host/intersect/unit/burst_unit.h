@@ -93,8 +93,7 @@ class BurstUnitMismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws BurstUnitMismatch at the first burst of `batch` for which `actual` and `expected` differ
-/// in any bit.
+/// Throws BurstUnitMismatch at the first burst whose `actual` bits differ from those `expected`.
 void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
                   const BurstResults& expected);
 

@@ -50,8 +50,7 @@ struct Doubt {
 
 /// The results of a batch. Bursts without a hit or doubt have none.
 struct HitResults {
-  /// The sure hits that may be the nearest of their burst: one, or several that binary32 cannot
-  /// order.
+  /// The possible nearest hits of each burst: one, or several that binary32 cannot order.
   std::vector<SureHit> hits;
   std::vector<Doubt> doubts;
 

@@ -17,8 +17,7 @@ namespace raygate {
 /// The unit's verdict on a single test.
 enum class UnitVerdict : std::uint8_t { kMiss, kHit, kDoubt };
 
-/// The distance of a hit. At most 2^(6 + error) numbers of the format lie between `t` and the exact
-/// t.
+/// The distance of a hit. At most 2^(6 + error) numbers of the format separate it from the exact t.
 struct HitDistance {
   float t = 0.0f;
   std::uint32_t error = 0;
@@ -186,8 +185,7 @@ struct UnitPoint {
 /// Computes BasicReferenceBurstUnit::point in binary32.
 [[nodiscard]] UnitPoint plane_point(const PolygonRecord& record, const glm::vec3& direction);
 
-/// Returns the error bound of a P of the unit. `grazing`: the value that the unit reported, or
-/// none.
+/// Returns the error bound of a P of the unit. `grazing` is the value reported by the unit, if any.
 [[nodiscard]] float point_error(const PolygonRecord& record, const glm::vec3& direction,
                                 std::optional<std::uint32_t> grazing = std::nullopt);
 

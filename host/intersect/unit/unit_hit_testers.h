@@ -1,5 +1,4 @@
-// Hit testers over the simulated units or their reference models: the pipelined unit, and the
-// paper's.
+// Hit testers for the pipelined unit and the paper's unit, simulated or as reference models.
 #pragma once
 
 #include <cstdint>

@@ -68,8 +68,7 @@ void UnitIntersector::finish(Half& half) {
   counters_.hit_tests += watch.lap();
 }
 
-/// Fills packets by octant, in the order of the rays. The second half of the packets forms the
-/// second half.
+/// Fills packets by octant, in the order of the rays. Each half gets half of the packets.
 void UnitIntersector::make_packets() {
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   packets_.clear();
@@ -113,8 +112,7 @@ LeafVisits UnitIntersector::next_leaf(Packet& packet) {
   return {{LeafVisit{first, count, packet.lanes}}, 1};
 }
 
-/// Fills the batch: every packet advances to its next leaf or, while there are too few tests, to
-/// further leaves.
+/// Fills the batch: advances every packet to its next leaf, repeatedly if there are too few tests.
 void UnitIntersector::collect(Half& half) {
   half.batch.clear();
   half.owner.clear();

@@ -74,7 +74,6 @@ class UnitIntersector : public Intersector {
   std::shared_ptr<HitTester> tester_;
   std::shared_ptr<RecordCaches> caches_;
   IntersectCounters counters_;  // without the tester's counts
-  // The current query.
   std::span<const Ray> rays_;
   RayQuery query_;
   std::span<NearestHit> hits_;

@@ -14,7 +14,6 @@
 namespace raygate::lab {
 namespace {
 
-/// Counts of the tests of an audit.
 struct Counts {
   std::uint64_t tests = 0, doubts = 0, wrong_hits = 0, wrong_misses = 0;
 };
@@ -42,8 +41,7 @@ class AuditTester : public HitTester {
   [[nodiscard]] HitCounters counters() const override { return tester_.counters(); }
 
  private:
-  /// Audits user-supplied modules, which have no reference model: sends each record again, in a
-  /// burst of its own.
+  /// Audits user-supplied modules, which have no model, by sending each record in its own burst.
   void judge_hardware(std::span<const RayBundle> batch) {
     std::vector<RayBundle> alone;
     for (const RayBundle& bundle : batch) {

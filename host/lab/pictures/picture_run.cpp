@@ -111,8 +111,7 @@ ChannelPicture light_of(const Film& film) {
   return picture;
 }
 
-/// Returns the processor time of a fixed workload, independent of this project: the current speed
-/// of the machine.
+/// Returns the processor time of a fixed workload, which measures the current machine speed.
 double time_yardstick() {
   const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
   std::uint64_t state = 1;

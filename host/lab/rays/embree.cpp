@@ -55,8 +55,7 @@ bool accepts(const glm::vec3& origin, const glm::vec3& direction) {
   return is_usable(direction) && std::max({size.x, size.y, size.z}) < kLargest;
 }
 
-/// Collects every hit of a ray with a filter function that rejects it, so that the traversal is
-/// tested, too.
+/// Collects every hit of a ray in a filter function that rejects it. Tests the traversal, too.
 class EmbreeSubject : public Subject {
  public:
   explicit EmbreeSubject(int flags)

@@ -31,7 +31,6 @@ struct EmbreeFunctions {
   decltype(&rtcAttachGeometry) attach_geometry = rtcAttachGeometry;
 };
 
-/// Returns a device with one thread.
 inline std::shared_ptr<RTCDeviceTy> embree_device(const EmbreeFunctions& embree) {
   return {embree.new_device("threads=1"), embree.release_device};
 }

@@ -22,8 +22,7 @@ struct RaysOptions {
   std::string embree4;  // path of its library; empty: none
 };
 
-/// Returns the fraction of rays with equal results of two peers: the triangle, or whether any is
-/// hit.
+/// Returns the fraction of rays with equal results: the triangle, or whether any is hit.
 double agreement(const Found& a, const Found& b) {
   std::size_t same = 0;
   for (std::size_t i = 0; i < a.triangle.size(); ++i) same += a.triangle[i] == b.triangle[i];

@@ -1,5 +1,4 @@
-// Engines and variants of arithmetic as subjects, each through the Intersector used by the
-// renderer.
+// Engines and variants of arithmetic as subjects, each through the renderer's Intersector.
 #include <deque>
 
 #include "host/bvh/bvh.h"

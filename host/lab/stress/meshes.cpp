@@ -92,8 +92,7 @@ class Triangulation {
     return nullptr;
   }
 
-  /// Flips the edge between the face of `p` and its neighbour if the neighbour's far point is
-  /// above.
+  /// Flips the edge between the face of `p` and its neighbour if the neighbour's point is above.
   void legalize(int from, int to, int p) {
     Face* const mine = face_with(from, to);
     Face* const other = face_with(to, from);

@@ -8,8 +8,7 @@
 
 namespace raygate::lab {
 
-/// Position of a mesh that is made around the origin at size 1. Maps p to p * scale + shift,
-/// rounded once.
+/// Position of a mesh made around the origin at size 1: p becomes p * scale + shift, rounded once.
 struct Placement {
   glm::dvec3 scale{1.0}, shift{0.0};
 };
@@ -23,8 +22,7 @@ using MeshPointer = std::shared_ptr<const Mesh>;
 /// rounding. Some triangles are slivers.
 [[nodiscard]] MeshPointer random_sphere(int points, Random& random,
                                         const Placement& placement = {});
-/// Returns a prism along z between x = 0 and 1 whose side faces meet in the z axis at an angle of
-/// about `angle` rad.
+/// Returns a prism along z between x = 0 and 1 with an angle of about `angle` rad at the z axis.
 [[nodiscard]] MeshPointer wedge(double angle, const Placement& placement = {});
 
 }  // namespace raygate::lab

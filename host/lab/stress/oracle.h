@@ -1,5 +1,4 @@
-// Oracle: finds the exact results of a shot by brute force in integers. Shares no code with the
-// renderer.
+// Oracle: finds exact results by brute force in integers. Shares no code with the renderer.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +19,7 @@ struct Verdict {
 
 struct Truth {
   std::vector<Verdict> verdicts;  ///< by ray, then by triangle
-  /// For each ray the triangles that it hits, nearest first, exactly; equally distant ones by
-  /// index.
+  /// For each ray the triangles that it hits, nearest first, exactly; then by index.
   std::vector<std::vector<std::uint32_t>> orders;
   /// There is another hit at equal distance, or the tie-break was used.
   std::vector<bool> nearest_tied;

@@ -27,8 +27,7 @@ struct StressOptions {
 /// Summary of a run.
 struct Verdicts {
   bool judged = false;  ///< whether there were exact subjects
-  /// Whether every exact subject is spotless (see Tally) in a positive number of tests, and no
-  /// claim is broken.
+  /// Whether all exact subjects are spotless (see Tally), with tests, and no claim is broken.
   bool passed = false;
   std::string summary;  ///< one line: "stress: PASSED: 20 suites, ..."
 };

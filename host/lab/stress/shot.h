@@ -40,7 +40,6 @@ struct Case {
 /// Parses such a line. Throws std::invalid_argument if it is invalid.
 [[nodiscard]] Case case_from(const std::string& line);
 
-/// Returns a case as a shot.
 [[nodiscard]] Shot shot_of(const Case& failure);
 
 }  // namespace raygate::lab

@@ -30,8 +30,7 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-/// Prints the failures of exact subjects or, with `all`, of all subjects, as lines of
-/// test/regressions.txt.
+/// Prints the failures of exact subjects, or of all, as lines of test/regressions.txt.
 void print_failures(std::span<const Row> rows, const std::vector<SubjectKind>& subjects, bool all) {
   for (const SubjectKind& kind : subjects) {
     if (!kind.exact && !all) continue;

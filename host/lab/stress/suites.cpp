@@ -152,8 +152,7 @@ Shot near_tie_shot(Random& random) {
   return shot;
 }
 
-/// Makes rays (almost) parallel to axes, from points in the planes of faces, which boxes must not
-/// cull.
+/// Makes rays (almost) parallel to axes, from points in planes of faces, which must not be culled.
 Shot axis_shot(Random& random, const MeshPointer& mesh) {
   Shot shot;
   shot.mesh = mesh;

@@ -29,13 +29,11 @@ struct Tally {
   std::uint64_t orders = 0;              ///< rays for which the subject returned all hits in order
   std::uint64_t wrong_order = 0;         ///< rays among `orders` with a wrong order or wrong hits
   std::uint64_t hits = 0, doubts = 0;
-  /// Errors of correct hits, in ulps of the exact value: t, and the worst coordinate of P; and the
-  /// relative error of t.
+  /// Errors of correct hits: of t, and the worst coordinate of P, in ulps; of t, relative.
   Errors t_ulp, point_ulp, t_relative;
   /// Errors of the hits that the host delivers.
   Errors delivered_t_ulp, delivered_point_ulp;
-  /// t_ulp of sure hits by the angle between ray and plane: decade k has sines from 10^-k-1 to
-  /// 10^-k.
+  /// t_ulp of sure hits by angle: decade k has sines of ray and plane from 10^-k-1 to 10^-k.
   static constexpr int kDecades = 8;
   std::array<Errors, kDecades> t_ulp_by_angle;
   /// Largest errors of sure hits, relative to the bounds of errors.h for binary32.
@@ -44,8 +42,7 @@ struct Tally {
   double point_of_said = 0.0;
   std::vector<Case> failures;  ///< the first few; ties only for exact subjects
 
-  /// Returns the number of wrong decisions: hit or miss, nearest, order; ties only for exact
-  /// subjects.
+  /// Returns the number of wrong decisions on hits, nearest and order; ties if `exact`.
   [[nodiscard]] std::uint64_t wrong_decisions(bool exact) const {
     return wrong + wrong_nearest + (exact ? wrong_ties + wrong_tied_nearest + wrong_order : 0);
   }

@@ -1,5 +1,4 @@
-// `./trace` and the Python module as a subject: all hits of each ray, from the tables that they
-// return.
+// `./trace` and the Python module as a subject: all hits of each ray, from their tables.
 #include <cmath>
 #include <cstring>
 

@@ -28,8 +28,7 @@ constexpr std::string_view kRead[] = {
     "KHR_materials_transmission", "KHR_materials_unlit",
     "KHR_mesh_quantization",      "KHR_texture_transform"};
 
-/// Extensions that are not read but that a file may require: without them, surfaces are only
-/// plainer.
+/// Extensions that are not read but may be required: without them, surfaces are only plainer.
 constexpr std::string_view kDispensable[] = {"KHR_materials_sheen", "KHR_materials_variants",
                                              "KHR_materials_volume"};
 

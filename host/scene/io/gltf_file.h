@@ -78,8 +78,7 @@ class GltfFile {
   /// Returns the bytes of a buffer view. Throws InputError, which names `place`, if it has none or
   /// is not within its buffer.
   [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;
-  /// Locates elements of this type and count. Throws InputError if they are not within their buffer
-  /// view.
+  /// Locates elements of this type and count. Throws InputError if they exceed their buffer view.
   void find_stored(int buffer_view, std::size_t offset, const std::string& number,
                    Elements& elements) const;
   [[nodiscard]] std::vector<double> numbers(int accessor, int width, const char* what) const;

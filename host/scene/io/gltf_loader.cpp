@@ -229,8 +229,7 @@ class GltfReader {
     return at->second;
   }
 
-  /// Includes an instance in the bounds for recentring, and counts its vertices if it will be
-  /// flattened.
+  /// Includes an instance in the bounds for recentring. Counts its vertices if it is flattened.
   void expand_extent(const MeshInstance& instance) {
     const auto& [part, own_box, ignored] = shared(instance.shape);
     if (is_empty(part)) return;

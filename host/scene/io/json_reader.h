@@ -63,8 +63,7 @@ class JsonValue {
   [[nodiscard]] glm::dvec3 vector() const;
   /// Returns the unit vector in the direction of an array [x, y, z] that is not zero.
   [[nodiscard]] glm::dvec3 direction() const;
-  /// Returns the colour of an array [red, green, blue], or of one number for all three; none is
-  /// negative.
+  /// Returns the colour of an array [red, green, blue] or of one number, none negative.
   [[nodiscard]] glm::vec3 light() const;
 
  private:

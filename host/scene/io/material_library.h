@@ -47,8 +47,7 @@ class MaterialLibrary {
 
 /// Loads the texture files of all materials that triangles use, once for each kind of content, into
 /// Scene::textures, and sets the materials' indices. Combines textures of roughness and metalness.
-/// Drops opacity maps that are opaque everywhere. Warns about a file that is missing or cannot be
-/// read.
+/// Drops fully opaque opacity maps. Warns about a file that is missing or cannot be read.
 void load_textures(Scene& scene);
 
 }  // namespace raygate

@@ -54,8 +54,7 @@ class ObjReader final : public StatementReader {
   }
 
  private:
-  // Lines and vertices are counted first, so that each chunk knows its line numbers and can resolve
-  // negative indices.
+  // Counts lines and vertices first, for the line numbers and negative indices of chunks.
   void read_statements(const LoadOptions& options) {
     const std::size_t most = options.threads > 1 ? std::size_t{4} * options.threads : 1;
     std::vector<ObjChunk> chunks;

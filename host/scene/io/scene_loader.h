@@ -39,8 +39,7 @@ struct LoadOptions {
 /// or damaged, a bad normal or texture coordinate, and all that is left out.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Returns the existing file with this stem and the first of these endings; "STEM.obj" if there is
-/// none.
+/// Returns the existing file with this stem and the first of these endings, or else "STEM.obj".
 [[nodiscard]] std::filesystem::path find_scene_file(const std::filesystem::path& stem);
 
 /// Loads a Wavefront OBJ file, with its MTL files (relative to its folder) and their textures.

@@ -12,8 +12,7 @@ namespace raygate {
 /// and returns it. Returns an empty word if `text` is empty.
 [[nodiscard]] std::string_view take_token(std::string_view& text);
 
-/// Takes a token as take_token() does, but treats a word that begins with # and all text after it
-/// as a comment.
+/// Takes a token, but treats a word that begins with # and all text after it as a comment.
 [[nodiscard]] std::string_view take_token_before_comment(std::string_view& text);
 
 /// Returns the word in quotes for a message: its first 40 characters, with unprintable ones as
