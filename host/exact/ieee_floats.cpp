@@ -18,7 +18,7 @@ bool is_fused(T h) {
   return a * a - whole != T(0);
 }
 
-/// Returns whether half the smallest normal number is kept.
+/// Returns whether subnormals are kept, by computing half the smallest normal number.
 template <class T>
 bool keeps_subnormals() {
   volatile T smallest = std::numeric_limits<T>::min();

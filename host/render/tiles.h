@@ -83,7 +83,7 @@ class TileQueue {
     std::iota(waiting_.begin(), waiting_.end(), 0);
   }
 
-  /// Begins up to `most` passes of a tile. Returns nullopt if all tiles are complete or in work.
+  /// Begins up to `most` passes of a tile. Returns nullopt if all are complete or being rendered.
   [[nodiscard]] std::optional<Step> begin(int rank = 0, int most = 1) {
     if (waiting_.empty()) return std::nullopt;
     const auto may_stay = [&](int tile) {

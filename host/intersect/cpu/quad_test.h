@@ -205,7 +205,7 @@ RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, L
   verdict.doubt = open & ~inside;
 }
 
-/// Does both halves.
+/// Tests 1 to 4 triangles: find_sides(), then judge_sides().
 RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::uint32_t count,
                               QuadVerdict& verdict) {
   QuadSides sides;

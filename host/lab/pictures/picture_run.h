@@ -22,7 +22,7 @@ struct PictureRun {
   std::string engine = "cpu";
   int lanes = 1;                       ///< of the pipelined rtl engine: 1, 2, 4 or 8
   int threads = 1;                     ///< 1 to 256
-  std::string integrator = "primary";  ///< or "whitted", "path"
+  std::string integrator = "primary";  ///< "primary", "whitted" or "path"
   int samples = 1;                     ///< per pixel, 1 to 2^20
   int depth = 4;                       ///< consecutive reflections and refractions, 0 to 1000
   std::uint64_t seed = 0;

@@ -47,7 +47,7 @@ struct InstanceSetting {
 /// A default for a command-line option.
 struct OptionSetting {
   std::string name;   ///< "size": --size
-  std::string value;  ///< as it would be typed
+  std::string value;  ///< as typed on the command line
   std::size_t line = 0;
 };
 
