@@ -134,9 +134,9 @@ struct HitBlock {
   std::vector<SurfaceHit> places;                    ///< face is null: no hit
   std::vector<const MaterialParameters*> materials;  ///< of the hits
   std::vector<glm::vec3> radiance;                   ///< along the ray, times the path's throughput
-  std::vector<LightSample> light_samples;            ///< `scattered_per_hit` for each hit
-  std::vector<ScatteredRay> scattered;         ///< number of used elements of `scattered`, by hit
-  std::vector<std::uint8_t> scattered_counts;  ///< this many are used
+  std::vector<LightSample> light_samples;            ///< `light_samples_per_hit` for each hit
+  std::vector<ScatteredRay> scattered;               ///< `scattered_per_hit` for each hit
+  std::vector<std::uint8_t> scattered_counts;  ///< number of used elements of `scattered`, by hit
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
   /// By position; null if the hit is not the first surface of its path. Empty if all are null.
   std::vector<FirstSurface*> first_surfaces;
