@@ -32,7 +32,7 @@ struct TextureMapping {
 
 /// A texture of a material, and its mapping.
 struct MaterialMap {
-  std::string file;  ///< path, joined to the folder of the MTL file; empty: none, or embedded
+  std::string file;  ///< path, joined to the naming file's folder; empty: none, or embedded
   TextureMapping mapping;
   std::uint32_t texture = kNoIndex;  ///< index into Scene::textures
 };
@@ -48,7 +48,7 @@ struct MetallicRoughness {
   /// Grey metallic texture, if `map.file` has roughness alone; combined on loading.
   std::string metallic_file;
   float specular = 1.0f;  ///< in [0, 1]: strength of dielectric reflection (KHR_materials_specular)
-  /// Dielectric reflectance at normal incidence (KHR_materials_specular).
+  /// colour of dielectric reflection at normal incidence (same extension)
   glm::vec3 specular_color{1.0f};
   float coat = 0.0f;  ///< in [0, 1]: weight of a clear top layer (KHR_materials_clearcoat)
   float coat_roughness = 0.0f;       ///< in [0, 1]

@@ -23,7 +23,7 @@ struct CoreRay {
   std::uint32_t skip_id = kNoTriangle;    ///< index of a triangle whose hits do not count
   std::uint32_t source_id = kNoTriangle;  ///< index of the triangle that the ray leaves
   std::uint32_t tag = 0;                  ///< returned with all results of the ray
-  bool any_hit = false;                   ///< the search may end at the first sure hit
+  bool any_hit = false;                   ///< the search ends at the first sure hit
   bool no_cull = false;                   ///< the ray enters all boxes
 };
 
