@@ -16,8 +16,10 @@ SCENES = {"cornell": 128, "cornell_spheres": 128, "paper_room": 128, "still_life
 VARIANTS = ("scalar_rgb", "llvm_ad_rgb")
 # The best of Mitsuba's samplers, which are also timed with other numbers of samples.
 BEST = ("multijitter", "orthogonal")
-ERRORS = (16, 8, 4, 2)  # of --error, for adaptive sampling
-COUNT = 32  # samples per pixel in the tables, or the next number that a sampler supports
+NO_LIGHT_PATHS = "--caustics off"  # as Mitsuba's `path` has none
+ERRORS = (16, 8, 4, 2)  # of --error, which decides how many samples each pixel gets
+SEEDS = 10  # of each picture
+COUNT = 32  # samples per pixel of the tables; samplers that cannot have it take the next they can
 REFERENCE_SEED = 1000
 
 
@@ -41,6 +43,11 @@ def shown(light: numpy.ndarray) -> numpy.ndarray:
 def display_rmse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
     """Returns the RMSE of displayed images in steps of an 8-bit display."""
     return 255.0 * mse(shown(picture), shown(reference)) ** 0.5
+
+
+def standard_error(values: list[float]) -> float:
+    """Of the mean of several seeds; 0 for one."""
+    return statistics.stdev(values) / len(values) ** 0.5 if len(values) > 1 else 0.0
 
 
 def reference(renderer: object, sampler: str, samples: int, size: dict) -> tuple[numpy.ndarray, float]:
@@ -96,7 +103,7 @@ class Measurement:
         raygate = Raygate(self.folder, threads, self.program)
         found = [(raygate, "Owen-scrambled Sobol", count) for count in counts]
         if one_thread:
-            found += [(raygate, f"--error {error}", COUNT) for error in ERRORS]
+            found += [(raygate, f"--error {error}", COUNT) for error in ERRORS] + [(raygate, NO_LIGHT_PATHS, COUNT)]
         for variant in VARIANTS:
             mitsuba = Mitsuba(self.folder, threads, variant)
             found += [(mitsuba, sampler, count) for count in counts for sampler in convert.SAMPLERS
@@ -125,15 +132,17 @@ class Measurement:
         key = "processor_seconds" if threads == 1 else "seconds"
         seconds = statistics.median(run[key] for run in runs)
         error = statistics.fmean(run["mse"] for run in runs)
-        shown = statistics.fmean(run["display_rmse"] ** 2 for run in runs) ** 0.5
+        shown = statistics.fmean(run["display_rmse"] ** 2 for run in runs)
         return {"table": "peers", "scene": self.name, **self.size, "threads": threads, "renderer": renderer,
                 "sampler": sampler, "samples": runs[0]["samples"], "seconds": [run["seconds"] for run in runs],
                 "processor_seconds": [run["processor_seconds"] for run in runs], "median_seconds": seconds,
-                "mse": error, "display_rmse": shown, "time_mse": seconds * error, "rays": runs[0].get("rays")}
+                "mse": error, "mse_error": standard_error([run["mse"] for run in runs]), "display_rmse": shown ** 0.5,
+                "display_mse": shown, "display_mse_error": standard_error([run["display_rmse"] ** 2 for run in runs]),
+                "time_mse": seconds * error}
 
 
 def measure(name: str, quick: bool, program: pathlib.Path, threads: set[int]) -> list[dict]:
     """Returns the rows of one scene."""
     mine = Measurement(name, quick, program)
     return [mine.references_row(128 if quick else 512),
-            *(row for count in sorted(threads) for row in mine.rows(count, 2 if quick else 3))]
+            *(row for count in sorted(threads) for row in mine.rows(count, 2 if quick else SEEDS))]

@@ -33,17 +33,17 @@ class Raygate:
                          "--threads", str(threads)]
 
     def render(self, sampler: str, samples: int, seed: int, width: int, height: int) -> tuple[dict, numpy.ndarray]:
-        """Returns the timing and the image. There is one sampler; `--error X` samples adaptively."""
-        adaptive = sampler.split() if sampler.startswith("--error") else []
-        samples = self.most_samples if adaptive else samples
+        """What it took, and the picture. `sampler`: options in place of the one sampler."""
+        options = sampler.split() if sampler.startswith("--") else []
+        samples = self.most_samples if "--error" in options else samples
         with tempfile.TemporaryDirectory() as name:
             picture = pathlib.Path(name) / "picture.exr"
-            found = render(self._command, *adaptive, "--size", f"{width}x{height}", "--spp", str(samples), "--seed", str(seed),
+            found = render(self._command, *options, "--size", f"{width}x{height}", "--spp", str(samples), "--seed", str(seed),
                            picture=picture)
             pixels = light_of(mitsuba.Bitmap(str(picture)))
         seconds = found["seconds"]
         return {"seconds": seconds["render"], "processor_seconds": seconds.get("processor", seconds["render"]),
-                "samples": samples, "rays": found["rays"]}, pixels
+                "samples": samples}, pixels
 
     def close(self) -> None:
         """Does nothing, as no process is left running."""

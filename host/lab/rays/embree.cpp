@@ -26,6 +26,19 @@ class Embree3Queries {
   void occluded(const int* valid, RTCScene scene, RTCRay8* rays) {
     rtcOccluded8(valid, scene, &context_, rays);
   }
+  void intersect(const int* valid, RTCScene scene, RTCRayHit16* query) {
+    rtcIntersect16(valid, scene, &context_, query);
+  }
+  void occluded(const int* valid, RTCScene scene, RTCRay16* rays) {
+    rtcOccluded16(valid, scene, &context_, rays);
+  }
+  void trace_stream(RTCScene scene, RTCRayHit* rays, unsigned count, bool any_hit) {
+    if (any_hit) {
+      rtcOccluded1M(scene, &context_, &rays->ray, count, sizeof *rays);
+    } else {
+      rtcIntersect1M(scene, &context_, rays, count, sizeof *rays);
+    }
+  }
 
  private:
   RTCIntersectContext context_{};
@@ -47,12 +60,39 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
   arguments->valid[0] = 0;  // continue the traversal
 }
 
-/// Returns whether Debian's Embree accepts the ray. It aborts for rays that are not finite or
-/// beyond its range of coordinates, and skips such triangles.
-bool accepts(const glm::vec3& origin, const glm::vec3& direction) {
+/// Whether a ray and the triangles are within Embree's range (FLT_LARGE in its sources): it aborts
+/// for rays beyond it and leaves out such triangles.
+bool accepts(const Shot& shot, const glm::vec3& direction) {
   constexpr float kLargest = 1.8e18f;
-  const glm::vec3 size = glm::abs(origin);
-  return is_usable(direction) && std::max({size.x, size.y, size.z}) < kLargest;
+  const auto is_small = [](const glm::vec3& v) {
+    const glm::vec3 size = glm::abs(v);
+    return std::max({size.x, size.y, size.z}) < kLargest;
+  };
+  return is_usable(direction) && is_small(shot.origin) &&
+         std::ranges::all_of(shot.mesh->triangles, [&](const Corners& corners) {
+           return std::ranges::all_of(corners, is_small);
+         });
+}
+
+/// Counts the hits of one ray and turns them down.
+struct Counter {
+  RTCIntersectContext context;  // first: Embree hands back a pointer to it
+  std::uint32_t hits;
+};
+
+void count_hit(const RTCFilterFunctionNArguments* arguments) {
+  ++reinterpret_cast<Counter*>(arguments->context)->hits;
+  arguments->valid[0] = 0;
+}
+
+RTCRayHit query_of(const glm::vec3& origin, const glm::vec3& direction) {
+  RTCRayHit query{};
+  query.ray.org_x = origin.x, query.ray.org_y = origin.y, query.ray.org_z = origin.z;
+  query.ray.dir_x = direction.x, query.ray.dir_y = direction.y, query.ray.dir_z = direction.z;
+  query.ray.tfar = std::numeric_limits<float>::infinity();
+  query.ray.mask = ~0u;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  return query;
 }
 
 /// Collects every hit of a ray in a filter function that rejects it. Tests the traversal, too.
@@ -65,6 +105,7 @@ class EmbreeSubject : public Subject {
     std::size_t tests = 0;
     for (const Shot& shot : shots) tests += shot.tests();
     answers.tests.assign(tests, {});
+    answers.refused.clear();
     Answer* next = answers.tests.data();
     for (const Shot& shot : shots) {
       if (shot.mesh != mesh_) {
@@ -72,7 +113,9 @@ class EmbreeSubject : public Subject {
         scene_ = embree_scene({}, device_, scene_of(*mesh_), flags_);
       }
       for (const glm::vec3& direction : shot.directions) {
-        if (accepts(shot.origin, direction)) shoot(shot.origin, direction, next);
+        const bool is_accepted = accepts(shot, direction);
+        answers.refused.push_back(!is_accepted);
+        if (is_accepted) shoot(shot.origin, direction, next);
         next += shot.mesh->triangles.size();
       }
     }
@@ -84,12 +127,7 @@ class EmbreeSubject : public Subject {
     Collector collector{{}, answers, &direction};
     rtcInitIntersectContext(&collector.context);
     collector.context.filter = collect;
-    RTCRayHit query{};
-    query.ray.org_x = origin.x, query.ray.org_y = origin.y, query.ray.org_z = origin.z;
-    query.ray.dir_x = direction.x, query.ray.dir_y = direction.y, query.ray.dir_z = direction.z;
-    query.ray.tfar = std::numeric_limits<float>::infinity();
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCRayHit query = query_of(origin, direction);
     rtcIntersect1(scene_.get(), &collector.context, &query);
   }
 
@@ -109,6 +147,34 @@ SubjectKind kind(const char* name, const char* what, RTCSceneFlags flags) {
 
 std::vector<std::unique_ptr<Peer>> make_embrees(const Scene& scene) {
   return make_embree_peers("Embree", {}, Embree3Queries(), scene);
+}
+
+std::vector<std::pair<std::string, std::vector<std::uint32_t>>> embree_hit_counts(
+    const Scene& scene, std::span<const Ray> rays) {
+  std::vector<std::pair<std::string, std::vector<std::uint32_t>>> found;
+  for (const auto& [name, mode] : {std::pair{"Embree", RTC_SCENE_FLAG_NONE},
+                                   std::pair{"Embree robust", RTC_SCENE_FLAG_ROBUST}}) {
+    const auto loaded =
+        embree_scene({}, embree_device({}), scene,
+                     static_cast<RTCSceneFlags>(mode | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    std::vector<std::uint32_t>& counts =
+        found.emplace_back(name, std::vector<std::uint32_t>()).second;
+    for (const Ray& ray : rays) {
+      Counter counter{{}, 0};
+      rtcInitIntersectContext(&counter.context);
+      RTCRayHit nearest = query_of(ray.origin, ray.direction);
+      rtcIntersect1(loaded.get(), &counter.context, &nearest);
+      if (nearest.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        counts.push_back(0);
+        continue;
+      }
+      counter.context.filter = count_hit;
+      RTCRayHit query = query_of(ray.origin, ray.direction);
+      rtcIntersect1(loaded.get(), &counter.context, &query);
+      counts.push_back(std::max(counter.hits, 1u));
+    }
+  }
+  return found;
 }
 
 std::vector<SubjectKind> embree_subjects() {

@@ -41,6 +41,8 @@ class Embree4Queries {
     library.load(occluded1_, "rtcOccluded1");
     library.load(intersect8_, "rtcIntersect8");
     library.load(occluded8_, "rtcOccluded8");
+    library.load(intersect16_, "rtcIntersect16");
+    library.load(occluded16_, "rtcOccluded16");
   }
   void set_coherent(bool coherent) { arguments_.flags = coherent ? 1u << 16 : 0; }
   void intersect(RTCScene scene, RTCRayHit* query) { intersect1_(scene, query, &arguments_); }
@@ -50,6 +52,12 @@ class Embree4Queries {
   }
   void occluded(const int* valid, RTCScene scene, RTCRay8* rays) {
     occluded8_(valid, scene, rays, &arguments_);
+  }
+  void intersect(const int* valid, RTCScene scene, RTCRayHit16* query) {
+    intersect16_(valid, scene, query, &arguments_);
+  }
+  void occluded(const int* valid, RTCScene scene, RTCRay16* rays) {
+    occluded16_(valid, scene, rays, &arguments_);
   }
 
  private:
@@ -65,6 +73,8 @@ class Embree4Queries {
   void (*occluded1_)(RTCScene, RTCRay*, Arguments*) = nullptr;
   void (*intersect8_)(const int*, RTCScene, RTCRayHit8*, Arguments*) = nullptr;
   void (*occluded8_)(const int*, RTCScene, RTCRay8*, Arguments*) = nullptr;
+  void (*intersect16_)(const int*, RTCScene, RTCRayHit16*, Arguments*) = nullptr;
+  void (*occluded16_)(const int*, RTCScene, RTCRay16*, Arguments*) = nullptr;
 };
 
 }  // namespace
@@ -77,6 +87,7 @@ std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene& scene, const std::
   library.load(embree.new_scene, "rtcNewScene");
   library.load(embree.release_scene, "rtcReleaseScene");
   library.load(embree.set_scene_flags, "rtcSetSceneFlags");
+  library.load(embree.set_quality, "rtcSetSceneBuildQuality");
   library.load(embree.commit_scene, "rtcCommitScene");
   library.load(embree.new_geometry, "rtcNewGeometry");
   library.load(embree.release_geometry, "rtcReleaseGeometry");

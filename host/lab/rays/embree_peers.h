@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct EmbreeFunctions {
   decltype(&rtcNewScene) new_scene = rtcNewScene;
   decltype(&rtcReleaseScene) release_scene = rtcReleaseScene;
   decltype(&rtcSetSceneFlags) set_scene_flags = rtcSetSceneFlags;
+  decltype(&rtcSetSceneBuildQuality) set_quality = rtcSetSceneBuildQuality;
   decltype(&rtcCommitScene) commit_scene = rtcCommitScene;
   decltype(&rtcNewGeometry) new_geometry = rtcNewGeometry;
   decltype(&rtcReleaseGeometry) release_geometry = rtcReleaseGeometry;
@@ -43,6 +45,7 @@ inline std::shared_ptr<RTCSceneTy> embree_scene(const EmbreeFunctions& embree,
       embree.new_scene(device.get()),
       [device, release = embree.release_scene](RTCScene done) { release(done); });
   embree.set_scene_flags(loaded.get(), flags);
+  embree.set_quality(loaded.get(), RTC_BUILD_QUALITY_HIGH);
   const RTCGeometry geometry = embree.new_geometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* positions = static_cast<glm::vec3*>(
       embree.set_new_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -61,13 +64,27 @@ inline std::shared_ptr<RTCSceneTy> embree_scene(const EmbreeFunctions& embree,
   return loaded;
 }
 
-/// A query with room for the additional word per ray of Embree 4's hits.
+/// The rays and hits of a packet.
+template <std::size_t kWidth>
+struct Packet;
+template <>
+struct Packet<8> {
+  using Rays = RTCRay8;
+  using Hits = RTCRayHit8;
+};
+template <>
+struct Packet<16> {
+  using Rays = RTCRay16;
+  using Hits = RTCRayHit16;
+};
+
+/// Embree 4's hits end with one more word a ray.
 template <class RayHit, std::size_t kWords>
 struct RoomForHit : RayHit {
   std::uint32_t more[kWords];
 };
 
-/// `Queries` calls Embree: set_coherent(), intersect() and occluded() for one ray or eight.
+/// `Queries` asks Embree: set_coherent(), intersect() and occluded() for one ray, 8 or 16.
 template <class Queries>
 class EmbreePeer : public Peer {
  public:
@@ -89,7 +106,16 @@ class EmbreePeer : public Peer {
   std::shared_ptr<RTCSceneTy> scene_;
 };
 
-/// Traces rays one by one, by rtcIntersect1 and rtcOccluded1.
+inline RTCRay embree_ray(const Ray& ray, float limit) {
+  RTCRay query{};
+  query.org_x = ray.origin.x, query.org_y = ray.origin.y, query.org_z = ray.origin.z;
+  query.dir_x = ray.direction.x, query.dir_y = ray.direction.y, query.dir_z = ray.direction.z;
+  query.tfar = limit;
+  query.mask = ~0u;
+  return query;
+}
+
+/// rtcIntersect1 / rtcOccluded1.
 template <class Queries>
 class SingleRays : public EmbreePeer<Queries> {
  public:
@@ -97,14 +123,9 @@ class SingleRays : public EmbreePeer<Queries> {
 
   void prepare(const RaySet& set) override {
     this->any_hit_ = set.any_hit;
-    rays_.assign(set.rays.size(), {});
-    for (std::size_t i = 0; i < rays_.size(); ++i) {
-      const auto& [origin, direction] = set.rays[i];
-      RTCRay& ray = rays_[i];
-      ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
-      ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-      ray.tfar = this->limit(set, i);
-      ray.mask = ~0u;
+    rays_.clear();
+    for (std::size_t i = 0; i < set.rays.size(); ++i) {
+      rays_.push_back(embree_ray(set.rays[i], this->limit(set, i)));
     }
   }
 
@@ -129,9 +150,9 @@ class SingleRays : public EmbreePeer<Queries> {
   std::vector<RTCRay> rays_;
 };
 
-/// Traces eight coherent rays at a time, Embree's fastest mode for rays of an image.
-template <class Queries>
-class EightRays : public EmbreePeer<Queries> {
+/// rtcIntersect8, rtcIntersect16 and the like, with the coherent flag for rays of one origin.
+template <std::size_t kWidth, class Queries>
+class RayPackets : public EmbreePeer<Queries> {
  public:
   using EmbreePeer<Queries>::EmbreePeer;
 
@@ -143,7 +164,7 @@ class EightRays : public EmbreePeer<Queries> {
     for (std::size_t i = 0; i < rays_.size() * kWidth; ++i) {
       const std::size_t from = std::min(i, count_ - 1), lane = i % kWidth;
       const auto& [origin, direction] = set.rays[from];
-      RTCRay8& ray = rays_[i / kWidth];
+      auto& ray = rays_[i / kWidth];
       ray.org_x[lane] = origin.x, ray.org_y[lane] = origin.y, ray.org_z[lane] = origin.z;
       ray.dir_x[lane] = direction.x, ray.dir_y[lane] = direction.y, ray.dir_z[lane] = direction.z;
       ray.tfar[lane] = this->limit(set, from);
@@ -152,18 +173,18 @@ class EightRays : public EmbreePeer<Queries> {
   }
 
   void run(Found& found) override {
-    alignas(32) int valid[kWidth];
+    alignas(64) int valid[kWidth];
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       const std::size_t first = i * kWidth, lanes = std::min(kWidth, count_ - first);
       for (std::size_t lane = 0; lane < kWidth; ++lane) valid[lane] = lane < lanes ? -1 : 0;
       if (this->any_hit_) {
-        RTCRay8 rays = rays_[i];
+        auto rays = rays_[i];
         this->queries_.occluded(valid, this->scene(), &rays);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
           found.triangle[first + lane] = rays.tfar[lane] < 0.0f ? Found::kSome : Found::kNone;
         }
       } else {
-        RoomForHit<RTCRayHit8, kWidth> query;
+        RoomForHit<typename Packet<kWidth>::Hits, kWidth> query;
         query.ray = rays_[i];
         std::memset(query.hit.geomID, 0xFF, sizeof query.hit.geomID);
         std::memset(query.hit.primID, 0xFF, sizeof query.hit.primID);
@@ -176,26 +197,74 @@ class EightRays : public EmbreePeer<Queries> {
   }
 
  private:
-  static constexpr std::size_t kWidth = 8;
-
-  std::vector<RTCRay8> rays_;
+  std::vector<typename Packet<kWidth>::Rays> rays_;
   std::size_t count_ = 0;
 };
 
-/// Returns peers for single rays and for eight at a time, each in default and robust mode.
+/// Streams of Embree 3 (rtcIntersect1M), likewise.
+template <class Queries>
+class RayStreams : public EmbreePeer<Queries> {
+ public:
+  using EmbreePeer<Queries>::EmbreePeer;
+
+  void prepare(const RaySet& set) override {
+    this->any_hit_ = set.any_hit;
+    this->queries_.set_coherent(set.common_origin);
+    queries_of_rays_.assign(set.rays.size(), {});
+    for (std::size_t i = 0; i < queries_of_rays_.size(); ++i) {
+      RTCRayHit& query = queries_of_rays_[i];
+      query.ray = embree_ray(set.rays[i], this->limit(set, i));
+      query.hit.geomID = query.hit.primID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+
+  void run(Found& found) override {
+    RTCRayHit stream[kStream];
+    for (std::size_t first = 0; first < queries_of_rays_.size(); first += kStream) {
+      const std::size_t count = std::min(kStream, queries_of_rays_.size() - first);
+      std::copy_n(&queries_of_rays_[first], count, stream);
+      this->queries_.trace_stream(this->scene(), stream, static_cast<unsigned>(count),
+                                  this->any_hit_);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (this->any_hit_) {
+          found.triangle[first + i] = stream[i].ray.tfar < 0.0f ? Found::kSome : Found::kNone;
+        } else {
+          found.triangle[first + i] = stream[i].hit.primID;
+          found.t[first + i] = stream[i].ray.tfar;
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kStream = 1024;  // rays of a stream, which fit into the first caches
+
+  std::vector<RTCRayHit> queries_of_rays_;
+};
+
+/// Single rays, packets and, where `Queries` has them, streams, each in its default and its robust
+/// mode.
 template <class Queries>
 std::vector<std::unique_ptr<Peer>> make_embree_peers(const std::string& name,
                                                      const EmbreeFunctions& embree,
                                                      const Queries& queries, const Scene& scene) {
   static_assert(Found::kNone == RTC_INVALID_GEOMETRY_ID);
   const auto device = embree_device(embree);
-  const auto usual = embree_scene(embree, device, scene, RTC_SCENE_FLAG_NONE);
-  const auto robust = embree_scene(embree, device, scene, RTC_SCENE_FLAG_ROBUST);
   std::vector<std::unique_ptr<Peer>> peers;
-  peers.push_back(std::make_unique<SingleRays<Queries>>(name + " 1", queries, usual));
-  peers.push_back(std::make_unique<SingleRays<Queries>>(name + " 1 robust", queries, robust));
-  peers.push_back(std::make_unique<EightRays<Queries>>(name + " 8", queries, usual));
-  peers.push_back(std::make_unique<EightRays<Queries>>(name + " 8 robust", queries, robust));
+  for (const bool robust : {false, true}) {
+    const auto loaded =
+        embree_scene(embree, device, scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    const auto add = [&]<class Kind>(const char* mode, std::type_identity<Kind>) {
+      peers.push_back(
+          std::make_unique<Kind>(name + " " + mode + (robust ? " robust" : ""), queries, loaded));
+    };
+    add("1", std::type_identity<SingleRays<Queries>>());
+    add("8", std::type_identity<RayPackets<8, Queries>>());
+    add("16", std::type_identity<RayPackets<16, Queries>>());
+    if constexpr (requires(Queries q, RTCRayHit * rays) { q.trace_stream({}, rays, 1u, true); }) {
+      add("stream", std::type_identity<RayStreams<Queries>>());
+    }
+  }
   return peers;
 }
 

@@ -10,5 +10,9 @@ std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene&, const std::string
   throw InputError(file + ": this lab was built without Embree 3's headers (libembree-dev)");
 }
 std::vector<SubjectKind> embree_subjects() { return {}; }
+std::vector<std::pair<std::string, std::vector<std::uint32_t>>> embree_hit_counts(
+    const Scene&, std::span<const Ray>) {
+  return {};
+}
 
 }  // namespace raygate::lab

@@ -16,7 +16,7 @@ namespace {
 
 struct RaysOptions {
   std::vector<std::string> scenes;
-  int size = 1024, repeats = 7;
+  int size = 1024, repeats = 15;
   bool alone = false;
   std::string only;     // name of one set of rays; empty: all
   std::string embree4;  // path of its library; empty: none

@@ -5,12 +5,7 @@
 #include "host/lab/stress/subjects.h"
 
 namespace raygate::lab {
-namespace {
 
-using Test = Answer (*)(const glm::vec3& origin, const glm::vec3& direction, const Corners& t);
-
-/// Computes the test of Möller and Trumbore, "Fast, minimum storage ray/triangle intersection",
-/// 1997, for both sides, without an epsilon.
 Answer moeller_trumbore(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
   Answer answer;
   const glm::vec3 ab = t[1] - t[0], ac = t[2] - t[0], from_a = origin - t[0];
@@ -27,9 +22,6 @@ Answer moeller_trumbore(const glm::vec3& origin, const glm::vec3& direction, con
   return answer;
 }
 
-/// Computes the test of Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013:
-/// shears the triangle so that the ray runs along an axis; recomputes zero edge functions in
-/// double.
 Answer woop(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
   Answer answer;
   const glm::vec3 size = glm::abs(direction);
@@ -70,9 +62,11 @@ Answer woop(const glm::vec3& origin, const glm::vec3& direction, const Corners& 
   return answer;
 }
 
+namespace {
+
 class FloatSubject : public Subject {
  public:
-  explicit FloatSubject(Test test) : test_(test) {}
+  explicit FloatSubject(TriangleTest* test) : test_(test) {}
 
   void run(std::span<const Shot> shots, Answers& answers) override {
     answers.tests.clear();
@@ -87,10 +81,10 @@ class FloatSubject : public Subject {
   }
 
  private:
-  Test test_;
+  TriangleTest* test_;
 };
 
-SubjectKind kind(const char* name, const char* what, Test test) {
+SubjectKind kind(const char* name, const char* what, TriangleTest* test) {
   return {.name = name, .what = what, .share = 0.1, .make = [test] {
             return std::make_unique<FloatSubject>(test);
           }};

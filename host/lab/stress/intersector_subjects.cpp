@@ -1,5 +1,6 @@
 // Engines and variants of arithmetic as subjects, each through the renderer's Intersector.
 #include <deque>
+#include <type_traits>
 
 #include "host/bvh/bvh.h"
 #include "host/intersect/core/core_intersector.h"
@@ -175,25 +176,38 @@ std::unique_ptr<Subject> unit_subject(const MakeTester& make_tester, const Way& 
 
 template <class Tester, class Unit, class... Lanes>
 SubjectKind unit(const char* name, const char* what, double share, Lanes... lanes) {
-  return {.name = name, .what = what, .exact = true, .binary32 = true, .share = share, .make = [=] {
+  constexpr bool kSimulated =
+      std::is_same_v<Unit, RtlBurstUnit> || std::is_same_v<Unit, RtlPlaneUnit>;
+  return {.name = name,
+          .what = what,
+          .exact = true,
+          .simulated = kSimulated,
+          .binary32 = true,
+          .share = share,
+          .make = [=] {
             return unit_subject(
                 [=] { return std::make_unique<Tester>(std::make_unique<Unit>(lanes...)); },
                 Way{.delivers = true, .unit = &variant_named("binary32")});
           }};
 }
 
-/// Returns a subject for the ray core of `make_core`, which all BVHs share. A core that resolves
-/// doubts does not report them, so the error bounds of P for `binary32` do not apply to it.
-SubjectKind core(const char* name, const char* what, double share, bool binary32,
+/// The ray core that `make_core` makes, one for all trees. One that settles doubts does not tell of
+/// them, so that `binary32`'s bounds of P cannot be asked of the others.
+SubjectKind core(const char* name, const char* what, double share, bool simulated, bool binary32,
                  std::unique_ptr<CoreUnit> (*make_core)()) {
-  return {
-      .name = name, .what = what, .exact = true, .binary32 = binary32, .share = share, .make = [=] {
-        const auto make = [core = std::shared_ptr<CoreUnit>(make_core())](const Bvh& bvh) {
-          return std::make_unique<CoreIntersector>(bvh, std::make_shared<const MemoryImage>(bvh),
-                                                   core);
-        };
-        return std::make_unique<IntersectorSubject>(make, Way{.delivers = true});
-      }};
+  return {.name = name,
+          .what = what,
+          .exact = true,
+          .simulated = simulated,
+          .binary32 = binary32,
+          .share = share,
+          .make = [=] {
+            const auto make = [core = std::shared_ptr<CoreUnit>(make_core())](const Bvh& bvh) {
+              return std::make_unique<CoreIntersector>(
+                  bvh, std::make_shared<const MemoryImage>(bvh), core);
+            };
+            return std::make_unique<IntersectorSubject>(make, Way{.delivers = true});
+          }};
 }
 
 /// Returns a description such as "pipelined unit, 16 digits, doubts ignored".
@@ -222,15 +236,15 @@ std::vector<SubjectKind> engine_subjects() {
           unit<SerialHitTester, ReferencePlaneUnit>("model serial",
                                                     "the paper's unit's reference model", 0.1),
           unit<SerialHitTester, RtlPlaneUnit>("rtl serial", "the paper's unit, simulated", 0.02),
-          core("model core", "the ray core's reference model", 0.2, true,
+          core("model core", "the ray core's reference model", 0.2, false, true,
                []() -> std::unique_ptr<CoreUnit> { return std::make_unique<ReferenceCore>(); }),
-          core("rtl core", "the ray core, simulated", 0.02, true,
+          core("rtl core", "the ray core, simulated", 0.02, true, true,
                [] { return make_rtl_core(Arith::kBehavioural); }),
-          core("model exact core", "the exact ray core's reference model", 0.2, false,
+          core("model exact core", "the exact ray core's reference model", 0.2, false, false,
                []() -> std::unique_ptr<CoreUnit> {
                  return std::make_unique<ReferenceCore>(ReferenceCore::kStackDepth, true);
                }),
-          core("rtl exact core", "the exact ray core, simulated", 0.02, false,
+          core("rtl exact core", "the exact ray core, simulated", 0.02, true, false,
                [] { return make_rtl_core(Arith::kBehavioural, {}, {}, {.exact = true}); })};
 }
 

@@ -87,7 +87,21 @@ std::size_t count_with_oracle(const Cases& cases) {
   return sum;
 }
 
-/// Returns the nanoseconds per call: the median of repeats of at least 10 ms each.
+/// Whether every decision is the oracle's.
+bool are_right(const Cases& cases) {
+  for (const Shot& shot : cases.shots) {
+    const Truth truth = find_truth(shot);
+    auto verdict = truth.verdicts.begin();
+    for (const glm::vec3& direction : shot.directions) {
+      for (const Corners& t : shot.mesh->triangles) {
+        if (ours(shot.origin, direction, t) != (verdict++)->hit) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// What a call takes, in nanoseconds: the median of some repeats of ten milliseconds or more each.
 template <class Call>
 double time_of(const Call& call) {
   std::vector<double> times;
@@ -128,7 +142,7 @@ Row row_of(const Suite& suite) {
     });
     row[method.key] = time / static_cast<double>(cases.tests);
   }
-  row["raygate"] = cases.count(ours) == count_with_oracle(cases) ? "right" : "WRONG";
+  row["raygate"] = are_right(cases) ? "right" : "WRONG";
   return row;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "host/base/threads.h"
@@ -51,7 +52,8 @@ std::vector<Row> run_suite(const Suite& suite, const std::vector<SubjectKind>& k
     for (std::size_t v = 0; v < subjects.size(); ++v) {
       Tally& tally = tallies[v];
       if (tally.tests >= wanted[v]) continue;
-      answers.orders.clear();  // only some subjects set it
+      answers.orders.clear();  // few subjects give any
+      answers.refused.clear();
       subjects[v]->run(shots, answers);
       count(shots, truths, answers, kinds[v], tally);
       more = more || tally.tests < wanted[v];
@@ -66,6 +68,7 @@ std::vector<Row> run_suite(const Suite& suite, const std::vector<SubjectKind>& k
                                      {"subject", kinds[i].name},
                                      {"subject_is", kinds[i].what},
                                      {"exact", kinds[i].exact},
+                                     {"simulated", kinds[i].simulated},
                                      {"spotless", tallies[i].spotless()},
                                      {"broken_claims", broken_claims},
                                      {"seconds", seconds}});
@@ -106,6 +109,17 @@ Verdicts sum_up(std::span<const Row> rows, std::uint64_t seed) {
     return verdicts;
   }
   verdicts.passed = spotless && broken_claims == 0;
+  // The subjects see the beginning of one sequence of cases: the longest one has all.
+  const auto cases = [&](const char* key) {
+    std::map<std::string, std::uint64_t> most;
+    for (const Row& row : rows) {
+      std::uint64_t& suite = most[row["suite"]];
+      if (row[key]) suite = std::max(suite, row["tests"].get<std::uint64_t>());
+    }
+    std::uint64_t total = 0;
+    for (const auto& [suite, tests] : most) total += tests;
+    return std::to_string(total);
+  };
   const auto sum = [&](std::initializer_list<const char*> keys) {
     std::uint64_t total = 0;
     for (const Row& row : rows) {
@@ -113,15 +127,15 @@ Verdicts sum_up(std::span<const Row> rows, std::uint64_t seed) {
     }
     return std::to_string(total);
   };
-  verdicts.summary = std::string("stress: ") + (verdicts.passed ? "PASSED" : "FAILED") + ": " +
-                     std::to_string(suites.size()) + " suites, " + sum({"tests"}) +
-                     " tests by the engines: " + sum({"wrong", "wrong_ties"}) + " wrong, " +
-                     sum({"leaks"}) + " leaks, " + sum({"double_hits"}) + " double hits, " +
-                     sum({"wrong_nearest", "wrong_tied_nearest"}) + " wrong nearest, " +
-                     sum({"wrong_order"}) + " wrong orders, " + std::to_string(broken_claims) +
-                     " broken claims, " + sum({"doubts"}) + " doubts; seed " +
-                     std::to_string(seed) + ", " + std::to_string(std::lround(seconds)) +
-                     " s of processor time";
+  verdicts.summary =
+      std::string("stress: ") + (verdicts.passed ? "PASSED" : "FAILED") + ": " +
+      std::to_string(suites.size()) + " suites, " + cases("exact") + " cases, " +
+      cases("simulated") + " of them by the simulated hardware: " + sum({"wrong", "wrong_ties"}) +
+      " wrong, " + sum({"escapes"}) + " escapes, " + sum({"double_hits"}) + " double hits, " +
+      sum({"wrong_nearest", "wrong_tied_nearest"}) + " wrong nearest, " + sum({"wrong_order"}) +
+      " wrong orders, " + std::to_string(broken_claims) + " broken claims, " + sum({"doubts"}) +
+      " doubts; seed " + std::to_string(seed) + ", " + std::to_string(std::lround(seconds)) +
+      " s of processor time";
   return verdicts;
 }
 

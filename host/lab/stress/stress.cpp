@@ -12,6 +12,7 @@
 #include "host/lab/stress/errors.h"
 #include "host/lab/stress/minimise.h"
 #include "host/lab/stress/runner.h"
+#include "host/lab/stress/watertight.h"
 
 namespace raygate::lab {
 namespace {
@@ -114,6 +115,21 @@ void add_stress(CLI::App& lab, Outcome& outcome) {
                 "print some wrong decisions of all subjects, made as simple as they can be");
   app->add_flag("--list", asked->listed, "the suites' names, and no more");
   app->callback([asked, &outcome] { outcome.status = run_stress(*asked, outcome.results); });
+}
+
+void add_watertight(CLI::App& lab, Outcome& outcome) {
+  auto* app = lab.add_subcommand("watertight",
+                                 "public tests of watertightness; exit status 1: an engine failed");
+  const auto asked = std::make_shared<WatertightOptions>();
+  app->add_option("--triangles", asked->triangles, "triangles of a mesh, and rays")
+      ->check(CLI::Range(4, 1 << 20));
+  app->add_option("--seeds", asked->seeds, "meshes of nomiss")->check(CLI::Range(1, 100));
+  app->callback([asked, &outcome] {
+    for (Row& row : watertight_rows(*asked)) {
+      if (row["exact"] && !is_watertight(row)) outcome.status = 1;
+      outcome.results.add(std::move(row));
+    }
+  });
 }
 
 }  // namespace raygate::lab

@@ -78,7 +78,7 @@ void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& dir
 }  // namespace
 
 bool Tally::spotless() const {
-  return wrong_decisions(true) + leaks + double_hits == 0 && t_of_bound <= 1.0 &&
+  return wrong_decisions(true) + escapes + double_hits == 0 && t_of_bound <= 1.0 &&
          point_of_bound <= 1.0 && point_of_said <= 1.0 && delivered_t_ulp.max() <= kDeliveredUlp &&
          delivered_point_ulp.max() <= kDeliveredUlp;
 }
@@ -92,10 +92,10 @@ Row Tally::row() const {
   for (const Case& failure : failures) cases.push_back(to_text(failure));
   return {{"tests", tests},
           {"rays", rays},
+          {"refused", refused},
           {"wrong", wrong},
           {"ties", ties},
           {"wrong_ties", wrong_ties},
-          {"leaks", leaks},
           {"escapes", escapes},
           {"double_hits", double_hits},
           {"wrong_nearest", wrong_nearest},
@@ -131,6 +131,12 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
     auto verdict = truth.verdicts.begin();
     for (std::size_t ray = 0; ray < shot.directions.size(); ++ray, ++ray_number) {
       const glm::vec3& direction = shot.directions[ray];
+      if (!answers.refused.empty() && answers.refused[ray_number]) {
+        ++tally.refused;
+        test += triangles.size();
+        verdict += static_cast<std::ptrdiff_t>(triangles.size());
+        continue;
+      }
       std::uint64_t hits = 0, true_hits = 0;
       for (const Corners& triangle : triangles) {
         const Answer& answer = answers.tests[test++];
@@ -149,7 +155,6 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
       }
       ++tally.rays;
       tally.hits += hits;
-      tally.leaks += shot.inside && hits % 2 == 0;
       tally.escapes += shot.inside && hits == 0;
       tally.double_hits += shot.inside && hits > true_hits;
       if (!answers.orders.empty()) {

@@ -1,10 +1,11 @@
 """`make peers`: compares raygate with Mitsuba 3: time, error, and their product."""
 
 import argparse
+import math
 import pathlib
 
 from host.lab.machine import processors
-from host.lab.peers.measure import BEST, COUNT, SCENES, VARIANTS
+from host.lab.peers.measure import BEST, COUNT, NO_LIGHT_PATHS, SCENES, VARIANTS
 from host.lab.report import plots
 from host.lab.rows import of
 from host.lab.steps import Step
@@ -32,7 +33,7 @@ PARTS = {"pictures": pictures_steps}
 def name(row: dict) -> str:
     """Returns the name of a renderer and its sampler."""
     if row["renderer"] == "raygate":
-        return "raygate, --error" if row["sampler"].startswith("--error") else "raygate"
+        return f"raygate, {row['sampler'].split(' ')[0]}" if row["sampler"].startswith("--") else "raygate"
     return f"{row['renderer']}, {row['sampler']}"
 
 
@@ -48,16 +49,27 @@ def beside_ours(rows: list[dict]) -> list[dict]:
     return [{**row, "by": name(row), "ours": ours[row["threads"]], "pixels": row["width"] * row["height"]} for row in mine]
 
 
-def summary(rows: list[dict]) -> list[dict]:
-    """Returns raygate's product of time and MSE relative to that of each Mitsuba's best sampler, for one thread: below
-    1 is better."""
+def ratio(ours: dict, theirs: dict, key: str, *, with_time: bool = True) -> str:
+    """raygate's error over the other's, times its time over the other's, with the standard error of the seeds."""
+    value = ours[key] / theirs[key] * (ours["median_seconds"] / theirs["median_seconds"] if with_time else 1.0)
+    relative = math.hypot(ours[f"{key}_error"] / ours[key], theirs[f"{key}_error"] / theirs[key])
+    return f"{value:.2f} ± {value * relative:.2f}"
+
+
+def summary(rows: list[dict], variant: str) -> list[dict]:
+    """raygate beside one Mitsuba's best sampler, by each measure of error; one thread, the same number of samples."""
     found = []
     for reference in of(rows, "references"):
         mine = at_count(of(rows, "peers", scene=reference["scene"], threads=1))
-        (ours,) = (row for row in mine if row["renderer"] == "raygate")
-        found.append({**ours, "over": {
-            variant: ours["time_mse"] / min(row["time_mse"] for row in mine if row["renderer"] == f"Mitsuba {variant}")
-            for variant in VARIANTS}})
+        ours = {row["sampler"]: row for row in mine if row["renderer"] == "raygate"}
+        (usual,) = (row for sampler, row in ours.items() if not sampler.startswith("--"))
+        theirs = [row for row in mine if row["renderer"] == f"Mitsuba {variant}"]
+        linear, shown = (min(theirs, key=lambda row, key=key: row["median_seconds"] * row[key]) for key in ("mse", "display_mse"))
+        plain = ours.get(NO_LIGHT_PATHS, usual)
+        found.append({"scene": reference["scene"], "seconds": usual["median_seconds"] / linear["median_seconds"],
+                      "mse": ratio(usual, linear, "mse", with_time=False), "shown": ratio(usual, shown, "display_mse", with_time=False),
+                      "time_mse": ratio(usual, linear, "mse"), "time_shown": ratio(usual, shown, "display_mse"),
+                      "plain_time_mse": ratio(plain, linear, "mse"), "plain_time_shown": ratio(plain, shown, "display_mse")})
     return found
 
 
@@ -75,7 +87,7 @@ def error_against_time(rows: list[dict], scene: str, file: pathlib.Path) -> path
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
     """Returns tables by scene, and plots."""
     beyond = max(((max(row["rmse"] ** 2 - row["noise"] ** 2, 0.0)) ** 0.5 for row in of(rows, "references")), default=0.0)
-    return {"variants": VARIANTS, "beyond": beyond, "summary": summary(rows),
+    return {"variants": VARIANTS, "beyond": beyond, "summaries": [(variant, summary(rows, variant)) for variant in VARIANTS],
             "scenes": [{"reference": reference,
                     "rows": beside_ours(of(rows, "peers", scene=reference["scene"])),
                     "plot": error_against_time(rows, reference["scene"], folder / f"peers-{reference['scene']}.png")}

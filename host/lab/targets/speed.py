@@ -193,13 +193,23 @@ PARTS = {"rays": rays_steps, "predicates": predicates_steps, "skips": skips_step
          "phases": phases_steps, "trace": trace_steps}
 
 
+def over_best(row: dict) -> dict:
+    """raygate's rays per second over those of Embree's fastest mode of all versions, and of its fastest robust one."""
+    ours = row["at"]["raygate"]
+    found = {**row, "mrays": ours["mrays_per_second"]}
+    for kind, is_robust in (("fast", False), ("robust", True)):
+        modes = [peer for name, peer in row["at"].items() if name != "raygate" and name.endswith(" robust") == is_robust]
+        best = max(modes, key=lambda peer: peer["mrays_per_second"], default=None)
+        ratio = ours["mrays_per_second"] / best["mrays_per_second"] if best else None
+        spread = ratio * (ours["spread_percent"] + best["spread_percent"]) / 100 if best else None
+        found |= {kind: f"{ratio:.2f} ± {spread:.2f}" if best else None, f"{kind}_mode": best and best["by"].removesuffix(" robust")}
+    return found
+
+
 def values(rows: list[dict], _: pathlib.Path) -> dict:
-    """Returns rays compared with Embree's, the skips by scene, and the phase times of two programs."""
+    """Rays beside Embree's best modes, the skips of two scenes, and the phase times of two programs side by side."""
     rays, skips = of(rows, "rays"), of(rows, "skips")
-    peers = list(dict.fromkeys(row["by"] for row in rays if row["by"] != "raygate"))
-    return {"rays_by_peer": grouped(rays, ("scene", "rays"), "by"),
-            "peers": [peer for peer in peers if not peer.startswith("Embree 4")],
-            "newer_peers": [peer for peer in peers if peer.startswith("Embree 4")],
+    return {"over_best": [over_best(row) for row in grouped(rays, ("scene", "rays"), "by")],
             "skips_of_two": [row for row in skips if row["scene"] in (skips[0]["scene"], skips[-1]["scene"])],
             "phases": PHASES, "phase_times": grouped(of(rows, "phase_times"), ("scene",), "program")}
 

@@ -12,11 +12,13 @@ from host.lab.steps import LAB, Step
 
 # Minimum number of tests per suite of a published report.
 ENOUGH = 1_000_000
-COUNTS = ("tests", "rays", "wrong", "wrong_ties", "leaks", "escapes", "double_hits",
+COUNTS = ("tests", "rays", "refused", "wrong", "wrong_ties", "escapes", "double_hits",
           "wrong_nearest", "wrong_tied_nearest", "orders", "wrong_order", "doubts")
 ERRORS = ("t_ulp", "t_relative", "point_ulp", "delivered_t_ulp", "delivered_point_ulp")
 LARGEST = ("t_of_bound", "point_of_bound", "point_of_said")
 DECADES = 8
+# What can be wrong about a ray, apart.
+KINDS = ("escapes", "double_hits", "wrong_nearest")
 
 
 def steps(part: str, given: argparse.Namespace, tests: int, *words: object) -> list[Step]:
@@ -29,8 +31,13 @@ def steps(part: str, given: argparse.Namespace, tests: int, *words: object) -> l
             for suite in suites]
 
 
-# Half a million tests per suite on the core's reference model, 50,000 on the simulated hardware.
-PARTS = {"all": lambda given: steps("all", given, 10_000_000),
+def watertight(given: argparse.Namespace) -> Step:
+    """The public tests of watertightness."""
+    return Step("all", "watertight", ("watertight", *(("--triangles", 4096, "--seeds", 1) if given.quick else ())))
+
+
+# Half a million tests a suite by the core's reference model, 50,000 by the simulated hardware.
+PARTS = {"all": lambda given: [*steps("all", given, 10_000_000), watertight(given)],
          "core": lambda given: steps("core", given, 2_500_000, "--subject", "model core", "rtl core",
                                      "model exact core", "rtl exact core")}
 USUAL = ("all",)
@@ -69,6 +76,14 @@ def total(rows: list[dict]) -> dict:
             **{key: max(row[key] for row in rows) for key in LARGEST},
             **{key: summary([row[key] for row in rows]) for key in ERRORS},
             "t_ulp_by_angle": [summary([row["t_ulp_by_angle"][decade] for row in rows]) for decade in range(DECADES)]}
+
+
+def cases(rows: list[dict], key: str) -> int:
+    """The distinct cases that the subjects with this key saw: each sees the beginning of its suite's sequence."""
+    most: dict[str, int] = {}
+    for row in rows:
+        most[row["suite"]] = max(most.get(row["suite"], 0), row["tests"] if row[key] else 0)
+    return sum(most.values())
 
 
 def with_errors(totals: list[dict]) -> list[dict]:
@@ -110,12 +125,12 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
     angles = [{"low": 10 ** -(decade + 1), "high": 10 ** -decade, "bound": bounds["t_ulp"][10 * (decade + 1)],
                **unit["t_ulp_by_angle"][decade]} for decade in range(DECADES)] if unit else []
     return {"suites": suites, "totals": totals, "names": list(suites[0]["at"]), "unit": unit, "angles": angles,
-            "passed": not failures(rows),
+            "passed": not failures(rows), "watertight": of(rows, "watertight"),
             "all_errors": with_errors(totals),
             "random_errors": with_errors([total([row]) for row in mine if row["suite"] == "random"]),
-            "leaky": [{**suite, "key": key} for suite in suites
-                      if any(row["leaks"] or row["double_hits"] for row in suite["at"].values())
-                      for key in ("leaks", "escapes", "double_hits")],
+            "cases": cases(mine, "exact"), "simulated_cases": cases(mine, "simulated"),
+            "kinds": [{**suite, "key": key} for suite in suites for key in KINDS
+                      if any(row[key] for row in suite["at"].values())],
             **plot(suites, totals, unit, bounds, folder)}
 
 
@@ -123,5 +138,7 @@ def failures(rows: list[dict]) -> list[str]:
     """Returns exact subjects with wrong decisions, and suites whose claims of being inside a mesh are wrong."""
     return [f"{row['subject']}, suite {row['suite']}: wrong, or beyond a proven bound"
             for row in of(rows, "stress") if row["exact"] and not (row["spotless"] and row["tests"])] + \
+        [f"{row['by']}, {row['test']}: {row['escapes']} escapes, {row['double_hits'] or 0} double hits"
+         for row in of(rows, "watertight") if row["exact"] and (row["escapes"] or row["double_hits"])] + \
         [f"suite {suite['suite']}: {suite['broken_claims']} rays are not inside their mesh"
          for suite in grouped(of(rows, "stress"), ("suite",), "subject") if suite["broken_claims"]]

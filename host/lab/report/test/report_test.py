@@ -75,10 +75,12 @@ class Profile(unittest.TestCase):
 
 
 class Rows(unittest.TestCase):
-    def test_each_embree_has_its_table(self):
-        rows = [{"table": "rays", "scene": "a", "rays": "light", "by": by} for by in ("raygate", "Embree 8", "Embree 4 8")]
-        found = speed.values(rows, pathlib.Path())
-        self.assertEqual((found["peers"], found["newer_peers"]), (["Embree 8"], ["Embree 4 8"]))
+    def test_the_best_of_embrees_modes_counts(self):
+        rows = [{"table": "rays", "scene": "a", "rays": "light", "by": by, "mrays_per_second": rate, "spread_percent": 5.0}
+                for by, rate in (("raygate", 6.0), ("Embree 8", 10.0), ("Embree 4 16", 12.0), ("Embree 1 robust", 5.0))]
+        (found,) = speed.values(rows, pathlib.Path())["over_best"]
+        self.assertEqual((found["fast"], found["fast_mode"]), ("0.50 ± 0.05", "Embree 4 16"))
+        self.assertEqual((found["robust"], found["robust_mode"]), ("1.20 ± 0.12", "Embree 1"))
 
     def test_quantiles_of_bins_of_several_runs(self):
         parts = [{"max": 3.0, "bins": [[1.0, 60], [4.0, 38]]}, {"max": 7.0, "bins": [[8.0, 2]]}]

@@ -8,6 +8,7 @@
 
 #include "host/base/input_error.h"
 #include "host/lab/stress/runner.h"
+#include "host/lab/stress/watertight.h"
 
 namespace raygate::lab {
 namespace {
@@ -60,11 +61,22 @@ TEST_F(ResultsTest, ATableHasOneHeadForRowsOfTheSameColumns) {
 // A run passes only where exact subjects were judged, in tests that were done, and were never
 // wrong.
 TEST(Verdicts, OfRows) {
-  Row row = {{"suite", "a"},     {"subject", "b"},     {"exact", true},
-             {"spotless", true}, {"tests", 5},         {"wrong", 0},
-             {"wrong_ties", 0},  {"leaks", 0},         {"doubts", 1},
-             {"double_hits", 0}, {"wrong_nearest", 0}, {"wrong_tied_nearest", 0},
-             {"wrong_order", 0}, {"seconds", 1.0},     {"broken_claims", 0}};
+  Row row = {{"suite", "a"},
+             {"subject", "b"},
+             {"exact", true},
+             {"spotless", true},
+             {"tests", 5},
+             {"wrong", 0},
+             {"wrong_ties", 0},
+             {"escapes", 0},
+             {"doubts", 1},
+             {"simulated", false},
+             {"double_hits", 0},
+             {"wrong_nearest", 0},
+             {"wrong_tied_nearest", 0},
+             {"wrong_order", 0},
+             {"seconds", 1.0},
+             {"broken_claims", 0}};
   const auto verdict = [&](const char* key, const Row& value) {
     Row changed = row;
     changed[key] = value;
@@ -77,6 +89,19 @@ TEST(Verdicts, OfRows) {
   EXPECT_FALSE(verdict("exact", false).judged);
   EXPECT_FALSE(sum_up({}, 1).passed);
   EXPECT_NE(verdict("wrong", 3).summary.find("3 wrong"), std::string::npos);
+}
+
+// The engines pass the public tests; float32 tests of each triangle alone do not.
+TEST(Watertight, EnginesAre) {
+  bool others_are = true;
+  for (const Row& row : watertight_rows({.triangles = 128, .seeds = 1})) {
+    if (row["exact"]) {
+      EXPECT_TRUE(is_watertight(row)) << row.dump();
+    } else {
+      others_are = others_are && is_watertight(row);
+    }
+  }
+  EXPECT_FALSE(others_are);
 }
 
 }  // namespace
