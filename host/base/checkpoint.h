@@ -1,4 +1,4 @@
-// Checkpoints: long work lets its caller end it early.
+// Checkpoints: let callers end long work early.
 #pragma once
 
 #include <functional>
@@ -6,7 +6,7 @@
 
 namespace raygate {
 
-/// While a scope lives, checkpoint() on its thread calls `check`, which may throw to end the work.
+/// During its lifetime, checkpoint() on its thread calls `check`, which may throw to end the work.
 class CheckpointScope {
  public:
   explicit CheckpointScope(std::function<void()> check)
@@ -27,7 +27,7 @@ class CheckpointScope {
   CheckpointScope* outer_;
 };
 
-/// Called by long work several times in 100 ms. Does nothing on threads without a scope.
+/// Calls this thread's innermost check, if any. Long work calls it several times per 100 ms.
 inline void checkpoint() {
   if (const CheckpointScope* const scope = CheckpointScope::innermost()) scope->check_();
 }

@@ -1,5 +1,5 @@
-// Sines, logarithms and powers with the same bits on every machine: additions, multiplications and
-// divisions of IEEE 754 in a fixed order, without the C library.
+// Sines, logarithms and powers with the same bits on every machine: IEEE 754 additions,
+// multiplications and divisions in a fixed order, without the C library.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,6 @@
 
 namespace raygate {
 
-/// Sine and cosine of an angle.
 template <class D>
 struct SineCosine {
   D sine, cosine;
@@ -19,7 +18,7 @@ struct SineCosine {
 template <class D>
 RAYGATE_INLINE SineCosine<D> sine_cosine(const D& turns) {
   constexpr double kRadians = 6.283185307179586476925286766559;
-  // The nearest quarter, as float tells it, and what is left: up to an eighth and a hair.
+  // The nearest quarter turn, computed in float, and the remainder, up to slightly over 1/8.
   const auto quarter = whole(narrow(turns) * 4.0f + 4096.5f) - 4096;
   const D x = (turns - wide(quarter) * 0.25) * kRadians, y = x * x;
   // Taylor's series; the first term left out is below 2^-54.
@@ -60,7 +59,7 @@ RAYGATE_INLINE WideOf<T> turns_of(const T& y, const T& x) {
 template <class D>
 RAYGATE_INLINE D binary_logarithm(const D& x) {
   constexpr double kLog2OfE = 1.4426950408889634073599246810019;
-  // x = m 2^e with m about sqrt(1/2) .. sqrt(2), as float tells it.
+  // x = m 2^e with m in about [sqrt(1/2), sqrt(2)], computed in float.
   constexpr std::int32_t kRootOfHalf = 0x3F3504F3;
   const auto exponent = (bits_in(narrow(x)) - kRootOfHalf) >> 23;
   const D m = x * wide(float_of((127 - exponent) << 23));

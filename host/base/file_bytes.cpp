@@ -19,7 +19,7 @@ std::string read_file(const std::filesystem::path& file) {
     throw InputError(name + ": is a folder, expected a file");
   }
   if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status)) {
-    throw InputError(name + ": is a device, expected a file");  // it might never end
+    throw InputError(name + ": is a device, expected a file");  // reading it might never end
   }
   errno = 0;
   std::ifstream stream(file, std::ios::binary);

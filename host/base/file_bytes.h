@@ -1,4 +1,4 @@
-// A whole file in memory, and the binary numbers in it.
+// File contents in memory, and binary numbers.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace raygate {
 
-/// Returns the contents of a file. Throws InputError if it cannot be read, is a folder or a device,
-/// or is empty.
+/// Returns the contents of a file. Throws InputError if it is unreadable, a folder, a device or
+/// empty.
 [[nodiscard]] std::string read_file(const std::filesystem::path& file);
 
 /// Returns the number at `bytes`, in little-endian or big-endian byte order.
@@ -25,7 +25,7 @@ template <class Number>
   return number;
 }
 
-/// Number types that are known only at run time.
+/// Number types selected at run time.
 enum class NumberType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 [[nodiscard]] std::size_t bytes_of(NumberType type);
 [[nodiscard]] double number_at(const char* bytes, NumberType type, bool highest_first = false);

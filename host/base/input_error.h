@@ -6,16 +6,16 @@
 
 namespace raygate {
 
-/// An error of the user's input. The text is one line that says what was found and what was
-/// expected, with file and line if there are any ("scene.obj:12: vertex index 9 in a face, but the
-/// file has 8 vertices so far"). Caught in main, which prints it and exits with status 2.
+/// An error in the user's input. The text is one line with what was found and what was expected,
+/// and with file and line if there are any ("scene.obj:12: vertex index 9 in a face, but the file
+/// has 8 vertices so far"). Caught in main, which prints it and exits with status 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   InputError(const std::string& file, std::size_t line, const std::string& what)
       : std::runtime_error(location(file, line) + what) {}
 
-  /// "file:line: "; "file: " for line 0, of a file without lines.
+  /// Returns "file:line: ", or "file: " for line 0, which is that of a file without lines.
   [[nodiscard]] static std::string location(const std::string& file, std::size_t line) {
     std::string place = file;
     if (line != 0) place.append(":").append(std::to_string(line));

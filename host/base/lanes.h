@@ -1,5 +1,5 @@
-// Lanes: the compiler's vectors of any element and count, and operations written once for them and
-// for a single number; compiled for each instruction set by in_vectors (host/base/vectors.h).
+// Lanes: vectors of any element type and count, with operations for vectors and single numbers;
+// compiled for each instruction set by in_vectors (host/base/vectors.h).
 #pragma once
 
 #include <cmath>
@@ -14,18 +14,17 @@
 
 #include "host/base/vectors.h"
 
-// All functions on vectors are inlined: the calling convention does not matter.
+// All functions on vectors are inlined, so the calling convention does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace raygate {
 
-/// Rays are handled eight at a time: one AVX register of floats.
+/// Number of rays handled at a time: one AVX register of floats.
 inline constexpr int kLanes = 8;
-/// Triangles of a leaf are tested four at a time: one SSE register of floats, one AVX register of
-/// doubles.
+/// Number of triangles tested at a time: one SSE register of floats, or AVX register of doubles.
 inline constexpr int kQuad = 4;
 
-/// A set of lanes: bit k stands for lane k.
+/// A set of lanes; bit k belongs to lane k.
 using LaneMask = std::uint32_t;
 
 /// GCC's and Clang's vector types: element-wise arithmetic, comparisons giving 0 or -1, and
@@ -71,10 +70,10 @@ struct LanesInfo<T> {
 // lane never depends on another lane, so results have the same bits for any number of lanes.
 // Comparisons return masks for choose(), & and |; `!` negates them.
 
-/// Number of lanes.
+/// Number of lanes of T.
 template <class T>
 inline constexpr int kLanesOf = detail::LanesInfo<T>::kCount;
-/// The same number of lanes of another element type.
+/// Vector with the same number of lanes of another element type.
 template <class T, class Element>
 using Like = typename detail::VecOf<Element, detail::LanesInfo<T>::kCount>::Type;
 template <class T>
@@ -87,7 +86,7 @@ using WideOf = Like<T, double>;
 template <class T>
 using MaskOf = typename detail::LanesInfo<T>::Mask;
 
-/// Load lanes from, and store them to, an array or another object.
+/// Load lanes from an array or another object, and store them.
 template <class T, class From>
 RAYGATE_INLINE T load(const From* from) {
   T lanes;
@@ -221,8 +220,8 @@ RAYGATE_INLINE auto join(const Quad& low, const Quad& high) {
 }
 
 #ifdef RAYGATE_AVX2
-// Instructions that no text of vectors becomes. Not always inlined, as code for these vectors alone
-// may hold them: they are once the body of in_vectors is one function.
+// Instructions that compilers do not generate from vector code. Not always inlined, as only
+// functions for these instruction sets may contain them, such as the bodies of in_vectors.
 [[gnu::target("avx")]] inline LaneMask avx_sign_mask(const FloatLanes& x) {
   return static_cast<LaneMask>(__builtin_ia32_movmskps256(x));
 }
@@ -234,7 +233,7 @@ RAYGATE_INLINE auto join(const Quad& low, const Quad& high) {
 }
 #endif
 
-/// Returns the lanes whose sign bit is set. kCode is that of the function it is inlined into.
+/// Returns the lanes whose sign bit is set. kCode is the instruction set of the calling function.
 template <Vectors kCode = Vectors::kBaseline>
 RAYGATE_INLINE LaneMask sign_mask(const IntQuad& quad) {
 #if defined(__SSE__)
@@ -255,7 +254,6 @@ RAYGATE_INLINE LaneMask sign_mask(const IntLanes& lanes) {
   return sign_mask(IntQuad(low_half(lanes))) | sign_mask(IntQuad(high_half(lanes))) << 4;
 }
 
-/// Whether any lane is set.
 RAYGATE_INLINE bool any(bool mask) { return mask; }
 RAYGATE_INLINE bool any(const IntLanes& mask) { return sign_mask(mask) != 0; }
 
@@ -265,7 +263,7 @@ RAYGATE_INLINE IntLanes lanes_of(LaneMask mask) {
   return ((IntLanes{} + static_cast<std::int32_t>(mask)) & kBit) != 0;
 }
 
-/// Converts four floats to doubles in one instruction, where GCC 12 would use four.
+/// Converts four floats to doubles in one instruction; GCC 12 would use four.
 template <Vectors kCode>
 RAYGATE_INLINE DoubleQuad widen(const FloatQuad& from) {
 #if defined(RAYGATE_AVX2) && !defined(__clang__)
@@ -278,7 +276,7 @@ RAYGATE_INLINE DoubleQuad widen(const FloatQuad& from) {
 template <Vectors kCode>
 using NativeFloats = Vec<float, kCode == Vectors::kBaseline ? kQuad : kLanes>;
 
-/// Element i of row k becomes element k of row i.
+/// Transposes the rows: element i of row k becomes element k of row i.
 RAYGATE_INLINE void transpose(FloatQuad (&rows)[kQuad]) {
   const FloatQuad ab_low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
   const FloatQuad ab_high = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
@@ -302,7 +300,7 @@ RAYGATE_INLINE void transpose(DoubleQuad (&rows)[kQuad]) {
 
 RAYGATE_INLINE void transpose(FloatLanes (&rows)[kLanes]) {
   FloatLanes pairs[kLanes], fours[kLanes];
-  for (int i = 0; i < kLanes; i += 2) {  // elements 0, 1 and 4, 5 of two rows; 2, 3 and 6, 7
+  for (int i = 0; i < kLanes; i += 2) {  // elements 0, 1, 4, 5 of two rows, then 2, 3, 6, 7
     pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
     pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
   }
@@ -364,7 +362,7 @@ RAYGATE_INLINE void cross(const T (&u)[3], const T (&v)[3], T (&value)[3], T (&s
   }
 }
 
-/// Lanes as an array, for access one by one.
+/// Lanes as an array, for access by index.
 template <class Element, int kCount>
 struct LaneArray {
   alignas(sizeof(Element) * kCount) Element values[kCount];

@@ -9,7 +9,7 @@
 namespace raygate {
 namespace {
 
-/// Entry k: the least linear value whose nearest code is k + 1.
+/// Returns thresholds: entry k is the least linear value whose nearest code is k + 1.
 std::array<double, 255> make_thresholds() {
   std::array<double, 255> thresholds{};
   for (std::size_t k = 0; k < thresholds.size(); ++k) {

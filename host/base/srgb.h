@@ -5,8 +5,8 @@
 
 namespace raygate {
 
-/// Returns the sRGB code 0..255 nearest to scene-linear `linear`: 0 below 0 and for NaN, 255
-/// above 1. Monotone, and the inverse of `srgb_to_linear` for all 256 codes.
+/// Returns the sRGB code from 0 to 255 nearest to scene-linear `linear`: 0 below 0 and for NaN, 255
+/// above 1. Monotonic, and the inverse of `srgb_to_linear` for all 256 codes.
 [[nodiscard]] std::uint8_t linear_to_srgb(float linear);
 
 /// Returns the continuous sRGB curve of light clamped to [0, 1], in [0, 1].

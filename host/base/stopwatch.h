@@ -1,4 +1,4 @@
-// Stopwatch: elapsed seconds per lap; and the processor time of the program.
+// Stopwatch: elapsed seconds per lap; and the processor time of the process.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Triples: points, directions and colours of one or many lanes, and gathering of lanes.
+// Triples: points, directions and colours in one or many lanes, and gathering of lanes.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ template <class T>
 RAYGATE_INLINE T dot(const Triple<T>& a, const Triple<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-/// Returns the largest of three numbers that are not negative.
+/// Returns the largest of three non-negative numbers.
 template <class T>
 RAYGATE_INLINE T largest(const Triple<T>& a) {
   return maximum(maximum(a.x, a.y), a.z);
@@ -101,13 +101,12 @@ RAYGATE_INLINE auto gather(const Of& of) {
     return load<std::conditional_t<std::is_same_v<Element, float>, T, WordOf<T>>>(values);
   }
 }
-/// Gathers a member of each lane's object.
 template <class T, class Object, class Member>
 RAYGATE_INLINE auto gather(const Object* const (&objects)[kLanesOf<T>], Member Object::*member) {
   return gather<T>([&](int k) RAYGATE_BODY -> const Member& { return objects[k]->*member; });
 }
 
-/// Triples as an array, for access one by one.
+/// Triples as an array, for access by index.
 template <int kCount>
 struct TripleArray {
   LaneArray<float, kCount> x, y, z;

@@ -22,17 +22,16 @@ inline constexpr std::array<std::string_view, 3> kVectorNames = {"baseline", "av
   return kVectorNames[static_cast<std::size_t>(vectors)];
 }
 
-/// The argument of the body of in_vectors: its instruction set as a constant.
+/// Argument of the body of in_vectors: the instruction set as a constant.
 template <Vectors kVectors>
 using VectorCode = std::integral_constant<Vectors, kVectors>;
 
-// The widest instruction set that is compiled, as a number of Vectors. Builds with sanitizers use
-// fewer, to compile in less time.
+// The widest compiled instruction set, as a number of Vectors. Sanitizer builds use fewer sets.
 #ifndef RAYGATE_WIDEST_VECTORS
 #define RAYGATE_WIDEST_VECTORS 2
 #endif
 
-// With baseline code only, the body is called directly, which compiles in less time.
+// With baseline code only, the body is called directly, to compile faster.
 #if RAYGATE_WIDEST_VECTORS > 0
 #define RAYGATE_INLINE inline __attribute__((always_inline))
 #define RAYGATE_BODY __attribute__((always_inline))

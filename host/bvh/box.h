@@ -1,4 +1,4 @@
-// Box: an axis-aligned bounding box in one register, for building trees.
+// Box: an axis-aligned bounding box in one register, for building BVHs.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ RAYGATE_INLINE void clear(Box& box) { box = FloatLanes{} + std::numeric_limits<f
 
 RAYGATE_INLINE void grow(Box& box, const Box& other) { box = other < box ? other : box; }
 
-/// Returns 1 / (the box's longest side), a unit in which areas are finite.
+/// Returns 1 / (longest side of the box), a unit in which areas are finite.
 RAYGATE_INLINE float unit_of(const Box& box) {
   const float longest = -std::min({box[0] + box[4], box[1] + box[5], box[2] + box[6]});
   return std::min(1.0f / longest, std::numeric_limits<float>::max());
@@ -42,8 +42,8 @@ RAYGATE_INLINE void box_around(const glm::vec3& a, const glm::vec3& b, const glm
   box = corners[0];
   grow(box, corners[1]);
   grow(box, corners[2]);
-  // The next float below: of a positive one the next smaller bits, of a negative one the next
-  // larger; of both zeros the smallest negative number.
+  // The next float below: smaller bits for a positive float, larger bits for a negative one, and
+  // the smallest negative number for both zeros.
   const IntLanes bits = reinterpret_cast<IntLanes>(box);
   const IntLanes zero = (bits & 0x7FFFFFFF) == 0;
   const IntLanes below = bits + ((bits > 0) | 1);  // -1 where positive: no lane overflows

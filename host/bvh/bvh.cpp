@@ -8,37 +8,38 @@
 #include "host/base/threads.h"
 #include "host/bvh/sah_builder.h"
 
-// Which nodes of the binary tree are nodes of the wide one
+// Collapsing a binary BVH to eight children per node
 //
-// A wide node's children are a cut through the binary tree below it, and the best of all trees is
-// found from the leaves up (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs
-// through compressed wide BVHs", 2017). Let C(n, i) be what it costs to make binary node n, with
-// all below it, into at most i children:
+// The children of a wide node are a cut through the binary tree below it. The best tree is found
+// from the leaves up (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs through
+// compressed wide BVHs", 2017). Let C(n, i) be the cost of the subtree of binary node n if it
+// becomes at most i children:
 //   C(n, 1) = A kNodeCost + C(n, 8) as an inner node; A kLeafCost (up to kMaxLeafSize) as a leaf;
 //   C(n, i) = C(n, i - 1), or C(left, k) + C(right, i - k) for the best k.
-// A is the chance that a ray which meets the root's box meets n's: the ratio of their surfaces.
+// A is the probability that a ray which meets the root's box meets that of n: the ratio of their
+// surface areas.
 
 namespace raygate {
 namespace {
 
 using Ref = BinaryBvh::Ref;
 
-constexpr std::uint32_t kTreeTask = 4096;  // primitives below a node that is one thread's work
+constexpr std::uint32_t kTreeTask = 4096;  // maximum number of primitives in a task of one thread
 constexpr float kNodeCost = 1.0f;
-/// Of a leaf of 1 to 4 triangles, which are tested at once.
+/// Cost of a leaf with 1 to 4 triangles, which are tested at once.
 constexpr float kLeafCost[Bvh::kMaxLeafSize + 1] = {0.0f, 0.95f, 1.0f, 1.05f, 1.1f};
 
-/// The cheapest ways of a binary node.
+/// The optimal ways to collapse a binary node.
 struct Plan {
-  float cost[Bvh::kWidth];  ///< [i]: C(n, i + 1); of [0]: as a child
+  float cost[Bvh::kWidth];  ///< [i]: C(n, i + 1); [0]: cost as one child
   std::uint8_t
-      left[Bvh::kWidth];  ///< [i]: how many of i + 1 children are the left side's; 0: do with i
+      left[Bvh::kWidth];  ///< [i]: number of the left side's children, of i + 1; 0: use i children
   bool is_leaf;
 };
 
 }  // namespace
 
-/// Makes a binary tree wide.
+/// Collapses a binary BVH to a wide one.
 class BvhWriter {
  public:
   BvhWriter(Bvh& bvh, const TreeContent& content, const BinaryBvh& tree, int threads)
@@ -65,7 +66,7 @@ class BvhWriter {
   }
 
  private:
-  /// Others, which have no primitives, stand between the triangles.
+  /// Numbers the primitives if instances, which have no primitives, are among the triangles.
   void number_primitives() {
     if (content_.others.empty()) return;
     first_primitives_.reserve(tree_.size());
@@ -85,10 +86,10 @@ class BvhWriter {
                [&](const Primitive& p) { return is_triangle(p); });
   }
 
-  /// A task: a binary node with as many leaves as one thread is to see to.
+  /// A task for one thread: a binary node of limited size.
   struct Task {
     Ref ref;
-    std::uint32_t parent;  ///< whose child it is, in the tree
+    std::uint32_t parent;  ///< its parent in the BVH
     int child;
     std::vector<Bvh::Node> nodes;
     std::uint32_t offset;
@@ -168,7 +169,7 @@ class BvhWriter {
     for (const Ref child : tree_.nodes[ref].child) collect_tasks(child, large, tasks);
   }
 
-  /// Finds what becomes the children of a wide node when `ref` becomes `most` of them.
+  /// Collects the children of a wide node if `ref` becomes `most` of them.
   void collect_children(Ref ref, int most, Ref (&children)[Bvh::kWidth], int& count) const {
     if (most > 1 && !tree_.is_leaf(ref)) {
       const Plan& plan = plans_[ref];
@@ -184,7 +185,7 @@ class BvhWriter {
     children[count++] = ref;
   }
 
-  /// Puts a leaf or, its number being for the caller to say, an inner node into a node.
+  /// Stores a leaf or an inner node, whose index the caller sets, in a node.
   void put_child(Bvh::Node& node, int i, Ref ref) {
     Box box;
     tree_.get_box(ref, box);
@@ -206,7 +207,7 @@ class BvhWriter {
 
   [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || plans_[ref].is_leaf; }
 
-  /// Writes a leaf of the primitives from number `first` on.
+  /// Writes a leaf with the primitives from index `first` on.
   void write_primitives(const Bvh::Child& leaf, std::uint32_t first) {
     float* const to = &bvh_.corners_[9 * std::size_t{leaf.first}];
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
@@ -224,8 +225,7 @@ class BvhWriter {
     }
   }
 
-  /// Writes the node `ref` to nodes[index], and what is below it behind; large ones become tasks,
-  /// where there are any.
+  /// Writes the node `ref` to nodes[index], and its descendants behind; large ones become `tasks`.
   void write_below(std::vector<Bvh::Node>& nodes, std::uint32_t index, Ref ref,
                    std::vector<Task>* tasks) {
     Ref children[Bvh::kWidth];
@@ -281,8 +281,7 @@ class BvhWriter {
   int threads_;
   float unit_ = 0.0f;
   std::vector<Plan> plans_;
-  std::vector<std::uint32_t>
-      first_primitives_;  // of the primitives; empty: each has its own number
+  std::vector<std::uint32_t> first_primitives_;  // index of each primitive; empty: the identity
 };
 
 void Bvh::build(const TreeContent& content, int most_levels, int threads) {

@@ -1,4 +1,4 @@
-// Bvh: an eight-wide bounding volume hierarchy around a scene's triangles and instances.
+// BVH: an eight-wide bounding volume hierarchy of a scene's triangles and instances.
 #pragma once
 
 #include <algorithm>
@@ -19,12 +19,12 @@ namespace raygate {
 
 struct TreeContent;
 
-/// Consecutive non-empty runs of numbers. Finding the run of a number takes one table lookup if the
-/// runs are about equally long.
+/// Consecutive non-empty ranges of numbers. Finding the range of a number takes one table lookup if
+/// the ranges have similar lengths.
 class RangeMap {
  public:
   RangeMap() = default;
-  /// Runs of these lengths, the first from `begin` on; their end is below 2^32.
+  /// Makes ranges of these lengths, the first from `begin` on. Their end is below 2^32.
   RangeMap(std::uint32_t begin, const std::vector<std::uint32_t>& lengths) : begins_{begin} {
     begins_.reserve(lengths.size() + 1);
     for (const std::uint32_t length : lengths) begins_.push_back(begins_.back() + length);
@@ -42,7 +42,7 @@ class RangeMap {
   [[nodiscard]] std::uint32_t end() const { return begins_.back(); }
   [[nodiscard]] std::uint32_t begin(std::uint32_t run) const { return begins_[run]; }
 
-  /// The run that a number from begin() to before end() is in.
+  /// Returns the index of the range that contains `number`, in [begin(), end()).
   [[nodiscard]] std::uint32_t find(std::uint32_t number) const {
     const std::uint32_t* const chunk = &first_[(number - begins_[0]) >> shift_];
     const auto first = begins_.begin() + chunk[0] + 1, last = begins_.begin() + chunk[1] + 1;
@@ -50,46 +50,47 @@ class RangeMap {
   }
 
  private:
-  std::vector<std::uint32_t> begins_{0};  // of the runs, and their end
-  std::vector<std::uint32_t> first_;      // the run of the first number of each 2^shift_, and more
+  std::vector<std::uint32_t> begins_{0};  // start of each range, and the end
+  // Range of the first number of each chunk of 2^shift_, and the last range.
+  std::vector<std::uint32_t> first_;
   int shift_ = 0;
 };
 
-/// One instance of a mesh. Its nodes and primitives are those of the mesh's tree, renumbered from
+/// An instance of a mesh. Its nodes and primitives are those of the mesh's BVH, renumbered from
 /// `first_node` and `first_primitive` on.
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance
   float matrix[3][3];     ///< its linear part, rounded
   float low[3], high[3];  ///< bounds of its translation, widened for all rounding
-  std::uint32_t mesh;     ///< index of the mesh's tree
+  std::uint32_t mesh;     ///< index of the mesh's BVH
   std::uint32_t first_node = 0, first_primitive = 0;
-  std::uint32_t first_triangle = 0;  ///< in the scene
+  std::uint32_t first_triangle = 0;  ///< index in the scene
 
-  /// `size`: the largest magnitude on each axis of the bounds of the mesh's tree.
+  /// `size`: the largest magnitudes of the bounds of the mesh's BVH, by axis.
   InstanceBvh(const Instance& instance, const glm::dvec3& size);
 };
 
-/// A tree of axis-aligned boxes, eight to a node. A leaf holds a run of primitives; primitive s is
-/// triangle `triangle_of(s)` of the scene. The tree does not refer to the scene after it is built,
-/// and is the same, byte for byte, for any number of threads that build it. Memory: 320 bytes a
-/// node, one node for about five primitives, and 41 bytes a primitive.
+/// A BVH with eight children per node. A leaf holds a range of primitives; primitive i is triangle
+/// `triangle_of(i)` of the scene. The BVH does not refer to the scene after it is built, and is the
+/// same, byte for byte, for any number of building threads. Memory: 320 bytes per node, one node
+/// for about five primitives, and 41 bytes per primitive.
 ///
-/// A mesh with several instances has one tree. The nodes and primitives below an instance have
-/// numbers of their own but are not stored: BvhView and corners_of() compute them from the mesh's
-/// tree on access (instance_bvh.cpp). An instance takes about 200 bytes.
+/// A mesh with several instances has one BVH. The nodes and primitives below an instance have
+/// indices of their own but are not stored: BvhView and corners_of() compute them from the mesh's
+/// BVH on access (instance_bvh.cpp). An instance takes about 200 bytes.
 class Bvh {
  public:
   static constexpr int kWidth = 8;
   static constexpr std::uint32_t kMaxLeafSize = 4;
-  /// No path from the root to a leaf has more nodes.
+  /// Maximum number of nodes on a path from the root to a leaf.
   static constexpr int kMaxDepth = 48;
   /// Entries of a traversal's stack: each level leaves at most seven children to visit.
   static constexpr int kStackSize = (kWidth - 1) * kMaxDepth + 1;
 
   /// An inner node or a leaf.
   struct Child {
-    std::uint32_t first;  ///< inner: index of the node; leaf: primitives [first, first + count)
-    std::uint32_t count;  ///< 0: an inner node
+    std::uint32_t first;  ///< index of an inner node, or of a leaf's first primitive
+    std::uint32_t count;  ///< number of a leaf's primitives; 0: an inner node
 
     /// kNone, with more triangles than a leaf may have, marks the end of a traversal.
     enum Kind : std::size_t { kInner, kLeaf, kNone, kKinds };
@@ -113,36 +114,36 @@ class Bvh {
   /// The vertices of a primitive's triangle, in the triangle's order.
   using Corners = std::array<glm::vec3, 3>;
 
-  /// Room for the corners of a leaf's triangles, where they are not stored.
+  /// Buffer for the corners of a leaf's triangles, for leaves of instances.
   struct LeafRoom {
     float corners[9 * kMaxLeafSize + kMaxLeafSize];
   };
 
-  /// Builds the tree of fewer than 2^31 triangles. All positions are finite with a magnitude of at
+  /// Builds the BVH of fewer than 2^31 triangles. All positions are finite with a magnitude of at
   /// most 2^126, also after instances' transforms, whose sums of magnitudes are bounded likewise.
-  /// No ray enters the tree of a scene without triangles.
+  /// No ray enters the BVH of a scene without triangles.
   explicit Bvh(const Scene& scene, int threads = 1);
 
-  /// The stored nodes, without those of instances; nodes()[0] is the root.
+  /// Returns the stored nodes, without those of instances; nodes()[0] is the root.
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
 
-  /// Number of stored primitives, without those of instances.
+  /// Returns the number of stored primitives, without those of instances.
   [[nodiscard]] std::uint32_t primitive_count() const {
     return static_cast<std::uint32_t>(triangles_.size());
   }
   [[nodiscard]] bool has_instances() const { return !instances_.empty(); }
-  /// The primitives of all instances, [first, second); they follow the stored ones.
+  /// Returns the primitives of all instances, [first, second); they follow the stored ones.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> instance_primitives() const {
     if (!has_instances()) return {primitive_count(), primitive_count()};
     return {instance_primitives_.begin(), instance_primitives_.end()};
   }
-  /// Whether a primitive or node number belongs to an instance.
+  /// Returns whether a primitive or node index belongs to an instance.
   [[nodiscard]] RAYGATE_INLINE bool is_instanced(std::uint32_t number) const {
     return number >= first_instanced_;
   }
-  /// Returns the leaves of the tree, including those of instances.
+  /// Returns the leaves of the BVH, including those of instances.
   [[nodiscard]] std::vector<Child> leaves() const;
-  /// Number of triangles, including those of instances.
+  /// Returns the number of triangles, including those of instances.
   [[nodiscard]] std::uint64_t triangle_count() const {
     return std::uint64_t{primitive_count()} +
            (instance_primitives_.end() - instance_primitives_.begin());
@@ -171,9 +172,9 @@ class Bvh {
 
   Bvh() = default;
 
-  /// Builds the tree with at most `most_levels` levels.
+  /// Builds the BVH with at most `most_levels` levels.
   void build(const TreeContent& content, int most_levels, int threads);
-  /// Builds the trees of the scene's meshes, adds the instances to the content, and returns the
+  /// Builds the BVHs of the scene's meshes, adds the instances to the content, and returns the
   /// number of levels below an instance.
   int add_instances(const Scene& scene, int threads, TreeContent& content);
   /// Returns the number of nodes on the longest path down from a node.
@@ -196,7 +197,7 @@ class Bvh {
     return corners;
   }
 
-  /// A primitive's number within its leaf, and the leaf's number of triangles.
+  /// A primitive's index within its leaf, and the leaf's number of triangles.
   struct Place {
     std::uint8_t number, count;
   };
@@ -206,7 +207,7 @@ class Bvh {
   std::vector<std::uint32_t> triangles_;  // index in the scene, by primitive
   std::vector<Place> places_;
 
-  // Nodes and primitives from this number on belong to instances, each to a run of these.
+  // Nodes and primitives from this number on belong to instances, each to a range of these.
   std::uint32_t first_instanced_ = 0xFFFFFFFF;
   RangeMap instance_nodes_, instance_primitives_;
   std::vector<InstanceBvh> instances_;

@@ -1,4 +1,4 @@
-// BvhView: the arrays of a tree, as a traversal reads them.
+// BvhView: the arrays of a BVH, for traversal.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ class BvhView {
                 {bvh.corners_.data(), 0}},
         first_instanced_(bvh.first_instanced_) {}
 
-  /// Returns a node; an instance's is computed in `room`.
+  /// Returns a node. Nodes of instances are computed in `room`.
   [[nodiscard]] RAYGATE_INLINE const Bvh::Node& node(std::uint32_t index, Bvh::Node& room) const {
     if (index >= first_instanced_) [[unlikely]] {
       bvh_->make_instance_node(index, room);
@@ -28,13 +28,13 @@ class BvhView {
     return static_cast<const Bvh::Node*>(places_[Bvh::Child::kInner].begin)[index];
   }
 
-  /// Returns the corners of a leaf's triangles: coordinate k of corner v of triangle i is at
-  /// [(3 v + k) count + i]. Floats beyond them, as far as for four triangles, can be read and have
-  /// no meaning. An instance's corners are computed in `room`.
+  /// Returns the corners of a leaf's triangles: coordinate k of corner v of triangle i is at [(3 v
+  /// + k) count + i]. Further floats, up to four triangles, can be read but are undefined. Corners
+  /// of instances are computed in `room`.
   [[nodiscard]] RAYGATE_INLINE const float* corners_of(const Bvh::Child& leaf,
                                                        Bvh::LeafRoom& room) const {
     if (leaf.first >= first_instanced_) [[unlikely]] {
-      const Bvh::Child copy = leaf;  // so that callers may keep theirs in a register
+      const Bvh::Child copy = leaf;  // lets callers keep theirs in a register
       bvh_->make_instance_corners(copy, room);
       return room.corners;
     }
@@ -54,7 +54,7 @@ class BvhView {
   }
 
  private:
-  static constexpr std::size_t kCornerBytes = 9 * sizeof(float);  // of a primitive
+  static constexpr std::size_t kCornerBytes = 9 * sizeof(float);  // per primitive
 
   /// Address of the children of one kind, and bytes per child.
   struct Place {

@@ -11,8 +11,8 @@
 namespace raygate {
 namespace {
 
-/// The point of a triangle: C. Ericson, "Real-Time Collision Detection", 2005, 5.1.5, by the
-/// regions of corners and edges around it.
+/// Returns the closest point of a triangle (C. Ericson, "Real-Time Collision Detection", 2005,
+/// 5.1.5), by the Voronoi regions of corners and edges.
 glm::dvec3 closest_on(const Corners& corners, const glm::dvec3& point) {
   const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
   const glm::dvec3 ab = b - a, ac = c - a;
@@ -34,27 +34,27 @@ glm::dvec3 closest_on(const Corners& corners, const glm::dvec3& point) {
   return a + ab * (of_b * inverse) + ac * (of_c * inverse);
 }
 
-/// A child whose triangles are all at least `bound` away.
+/// A child to visit, whose triangles are all at least `bound` away.
 struct Waiting {
   double bound;
   Bvh::Child child;
   bool operator<(const Waiting& other) const { return bound > other.bound; }  // the nearest first
 };
 
-/// Largest magnitude of the coordinates of the tree's boxes.
+/// Returns the largest magnitude of the coordinates of the BVH's boxes.
 double size_of(const BvhView& tree) {
   double size = 0.0;
   Bvh::Node room;
   const Bvh::Node& root = tree.node(0, room);
   for (int i = 0; i < Bvh::kWidth; ++i) {
     const auto [low, high] = root.box(i);
-    if (low.x > high.x) continue;  // no child
+    if (low.x > high.x) continue;  // an absent child
     size = std::max({size, largest(glm::dvec3(low)), largest(glm::dvec3(high))});
   }
   return size;
 }
 
-/// A best-first search: nearer boxes first, until none can hold anything nearer.
+/// Searches best first: nearest boxes first, until none can contain a nearer point.
 ClosestPoint search(const BvhView& tree, const Bvh& bvh, const glm::dvec3& point) {
   constexpr double kRounding = 1.0 - 0x1p-40;  // of distances in double
   ClosestPoint best;
@@ -76,7 +76,7 @@ ClosestPoint search(const BvhView& tree, const Bvh& bvh, const glm::dvec3& point
       Bvh::Node room;
       const Bvh::Node& node = tree.node(child.first, room);
       for (int i = 0; i < Bvh::kWidth; ++i) {
-        const auto [low, high] = node.box(i);  // infinitely far away where there is no child
+        const auto [low, high] = node.box(i);  // infinite for absent children
         const glm::dvec3 gap =
             glm::max(glm::max(glm::dvec3(low) - point, point - glm::dvec3(high)), 0.0);
         const double bound = kRounding * glm::length(gap);
@@ -92,10 +92,10 @@ ClosestPoint search(const BvhView& tree, const Bvh& bvh, const glm::dvec3& point
 
 }  // namespace
 
-/// Seen from 2^27 times the tree's size or more, the differences of the distances to its triangles
-/// are lost in rounding: the search would visit the whole tree. It begins at a point of that
-/// distance in the same direction, from which the nearest triangle is farther from `point` than its
-/// nearest one by less than the rounding of the distance.
+/// At 2^27 times the BVH's size and more, distances to its triangles differ by less than rounding,
+/// so a search would visit the whole BVH. It then starts from a point at that distance in the same
+/// direction. The triangle nearest to this point is farther from `point` than the nearest one by
+/// less than the rounding of the distance.
 ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point) {
   const BvhView tree(bvh);
   const double far = 0x1p27 * size_of(tree);

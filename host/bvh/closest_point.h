@@ -1,4 +1,4 @@
-// Point and box queries: the closest point of the triangles, and the triangles near a box.
+// Proximity queries: the closest point on the triangles, and the triangles near a box.
 #pragma once
 
 #include <bit>
@@ -18,13 +18,13 @@ struct ClosestPoint {
   glm::dvec3 point{0.0};
 };
 
-/// Returns the point of the triangles that is closest to `point`, which is finite; computed in
-/// double, with its rounding errors. Of triangles at the same distance the one of lower number is
-/// returned. The tree must have a triangle.
+/// Returns the point of the triangles closest to `point`, which is finite, computed in double with
+/// rounding errors. Of triangles at equal distance, the one with the lower index is returned. The
+/// BVH must have a triangle.
 [[nodiscard]] ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point);
 
-/// Calls visit(leaf) for the leaves whose boxes touch the closed box from `low` to `high`, in no
-/// particular order, until it returns true. Returns whether it did. For bodies of in_vectors.
+/// Calls visit(leaf) for the leaves whose boxes touch the closed box from `low` to `high`, in any
+/// order, until a call returns true. Returns whether a call did. For bodies of in_vectors.
 template <Vectors kCode, class Visit>
 RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
                                   const Visit& visit) {
@@ -53,14 +53,14 @@ RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const gl
   return false;
 }
 
-/// Whether a triangle's axis-aligned box touches the closed box from `low` to `high`.
+/// Returns whether a triangle's axis-aligned box touches the closed box from `low` to `high`.
 [[nodiscard]] inline bool touches(const glm::vec3& low, const glm::vec3& high, const Corners& t) {
   return glm::all(glm::lessThanEqual(glm::min(glm::min(t[0], t[1]), t[2]), high)) &&
          glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2])));
 }
 
 /// Calls visit(primitive, corners) for the triangles whose axis-aligned boxes touch the closed box
-/// from `low` to `high`, until it returns true. Returns whether it did.
+/// from `low` to `high`, until a call returns true. Returns whether a call did.
 template <class Visit>
 [[nodiscard]] bool any_primitive_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
                                       const Visit& visit) {

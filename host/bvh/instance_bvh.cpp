@@ -10,21 +10,21 @@
 #include "host/bvh/sah_builder.h"
 #include "host/exact/exact.h"
 
-// Why placed boxes hold placed triangles
+// Why boxes of an instance contain its triangles
 //
-// Let u = 2^-24, m one of the instance's rows, m' its first three elements in float, v a corner of
-// the mesh, and [l, h] the box of a node that holds it. The corner's coordinate is
-// c = float32(double(m.v + m3)), so c is off m.v + m3 by 1.01 u S + 2^-150 at most, where S is the
-// sum of |m_k| V_k and |m3|, and V_k the largest magnitude of a bound of the mesh along axis k.
+// Let u = 2^-24, m a row of the instance, m' its first three elements in float, v a corner of the
+// mesh, and [l, h] the box of a node that contains it. The corner's coordinate is c =
+// float32(double(m.v + m3)), so c differs from m.v + m3 by at most 1.01 u S + 2^-150, where S is
+// the sum of |m_k| V_k and |m3|, and V_k the largest magnitude of a bound of the mesh along axis k.
 //
-// The low bound is made in float of low <= m3 - e and, for each axis, m'_k x_k, where x_k is the
-// end of [l, h] at which that is least: so m'.v >= m'.x. Three products and three sums are off by
-// 4.1 u (S + e) + 3 2^-150 in all, and m'.v is off m.v by D = sum |m_k - m'_k| V_k at most. The
-// float below c is 2.02 u S + 2^-149 away. So the bound is at or below it if
+// The low bound is computed in float from low <= m3 - e and, for each axis, m'_k x_k, where x_k is
+// the end of [l, h] at which it is least: so m'.v >= m'.x. Three products and three sums have an
+// error of 4.1 u (S + e) + 3 2^-150 in all, and m'.v differs from m.v by at most D = sum |m_k -
+// m'_k| V_k. The float below c is 2.02 u S + 2^-149 away. So the bound is at or below it if
 //   e >= D + (4.1 + 1.01 + 2.02) u S + 4.1 u e + 2^-147,
-// which e = D + 12 u S + 2^-140 is: D <= u S but for numbers that underflow, and D <= S for those.
-// By symmetry the same holds of the high bound. All operations are monotonic: a box in another one
-// is placed in where that one is.
+// which holds for e = D + 12 u S + 2^-140: D <= u S except for numbers that underflow, and D <= S
+// for those. By symmetry the same holds for the high bound. All operations are monotonic, so nested
+// boxes of the mesh give nested boxes of the instance.
 
 namespace raygate {
 
@@ -49,14 +49,14 @@ Bvh::Child placed(const InstanceBvh& at, const Bvh::Child& child) {
   return {child.first + (child.count == 0 ? at.first_node : at.first_primitive), child.count};
 }
 
-/// Makes a node of the instance out of one of its mesh.
+/// Computes a node of the instance from one of its mesh.
 RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Node& to) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   FloatLanes bounds[2][3];
   for (int end = 0; end < 2; ++end) {
     for (int k = 0; k < 3; ++k) bounds[end][k] = load<FloatLanes>(from.bounds[end][k]);
   }
-  // Their bounds are infinite: times 0, no numbers.
+  // Infinite bounds times 0 are NaN.
   const IntLanes absent = bounds[0][0] > bounds[1][0];
   for (int k = 0; k < 3; ++k) {
     FloatLanes low = FloatLanes{} + at.low[k], high = FloatLanes{} + at.high[k];
@@ -74,15 +74,15 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Nod
   for (int i = 0; i < Bvh::kWidth; ++i) to.child[i] = placed(at, from.child[i]);
 }
 
-/// Makes the corners of a leaf's triangles: as `transform_point` (host/scene/instances.h)
-/// does of each.
+/// Computes the corners of a leaf's triangles, with the bits of `transform_point`
+/// (host/scene/instances.h).
 RAYGATE_INLINE void place(const InstanceBvh& at, const float* from, std::size_t count, float* to) {
   for (std::size_t v = 0; v < 3; ++v) {
     DoubleQuad corner[3];
     for (std::size_t k = 0; k < 3; ++k) {
       corner[k] = wide(load<FloatQuad>(from + (3 * v + k) * count));
     }
-    for (std::size_t k = 0; k < 3; ++k) {  // what is beyond the last triangle is written over
+    for (std::size_t k = 0; k < 3; ++k) {  // the next write replaces excess elements
       DoubleQuad coordinate;
       transform_coordinate(at.rows[k], corner, coordinate);
       store(to + (3 * v + k) * count, narrow(coordinate));
@@ -90,7 +90,7 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const float* from, std::size_t 
   }
 }
 
-/// The box around a node's children.
+/// Computes the box around a node's children.
 void box_around(const Bvh::Node& node, Box& box) {
   clear(box);
   for (int i = 0; i < Bvh::kWidth; ++i) {
@@ -110,7 +110,7 @@ int Bvh::add_instances(const Scene& scene, int threads, TreeContent& content) {
     const TreeContent triangles{mesh.positions, mesh.triangles, {}};
     Bvh& tree = meshes_.emplace_back(Bvh());
     tree.build(triangles, kMaxDepth, threads);
-    // Hardly ever: half of the levels are for what is above.
+    // Rarely needed: half of the levels are for the BVH above the instances.
     if (tree.levels() > kMaxDepth / 2) tree.build(triangles, kMaxDepth / 2, threads);
     most_levels = std::max(most_levels, tree.levels());
     Box box;
@@ -120,7 +120,7 @@ int Bvh::add_instances(const Scene& scene, int threads, TreeContent& content) {
       sizes.back()[k] = std::max(std::abs(double{box[k]}), std::abs(double{box[k + 4]}));
     }
   }
-  // More than the tree's own nodes and primitives will be.
+  // An upper bound of the numbers of the BVH's own nodes and primitives.
   first_instanced_ =
       static_cast<std::uint32_t>(scene.triangles.size() + scene.instances.size()) + 1;
   std::vector<std::uint32_t> node_counts, primitive_counts;

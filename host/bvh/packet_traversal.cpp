@@ -9,39 +9,39 @@
 
 // Why no true hit is culled
 //
-// Let the ray hit a triangle at t* > 0, t* at most the exact cutoff, I its direction,
-// and u = 2^-24. On each axis t* I = x - O for a coordinate x inside the triangle's box, which the
-// tree stores at least one float, so at least 2^-149, wider: low' + 2^-149 <= x <= high' - 2^-149.
-// By symmetry let I > 0; near = low', far = high'.
+// Let the ray hit a triangle at t* > 0, t* at most the exact cutoff, I its direction, and u =
+// 2^-24. On each axis t* I = x - O for a coordinate x inside the triangle's box, which the BVH
+// stores at least one float, so at least 2^-149, wider: low' + 2^-149 <= x <= high' - 2^-149. By
+// symmetry let I > 0; near = low', far = high'.
 //
-// Entry: float32((near - O) * inverse_near). A difference of floats is off by a factor 1 + u and
-// never
-//   underflows; with |coordinates| <= 2^126 it does not overflow.
-//   * I >= 2^-100: inverse_near = float32(1/I), a normal number off by 1 + u. The product is off
-//     by 1 + u or by 2^-150 if it underflows; (near - O) <= t* I - 2^-149 and 1/I > 1/2, so the
-//     2^-150 is paid for by the widening, and the entry is at most t* (1 + 3.1 u), or negative.
-//     If the product overflows, t* > 2^127, while the axis of the largest I, in [1, 2), says
-//     t* <= 2^127: it does not happen.
-//   * I < 2^-100, or 0: inverse_near = 2^100 <= 1/I, so a positive entry comes out no later than
-//     above, and a negative or zero one never later than 0. With I = 0, near - O < 0.
+// Entry: float32((near - O) * inverse_near). A difference of floats has a relative error of u and
+// never underflows; with |coordinates| <= 2^126 it does not overflow.
+//   * I >= 2^-100: inverse_near = float32(1/I), a normal number with a relative error of u. The
+//     product has a relative error of u, or an error of 2^-150 if it underflows; (near - O) <= t* I
+//     - 2^-149 and 1/I > 1/2, so the widening covers the 2^-150, and the entry is at most t* (1 +
+//     3.1 u), or negative. The product overflows only if t* > 2^127, but on the axis of the largest
+//     I, in [1, 2), t* <= 2^127.
+//   * I < 2^-100, or 0: inverse_near = 2^100 <= 1/I, so a positive entry is no later than above,
+//     and a negative or zero one never later than 0. With I = 0, near - O < 0.
 // Exit: float32((far - O) * inverse_far).
 //   * I >= 2^-100: inverse_far = float32((1 + 8 u) float32(1/I)) (Ize, "Robust BVH ray traversal",
-//     2013, grows the exit likewise). Four roundings: the exit is at least
-//     t* (1 + 8 u) (1 - u)^4 > t* (1 + 3.9 u); underflow is paid for as above.
+//     2013, grows the exit likewise). Four roundings: the exit is at least t* (1 + 8 u) (1 - u)^4 >
+//     t* (1 + 3.9 u); underflow is covered as above.
 //   * I < 2^-100: inverse_far = +infinity, and far - O > 0: the exit is +infinity.
-// Cutoff: stored as t (1 + 8 u), rounded up; finite, so that an entry of +infinity stands for a ray
-//   that does not enter.
-// So every axis' entry <= t* (1 + 3.1 u) < every axis' exit and the cutoff, and the box is visited.
+// Cutoff: stored as t (1 + 8 u), rounded up; finite, so that an entry of +infinity means that the
+// ray does not enter.
+// So the entry of every axis <= t* (1 + 3.1 u) < the exit of every axis and the cutoff, and the box
+// is visited.
 //
-// A product may be 0 * infinity = NaN (far = O, I = 0: a ray within a face that the widening
-// has moved away from its triangle). Each comparison is written so that a NaN loses.
+// A product may be 0 * infinity = NaN (far = O, I = 0: a ray within a face that the widening has
+// moved away from its triangle). Comparisons are written so that a NaN is ignored.
 
 namespace raygate {
 namespace {
 
-constexpr float kFarthest = std::numeric_limits<float>::max();  // no t is, nor any entry
+constexpr float kFarthest = std::numeric_limits<float>::max();  // larger than any t or entry
 
-/// The smallest lane; no NaN.
+/// Returns the smallest lane. There must be no NaN.
 RAYGATE_INLINE float smallest_of(const FloatLanes& lanes) {
   FloatLanes x = lanes, other = __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
   x = x < other ? x : other;
@@ -72,7 +72,7 @@ void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3
 
 void PacketTraversal::set_cutoff(int lane, double t) { cutoff_[lane] = cutoff_beyond(t); }
 
-/// A packet on its way, at hand in registers.
+/// A packet's state in registers.
 struct PacketVisitor {
   int octant;
   FloatLanes origin[3], inverse_near[3], inverse_far[3], cutoff;
@@ -143,7 +143,6 @@ struct PacketVisitor {
   }
 };
 
-/// Goes on to the next leaf.
 void advance(PacketTraversal& packet, LeafVisits& leaf) {
   in_vectors([&](auto) RAYGATE_BODY {
     PacketVisitor visitor(packet);

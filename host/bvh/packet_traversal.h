@@ -1,5 +1,5 @@
-// Packet traversal: eight rays go through the tree together and stop at each leaf; and slab tests
-// of many rays with one origin as if they were one ray.
+// Packet traversal: eight rays traverse the BVH together and stop at each leaf; and slab tests of
+// many rays with one origin as if they were one ray.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct LeafVisit {
   LaneMask lanes = 0;
 };
 
-/// The primitives of a leaf whose boxes any ray of the packet meets, in runs met by the same rays.
+/// The primitives of a leaf whose boxes any ray meets, grouped by the rays that meet them.
 struct LeafVisits {
   std::array<LeafVisit, Bvh::kMaxLeafSize> visits;
   std::size_t count = 0;  ///< 0: the traversal has ended
@@ -45,7 +45,7 @@ class PacketTraversal {
   /// in [1, 2)); coordinates have a magnitude of at most 2^126.
   PacketTraversal(const Bvh& bvh, int octant);
 
-  /// Puts a ray into an empty lane; only before the first call of next_leaf.
+  /// Sets the ray of an unused lane. Must be called before the first next_leaf().
   void set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction);
 
   /// Restricts the ray in `lane` to distances up to `t` from now on.
@@ -68,18 +68,18 @@ class PacketTraversal {
 
 // Why no true hit is culled
 //
-// packet_traversal.cpp has it for one ray, whose entry into a box is the largest of 0 and
-// float32((near - O) * inverse_near) of each axis, and whose exit the smallest of its cutoff and
+// packet_traversal.cpp proves it for one ray, whose entry into a box is the maximum of 0 and
+// float32((near - O) * inverse_near) of each axis, and whose exit is the minimum of its cutoff and
 // float32((far - O) * inverse_far). Both inverses have the sign of the direction's component, and
-// never grow when its magnitude does: rounding keeps order. So bounds that take inverse_near for
-// a magnitude no smaller than any of its rays', and inverse_far for one no larger, enter
-//   * where near - O has the sign of I: no later than any of them;
-//   * else: at 0 or before, as they do;
-// and leave, where far - O has the sign of I, no earlier than any of them (else none of them hits
-// anything in the box). Their cutoff is no nearer than any of the rays'.
+// never grow with its magnitude, as rounding is monotonic. So bounds with inverse_near for a
+// magnitude no smaller than that of any ray, and inverse_far for one no larger, enter
+//   * no later than any ray, if near - O has the sign of I;
+//   * at 0 or before, as the rays do, otherwise;
+// and leave no earlier than any ray, if far - O has the sign of I (otherwise no ray hits anything
+// in the box). Their cutoff is at least that of each ray.
 
-/// Direction components of smaller magnitude count as 0; exit distances are multiplied by the
-/// growth. The same for single rays and packets.
+/// Direction components with a smaller magnitude count as 0. Exit distances are multiplied by
+/// kExitGrowth. Both are the same for single rays and packets.
 inline constexpr float kSmallestComponent = 0x1p-100f;
 inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
 
@@ -88,24 +88,24 @@ inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
   return (direction.x < 0.0f ? 1 : 0) | (direction.y < 0.0f ? 2 : 0) | (direction.z < 0.0f ? 4 : 0);
 }
 
-/// Returns the distance beyond which boxes can be skipped for a ray with maximum distance `t`:
-/// t (1 + 8 u) rounded up, and finite, so that an entry of +infinity means a box is not entered.
-/// Negative t: -1, beyond which every box can be skipped.
+/// Returns the distance beyond which boxes can be skipped for a ray with maximum distance `t`: t (1
+/// + 8 u) rounded up, and finite, so that an entry of +infinity means that a box is not entered.
+/// For negative t returns -1, so that every box is skipped.
 [[nodiscard]] inline float cutoff_beyond(double t) {
-  constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float: no t is, nor any entry
+  constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float; larger than any t or entry
   if (t < 0.0) return -1.0f;
   const auto nearest = std::bit_cast<std::int32_t>(static_cast<float>(t * kExitGrowth));
   return std::bit_cast<float>(std::min(nearest + 1, kFarthest));
 }
 
-/// Bounds of rays from one origin into one octant.
+/// Bounds of rays with one origin and octant.
 struct PacketBounds {
   float origin[3];
   float inverse_near[3], inverse_far[3];
   int octant;  ///< see octant_of
 
   PacketBounds() = default;
-  /// Bounds of one ray; its direction is scaled.
+  /// Bounds of one ray. Its direction must be scaled.
   PacketBounds(const glm::vec3& from, const glm::vec3& direction) : octant(octant_of(direction)) {
     for (int k = 0; k < 3; ++k) {
       const bool small = std::abs(direction[k]) < kSmallestComponent;
@@ -137,7 +137,7 @@ RAYGATE_INLINE LaneMask intersect_children(const PacketBounds& bounds, const Bvh
   return sign_mask<kCode>(enter <= leave);
 }
 
-/// Bounds of eight packets with one origin and octant; an absent packet has a negative cutoff.
+/// Bounds of eight packets with one origin and octant. An absent packet has a negative cutoff.
 struct PacketBounds8 {
   FloatLanes inverse_near[3], inverse_far[3];
   FloatLanes cutoff;
@@ -154,7 +154,7 @@ struct PacketBounds8 {
   }
 };
 
-/// Returns one of the eight as bounds for intersect_children.
+/// Returns one of the eight packets as bounds for intersect_children.
 RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
                                       const PacketBounds& like) {
   PacketBounds bounds = like;

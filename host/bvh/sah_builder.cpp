@@ -14,13 +14,14 @@
 namespace raygate {
 namespace {
 
-constexpr std::uint32_t kTaskSize = 4096;  // runs no longer than that are one thread's
-constexpr std::uint32_t kFew = 4;  // of these all cuts are tried, of more those between slices
-constexpr int kBins = 16;  // most slices of an axis; half as many where not many are to be cut
+constexpr std::uint32_t kTaskSize = 4096;  // ranges up to this size are built by one thread
+// Up to this size all splits are tried, otherwise those between bins.
+constexpr std::uint32_t kFew = 4;
+constexpr int kBins = 16;  // maximum number of bins per axis; half as many for small ranges
 constexpr std::uint32_t kMany = 64;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
-/// A run of primitives that becomes a node, and whose child it is.
+/// A range of primitives that becomes a node, and its parent.
 struct Run {
   std::uint32_t begin, end;
   int depth;
@@ -29,21 +30,21 @@ struct Run {
   [[nodiscard]] std::uint32_t size() const { return end - begin; }
 };
 
-/// A box's middle in lanes 0 to 2, and turned in lanes 4 to 6: a box of no size.
+/// Computes a box's centre in lanes 0 to 2, and its negation in lanes 4 to 6: a box of size 0.
 RAYGATE_INLINE void middle_of(const Box& box, Box& middle) {
   const FloatLanes half = 0.5f * box;
   middle = half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
 }
 
-/// What is around a run, and around the middles of what is in it.
+/// Bounds of a range's primitives, and of their centres.
 struct Around {
   Box box, middles;
 };
 
-/// Equal slices of the middles' box on each axis.
+/// Equal bins of the centres' box on each axis.
 struct Slices {
   int count;
-  FloatLanes low, scale;  ///< in lanes 0 to 2
+  FloatLanes low, scale;  ///< lanes 0 to 2
 
   RAYGATE_INLINE Slices(const Box& middles, std::uint32_t size)
       : count(size < kMany ? kBins / 2 : kBins), low(middles), scale{} {
@@ -53,7 +54,7 @@ struct Slices {
       scale[k] = extent > 0.0f ? std::min(static_cast<float>(count) / extent, kMost) : 0.0f;
     }
   }
-  /// Which slices a box's middle is in; lanes 0 to 2.
+  /// Computes the bins of a box's centre; lanes 0 to 2.
   RAYGATE_INLINE void of(const Box& box, IntLanes& slice) const {
     Box middle;
     middle_of(box, middle);
@@ -64,9 +65,9 @@ struct Slices {
   }
 };
 
-/// Where to cut a run: what is in slices below `part` goes left; or, of a few, the first `part`.
+/// A split of a range: bins below `part` go left, or the first `part` of a few primitives.
 struct Cut {
-  float cost = kNever;  ///< a sum of area times count
+  float cost = kNever;  ///< sum of area times count
   int axis = 0;
   int part = 0;
 };
@@ -83,7 +84,7 @@ RAYGATE_INLINE void look_at(std::span<const Primitive> run, Around& around) {
   }
 }
 
-/// The cheapest cut between parts of these boxes and counts.
+/// Finds the cheapest split between parts with these boxes and counts.
 RAYGATE_INLINE void find_cut(const Box* boxes, const std::uint32_t* counts, int parts, int axis,
                              float unit, Cut& best) {
   float right_cost[kBins];
@@ -123,7 +124,7 @@ RAYGATE_INLINE void cut_between_slices(std::span<const Primitive> run, const Sli
       ++counts[axis][slice[axis]];
     }
   };
-  // Neighbours are often in the same slices, and would wait for each other.
+  // Neighbours are often in the same bins; alternating between the halves avoids dependencies.
   const std::size_t half = run.size() / 2;
   for (std::size_t i = 0; i < half; ++i) {
     put(run[i]);
@@ -137,8 +138,8 @@ RAYGATE_INLINE void cut_between_slices(std::span<const Primitive> run, const Sli
   }
 }
 
-/// Puts what is in slices below the cut first; how many these are. Keeps the order on both sides.
-/// `room` is as large as the run.
+/// Moves primitives in bins below the split to the front, stably, and returns their number. `room`
+/// is as large as the range.
 RAYGATE_INLINE std::uint32_t part_at(const Cut& cut, const Slices& slices, std::span<Primitive> run,
                                      Primitive* room) {
   const float low = slices.low[cut.axis], scale = slices.scale[cut.axis];
@@ -155,7 +156,7 @@ RAYGATE_INLINE std::uint32_t part_at(const Cut& cut, const Slices& slices, std::
   return left;
 }
 
-/// Puts a few primitives in the order of their middles along an axis; stable.
+/// Sorts a few primitives by their centres along an axis; stable.
 RAYGATE_INLINE void sort_along(std::span<Primitive> run, int axis) {
   for (std::size_t i = 1; i < run.size(); ++i) {
     const Primitive moved = run[i];
@@ -180,8 +181,8 @@ RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
 
 }  // namespace
 
-/// Where the run is cut in two; puts its primitives on their sides, in a room as large as it. Not
-/// far from the largest depth, `depths_left` away, and where no cut is found, halves are split.
+/// Splits a range in two, and returns the size of the first part. `room` is as large as the range.
+/// Splits in halves near the maximum depth, `depths_left` away, and if no split is found.
 std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left, Box& box) {
   return in_vectors([&](auto) RAYGATE_BODY -> std::uint32_t {
     const auto size = static_cast<std::uint32_t>(run.size());
@@ -208,7 +209,7 @@ std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left
 
 namespace {
 
-/// Cuts runs up to the last one.
+/// Splits ranges until there are none left.
 class SahBuilder {
  public:
   SahBuilder(BinaryBvh& tree, int max_depth)
@@ -218,7 +219,7 @@ class SahBuilder {
     waiting_.push_back({0, tree.size(), 0, 0, 0});
   }
 
-  /// What each thread does. What one throws ends the others, too.
+  /// Does the work of each thread. An exception on one thread ends the others.
   void work() {
     try {
       cut_runs();

@@ -1,4 +1,4 @@
-// Traversal of the tree, leaf by leaf and near before far, for any visitor.
+// BVH traversal, leaf by leaf and nearest first, for any visitor.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace raygate {
 
-/// A node or leaf that is still to be visited: a lower bound of the distance at which the first ray
-/// enters its box, and the rays that may enter it.
+/// A node or leaf to visit, with a lower bound of the distance at which the first ray enters its
+/// box, and the rays that may enter it.
 template <class Rays>
 struct StackEntry {
   Bvh::Child child;
@@ -19,7 +19,7 @@ struct StackEntry {
   [[no_unique_address]] Rays rays;
 };
 
-/// The entries still to be visited. Of one node's children the nearest is on top.
+/// The nodes and leaves to visit. The nearest child of a node is on top of its siblings.
 template <class Rays>
 struct TraversalStack {
   int depth;
@@ -28,20 +28,20 @@ struct TraversalStack {
   explicit TraversalStack(const Rays& rays) : depth(1) { waiting[0] = {{0, 0}, 0.0f, rays}; }
 };
 
-/// Stands for the rays of a traversal that has only one.
+/// Ray set of a traversal with a single ray.
 struct SingleRay {};
 
-/// Advances to the next leaf; returns false when there is none. The visitor may change its cutoff
+/// Advances to the next leaf; returns false if there is none. The visitor may change its cutoff
 /// between calls. It provides
-///   * should_visit(entry, rays): whether a child can still matter to any of `rays`; may remove
-///   rays;
-///   * intersect_boxes(node, rays, entry): a mask of the children that the rays meet, and their
-///     entry distances, 0 or more;
-///   * rays_of_child(i): the rays that meet child i, after intersect_boxes.
+///   * should_visit(entry, rays): returns whether a child is still relevant to any of `rays`; may
+///     remove rays;
+///   * intersect_boxes(node, rays, entry): returns a mask of the children that the rays meet, and
+///     sets their entry distances, 0 or more;
+///   * rays_of_child(i): returns the rays that meet child i, after intersect_boxes.
 template <class Visitor, class Rays>
 RAYGATE_INLINE bool next_leaf(const BvhView& tree, Visitor& visitor, TraversalStack<Rays>& stack,
                               StackEntry<Rays>& leaf) {
-  using Key = std::int32_t;  // a child's number in the place of the last bits of its entry
+  using Key = std::int32_t;  // entry distance, with the child's index in the last bits
   constexpr Key kNumber = Bvh::kWidth - 1;
   constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
   while (stack.depth > 0) {

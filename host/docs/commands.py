@@ -1,8 +1,8 @@
-"""Runs the commands of README.md and the tutorials as they are written, in their order.
+"""Runs the commands of README.md and the tutorials as written, in order.
 
-`python3 host/docs/commands.py`: in a clone of this commit, build/commands, all of them, from installing to proving: hours.
-With --quick: of the programs of this build and of the Python module alone, pictures being small. What they print is kept in
-build/commands-PAGE.log. Exit status 1 where one fails.
+`python3 host/docs/commands.py`: runs all commands, from installation to proofs, in a clone of this commit,
+build/commands. Takes hours. With --quick: runs only those of this build's programs and of the Python module, with small
+pictures. Their output is kept in build/commands-PAGE.log. Exit status 1 if a command fails.
 """
 
 import argparse
@@ -17,15 +17,15 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PAGES = ["host/docs/hardware.md", "host/docs/pictures.md", "host/docs/python.md", "README.md"]  # which uses the module that python.md installs
+PAGES = ["host/docs/hardware.md", "host/docs/pictures.md", "host/docs/python.md", "README.md"]  # README.md needs python.md
 QUICK = ("./render", "./trace", "./compare", "./merge", "echo", "mkdir", "cat", '"$PYTHON"')
 PROGRAMS = ("render", "trace", "compare", "merge")
-SERVED = 20  # seconds until a page that --serve shows is closed as Ctrl-C does
+SERVED = 20  # seconds until a page of --serve is closed, as by Ctrl-C
 
 
 def commands(text: str) -> list[str]:
-    """The commands of a page, each line of a block of `sh` and each block of `python` one, and a JSON file where the text
-    before it names one. All blocks of Python are one program, in the place of the last."""
+    """Returns the commands of a page: each line of `sh` blocks, each `python` block, and JSON files named in the text
+    before them. All Python blocks form one program, at the position of the last."""
     found: list[str] = []
     programs: list[str] = []
     for before, kind, block in re.findall(r"(.*?)^```(\w*)\n(.*?)^```$", text, re.M | re.S):
@@ -42,19 +42,19 @@ def commands(text: str) -> list[str]:
 
 
 def script(page: list[str]) -> str:
-    """The commands in one shell, which says at file descriptor 3 which one begins and with what status it ended."""
+    """Returns a shell script of the commands, which reports the start and the status of each at file descriptor 3."""
     lines = []
     for number, command in enumerate(page):
         if "--serve" in command:
             command = f"timeout --signal=INT {SERVED} {command.partition(' #')[0]}; [ $? = 124 ]"
-        if "KEEP_GOING=1" in command:  # of a module that is refuted, which the status says at the end
+        if "KEEP_GOING=1" in command:  # the exit status at the end reports a refuted module
             command = f"{command.partition(' #')[0]}; [ $? = 2 ]"
         lines.append(f"echo begin {number} >&3\n{command}\necho end {number} $? >&3\n")
     return "".join(lines)
 
 
 def prepare(folder: pathlib.Path) -> None:
-    """Writes the files that the tutorials take for the reader's own."""
+    """Writes the files that the tutorials expect from the reader."""
     for name in ("cornell.obj", "cornell.mtl"):
         shutil.copy(ROOT / "scenes" / name, folder / name.replace("cornell.obj", "model.obj"))
     shutil.copy(ROOT / "host/film/fuzz/seeds/flat.hdr", folder / "sky.hdr")
@@ -87,7 +87,7 @@ def run(name: str, page: list[str], folder: pathlib.Path, environment: dict[str,
 
 
 def quick(name: str, text: str, folder: pathlib.Path) -> list[str]:
-    """The quick commands of a page, in small pictures, and by the C++ engine where the page builds that alone."""
+    """Returns the quick commands of a page, with small pictures, and with the C++ engine if the page builds only that."""
     for entry in ROOT.iterdir():
         if entry.name not in PROGRAMS and not entry.name.startswith("."):
             (folder / entry.name).symlink_to(entry)

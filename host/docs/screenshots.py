@@ -1,6 +1,6 @@
-"""`build/venv/bin/python3 host/docs/screenshots.py`: the pages of --serve and `make page` as PNGs for the tutorials, in host/docs.
+"""`build/venv/bin/python3 host/docs/screenshots.py`: saves PNGs of --serve and `make page` for the tutorials in host/docs.
 
-Both must have been built: `make verilate page`."""
+Requires `make verilate page`."""
 
 import pathlib
 import re
@@ -19,7 +19,7 @@ ROOT = FOLDER.parents[1]
 
 
 def save(browser: webdriver.Chrome, name: str) -> None:
-    """The window in 128 colours: below 200 kB."""
+    """Saves the window in 128 colours, which takes less than 200 kB."""
     with tempfile.TemporaryDirectory() as folder:
         whole = pathlib.Path(folder) / "whole.png"
         browser.save_screenshot(str(whole))
@@ -28,7 +28,7 @@ def save(browser: webdriver.Chrome, name: str) -> None:
 
 
 def window(browser: webdriver.Chrome) -> None:
-    """The picture and its hit tests under the slider, and a pixel's ray."""
+    """Saves the image and its hit tests under the slider, and a pixel's ray."""
     with subprocess.Popen(["./render", "scenes/still_life.json", "--engine", "cpu", "--size", "400x260", "--serve"],
                           cwd=ROOT, stdout=subprocess.PIPE, text=True) as server:
         browser.get(re.match(r"http://\S+", server.stdout.readline())[0])
@@ -44,7 +44,7 @@ def window(browser: webdriver.Chrome) -> None:
 
 
 def unit(browser: webdriver.Chrome) -> None:
-    """The paper's unit at a clock, with a gate of its adder broken."""
+    """Saves the paper's unit at one clock, with a broken gate in its adder."""
     browser.get((ROOT / "build/page/index.html").as_uri())
     WebDriverWait(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "[data-ready]"))
     browser.execute_script("document.getElementById('another').click();"

@@ -1,4 +1,4 @@
-// IEEE 754 binary32, rounded to nearest even, by the machine's own float arithmetic.
+// IEEE 754 binary32, rounded to nearest even, in the machine's own float arithmetic.
 #pragma once
 
 #include <bit>
@@ -8,13 +8,13 @@
 
 namespace raygate {
 
-/// The operations of the hardware's float cores, bit for bit. Needs the machine's default
+/// The operations of the hardware's float cores, bit for bit. Requires the machine's default
 /// floating-point environment (subnormals kept) and no fused multiply-adds.
 struct Binary32 {
   static float add(float a, float b) { return canonical(a + b); }
   static float multiply(float a, float b) { return canonical(a * b); }
   static float divide(float a, float b) { return canonical(a / b); }
-  /// Returns (ax bx + ay by) + az bz. Its NaNs may differ from the hardware's; they are not used.
+  /// Returns (ax bx + ay by) + az bz. NaN results are not used, and may differ from the hardware's.
   static float dot(const glm::vec3& a, const glm::vec3& b) {
     return (a.x * b.x + a.y * b.y) + a.z * b.z;
   }
@@ -25,7 +25,7 @@ struct Binary32 {
   static constexpr int fraction_bits() { return 23; }
 
  private:
-  /// Returns x with the hardware's only NaN in place of any NaN.
+  /// Returns x, with the hardware's only NaN in place of any NaN.
   static float canonical(float x) { return std::isnan(x) ? std::bit_cast<float>(0x7FC00000u) : x; }
 };
 

@@ -28,8 +28,8 @@ glm::dvec3 difference(const glm::vec3& a, const glm::vec3& b) {
 }
 
 /// A cross product whose factors are rounded differences, and for each component the sum of the
-/// magnitudes of its two products. Every term of a component went through four roundings
-/// (two differences, a product, a subtraction): it is off by less than 5u times its magnitude.
+/// magnitudes of its two products. Every term of a component has four roundings (two differences, a
+/// product, a subtraction): its error is less than 5u times its magnitude.
 struct Cross {
   glm::dvec3 value, magnitude;
 
@@ -41,16 +41,16 @@ struct Cross {
     magnitude = {size[0], size[1], size[2]};
   }
 
-  /// Whether each component's error is surely at most 2^-34 of |value|_1. The bound is 8u, not
-  /// 5u, for the roundings of this very comparison.
+  /// Returns whether each component's error is surely at most 2^-34 of |value|_1. The bound is 8u,
+  /// not 5u, to cover the rounding of this comparison.
   [[nodiscard]] bool accurate() const {
     const double size = std::abs(value.x) + std::abs(value.y) + std::abs(value.z);
     return 8.0 * kU * largest(magnitude) <= 0x1p-34 * size;
   }
 };
 
-/// u . cross: each term takes at most four more roundings (u itself, a product, two sums), eight
-/// in all; 10u leaves room for the roundings of the bound.
+/// Returns u . cross. Each term has at most four more roundings (u itself, a product, two sums),
+/// eight in all; 10u covers the rounding of the bound.
 Estimate dot(const glm::dvec3& u, const Cross& cross) {
   const double value = u.x * cross.value.x + u.y * cross.value.y + u.z * cross.value.z;
   const double magnitude = std::abs(u.x) * cross.magnitude.x + std::abs(u.y) * cross.magnitude.y +
@@ -87,7 +87,7 @@ Expansion<96> exact_slope(const glm::vec3& direction, const Corners& t) {
   return exact_dot(direction, exact_normal(t));
 }
 
-/// t = D / (I . N) of where a ray meets a triangle's plane, both parts estimated.
+/// t = D / (I . N) at a triangle's plane, with estimates of both parts.
 struct Fraction {
   Estimate numerator, denominator;
 
@@ -98,7 +98,7 @@ struct Fraction {
   }
 };
 
-/// a * b with the errors of both and of the product (twice u, for the roundings of the bound).
+/// Returns a * b with the errors of both and of the product (2 u, including that of the bound).
 Estimate product(const Estimate& a, const Estimate& b) {
   const double value = a.value * b.value;
   return {value, 1.000001 * (a.error * std::abs(b.value) + std::abs(a.value) * b.error +
@@ -106,7 +106,7 @@ Estimate product(const Estimate& a, const Estimate& b) {
                      2.0 * kU * std::abs(value)};
 }
 
-/// As order_of_planes. Products of this size do not belong on the stack.
+/// Computes order_of_planes exactly. Products of this size are not allocated on the stack.
 int exact_order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
   using Product = Expansion<2 * 192 * 96>;
   const auto left = std::make_unique_for_overwrite<Product>();
@@ -120,7 +120,7 @@ int exact_order_of_planes(const Ray& ray, const Corners& first, const Corners& s
   return result->sign();
 }
 
-/// The sign of D1 (I . N2) - D2 (I . N1): that of t1 - t2, times the signs of both I . N.
+/// Returns the sign of D1 (I . N2) - D2 (I . N1): that of t1 - t2, times the signs of both I . N.
 int order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
   const Fraction t1(ray, first), t2(ray, second);
   const Estimate left = product(t1.numerator, t2.denominator);
@@ -153,7 +153,7 @@ bool is_scaled(const glm::vec3& direction) {
 }
 
 glm::vec3 scaled_direction(const glm::dvec3& direction) {
-  // By a power of two, which rounds nothing: from the bits, or in steps where they have no room.
+  // Scales by a power of two, which is exact: from the bits, or in steps for extreme exponents.
   constexpr std::uint64_t kExponent = 0x7FF0000000000000, kOne = 0x3FF0000000000000;
   const double size = largest(direction);
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(size) & kExponent;
@@ -163,7 +163,7 @@ glm::vec3 scaled_direction(const glm::dvec3& direction) {
       has_room ? glm::vec3(direction * std::bit_cast<double>(2 * kOne - bits))
                : glm::vec3(std::scalbn(direction.x, -exponent), std::scalbn(direction.y, -exponent),
                            std::scalbn(direction.z, -exponent));
-  // Rounding to float may have carried 1.99999999 to 2.
+  // Rounding to float may have increased 1.99999999 to 2.
   if (largest(scaled) >= 2.0f) scaled *= 0.5f;
   return scaled;
 }
@@ -179,10 +179,10 @@ int orient3d(const glm::vec3& origin, const Corners& t) {
   return side.sure() ? side.sign() : exact_plane(origin, t).sign();
 }
 
-// With A, B, C independent, the tilted I is a combination of them with three non-zero weights, of
-// the signs of I . (B x C) and so on over det(A, B, C); it points into the triangle if all three
-// are positive. So all edges must have the sign of the plane, and then t = det / (I . N) > 0, as I
-// . N is the sum of the three.
+// If A, B, C are independent, the tilted I is a combination of them with three non-zero weights,
+// which have the signs of I . (B x C) and so on over det(A, B, C). It points into the triangle if
+// all three are positive. So all edges must have the sign of the plane, and then t = det / (I . N)
+// > 0, as I . N is the sum of the three.
 bool hits_triangle(const Ray& ray, const Corners& t) {
   if (!is_usable(ray.direction)) return false;
   const int side = orient3d(ray.origin, t);
@@ -201,8 +201,8 @@ bool is_ahead(const Ray& ray, const Corners& t) {
   return orient3d(ray.origin, t) * direction_side(ray.direction, t) > 0;
 }
 
-// Where doubles cancel too much, D and I . N are exact but for their last rounding to double (off
-// by an ulp at most), and then the quotient's.
+// If doubles cancel too much, D and I . N are computed exactly up to their last rounding to double
+// (an error of at most an ulp), as is the quotient.
 Interval hit_distance(const Ray& ray, const Corners& triangle) {
   const auto& [n, d] = Fraction(ray, triangle);
   if (n.error <= 0x1p-37 * std::abs(n.value) && d.error <= 0x1p-37 * std::abs(d.value)) {
@@ -216,9 +216,9 @@ Interval hit_distance(const Ray& ray, const Corners& triangle) {
   return {t * (1.0 - 16.0 * kU), t * (1.0 + 16.0 * kU)};
 }
 
-// The weights are I . (B x C), I . (C x A) and I . (A x B) over their sum S. With each off by at
-// most e = 2^-37 |S|, S is by 3 e, and a share by 4 * 2^-37; what is cut off below 0 and above 1
-// was wrong.
+// The weights are I . (B x C), I . (C x A) and I . (A x B) over their sum S. If each has an error
+// of at most e = 2^-37 |S|, S has one of 3 e, and a quotient 4 * 2^-37. Clamping to [0, 1] only
+// reduces the error.
 Barycentric barycentric(const Ray& ray, const Corners& triangle) {
   double weights[3], sum = 0.0, error = 0.0;
   const auto corner = [&](int k) -> const glm::vec3& { return triangle[std::size_t(k) % 3]; };
@@ -253,7 +253,7 @@ PreciseHit precise_hit(const Ray& ray, const Corners& triangle) {
   return {static_cast<float>(t), glm::vec3(t * glm::dvec3(ray.direction))};
 }
 
-// The signs of D and of I . N agree for a hit, as t > 0.
+// D and I . N of a hit have the same sign, as t > 0.
 int compare_hits(const Ray& ray, const Corners& first, const Corners& second) {
   return orient3d(ray.origin, first) * orient3d(ray.origin, second) *
          order_of_planes(ray, first, second);
@@ -268,7 +268,7 @@ int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit) {
   return orient3d(ray.origin, triangle) * excess.sign();
 }
 
-// At O + t I, t = D1 / (I . N1), the other plane's D2 has become D2 - t (I . N2).
+// At O + t I, t = D1 / (I . N1), the other plane's D2 becomes D2 - t (I . N2).
 int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other) {
   return orient3d(ray.origin, hit) * order_of_planes(ray, other, hit);
 }
@@ -335,7 +335,7 @@ int area_sign(std::span<const glm::vec2> polygon, double& area) {
     magnitude += std::abs(left) + std::abs(right);
   }
   area = 0.5 * twice_area;
-  // n differences and n additions, each off by at most one unit roundoff of the magnitudes.
+  // n differences and n additions, each with an error of at most u times the magnitudes.
   const double bound = 2.0 * static_cast<double>(polygon.size() + 1) * kUnitRoundoff * magnitude;
   if (std::abs(twice_area) > bound) return sign_of(twice_area);
 

@@ -15,16 +15,16 @@ namespace raygate {
 /// The vertices of a triangle, in its order.
 using Corners = std::array<glm::vec3, 3>;
 
-/// The largest of the components' magnitudes.
+/// Returns the largest magnitude of the components.
 template <class T>
 [[nodiscard]] T largest(const glm::vec<3, T>& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Largest magnitude of coordinates that trees and predicates take.
+/// Largest magnitude of coordinates that BVHs and predicates accept.
 inline constexpr double kMostCoordinate = 0x1p126;
 
-/// A position relative to an origin, in binary32, and the largest of its coordinates' errors: 0 if
+/// A position relative to an origin, in binary32, and the largest error of its coordinates: 0 if
 /// and only if the position is exact.
 struct RecentredPosition {
   glm::vec3 position{0.0f};
@@ -32,7 +32,7 @@ struct RecentredPosition {
 };
 [[nodiscard]] RecentredPosition recentred(const glm::dvec3& position, const glm::dvec3& origin);
 
-/// The float nearest to x that is not above it, or not below it.
+/// Return the nearest float that is not above x, or not below x.
 [[nodiscard]] inline float float_below(double x) {
   const auto nearest = static_cast<float>(x);
   return nearest > x ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
@@ -42,11 +42,11 @@ struct RecentredPosition {
   return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
 
-/// Whether a ray can go this way: all components finite, not all of them 0. In all others it hits
-/// nothing.
+/// Returns whether rays can have this direction: all components are finite, and not all are 0. Rays
+/// with other directions hit nothing.
 [[nodiscard]] bool is_usable(const glm::vec3& direction);
 
-/// Of length 1, also where the square of a component would overflow or underflow; `v` is not 0.
+/// Returns the unit vector of `v`, which is not 0, without overflow or underflow of squares.
 [[nodiscard]] inline glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest(v)); }
 
 template <class T>
@@ -54,101 +54,101 @@ template <class T>
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Whether the largest component's magnitude is in [1, 2): how intersectors, trees and units want
-/// directions. Multiplying one by a power of two changes no rounding and no hit.
+/// Returns whether the largest component's magnitude is in [1, 2), as intersectors, BVHs and units
+/// require. Scaling by a power of two changes neither rounding nor hits.
 [[nodiscard]] bool is_scaled(const glm::vec3& direction);
 
-/// `direction`, not 0 and finite, scaled and rounded to float.
+/// Returns `direction`, not 0 and finite, scaled and rounded to float.
 [[nodiscard]] glm::vec3 scaled_direction(const glm::dvec3& direction);
 
-/// A ray: origin + t direction for t > 0, an open beginning: what the origin lies on, and what is
-/// behind it, is not hit. Where a ray has a limit, its end is open too: hits have t < limit (see
-/// RayQuery in host/intersect). All components finite; coordinates, the triangles' too,
-/// of magnitude at most kMostCoordinate. Intersectors want the direction scaled (see is_scaled).
+/// A ray origin + t direction. The range t > 0 is open: surfaces that contain the origin, or are
+/// behind it, are not hit. A limit is exclusive, too: hits have t < limit (see RayQuery in
+/// host/intersect). All components are finite; coordinates, including those of triangles, have a
+/// magnitude of at most kMostCoordinate. Intersectors require a scaled direction (see is_scaled).
 struct Ray {
   glm::vec3 origin{0.0f};
   glm::vec3 direction{0.0f};
 };
 
-/// The exact t of a hit is in [low, high].
+/// An interval [low, high] that contains the exact t of a hit.
 struct Interval {
   double low, high;
 };
 
-/// Where a ray meets a triangle, as exactly as floats can say it.
+/// A hit, rounded to float.
 struct PreciseHit {
   float t = 0.0f;
-  glm::vec3 point{0.0f};  ///< P = t I, seen from the ray's origin
+  glm::vec3 point{0.0f};  ///< P = t I, relative to the ray's origin
 };
 
-/// The sign (-1, 0, 1) of I . (A x B), for A = a - O and B = b - O: on which side of the edge from
-/// `a` to `b` the ray passes. Where it is exactly 0, the sign for a direction tilted by an
-/// infinitesimal towards +x, by a still smaller one towards +y, and one towards +z. Only for an
-/// edge in line with the origin does the tilt not help, and the answer is 0.
+/// Returns the sign (-1, 0, 1) of I . (A x B), for A = a - O and B = b - O: the side on which the
+/// ray passes the edge from `a` to `b`. If it is exactly 0, returns the sign for a direction tilted
+/// by an infinitesimal towards +x, by a smaller one towards +y, and by a still smaller one towards
+/// +z. The result is 0 only for an edge in line with the origin.
 [[nodiscard]] int edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b);
 
-/// The sign of the determinant of A, B, C: on which side of the triangle's plane the origin is; 0
-/// for an origin in the plane and for a triangle without area.
+/// Returns the sign of the determinant of A, B, C: the side of the triangle's plane on which the
+/// origin is; 0 for an origin in the plane and for a triangle without area.
 [[nodiscard]] int orient3d(const glm::vec3& origin, const Corners& triangle);
 
-/// Whether the ray, tilted as above, hits the triangle. Neighbours in a closed mesh agree about
-/// the edge they share because they ask one question about one tilted ray: exactly one triangle
-/// of a fan is hit. A triangle whose plane holds the origin is never hit, nor one behind it.
+/// Returns whether the ray, tilted as above, hits the triangle. Neighbours in a closed mesh agree
+/// about their shared edge because both use the same tilted ray: exactly one triangle of a fan is
+/// hit. A triangle whose plane contains the origin, or that is behind it, is never hit.
 [[nodiscard]] bool hits_triangle(const Ray& ray, const Corners& triangle);
 
-/// Whether the ray's line meets the triangle's plane ahead of the origin, at t > 0.
+/// Returns whether the ray's line meets the triangle's plane in front of the origin, at t > 0.
 [[nodiscard]] bool is_ahead(const Ray& ray, const Corners& triangle);
 
-/// The t of a hit: for triangles that hits_triangle says are hit. high <= low (1 + 2^-34).
+/// Returns bounds of t for a triangle with hits_triangle(). high <= low (1 + 2^-34).
 [[nodiscard]] Interval hit_distance(const Ray& ray, const Corners& triangle);
 
-/// Where a hit lies on its triangle: P = (1 - u - v) A + u B + v C. Each of u and v is off by at
-/// most 2^-34; none of the three weights is negative, nor -0.
+/// The position of a hit on its triangle: P = (1 - u - v) A + u B + v C. The error of u and of v is
+/// at most 2^-34; none of the three weights is negative, nor -0.
 struct Barycentric {
   double u, v;
 };
 
-/// For triangles that hits_triangle says are hit.
+/// Returns the position for a triangle with hits_triangle().
 [[nodiscard]] Barycentric barycentric(const Ray& ray, const Corners& triangle);
 
-/// t and P of a hit, from the corners, whatever the angle: each word is off by at most half the
-/// distance of floats around it and 2^-10 of that.
+/// Returns t and P of a hit, computed from the corners. The error of each word is at most (1 +
+/// 2^-10) / 2 times the distance of neighbouring floats, at any angle.
 [[nodiscard]] PreciseHit precise_hit(const Ray& ray, const Corners& triangle);
 
-/// The sign of t(first) - t(second), exactly. Both must be hits.
+/// Returns the exact sign of t(first) - t(second). Both must be hits.
 [[nodiscard]] int compare_hits(const Ray& ray, const Corners& first, const Corners& second);
 
-/// The sign of t - limit, exactly. The triangle must be hit, `limit` positive and finite.
+/// Returns the exact sign of t - limit. The triangle must be hit; `limit` is positive and finite.
 [[nodiscard]] int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit);
 
-/// As orient3d of `other`, exactly, for the very point in which the ray hits `hit`.
+/// Returns orient3d of `other` for the exact point in which the ray hits `hit`.
 [[nodiscard]] int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other);
 
-/// The sign of I . N, exactly: a direction with the sign of orient3d(origin, triangle) goes
-/// towards the plane, one with the other sign away from it.
+/// Returns the exact sign of I . N. A direction with the sign of orient3d(origin, triangle) goes
+/// towards the plane, one with the opposite sign away from it.
 [[nodiscard]] int direction_side(const glm::vec3& direction, const Corners& triangle);
 
-/// The double nearest to D = A . ((b-a) x (c-a)), off by 2^-32 of itself at most, with its exact
-/// sign.
+/// Returns D = A . ((b-a) x (c-a)) rounded to double, with a relative error of at most 2^-32 and
+/// the exact sign.
 [[nodiscard]] double plane_distance(const glm::vec3& origin, const Corners& triangle);
 
-/// (p - origin) x (q - p) in double; each component is off by at most 2^-34 of the sum of the
-/// components' magnitudes.
+/// Returns (p - origin) x (q - p) in double. The error of each component is at most 2^-34 of the
+/// sum of the components' magnitudes.
 [[nodiscard]] glm::dvec3 edge_normal(const glm::vec3& origin, const glm::vec3& p,
                                      const glm::vec3& q);
 
-/// (b-a) x (c-a), as accurate as edge_normal.
+/// Returns (b-a) x (c-a), as accurate as edge_normal.
 [[nodiscard]] glm::dvec3 triangle_normal(const Corners& triangle);
 
-/// 1 if a, b, c orient2d counter-clockwise, -1 if clockwise, 0 if they are exactly on one line.
-/// For all finite floats.
+/// Returns 1 if a, b, c are in counter-clockwise order, -1 if clockwise, 0 if they are exactly
+/// collinear. For all finite floats.
 [[nodiscard]] int orient2d(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c);
 
-/// 1 if the closed polygon's signed area is positive (counter-clockwise), -1 if it is negative, 0
-/// if it is exactly zero. For all finite floats. `area` becomes the rounded area.
+/// Returns 1 if the closed polygon's signed area is positive (counter-clockwise), -1 if negative, 0
+/// if exactly zero. For all finite floats. Sets `area` to the rounded area.
 [[nodiscard]] int area_sign(std::span<const glm::vec2> polygon, double& area);
 
-/// True if the three points are exactly on one line (or coincide). For all finite floats.
+/// Returns whether the three points are exactly collinear (or coincide). For all finite floats.
 [[nodiscard]] bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
 }  // namespace raygate

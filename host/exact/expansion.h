@@ -10,11 +10,11 @@
 namespace raygate {
 
 /// An exact real number: the sum of `size` non-zero doubles that do not overlap, of increasing
-/// magnitude; none stands for 0. `Capacity` bounds the size and follows from the operations.
+/// magnitude; 0 has none. `Capacity` bounds the size and follows from the operations.
 ///
 /// Every operation is exact as long as no product of two components underflows or overflows in
-/// double. Here all numbers are polynomials of degree 6 at most in floats, so multiples of
-/// 2^-894 and, with coordinates up to 2^126, below 2^800.
+/// double. Here all numbers are polynomials of degree at most 6 in floats, so multiples of 2^-894
+/// and, with coordinates up to 2^126, below 2^800.
 template <int Capacity>
 struct Expansion {
   int size = 0;
@@ -23,9 +23,9 @@ struct Expansion {
   void append(double part) {
     if (part != 0.0) parts[size++] = part;
   }
-  /// -1, 0 or 1: the largest part outweighs all the others together.
+  /// Returns -1, 0 or 1: the sign of the largest part, which exceeds the sum of all others.
   [[nodiscard]] int sign() const { return size == 0 ? 0 : (parts[size - 1] > 0.0 ? 1 : -1); }
-  /// The nearest double, or a neighbour of it.
+  /// Returns the nearest double, or a neighbour of it.
   [[nodiscard]] double approximate() const {
     double sum = 0.0;
     for (int i = 0; i < size; ++i) sum += parts[i];
@@ -33,7 +33,7 @@ struct Expansion {
   }
 };
 
-/// value + error = the exact result.
+/// An exact result as a sum, value + error.
 struct ExactPair {
   double value, error;
 };
@@ -44,13 +44,13 @@ struct ExactPair {
   return {sum, (a - (sum - b_seen)) + (b - b_seen)};
 }
 
-/// For |a| >= |b|.
+/// Requires |a| >= |b|.
 [[nodiscard]] inline ExactPair fast_two_sum(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};
 }
 
-/// Dekker's product: each factor is split in halves whose products are exact.
+/// Computes Dekker's product: each factor is split in halves whose products are exact.
 [[nodiscard]] inline ExactPair two_product(double a, double b) {
   constexpr double kSplitter = 134217729.0;  // 2^27 + 1
   const double product = a * b;
@@ -72,7 +72,7 @@ struct ExactPair {
   return result;
 }
 
-/// `result` = `e` + `f`; it must be neither of them.
+/// Computes `result` = `e` + `f`. `result` must be a separate object.
 template <int N, int M, int C>
 void add(const Expansion<N>& e, const Expansion<M>& f, Expansion<C>& result) {
   result.size = 0;
@@ -128,7 +128,7 @@ template <int N>
   return result;
 }
 
-/// `result` = `e` * `f`, with `scratch` as room to work in.
+/// Computes `result` = `e` * `f`; uses `scratch` for intermediate results.
 template <int N, int M>
 void multiply(const Expansion<N>& e, const Expansion<M>& f, Expansion<2 * N * M>& result,
               Expansion<2 * N * M>& scratch) {
@@ -150,7 +150,7 @@ template <int N, int M>
 template <int N>
 using ExactVector = std::array<Expansion<N>, 3>;
 
-/// a - b.
+/// Returns a - b.
 [[nodiscard]] inline ExactVector<2> exact_difference(const glm::vec3& a, const glm::vec3& b) {
   return {exact_difference(a.x, b.x), exact_difference(a.y, b.y), exact_difference(a.z, b.z)};
 }
@@ -168,8 +168,8 @@ using ExactVector = std::array<Expansion<N>, 3>;
          v[2] * static_cast<double>(u.z);
 }
 
-/// A sum of doubles without rounding: what an Expansion is, without a bound of its size
-/// (Shewchuk's GROW-EXPANSION with zero elimination). Terms and sums must not overflow.
+/// A sum of doubles without rounding: an Expansion without a bound of its size (Shewchuk's
+/// GROW-EXPANSION with zero elimination). Terms and sums must not overflow.
 class ExactSum {
  public:
   void add(double term) {
@@ -182,11 +182,10 @@ class ExactSum {
     parts_.resize(kept);
     if (term != 0.0) parts_.push_back(term);
   }
-  /// -1, 0 or 1.
   [[nodiscard]] int sign() const { return parts_.empty() ? 0 : (parts_.back() > 0.0 ? 1 : -1); }
 
  private:
-  std::vector<double> parts_;  // not overlapping, of growing magnitude
+  std::vector<double> parts_;  // not overlapping, of increasing magnitude
 };
 
 }  // namespace raygate

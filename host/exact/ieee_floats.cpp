@@ -9,15 +9,16 @@
 namespace raygate {
 namespace {
 
-/// a a - (1 + 2 h) for a = 1 + h, whose square does not fit the format: 0 if the product is
-/// rounded, h^2 if not. What is volatile is computed when the program runs.
+/// Returns whether a a - (1 + 2 h) is fused for a = 1 + h, whose square does not fit the format:
+/// the result is 0 if the product is rounded, otherwise h^2. `volatile` prevents evaluation by the
+/// compiler.
 template <class T>
 bool is_fused(T h) {
   volatile T a = T(1) + h, whole = T(1) + T(2) * h;
   return a * a - whole != T(0);
 }
 
-/// Half the smallest normal number, made and used.
+/// Returns whether subnormals are kept, by computing half the smallest normal number.
 template <class T>
 bool keeps_subnormals() {
   volatile T smallest = std::numeric_limits<T>::min();
@@ -28,11 +29,11 @@ bool keeps_subnormals() {
 
 }  // namespace
 
-// Not inline: no compiler moves arithmetic across these.
+// Not inline, so that compilers do not move arithmetic across these.
 #if defined(__SSE2__)
 IeeeFloats::IeeeFloats() : before_(_mm_getcsr()), rounding_(std::fegetround()) {
   if (rounding_ != FE_TONEAREST) std::fesetround(FE_TONEAREST);
-  constexpr unsigned kDefault = 0x1F80;  // after reset, as the processor's manual has it
+  constexpr unsigned kDefault = 0x1F80;  // value after reset, by the processor's manual
   _mm_setcsr(kDefault);
 }
 IeeeFloats::~IeeeFloats() {

@@ -1,20 +1,20 @@
-// Checks for IEEE 754 arithmetic, each operation rounded to nearest, on which exactness rests.
+// Checks for IEEE 754 arithmetic with rounding to nearest, which exactness requires.
 #pragma once
 
 #include <cfenv>
 #include <cfloat>
 #include <limits>
 
-// What is promised across machines
+// Reproducibility guarantees
 //
-// Same program, same inputs, any number of threads, any engine, unit and number of lanes: the same
-// bytes. On another machine, or by another compiler, wherever this file compiles and its check
-// passes:
-//   * every decision (hit or miss, which is nearest, which side) is the same, as it is exact;
-//   * polygon records, t, P and their errors have the same bits, as they come from IEEE 754's
-//     addition, multiplication and division alone, in a fixed order, whatever vector code runs;
-//   * pictures may differ in last digits where shading asks the C library for a power, a sine or a
-//     cosine: IEEE 754 leaves those to it. With one version of it they do not.
+// The same program with the same inputs, and any number of threads, engine, unit and number of
+// lanes, gives the same bytes. On another machine, or with another compiler, if this file compiles
+// and its check passes:
+//   * every decision (hit or miss, order of hits, side) is the same, as it is exact;
+//   * polygon records, t, P and their errors have the same bits, as they use only IEEE 754
+//     addition, multiplication and division, in a fixed order, with any vector code;
+//   * images may differ in last digits where shading uses powers, sines or cosines of the C
+//     library, which IEEE 754 does not define. With the same version of the library they do not.
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     defined(__NO_SIGNED_ZEROS__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0)
@@ -25,9 +25,9 @@ static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<doubl
 
 namespace raygate {
 
-/// IEEE 754's arithmetic on this thread for as long as this lives, and on threads that it starts
-/// meanwhile: rounding to nearest, subnormals kept, no traps, whatever another library has set.
-/// Then the thread's state is what it was, flags included.
+/// Sets IEEE 754 arithmetic on this thread, and on threads that it starts, for the lifetime of this
+/// object: rounding to nearest, subnormals kept, no traps. Then restores the thread's state,
+/// including flags.
 class IeeeFloats {
  public:
   IeeeFloats();
@@ -37,8 +37,8 @@ class IeeeFloats {
 
  private:
 #if defined(__SSE2__)
-  // Of x87 the rounding mode, which decides how the C library reads numbers. Its other state would
-  // cost a microsecond, and nothing here computes by it.
+  // Only the rounding mode of x87, which affects how the C library reads numbers. Saving its other
+  // state would take a microsecond, and no arithmetic here uses it.
   unsigned before_;  // MXCSR
   int rounding_;
 #else
@@ -46,10 +46,9 @@ class IeeeFloats {
 #endif
 };
 
-/// Throws std::runtime_error, one line, where this thread's arithmetic is not that: another
-/// rounding mode, subnormals flushed to zero (as programs linked with -ffast-math do to others), or
-/// multiply and add fused. Threads inherit the state of the one that starts them: asking once is
-/// enough.
+/// Throws std::runtime_error, one line, if this thread's arithmetic differs: another rounding mode,
+/// subnormals flushed to zero (a side effect of other code linked with -ffast-math), or fused
+/// multiply-adds. Threads inherit the state of the thread that starts them, so one call is enough.
 void require_ieee_floats();
 
 }  // namespace raygate

@@ -21,11 +21,10 @@ namespace fs = std::filesystem;
   throw InputError(path.string() + ": cannot write: " + std::generic_category().message(error));
 }
 
-/// What the bytes will replace.
 struct Target {
   fs::path path;                      ///< symbolic links resolved
   bool is_stream = false;             ///< a device, pipe or socket, or standard output
-  std::optional<mode_t> permissions;  ///< of the file that is there
+  std::optional<mode_t> permissions;  ///< of an existing file
 };
 
 Target inspect(const fs::path& name) {
@@ -35,7 +34,7 @@ Target inspect(const fs::path& name) {
   if (!is_there && errno != ENOENT) fail(name, errno);
   target.is_stream = is_there && (!(S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) ||
                                   is_standard_output(name));
-  if (!target.is_stream) {  // a stream's name may lead to what has no path, as /dev/stdout does
+  if (!target.is_stream) {  // streams such as /dev/stdout may have no resolvable path
     std::error_code error;
     target.path = target_of(name, error);
     if (error) fail(name, error.value());
@@ -47,10 +46,10 @@ Target inspect(const fs::path& name) {
   return target;
 }
 
-/// A descriptor of the stream `name`.
+/// Opens the stream `name` and returns its descriptor.
 int open_stream(const fs::path& name) {
   if (is_standard_output(name)) return ::dup(STDOUT_FILENO);
-  // Opening a pipe waits for its reader, for ever if none comes; without waiting it fails.
+  // Opening a pipe would block until a reader comes; O_NONBLOCK makes it fail instead.
   const int fd = ::open(name.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0 && errno == ENXIO) throw InputError(name.string() + ": cannot write: nobody reads it");
   if (fd < 0) fail(name, errno);
@@ -58,10 +57,10 @@ int open_stream(const fs::path& name) {
   return fd;
 }
 
-/// A new file beside `target`: its path and its descriptor.
+/// Creates a file next to `target`, and returns its path and descriptor.
 std::pair<fs::path, int> create_beside(const fs::path& target, const fs::path& name) {
-  // open and not mkstemp, so that the user's umask decides the permissions; a short name of its
-  // own, as the target's may leave no room for more.
+  // open() applies the user's umask, mkstemp() does not. A short name always fits, even if the
+  // target's name has the maximum length.
   for (int attempt = 0;; ++attempt) {
     fs::path path = target.parent_path() /
                     (".raygate-" + std::to_string(::getpid()) + "-" + std::to_string(attempt));
@@ -71,8 +70,8 @@ std::pair<fs::path, int> create_beside(const fs::path& target, const fs::path& n
   }
 }
 
-/// Brings a new name in the target's folder to the disk, too; 0, or the error. Not every folder may
-/// be opened, and not every file system can: they do so when they like.
+/// Syncs a new name in the target's folder to disk. Returns 0 or an error number. Folders that
+/// cannot be opened, and file systems without this operation, count as success.
 int sync_folder_of(const fs::path& target) {
   const fs::path parent = target.has_parent_path() ? target.parent_path() : ".";
   const int folder = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -82,7 +81,7 @@ int sync_folder_of(const fs::path& target) {
   return error;
 }
 
-/// 0, or the error that stopped the writing.
+/// Writes all bytes. Returns 0 or an error number.
 int write_all(int fd, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(fd, bytes.data(), bytes.size());
@@ -141,7 +140,7 @@ void AtomicFile::finish() {
   if (descriptor_ < 0) return;
   int error = 0;
   if (permissions_ && ::fchmod(descriptor_, *permissions_) != 0) error = errno;
-  // Some file systems tell of a full disk only now.
+  // Some file systems report a full disk only here.
   if (error == 0 && !is_stream() && ::fsync(descriptor_) != 0) error = errno;
   if (::close(std::exchange(descriptor_, -1)) != 0 && error == 0) error = errno;
   fail_if(error);
@@ -156,7 +155,7 @@ void AtomicFile::commit() {
 }
 
 fs::path target_of(const fs::path& name, std::error_code& error) {
-  constexpr int kMostLinks = 40;  // as Linux follows
+  constexpr int kMostLinks = 40;  // the limit of Linux
   fs::path end = fs::absolute(name, error);
   std::error_code ignored;
   for (int i = 0; i < kMostLinks && fs::is_symlink(end, ignored); ++i) {
@@ -175,7 +174,7 @@ bool is_standard_output(const fs::path& file) {
 void require_distinct(std::span<const fs::path> outputs, std::span<const fs::path> inputs) {
   for (const fs::path& output : outputs) {
     for (const fs::path& input : inputs) {
-      std::error_code ignored;  // one that is not there is no other's
+      std::error_code ignored;  // missing files are distinct
       if (fs::equivalent(output, input, ignored)) {
         throw InputError(output.string() + ": would overwrite " + input.string());
       }
@@ -186,7 +185,7 @@ void require_distinct(std::span<const fs::path> outputs, std::span<const fs::pat
 void require_writable(const fs::path& path) {
   const Target target = inspect(path);
   if (target.is_stream) {
-    // A pipe stays open until the program ends: its reader would take its closing for the end.
+    // The pipe stays open until the program exits, as its reader would take closing for the end.
     if (fs::is_fifo(path) && !is_standard_output(path)) open_stream(path);
     return;
   }

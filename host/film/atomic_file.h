@@ -31,7 +31,6 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();  ///< removes the temporary file unless it was committed
 
-  /// Appends `bytes`.
   void append(std::string_view bytes);
   /// Overwrites the start of the file, such as a header with a count. Not for streams.
   void replace_start(std::string_view bytes);
@@ -43,7 +42,7 @@ class AtomicFile {
   [[nodiscard]] const std::filesystem::path& unnamed() const {
     return is_stream() ? name_ : temporary_;
   }
-  /// Whether the target is a device, a pipe or standard output.
+  /// Returns whether the target is a device, a pipe or standard output.
   [[nodiscard]] bool is_stream() const { return temporary_.empty(); }
 
  private:
@@ -65,7 +64,7 @@ class AtomicFile {
 void require_distinct(std::span<const std::filesystem::path> outputs,
                       std::span<const std::filesystem::path> inputs);
 
-/// Whether writing to `file` is writing to standard output.
+/// Returns whether `file` is standard output.
 [[nodiscard]] bool is_standard_output(const std::filesystem::path& file);
 
 /// Throws the InputError that an AtomicFile for `path` would throw now: the folder is missing, no

@@ -18,7 +18,7 @@ PixelRect common_window(const PixelRect& a, const PixelRect& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
-/// Where pixel (x, y) of the frame is in the picture's arrays.
+/// Returns the array index of pixel (x, y) of the frame.
 std::size_t place(const ChannelPicture& picture, int x, int y) {
   return static_cast<std::size_t>(y - picture.window.y0) *
              static_cast<std::size_t>(picture.window.width()) +
@@ -27,7 +27,7 @@ std::size_t place(const ChannelPicture& picture, int x, int y) {
 
 bool equal(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
-/// The light that a display shows, as it is perceived: the sRGB code of the luminance, in [0, 1].
+/// Returns the perceived brightness of displayed pixels: the sRGB code of the luminance, in [0, 1].
 std::vector<double> seen(const ChannelPicture& picture, const PixelRect& window) {
   std::vector<double> values;
   for (int y = window.y0; y < window.y1; ++y) {
@@ -62,7 +62,7 @@ std::array<double, kSide> gaussian() {
   return weights;
 }
 
-/// Weighted means of a(p) b(p) around each place where the window fits: rows, then columns.
+/// Returns Gaussian-weighted means of a(p) b(p) over all window positions: by rows, then columns.
 template <typename Value>
 std::vector<double> blurred(Value value, std::size_t width, std::size_t height) {
   static const std::array<double, kSide> kWeights = gaussian();

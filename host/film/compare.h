@@ -1,4 +1,4 @@
-// Comparing pictures: error measures of a picture against a reference.
+// Comparing images: error measures of an image against a reference.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 
 namespace raygate {
 
-/// Error measures over the pixels that both pictures have. d is picture minus reference; n is the
-/// number of pixels times channels. Pixels in which only one picture has a NaN or infinity are
+/// Error measures over the pixels that both images contain. d is image minus reference; n is the
+/// number of pixels times channels. Pixels in which only one image has a NaN or infinity are
 /// counted, and make the errors infinite. Equal infinities and two NaNs are equal.
 struct Comparison {
   PixelRect window;              ///< the compared pixels, in the frame's coordinates
   std::uint64_t pixels = 0;      ///< in the window
   std::uint64_t differing = 0;   ///< pixels with any difference, however small
-  std::uint64_t not_finite = 0;  ///< pixels with a NaN or infinity in one of the pictures alone
+  std::uint64_t not_finite = 0;  ///< pixels with a NaN or infinity in only one of the images
   double mse = 0.0;              ///< sum d^2 / n
-  double rmse = 0.0;             ///< its root
+  double rmse = 0.0;             ///< sqrt(mse)
   double mae = 0.0;              ///< sum |d| / n
   double bias = 0.0;             ///< sum d / sum reference: -0.01 is 1 % too dark; 0 for equal ones
   double max = 0.0;              ///< largest |d|

@@ -19,7 +19,7 @@ namespace {
 
 double gain_of(double exposure) { return binary_power(std::clamp(exposure, -126.0, 127.0)); }
 
-/// libpng's writer; its errors leave as C++ exceptions.
+/// Writes a PNG file with libpng. Errors are C++ exceptions.
 class PngWriter {
  public:
   explicit PngWriter(std::string& bytes)
@@ -37,7 +37,7 @@ class PngWriter {
 
   void write_header(const Image8& picture) {
     const PixelRect& window = picture.window;
-    // libpng refuses sides of more than a million by default; the film has been made already.
+    // By default libpng refuses sides of more than a million pixels.
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_IHDR(png_, info_, static_cast<png_uint_32>(window.width()),
                  static_cast<png_uint_32>(window.height()), 8, PNG_COLOR_TYPE_RGB,
@@ -76,7 +76,7 @@ class PngWriter {
 
 float tone_map(float light, Tone tone) {
   if (tone == Tone::kClip) return light;
-  // The quotient of two squares would be NaN for infinite light.
+  // Clamped, as infinity / infinity would be NaN.
   const double x = std::min(std::max(light, 0.0f), 1e6f);
   if (std::isnan(light)) return light;
   return static_cast<float>(std::min(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 1.0));
@@ -119,7 +119,7 @@ std::string encode_png(const Image8& picture) {
 namespace {
 
 constexpr int kLeastPixels = 16 * 16;
-constexpr float kVisible = 1e-3f, kBlack = 1e-4f;  // of a display's white
+constexpr float kVisible = 1e-3f, kBlack = 1e-4f;  // relative to display white
 
 }  // namespace
 

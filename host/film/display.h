@@ -28,7 +28,6 @@ enum class Tone {
   kFilmic,  ///< shadows and highlights are compressed, as by film
 };
 
-/// Display settings.
 struct DisplayOptions {
   double exposure = 0.0;  ///< in stops: the light is multiplied by 2^exposure first
   Tone tone = Tone::kClip;
@@ -50,9 +49,9 @@ struct DisplayOptions {
 /// libpng fails.
 [[nodiscard]] std::string encode_png(const Image8& picture);
 
-/// Returns a message on why nothing can be seen in a film, and what to try: no pixel hits anything,
-/// all are black, or all have one colour. Returns "" for other films, and for crops and films of
-/// fewer than 16 x 16 pixels, where that is normal.
+/// Returns a message that explains why a film looks blank, and what to try: no pixel hits any
+/// geometry, all are black, or all have one colour. Returns "" for other films, and for crops and
+/// films of fewer than 16 x 16 pixels, where that is normal.
 [[nodiscard]] std::string why_blank(const Film& film, const DisplayOptions& display);
 
 }  // namespace raygate

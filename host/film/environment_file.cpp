@@ -19,7 +19,7 @@ namespace {
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
-/// Reads one file from its beginning to its end.
+/// Reads a Radiance file sequentially.
 class Reader {
  public:
   Reader(std::string name, std::string_view bytes) : name_(std::move(name)), rest_(bytes) {}
@@ -31,7 +31,7 @@ class Reader {
     if (std::int64_t{picture.width} * picture.height > kMaxPixels) {
       fail("more than " + std::to_string(kMaxPixels) + " pixels");
     }
-    // A pixel of the longest run takes an eighth of a byte.
+    // With the longest runs, a pixel takes 1/8 byte.
     if (rest_.size() < static_cast<std::size_t>(picture.height)) fail("it ends too early");
     std::vector<Rgbe> row(static_cast<std::size_t>(picture.width));
     for (int y = 0; y < picture.height; ++y) {
@@ -109,8 +109,8 @@ class Reader {
     return found;
   }
 
-  /// By components, each run-length encoded, where the row says so; else pixel by pixel, where
-  /// (1, 1, 1, n) repeats the last one.
+  /// Reads a row: run-length encoded by component if its first bytes say so, otherwise pixel by
+  /// pixel, where (1, 1, 1, n) repeats the previous pixel.
   void read_row(std::vector<Rgbe>& row) {
     const std::size_t width = row.size();
     const bool is_new = width >= 8 && width < 0x8000 && rest_.size() >= 4 && rest_[0] == 2 &&
@@ -158,7 +158,7 @@ class Reader {
 
 float usable(double x) { return x > 0.0 ? static_cast<float>(std::min(x, 1e30)) : 0.0f; }
 
-/// What is ahead where `up` is upwards: across it, and nearly -z or +y.
+/// Returns the direction ahead for this up direction: perpendicular to `up`, close to -z or +y.
 glm::dvec3 ahead_of(const glm::dvec3& up) {
   const glm::dvec3 across = glm::cross(up, glm::dvec3(1.0, 0.0, 0.0));
   return glm::length(across) > 1e-6 ? glm::normalize(across) : glm::dvec3(0.0, 0.0, -1.0);
@@ -173,7 +173,7 @@ HdrImage read_hdr(const std::filesystem::path& file) {
 
 void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, Scene& scene) {
   EnvironmentMap map;
-  std::error_code ignored;  // what cannot be looked up cannot be read either
+  std::error_code ignored;  // reading reports the error
   if (std::filesystem::is_regular_file(setting.file, ignored) && is_exr(setting.file)) {
     const std::string names[] = {"R", "G", "B"};
     const ChannelPicture picture = read_exr(setting.file, names);
@@ -184,7 +184,7 @@ void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, S
       map.texels.emplace_back(usable(channels[0][i]), usable(channels[1][i]),
                               usable(channels[2][i]));
     }
-  } else {  // a pipe is read once, from its beginning to its end
+  } else {  // a pipe can be read only once
     HdrImage picture = read_hdr(setting.file);
     map.width = picture.width;
     map.height = picture.height;

@@ -40,8 +40,8 @@ Imf::PixelType type_of(const Channel& channel) {
   return channel.type == Channel::Type::kUint ? Imf::UINT : Imf::FLOAT;
 }
 
-/// Where the library finds the numbers of `window` in memory, row by row. Its slices start at pixel
-/// (0, 0), which may lie outside the window.
+/// Returns the slice of `window`, stored row by row, for the library. Slices start at pixel (0, 0),
+/// which may be outside of the window.
 Imf::Slice slice_of(Imf::PixelType type, const void* first, std::size_t stride,
                     const PixelRect& window) {
   const std::size_t row = stride * static_cast<std::size_t>(window.width());
@@ -52,7 +52,7 @@ Imf::Slice slice_of(Imf::PixelType type, const void* first, std::size_t stride,
           stride, row};
 }
 
-/// All numbers of a film, to write them or to read a file into them.
+/// Returns slices of all channels of a film, for writing or reading.
 Imf::FrameBuffer slices_of(const Film& film) {
   Imf::FrameBuffer slices;
   for (const Channel& channel : channels_of(film)) {
@@ -62,7 +62,7 @@ Imf::FrameBuffer slices_of(const Film& film) {
   return slices;
 }
 
-/// glm multiplies column vectors, Imath row vectors: glm's columns are Imath's rows.
+/// Converts a matrix for column vectors (glm) to one for row vectors (Imath).
 Imath::M44f to_imath(const glm::mat4& m) {
   Imath::M44f result;
   for (int i = 0; i < 4; ++i) {
@@ -71,13 +71,13 @@ Imath::M44f to_imath(const glm::mat4& m) {
   return result;
 }
 
-/// Of a file with these rows of the film.
+/// Returns the header of a file with these rows of the film.
 Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const PixelRect& window) {
   Imf::Header header(Imath::Box2i({0, 0}, {film.width - 1, film.height - 1}),
                      Imath::Box2i({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}));
   header.screenWindowWidth() = metadata.screen_window_width;
   header.compression() = Imf::ZIP_COMPRESSION;
-  header.zipCompressionLevel() = 2;  // 1 to 3 % larger than by 4, in three quarters of the time
+  header.zipCompressionLevel() = 2;  // 1 to 3 % larger than at level 4, in 3/4 of the time
   header.insert("software", Imf::StringAttribute(metadata.software));
   header.insert("scene", Imf::StringAttribute(metadata.scene));
   header.insert("seed", Imf::StringAttribute(std::to_string(metadata.seed)));
@@ -94,7 +94,7 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const Pix
 
 std::int64_t side(int low, int high) { return std::int64_t{high} - low + 1; }
 
-/// "R, G, B, Z".
+/// Returns channel names as "R, G, B, Z".
 std::string names_in(const Imf::ChannelList& channels) {
   std::string names;
   for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
@@ -129,11 +129,12 @@ std::vector<double> read_channel(Imf::InputFile& file, const std::string& name, 
   return {values.begin(), values.end()};
 }
 
-/// Calls read(file) for an OpenEXR file of no more pixels than we take.
+/// Calls read(file) for an OpenEXR file within the pixel limit.
 template <class Read>
 auto with_file(const std::filesystem::path& path, const Read& read) {
   require_exr(path);
-  (void)Imf::globalThreadCount();  // makes the library's threads, none, where failing does no harm
+  // Initialises the library's threads (none) where failure is harmless.
+  (void)Imf::globalThreadCount();
   try {
     Imf::InputFile file(path.c_str(), 0);
     const Imath::Box2i& data = file.header().dataWindow();
@@ -146,7 +147,7 @@ auto with_file(const std::filesystem::path& path, const Read& read) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    // The library's messages may run over several lines and repeat the file's name.
+    // The library's messages may have several lines and repeat the file name.
     std::string what = error.what();
     for (char& c : what) {
       if (c == '\n') c = ' ';
@@ -155,7 +156,7 @@ auto with_file(const std::filesystem::path& path, const Read& read) {
   }
 }
 
-/// The windows of a file, in the frame's coordinates.
+/// Returns the windows of a file, in the frame's coordinates.
 void read_windows(const Imf::Header& header, int& width, int& height, PixelRect& window) {
   const Imath::Box2i& data = header.dataWindow();
   const Imath::Box2i& frame = header.displayWindow();
@@ -165,7 +166,7 @@ void read_windows(const Imf::Header& header, int& width, int& height, PixelRect&
             data.max.y + 1 - frame.min.y};
 }
 
-/// A film with the arrays of a file's channels.
+/// Returns a film with arrays for the file's channels.
 Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
   const Imf::ChannelList& channels = header.channels();
   const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
@@ -190,7 +191,7 @@ Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
   return film;
 }
 
-/// What encode_exr wrote of them.
+/// Returns the metadata that encode_exr wrote.
 ExrMetadata metadata_of(const Imf::Header& header) {
   ExrMetadata metadata;
   for (auto at = header.begin(); at != header.end(); ++at) {
@@ -220,9 +221,9 @@ ExrMetadata metadata_of(const Imf::Header& header) {
   return metadata;
 }
 
-/// Whether the file that `bytes` are holds these rows of `film`, bit by bit.
+/// Returns whether the file in `bytes` contains these rows of `film`, bit for bit.
 bool holds_rows(const std::string& bytes, const Film& film, const PixelRect& window) {
-  constexpr int kRows = 64;  // at a time
+  constexpr int kRows = 64;  // per read
   Imf::StdISStream stream;
   stream.str(bytes);
   Imf::InputFile file(stream, 0);
@@ -251,7 +252,7 @@ bool holds_rows(const std::string& bytes, const Film& film, const PixelRect& win
   return true;
 }
 
-/// A file of these rows of the film; of none, up to where its rows begin.
+/// Encodes these rows of the film as a file; without `has_pixels`, only up to the first row.
 std::string encode_rows(const Film& film, const ExrMetadata& metadata, const PixelRect& window,
                         bool has_pixels = true) {
   try {
@@ -263,26 +264,25 @@ std::string encode_rows(const Film& film, const ExrMetadata& metadata, const Pix
       if (has_pixels) file.writePixels(window.height());
     }  // the destructor completes the file
     std::string bytes = stream.str();
-    // Without memory, the library may leave a block out in silence, and so may the stream.
+    // If memory runs out, the library and the stream may omit a block silently.
     if (!has_pixels || holds_rows(bytes, film, window)) return bytes;
   } catch (const Iex::BaseExc&) {  // NOLINT(bugprone-empty-catch): no file is in it to fail
   }
   throw std::bad_alloc();
 }
 
-constexpr int kBlockRows = 16;  // which ZIP compresses together
+constexpr int kBlockRows = 16;  // compressed together by ZIP
 constexpr std::size_t kOffsetBytes = 8;
 
 int blocks_of(const PixelRect& window) { return (window.height() + kBlockRows - 1) / kBlockRows; }
 
 }  // namespace
 
-// The library's threads wait for ever for a block that had no memory, so it is given none: ours
-// make files of some blocks each, and one file is put together of their blocks (a header, the
-// offset of each block, the blocks: "OpenEXR File Layout"). What a block is does not depend on its
-// file.
+// The library's threads deadlock if a block cannot be allocated, so they are not used. Threads
+// encode files of several blocks each, which are then joined into one file (header, block offsets,
+// blocks: "OpenEXR File Layout"). The bytes of a block do not depend on its file.
 std::string encode_exr(const Film& film, const ExrMetadata& metadata, int threads) {
-  constexpr int kPerThread = 4;  // so that they end together
+  constexpr int kPerThread = 4;  // for load balance
   const int blocks = blocks_of(film.window);
   const int rows = kBlockRows * std::max(1, blocks / (kPerThread * threads));
   const int count = (film.window.height() + rows - 1) / rows;
@@ -298,7 +298,7 @@ std::string encode_exr(const Film& film, const ExrMetadata& metadata, int thread
     parts[part] = encode_rows(film, metadata, window(part));
   });
   std::string bytes = encode_rows(film, metadata, film.window, false);
-  // All headers are of one length.
+  // All headers have the same length.
   const std::size_t header = bytes.size() - kOffsetBytes * static_cast<std::size_t>(blocks);
   std::size_t entry = header;
   for (std::size_t part = 0; part < parts.size(); ++part) {
@@ -351,7 +351,7 @@ FilmFile read_film(const std::filesystem::path& path) {
 
 namespace {
 
-/// Types of attributes whose values have one length in bytes, which the library takes for granted.
+/// An attribute type with a fixed length in bytes, which the library does not check.
 struct Fixed {
   std::string_view type;
   std::int32_t length;
@@ -375,11 +375,11 @@ void require_readable(const std::filesystem::path& file) {
   if (!is_exr(file)) throw InputError(file.string() + ": not an OpenEXR file");
 }
 
-/// Throws where an attribute of the header is longer than the file, or longer or shorter than its
-/// type: the library takes the memory for it before it reads. ("OpenEXR File Layout": each is a
-/// name, a type, a length and a value.)
+/// Throws InputError if an attribute of the header is longer than the file or its length does not
+/// match its type, as the library allocates memory before reading. ("OpenEXR File Layout": an
+/// attribute has a name, a type, a length and a value.)
 void require_lengths(const std::filesystem::path& path) {
-  constexpr std::streamoff kBegin = 8;  // after the magic number and the version
+  constexpr std::streamoff kBegin = 8;  // after magic number and version
   const auto most = static_cast<std::int64_t>(std::filesystem::file_size(path));
   std::ifstream in(path, std::ios::binary);
   in.seekg(kBegin);
@@ -399,8 +399,8 @@ void require_lengths(const std::filesystem::path& path) {
   }
 }
 
-/// Throws for what the library's C functions find wrong in a header, as a list of channels that
-/// ends elsewhere than it says: its C++ functions take what follows for something else.
+/// Throws InputError for header errors that only the library's C functions detect, such as a
+/// channel list with a wrong length.
 void require_types(const std::filesystem::path& path) {
   exr_context_initializer_t options = EXR_DEFAULT_CONTEXT_INITIALIZER;
   options.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};

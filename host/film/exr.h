@@ -1,4 +1,4 @@
-// OpenEXR files: writing a film with all of its channels, reading films and other pictures.
+// OpenEXR files: writes films with all channels; reads films and other images.
 #pragma once
 
 #include <cstdint>
@@ -74,7 +74,7 @@ struct FilmFile {
 /// sums, is damaged, or has more than 2^26 pixels.
 [[nodiscard]] FilmFile read_film(const std::filesystem::path& file);
 
-/// Whether the file starts with OpenEXR's magic number.
+/// Returns whether the file starts with OpenEXR's magic number.
 [[nodiscard]] bool is_exr(const std::filesystem::path& file);
 
 /// Checks a file before the library reads it. Throws InputError if it cannot be read, is not

@@ -36,7 +36,7 @@ Rgb8 viridis(double fraction) {
 }
 
 Rgb8 label_color(std::uint32_t label) {
-  // Multiples of the golden ratio, modulo 1, keep away from each other however many there are.
+  // Multiples of the golden ratio modulo 1 are well separated, for any number of labels.
   constexpr double kGolden = 0.6180339887498949;
   const double hue = std::fmod(label * kGolden, 1.0);
   const double light = 0.45 + 0.5 * std::fmod(label * kGolden * kGolden, 1.0);

@@ -9,8 +9,7 @@
 namespace raygate {
 namespace {
 
-/// Calls `visit` with the first pixel of each row of `rect` in each array that is there, and how
-/// many bytes the row has.
+/// Calls visit(first pixel, bytes) for each row of `rect` in each non-empty array.
 template <class AnyFilm, class Visit>
 void for_each_row(AnyFilm& film, const PixelRect& rect, const Visit& visit) {
   const auto visit_rows = [&](const FilmField&, auto& values) {
@@ -54,7 +53,7 @@ void add_sums(Film& film, bool with_error) {
   film.sums.shown.assign(pixels, 0.0f);
 }
 
-// A pixel of any array is a row of 32-bit numbers: so many of each part.
+// Pixels of all arrays consist of 32-bit words, the same number for each part.
 std::vector<Channel> channels_of(const Film& film) {
   std::vector<Channel> channels;
   const auto add = [&](const FilmField& field, const auto& values) {

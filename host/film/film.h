@@ -1,4 +1,4 @@
-// The film: the arrays of a rendered picture, and the exact sums that they are made of.
+// The film: the arrays of a rendered image, and the exact sums behind them.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class ExactAccumulator {
       significand >>= -shift;
       shift = 0;
     }
-    // kMost's shift is 107, so that the last 64 bits have what lies above the first 128.
+    // The shift is at most 107 (of kMost), so the last 64 bits hold what exceeds the first 128.
     const Wide low = Wide{significand} << shift;
     const std::uint64_t high = shift > 64 ? significand >> (128 - shift) : 0;
     if (number < 0.0) {
@@ -86,10 +86,10 @@ class ExactAccumulator {
   static constexpr double kMost = 0x1p63, kLeast = 0x1p-96;
   static constexpr std::uint64_t kHidden = std::uint64_t{1} << 52;
 
-  std::uint64_t words_[3] = {};  // the lowest first
+  std::uint64_t words_[3] = {};  // least significant word first
 };
 
-/// The primitive or object of a pixel that hits nothing.
+/// Primitive or object index of a pixel without a hit.
 inline constexpr std::uint32_t kNoPrimitive = std::numeric_limits<std::uint32_t>::max();
 
 /// Maximum number of pixels of a picture, read or rendered: its film and encodings take up to 5 GB.
@@ -107,8 +107,8 @@ struct FilmSums {
   std::vector<std::uint32_t> samples;  ///< number of samples
   std::vector<std::array<ExactAccumulator, 4>> color;
   std::vector<std::array<ExactAccumulator, 3>> albedo;  ///< if the film has albedo
-  // Of films whose pixels get samples by their error: as of the last look, see
-  // render/adaptive_sampling.h. In steps of an 8-bit display.
+  // Adaptive sampling only, in steps of an 8-bit display, as of the last check (see
+  // render/adaptive_sampling.h).
   std::vector<float> error;  ///< estimated standard error; infinite until there is an estimate
   std::vector<float> shown;  ///< display steps at the last check
 };
@@ -138,13 +138,12 @@ struct ExtraChannels {
 struct Film {
   int width = 0, height = 0;
   PixelRect window;
-  std::vector<glm::vec4>
-      color;                 ///< R G B A, scene-linear, premultiplied; A = 0 where nothing is hit
-  std::vector<float> depth;  ///< Z: distance along the camera's axis; +infinity for a miss
-  std::vector<glm::vec3> normal;         ///< unit shading normal towards the viewer; 0 for a miss
+  std::vector<glm::vec4> color;   ///< R G B A, scene-linear, premultiplied; A = 0 for a miss
+  std::vector<float> depth;       ///< Z: distance along the camera's axis; +infinity for a miss
+  std::vector<glm::vec3> normal;  ///< unit shading normal towards the viewer; 0 for a miss
   std::vector<std::uint32_t> primitive;  ///< triangle index of the scene; kNoPrimitive for a miss
 
-  // On demand.
+  // Optional:
   std::vector<glm::vec3> position;    ///< of the first surface, in world axes; 0 for a miss
   std::vector<glm::vec3> albedo;      ///< diffuse colour of the first surface; 0 for a miss
   std::vector<std::uint32_t> object;  ///< index into Scene::objects; kNoPrimitive for a miss
@@ -152,7 +151,7 @@ struct Film {
   /// window, not on the number of threads.
   std::vector<std::uint32_t> tests;
   std::vector<std::uint32_t> doubts;  ///< tests that binary32 could not decide
-  /// While rendering continues; written to files if `keeps_sums`.
+  /// Present while rendering continues; written to files if `keeps_sums`.
   FilmSums sums;
   bool keeps_sums = false;
 

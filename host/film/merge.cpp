@@ -29,7 +29,7 @@ bool overlap(const PixelRect& a, const PixelRect& b) {
   return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
 }
 
-/// A part by itself, and next to the first.
+/// Throws InputError if a part is invalid or does not match the first one.
 void require_like(const NamedFilm& part, const NamedFilm& first) {
   const auto& [name, file] = part;
   const Film &film = file.film, &other = first.second.film;
@@ -63,7 +63,7 @@ void add(std::vector<std::uint32_t>& counts, const std::vector<std::uint32_t>& m
   for (std::size_t i = 0; i < counts.size(); ++i) add_count(counts[i], more[i]);
 }
 
-/// Adds the samples that follow those of `film`, whose means are not those of its sums after that.
+/// Adds the samples of `more` to the sums of `film`. Does not update the means.
 void add_samples(Film& film, const Film& more) {
   add(film.sums.samples, more.sums.samples);
   add(film.sums.color, more.sums.color);
@@ -80,7 +80,7 @@ void set_means(Film& film) {
   }
 }
 
-/// All parts of one window become the one that begins first.
+/// Joins all parts of one window.
 NamedFilm joined(std::vector<NamedFilm>& parts) {
   const auto range = [](const NamedFilm& part) { return samples_of(part.second.metadata); };
   std::ranges::sort(parts, {}, [&](const NamedFilm& part) { return range(part).first; });

@@ -30,8 +30,8 @@ inline constexpr const char* kSceneAttribute = "sceneDigest";
 /// Sets kSamplesAttribute, or removes it if `range` is all of "spp".
 void set_samples(ExrMetadata& metadata, const SampleRange& range);
 
-/// Returns how two files are not parts of the same picture: "spp 8, expected spp 16" or "another
-/// geometry, material or light"; none if they are.
+/// Returns why two files are not parts of the same image: "spp 8, expected spp 16" or "another
+/// geometry, material or light"; nullopt if they are.
 [[nodiscard]] std::optional<std::string> different_picture(const ExrMetadata& found,
                                                            const ExrMetadata& expected);
 

@@ -15,14 +15,14 @@ constexpr double kRadius = 1.5;  // of Gauss and Blackman-Harris
 
 double gauss(double x) { return binary_power(-2.0 * std::numbers::log2e * x * x); }
 
-/// The minimum 4-term window (Harris 1978, "On the use of windows for harmonic analysis").
+/// Returns the minimum 4-term window (Harris 1978, "On the use of windows for harmonic analysis").
 double blackman_harris(double x) {
   const double turns = 0.5 * (x / kRadius + 1.0);
   return 0.35875 - 0.48829 * sine_cosine(turns).cosine + 0.14128 * sine_cosine(2.0 * turns).cosine -
          0.01168 * sine_cosine(3.0 * turns).cosine;
 }
 
-/// The inverse of a filter's cumulative weight, by table.
+/// Table of the inverse cumulative distribution of a filter.
 class Inverse {
  public:
   template <class Weight>
@@ -47,7 +47,7 @@ class Inverse {
     return place(step + std::clamp(within, 0.0, 1.0));
   }
 
-  /// How likely that place is, per length: constant in each step.
+  /// Returns the probability density at a position; constant within each step.
   [[nodiscard]] double density(double at) const {
     const double step = (at / kRadius + 1.0) * (0.5 * kSteps);
     if (!(step >= 0.0 && step < kSteps)) return 0.0;
@@ -56,10 +56,10 @@ class Inverse {
   }
 
  private:
-  static constexpr int kSteps = 1024, kStarts = 8 * kSteps;  // so that few searches go on
+  static constexpr int kSteps = 1024, kStarts = 8 * kSteps;  // many starts shorten searches
   static double place(double step) { return (2.0 * step / kSteps - 1.0) * kRadius; }
   std::array<double, kSteps + 1> cumulative_;
-  std::array<std::uint16_t, kStarts> first_;  // the step in which u = i / kStarts falls
+  std::array<std::uint16_t, kStarts> first_;  // the step that contains u = i / kStarts
 };
 
 double tent(double u) {

@@ -35,7 +35,7 @@ void CheckIntersector::intersect(std::span<const Ray> rays, const RayQuery& quer
   intersector_->intersect(rays, query, hits);
   RayQuery same = query;
   same.work = {};
-  same.source_ids = {};  // they change no result
+  same.source_ids = {};  // do not affect results
   expected_.resize(rays.size());
   reference_->intersect(rays, same, expected_);
   for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -21,11 +21,11 @@ void add_counters(Counters& sum, const Counters& other) {
 
 /// Tests of rays against polygons, and the work of a hit-test unit.
 struct HitCounters {
-  std::uint64_t tests = 0;         ///< (ray, polygon) pairs; misses + hits + edge_doubts
-  std::uint64_t misses = 0;        ///< certain misses
-  std::uint64_t hits = 0;          ///< certain hits
-  std::uint64_t edge_doubts = 0;   ///< neither certain misses nor certain hits
-  std::uint64_t depth_doubts = 0;  ///< certain hits that binary32 cannot order
+  std::uint64_t tests = 0;         ///< (ray, polygon) pairs: misses + hits + edge_doubts
+  std::uint64_t misses = 0;        ///< sure misses
+  std::uint64_t hits = 0;          ///< sure hits
+  std::uint64_t edge_doubts = 0;   ///< neither sure misses nor sure hits
+  std::uint64_t depth_doubts = 0;  ///< sure hits that binary32 cannot order
   std::uint64_t plane_tests = 0;   ///< points P = d I / (I . N) computed
   // The fields below are 0 without a unit.
   std::uint64_t unit_tests = 0;     ///< tests done by the unit
@@ -42,19 +42,19 @@ struct HitCounters {
   }
 };
 
-/// The counts of an intersector since its construction.
+/// Statistics of an intersector since its construction.
 struct IntersectCounters {
   HitCounters hit;
   std::uint64_t exact_inside = 0;    ///< edge doubts resolved by exact arithmetic, without those
                                      ///< surely too far away
   std::uint64_t exact_depth = 0;     ///< exact comparisons of two hits, or of a hit and t_max
-  std::uint64_t ended_early = 0;     ///< rays that ended at RayQuery::any_hit_before
+  std::uint64_t ended_early = 0;     ///< rays ended early by RayQuery::any_hit_before
   std::uint64_t own_records = 0;     ///< polygon records made for one packet of rays
   std::uint64_t common_records = 0;  ///< polygon records made for a common origin
   // Seconds.
   double traverse = 0.0;   ///< boxes, and records of common origins
   double record = 0.0;     ///< own records
-  double hit_tests = 0.0;  ///< tests and resolving doubts; without a unit: all time
+  double hit_tests = 0.0;  ///< tests and resolving doubts; without a unit: total time
 
   IntersectCounters& operator+=(const IntersectCounters& other) {
     hit += other.hit;

@@ -9,13 +9,13 @@ namespace {
 
 bool overlap(const Interval& a, const Interval& b) { return a.low <= b.high && b.low <= a.high; }
 
-/// Whether the interval says on which side of t_max the hit is.
+/// Returns whether the interval decides on which side of t_max the hit is.
 bool tells(const Interval& t, float t_max) { return t.high < t_max || t.low >= t_max; }
 
 }  // namespace
 
 void Intersector::clear(const RayQuery& query, std::span<NearestHit> hits) {
-  for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // the rest is not valid
+  for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // other members are not valid
   std::ranges::fill(query.work, RayWork{});
 }
 
@@ -53,7 +53,7 @@ bool take_if_nearer(const Bvh& bvh, const Ray& ray, float t_max, const NearestHi
   if (!is_nearer(bvh, ray, hit, best)) return false;
   const double farthest = best.t.high;
   best = hit;
-  best.t.high = std::min(best.t.high, farthest);  // it is nearer than what it replaces
+  best.t.high = std::min(best.t.high, farthest);  // a nearer hit
   return true;
 }
 

@@ -20,7 +20,7 @@ namespace raygate {
 struct NearestHit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  std::uint32_t primitive = kNone;  ///< index of the tree's primitive; kNone: a miss
+  std::uint32_t primitive = kNone;  ///< primitive index; kNone: a miss
   glm::vec3 point{0.0f};  ///< P = d I / (I . N), relative to the ray's origin, in the unit's bits
   /// Relative error bound of each coordinate of P, in addition to 2^-46 of the largest coordinate
   /// for underflow; +infinity if the unit has no usable P. Every intersector gives the same bits.
@@ -28,7 +28,7 @@ struct NearestHit {
   Interval t{};  ///< contains the exact t
 };
 
-/// Whether the relative error of P may be more than `most` (finite), so that the host computes P.
+/// Returns whether the relative error of P may exceed `most` (finite), so that the host computes P.
 [[nodiscard]] inline bool is_point_doubt(const NearestHit& hit, float most) {
   return !(hit.point_error <= most);
 }
@@ -44,19 +44,19 @@ struct RayWork {
   }
 };
 
-/// Options of a query for many rays. Spans have one element per ray or are empty; they must outlive
-/// the query.
+/// Options of a query for many rays. Spans must outlive it, and are empty or have one element per
+/// ray.
 struct RayQuery {
   /// All rays start at one point that other queries also use (the camera, a light), so that its
   /// polygon records are cached. Does not change results.
   bool common_origin = false;
-  /// Positive: only hits with t < t_max[i], in exact arithmetic, count; +infinity: all.
+  /// Positive. Only hits with exact t < t_max[i] count; +infinity: no limit.
   std::span<const float> t_max{};
-  /// A primitive whose hits do not count, or NearestHit::kNone. With skip_ids or any_hit_before,
+  /// A primitive whose hits are ignored, or NearestHit::kNone. With skip_ids or any_hit_before,
   /// NearestHit::point is not valid.
   std::span<const std::uint32_t> skip_ids{};
-  /// The primitive that the ray leaves, which it surely does not hit, or NearestHit::kNone. Does
-  /// not change results, but saves the test that is hardest to decide.
+  /// The primitive that the ray leaves and surely does not hit, or NearestHit::kNone. Does not
+  /// change results, but saves the test that is hardest to decide.
   std::span<const std::uint32_t> source_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
@@ -72,12 +72,12 @@ struct RayQuery {
   [[nodiscard]] float t_max_of(std::size_t i) const {
     return t_max.empty() ? std::numeric_limits<float>::infinity() : t_max[i];
   }
-  /// Whether NearestHit::point is to be computed.
+  /// Returns whether NearestHit::point must be computed.
   [[nodiscard]] bool with_points() const { return skip_ids.empty() && any_hit_before.empty(); }
 };
 
 /// Finds nearest hits with exact decisions: results depend only on ray and scene, not on the
-/// intersector or the other rays of the query. Each thread has its own.
+/// intersector or the other rays of the query. Not thread-safe: each thread has its own.
 class Intersector {
  public:
   virtual ~Intersector() = default;
@@ -91,10 +91,10 @@ class Intersector {
   /// Returns the best number of rays per query: about 16,384 for each test done at the same time.
   [[nodiscard]] virtual std::size_t preferred_batch() const { return kBatch; }
 
-  /// Whether the engine benefits from RayQuery::source_ids that need exact arithmetic.
+  /// Returns whether the engine benefits from RayQuery::source_ids that need exact arithmetic.
   [[nodiscard]] virtual bool wants_sources() const { return false; }
 
-  /// Whether the engine calls RayQuery::is_enough.
+  /// Returns whether the engine calls RayQuery::is_enough.
   [[nodiscard]] virtual bool filters_hits() const { return false; }
 
   [[nodiscard]] virtual IntersectCounters counters() const = 0;
@@ -111,10 +111,10 @@ class Intersector {
 /// Makes the intersector of a thread; called on that thread. The factory owns shared data.
 using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 
-/// Whether a hit has t < t_max (positive); exact.
+/// Returns whether a hit has t < t_max (positive); exact.
 [[nodiscard]] bool is_before(const Bvh& bvh, const Ray& ray, const NearestHit& hit, float t_max);
 
-/// Whether hit `a` is nearer than hit `b`; exact. For equal t the lower triangle index is nearer.
+/// Returns whether hit `a` is nearer than `b`, exactly; for equal t, by the lower triangle index.
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a,
                              const NearestHit& b);
 
@@ -123,8 +123,9 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 bool take_if_nearer(const Bvh& bvh, const Ray& ray, float t_max, const NearestHit& hit,
                     NearestHit& best, IntersectCounters& counters);
 
-/// The same for a doubt: a triangle that binary32 finds neither hit nor missed; `doubt.t` is not
-/// read. Decides the distance first, which usually needs doubles only.
+/// Resolves a doubt, a triangle that binary32 finds neither hit nor missed, and updates `best` as
+/// take_if_nearer() does. `doubt.t` is not read. Decides the distance first, which usually needs
+/// doubles only.
 bool resolve_doubt(const Bvh& bvh, const Ray& ray, float t_max, NearestHit doubt, NearestHit& best,
                    IntersectCounters& counters);
 

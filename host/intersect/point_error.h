@@ -10,20 +10,20 @@
 
 // Derivation of the bound
 //
-// Let u = 2^-24 and g be how far V's exponent is below the largest of N's, or 0. hit_test_pkg.sv
-// has it that V is at most r = 48.5 u 2^g of itself off, and t, with 2 u of d and u of its
-// division, at most (48.5 * 2^g + 3.2) u / (1 - r). A coordinate of P has one rounding more, of d
-// I_k: (48.5 * 2^g + 4.3) u / (1 - r) of t I_k < 2^(6 + g) u = 2^(g - 18) while r <= 0.1, which is
-// so up to g = 12. A product d I_k that underflows is 2^-150 off, which is less than 2^-48 of d
-// where d is at least 2^-102; nothing overflows where d, t < 2^104. So it is 2^-48 t off in P, and
-// a coordinate that underflows 2^-150, less than 2^-47 t where t is at least 2^-103. Those two are
-// not small next to a coordinate that is: they are together less than 2^-46 of the largest.
+// Let u = 2^-24 and g be how far V's exponent is below the largest of N's, or 0. By hit_test_pkg.sv
+// the relative error of V is at most r = 48.5 u 2^g, and that of t, with 2 u of d and u of its
+// division, at most (48.5 * 2^g + 3.2) u / (1 - r). A coordinate of P has one more rounding, of d
+// I_k: (48.5 * 2^g + 4.3) u / (1 - r) of t I_k < 2^(6 + g) u = 2^(g - 18) while r <= 0.1, which
+// holds up to g = 12. A product d I_k that underflows has an error of 2^-150, which is less than
+// 2^-48 of d if d is at least 2^-102; nothing overflows if d, t < 2^104. So the error is 2^-48 t in
+// P, and 2^-150 for a coordinate that underflows, less than 2^-47 t if t is at least 2^-103. These
+// two are not small relative to a small coordinate: together they are less than 2^-46 of the
+// largest.
 
 namespace raygate {
 
 /// Returns the grazing that the unit reports with a hit (BurstHit::t_error), from the largest
-/// exponent field of N and the bits of V, which is finite. `Bits`: std::int32_t or a vector of
-/// them.
+/// exponent field of N and the bits of V (finite). `Bits` is std::int32_t or a vector of it.
 template <class Bits>
 RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
   return maximum(Bits(largest - (v >> 23 & 0xFF)), Bits{});

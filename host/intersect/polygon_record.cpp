@@ -16,36 +16,36 @@ namespace raygate {
 // The bound of an edge test
 //
 // Let u = 2^-24, E the exact edge plane A x B (times the record's power of two, if any), D the
-// double we round, F the record's float words, I a direction with |I_i| < 2, so that
-// |I . X| < 2 |X|_1 for any X. |.|_1 is the sum of magnitudes.
+// double before rounding, F the record's float words, I a direction with |I_i| < 2, so that |I . X|
+// < 2 |X|_1 for any X. |.|_1 is the sum of magnitudes.
 //
-// 1. Double. edge_normal promises |D_i - E_i| <= 2^-34 |D|_1, cancellation in the cross product
-//    included: it falls back on exact arithmetic where double is not that good. Together:
-//    |D - E|_1 <= 3 * 2^-34 |D|_1.
-// 2. Rounding to float. |F_i - D_i| <= u |F_i|, or 2^-150 where F_i is subnormal. Together:
-//    |F - D|_1 <= u |F|_1 + 3 * 2^-150, and so |D|_1 < 1.001 |F|_1.
-//    1 and 2:  |I . F - I . E| < (2 + 6.006 * 2^-10) u |F|_1 + 6 * 2^-150.
+// 1. Double. edge_normal guarantees |D_i - E_i| <= 2^-34 |D|_1, including cancellation in the cross
+//    product: it uses exact arithmetic if double is less accurate. Together: |D - E|_1 <= 3 * 2^-34
+//    |D|_1.
+// 2. Rounding to float. |F_i - D_i| <= u |F_i|, or 2^-150 if F_i is subnormal. Together: |F - D|_1
+//    <= u |F|_1 + 3 * 2^-150, and so |D|_1 < 1.001 |F|_1. 1 and 2:  |I . F - I . E| < (2 + 6.006 *
+//    2^-10) u |F|_1 + 6 * 2^-150.
 // 3. The dot product in float, in any order: a product takes part in at most three roundings (its
-//    own and two sums), so the result is off by (3 u / (1 - 3 u)) |I|.|F| < 6.00001 u |F|_1;
+//    own and two sums), so the error of the result is (3 u / (1 - 3 u)) |I|.|F| < 6.00001 u |F|_1;
 //    a product that underflows adds at most 2^-150 (sums do not underflow), three of them 2^-148.
 // 4. make_record keeps max |F_i| between 2^-60 and 2^61. So nothing overflows, and the underflow
 //    terms, less than 2^-146 in all, are under 2^-62 u |F|_1.
 //
-// Sum: less than (8 + 0.00587 + 0.00001 + 2^-62) u |F|_1 < kEdgeBound u |F|_1, with room for
-// evaluating the latter in double; the rounding to float goes up.
+// Sum: less than (8 + 0.00587 + 0.00001 + 2^-62) u |F|_1 < kEdgeBound u |F|_1. The margin covers
+// evaluating the latter in double; the rounding to float is upwards.
 
 namespace {
 
-// Words whose exponents are in here are far enough from under- and overflow for all that follows.
+// Words with exponents in this range are safe from under- and overflow in all later steps.
 constexpr double kSmallest = 0x1p-60, kLargest = 0x1p61;
 
-/// Not so for a NaN.
+/// Returns whether x is 0 or in that range; false for NaN.
 bool ordinary(double x) {
   const double size = std::abs(x);
   return size == 0.0 || (size >= kSmallest && size < kLargest);
 }
 
-/// By which power of two `v` is to be multiplied for its largest component to be in [1, 2).
+/// Returns the exponent of the power of two that scales the largest component of `v` into [1, 2).
 int to_unit(const glm::dvec3& v) {
   const double size = largest(v);
   return size > 0.0 && std::isfinite(size) ? -std::ilogb(size) : 0;
@@ -64,9 +64,9 @@ bool lower(const glm::vec3& a, const glm::vec3& b) {
   return std::pair(a.x, std::pair(a.y, a.z)) < std::pair(b.x, std::pair(b.y, b.z));
 }
 
-/// A x B in float. Computed from the lower vertex, A x B = A x (B - A), whichever way the edge
-/// runs: neighbours get exactly opposite numbers. The difference, small where the triangle is far
-/// away, spares the digits that A x B would cancel.
+/// Returns A x B in float. Computed from the lower vertex, A x B = A x (B - A), regardless of the
+/// edge's direction, so neighbours get exactly opposite numbers. The difference, small for a
+/// distant triangle, avoids cancellation in A x B.
 glm::vec3 edge_words(const glm::vec3& origin, const glm::vec3& a, const glm::vec3& b) {
   glm::dvec3 edge = lower(a, b) ? edge_normal(origin, a, b) : -edge_normal(origin, b, a);
   if (!ordinary(largest(edge))) edge = scaled(edge, to_unit(edge));
@@ -78,7 +78,7 @@ float edge_bound(const glm::vec3& edge) {
   return rounded_up(kEdgeBound * 0x1p-24 * (e.x + e.y + e.z));
 }
 
-/// A plane of the record's scale.
+/// A plane scaled by the record's power of two.
 struct Plane {
   glm::dvec3 normal;
   double d;
@@ -91,7 +91,7 @@ struct Plane {
     d = std::ldexp(d, exponent);
   }
 
-  /// Whether float cannot hold the distance.
+  /// Returns whether d is outside the range of normal floats.
   [[nodiscard]] bool is_beyond_float() const {
     return d != 0.0 && !std::isnormal(static_cast<float>(d));
   }
@@ -100,7 +100,7 @@ struct Plane {
     record.normal = glm::vec3(normal);
     record.d = static_cast<float>(d);
     if (!is_beyond_float()) return;
-    // Its sign counts.
+    // Only the sign is used.
     record.d = std::copysign(std::clamp(std::abs(record.d), std::numeric_limits<float>::min(),
                                         std::numeric_limits<float>::max()),
                              static_cast<float>(d < 0.0 ? -1.0 : 1.0));
@@ -123,14 +123,14 @@ PolygonRecord make_record(const glm::vec3& origin, const Corners& t) {
     record.edges[k] = edge_words(origin, t[k], t[(k + 1) % 3]);
     record.bounds[k] = edge_bound(record.edges[k]);
   }
-  // Then exact arithmetic has the last word.
+  // Exact arithmetic then decides.
   if (plane.is_beyond_float()) record.bounds.fill(std::numeric_limits<float>::infinity());
   return record;
 }
 
-// The operations are those of exact.cpp and polygon_record.cpp, in their order, so the bits are
-// theirs, as long as double is accurate enough and all exponents are ordinary. Where that is not
-// so for a triangle, make_record has it.
+// Operations and their order are those of exact.cpp and polygon_record.cpp, so all bits are equal,
+// as long as double is accurate enough and all exponents are ordinary. For other triangles
+// make_record computes the record.
 
 namespace {
 
@@ -151,12 +151,12 @@ RAYGATE_INLINE void subtract(const Points& a, const Points& b, Points& result) {
 
 RAYGATE_INLINE Doubles largest_of(const Points& p) { return maximum(maximum(p[0], p[1]), p[2]); }
 
-/// The exponent of each is in [-60, 60], or it is 0.
+/// Clears `good` in lanes whose value is neither 0 nor has an exponent in [-60, 60].
 RAYGATE_INLINE void require_ordinary(const Doubles& size, Longs& good) {
   good &= ((size >= 0x1p-60) & (size < 0x1p61)) | (size == 0.0);
 }
 
-/// u x v; leaves those lanes good in which it is accurate enough and of an ordinary size.
+/// Computes u x v; clears `good` in lanes in which it is not accurate enough or not ordinary.
 RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& value, Points& size,
                                    Longs& good) {
   cross(u, v, value, size);
@@ -166,7 +166,8 @@ RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& val
   require_ordinary(largest_of(s), good);
 }
 
-/// Four words of four records each, from four vectors of one word each; words[i] begins record i.
+/// Stores four words of each of four records, from four vectors with one word of each record;
+/// words[i] begins record i.
 template <std::size_t kWords>
 RAYGATE_INLINE void store_words(const Floats& a, const Floats& b, const Floats& c, const Floats& d,
                                 float (&words)[kBatch][kWords], std::size_t first = 0) {
@@ -179,7 +180,7 @@ RAYGATE_INLINE void to_floats(const Points& p, Floats (&words)[3]) {
   for (int k = 0; k < 3; ++k) words[k] = narrow(p[k]);
 }
 
-/// The bound of an edge: its sum of magnitudes times a constant, rounded up.
+/// Returns the bound of an edge: its sum of magnitudes times a constant, rounded up.
 RAYGATE_INLINE Floats edge_bound(const Floats (&words)[3]) {
   Doubles e[3];
   for (int k = 0; k < 3; ++k) e[k] = absolute(wide(words[k]));
@@ -188,8 +189,7 @@ RAYGATE_INLINE Floats edge_bound(const Floats (&words)[3]) {
   return float_of(bits_in(nearest) - whole(wide(nearest) < exact));
 }
 
-/// The corners of four triangles. (Lane by lane: words that were stored one by one do not reach a
-/// vector's load before they are in the cache.)
+/// Loads the corners of four triangles by lane, as vector loads after single stores would stall.
 RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
   const Corners(&of)[kBatch] = views.triangles;
   for (int v = 0; v < 3; ++v) {
@@ -199,8 +199,8 @@ RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
   }
 }
 
-/// N and d, from the corners and the first one seen from the origin; leaves those lanes good in
-/// which they are right.
+/// Computes N and d from the corners and the first corner relative to the origin; clears `good` in
+/// lanes in which they are not accurate.
 RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal, Doubles& d,
                                 Longs& good) {
   Points to_b, to_c, size, far;
@@ -217,7 +217,7 @@ RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& n
 
 }  // namespace
 
-/// Four words of 16 each, and bit i of the result where record i is right.
+/// Computes the 16 words of four records. Bit i of the result is set if record i is valid.
 LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&words)[kBatch][16]) {
   return in_vectors([&](auto) RAYGATE_BODY {
     Points t[3], from_o[3];
@@ -254,7 +254,7 @@ LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&wor
   });
 }
 
-/// Bit i of the result where plane i is right.
+/// Computes four planes. Bit i of the result is set if plane i is valid.
 LaneMask make_four_planes(const PlaneViews& views, Planes& planes) {
   return in_vectors([&](auto) RAYGATE_BODY {
     Points t[3], a, normal;

@@ -9,11 +9,11 @@
 
 namespace raygate {
 
-/// The 16 words of a triangle A, B, C seen from an origin O (A, B, C stand for the vertices minus
-/// O). Rays from O share it, whatever their direction.
+/// The 16 words of a triangle A, B, C seen from an origin O (A, B, C are the vertices minus O). All
+/// rays from O share it.
 ///
 /// Words are results of double or exact arithmetic, rounded once to float. (N, d), and each edge
-/// with its bound, can be scaled by a power of two if their exponents are outside [-60, 60]; this
+/// with its bound, are scaled by a power of two if their exponents are outside [-60, 60]; this
 /// changes neither P nor any sign. All words are finite, except that a bound can be +infinity: that
 /// edge is then always in doubt.
 struct alignas(64) PolygonRecord {

@@ -1,8 +1,8 @@
-"""`python3 -m host.lab TARGET`: measures what `make TARGET` is about and writes its report, build/reports/TARGET/report.md.
+"""`python3 -m host.lab TARGET`: measures what `make TARGET` reports and writes build/reports/TARGET/report.md.
 
-A target is a module of host/lab/targets: `PARTS` gives the steps of each part, `values` what its template
-host/lab/report/TARGET.md.j2 needs besides the rows, `failures` what is wrong in them (exit status 1), `own_folder` the report's own
-folder where a target has several.
+A target is a module of host/lab/targets. `PARTS` gives the steps of each part, `values` the values that its template
+host/lab/report/TARGET.md.j2 needs besides the rows, `failures` the errors in the rows (exit status 1), and
+`own_folder` the folder of the report if a target has several.
 """
 
 import argparse
@@ -24,7 +24,7 @@ TARGETS = ("stress", "bench", "peers", "speed", "core", "variant")
 
 
 def arguments() -> argparse.Namespace:
-    """The command line."""
+    """Returns the parsed command line."""
     parser = argparse.ArgumentParser(prog="host.lab", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("target", choices=TARGETS)
@@ -47,7 +47,7 @@ def arguments() -> argparse.Namespace:
 
 
 def make_command(given: argparse.Namespace) -> str:
-    """What makes the rows again."""
+    """Returns the make command that reproduces the rows."""
     words = {"QUICK": int(given.quick), "ONLY": given.only, "SCENE" if given.target == "variant" else "SCENES": given.scenes, "TESTS": given.tests,
              "SEED": given.seed if given.seed != 1 else 0, "RENDER": given.render if given.render != ROOT / "render" else "",
              "BEFORE": given.before, "ENERGY": int(given.energy), "WIRES": int(given.wires)}
@@ -55,7 +55,7 @@ def make_command(given: argparse.Namespace) -> str:
 
 
 def publish(name: str, folder: pathlib.Path, text: str) -> None:
-    """Copies a report with its plots and long tables into host/lab/results; removes those that no report shows any more."""
+    """Copies a report with its plots and long tables into host/lab/results; removes files that no report uses."""
     (PUBLISHED / f"{name}.md").write_text(text)
     for file in [*folder.glob("*.png"), *folder.glob("*.csv")]:
         shutil.copy(file, PUBLISHED)
@@ -66,7 +66,7 @@ def publish(name: str, folder: pathlib.Path, text: str) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """The exit status."""
+    """Measures, writes the report, and returns the exit status."""
     target = importlib.import_module(f"host.lab.targets.{given.target}")
     parts = given.only.split(",") if given.only else list(getattr(target, "USUAL", target.PARTS))
     unknown = set(parts) - set(target.PARTS)
@@ -88,7 +88,7 @@ def run(given: argparse.Namespace) -> int:
     document.write(text, folder)
     if given.publish:
         publish(given.target, folder, text)
-    if given.target not in ("bench", "stress"):  # of which nobody reads all
+    if given.target not in ("bench", "stress"):  # their tables are summarised
         print(text)
     print(f"Report: {folder.relative_to(ROOT)}/report.md, and report.html beside it; rows: {file.relative_to(ROOT)}")
     wrong = target.failures(rows) if hasattr(target, "failures") else []
@@ -97,13 +97,13 @@ def run(given: argparse.Namespace) -> int:
 
 
 def main() -> int:
-    """Runs the command line; 2 for what the user can mend."""
+    """Runs the command line. Returns exit status 2 for user errors."""
     try:
         return run(arguments())
     except KeyboardInterrupt:
         print("interrupted; the same command goes on from here", file=sys.stderr)
         return 130
-    except subprocess.CalledProcessError as error:  # which has said why, or had its standard error kept
+    except subprocess.CalledProcessError as error:  # it has printed the error, or its standard error was captured
         print(f"{error.stderr or ''}error: {shlex.join(map(str, error.cmd))}: ended with status {error.returncode}",
               file=sys.stderr)
     except FileNotFoundError as error:

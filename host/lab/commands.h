@@ -9,7 +9,6 @@ class App;
 
 namespace raygate::lab {
 
-/// What a command leaves behind.
 struct Outcome {
   Results results;
   int status = 0;  ///< the program's exit status
@@ -25,6 +24,6 @@ AddCommand add_rays;        ///< rays per second, next to Embree's
 AddCommand add_core;        ///< clocks a ray of the ray core
 AddCommand add_variants;    ///< the table of variants
 AddCommand add_check;       ///< reference models against hardware
-AddCommand add_pictures;    ///< pictures by any variant, timed and judged
+AddCommand add_pictures;    ///< images by any variant, timed and audited
 
 }  // namespace raygate::lab

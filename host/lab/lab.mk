@@ -1,9 +1,9 @@
-# What the lab measures: host/lab/README.md. Rows are kept in build/results/, reports written to build/reports/. An interrupted
-# run goes on when it is started again.
+# Measurements of the lab: see host/lab/README.md. Rows are in build/results/, reports in build/reports/. An interrupted
+# run continues when it is started again.
 .PHONY: stress bench variant card peers speed core
 
 comma := ,
-# $(call of,PARTS): those of PARTS that were asked for; all without ONLY.
+# $(call of,PARTS): the parts selected by ONLY; all without ONLY.
 of = $(if $(ONLY),$(filter $(1),$(subst $(comma), ,$(ONLY))),$(1))
 define measure
 @$(PYTHON) -B -m host.lab $(@:card=variant) $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
@@ -24,9 +24,9 @@ bench: ## measure: run time against error, adder to picture: make bench [QUICK=1
 	$(call build,bench,lab scenes unit_bench)
 	$(measure)
 
-# In quotes: names of files may hold blanks.
+# Quoted, as file names may contain spaces.
 variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),'$(word)=$(subst ','\'',$($(word)))'))
-# By this name, `make -n` does not run it and wait for the lock.
+# With this name, `make -n` does not run it and wait for the lock.
 again := $(MAKE)
 variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial WIRES=1]
 ifneq ($(filter %.sv' %.v',$(variant_words)),)
@@ -39,7 +39,7 @@ endif
 	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
 	@$(call alone,build/variant.lock,another make variant) $(again) --no-print-directory card
 
-# The rest of `make variant`, one run at a time: writes its table of variants, builds build/lab-variant, prints the card.
+# The other steps of `make variant`, one run at a time: write its table of variants, build build/lab-variant, print the card.
 card: VARIANTS = $(CURDIR)/build/results/variant.json
 card: SCENES = $(SCENE)
 card: export RAYGATE_LAB = lab-variant

@@ -1,4 +1,4 @@
-"""What the figures were made on and with."""
+"""Describes the machine, the tools and the sources of a measurement."""
 
 import datetime
 import os
@@ -22,12 +22,12 @@ def _output(*command: str) -> str:
 
 
 def processors() -> int:
-    """How many this process may use."""
+    """Returns the number of processors that this process may use."""
     return len(os.sched_getaffinity(0))
 
 
 def describe(root: pathlib.Path) -> dict:
-    """The machine, the tools and the sources, as a row. Unknown things are empty."""
+    """Returns the machine, the tools and the sources as a row. Unknown values are empty."""
     info = pathlib.Path("/proc/cpuinfo")
     cpu = info.read_text() if info.exists() else ""
     cache = root / "build" / "CMakeCache.txt"

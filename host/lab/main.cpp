@@ -1,4 +1,4 @@
-// lab: everything that is measured on the host, one subcommand each. `lab --help` lists them.
+// lab: measurements on the host, with one subcommand each. `lab --help` lists them.
 #include <CLI/CLI.hpp>
 
 #include "host/app/process.h"

@@ -1,4 +1,4 @@
-// Rows of measurements: one way to keep them, one way to print them.
+// Rows of measurements: storage and printing.
 #pragma once
 
 #include <filesystem>
@@ -9,30 +9,30 @@
 
 namespace raygate::lab {
 
-/// A row: the column `table` says of which table. JSON has no infinity: null stands for it.
+/// A row; its column `table` names its table. Infinity is null, as JSON has none.
 using Row = Json;
 
-/// What a command has found.
+/// The rows of a command.
 class Results {
  public:
   void keep(Row row) { rows_.push_back(std::move(row)); }
-  /// Keeps a row and prints its columns, but for nested ones, in a table that grows row by row.
+  /// Stores a row and prints its columns, except nested ones, in a table that grows row by row.
   void add(Row row);
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  /// Writes all rows, a JSON object a line: the whole file or nothing. Throws InputError where the
-  /// file or its folder cannot be made.
+  /// Atomically writes all rows, one JSON object per line. Throws InputError if the file or its
+  /// folder cannot be created.
   void write(const std::filesystem::path& file) const;
 
  private:
   std::vector<Row> rows_;
-  std::string head_;  // of the table in the terminal
+  std::string head_;  // header of the printed table
 };
 
-/// FNV-1a.
+/// Returns the FNV-1a hash.
 [[nodiscard]] std::uint64_t digest(std::string_view bytes);
 
-/// The machine, as far as it decides speed: processor, the widest vectors that it has,
-/// and those that the cpu engine uses (host/base/vectors.h).
+/// Returns the properties of the machine that affect speed: processor, widest vectors, and the
+/// vectors used by the cpu engine (host/base/vectors.h).
 [[nodiscard]] Row machine_kind();
 
 }  // namespace raygate::lab

@@ -1,4 +1,4 @@
-"""Rows of the lab: JSON objects, one a line. Each says which command found it, at which commit, on which machine."""
+"""Rows of the lab: JSON objects, one per line, each with the command, commit and machine that produced it."""
 
 import json
 import os
@@ -9,12 +9,12 @@ KEPT = ROOT / "build" / "results"
 
 
 def read(file: pathlib.Path) -> list[dict]:
-    """All rows of a file."""
+    """Returns all rows of a file."""
     return [json.loads(line) for line in file.read_text().splitlines()]
 
 
 def write(file: pathlib.Path, rows: list[dict]) -> None:
-    """Replaces the file at once: it is never there in part."""
+    """Atomically replaces the file."""
     file.parent.mkdir(parents=True, exist_ok=True)
     unfinished = file.with_suffix(".unfinished")
     unfinished.write_text("".join(json.dumps(row) + "\n" for row in rows))
@@ -22,18 +22,18 @@ def write(file: pathlib.Path, rows: list[dict]) -> None:
 
 
 def of(rows: list[dict], table: str, **values: object) -> list[dict]:
-    """The rows of a table whose columns have these values."""
+    """Returns the rows of a table whose columns have these values."""
     return [row for row in rows if row["table"] == table
             and all(row.get(name) == value for name, value in values.items())]
 
 
 def scene_name(row: dict) -> str:
-    """`cornell` for scenes/cornell.obj."""
+    """Returns the scene's name, such as `cornell` for scenes/cornell.obj."""
     return pathlib.Path(row["scene"]).stem
 
 
 def grouped(rows: list[dict], by: tuple[str, ...], over: str) -> list[dict]:
-    """One row for each value of the columns `by`; its `at` has the others by their value of `over`."""
+    """Returns one row for each value of the columns `by`; its `at` maps values of `over` to the rows with them."""
     found: dict[tuple, dict] = {}
     for row in rows:
         found.setdefault(tuple(row[key] for key in by), {**row, "at": {}})["at"][row[over]] = row

@@ -1,4 +1,4 @@
-"""What a target measures, step by step. Each step's rows are kept when it is done, so that an interrupted run goes on."""
+"""Executes the steps of a target. Completed steps keep their rows, so an interrupted run can be continued."""
 
 import concurrent.futures
 import dataclasses
@@ -18,7 +18,7 @@ from collections.abc import Callable
 from host.lab import machine, rows as kept
 from host.lab.rows import KEPT, ROOT
 
-LAB = ROOT / "build" / os.environ.get("RAYGATE_LAB", "lab")  # `make variant` has its own
+LAB = ROOT / "build" / os.environ.get("RAYGATE_LAB", "lab")  # `make variant` has its own program
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Step:
     measure: Callable[[], list[dict]] | None = None
 
     def command(self, target: str) -> str:
-        """What makes its rows again."""
+        """Returns the command that reproduces the step's rows."""
         return shlex.join([f"build/{LAB.name}", *map(str, self.words)]) if self.words else f"make {target} ONLY={self.part}"
 
 
@@ -40,18 +40,19 @@ def _measure(step: Step, file: pathlib.Path) -> None:
         return
     done = subprocess.run([LAB, "--results", f"{file}.unfinished", *map(str, step.words)], cwd=ROOT,
                           stdout=sys.stderr, check=False)
-    if done.returncode not in (0, 1):  # 1: something is wrong, which the rows say
+    if done.returncode not in (0, 1):  # 1: the rows report errors
         raise subprocess.CalledProcessError(done.returncode, [LAB, *step.words])
     os.replace(f"{file}.unfinished", file)
 
 
 def _left(seconds: list[float | None]) -> str:
-    """What is left of steps that took so long the last time; nothing where one is new."""
+    """Returns the remaining time, from earlier times of the steps; "" if a step is new."""
     return "" if None in seconds else f", about {max(1, round(sum(seconds) / 60))} min left"
 
 
 def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> list[dict]:
-    """The rows of all steps. Steps of an interrupted run of the same make command `asked`, at the same commit, stay as they are."""
+    """Returns the rows of all steps. Reuses steps of an interrupted run of the same make command `asked` at the same
+    commit."""
     about = machine.describe(ROOT)
     stamp = {"commit": about["commit"], "machine": f"{about['processor']}, {about['processors']} processors"}
     folder = KEPT / "unfinished" / target
@@ -84,7 +85,8 @@ def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> li
 
 
 def render(command: list, *words: object, picture: pathlib.Path | None = None, **how: object) -> dict:
-    """What ./render says about a picture, by the cpu engine unless `words` say otherwise; `how`: of subprocess.run."""
+    """Returns the statistics of ./render, with the cpu engine unless `words` select another. `how` is passed to
+    subprocess.run."""
     engine = () if "--engine" in words else ("--engine", "cpu")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -94,6 +96,6 @@ def render(command: list, *words: object, picture: pathlib.Path | None = None, *
 
 
 def difference(picture: pathlib.Path, reference: pathlib.Path) -> dict:
-    """What ./compare says about two pictures."""
+    """Returns the output of ./compare for two images."""
     said = subprocess.run([ROOT / "compare", picture, reference, "--json"], cwd=ROOT, check=True, capture_output=True, text=True)
     return json.loads(said.stdout)

@@ -1,4 +1,4 @@
-// Time that was computed in, and what repeats of it say.
+// Processor time, and statistics of repeated measurements.
 #pragma once
 
 #include <algorithm>
@@ -7,22 +7,22 @@
 
 namespace raygate::lab {
 
-/// Of CLOCK_THREAD_CPUTIME_ID (this thread) or CLOCK_PROCESS_CPUTIME_ID: what other programs take
-/// does not count, which the time on the wall does.
+/// Returns the time of CLOCK_THREAD_CPUTIME_ID (this thread) or CLOCK_PROCESS_CPUTIME_ID. Unlike
+/// wall time, it excludes other processes.
 inline double seconds_of(clockid_t clock) {
   timespec time{};
   clock_gettime(clock, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Of at least one value.
+/// Returns a quantile of at least one value.
 inline double quantile(std::vector<double> values, double part) {
   std::ranges::sort(values);
   return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
 }
 inline double median(const std::vector<double>& values) { return quantile(values, 0.5); }
 
-/// How far the middle half of the values spreads, as a part of the median.
+/// Returns the interquartile range of the values, relative to the median.
 inline double spread(const std::vector<double>& values) {
   return (quantile(values, 0.75) - quantile(values, 0.25)) / median(values);
 }

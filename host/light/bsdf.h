@@ -54,7 +54,7 @@ class Bsdf {
     if ((kind_ & (kMirrors | kTransmits | kMetallicRoughness)) != 0) {
       return Bsdf(seen, kind_, materials);
     }
-    Bsdf other = *this;  // no lobe's share depends on the view
+    Bsdf other = *this;  // no lobe depends on the view
     other.view_ = seen.view;
     other.normal_ = seen.normal;
     return other;
@@ -68,24 +68,24 @@ class Bsdf {
     return mirror_is_traced_;
   }
   [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& is_refracting() const { return is_refracting_; }
-  /// Index of refraction beyond the interface over that before it.
+  /// Returns the index of refraction behind the interface over that in front of it.
   [[nodiscard]] RAYGATE_INLINE const T& eta() const { return eta_; }
-  /// Emitted radiance (Ke).
+  /// Returns the emitted radiance (Ke).
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& emission() const { return emission_; }
-  /// Radiance that is seen but lights nothing (illum 0).
+  /// Returns radiance that is visible but does not light anything (illum 0).
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& unlit() const { return unlit_; }
-  /// Whether there is a lobe that is not specular: diffuse, glossy, or rough glass.
+  /// Returns whether there is a lobe that is not specular: diffuse, glossy, or rough glass.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> scatters() const {
     return largest(diffuse_) + glossy_sum() > 0.0f;
   }
-  /// Whether lights are sampled: scatters(), or a mirror with a highlight of point lights.
+  /// Returns whether lights are sampled: scatters(), or a mirror with a highlight of point lights.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> answers_lights() const {
     const MaskOf<T> scatters = this->scatters();
     if (!has_highlight()) return scatters;
     const auto has_one = largest(highlight()) > 0.0f;
     return scatters | has_one;
   }
-  /// Approximate albedo of all lobes that are not specular.
+  /// Returns the approximate albedo of all lobes that are not specular.
   [[nodiscard]] RAYGATE_INLINE T scattered_share() const {
     return has_rough_glass() ? largest(diffuse_) + glossy_sum() : largest(diffuse_ + glossy_);
   }
@@ -100,7 +100,7 @@ class Bsdf {
     return above(light, (kind_ & kGlossy) != 0 ? diffuse_ * per_pi() + glossy_ * phong_lobe(light)
                                                : diffuse_ * per_pi());
   }
-  /// The same, with the highlight of mirrors where the light is a point.
+  /// Returns eval(), with the highlight of mirrors in lanes whose light is a point.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light,
                                               const MaskOf<T>& is_from_point) const {
     if (!has_highlight() || !any(is_from_point)) return eval(light);
@@ -127,11 +127,10 @@ class Bsdf {
            share * (phong_lobe(light) * ((exponent_ + 1.0f) / (exponent_ + 2.0f)));
   }
 
-  /// Whether light scatters to both sides.
+  /// Returns whether the lobes include rough glass, which scatters to both sides.
   [[nodiscard]] RAYGATE_INLINE bool has_rough_glass() const {
     return (~kind_ & (kMetallicRoughness | kGlossy | kMirrors)) == 0;
   }
-  /// The lobes of a metallic-roughness material.
   [[nodiscard]] RAYGATE_INLINE const MetallicRoughnessLobes<T>& facets() const { return facets_; }
 
  private:
@@ -176,7 +175,7 @@ class Bsdf {
   T eta_, exponent_;
   Triple<T> diffuse_, glossy_, mirror_, transmission_, emission_, unlit_;
   MaskOf<T> mirror_is_traced_, is_refracting_;
-  MetallicRoughnessLobes<T> facets_;  // of kMetallicRoughness alone
+  MetallicRoughnessLobes<T> facets_;  // only for kMetallicRoughness
 };
 
 template <class T>
@@ -226,7 +225,7 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
     const auto is_fresnel =
         is_refracting_ & (gather<T>(materials, &Material::is_fresnel) | (reflectance >= 1.0f));
     mirror_ = choose(is_fresnel, Triple<T>{reflectance, reflectance, reflectance}, mirror_);
-    // What the mirror of glass takes is gone for all that lies under it.
+    // Light that a glass mirror reflects does not reach the lobes below it.
     const Triple<T> rest =
         choose(is_glass, Triple<T>{one, one, one} - mirror_, Triple<T>{one, one, one});
     diffuse_ = diffuse_ * rest;
@@ -272,12 +271,12 @@ RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u, const T& choic
   }
   const T share = glossy_share(), left = 1.0f - share;
   const auto is_glossy = u.x < share;
-  // What is left of u.x says how far from the axis.
+  // The rest of u.x selects the angle from the axis.
   const T glossy_rest = 1.0f - u.x / choose(share > 0.0f, share, spread<T>(1.0f));
   const T diffuse_rest = (u.x - share) / choose(left > 0.0f, left, spread<T>(1.0f));
   const T rest = at_most(at_least(choose(is_glossy, glossy_rest, diffuse_rest), 0.0f), 1.0f);
   if ((kind_ & kMetallicRoughness) != 0) {
-    // The same point of the square for both: each lane has use for one of them.
+    // Both lobes use the same point: each lane needs only one of them.
     return choose(is_glossy, facets_.sample({rest, u.y}, choice),
                   spherical_direction(normal_, root(1.0f - rest), root(rest), turned_x, turned_y));
   }

@@ -1,4 +1,4 @@
-// Light tracing: what surfaces scatter of light paths is connected to the camera.
+// Light tracing: connects the surfaces of light paths to the camera.
 #include "host/light/light_paths.h"
 #include "host/light/sample_scattered_ray.h"
 #include "host/light/shade.h"
@@ -6,8 +6,8 @@
 namespace raygate {
 namespace {
 
-/// Light that is on its way from a surface to the camera's lens; what surfaces scatter that is the
-/// first on their path, light that is asked for finds.
+/// Adds light samples from surfaces of light paths to the camera's lens. First surfaces of paths
+/// are excluded, as camera paths find them by sampling lights.
 template <class T>
 RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits) {
   constexpr int kCount = Hits<T>::kCount;

@@ -15,7 +15,7 @@
 namespace raygate {
 namespace {
 
-/// Lights stand still while the camera is looked through: they are found from it.
+/// Computes positions of lights from those of the camera and the scene.
 class LightPlaces {
  public:
   LightPlaces(const Scene& scene, const Camera& camera) : camera_(camera) {
@@ -28,18 +28,18 @@ class LightPlaces {
 
   [[nodiscard]] bool is_inside() const { return is_inside_; }
   [[nodiscard]] double size() const { return size_; }
-  /// Of a ball in a light's place: its shadow of an edge is about an eighth as wide as the edge is
-  /// far from what it falls on.
+  /// Returns the radius of spherical lights. Penumbras are 1/8 as wide as the occluder's distance.
   [[nodiscard]] double radius() const { return 0.5 * size_; }
 
-  /// From the upper left of the camera, or from the camera. Outside, `radiance` is that of a white
-  /// wall in the middle of the scene that faces the light; it is not much more in front.
+  /// Returns the main light: to the upper left of the camera, or at a camera inside the scene.
+  /// Otherwise, `radiance` is that of a white wall in the middle of the scene facing the light; in
+  /// front it is slightly higher.
   [[nodiscard]] PointLight key(double radiance) const {
     if (is_inside_) return light(glm::dvec3(camera_.eye()), 0.35 * size_, 0.8);
     const glm::dvec3 at = place(-0.8, 1.2);
     return light(at, glm::length(at - middle_), radiance);
   }
-  /// From the right of the camera.
+  /// Returns the fill light, from the right of the camera.
   [[nodiscard]] PointLight fill() const {
     const glm::dvec3 at = place(1.4, 0.3);
     return light(at, glm::length(at - middle_), 0.16);
@@ -47,7 +47,7 @@ class LightPlaces {
 
  private:
   [[nodiscard]] glm::dvec3 place(double right, double up) const {
-    constexpr double kFar = 4.0;  // parts of the scene are nearly as far as its middle
+    constexpr double kFar = 4.0;  // all parts of the scene are at about the same distance
     return middle_ +
            kFar * size_ * (up * camera_.up() + right * camera_.right() - 1.3 * camera_.forward());
   }
@@ -66,7 +66,7 @@ bool has_lights(const Scene& scene) {
   return !scene.lights.empty() || !scene.directional_lights.empty() || scene.environment;
 }
 
-/// Whether some face emits in one colour: it is meant as a light.
+/// Returns whether some triangle emits without a texture, so that it is meant as a light.
 bool has_emitter(const Scene& scene) {
   return std::ranges::any_of(scene.triangles, [&](const Triangle& face) {
     const Material& material = scene.materials[face.material];
@@ -74,11 +74,11 @@ bool has_emitter(const Scene& scene) {
   });
 }
 
-/// Whether faces that emit light the scene. Labels, screens and the like that glow do not: they
-/// are no lights. `size` is the scene's diagonal.
+/// Returns whether emissive triangles light the scene. Glowing labels, screens and the like do not.
+/// `size` is the scene's diagonal.
 bool is_lit_by_emitters(const Scene& scene, double size) {
-  // Radiance times area, over the size's square: about a hundredth of what the key light does; and
-  // a sixth where a texture says what glows, which is made to be looked at.
+  // Thresholds of radiance * area / size^2: about 1/100 of the main light, or 1/6 for emission with
+  // a texture, which is meant to be looked at.
   constexpr double kGlow = 0.01, kPicture = 0.15;
   std::vector<double> radiance;
   for (const Material& material : scene.materials) {
@@ -98,13 +98,13 @@ bool is_lit_by_emitters(const Scene& scene, double size) {
 
 constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
 
-/// A photographer's studio around the camera, for mirrors: dark below, soft boxes above, to the
-/// left and to the right of what is seen, and one behind it. Its mean is the dim sky's.
+/// Returns a photo studio around the camera, for reflections: dark below; soft boxes above, on the
+/// left and right of the view, and one behind the scene. Its mean is `mean_radiance`.
 EnvironmentMap studio(const Camera& camera, const glm::vec3& mean_radiance) {
   struct Box {
-    double x, y, half_width, half_height, radiance;  // in the map, from 0 to 1
+    double x, y, half_width, half_height, radiance;  // in map coordinates from 0 to 1; radiance
   };
-  // The middle of the map is ahead of the camera; its edges are behind it.
+  // The centre of the map is ahead of the camera; its edges are behind the camera.
   constexpr Box kBoxes[] = {{0.5, 0.06, 0.5, 0.07, 6.0},
                             {0.08, 0.34, 0.07, 0.13, 9.0},
                             {0.86, 0.42, 0.035, 0.2, 6.0},
@@ -158,7 +158,7 @@ std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& cam
   if (is_empty(scene) || has_lights(scene)) return {};
   const LightPlaces places(scene, camera);
   if (is_lit_by_emitters(scene, places.size())) return {};
-  // With the fill, the sky, and light between surfaces, white stays below 1.
+  // Leaves room for the fill light, the sky and interreflection: white stays below 1.
   CameraLights lights{{places.key(0.4)}, scene.background, {}};
   if (lights.background == glm::vec3(0.0f)) lights.background = kDimSky;
   if (places.is_inside()) return lights;

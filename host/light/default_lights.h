@@ -11,9 +11,9 @@ namespace raygate {
 
 class Camera;
 
-/// Returns lights for a scene that has none (no lights, no background, no emission except textures
-/// that hardly light anything): one light to the upper left of the camera with soft shadows, or at
-/// the camera if that is inside the scene, and a dim sky. Returns nothing for other scenes.
+/// Returns lights for a scene without any (no lights, no background, and no emission except
+/// textures that hardly light anything): a light to the upper left of the camera with soft shadows,
+/// or at the camera if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
 [[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera);
 
 /// Returns lights for a preview, whose camera the user did not choose: as above, with a second,

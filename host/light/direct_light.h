@@ -26,9 +26,9 @@ struct IncidentLight {
   MaskOf<T> is_asked = T{} > 0.0f;       ///< whether the hit samples this light
   MaskOf<T> is_area = is_asked;          ///< from an area light
   MaskOf<T> is_point_light = is_asked;   ///< from a point light
-  Triple<T> direction = zero<T>();       ///< unit vector towards it
+  Triple<T> direction = zero<T>();       ///< unit vector towards the light
   T distance_squared = spread<T>(1.0f);  ///< in units of Lights; 1: a distant light
-  T cosine = T{};                        ///< Hits::cosine of the direction; 0: nothing arrives
+  T cosine = T{};                        ///< Hits::cosine of the direction; 0: no light arrives
   T light_cosine = T{};                  ///< of an area light
   Triple<T> emission = zero<T>();        ///< radiance, intensity or irradiance
   T pdf = spread<T>(
@@ -37,20 +37,20 @@ struct IncidentLight {
   WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
 
   IncidentLight() = default;
-  /// From a point.
+  /// Sets the geometry of light from a point.
   RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
       : target(position) {
-    constexpr float kNear = 1e-30f;  // floats have room for the inverse
+    constexpr float kNear = 1e-30f;  // the inverse is within the range of float
     const Triple<T> way = (position - hits.surface.point) * spread<T>(lights.per_unit());
     distance_squared = dot(way, way);
     direction = way * (1.0f / root(distance_squared));
     cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
   }
-  /// From a distant light in the direction of a unit vector.
+  /// Sets the geometry of a distant light in the direction of a unit vector.
   RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
       : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
 
-  /// Takes over the lanes of `other` in which it is asked.
+  /// Copies the lanes of `other` in which `is_asked` is set.
   RAYGATE_INLINE void take(const IncidentLight& other) {
     const auto put = [&](auto& own, const auto& others)
                          RAYGATE_BODY { own = choose(other.is_asked, others, own); };

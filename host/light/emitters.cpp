@@ -1,11 +1,11 @@
-// Emitters that the camera sees directly, in mirrors and through glass.
+// Emission that the camera sees directly, in mirrors and through glass.
 #include "host/light/shade.h"
 
 namespace raygate {
 namespace {
 
-/// Spawns the rays whose histories are wanted: reflected, refracted, and straight through holes and
-/// clear surfaces, which do not change the history.
+/// Spawns the rays whose histories are in the mask: reflected, refracted, and straight through
+/// holes and clear surfaces, which do not change the history.
 template <class T>
 RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
   const Bsdf<T>& bsdf = hits.bsdf;

@@ -40,7 +40,7 @@ class Environment {
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u) const;
 
-  /// Mean over all directions.
+  /// Returns the mean over all directions.
   [[nodiscard]] const glm::dvec3& mean_radiance() const { return mean_; }
 
  private:
@@ -48,7 +48,7 @@ class Environment {
   template <class T>
   struct Place {
     std::uint32_t columns[kLanesOf<T>], rows[kLanesOf<T>];
-    T x, y;  // from the left and the upper edge, of the way between the texels' middles
+    T x, y;  // in [0, 1] from the left and upper edge, between texel centres
   };
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Place<T> place(const Triple<T>& direction) const;
@@ -56,7 +56,7 @@ class Environment {
   [[nodiscard]] const glm::vec3& texel(std::uint32_t column, std::uint32_t row) const {
     return map_.texels[std::size_t{row} * width_ + column];
   }
-  // Of a cell: the texels to its left and right, above and below.
+  // Neighbours of a cell: the texels to its left and right, above and below.
   [[nodiscard]] std::uint32_t left_of(std::uint32_t column) const {
     return column == 0 ? width_ - 1 : column - 1;
   }
@@ -64,12 +64,12 @@ class Environment {
   [[nodiscard]] std::uint32_t below(std::uint32_t row) const { return std::min(row, height_ - 1); }
 
   const EnvironmentMap& map_;
-  std::uint32_t width_, height_;  // of the map: there are as many columns of cells, a row more
+  std::uint32_t width_, height_;  // size of the map; there is one more row of cells than of texels
   glm::vec3 up_, ahead_, right_;
   glm::dvec3 mean_{0.0};
-  std::vector<float> row_cdf_;          // chance of the rows so far, each included
-  std::vector<float> column_cdf_;       // the same of the cells of each row
-  std::vector<float> cosines_;          // of the rows' edges, from straight up; one more than rows
+  std::vector<float> row_cdf_;     // cumulative probability of the rows
+  std::vector<float> column_cdf_;  // cumulative probability of the cells within each row
+  std::vector<float> cosines_;  // cosines of the rows' edges with straight up; one more than rows
   std::vector<float> per_solid_angle_;  // by row: 1 / the solid angle of a cell
 };
 
@@ -78,7 +78,7 @@ RAYGATE_INLINE Environment::Place<T> Environment::place(const Triple<T>& directi
   constexpr int kCount = kLanesOf<T>;
   const T right = dot(direction, spread<T>(right_)), ahead = dot(direction, spread<T>(ahead_));
   const T up = dot(direction, spread<T>(up_));
-  // Cell 0 begins half a texel before the map does.
+  // Cell 0 begins half a texel before the map.
   const T x = at_least(narrow((turns_of<T>(right, ahead) + 0.5) * double(width_) + 0.5), 0.0f);
   const T y = at_least(
       narrow(turns_of<T>(root(right * right + ahead * ahead), up) * (2.0 * double(height_)) + 0.5),
@@ -131,7 +131,7 @@ RAYGATE_INLINE Triple<T> Environment::sample(const SquarePoint<T>& u) const {
   const auto xs = unpack(u.x), ys = unpack(u.y);
   std::uint32_t rows[kCount];
   float in_rows[kCount], columns[kCount], in_columns[kCount];
-  // Where a number lies within what it chooses says where in that.
+  // The position of a number within the chosen interval selects the position within the cell.
   const auto find = [](const float* cdf, std::uint32_t count, float wanted, float& rest) {
     const auto found =
         static_cast<std::uint32_t>(std::upper_bound(cdf, cdf + count - 1, wanted) - cdf);

@@ -10,15 +10,14 @@
 namespace raygate {
 namespace {
 
-// Points of the integral: most at steep facets, where what they mirror begins to be hidden. The
-// view is in a plane of symmetry, so half of all turns will do. Glass needs more of them: where
-// total reflection begins, what leaves it jumps.
+// Points of the integral, denser at steep facets, where masking begins. By symmetry, half of all
+// azimuths suffice. Glass needs more points, as total reflection begins abruptly.
 struct Points {
   int steps = 16, turns = 8;
 };
 
-/// What arrives along `view` and leaves, of facets around +z: by glass from both sides where
-/// `index` is not 0.
+/// Returns the fraction of light along `view` that leaves facets around +z: for mirrors if `index`
+/// is 0, otherwise for glass from both sides.
 template <class T>
 RAYGATE_INLINE FacetAlbedo::Shares<T> leaving(const T& cosine, float alpha, float index) {
   const Ggx<T> ggx({T{}, T{}, spread<T>(1.0f)}, spread<T>(alpha));
@@ -67,7 +66,7 @@ FacetAlbedo::FacetAlbedo(float index) {
       }
     }
   });
-  // The integral of what is bilinear, times 4 x^3 for the root x of the cosine; two points each.
+  // Integrates the bilinear table times 4 x^3, x being the root of the cosine; two points per cell.
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column + 1 < kSize; ++column) {
       for (const float rest : {0.211324865f, 0.788675135f}) {

@@ -16,10 +16,10 @@ class FacetAlbedo {
     T first, second;
   };
 
-  /// `first`: of facets that reflect everything; `second`: of facets that reflect Schlick's weight.
+  /// Returns the table of mirrors. `first` has reflectance 1, `second` Schlick's weight.
   [[nodiscard]] static const FacetAlbedo& of_mirrors();
-  /// Of glass with that index of refraction, reflection plus transmission: `first` for light from
-  /// outside, `second` from inside.
+  /// Returns the table of glass with this index of refraction, reflection plus transmission:
+  /// `first` for light from outside, `second` from inside.
   [[nodiscard]] static const FacetAlbedo& of_glass(float index);
 
   /// Returns the albedos at cosines and alphas in [0, 1].
@@ -27,7 +27,7 @@ class FacetAlbedo {
   [[nodiscard]] RAYGATE_INLINE Shares<T> at(const T& cosine, const T& alpha) const {
     return at<T>([&](int) RAYGATE_BODY -> const FacetAlbedo& { return *this; }, cosine, alpha);
   }
-  /// The same from several tables: lane k uses table_of(k).
+  /// Returns albedos from several tables: lane k uses table_of(k).
   template <class T, class TableOf>
   [[nodiscard]] RAYGATE_INLINE static Shares<T> at(const TableOf& table_of, const T& cosine,
                                                    const T& alpha) {
@@ -79,7 +79,7 @@ class FacetAlbedo {
     return a + (b - a) * rest;
   }
 
-  explicit FacetAlbedo(float index);  // of glass; 0: of mirrors
+  explicit FacetAlbedo(float index);  // index of glass, or 0 for mirrors
 
   Cell cells_[kSize][kSize];  // by alpha, then by cosine
   Cell means_[kSize];

@@ -30,7 +30,7 @@ struct alignas(16) LightSample {
   glm::vec3 radiance{0.0f};  ///< contribution if not occluded
   /// A point of an area light or of the lens, or the direction to a distant light.
   glm::vec3 target{0.0f};
-  std::uint32_t index = 0;  ///< of a point light, or of the primitive of the target
+  std::uint32_t index = 0;  ///< index of a point light, or primitive of the target
   std::uint32_t is_asked : 1 = 0, is_dark : 1 = 0;  ///< dark: the contribution is 0
   std::uint32_t is_transmitted : 1 = 0;             ///< through rough glass
   std::uint32_t is_point_light : 1 = 0, is_to_camera : 1 = 0;
@@ -44,8 +44,7 @@ struct alignas(16) LightSample {
 struct alignas(16) ScatteredRay {
   PathState state;
   glm::vec3 direction{0.0f};  ///< scaled
-  /// Direction made with the geometric normal, for use if that of the shading normal leads to the
-  /// wrong side.
+  /// Direction made with the geometric normal, used if the other one leads to the wrong side.
   glm::vec3 flat{0.0f};
   std::uint32_t is_wanted : 1 = 0;
   std::uint32_t surely_leaves : 1 =
@@ -66,8 +65,8 @@ RAYGATE_INLINE T flag_words(const Masks&... masks) {
   return float_of(flags);
 }
 
-/// Whether a path with this history adds the emission that it meets. Light that reaches a surface
-/// seen through mirrors or glass by further mirrors or glass is added by caustic rays only.
+/// Returns whether a path with this history adds the emission that it meets. Light that reaches a
+/// surface seen through mirrors or glass by further mirrors or glass is added by caustic rays only.
 template <class W>
 RAYGATE_INLINE auto sees_lights(const W& history) {
   return (history < (kAfterSeenSurface | kThenSpecular)) | (history > kCausticRay);
@@ -98,11 +97,11 @@ struct PathLanes {
     light_over_camera_pdf = w[14];
     supersampled = words_in(w[15]);
   }
-  /// The histories after reflection in a mirror, and after refraction by glass.
+  /// Return the histories after reflection in a mirror and after refraction by glass.
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_caustic_rays() const { return history >= kCausticRay; }
-  /// Whether a bit mask of histories has a history. It must have none from kSpecularHistories on.
+  /// Returns whether `mask` contains the history. Its histories are below kSpecularHistories.
   [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& mask,
                                                     const WordOf<T>& history) {
     return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
@@ -132,14 +131,14 @@ struct PathLanes {
 struct HitBlock {
   const RayBatch* batch = nullptr;
   std::size_t begin = 0;                             ///< in the batch
-  std::vector<SurfaceHit> places;                    ///< without a face: no hit
+  std::vector<SurfaceHit> places;                    ///< face is null: no hit
   std::vector<const MaterialParameters*> materials;  ///< of the hits
   std::vector<glm::vec3> radiance;                   ///< along the ray, times the path's throughput
-  std::vector<LightSample> light_samples;            ///< `light_samples_per_hit` of each hit
-  std::vector<ScatteredRay> scattered;               ///< `scattered_per_hit` of each hit, of which
-  std::vector<std::uint8_t> scattered_counts;        ///< this many are used
+  std::vector<LightSample> light_samples;            ///< `light_samples_per_hit` for each hit
+  std::vector<ScatteredRay> scattered;               ///< `scattered_per_hit` for each hit
+  std::vector<std::uint8_t> scattered_counts;  ///< number of used elements of `scattered`, by hit
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
-  /// By position: null if the hit is not the first surface of its path. Empty: none is.
+  /// By position; null if the hit is not the first surface of its path. Empty if all are null.
   std::vector<FirstSurface*> first_surfaces;
   SkipCounters skipped;
 
@@ -154,14 +153,14 @@ struct HitBlock {
   }
 };
 
-/// What all hits are shaded with. The references must outlive this.
+/// Data shared by the shading of all hits. The references must outlive this object.
 struct ShadingScene {
   const Scene& scene;
   const Bvh& bvh;
   const Lights& lights;
   const IntegratorSettings& settings;
   glm::vec3 ambient{0.0f};                  ///< radiance from all sides, before occlusion
-  int max_depth = 4;                        ///< rays of this depth are the last
+  int max_depth = 4;                        ///< maximum depth of rays
   const LightPaths* light_paths = nullptr;  ///< null: camera paths find all light
 };
 
@@ -179,7 +178,7 @@ RAYGATE_INLINE Triple<T> catcher_colour(const Lights& lights, const glm::vec3& a
     const Triple<T> way =
         (spread<T>(light_record.position) - surface.point) * spread<T>(lights.per_unit());
     const T squared = dot(way, way), slope = dot(surface.normal, way);
-    // The cosine over pi and the squared distance.
+    // cosine / (pi distance^2)
     const T share = slope * kPerPi / (squared * root(squared));
     light = light + spread<T>(light_record.emission) * choose(slope > 0.0f, share, T{});
   }
@@ -224,18 +223,18 @@ struct Hits {
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
     return choose((flat > 0.0f) == (cosine > 0.0f), absolute(cosine), T{});
   }
-  /// Normal for sampling lights: the shading normal, or 0 if light from both sides counts.
+  /// Returns the shading normal for sampling lights, or 0 if light from both sides counts.
   [[nodiscard]] RAYGATE_INLINE Triple<T> lit_normal() const {
     return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
   }
 
-  /// Whether EmitterSupersampler adds the emission of the hit.
+  /// Returns whether EmitterSupersampler adds the emission of the hit.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
     const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
     const auto are_wanted = PathLanes<T>::has(path.supersampled, path.history);
     return are_even & are_wanted;
   }
-  /// Emission, without what EmitterSupersampler adds.
+  /// Returns the emission, without that added by EmitterSupersampler.
   [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
     if ((kind & kEmits) == 0) return bsdf.emission();
     return choose(are_supersampled(), zero<T>(), bsdf.emission());

@@ -11,12 +11,12 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kMostHits = 2048;             // of a block: its lists stay in the cache
-constexpr std::size_t kFacesAhead = 12;             // to fetch
-constexpr std::size_t kMostLightSamples = 1 << 16;  // of a block: 3 MB
+constexpr std::size_t kMostHits = 2048;             // per block; its lists fit into the cache
+constexpr std::size_t kFacesAhead = 12;             // prefetch distance
+constexpr std::size_t kMostLightSamples = 1 << 16;  // per block: 3 MB
 
-/// Lights each surface from the camera: its diffuse colour times the cosine of the view, and its
-/// emission. Rays go on through holes.
+/// Lights each surface from the camera: diffuse colour times the cosine of the view, plus emission.
+/// Rays continue through holes.
 void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
                    std::span<const std::uint32_t> at) {
   shade_in_lanes(shading, block, kind, at, [](auto& hits) RAYGATE_BODY {
@@ -33,8 +33,8 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
   });
 }
 
-/// The depth of the last rays. kEmitters' rays see what paths meet one ray deeper; Whitted's do
-/// not go so far, and those of kPrimary end at the first surface.
+/// Returns the depth of the last rays. Rays of kEmitters go one deeper than the limit, as paths do,
+/// those of Whitted do not, and those of kPrimary end at the first surface.
 int last_depth(IntegratorKind kind, const IntegratorSettings& settings) {
   if (kind == IntegratorKind::kPrimary) return 0;
   const int depth = settings.integrator == IntegratorKind::kPrimary ? 0 : settings.depth();
@@ -109,13 +109,13 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   }
 }
 
-/// Lists the hits of the block, kind by kind. What hits nothing is done with.
+/// Sorts the hits of the block by kind, and handles rays without a hit.
 void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, ShadingOutput& output) {
   const Scene& scene = shading_.scene;
   const glm::vec3 behind = background();
   const bool is_dark = behind == glm::vec3(0.0f);
   const bool sees_surroundings = sees_environment(block_.batch->depth);
-  // Behind holes the first surface is met by later rays.
+  // The first surface behind holes is met by later rays.
   const bool may_be_first = kind_ != IntegratorKind::kLight && !output.first_surface.empty() &&
                             (block_.batch->depth == 0 || has_masks_);
   block_.first_surfaces.assign(may_be_first ? count : 0, nullptr);
@@ -165,7 +165,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
   first_.push_back(static_cast<std::uint32_t>(order_.size()));
 }
 
-/// Notes the hit at place i if it is the first surface of its path.
+/// Records the hit at position i if it is the first surface of its path.
 void Integrator::note_first_surface(std::size_t i, const NearestHit& hit, ShadingOutput& output) {
   const PathState& state = block_.state(i);
   FirstSurface& first = output.first_surface[state.sample];
@@ -180,8 +180,8 @@ void Integrator::note_first_surface(std::size_t i, const NearestHit& hit, Shadin
                     : precise_hit(*place.ray, shading_.bvh.corners_of(hit.primitive)).point;
 }
 
-/// Adds what the environment sends along the rays that hit nothing else. Where surfaces sample the
-/// environment, too, a scattered ray counts by its MIS weight.
+/// Adds the environment's radiance along escaped rays. Scattered rays are weighted by MIS if
+/// surfaces sample the environment, too.
 void Integrator::add_infinite_light(ShadingOutput& output) {
   if (escaped_.empty()) return;
   const Lights& lights = shading_.lights;
@@ -228,8 +228,8 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
   });
 }
 
-/// Drops light samples and scattered rays that bring nothing, and lists where those of the hit at
-/// place i have to be spawned.
+/// Drops light samples and scattered rays that contribute nothing, and lists spawn queries for
+/// those left of the hit at position i.
 void Integrator::list_spawn_queries(std::size_t i) {
   const SurfaceHit& place = block_.places[i];
   bool any_at[2] = {};  // by side
@@ -260,20 +260,19 @@ void Integrator::list_spawn_queries(std::size_t i) {
   }
 }
 
-/// Whether a scattered ray leads away from its triangle, if need be along the flat normal's
-/// direction.
+/// Returns whether a scattered ray leaves its triangle, if necessary in direction `flat`.
 bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const {
   const auto leaves = [&](const glm::vec3& direction) {
     return spawner_.leaves(*place.ray, place.primitive, scattered.side(), direction);
   };
   if (scattered.surely_leaves != 0 || leaves(scattered.direction)) return true;
   scattered.direction = scattered.flat;
-  scattered.state.light_over_camera_pdf = 0.0f;  // no light path goes this way
+  scattered.state.light_over_camera_pdf = 0.0f;  // no light path has this direction
   return scattered.has_flat != 0 && leaves(scattered.flat);
 }
 
-/// Passes on what the hit at place i gives. `origins` are those of its spawn queries and of the
-/// hits after it; a hit without an origin on a side sends nothing there.
+/// Outputs the results of the hit at position i. `origins` are those of its spawn queries and of
+/// the hits after it. Rays to a side without an origin are dropped.
 void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output) {
   const std::uint32_t sample = block_.state(i).sample;
   const SurfaceHit& place = block_.places[i];

@@ -25,36 +25,35 @@ namespace raygate {
 /// own rays.
 class Integrator {
  public:
-  /// The references must outlive this.
-  /// `kind` may differ from the settings' (kLight, kEmitters). `light_paths`: what kPath and kLight
-  /// are combined with, or null.
+  /// The references must outlive this object. `kind` may differ from that of `settings` (kLight,
+  /// kEmitters). `light_paths` are combined with kPath and kLight; may be null.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
              const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;
   Integrator& operator=(const Integrator&) = delete;
 
-  /// Maximum number of rays per call of shade().
+  /// Returns the maximum number of rays per call of shade().
   [[nodiscard]] std::size_t block_size() const { return block_size_; }
 
   /// Shades hits [begin, end) of the batch, at most block_size(), and adds the results to `output`.
   void shade(const RayBatch& batch, std::span<const NearestHit> hits, std::size_t begin,
              std::size_t end, ShadingOutput& output);
 
-  /// Radiance along rays that miss everything.
+  /// Returns the radiance along rays that miss all geometry.
   [[nodiscard]] glm::vec3 background() const {
     return sees_background() ? shading_.lights.background() : glm::vec3(0.0f);
   }
-  /// Whether such rays of that depth see an environment instead.
+  /// Returns whether such rays of this depth see an environment instead.
   [[nodiscard]] bool sees_environment(int depth) const {
     const Lights& lights = shading_.lights;
     return sees_background() && lights.environment() != nullptr &&
            (depth > 0 || !lights.has_studio());
   }
-  /// Whether shadow rays pass glass as if it did not refract.
+  /// Returns whether shadow rays pass glass as if it did not refract.
   [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }
 
   [[nodiscard]] const SkipCounters& skipped() const { return block_.skipped; }
-  /// Number of hits whose P the host computed.
+  /// Returns the number of hit points P that the host computed.
   [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 
  private:

@@ -1,4 +1,4 @@
-// Settings of the integrators: the kind, its limits, and which work is skipped.
+// Settings of the integrators: kind, limits, and optimisations.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 namespace raygate {
 
 enum class IntegratorKind {
-  kPrimary,  ///< camera rays alone, lit from the camera: diffuse colour times cosine, and emission
+  kPrimary,  ///< camera rays only, lit from the camera: diffuse colour times cosine, plus emission
   kWhitted,  ///< reflection, refraction and shadows, as in the paper
   kPath,     ///< full global illumination: Monte Carlo path tracing
-  // Parts of others, not to be asked for:
+  // Internal, not selectable by users:
   kLight,     ///< paths from the lights to the camera
   kEmitters,  ///< emitters that the camera sees: directly, in mirrors and through glass
 };
@@ -18,33 +18,33 @@ enum class IntegratorKind {
 /// The default relative error of the hit-test unit's P above which the host computes the point.
 inline constexpr float kPointError = 0x1p-16f;
 
-/// Whether light paths find caustics.
 enum class Caustics {
-  kOff,   ///< they are found by chance
-  kOn,    ///< they are found by light paths
-  kAuto,  ///< the same; where that is not possible, nobody has asked for it
+  kOff,   ///< found only by camera paths
+  kOn,    ///< found by light paths; an error if that is not possible
+  kAuto,  ///< found by light paths if possible
 };
 
-/// Work that is skipped because it cannot change the picture: no bit depends on these.
+/// Optimisations that do not change any bit of the image.
 struct Skips {
-  bool culling = true;         ///< polygons in boxes that a ray does not enter
-  bool records = true;         ///< records of polygons that no ray from the origin comes near
-  bool light_behind = true;    ///< shadow rays to lights that bring nothing: from behind
-  bool weightless = true;      ///< reflected and refracted rays that bring nothing
-  bool empty_tiles = true;     ///< camera rays of tiles in which no polygon can be
-  bool first_occluder = true;  ///< the search for a nearer occluder than the first one found
-  bool divisions = true;       ///< serial unit: planes of polygons that the edges rule out
+  bool culling = true;  ///< skip polygons in boxes that a ray does not enter
+  bool records = true;  ///< skip records of polygons that no ray from the origin approaches
+  /// Skip shadow rays to lights that contribute nothing, such as those behind the surface.
+  bool light_behind = true;
+  bool weightless = true;      ///< skip reflected and refracted rays that contribute nothing
+  bool empty_tiles = true;     ///< skip camera rays of tiles that contain no polygon
+  bool first_occluder = true;  ///< end shadow rays at the first occluder found
+  bool divisions = true;       ///< serial unit: skip planes of polygons that the edge tests exclude
 };
 
-/// How much work was skipped.
+/// Statistics of skipped work.
 struct SkipCounters {
-  std::uint64_t culled_tests = 0;   ///< ray against polygon
-  std::uint64_t records = 0;        ///< not made of those that the caches have room for
+  std::uint64_t culled_tests = 0;   ///< ray-polygon tests
+  std::uint64_t records = 0;        ///< records not made, among those that fit into the caches
   std::uint64_t lights_behind = 0;  ///< shadow rays
   std::uint64_t weightless = 0;     ///< secondary rays
-  std::uint64_t dim = 0;            ///< secondary rays below the threshold: they do count, a little
+  std::uint64_t dim = 0;  ///< secondary rays below the threshold, which would contribute slightly
   std::uint64_t empty_tile_rays = 0;  ///< camera rays
-  std::uint64_t first_occluders = 0;  ///< searches ended early
+  std::uint64_t first_occluders = 0;  ///< shadow rays ended at the first occluder
 
   SkipCounters& operator+=(const SkipCounters& other) {
     culled_tests += other.culled_tests;
@@ -58,22 +58,22 @@ struct SkipCounters {
   }
 };
 
-/// What the user asks of the integrators. The defaults are those of ./render and of the Python
-/// module.
+/// User options of the integrators. The defaults are those of ./render and of the Python module.
 struct IntegratorSettings {
   IntegratorKind integrator = IntegratorKind::kWhitted;
-  int samples = 4;                  ///< per pixel, at least 1; a single one has no random choices
-  std::optional<int> max_depth{};   ///< reflections and refractions in a row; none: see depth()
-  double threshold = 1.0 / 256.0;   ///< Whitted: rays of less throughput are not traced
-  std::optional<double> ambient{};  ///< Whitted: radiance from all sides; none: Lights::ambient()
-  /// Path: not with a single sample, camera lights, or a camera that is not perspective.
+  int samples = 4;  ///< per pixel, at least 1; a single sample is taken without random choices
+  /// Consecutive reflections and refractions; default: see depth().
+  std::optional<int> max_depth{};
+  double threshold = 1.0 / 256.0;   ///< Whitted: rays with a throughput below this are not traced
+  std::optional<double> ambient{};  ///< Whitted: ambient radiance; default: Lights::ambient()
+  /// For kPath only. Requires several samples, no camera lights, and a perspective camera.
   Caustics caustics = Caustics::kAuto;
-  Skips skips{};  ///< the film does not depend on them
-  /// The host computes the hit point P where the relative error of the unit's may be larger. 0: the
-  /// host always computes it; the largest float: only where the unit has none.
+  Skips skips{};  ///< do not change the film
+  /// The host computes the hit point P if the relative error of the unit's P may exceed this. 0:
+  /// always; the largest float: only if the unit has no P.
   float point_error = kPointError;
 
-  /// By default 4 for Whitted, as in the paper; 64 for paths, which end by chance.
+  /// Returns max_depth. Defaults: 4 for Whitted, as in the paper; 64 for paths (Russian roulette).
   [[nodiscard]] int depth() const {
     return max_depth.value_or(integrator == IntegratorKind::kPath ? 64 : 4);
   }

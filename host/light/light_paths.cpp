@@ -12,19 +12,19 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kMostBalls = 16;  // beyond that one for all
+constexpr std::size_t kMostBalls = 16;  // one sphere for all mirrors and glass beyond that
 constexpr double kPi = std::numbers::pi;
-constexpr double kBeyondLight = 0x1p-16;  // of the way from a light: off its own triangle
+constexpr double kBeyondLight = 0x1p-16;  // fraction of the path; skips the light itself
 
-// Light paths are aimed where they count, so that few of them are less noisy than what chance is
-// left with. Fewer pay where chance finds caustics, too, more where it does not.
+// Few light paths suffice, as they are aimed at mirrors and glass. This number balances caustics
+// that camera paths also find against those that they do not.
 constexpr std::uint64_t kPixelsOfPath = 8;
 
 std::uint64_t pixels_of(const FrameView& frame) {
   return static_cast<std::uint64_t>(frame.width) * static_cast<std::uint64_t>(frame.height);
 }
 
-// Streams of random numbers; paths have others of their own further on.
+// Streams of random numbers; paths use other streams later.
 constexpr std::uint32_t kLightPaths = 0x6C696768;
 constexpr std::uint32_t kSource = 10, kPlace = 11, kBall = 12, kTowards = 13;
 
@@ -33,7 +33,8 @@ Triple<float> narrow(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// A unit vector at this angle from the unit vector `axis`, or with cosine 0 a place on its disc.
+/// Returns a unit vector at this angle from the unit vector `axis`, or with cosine 0 a vector
+/// perpendicular to it with length `sine`.
 glm::dvec3 around(const glm::dvec3& axis, double cosine, double sine, double turns) {
   const Frame<float> frame(narrow(axis));
   const SineCosine<double> turn = sine_cosine(turns);
@@ -109,7 +110,7 @@ void LightPaths::find_balls(const PreparedScene& prepared) {
   }
 }
 
-/// By the flux that each sends to the balls, as a point in its middle would.
+/// Sets the sources' probabilities by the flux that each sends to the spheres from its centre.
 void LightPaths::weigh_sources() {
   double sum = 0.0;
   for (std::uint32_t i = 0; i < lights_.source_count(); ++i) {
@@ -153,7 +154,7 @@ double LightPaths::nearest_middle(const glm::dvec3& point) const {
   return nearest;
 }
 
-/// With how many balls.
+/// Returns the number of spheres that a ray meets.
 double LightPaths::meetings(const glm::dvec3& point, const glm::dvec3& direction,
                             bool both_ways) const {
   double count = 0.0;
@@ -177,7 +178,7 @@ float LightPaths::environment_density(const glm::vec3& point, const glm::vec3& t
                       discs_);
 }
 
-/// Uniform in the angles of all balls.
+/// Samples a direction, uniformly in the solid angles of all spheres.
 glm::dvec3 LightPaths::direction_from(const glm::dvec3& point, const SquarePoint<float>& choice,
                                       const SquarePoint<float>& u) const {
   double left = solid_angle(point) * double{choice.x};
@@ -190,14 +191,14 @@ glm::dvec3 LightPaths::direction_from(const glm::dvec3& point, const SquarePoint
     }
     left -= own;
   }
-  const double height = chosen->solid_angle(point) / (2.0 * kPi);  // of the cap of the unit ball
+  const double height = chosen->solid_angle(point) / (2.0 * kPi);  // of the cap of the unit sphere
   const double cosine = 1.0 - double{u.x} * height;
   const glm::dvec3 axis =
       height < 2.0 ? glm::normalize(chosen->middle - point) : glm::dvec3(0, 0, 1);
   return around(axis, cosine, std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), u.y);
 }
 
-/// Uniform across the discs of all balls.
+/// Samples a point, uniformly on the discs of all spheres.
 glm::dvec3 LightPaths::point_across(const glm::dvec3& towards, const SquarePoint<float>& choice,
                                     const SquarePoint<float>& u) const {
   const auto area = [](const Ball& ball) { return ball.radius * ball.radius; };
@@ -283,7 +284,7 @@ LightPaths::View LightPaths::view_of(const glm::vec3& point, const glm::vec2& le
   }
   const glm::dvec3 way = (glm::dvec3(point) - eye) * double{lights_.per_unit()};
   const double far = glm::dot(way, camera.forward()), distance = glm::length(way);
-  // Pixels to an area across the axis at distance 1, over cosine^3 and the squared distance.
+  // Pixels per area perpendicular to the axis at distance 1, over cosine^3 and squared distance.
   view.per_area = finite_float(static_cast<double>(pixels_of(frame_)) / camera.picture_area() *
                                distance / (far * far * far));
   return view;

@@ -26,11 +26,11 @@ RAYGATE_INLINE float caustic_weight(const PathState& state, const Density& densi
 /// Lower bound of edge cosines in densities.
 inline constexpr float kLeastCosine = 0x1p-20f;
 
-/// The part of the frame that light paths are to reach, in the camera's coordinates from 0 to 1.
+/// The part of the frame that light paths target, in camera coordinates from 0 to 1.
 struct FrameView {
   const Camera& camera;  ///< perspective
   int width = 1, height = 1;
-  glm::dvec2 low{0.0}, high{1.0};  ///< positions outside of this range do not count
+  glm::dvec2 low{0.0}, high{1.0};  ///< contributions outside of this range are discarded
 };
 
 /// Samples where light paths start, returns the densities of these starts, and connects path ends
@@ -52,19 +52,19 @@ struct FrameView {
 /// out / in: common factors cancel, and mirrors and smooth glass have neither density.
 class LightPaths {
  public:
-  /// The references must outlive this.
+  /// The references must outlive this object.
   LightPaths(const PreparedScene& prepared, const Lights& lights, const FrameView& frame);
 
-  /// Whether there is an emitting light, and a mirror or glass.
+  /// Returns whether light paths exist: requires an emitting light, and a mirror or smooth glass.
   [[nodiscard]] bool exist() const { return !source_cdf_.empty(); }
-  /// Number of light paths for each sample of all pixels of the frame.
+  /// Returns the number of light paths for each sample of all pixels of the frame.
   [[nodiscard]] std::uint64_t count() const { return count_; }
 
   struct Start {
     Ray ray;
     PathState state;  ///< its throughput is flux
   };
-  /// Returns the start of path `number` of a picture, or none if the light emits nothing there.
+  /// Returns the start of path `number` of an image, or nullopt if the light does not emit there.
   [[nodiscard]] std::optional<Start> start(std::uint64_t number, std::uint64_t seed) const;
 
   /// Returns the density of light paths of a sample that start at `point` of a light in the
@@ -74,7 +74,7 @@ class LightPaths {
   /// Returns the density of light paths of a sample from a distant light that go through `point`
   /// against the unit vector `towards`, per area perpendicular to it.
   [[nodiscard]] float environment_density(const glm::vec3& point, const glm::vec3& towards) const;
-  /// Whether a mirror or glass can be in the direction of that unit vector.
+  /// Returns whether a mirror or glass may be in the direction of a unit vector.
   [[nodiscard]] bool may_meet(const glm::vec3& point, const glm::vec3& direction) const {
     return meetings(glm::dvec3(point), glm::dvec3(direction), false) > 0.0;
   }
@@ -96,13 +96,13 @@ class LightPaths {
   [[nodiscard]] View view_of(const glm::vec3& point, const glm::vec2& lens) const;
 
  private:
-  /// Bounding sphere of the mirrors and glass of an object.
+  /// Bounding sphere of an object's mirrors and glass.
   struct Ball {
     glm::dvec3 middle;
     double radius;
-    /// Returns its solid angle as seen from a point.
+    /// Returns the sphere's solid angle seen from a point.
     [[nodiscard]] double solid_angle(const glm::dvec3& point) const;
-    /// Whether a ray, or with `both_ways` a line, meets it.
+    /// Returns whether a ray, or with `both_ways` a line, meets the sphere.
     [[nodiscard]] bool meets(const glm::dvec3& point, const glm::dvec3& direction,
                              bool both_ways) const;
   };

@@ -8,7 +8,7 @@
 namespace raygate {
 namespace {
 
-/// Axes of sources that shine to both sides are added up on one side.
+/// Returns the axis, flipped to a common side for sources that emit to both sides.
 glm::dvec3 on_one_side(const LightBounds& source) {
   if (source.back < 1.0) return source.axis;
   const glm::dvec3 size = glm::abs(source.axis);
@@ -16,7 +16,7 @@ glm::dvec3 on_one_side(const LightBounds& source) {
   return source.axis[k] < 0.0 ? -source.axis : source.axis;
 }
 
-/// What says how alike the sources of a group are, added up one by one.
+/// Sums over a group of sources, from which its cost is computed.
 struct Sum {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
   glm::dvec3 high{-std::numeric_limits<double>::infinity()};
@@ -26,7 +26,7 @@ struct Sum {
   void add(const LightBounds& source) {
     low = glm::min(low, source.middle - source.radius);
     high = glm::max(high, source.middle + source.radius);
-    // Of a source to all sides nothing: there is no way round that it faces.
+    // A source that emits to all sides adds nothing: it has no orientation.
     axes += (0.5 + 0.5 * source.spread) * source.power * on_one_side(source);
     power += source.power;
   }
@@ -36,8 +36,8 @@ struct Sum {
     axes += other.axes;
     power += other.power;
   }
-  /// How wrong the group's guess may be: its power times its size, squared, times how far its axes
-  /// lie apart, from 1 (parallel) to 4 (to all sides), as the measure of Conty Estevez and Kulla.
+  /// Returns the error measure of a cluster, as in Conty Estevez and Kulla: power times squared
+  /// size, times the spread of the axes, from 1 (parallel) to 4 (all directions).
   [[nodiscard]] double cost() const {
     if (!(power > 0.0)) return 0.0;
     const glm::dvec3 size = high - low;
@@ -45,7 +45,7 @@ struct Sum {
   }
 };
 
-using Group = std::span<std::uint32_t>;  // numbers of sources
+using Group = std::span<std::uint32_t>;  // source indices
 
 }  // namespace
 
@@ -57,7 +57,7 @@ class LightTree::Builder {
     }
   }
 
-  /// Adds the node of a group and those below it, and returns its number.
+  /// Adds the nodes of a group, and returns the index of the root.
   std::uint32_t add(Group group, std::uint32_t parent, std::uint32_t place) {
     const auto number = static_cast<std::uint32_t>(tree_.nodes_.size());
     tree_.nodes_.emplace_back();
@@ -84,7 +84,7 @@ class LightTree::Builder {
     return sum;
   }
 
-  /// Up to eight groups of it: the worst one is split, again and again.
+  /// Splits a group into up to eight, always splitting the one with the highest cost.
   [[nodiscard]] std::vector<Group> parted(Group group) const {
     std::vector<Group> groups = {group};
     std::vector<double> costs = {sum_of(group).cost()};
@@ -104,15 +104,15 @@ class LightTree::Builder {
     return groups;
   }
 
-  /// Puts those first for which `is_first` is true, the order kept; how many these are. (Clang 14
-  /// doesn't compile the library's std::ranges::stable_partition.)
+  /// Moves the sources that fulfil `is_first` to the front, stably, and returns their number.
+  /// (Clang 14 cannot compile the library's std::ranges::stable_partition.)
   template <class IsFirst>
   static std::size_t partitioned(Group group, const IsFirst& is_first) {
     return static_cast<std::size_t>(std::stable_partition(group.begin(), group.end(), is_first) -
                                     group.begin());
   }
 
-  /// Sorts a group of two or more into two, and returns the size of the first.
+  /// Splits a group of two or more in two, and returns the size of the first.
   [[nodiscard]] std::size_t split(Group group) const {
     const std::size_t far_size =
         partitioned(group, [&](std::uint32_t number) { return sources_[number].is_far; });
@@ -153,12 +153,11 @@ class LightTree::Builder {
         }
       }
     }
-    if (best_axis < 0) return group.size() / 2;  // all in one place
+    if (best_axis < 0) return group.size() / 2;  // all positions are equal
     return partitioned(group,
                        [&](std::uint32_t number) { return bin_of(number, best_axis) < best_bin; });
   }
 
-  /// One source that stands for all of a group.
   [[nodiscard]] LightBounds cluster(Group group) const {
     LightBounds all = sources_[group[0]];
     if (group.size() == 1) return all;
@@ -179,7 +178,7 @@ class LightTree::Builder {
     }
     const double length = glm::length(sum.axes);
     if (length > 0.0) all.axis = sum.axes / length;
-    // The widest angle from the axis at which anything is sent in full; -1 if to all sides.
+    // The widest angle from the axis with full emission; -1 for all directions.
     all.spread = length > 0.0 ? 1.0 : -1.0;
     for (const std::uint32_t number : group) {
       const LightBounds& one = sources_[number];
@@ -188,7 +187,7 @@ class LightTree::Builder {
       cosine = std::clamp(cosine, -1.0, 1.0);
       const double sine = std::sqrt(1.0 - cosine * cosine);
       const double own = std::sqrt(std::max(0.0, 1.0 - one.spread * one.spread));
-      // Both angles together, unless that is more than 180 degrees.
+      // The sum of both angles, unless it exceeds 180 degrees.
       const bool is_all = one.spread < -cosine;
       all.spread = std::min(all.spread, is_all ? -1.0 : cosine * one.spread - sine * own);
     }
@@ -196,7 +195,7 @@ class LightTree::Builder {
   }
 
   void set(Node& node, std::uint32_t place, const LightBounds& source) const {
-    // Floats have room for it: and what brings anything, however little, has some weight.
+    // Clamped to the range of float, so that every contributing source has a positive weight.
     constexpr double kLeastPower = 0x1p-60;
     const double relative = source.power / most_power_;
     node.power[place] = static_cast<float>(std::max(relative, kLeastPower));

@@ -1,4 +1,4 @@
-// Light tree: chooses one of many lights in proportion to what it may bring to a point.
+// Light tree: samples one of many lights in proportion to its estimated contribution at a point.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct LightBounds {
   double back = 0.0;  ///< fraction emitted against the axis
   bool is_far =
       false;  ///< a distant light: `middle` is the direction towards it, or 0 for all directions
-  /// Irradiance on a facing surface at distance 1, or of a distant light anywhere. A source without
-  /// power is never chosen.
+  /// Irradiance on a facing surface at distance 1, or anywhere for a distant light. A source
+  /// without power is never chosen.
   double power = 0.0;
 };
 
@@ -59,13 +59,13 @@ class LightTree {
   /// Up to eight sources and clusters, field by field. An empty entry has power 0.
   struct alignas(32) Node {
     float x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {};  // as in LightBounds
-    float nearness[kLanes] = {};                           // 0: far
+    float nearness[kLanes] = {};                           // 0: distant
     float squared_radius[kLanes] = {};
     float axis_x[kLanes] = {}, axis_y[kLanes] = {}, axis_z[kLanes] = {};
     float spread[kLanes] = {}, spread_sine[kLanes] = {}, reach[kLanes] = {};
     float back[kLanes] = {};
     float power[kLanes] = {};
-    std::uint32_t child[kLanes] = {};  // a node's number, or a source's and kIsSource
+    std::uint32_t child[kLanes] = {};  // node index, or source index | kIsSource
     std::uint32_t parent = kNoIndex, place = 0;
   };
   static constexpr std::uint32_t kIsSource = 1u << 31;
@@ -78,15 +78,15 @@ class LightTree {
                                         const glm::vec3& normal, float (&weights)[kLanes],
                                         float& total);
 
-  std::vector<Node> nodes_;              // the root first
-  std::vector<std::uint32_t> place_of_;  // of a source: its node's number times kLanes and place
+  std::vector<Node> nodes_;              // the root is first
+  std::vector<std::uint32_t> place_of_;  // by source: node index * kLanes + position in the node
 };
 
 template <class T>
 RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& point,
                                           const glm::vec3& normal, float (&weights)[kLanes],
                                           float& total) {
-  // Cosines are off by this much at most, so that nothing is left out that just shows.
+  // Error bound of the cosines, so that no partly visible light is dropped.
   constexpr float kMargin = 0x1p-10f;
   constexpr float kLeastSquare = 0x1p-40f;
   const T one = spread<T>(1.0f);
@@ -98,11 +98,11 @@ RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& poi
     const T squared = dot(way, way), radius = load<T>(node.squared_radius + k);
     const auto is_inside = !(squared > radius);
     const T per_distance = 1.0f / root(choose(squared > 0.0f, squared, one));
-    // The angle that the ball takes up, from its middle.
+    // The half angle of the bounding sphere.
     const T ball_sine_squared = choose(is_inside, one, radius * (per_distance * per_distance));
     const T ball_sine = root(ball_sine_squared);
     const T ball_cosine = root(at_least(1.0f - ball_sine_squared, 0.0f));
-    // The cosine of an angle less the ball's, or 1 where nothing is left.
+    // The cosine of an angle minus the sphere's half angle, or 1 if the difference is negative.
     const auto less_ball = [&](const T& cosine, const T& sine) RAYGATE_BODY {
       return choose(is_inside | (cosine > ball_cosine), one,
                     cosine * ball_cosine + sine * ball_sine);
@@ -143,7 +143,7 @@ RAYGATE_INLINE LightTree::Sample LightTree::sample(const glm::vec3& point, const
     alignas(4 * kLanes) float weights[kLanes], total;
     importance<T>(node, point, normal, weights, total);
     if (!(total > 0.0f)) return {};
-    // The last one that has any weight, where rounding leaves nothing to the others.
+    // Falls back to the last child with a positive weight if rounding exhausts the others.
     const double wanted = u * double{total};
     double begin = 0.0, end = 0.0;
     int found = 0;

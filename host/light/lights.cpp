@@ -23,8 +23,8 @@
 namespace raygate {
 namespace {
 
-/// In the order of the scene's triangles: lights, and what is sampled of them, do not depend on how
-/// the tree is built.
+/// Returns the emissive primitives in the order of the scene's triangles, so that lights do not
+/// depend on how the BVH is built.
 std::vector<std::uint32_t> emitting_primitives(const Scene& scene, const Bvh& bvh) {
   std::vector<std::uint32_t> primitives;
   for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> emitting_primitives(const Scene& scene, const Bvh& bv
   return primitives;
 }
 
-/// All faces in one plane, with one side in common: their middle is then among them or near.
+/// Sets the centre of a light whose triangles are coplanar and share a side.
 void find_middle(const Bvh& bvh, AreaLight& light) {
   const glm::dvec3 normal = glm::normalize(triangle_normal(bvh.corners_of(light.primitives[0])));
   glm::dvec3 sum(0.0);
@@ -52,8 +52,8 @@ void find_middle(const Bvh& bvh, AreaLight& light) {
     is_flat = is_flat && std::abs(glm::dot(own, normal)) > 1.0 - 1e-9;
   }
   light.is_flat = is_flat;
-  // A little towards the first face: as a rule, the very middle of a light of two triangles is on
-  // the edge between them, and exact arithmetic would have to say which one each ray meets.
+  // Slightly offset towards the first triangle: the exact centre of two triangles is usually on
+  // their common edge, where each ray would need exact arithmetic.
   const Corners& first = bvh.corners_of(light.primitives[0]);
   const glm::dvec3 inside =
       (glm::dvec3(first[0]) + glm::dvec3(first[1]) + glm::dvec3(first[2])) / 3.0;
@@ -61,8 +61,8 @@ void find_middle(const Bvh& bvh, AreaLight& light) {
   light.middle_normal = normal;
 }
 
-/// The reflected part of what one side of the lights sends out, F r / (1 - r), over pi times all
-/// area; r is the mean reflectance.
+/// Returns the ambient radiance: the reflected part F r / (1 - r) of the lights' flux from one
+/// side, over pi times the total area. r is the mean reflectance.
 glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lights) {
   glm::dvec3 flux(0.0), reflecting(0.0);
   double area = 0.0;
@@ -77,7 +77,7 @@ glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lig
   return flux * mean / (1.0 - mean) / (std::numbers::pi * area);
 }
 
-/// A power of two about as long as the scene, its lights included.
+/// Returns a power of two of about the size of the scene, including its lights.
 double unit_of(const Scene& scene, const std::vector<PointLight>& lights) {
   float size = 0.0f;
   if (!is_empty(scene)) {
@@ -85,21 +85,21 @@ double unit_of(const Scene& scene, const std::vector<PointLight>& lights) {
     size = static_cast<float>(std::max(largest(box.low), largest(box.high)));
   }
   for (const PointLight& light : lights) size = std::max(size, largest(light.position));
-  constexpr int kMostExponent = 126;  // the inverse is a float, too
+  constexpr int kMostExponent = 126;  // the inverse is also a float
   return size > 0.0f ? std::ldexp(1.0, std::clamp(std::ilogb(size), -kMostExponent, kMostExponent))
                      : 1.0;
 }
 
-/// The corner of a parallelogram and its two sides. Its diagonal from that corner parts the
-/// triangles: the first one has more of u than of v.
+/// The corner of a parallelogram and its two sides. The diagonal from that corner separates two
+/// triangles, of which the first has more of u than of v.
 struct Parallelogram {
   glm::vec3 corner, u, v;
 };
 
-/// The parallelogram that two triangles make, both facing the same way.
+/// Returns the parallelogram formed by two triangles with the same orientation, if any.
 std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& second) {
   for (std::size_t k = 0; k < 3; ++k) {
-    // The edge from `first`'s corner k + 2 to k is shared, and runs the other way in `second`.
+    // `second` traverses the shared edge, from corner k + 2 to corner k of `first`, in reverse.
     const glm::vec3 &corner = first[k], &side = first[(k + 1) % 3], &end = first[(k + 2) % 3];
     for (std::size_t j = 0; j < 3; ++j) {
       if (second[j] != corner || second[(j + 1) % 3] != end) continue;
@@ -113,11 +113,10 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
   return std::nullopt;
 }
 
-/// What the back of a closed light is worth, where nothing else is within the box around it: next
-/// to nothing, but not nothing.
+/// Weight of the back of a closed light without other geometry in its box: small, but positive.
 constexpr double kBackOfClosed = 1.0 / 16.0;
 
-/// Lengths in units.
+/// Returns bounds with lengths in units of `unit`.
 LightBounds light_bounds(const PointLight& light, double unit) {
   LightBounds source;
   source.middle = glm::dvec3(light.position) / unit;
@@ -129,7 +128,7 @@ LightBounds light_bounds(const PointLight& light, double unit) {
   return source;
 }
 
-/// Of the faces that catch shadows the normal, upwards; without any, upwards.
+/// Returns the mean upward normal of shadow catchers, or `up` if there are none.
 glm::dvec3 floor_normal(const Scene& scene, const Bvh& bvh, const glm::dvec3& up) {
   constexpr int kCatcher = 10;
   if (std::ranges::find(scene.materials, kCatcher, &Material::illumination_model) ==
@@ -145,7 +144,7 @@ glm::dvec3 floor_normal(const Scene& scene, const Bvh& bvh, const glm::dvec3& up
   return up;
 }
 
-/// The radiance from all sides that lights a surface of that normal as much as the map does.
+/// Returns the uniform radiance that lights a surface with this normal as much as the map does.
 glm::dvec3 mean_before(const EnvironmentMap& map, const glm::dvec3& normal) {
   const glm::dvec3 right = glm::cross(map.ahead, map.up);
   glm::dvec3 sum(0.0);
@@ -220,7 +219,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
 glm::vec3 Lights::textured_radiance(std::uint32_t primitive, const glm::vec3& point) const {
   const Corners corners = bvh_.corners_of(primitive);
   const glm::dvec3 normal = triangle_normal(corners);
-  glm::dvec3 weights;  // by the areas of the three triangles that the point makes with the sides
+  glm::dvec3 weights;  // areas of the triangles that the point forms with the sides
   for (std::size_t k = 0; k < 3; ++k) {
     const glm::dvec3 from(corners[(k + 1) % 3]), to(corners[(k + 2) % 3]);
     weights[static_cast<int>(k)] =
@@ -231,7 +230,7 @@ glm::vec3 Lights::textured_radiance(std::uint32_t primitive, const glm::vec3& po
   return scene_.materials[face.material].emission * emission_factor_at(scene_, face, weights);
 }
 
-/// The faces that emit, light by light.
+/// Groups the emissive triangles into area lights.
 void Lights::find_areas() {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
   for (const std::uint32_t primitive : emitting_primitives(scene_, bvh_)) {
@@ -256,8 +255,8 @@ void Lights::find_areas() {
   }
 }
 
-/// Two triangles in a row that share an edge and are opposite corners' halves of a parallelogram
-/// are one patch: points of the square are spread over it without a bend.
+/// Adds the patches of a light. Two successive triangles that form a parallelogram become one
+/// patch, onto which the unit square is mapped without a kink.
 void Lights::add_patches(const AreaLight& light, Light& record) {
   record.first_patch = static_cast<std::uint32_t>(patches_.size());
   double before = 0.0;
@@ -290,7 +289,7 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
   }
 }
 
-/// Lengths in units.
+/// Returns bounds with lengths in units of `unit`.
 LightBounds Lights::light_bounds(const Patch& patch, const AreaLight& light, double unit,
                                  OuterSide side) {
   const glm::dvec3 corner(patch.corner), u(patch.u), v(patch.v);
@@ -310,7 +309,7 @@ LightBounds Lights::light_bounds(const Patch& patch, const AreaLight& light, dou
   return source;
 }
 
-/// Of area lights each patch, of others the whole.
+/// Adds the sources: each patch of area lights, and each other light.
 void Lights::add_sources(double unit) {
   std::vector<LightBounds> sources;
   std::uint32_t number = 0;
@@ -357,27 +356,27 @@ void Lights::add_sources(double unit) {
 
 namespace {
 
-/// Triangles that hang together by their edges; they are numbers from 0 on.
+/// Connected components of triangles, which are numbered from 0 (union-find).
 class Parts {
  public:
   explicit Parts(std::size_t count) : leads_to_(count) {
     std::iota(leads_to_.begin(), leads_to_.end(), 0u);
   }
   void join(std::uint32_t a, std::uint32_t b) { leads_to_[of(a)] = of(b); }
-  /// The triangle that stands for all of a part.
+  /// Returns the representative triangle of a component.
   [[nodiscard]] std::uint32_t of(std::uint32_t i) {
     while (leads_to_[i] != i) i = leads_to_[i] = leads_to_[leads_to_[i]];
     return i;
   }
 
  private:
-  std::vector<std::uint32_t> leads_to_;  // another one of the part, or itself
+  std::vector<std::uint32_t> leads_to_;  // another triangle of the component, or itself
 };
 
-/// What is known of a part.
+/// Properties of a component.
 struct Part {
   bool is_open = false;
-  double volume = 0.0;  // six times; negative where its triangles face inwards
+  double volume = 0.0;  // times six; negative if triangles face inwards
   glm::vec3 low, high;
 };
 

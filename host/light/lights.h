@@ -29,7 +29,7 @@ struct CameraLights {
   double radius = 0.0;
 };
 
-/// A float that is no infinity.
+/// Returns a float, with the largest float instead of infinity.
 [[nodiscard]] inline float finite_float(double x) {
   return static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
 }
@@ -37,7 +37,7 @@ struct CameraLights {
   return {finite_float(x.x), finite_float(x.y), finite_float(x.z)};
 }
 
-/// The falloff of a SpotCone: KHR_lights_punctual's ramp over the cosine of the angle to the axis.
+/// Falloff of a SpotCone: the ramp of KHR_lights_punctual over the cosine of the angle to the axis.
 struct SpotFalloff {
   glm::vec3 axis{0.0f};
   float scale = 0.0f, offset = 1.0f;  ///< without a cone: 1 everywhere
@@ -61,11 +61,11 @@ RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) 
   return ramp * ramp;
 }
 
-/// The side of a triangle that is outside of the closed surface that it is part of.
+/// Side of a triangle that is outside of the closed surface to which the triangle belongs.
 enum class OuterSide : std::uint8_t {
-  kBoth,           ///< the triangle is not part of a closed surface, or not surely
+  kBoth,           ///< the triangle is not known to belong to a closed surface
   kAlongNormal,    ///< the side of its normal
-  kAgainstNormal,  ///< the other
+  kAgainstNormal,  ///< the opposite side
 };
 
 /// Returns the outer side of each of the primitives. A closed surface is a set of these triangles,
@@ -83,7 +83,7 @@ struct AreaLight {
   glm::dvec3 radiance{0.0};         ///< mean
   bool is_textured = false;
   bool is_flat = false;
-  glm::dvec3 middle{0.0}, middle_normal{0.0};  ///< only of a flat light
+  glm::dvec3 middle{0.0}, middle_normal{0.0};  ///< only of a flat light: centre, and normal there
 
   [[nodiscard]] double area() const { return area_up_to.back(); }
 };
@@ -91,22 +91,22 @@ struct AreaLight {
 /// A point of a light in each lane.
 template <class T>
 struct LightPoint {
-  /// For a distant light, a unit vector towards it, and no normal.
+  /// For a distant light: a unit vector towards it, and no normal.
   Triple<T> position, normal;  ///< unit normal of either side
   WordOf<T> primitive;         ///< NearestHit::kNone: a distant light
 };
 
-/// All lights of a scene. Areas and distances are in units of about the scene's size, so that their
-/// squares fit into floats.
+/// All lights of a scene. Areas and distances are in units of about the scene's size, so that
+/// squares are within the range of float.
 class Lights {
  public:
   /// How an integrator samples the lights.
   enum class Sampling : std::uint8_t {
-    kAll,  ///< every light at each hit (Whitted): there are no sources
-    kOne,  ///< one at each hit, chosen by LightTree (paths): there is no ambient light
+    kAll,  ///< every light at each hit (Whitted); there are no sources
+    kOne,  ///< one light at each hit, chosen by LightTree (paths); there is no ambient light
   };
 
-  /// The references must outlive this. `camera_lights` take the place of the scene's.
+  /// The references must outlive this object. `camera_lights` replace the scene's.
   Lights(const Scene& scene, const Bvh& bvh, Sampling sampling = Sampling::kOne,
          const std::optional<CameraLights>& camera_lights = {});
 
@@ -115,33 +115,32 @@ class Lights {
   [[nodiscard]] std::span<const DirectionalLight> directions() const {
     return scene_.directional_lights;
   }
-  /// Null if there is only a background.
+  /// Returns null if there is only a background.
   [[nodiscard]] const Environment* environment() const {
     return environment_ ? &*environment_ : nullptr;
   }
-  /// Whether the environment is one of the camera lights, which the camera itself does not see.
+  /// Returns whether the environment is one of the camera lights, which the camera does not see.
   [[nodiscard]] bool has_studio() const { return own_.studio.has_value(); }
-  /// Uniform radiance that lights a floor as much as the background or the camera lights'
-  /// environment.
+  /// Returns the uniform radiance that lights a floor like the background or studio.
   [[nodiscard]] const glm::vec3& light_from_above() const { return from_above_; }
-  /// Radiance of the background; for an environment, its mean.
+  /// Returns the radiance of the background; for an environment, its mean.
   [[nodiscard]] glm::vec3 background() const {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : own_.background;
   }
-  /// Uniform radiance that approximates interreflection: the background's or, if that is black, the
-  /// lights' flux after many reflections, spread evenly over all surfaces (the ambient term of "A
-  /// progressive refinement approach to fast radiosity image generation", Cohen, Chen, Wallace and
-  /// Greenberg 1988). 0 with Sampling::kOne.
+  /// Returns the uniform radiance that approximates interreflection: the background's or, if that
+  /// is black, the lights' flux after many reflections, spread evenly over all surfaces (the
+  /// ambient term of "A progressive refinement approach to fast radiosity image generation", Cohen,
+  /// Chen, Wallace and Greenberg 1988). 0 with Sampling::kOne.
   [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
-  /// Number of lights: first point lights, then area lights, directional lights, the environment.
+  /// Returns the number of lights: point, area and directional lights, then the environment.
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
 
-  /// 1 / the unit of length, a power of two about the size of the scene.
+  /// Returns 1 / the unit of length, a power of two of about the size of the scene.
   [[nodiscard]] float per_unit() const { return per_unit_; }
 
   enum class Kind : std::uint8_t { kNone, kPoint, kArea, kDirection, kEnvironment };
 
-  /// A light as shading reads it, by its index below count().
+  /// A light in the format used for shading, by index below count().
   struct Light {
     Kind kind = Kind::kPoint;
     bool is_spot = false;
@@ -163,7 +162,7 @@ class Lights {
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(const std::uint32_t (&indices)[kLanesOf<T>],
                                                     const SquarePoint<T>& u) const;
-  /// The same for a patch in each lane.
+  /// Samples points of one patch per lane, uniform in area.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
       const std::uint32_t (&numbers)[kLanesOf<T>], const SquarePoint<T>& u) const;
@@ -199,13 +198,13 @@ class Lights {
                                           narrow(turn.sine));
   }
 
-  // For sampling one light at a time:
+  // Sampling one light at a time:
 
-  /// What the light tree samples: a light, or a patch (one or two triangles) of an area light.
+  /// A source of the light tree: a light, or a patch (one or two triangles) of an area light.
   struct Source {
-    std::uint32_t light = 0;         ///< as in count()
-    std::uint32_t patch = kNoIndex;  ///< of an area light
-    float per_area = 0.0f;           ///< of a patch: 1 / its area in square units
+    std::uint32_t light = 0;         ///< light index, below count()
+    std::uint32_t patch = kNoIndex;  ///< patch of an area light, or kNoIndex
+    float per_area = 0.0f;           ///< 1 / area of the patch, in square units
   };
   [[nodiscard]] std::size_t source_count() const { return sources_.size(); }
   [[nodiscard]] const Source& source(std::size_t index) const { return sources_[index]; }
@@ -213,12 +212,11 @@ class Lights {
   [[nodiscard]] std::uint32_t source_of(std::uint32_t primitive) const {
     return primitive < source_of_primitive_.size() ? source_of_primitive_[primitive] : kNoIndex;
   }
-  /// The environment is the last source.
+  /// Returns the source of the environment, which is the last one.
   [[nodiscard]] std::uint32_t environment_source() const {
     return static_cast<std::uint32_t>(sources_.size() - 1);
   }
 
-  /// Whether any light emits.
   [[nodiscard]] bool any_power() const { return any_power_; }
   /// Samples a source for a surface point and its unit normal (see LightTree). Requires
   /// any_power().
@@ -242,8 +240,9 @@ class Lights {
   struct Patch {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
     std::uint32_t primitive = 0,
-                  primitive_beyond = 0;  ///< with more of u than of v, and the other way round
-    float begin = 0.0f, end = 0.0f;      ///< its part of the light's area, in [0, 1]
+                  /// Triangles with more of u than of v, and with more of v than of u.
+        primitive_beyond = 0;
+    float begin = 0.0f, end = 0.0f;  ///< its interval of the light's cumulative area, in [0, 1]
     double area = 0.0;
     bool is_triangle = true;
   };
@@ -264,10 +263,10 @@ class Lights {
   std::vector<AreaLight> areas_;
   std::vector<Light> lights_;
   std::vector<Patch> patches_;
-  std::vector<float> patch_ends_;  // of the patches, for searching
-  std::vector<Source> sources_;    // as in count(), patch by patch
+  std::vector<float> patch_ends_;  // `end` of each patch, for searching
+  std::vector<Source> sources_;    // by light and patch
   std::vector<std::uint32_t>
-      source_of_primitive_;  // or kNoIndex; empty: none at all. No instance emits
+      source_of_primitive_;  // kNoIndex: none; empty if there are no sources. Instances never emit
   LightTree tree_;
   bool any_power_ = false;
   float per_unit_ = 1.0f;
@@ -296,7 +295,7 @@ RAYGATE_INLINE LightPoint<T> Lights::sample_patches(const std::uint32_t (&number
                                                     const SquarePoint<T>& u) const {
   const Patch* patches[kLanesOf<T>];
   for (int k = 0; k < kLanesOf<T>; ++k) patches[k] = &patches_[numbers[k]];
-  // The square onto the triangle: sqrt keeps areas.
+  // Maps the square to the triangle; sqrt preserves areas.
   const MaskOf<T> is_triangle = gather<T>(patches, &Patch::is_triangle);
   const T far = root(u.x);
   const T along_u = choose(is_triangle, far * (1.0f - u.y), u.x);

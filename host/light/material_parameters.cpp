@@ -19,7 +19,7 @@ bool is_any(const glm::vec3& colour) { return colour != glm::vec3(0.0f); }
 
 }  // namespace
 
-/// Glass is clear: it has no opacity besides.
+/// Sets the parameters of a metallic-roughness material. Glass ignores the opacity.
 void MaterialParameters::set(const Material& material, const MetallicRoughness& shares) {
   metallic = std::clamp(shares.metallic, 0.0f, 1.0f);
   transmission = std::clamp(shares.transmission, 0.0f, 1.0f);
@@ -35,9 +35,9 @@ void MaterialParameters::set(const Material& material, const MetallicRoughness& 
   mirror_is_traced = true;
   opacity = refracts ? 1.0f : std::clamp(material.opacity, 0.0f, 1.0f);
   transmittance = glm::vec3(1.0f - opacity);
-  // A texture may leave any roughness: it is never smooth, only nearly.
+  // Roughness textures may have any value, so such a material is never treated as smooth.
   roughness = std::clamp(shares.roughness, 0.0f, 1.0f);
-  // Nor is what is under a coat: one kind of lobes under another one.
+  // Surfaces under a coat are always rough, as a coat requires glossy lobes.
   const bool is_rough = has_map || coat > 0.0f || roughness * roughness >= Ggx<float>::kLeast;
   kind |= kMetallicRoughness | (is_rough ? kGlossy : kMirrors);
   if (is_rough) facet_albedo = &FacetAlbedo::of_mirrors();

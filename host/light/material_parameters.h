@@ -10,24 +10,24 @@ namespace raygate {
 
 class FacetAlbedo;
 
-/// Features of a hit's material, as a bit mask. Hits with the same mask are shaded together.
+/// Features of a hit's material, as a bit mask. Hits with equal masks are shaded together.
 using HitKind = std::uint32_t;
 inline constexpr HitKind kInterpolates = 1;        ///< a vertex attribute is interpolated
 inline constexpr HitKind kEmits = 2;               ///< an emitter, or an unlit colour
-inline constexpr HitKind kGlossy = 4;              ///< a highlight
+inline constexpr HitKind kGlossy = 4;              ///< a glossy lobe
 inline constexpr HitKind kMirrors = 8;             ///< a mirror
 inline constexpr HitKind kTransmits = 16;          ///< transmission
-inline constexpr HitKind kShadowCatcher = 32;      ///< shows the background and the shadows on it
-inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; rough where it is glossy
+inline constexpr HitKind kShadowCatcher = 32;      ///< shows the background and shadows on it
+inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; rough if kGlossy is set
 inline constexpr HitKind kIsBumpy = 128;           ///< a normal map
 inline constexpr HitKind kCoated = 256;  ///< a clear coat; only with kMetallicRoughness and kGlossy
 inline constexpr HitKind kHitKinds = 512;  ///< number of masks
 
-/// The parameters of a material that do not depend on directions: of MTL's illumination models (see
-/// Bsdf) and of metallic-roughness materials.
+/// Direction-independent parameters of a material: of MTL's illumination models (see Bsdf) or of
+/// the metallic-roughness model.
 struct MaterialParameters {
-  glm::vec3 diffuse{0.0f};  ///< factor of the texture, at most 1
-  glm::vec3 unlit{0.0f};    ///< factor of the texture
+  glm::vec3 diffuse{0.0f};  ///< multiplies the texture; at most 1
+  glm::vec3 unlit{0.0f};    ///< multiplies the texture
   glm::vec3 glossy{0.0f};
   glm::vec3 mirror{0.0f};         ///< reflectance at normal incidence
   glm::vec3 grazing{0.0f};        ///< additional reflectance at grazing angles
@@ -35,27 +35,27 @@ struct MaterialParameters {
   glm::vec3 emission{0.0f};
   float opacity = 1.0f;  ///< d, or 0 for clear glass
   float exponent = 0.0f;
-  float index = 1.0f;     ///< of refraction
-  bool is_glass = false;  ///< light that the mirror reflects is missing in the lobes below
+  float index = 1.0f;     ///< index of refraction
+  bool is_glass = false;  ///< lobes below the mirror receive only light that it does not reflect
   bool refracts = false;
   bool is_fresnel = false;  ///< the mirror follows Fresnel's formula
   bool mirror_is_traced = true;
   bool emits_evenly = false;  ///< the emission has no texture
-  /// Of a metallic-roughness material; textures multiply all of these:
+  /// Metallic-roughness materials only; textures multiply all of these.
   float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
-  float specular = 1.0f;         ///< of dielectrics, at grazing angles
+  float specular = 1.0f;         ///< of dielectrics: reflectance at grazing angles
   glm::vec3 reflectance{0.04f};  ///< of dielectrics at normal incidence, times specular; at most 1
   float coat = 0.0f, coat_roughness = 0.0f;
   const FacetAlbedo* facet_albedo = nullptr;  ///< of rough facets, or null
   const FacetAlbedo* glass_albedo = nullptr;  ///< of rough glass, or null
   HitKind kind = 0;                           ///< without bits that depend on the triangle
 
-  bool has_mask = false;  ///< where is_masked_out(), hits use hole() instead
+  bool has_mask = false;  ///< if set, hits with is_masked_out() use hole() instead
   bool is_hole = false;
 
   explicit MaterialParameters(const Material& material);
 
-  /// Whether this is a mirror or glass that is smooth: its directions are not random.
+  /// Returns whether this is a mirror or smooth glass, whose directions are not random.
   [[nodiscard]] bool is_mirror_or_glass() const {
     constexpr HitKind kRoughGlass = kMetallicRoughness | kGlossy | kMirrors;
     return (kind & kMirrors) != 0 && (~kind & kRoughGlass) != 0 && (mirror_is_traced || refracts);

@@ -51,15 +51,16 @@ struct MetallicRoughnessLobes {
   T view_cosine;  ///< clamped away from 0
   Triple<T> f0;
   T f90;
-  Triple<T> specular;  ///< albedo of single scattering for the view,
-  Triple<T> multiple;  ///< of multiple scattering,
-  Triple<T> diffuse;   ///< and of the base; all without the coat
-  T glass, eta;        ///< fraction of glass; its index beyond the interface over that before
-  T glass_gain;        ///< compensation for multiple scattering in glass
+  Triple<T> specular;  ///< single-scattering albedo for the view, without the coat
+  Triple<T> multiple;  ///< multiple-scattering albedo, without the coat
+  Triple<T> diffuse;   ///< albedo of the diffuse base, without the coat
+  /// Fraction of glass; index of refraction behind the interface over that in front of it.
+  T glass, eta;
+  T glass_gain;  ///< compensation for multiple scattering in glass
   MaskOf<T> is_glass;
   Triple<T> tint;   ///< c
   T clear;          ///< 1 - opacity
-  Ggx<T> coat_ggx;  ///< only of kCoated, as is coat_alpha
+  Ggx<T> coat_ggx;  ///< only for kCoated, as coat_alpha
   T coat_alpha;
   T coat, coat_specular;  ///< weight of the coat; its albedo for the view
   T under_coat;           ///< fraction of the view that passes the coat
@@ -130,7 +131,7 @@ struct MetallicRoughnessLobes {
     return (~kind & (kGlossy | kMirrors)) == 0;
   }
 
-  /// Returns the BRDF, per steradian and without the cosine, for a direction before the surface.
+  /// Returns the BRDF, per steradian without the cosine, for a direction in front.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     const T cosine = at_most(at_least(dot(ggx.normal, light), 0.0f), 1.0f);
     const Shares there = shares_at(cosine);
@@ -151,8 +152,8 @@ struct MetallicRoughnessLobes {
                 coat_pair.d * coat_ggx.visibility(view_cosine, cosine));
   }
 
-  /// The BTDF of rough glass for a direction behind the surface (Walter and others, equation 21),
-  /// and the probability density with which its facets are sampled.
+  /// BTDF of rough glass for a direction behind the surface (Walter et al., equation 21), and the
+  /// pdf of sampling that direction.
   struct Transmitted {
     Triple<T> value;
     T pdf;
@@ -166,7 +167,7 @@ struct MetallicRoughnessLobes {
     const T cosine = -dot(ggx.normal, light);
     const auto is_any = is_glass & (before > 0.0f) & (beyond > 0.0f) & (cosine > 0.0f);
     const T inner = at_most(before, 1.0f);
-    // Facets per steradian of the light's direction, over the view's part of what they hide.
+    // Density of facets per steradian of `light`, over the visible projected area.
     const T facets = 2.0f * ggx.pair(view, light * eta).d * before * beyond *
                      (eta * eta * per_size) / (view_cosine + ggx.stretched(view_cosine));
     const T value = glass * glass_gain * (1.0f - fresnel_reflectance(inner, eta)) * facets *
@@ -193,7 +194,7 @@ struct MetallicRoughnessLobes {
     const Triple<T> way = choose(is_mirrored, mirrored, bent.direction);
     return choose((dot(ggx.normal, way) > 0.0f) == is_mirrored, way, zero<T>());
   }
-  /// Returns the probability density of sample(), per steradian, before the surface.
+  /// Returns the pdf of sample(), per steradian, for a direction in front of the surface.
   [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
     const auto pair = ggx.pair(view, light);
     T pdf = ggx.reflection_pdf(view_cosine, pair.d);
@@ -211,8 +212,7 @@ struct MetallicRoughnessLobes {
     return choose(sum > 0.0f, coat_specular / sum, T{});
   }
 
-  /// Returns the fraction of light that is not masked after a sampled facet reflects or refracts
-  /// it.
+  /// Returns the fraction of light that is not masked after leaving a sampled facet.
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const Triple<T>& way) const {
     const T cosine = dot(ggx.normal, way);
     return choose(cosine > 0.0f, ggx.g2_over_g1(view_cosine, cosine), T{});
@@ -234,7 +234,7 @@ struct MetallicRoughnessLobes {
   static constexpr float kPerPi = 0.318309886183790671537767526745f;
   static constexpr float kCoatReflectance = 0.04f;
 
-  /// Returns the albedos at a cosine of facets that reflect everything, and Schlick's weight.
+  /// Returns the albedos at a cosine of facets with reflectance 1 and with Schlick's weight.
   [[nodiscard]] RAYGATE_INLINE Shares shares_at(const T& cosine) const {
     if (!is_rough()) return {spread<T>(1.0f), schlick_weight(cosine)};
     return albedo->at(cosine, alpha);
@@ -243,7 +243,8 @@ struct MetallicRoughnessLobes {
     if (!is_rough()) return {spread<T>(1.0f), spread<T>(1.0f / 21.0f)};
     return albedo->mean(alpha);
   }
-  /// Returns the albedo of multiple scattering of facets that reflect `straight` to `grazing`.
+  /// Returns the multiple-scattering albedo of facets with reflectance `straight` at normal
+  /// incidence and `grazing` at grazing angles.
   [[nodiscard]] RAYGATE_INLINE static T again(const T& straight, const T& grazing,
                                               const Shares& mean) {
     const T each = straight + (grazing - straight) * (1.0f / 21.0f);
@@ -258,7 +259,7 @@ struct MetallicRoughnessLobes {
     const Shares shares = albedo->at(cosine, coat_alpha);
     return coat * (kCoatReflectance * (shares.first - shares.second) + shares.second);
   }
-  /// Returns the probability that sample() reflects at a facet met at this cosine.
+  /// Returns the probability that sample() reflects at a facet with this cosine of incidence.
   [[nodiscard]] RAYGATE_INLINE T mirrored_chance(const T& inner) const {
     const T share = glass * fresnel_reflectance(inner, eta);
     const T mirrored = largest(schlick(schlick_weight(inner))) + share;
@@ -266,7 +267,7 @@ struct MetallicRoughnessLobes {
     return choose(sum > 0.0f, mirrored / sum, spread<T>(1.0f));
   }
 
-  T weight_, most_, plastic_again_;  // w, r0's largest part, again() of these
+  T weight_, most_, plastic_again_;  // w, largest component of r0, again() of these
   T per_left_mean_, per_lost_mean_;
 };
 

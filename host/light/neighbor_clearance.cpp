@@ -11,7 +11,7 @@
 namespace raygate {
 namespace {
 
-/// Takes the triangles of a leaf into account, but for the one in `primitive`, whose search it is.
+/// Updates the search for `primitive` with the triangles of a leaf, except `primitive` itself.
 template <Vectors kCode>
 RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_t primitive,
                             NeighborClearanceSearch& search) {
@@ -30,7 +30,6 @@ RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_
   }
 }
 
-/// The largest magnitude of a coordinate in the tree.
 float largest_coordinate(const Bvh& bvh) {
   float size = 0.0f;
   for (int i = 0; i < Bvh::kWidth; ++i) {
@@ -63,14 +62,14 @@ bool lies_beyond(const Corners& other, const Corners& hit, int side) {
       other, [&](const glm::vec3& vertex) { return orient3d(vertex, hit) != side; });
 }
 
-// A float's step is at most 2^-23 of it, or 2^-149.
+// A float step is at most 2^-23 of the value, or 2^-149.
 double spawn_reach(const Corners& corners) {
   const float size = std::max({largest(corners[0]), largest(corners[1]), largest(corners[2])});
   return std::max(0x1p-18 * size, 0x1p-144);
 }
 
-// A coordinate along a unit vector, of a difference of two points, is off by less than 2^-49 times
-// their largest coordinate.
+// The error of a coordinate along a unit vector, of a difference of two points, is less than 2^-49
+// times their largest coordinate.
 NeighborClearances::NeighborClearances(const Bvh& bvh)
     : bvh_(bvh),
       margin_(0x1p-45f * largest_coordinate(bvh)),
@@ -82,7 +81,7 @@ NeighborClearances::Found NeighborClearances::look(std::uint32_t primitive) cons
   NeighborClearanceSearch search(corners, slack_);
   if (search.has_hope()) {
     in_vectors([&](auto code) RAYGATE_BODY {
-      // Leaves are looked at a while after they are found: by then they are in the cache.
+      // Leaves are processed some time after they are found, when they are in the cache.
       constexpr std::size_t kMostWaiting = 16;
       Bvh::Child waiting[kMostWaiting];
       std::size_t count = 0;

@@ -1,4 +1,4 @@
-// Neighbor clearance: the distance of other triangles from a triangle, computed on first use.
+// Neighbor clearance: distance from a triangle to other triangles, computed on first use.
 #pragma once
 
 #include <atomic>
@@ -23,8 +23,8 @@ class Overlaps {
   void add(std::uint32_t primitive, const Corners& triangle);
   [[nodiscard]] std::size_t size() const { return primitives_.size(); }
 
-  /// Calls visit(primitive) for the triangles whose boxes are within `reach` of the point on each
-  /// axis, until it returns true. Returns whether it did.
+  /// Calls visit(primitive) for triangles whose boxes are within `reach` of the point on each axis,
+  /// until a call returns true. Returns whether a call did.
   template <Vectors kCode = Vectors::kBaseline, class Visit>
   [[nodiscard]] RAYGATE_INLINE bool any_near(const glm::vec3& point, float reach,
                                              const Visit& visit) const {
@@ -46,7 +46,7 @@ class Overlaps {
   }
 
  private:
-  /// Eight boxes; absent ones are empty.
+  /// Eight boxes; unused ones are empty.
   struct Boxes {
     float low[3][kLanes], high[3][kLanes];
   };
@@ -63,26 +63,26 @@ class Overlaps {
 /// have no overlaps, and c is a fraction of their smallest height.
 struct alignas(64) NeighborClearance {
   double normal[3] = {};  ///< (B-A) x (C-A) times a power of two: off by less than 1
-  /// c, at most an eighth of the smallest height; 0: unknown. Negative if there are overlaps.
+  /// c, at most 1/8 of the smallest height. 0: unknown. Negative if there are overlaps.
   float length = 0.0f;
   float corner[3] = {};       ///< A
   float gradient[2][3] = {};  ///< gradients of c times the coordinates of B and C, in the plane
 };
 
-/// Returns the distance beyond which other triangles do not matter to rays that start on a triangle
-/// with these vertices: at least 16 float steps of its largest coordinate.
+/// Returns the distance beyond which other triangles are irrelevant to rays that start on a
+/// triangle with these vertices: at least 16 float steps of its largest coordinate.
 [[nodiscard]] double spawn_reach(const Corners& corners);
 
-/// Whether no point of `other` is strictly on the given side (as orient3d) of the plane of `hit`. A
-/// straight line from that plane to that side does not meet it then, so neighbours along a convex
-/// edge do not matter, however flat the edge.
+/// Returns whether no point of `other` is strictly on the given side (as in orient3d) of the plane
+/// of `hit`. Straight lines from that plane to that side then miss `other`, so neighbours along a
+/// convex edge are irrelevant, however flat the edge is.
 [[nodiscard]] bool lies_beyond(const Corners& other, const Corners& hit, int side);
 
-/// The clearances and overlaps of all triangles of a tree, except those of instances, which are not
-/// stored. Thread-safe: computed on first use, with the same result in every thread.
+/// The clearances and overlaps of all triangles of a BVH. Those of instances are not stored.
+/// Thread-safe: computed on first use, with the same result in every thread.
 class NeighborClearances {
  public:
-  /// The tree must outlive this.
+  /// `bvh` must outlive this object.
   explicit NeighborClearances(const Bvh& bvh);
 
   [[nodiscard]] const Bvh& bvh() const { return bvh_; }
@@ -110,13 +110,13 @@ class NeighborClearances {
     if (bvh_.is_instanced(primitive)) return;
     __builtin_prefetch(known_[primitive].clearance.load(std::memory_order_relaxed));
   }
-  /// Returns the overlaps of a primitive whose clearance is known and says that there are some.
+  /// Returns the overlaps of a primitive whose clearance is known and negative.
   [[nodiscard]] const Overlaps& overlaps_of(std::uint32_t primitive) const {
     return *known_[primitive].overlaps.load(std::memory_order_relaxed);
   }
 
  private:
-  /// Of a primitive.
+  /// The cached data of a primitive.
   struct Known {
     std::atomic<const NeighborClearance*> clearance{nullptr};  // null: not computed yet
     std::atomic<const Overlaps*> overlaps{nullptr};

@@ -11,20 +11,19 @@
 
 // Why c is a bound
 //
-// Let T have the vertices v_i, and let another triangle S be given. For any vector a let
-// g_i = a.v_i - max a.y over the points y of S, which its vertices give. A point X = sum w_i v_i of
-// T has a.X - a.y >= sum w_i g_i for every y of S. Where no g_i is negative, the plane between
-// T and S keeps X at least sum w_i g_i / |a| >= w sum g_i / |a| away from S, w being the least
-// weight. What counts as not negative may be below 0 by `slack`, for rounding, which margin() makes
-// good. Whichever a is tried, the bound holds; those that are tried separate triangles which touch
-// in an edge or in a corner.
+// Let T have the vertices v_i, and let S be another triangle. For any vector a let g_i = a.v_i -
+// max a.y over the points y of S; the maximum is at a vertex. A point X = sum w_i v_i of T has a.X
+// - a.y >= sum w_i g_i for every y of S. If no g_i is negative, the plane between T and S keeps X
+// at least sum w_i g_i / |a| >= w sum g_i / |a| away from S, where w is the least weight. g_i may
+// be negative by up to `slack`, for rounding, which margin() compensates. The bound holds for every
+// a. The vectors a that are tried separate triangles that touch in an edge or a corner.
 
 namespace raygate {
 
-/// The corners of the triangles of a leaf: of each corner and axis, less those of a point.
+/// Corner coordinates of the triangles of a leaf, relative to `from`.
 struct LeafCorners {
   DoubleQuad y[3][3];
-  FloatQuad low[3], high[3];  // of the triangles' boxes
+  FloatQuad low[3], high[3];  // boxes of the triangles
 
   template <Vectors kCode>
   RAYGATE_INLINE LeafCorners(VectorCode<kCode>, const float* leaf_corners, std::uint32_t count,
@@ -41,7 +40,7 @@ struct LeafCorners {
     }
   }
 
-  /// Bit i: the box of triangle i touches that box.
+  /// Returns the triangles whose boxes touch a box: bit i for triangle i.
   [[nodiscard]] RAYGATE_INLINE LaneMask touching(const glm::vec3& from, const glm::vec3& to) const {
     IntQuad touches = IntQuad{} - 1;
     for (int k = 0; k < 3; ++k) touches &= (low[k] <= to[k]) & (high[k] >= from[k]);
@@ -49,13 +48,13 @@ struct LeafCorners {
   }
 };
 
-/// A triangle, the planes that its neighbours are likely to be behind, and what is known of them.
+/// Computes the clearance of one triangle from the triangles passed to it.
 class NeighborClearanceSearch {
  public:
-  /// `slack`: how far a computed coordinate along a unit vector may be off.
+  /// `slack` is the error bound of a computed coordinate along a unit vector.
   NeighborClearanceSearch(const Corners& corners, double slack)
       : corners_(corners), from_(corners[0]), reach_(spawn_reach(corners)), slack_(slack) {
-    const auto grown = static_cast<float>(1.125 * reach_);  // more than roundings take away
+    const auto grown = static_cast<float>(1.125 * reach_);  // more than rounding removes
     for (int k = 0; k < 3; ++k) {
       vertex_[k] = glm::dvec3(corners[k]) - from_;
       low_[k] = std::min({corners[0][k], corners[1][k], corners[2][k]}) - grown;
@@ -91,22 +90,22 @@ class NeighborClearanceSearch {
     if (!(most_ > 4.0 * slack_)) length_ = 0.0;
   }
 
-  /// Whether any c may come of it.
+  /// Returns whether a positive c is still possible.
   [[nodiscard]] bool has_hope() const { return length_ > 0.0; }
-  /// What coordinates are relative to.
+  /// Returns the origin of relative coordinates.
   [[nodiscard]] const glm::dvec3& from() const { return from_; }
-  /// What is outside this box does not matter.
+  /// Return the corners of the box outside which triangles are irrelevant.
   [[nodiscard]] const glm::vec3& low() const { return low_; }
   [[nodiscard]] const glm::vec3& high() const { return high_; }
 
-  /// The triangles of a leaf whose boxes are near: bit i for number i.
+  /// Returns the triangles of a leaf whose boxes are near: bit i for triangle i.
   [[nodiscard]] RAYGATE_INLINE LaneMask near(const LeafCorners& others) const {
     return has_hope() ? others.touching(low_, high_) : 0;
   }
 
-  /// The triangles of a leaf that are surely behind one of the planes through an edge and along the
-  /// axis to which the normal comes nearest: bit i for number i. Seen along that axis the heights
-  /// are shorter by less than the root of 3: such triangles leave c as it is, but for slack.
+  /// Returns the triangles of a leaf (bit i for triangle i) that are surely behind a plane through
+  /// an edge and parallel to the axis closest to the normal. Projected along that axis, heights
+  /// shrink by less than a factor of sqrt(3), so such triangles do not reduce c, up to slack.
   template <Vectors kCode>
   [[nodiscard]] RAYGATE_INLINE LaneMask behind_an_edge(const float* leaf,
                                                        std::uint32_t count) const {
@@ -127,8 +126,8 @@ class NeighborClearanceSearch {
     return sign_mask(whole(behind));
   }
 
-  /// The triangles of a leaf from which this one is far enough, beyond one of the planes through
-  /// an edge of theirs, at right angles to them.
+  /// Returns the triangles of a leaf from which this triangle is far enough: it is beyond a plane
+  /// through one of their edges, perpendicular to them.
   [[nodiscard]] RAYGATE_INLINE LaneMask beyond_their_edge(const LeafCorners& leaf) const {
     DoubleQuad to_b[3], to_c[3], normal[3], sizes[3];
     for (int k = 0; k < 3; ++k) {
@@ -150,7 +149,7 @@ class NeighborClearanceSearch {
         along = axis[0] * leaf.y[v][0] + axis[1] * leaf.y[v][1] + axis[2] * leaf.y[v][2];
         highest = v == 0 || highest < along ? along : highest;
       }
-      // Squares that neither overflow nor vanish.
+      // Squares must neither overflow nor underflow.
       const DoubleQuad enough = length_ * length_ * squared;
       LongQuad all = (enough > 0x1p-900) & (enough < 0x1p900);
       for (const glm::dvec3& v : vertex_) {
@@ -163,7 +162,7 @@ class NeighborClearanceSearch {
     return sign_mask(whole(beyond));
   }
 
-  /// Takes another triangle into account that may not be behind an edge.
+  /// Updates c and the overlaps for a triangle that may not be behind an edge.
   void consider(std::uint32_t primitive, const Corners& other) {
     const double apart = clearance(other);
     if (apart >= length_ || (lies_beyond(other, corners_, 1) && lies_beyond(other, corners_, -1))) {
@@ -176,11 +175,12 @@ class NeighborClearanceSearch {
     }
   }
 
-  /// All that has been found out.
+  /// Returns the clearance with respect to all triangles so far.
   [[nodiscard]] NeighborClearance found() const {
     NeighborClearance result;
     if (!has_hope()) return result;
-    const float length = float_below(length_ * (1.0 - 0x1p-20));  // for unit vectors' roundings
+    // Accounts for rounding of unit vectors.
+    const float length = float_below(length_ * (1.0 - 0x1p-20));
     result.length = overlaps_.size() != 0 ? -length : length;
     int exponent;
     std::frexp(kNormalError * (normal_sizes_[0] + normal_sizes_[1] + normal_sizes_[2]), &exponent);
@@ -197,23 +197,25 @@ class NeighborClearanceSearch {
 
  private:
   static constexpr std::size_t kMaxOverlaps = 128;
-  static constexpr double kShareOfHeight = 0.125;         // that c may be
-  static constexpr double kShareOfOverlaps = 0x1p-4;      // of that: what is nearer is an overlap
-  static constexpr double kNormalError = 10.0 * 0x1p-53;  // of a normal's and a point's dot product
+  static constexpr double kShareOfHeight = 0.125;  // largest c, as a fraction of the height
+  // Triangles nearer than this fraction of the largest c are overlaps.
+  static constexpr double kShareOfOverlaps = 0x1p-4;
+  // Of the dot product of a normal and a point.
+  static constexpr double kNormalError = 10.0 * 0x1p-53;
 
-  /// Of the largest magnitude.
+  /// Returns the axis of the largest magnitude.
   static int axis_of(const glm::dvec3& v) {
     const glm::dvec3 sizes = glm::abs(v);
     const int axis = sizes.x < sizes.y ? 1 : 0;
     return sizes[axis] < sizes.z ? 2 : axis;
   }
-  /// 0 where `v` is.
+  /// Returns the unit vector in the direction of `v`, or 0 if `v` is 0.
   static glm::dvec3 unit(const glm::dvec3& v) {
     const double length = glm::length(v);
     return length > 0.0 ? v / length : glm::dvec3(0.0);
   }
 
-  /// c as far as `other` is concerned, or at least what it is already.
+  /// Returns c for `other` alone, or a value of at least length_.
   [[nodiscard]] double clearance(const Corners& other) const {
     glm::dvec3 y[3];
     for (int k = 0; k < 3; ++k) y[k] = glm::dvec3(other[k]) - from_;
@@ -239,7 +241,7 @@ class NeighborClearanceSearch {
     return best;
   }
 
-  /// The sum of the g_i; 0 where one is negative, infinite where they are all beyond reach.
+  /// Returns the sum of the g_i: 0 if one is negative, infinite if all exceed reach_.
   [[nodiscard]] double apart(const glm::dvec3& axis, const glm::dvec3 (&y)[3]) const {
     const double highest =
         std::max({glm::dot(axis, y[0]), glm::dot(axis, y[1]), glm::dot(axis, y[2])});
@@ -258,16 +260,16 @@ class NeighborClearanceSearch {
   double reach_, slack_;
   glm::vec3 low_, high_;
   glm::dvec3 vertex_[3], unit_normal_, inward_[3];
-  /// A line across the axis to which the normal comes nearest.
+  /// An edge, projected along the axis closest to the normal.
   struct Edge {
     double inward[2];  // unit vector
-    double most;       // along it, of what is behind the edge
+    double most;       // largest coordinate along `inward` that is behind the edge
   };
   Edge edges_[3];
-  std::uint32_t across_[2];  // the other axes
+  std::uint32_t across_[2];  // the two axes of the projection
   double inverse_height_[3];
   double normal_[3], normal_sizes_[3];
-  double most_, length_;  // c, at most and as it is found so far
+  double most_, length_;  // largest possible c, and c so far
   Overlaps overlaps_;
 };
 

@@ -6,13 +6,13 @@
 namespace raygate {
 namespace {
 
-/// The least MIS weight of a scattered ray that finds the light. Beside the light such a ray meets
-/// the sky: with this weight the light is as bright to it, and chance does not matter.
+/// Returns the least MIS weight of a scattered ray that hits the light. Such rays also see the sky
+/// around the light; with this weight both are equally bright to them, which avoids noise.
 float min_mis_weight(const ShadingScene& shading, const Lights::Source& source) {
   return shading.lights.light(source.light).sky;
 }
 
-/// The weights of light that paths meet after mirrors and glass, beside that of light paths.
+/// Returns the MIS weights, relative to light paths, of emission met after mirrors and glass.
 template <class T>
 RAYGATE_INLINE T caustic_weights(const ShadingScene& shading, const Hits<T>& hits) {
   if (shading.light_paths == nullptr) return spread<T>(1.0f);
@@ -28,7 +28,7 @@ RAYGATE_INLINE T caustic_weights(const ShadingScene& shading, const Hits<T>& hit
   });
 }
 
-/// What the surfaces emit, with the MIS weight of the ray that found it.
+/// Returns the emission of the surfaces, times the MIS weight of the ray that found it.
 template <class T>
 RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hits<T>& hits) {
   const Lights& lights = shading.lights;
@@ -54,7 +54,7 @@ RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hit
          (hits.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
 }
 
-/// One light for each hit, chosen by what it may bring there.
+/// One sampled light per hit.
 template <class T>
 struct ChosenLights {
   static constexpr int kCount = kLanesOf<T>;
@@ -73,7 +73,7 @@ struct ChosenLights {
     const auto points = unpack(hits.surface.point), normals = unpack(hits.lit_normal());
     LightTree::Sample samples[kCount];
     for (int k = 0; k < kCount; ++k) {
-      // Twice 24 bits: enough for a probability of one in many millions.
+      // Two words of 24 bits resolve probabilities far below 2^-24.
       samples[k] =
           all.sample_source<T>(points[k], normals[k], double{high[k]} + double{low[k]} * 0x1p-24);
       const bool is_any = samples[k].source != kNoIndex;
@@ -139,7 +139,7 @@ struct ChosenLights {
                                                       const Hits<T>& hits) const {
     std::uint32_t patches[kCount];
     for (int k = 0; k < kCount; ++k) {
-      // A lane without an area light samples one nevertheless, and nothing comes of it.
+      // Lanes without an area light also sample one; the result is unused.
       patches[k] = sources[k]->patch == kNoIndex ? 0 : sources[k]->patch;
     }
     const LightPoint<T> point = all.sample_patches<T>(patches, hits.random(streams::kLightPoint));
@@ -151,7 +151,7 @@ struct ChosenLights {
   }
 };
 
-/// Next-event estimation: chooses one light for each hit, and samples it.
+/// Chooses one light for each hit, and samples it (next-event estimation).
 template <class T>
 RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                                      const LobeProbabilities<T>& lobes) {
@@ -172,7 +172,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
   light.is_asked = light.is_asked & answers;
 
   T mis_weight = spread<T>(1.0f);
-  if (any(light.is_asked & !is_delta)) {  // scattered rays find it, too
+  if (any(light.is_asked & !is_delta)) {  // scattered rays may find it, too
     const T light_pdf =
         choose(light.is_area, light.pdf * light.distance_squared / light.light_cosine, light.pdf);
     const T bsdf_pdf = hits.bsdf.pdf(light.direction) * lobes.scatter_probability();

@@ -1,4 +1,4 @@
-// Prepared scene: data that all pictures of a scene share.
+// Prepared scene: data shared by all images of a scene.
 #pragma once
 
 #include <array>
@@ -15,16 +15,16 @@
 
 namespace raygate {
 
-/// Read by all threads, with any camera and its lights.
+/// Read-only data shared by all threads, for any camera and its lights.
 struct PreparedScene {
-  /// The references must outlive this. `tree` is the scene's.
+  /// The references must outlive this object. `tree` must be the scene's BVH.
   PreparedScene(const Scene& loaded, const Bvh& tree)
       : scene(loaded),
         bvh(tree),
         clearances(tree),
         materials(loaded.materials.begin(), loaded.materials.end()) {}
 
-  /// The scene's own lights; made at the first call. Thread-safe.
+  /// Returns the scene's own lights, created at the first call. Thread-safe.
   [[nodiscard]] const Lights& lights(Lights::Sampling sampling) const {
     const std::lock_guard lock(mutex_);
     auto& lights = lights_[static_cast<std::size_t>(sampling)];

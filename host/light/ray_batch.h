@@ -29,16 +29,16 @@ struct alignas(16) PathState {
   /// Density of light paths over that of camera paths for the path so far, or on light paths the
   /// inverse (see LightPaths); 0: only one kind of path exists here.
   float light_over_camera_pdf = 0.0f;
-  /// Histories, as a bit mask, at which emission is left out since EmitterSupersampler adds it. For
+  /// Bit mask of histories at which emission is omitted because EmitterSupersampler adds it. For
   /// that class's own rays: the histories to follow.
   std::uint32_t supersampled = 0;
 };
 
-/// Codes of purely specular histories of at most four events are below this.
+/// Codes of purely specular paths with at most four bounces are below this.
 inline constexpr std::uint32_t kSpecularHistories = 32;
 
 /// Histories after a scattering surface that the camera sees through mirrors or glass: of the path
-/// itself, and of the additional rays that look for caustics there (sample_seen_caustics).
+/// itself, and of the additional rays that search for caustics there (sample_seen_caustics).
 inline constexpr std::uint32_t kAfterSeenSurface = 32, kCausticRay = 34;
 /// Added to these codes once a mirror or glass follows.
 inline constexpr std::uint32_t kThenSpecular = 1;

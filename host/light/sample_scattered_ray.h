@@ -19,10 +19,10 @@ inline constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, 
 // Russian roulette begins after this many surfaces, for paths with less throughput.
 inline constexpr int kRouletteDepth = 3;
 inline constexpr float kRouletteThroughput = 0.25f;
-inline constexpr float kMinPdf = 1e-20f;  // of a direction: floats have room for the inverse
+// Of a direction; the inverse is within the range of float.
+inline constexpr float kMinPdf = 1e-20f;
 
-/// Probability of sampling each lobe, in proportion to its albedo; rough glass counts as
-/// scattering.
+/// Probability of sampling each lobe, in proportion to its albedo. Rough glass is in `scatter`.
 template <class T>
 struct LobeProbabilities {
   T mirror, transmission, scatter, sum;
@@ -32,21 +32,21 @@ struct LobeProbabilities {
         transmission(bsdf.has_rough_glass() ? T{} : largest(bsdf.transmission())),
         scatter(bsdf.scattered_share()),
         sum(mirror + transmission + scatter) {}
-  /// Where `is_specular`, diffuse and glossy reflection are left out.
+  /// Excludes diffuse and glossy reflection where `is_specular`.
   RAYGATE_INLINE LobeProbabilities(const Bsdf<T>& bsdf, const MaskOf<T>& is_specular)
       : LobeProbabilities(bsdf) {
     scatter = choose(is_specular, T{}, scatter);
     sum = mirror + transmission + scatter;
   }
 
-  /// Probability of diffuse or glossy reflection; 0 where the albedo of all lobes is 0.
+  /// Returns the probability of diffuse or glossy reflection; 0 if the albedo of all lobes is 0.
   [[nodiscard]] RAYGATE_INLINE T scatter_probability() const {
     return choose(sum > 0.0f, scatter / sum, T{});
   }
 };
 
-/// Surfaces whose caustics are found by caustic rays instead of the path: scattering surfaces seen
-/// through mirrors or glass.
+/// Returns where caustics are found by caustic rays instead of the path: at scattering surfaces
+/// seen through mirrors or glass.
 template <bool kFromLight, class T>
 RAYGATE_INLINE MaskOf<T> has_seen_caustics(const ShadingScene& shading, const Hits<T>& hits) {
   const auto scatters = hits.bsdf.scatters();
@@ -128,7 +128,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   Triple<T> throughput = hits.path.throughput;
   ScatteredRays<T> next(hits);
   next.is_wanted = lobes.sum > 0.0f;
-  // Russian roulette comes before the lobe is chosen: no work is lost on rays that end.
+  // Russian roulette precedes the choice of a lobe, so that terminated rays cost nothing.
   if (hits.block.batch->depth >= kRouletteDepth) {
     const T weight =
         kFromLight ? spread<T>(1.0f) : largest(throughput) * (1.0f / kRouletteThroughput);
@@ -165,8 +165,8 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.throughput =
         choose(brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
                zero<T>());
-    if (has_rough_glass) {  // no light path goes through: PathState::light_over_camera_pdf is 0
-                            // from here on
+    // Light paths do not pass: PathState::light_over_camera_pdf is 0 from here on.
+    if (has_rough_glass) {
       if (kFromLight) return;
       next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
       next.is_wanted = next.is_wanted & brings;
@@ -204,7 +204,6 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.throughput =
         choose(next.is_transmitted, transmitted_throughput, next.path.throughput);
     next.path.pdf = choose(is_bent, T{}, next.path.pdf);
-    // Straight on as if there were nothing.
     next.direction = choose(is_straight, -surface.view, next.direction);
     next.flat = choose(is_straight, -surface.view, next.flat);
     next.path.pdf = choose(is_straight, hits.path.pdf, next.path.pdf);
@@ -224,7 +223,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   next.send(hits, 0);
 }
 
-inline constexpr std::uint32_t kCausticRays = 4;  // of a hit
+inline constexpr std::uint32_t kCausticRays = 4;  // per hit
 
 /// Spawns caustic rays from the surfaces of has_seen_caustics() towards mirrors and glass. Light
 /// paths cannot reach the lens through a mirror, so only scattered rays find these caustics.

@@ -38,12 +38,12 @@ RAYGATE_INLINE W reversed_bits(W x) {
   return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
 }
 
-/// Owen's nested uniform scrambling of a word with reversed bits: whether a bit is flipped depends
-/// on the more significant bits, here the lower ones.
+/// Computes Owen's nested uniform scrambling of a word with reversed bits: whether a bit is flipped
+/// depends on the more significant bits, here the lower ones.
 template <class W>
 RAYGATE_INLINE W owen_scramble(W x, const W& key) {
   x += key;
-  x ^= x * 0x6C50B47Cu;  // even factors: a bit is changed by lower ones, never by itself
+  x ^= x * 0x6C50B47Cu;  // even factors: a bit depends only on lower ones
   x *= key | 1u;
   x ^= x * 0xB82F1E52u;
   x ^= x * 0xC7AFE638u;
@@ -85,12 +85,12 @@ RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T
 /// The points of a pixel. A point depends only on seed, pixel, stream and index.
 class Sampler {
  public:
-  /// `seed`: of the picture; the pixel coordinates are those of the whole frame.
+  /// `seed` is that of the image; the pixel coordinates are those of the whole frame.
   Sampler(std::uint64_t seed, std::uint32_t pixel_x, std::uint32_t pixel_y)
       : key_(hash(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
                   hash(pixel_x, pixel_y))) {}
 
-  /// Key from which streams of this pixel are derived.
+  /// Returns the key from which streams of this pixel are derived.
   [[nodiscard]] std::uint32_t key() const { return key_; }
 
   /// Returns point `index` of the stream `dimension`, in [0, 1)^2.

@@ -67,7 +67,7 @@ struct Refraction {
 /// cosines are with the surface's unit normal.
 template <class T>
 struct Ggx {
-  static constexpr float kLeast = 0x1p-10f;  // float cosines have room for the lobe
+  static constexpr float kLeast = 0x1p-10f;  // resolved by float cosines
 
   Triple<T> normal;
   T squared;  ///< alpha^2
@@ -85,7 +85,7 @@ struct Ggx {
     constexpr float kPerPi = 0.318309886183790671537767526745f;
     const Triple<T> sum = a + b;
     const T size = dot(sum, sum), along = dot(normal, sum);
-    // The part across the normal, by itself: cosines next to 1 are too coarse for narrow lobes.
+    // The perpendicular part, separately: cosines close to 1 are too coarse for narrow lobes.
     const Triple<T> across = sum - normal * along;
     const T ratio = size / (dot(across, across) + squared * along * along);
     return {kPerPi * squared * ratio * ratio, 0.5f * root(size)};
@@ -123,7 +123,7 @@ struct Ggx {
                                                 const SquarePoint<T>& u) const {
     const Frame<T> frame(normal);
     const T alpha = root(squared);
-    // Squeezed by alpha along the normal, the facets are a half of a sphere.
+    // Scaled by alpha along the normal, the facets form a hemisphere.
     const Triple<T> squeezed = normalized(Triple<T>{
         alpha * dot(frame.u, view), alpha * dot(frame.v, view), at_least(dot(normal, view), 0.0f)});
     const T z = (1.0f - u.x) * (1.0f + squeezed.z) - squeezed.z;

@@ -51,8 +51,8 @@ ShadeFunction shade_path;
 /// by a light sample whose target is on the lens, and one ray is spawned.
 ShadeFunction shade_light_path;
 
-/// Emission along specular paths from the camera, with the histories in PathState::supersampled:
-/// what hits emit, and rays reflected and refracted. A ray's sample is a multiple of
+/// Shades hits on specular paths from the camera whose histories are in PathState::supersampled:
+/// adds emission, and spawns reflected and refracted rays. A ray's sample is a multiple of
 /// kSpecularHistories plus its history, so that radiance is separated by history.
 ShadeFunction shade_emitters;
 

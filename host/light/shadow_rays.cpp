@@ -14,14 +14,15 @@ namespace raygate {
 namespace {
 
 constexpr float kWholeWay = 1.0f;
-constexpr std::size_t kManyPoints = 64;          // too few rays for each
-constexpr float kSureOfLight = 1.0f - 0x1p-10f;  // hits of a ray from a light that surely count
+constexpr std::size_t kManyPoints = 64;  // too few rays per light
+// Hits of rays from a light below this fraction of the distance are conclusive.
+constexpr float kSureOfLight = 1.0f - 0x1p-10f;
 constexpr float kBeforeAreaLight = 1.0f - 0x1p-16f;
 constexpr float kNoEnd = std::numeric_limits<float>::infinity();
 
-/// The share of light that goes through a hit surface straight on, as far as shadows are concerned:
-/// refracting surfaces let none through, or, where `bent` says so, as much as if they did not bend
-/// it (caustics are then where the shadow is).
+/// Returns the fraction of light that passes straight through a hit surface, for shadows.
+/// Refractive surfaces transmit none or, if `bent`, as much as without refraction (caustics then
+/// appear in place of the shadow).
 glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const SurfaceHit& place,
                                const MaterialParameters& material, bool bent) {
   if (material.refracts && !bent) return glm::vec3(0.0f);
@@ -33,16 +34,16 @@ glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const Surface
   return {through.x, through.y, through.z};
 }
 
-/// From a point to another one: a scaled direction, and the t that leads there.
+/// Scaled direction between two points, and t of the second one.
 struct Aim {
-  glm::vec3 direction{0.0f};  // hits nothing
+  glm::vec3 direction{0.0f};  // 0 hits nothing
   float whole_way = 1.0f;
 
   Aim(const glm::vec3& from, const glm::vec3& to) {
     const glm::vec3 way = to - from;
     const double size = largest(way);
     if (size == 0.0) return;
-    // By a power of two, which rounds nothing.
+    // Scaling by a power of two is exact.
     constexpr std::uint64_t kExponent = 0x7FF0000000000000, kOne = 0x3FF0000000000000;
     const std::uint64_t exponent = std::bit_cast<std::uint64_t>(size) & kExponent;
     direction = glm::vec3(glm::dvec3(way) * std::bit_cast<double>(2 * kOne - exponent));
@@ -65,8 +66,8 @@ ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
       any_clear_(std::ranges::any_of(materials_, [](const MaterialParameters& material) {
         return material.has_mask || (material.kind & kTransmits) != 0;
       })) {
-  // The first occluder may be a clear one: then only a sure one will do. Glass alone lets so many
-  // rays by that looking for one costs more tests than it saves.
+  // If the first occluder may be clear, only a sure occluder ends the search. For glass alone,
+  // without masks, this search costs more tests than it saves.
   const bool has_masks = std::ranges::any_of(materials_, &MaterialParameters::has_mask);
   first_occluder_ =
       skips.first_occluder && (!any_clear_ || (has_masks && intersector.filters_hits()));
@@ -88,7 +89,7 @@ void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced
   while (!next_.empty()) trace_from_surface(rays);
 }
 
-/// Fields one by one: an object that is made elsewhere would be read back before it is written.
+/// Appends a segment. Sets fields one by one, as copying a temporary would stall.
 void ShadowRays::next_from_surface(const ShadowRay& ray, std::uint32_t index) {
   const bool is_area = ray.point_light == ShadowRay::kNoPoint;
   Segment& segment = next_.emplace_back();
@@ -157,7 +158,7 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   next_.resize(kept);
 }
 
-/// Of all segments. Searches may end at hits before the share `enough` of the way.
+/// Traces all segments. Searches may end at hits before the fraction `enough` of the distance.
 void ShadowRays::trace(bool from_light, float enough) {
   const std::size_t count = segments_.size();
   batch_.resize(count);
@@ -178,7 +179,7 @@ void ShadowRays::trace(bool from_light, float enough) {
       limits_[i] = aim.whole_way * segment.share;
       enough_[i] = aim.whole_way * std::min(enough, segment.share);
     }
-    // Rounding may turn a ray that hardly leaves back to its own triangle.
+    // Rounding may turn a grazing ray back towards its own triangle.
     if (!sources_.empty()) {
       const bool leaves = !is_ahead(batch_[i], bvh_.corners_of(segment.source));
       sources_[i] = leaves ? segment.source : NearestHit::kNone;
@@ -238,7 +239,7 @@ bool is_sure_occluder(const Scene& scene, const Bvh& bvh, const SurfaceHit& plac
   const glm::dvec3 origin(place.ray->origin), direction(place.ray->direction);
   const double length = glm::length(direction);
   const glm::dvec3 along = direction / length;
-  glm::dvec3 from_origin[3], area, edge;  // area[k]: seen along the ray, opposite corner k
+  glm::dvec3 from_origin[3], area, edge;  // area[k]: projected along the ray, opposite corner k
   for (int k = 0; k < 3; ++k) from_origin[k] = glm::dvec3(corners[k]) - origin;
   for (int k = 0; k < 3; ++k) {
     const glm::dvec3 side = from_origin[(k + 2) % 3] - from_origin[(k + 1) % 3];
@@ -251,7 +252,7 @@ bool is_sure_occluder(const Scene& scene, const Bvh& bvh, const SurfaceHit& plac
   for (int k = 0; k < 3; ++k) depth[k] = glm::dot(along, from_origin[k]);
   const double way = glm::dot(weights, depth);
   const double size = std::max(largest(origin), largest(origin + way * along));
-  // What weights change by within the room.
+  // The largest change of the weights within kRoom.
   const glm::dvec3 change = edge * (kRoom * size / std::abs(whole));
   if (!(weights.x > change.x && weights.y > change.y && weights.z > change.z)) return false;
   const double slope =

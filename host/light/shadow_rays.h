@@ -49,7 +49,7 @@ class ShadowRays {
   ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
              const Skips& skips, bool through_refraction);
 
-  /// Called for each traced ray with its work and the index of its shadow ray.
+  /// Callback for each traced ray with its work and the index of its shadow ray.
   using TracedFunction = std::function<void(const RayWork& work, std::size_t shadow_ray)>;
 
   /// Multiplies each ray's `radiance` by the transmittance along the ray. `traced` may be empty.
@@ -60,7 +60,7 @@ class ShadowRays {
  private:
   /// A ray of the next batch.
   struct Segment {
-    std::uint32_t index;  // of its shadow ray
+    std::uint32_t index;  // index of its shadow ray
     glm::vec3 from, to;
     std::uint32_t source;   // the primitive at which it starts, or kNone
     std::uint32_t ignored;  // primitive whose hits are ignored
@@ -73,7 +73,7 @@ class ShadowRays {
   void next_from_surface(const ShadowRay& ray, std::uint32_t index);
   /// Returns the hit of ray `number` of the batch with a primitive.
   [[nodiscard]] SurfaceHit place_of(std::size_t number, std::uint32_t primitive) const;
-  /// Whether the hit surely blocks all light (see is_sure_occluder).
+  /// Returns whether the hit surely blocks all light (see is_sure_occluder).
   [[nodiscard]] bool ends_at(std::size_t number, std::uint32_t primitive) const;
   /// Returns the transmittance of the surface that ray `number` of the batch hit.
   [[nodiscard]] glm::vec3 transmittance(std::size_t number) const;
@@ -84,11 +84,11 @@ class ShadowRays {
   const Lights& lights_;
   Intersector& intersector_;
   RaySpawner spawner_;
-  std::vector<SpawnQuery> spawn_queries_;  // beyond clear surfaces, and their answers
+  std::vector<SpawnQuery> spawn_queries_;  // origins behind transmitting surfaces
   std::vector<SpawnOrigin> origins_;
   bool first_occluder_, culling_, through_refraction_, any_clear_;
   std::uint64_t rays_ = 0;
-  // Room to work in.
+  // Reused buffers.
   std::vector<Segment> segments_, next_;
   std::vector<Ray> batch_;
   std::vector<NearestHit> hits_;
@@ -98,7 +98,7 @@ class ShadowRays {
   const TracedFunction* traced_ = nullptr;
 };
 
-// Why a sure occluder leaves a shadow dark
+// Why a sure occluder blocks all light
 //
 // A shadow ray that meets holes of masks or transmitting surfaces continues behind each as a new
 // ray, from an origin O' moved by rounding and RaySpawner. Let S be the largest coordinate of the
@@ -106,15 +106,15 @@ class ShadowRays {
 // the first ray (strays_from); directions have a relative rounding error of 2^-24, which moves them
 // by less than 2^-22 S at X. So, seen along the first ray, all rays pass within kRoom S = 2^-15 S
 // of X. If no edge of X's triangle is that near, each ray that gets so far hits the triangle,
-// because RaySpawner puts no origin on its wrong side. The triangle is opaque within this distance:
-// the last ray ends there, if none has ended before.
+// because RaySpawner puts no origin on its wrong side. The triangle is opaque within this distance,
+// so the last ray ends there if none has ended before.
 
-/// Whether a hit blocks all light as explained above. `place` is a sure hit of a ray with t below
-/// t_max (+infinity: no limit), on a triangle whose material is opaque except for its mask.
+/// Returns whether a hit blocks all light, by the argument above. `place` is a sure hit with t
+/// below t_max (+infinity: no limit) on a triangle that is opaque except for its mask.
 [[nodiscard]] bool is_sure_occluder(const Scene& scene, const Bvh& bvh, const SurfaceHit& place,
                                     float t_max);
 
-/// Whether a point is too far from the line through `from` along `way` for that argument.
+/// Returns whether a point is too far from the line through `from` along `way` for that argument.
 [[nodiscard]] bool strays_from(const glm::vec3& from, const glm::dvec3& way,
                                const glm::vec3& point);
 

@@ -12,23 +12,23 @@
 
 // How far O' is from X
 //
-// Candidate k is the float nearest to X + 2^k u m, m being the triangle's normal towards the sign
-// wanted, scaled to a largest component of 1 (and then one along the ray). Rounding to float moves
-// each coordinate by u / 2 at most, as long as no coordinate is rounded at a step larger than u:
-// so by (u / 2) |n|_1 along the unit normal n, while the offset moves it by 2^k u / |n|_max. For
-// unit vectors |n|_1 |n|_max <= (1 + sqrt(3)) / 2 < 1.37, so already k = 0, with u against
-// 0.69 u, lies on the right sign; what is left, 0.3 u, is far more than the error of X in double.
-// Where X + u m crosses into the next binade its step doubles, and k = 1 does it.
+// Candidate k is the float nearest to X + 2^k u m, where m is the triangle's normal on the wanted
+// side, scaled to a largest component of 1 (later, along the ray). Rounding to float moves each
+// coordinate by at most u / 2, as long as no coordinate is rounded at a step larger than u: so by
+// (u / 2) |n|_1 along the unit normal n, while the offset moves it by 2^k u / |n|_max. For unit
+// vectors |n|_1 |n|_max <= (1 + sqrt(3)) / 2 < 1.37, so already k = 0, with u against 0.69 u, is on
+// the right side; the difference, 0.3 u, far exceeds the error of X in double. If X + u m crosses
+// into the next binade its step doubles, and k = 1 suffices.
 
 namespace raygate {
 namespace {
 
-constexpr int kLastStep = 24;  // 2^24 steps: as far away as X's coordinate is large
+constexpr int kLastStep = 24;  // 2^24 steps: the magnitude of X's coordinate
 
 /// X in double, and the size of a step.
 struct HitPoint {
   glm::dvec3 point;
-  double error;  // of each coordinate, at most
+  double error;  // error bound of each coordinate
   double step;   // u
 
   HitPoint(const Ray& ray, const Interval& t) {
@@ -43,8 +43,8 @@ struct HitPoint {
   }
 };
 
-/// Whether no point of the triangle is in the box, as far as double can tell for sure. By the
-/// theorem of separating axes; the boxes' own axes have been looked at already.
+/// Returns whether double precision proves that no point of the triangle is in the box, by the
+/// separating axis theorem. The box's own axes have been tested before.
 bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& triangle) {
   for (const glm::vec3& corner : triangle) {
     if (corner == glm::clamp(corner, low, high)) return false;
@@ -74,8 +74,7 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
   return false;
 }
 
-/// The sign of `other` on which the ray is just before or just after it hits `hit`; 0 where it
-/// runs in the plane.
+/// Returns the side of `other` on which the ray is just before or after it hits `hit`; 0: coplanar.
 int side_of_ray(const Ray& ray, const Corners& hit, const Corners& other, SpawnSide side) {
   const int at_hit = plane_side_at_hit(ray, hit, other);
   if (at_hit != 0) return at_hit;
@@ -144,7 +143,7 @@ void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin
   in_vectors([&](auto code) RAYGATE_BODY {
     using T = std::conditional_t<code() == Vectors::kAvx512, FloatLanes, FloatQuad>;
     constexpr std::size_t kWidth = kLanesOf<T>;
-    constexpr std::size_t kAhead = 2 * kWidth;  // to fetch
+    constexpr std::size_t kAhead = 2 * kWidth;  // prefetch distance
     std::size_t first = 0;
     for (; first + kWidth <= queries.size(); first += kWidth) {
       if (first + kAhead + kWidth <= queries.size()) {
@@ -154,7 +153,7 @@ void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin
       find_some<code(), T>(&queries[first], &origins[first]);
     }
     if (first == queries.size()) return;
-    // The last ones, and one of them in the lanes that are left.
+    // The remaining queries; the last one fills the unused lanes.
     SpawnQuery last[kWidth];
     SpawnOrigin last_origins[kWidth];
     for (std::size_t i = 0; i < kWidth; ++i) {
@@ -186,12 +185,12 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
   // the boxes may hold thousands of triangles.
   struct Refuser {
     Corners corners;
-    int wanted;  // the side on which a candidate is to be
+    int wanted;  // the required side of a candidate
   };
   std::vector<Refuser> refusers;
   const auto good = [&](const glm::vec3& candidate) {
     if (orient3d(candidate, hit) != sign) return false;
-    // The box of X and the candidate, and some room for the error of X and for rounding.
+    // The box of X and the candidate, enlarged for the error of X and for rounding.
     const glm::dvec3 c(candidate);
     const glm::vec3 low(glm::min(c, x.point) - 2.0 * x.step);
     const glm::vec3 high(glm::max(c, x.point) + 2.0 * x.step);
@@ -221,7 +220,7 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
       if (good(candidate)) return candidate;
     }
   }
-  // Close to a corner from which the ray has hardly come away, its own origin may be all there is.
+  // In a sharp corner close to the ray's origin, that origin may be the only valid point.
   if (side == SpawnSide::kIncident && good(ray.origin)) return ray.origin;
   return std::nullopt;
 }

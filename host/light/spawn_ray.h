@@ -14,7 +14,7 @@
 
 namespace raygate {
 
-/// The side of the surface on which a spawned ray begins.
+/// Side of the surface on which a spawned ray begins.
 enum class SpawnSide {
   kIncident,     ///< the side the ray came from: reflection, shadow rays
   kTransmitted,  ///< the other side: refraction
@@ -39,28 +39,27 @@ struct SpawnOrigin {
 
 /// Finds origins for secondary rays without an epsilon.
 ///
-/// Let X be the point, exact and hardly ever a float, in which a ray first hits a triangle. The
-/// origin O' is a float point near X that lies strictly on the same side of the triangle's plane,
-/// and of the plane of every other triangle that comes near on that side, as the points of the ray
-/// just before X (for kIncident) or just after it (for kTransmitted), decided in exact arithmetic.
-/// So
-///   * no triangle lies between the ray at X and O': none is skipped, in the sharpest corner;
-///   * a ray from O' that goes away from the triangle's plane (leaves() says so exactly) never
-///     hits that triangle again.
+/// Let X be the exact point, hardly ever a float, in which a ray first hits a triangle. The origin
+/// O' is a float point near X. It lies strictly on the same side of the triangle's plane, and of
+/// the plane of every other triangle that is near on that side, as the points of the ray just
+/// before X (kIncident) or just after it (kTransmitted), decided in exact arithmetic. So
+///   * no triangle lies between X and O': none is skipped, even in the sharpest corner;
+///   * a ray from O' that leaves the triangle's plane (decided exactly by leaves()) never hits that
+///     triangle again.
 ///
-/// X is computed in double from the corners, not from the unit's P: an origin that is off by the
-/// error of P would be farther from the surface.
+/// X is computed in double from the corners, not from the unit's P, whose error would move O'
+/// farther from the surface.
 ///
 /// Distance: let u be one float step (ulp) of X's largest coordinate, or the error of X in double
 /// if that is larger. If no other triangle is within 4 u of X, O' is within 1.5 u (3 u next to a
 /// power of two) of X in double on each axis (proof in spawn_ray.cpp); the distance from the exact
 /// X is larger by the error of X (1.528 u far from the origin). In narrower corners O' moves away
 /// from X by powers of two, along the normal or the ray, up to the ray's origin, so that a convex
-/// room always has an O' for kIncident. Corners narrower than floats can express may have none; the
-/// path ends there.
+/// room always has an O' for kIncident. Corners narrower than the precision of float may have none;
+/// the path ends there.
 class RaySpawner {
  public:
-  /// The clearances must outlive this.
+  /// `clearances` must outlive this object.
   explicit RaySpawner(const NeighborClearances& clearances)
       : clearances_(clearances), bvh_(clearances.bvh()) {}
 
@@ -72,11 +71,11 @@ class RaySpawner {
   /// Prefetches the clearance of a primitive of a later query.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const { clearances_.prefetch(primitive); }
 
-  /// Sets origins[i] to O' for queries[i]: the same as find() above, several at a time and faster.
+  /// Sets origins[i] to O' for queries[i], as find() above does, but several at a time.
   void find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin> origins);
 
-  /// Whether `direction` leaves the triangle that `ray` hit on the side of O'. Directions made with
-  /// shading normals, or rounded, may not.
+  /// Returns whether `direction` leaves the triangle that `ray` hit on the side of O'. Directions
+  /// made with shading normals, or rounded, may not.
   [[nodiscard]] bool leaves(const Ray& ray, std::uint32_t primitive, SpawnSide side,
                             const glm::vec3& direction) const;
 

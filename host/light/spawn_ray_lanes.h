@@ -1,4 +1,4 @@
-// Spawn origins on triangles with nothing near, several hits at a time.
+// Spawn origins on triangles without near neighbours, several hits at a time.
 #pragma once
 
 #include <cstddef>
@@ -8,49 +8,48 @@
 #include "host/base/triple.h"
 #include "host/light/neighbor_clearance.h"
 
-// Which side
+// Side of candidate 0
 //
-// X, u and candidate 0, the float nearest to X + u m, are those of spawn_ray.cpp; X in double is
-// off by u / 16 at most on each axis, or nothing is said. With m and X so exact, and no coordinate
-// rounded by more than u / 2, candidate 0 is beyond the plane by
+// X, u and candidate 0, the float nearest to X + u m, are those of spawn_ray.cpp. The error of X in
+// double is at most u / 16 on each axis; otherwise the lane is rejected. With X and m this
+// accurate, and no coordinate rounded by more than u / 2, candidate 0 is beyond the plane by
 //   u / |n|_max - (u / 2 + u / 16) |n|_1 > u (1 - 1.37 * 9 / 16) / |n|_max > 0.
 //
-// How exact X is: a component of NeighborClearance::normal is off by less than 1, so D = (A - O) .
-// N is off by less than |A - O|_max, and I . N by less than 2, as no component of I is larger
-// (roundings of the dot products are in kNormalError).
+// Error of X: a component of NeighborClearance::normal is off by less than 1, so D = (A - O) . N is
+// off by less than |A - O|_max, and I . N by less than 2, as no component of I is larger (rounding
+// of the dot products is part of kNormalError).
 //
-// Why nothing is near
+// Why no triangle is near
 //
-// Of the exact X let w be the least of the three weights of the vertices, and c the triangle's
-// clearance: all other triangles are at least c w - margin away, or farther than spawn_reach,
-// or one of the triangle's overlaps (see NeighborClearances), or in the triangle's plane. What
-// could make candidate 0 no good is within 8 u of the exact X, and within 5 u of the candidate on
-// each axis: the box around it and X as double has it, and 2 u more on every side. 16 u are within
-// spawn_reach.
+// Let w be the least of the three weights of the exact X, and c the triangle's clearance: all other
+// triangles are at least c w - margin away, or farther than spawn_reach, or an overlap of the
+// triangle (see NeighborClearances), or in the triangle's plane. Triangles that could invalidate
+// candidate 0 are within 8 u of the exact X, and within 5 u of the candidate on each axis: in the
+// box around it and X in double, enlarged by 2 u on every side. 16 u are within spawn_reach.
 //
 // c times a weight is computed from the candidate p, in float, as G . (p - A). G is c times the
 // weight's gradient: a vector in the triangle's plane, no longer than 1/8, as c is at most an
-// eighth of the least height. So it does not matter that p is u above the plane, and that p is
-// rounded changes c w by less than u. With s = |p - A|_1, rounding G, p - A and the dot product
-// makes it less than 2^-23 s wrong; the third weight, c less the two others, less than 2^-21 (s +
-// c). So nothing is near where
+// eighth of the least height. So the offset u of p from the plane does not matter, and rounding p
+// changes c w by less than u. With s = |p - A|_1, rounding G, p - A and the dot product changes it
+// by less than 2^-23 s; the third weight, c minus the two others, by less than 2^-21 (s + c). So no
+// triangle is near if
 //   c w > 16 u + 2^-20 (s + c) + margin
-// (of the 16 u, 8 are enough) and nothing of the overlaps is within 16 u of the candidate.
+// (8 of the 16 u suffice) and no overlap is within 16 u of the candidate.
 
 namespace raygate {
 
-/// Hits to spawn rays from; T is FloatQuad or FloatLanes.
+/// Hits at which rays are spawned; T is FloatQuad or FloatLanes.
 template <class T>
 struct SpawnHits {
   Triple<WideOf<T>> normal;
   T length;
-  Triple<T> corner, gradient[2];  ///< as NeighborClearance has them
+  Triple<T> corner, gradient[2];  ///< in the format of NeighborClearance
   Triple<T> origin, direction;    ///< of the rays
 };
 
 namespace spawn {
 
-/// The numbers at byte `offset` of each of four objects: row k has their k-th.
+/// Transposes the numbers at byte `offset` of four objects: row k has the k-th number of each.
 template <class Row, class Object>
 RAYGATE_INLINE void columns(const Object* const* objects, std::size_t offset, Row (&rows)[kQuad]) {
 #pragma GCC unroll 4
@@ -85,7 +84,7 @@ RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* c
   hits.direction = {words[1], words[2], words[3]};
 }
 
-/// Row i: the point of lane i, and a word of it.
+/// Stores the point of lane i and a word of it in row i.
 RAYGATE_INLINE void store(const Triple<FloatQuad>& point, const IntQuad& word, FloatQuad* rows) {
   FloatQuad columns[kQuad] = {point.x, point.y, point.z, float_of(word)};
   raygate::transpose(columns);
@@ -116,7 +115,7 @@ RAYGATE_INLINE void load(const NeighborClearance* const* triangles, const Ray* c
   hits.direction = join(a.direction, b.direction);
 }
 
-/// As doubles.
+/// Converts to double.
 template <Vectors kCode, class T>
 RAYGATE_INLINE WideOf<T> widened(const T& x) {
   if constexpr (std::is_same_v<T, FloatQuad>) {
@@ -130,13 +129,13 @@ RAYGATE_INLINE Triple<WideOf<T>> widened(const Triple<T>& x) {
   return {widened<kCode>(x.x), widened<kCode>(x.y), widened<kCode>(x.z)};
 }
 
-/// How far it is from a float that is not negative to the next one.
+/// Returns the distance from a non-negative float to the next one.
 template <class T>
 RAYGATE_INLINE T step_of(const T& x) {
   return float_of(bits_in(x) + 1) - x;
 }
 
-/// The largest magnitude.
+/// Returns the largest magnitude.
 template <class T>
 RAYGATE_INLINE T largest(const Triple<T>& v) {
   return maximum(absolute(v.z), maximum(absolute(v.y), absolute(v.x)));
@@ -144,9 +143,8 @@ RAYGATE_INLINE T largest(const Triple<T>& v) {
 
 }  // namespace spawn
 
-/// Makes `point` candidate 0 of each hit, on the side that the ray came from where `way` is -1, on
-/// the other one where it is 1. It is where the ray goes on from if `is_clear` becomes -1, and no
-/// triangle of the overlaps is within `reach` of it.
+/// Sets `point` to candidate 0 of each hit, on the incident side if `way` is -1 and on the
+/// transmitted side if it is 1. Valid if `is_clear` is -1 and no overlap is within `reach`.
 template <Vectors kCode, class T>
 RAYGATE_INLINE void spawn_lanes(const SpawnHits<T>& hits, const T& way, float margin,
                                 Triple<T>& point, T& reach, MaskOf<T>& is_clear) {
@@ -162,18 +160,18 @@ RAYGATE_INLINE void spawn_lanes(const SpawnHits<T>& hits, const T& way, float ma
   const T u = spawn::step_of(spawn::largest(narrow(x)));
   const Wide step = spawn::widened<kCode>(u);
 
-  // How far off X may be, with |I|_max < 2.
+  // Error bound of X, with |I|_max < 2.
   const Wide origin_size = spawn::widened<kCode>(spawn::largest(hits.origin)), along_ray = t + t;
   const Wide error = 0x1p-50 * (origin_size + along_ray) +
                      2.01 * inverse * (spawn::largest(from_origin) + along_ray);
   const MaskOf<Wide> is_sure = (below >= 0x1p35) & (16.0 * error <= step);
 
-  // Candidate 0: the normal shows where orient3d is -1.
+  // Candidate 0. The normal points to the side where orient3d is -1.
   const Wide turn = spawn::widened<kCode>(way);
   const Wide scale = (plane > 0.0 ? turn : -turn) / spawn::largest(hits.normal);
   point = narrow(x + hits.normal * scale * step);
 
-  // c times its least weight.
+  // c times the least weight of X.
   const T length = absolute(hits.length);
   const Triple<T> p = point - hits.corner;
   const T second = dot(p, hits.gradient[0]), third = dot(p, hits.gradient[1]);

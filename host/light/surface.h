@@ -19,9 +19,9 @@ namespace raygate {
 struct SurfaceHit {
   const Ray* ray = nullptr;
   std::uint32_t primitive = 0;
-  const Triangle* face = nullptr;      ///< the primitive's triangle
-  const glm::vec3* point = nullptr;    ///< the hit-test unit's P, relative to the ray's origin;
-                                       ///< null: the host computes it
+  const Triangle* face = nullptr;  ///< the primitive's triangle
+  /// The hit-test unit's P, relative to the ray's origin; null: computed by the host.
+  const glm::vec3* point = nullptr;
   const Instance* instance = nullptr;  ///< the triangle's instance, or null
 
   /// Returns the vertex colours, or null if there are none or the material ignores them.
@@ -30,14 +30,13 @@ struct SurfaceHit {
     return all.empty() || !scene.materials[face->material].has_vertex_colors ? nullptr : &all;
   }
 
-  /// Returns the normal of that index, in world space.
   [[nodiscard]] glm::vec3 normal(const Scene& scene, std::uint32_t index) const {
     const glm::vec3& own = scene.normals[index];
     return instance == nullptr ? own : transform_normal(*instance, own);
   }
 };
 
-/// Whether the face has a normal for each vertex.
+/// Returns whether the face has a normal for each vertex.
 [[nodiscard]] inline bool has_normals(const Triangle& face) {
   return face.normals[0] != kNoIndex && face.normals[1] != kNoIndex && face.normals[2] != kNoIndex;
 }
@@ -66,12 +65,12 @@ struct Surface {
   T roughness, metallic, transmission, specular, coat, coat_roughness;
   Triple<T> specular_color;
   Triple<T> glow;  ///< factor of the emission texture; only of kinds that interpolate and emit
-  /// The ray comes from outside: from the side to which the file's normals point or, without
-  /// normals, from which the vertices are counter-clockwise.
+  /// Whether the ray arrives from outside: from the side to which the file's normals point or,
+  /// without normals, from which the vertices are counter-clockwise.
   MaskOf<T> outside;
 
-  /// Whether a direction leaves the triangle to the ray's side or, if `transmitted`, to the other
-  /// side. Exact where `is_sure`.
+  /// Result of leaving(): whether a direction leaves the triangle to the ray's side or, if
+  /// `transmitted`, to the other side. Exact in lanes with `is_sure`.
   struct Leaving {
     MaskOf<T> leaves, is_sure;
   };
@@ -179,7 +178,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   surface.own_normal = normal;
   surface.own_size = {size[0], size[1], size[2]};
 
-  // Which side was hit: double says it, or exact arithmetic does.
+  // Decide the side in double, or exactly where that is not sure.
   const typename Surface<T>::Slope slope(surface, direction);
   const auto values = unpack(slope.value);
   const auto is_sure = unpack(slope.is_sure);
@@ -195,7 +194,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
     const Triple<Wide> unscaled = unscaled_weights(wide(origin), wide(direction), corners);
     const Wide inverse = 1.0 / (unscaled.x + unscaled.y + unscaled.z);
     Triple<T> weights = narrow(unscaled * inverse);
-    const T third = spread<T>(1.0f / 3.0f);  // where nothing is left of the triangle
+    const T third = spread<T>(1.0f / 3.0f);  // for triangles without area
     const auto is_number = weights.x + weights.y + weights.z == weights.x + weights.y + weights.z;
     weights = {choose(is_number, at_least(weights.x, 0.0f), third),
                choose(is_number, at_least(weights.y, 0.0f), third),
@@ -270,7 +269,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   return surface;
 }
 
-/// Whether the mask of the face's material has a hole where the ray hits it.
+/// Returns whether the mask of the face's material has a hole at the hit.
 [[nodiscard]] inline bool is_masked_out(const Scene& scene, const Bvh& bvh,
                                         const SurfaceHit& place) {
   const Corners corners = bvh.corners_of(place.primitive);

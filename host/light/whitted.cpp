@@ -7,20 +7,19 @@ namespace {
 // Streams of random numbers.
 constexpr std::uint32_t kMirror = 1, kTransmission = 2, kRoughFacet = 3, kCoat = 4,
                         kFirstAreaLight = 16, kFirstPointLight = 1u << 16;
-constexpr float kNarrow = 0.25f;  // alpha: what wider facets reflect counts as ambient light
+constexpr float kNarrow = 0.25f;  // alpha: reflections of wider facets count as ambient light
 
-/// Whether rays are sent for what rough facets reflect.
+/// Returns whether rays are spawned for reflections of rough facets.
 template <class T>
 RAYGATE_INLINE bool has_rough_facets(const Hits<T>& hits) {
   return (~hits.kind & (kMetallicRoughness | kGlossy)) == 0;
 }
-/// What facets of that alpha reflect, where they are narrow: a ray is sent for it.
+/// Returns `reflected` if the facets are narrow enough to spawn a ray, or else 0.
 template <class T>
 RAYGATE_INLINE Triple<T> if_narrow(const Ggx<T>& ggx, const Triple<T>& reflected) {
   return choose(ggx.squared > kNarrow * kNarrow, zero<T>(), reflected);
 }
 
-/// The light of light number i, and whether it is one point's, or has one direction.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits<T>& hits,
                                          std::uint32_t i) {
@@ -72,7 +71,7 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
   return light;
 }
 
-/// A light sample of each hit for every light but the environment, which is the ambient light.
+/// Samples every light at each hit, except the environment, which is the ambient light.
 template <class T>
 RAYGATE_INLINE void sample_all_lights(const ShadingScene& shading, Hits<T>& hits) {
   using Kind = Lights::Kind;
@@ -86,7 +85,7 @@ RAYGATE_INLINE void sample_all_lights(const ShadingScene& shading, Hits<T>& hits
   }
 }
 
-/// The lanes in which a ray of this throughput is worth tracing; counts the others.
+/// Returns the lanes in which a ray of this throughput is worth tracing; counts the others.
 template <class T>
 RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& hits,
                                     const Triple<T>& throughput) {
@@ -106,7 +105,8 @@ RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& 
   return skips_weightless ? MaskOf<T>(is_bright) : MaskOf<T>(is_bright | (size == 0.0f));
 }
 
-/// Without `goes_on` the depth is reached: rays go on only where a mask says that nothing is there.
+/// Spawns reflected and transmitted rays. Without `goes_on` the maximum depth is reached, and rays
+/// only continue through holes of masks.
 template <class T>
 RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hits, bool goes_on) {
   const Surface<T>& surface = hits.surface;
@@ -117,7 +117,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   next.path.throughput = hits.path.throughput * bsdf.mirror();
   Triple<T> facet = surface.normal, mirror_facet = facet, transmitted = bsdf.transmission();
   if (has_rough_facets(hits)) {
-    // By chance, as the facets lie (Cook, Porter and Carpenter 1984), of the coat or under it.
+    // A random facet (Cook, Porter and Carpenter 1984), of the coat or below it.
     const MetallicRoughnessLobes<T>& facets = bsdf.facets();
     const SquarePoint<T> u = hits.random(kRoughFacet);
     const auto cosine_at = [&](const Triple<T>& at) RAYGATE_BODY {
@@ -152,7 +152,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
       mirror_facet = choose(is_coat, own, facet);
     }
     next.path.throughput = hits.path.throughput * reflected;
-    // Lights are asked for what these facets show of them.
+    // Lights are sampled for reflections of these facets.
     next.path.pdf = spread<T>(1.0f);
   }
   next.is_wanted = bsdf.mirror_is_traced();
@@ -189,7 +189,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     const Bsdf<T>& bsdf = hits.bsdf;
     const bool goes_on = block.batch->depth < shading.max_depth;
     Triple<T> emission = hits.emission(), glossy = bsdf.glossy();
-    // What a light was asked for is not counted again where it is met.
+    // Emission is omitted if lights were sampled at the previous hit.
     if ((kind & kEmits) != 0) emission = choose(hits.path.pdf > 0.0f, zero<T>(), emission);
     if (goes_on && has_rough_facets(hits)) {
       const MetallicRoughnessLobes<T>& facets = bsdf.facets();

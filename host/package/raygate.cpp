@@ -16,7 +16,7 @@ namespace {
 
 glm::vec3 vector(const Tracer::Point& p) { return {p[0], p[1], p[2]}; }
 
-/// What the tree is built from, and not kept.
+/// Returns a temporary scene from which the BVH is built.
 Scene scene_of(std::span<const Tracer::Triangle> triangles) {
   Scene scene;
   scene.positions.reserve(3 * triangles.size());

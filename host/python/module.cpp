@@ -1,4 +1,4 @@
-// The C++ half of the Python module `raygate`: scenes, rays and pictures as NumPy arrays.
+// The C++ half of the Python module `raygate`: scenes, rays and images as NumPy arrays.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
@@ -149,13 +149,11 @@ nb::bytes python_bytes(const Encode& encode) {
   return nb::bytes(text.data(), text.size());
 }
 
-/// A film and what its files say about it.
 struct PythonFilm {
   std::shared_ptr<const Film> film;
   ExrMetadata metadata;
 };
 
-/// A scene and its tree.
 class PythonScene {
  public:
   PythonScene(const nb::bytes& file, bool strict, const Settings& settings) {
@@ -174,7 +172,7 @@ class PythonScene {
     build(keywords.threads);
   }
 
-  /// Triangles alone, from their corners, one after the other. `name`: of the array, for messages.
+  /// Makes a scene of triangles from their corners. `name` is the array's name in messages.
   PythonScene(const std::string& name, const Vectors3& corners, bool strict,
               const Settings& settings) {
     std::optional<double> smooth;
@@ -334,7 +332,6 @@ class PythonScene {
   }
 
  private:
-  /// Builds the tree of the scene.
   void build(int threads) {
     bvh_ = std::make_unique<Bvh>(scene_, threads);
     prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);

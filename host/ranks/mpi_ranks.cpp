@@ -1,4 +1,4 @@
-// Of a program that was built with MPI.
+// Ranks of a program built with MPI.
 #include <mpi.h>
 #include <sched.h>
 
@@ -20,9 +20,9 @@
 namespace raygate {
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{1};  // between looks for messages that are waited for
+constexpr std::chrono::milliseconds kPoll{1};  // polling interval while waiting for messages
 
-/// Those that this process may run on, among the ranks of this machine that may run on the same.
+/// Returns this rank's share of the processors that ranks of its machine may use together.
 unsigned count_processors() {
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
@@ -53,7 +53,7 @@ class MpiRanks : public Ranks {
 
   ~MpiRanks() override { MpiRanks::leave(); }
 
-  /// Nobody finalizes while others may still send.
+  /// Finalizes when no rank sends any more: the others wait for kEnd from rank 0.
   void leave() override {
     if (std::exchange(has_left_, true)) return;
     for (int rank = 1; index_ == 0 && rank < count_; ++rank) MpiRanks::send(rank, About::kEnd, {});
@@ -92,8 +92,8 @@ class MpiRanks : public Ranks {
   }
 
  private:
-  /// Bytes of the unit that messages are counted in: MPI counts with ints, and bytes may be more. A
-  /// message is filled up to whole units, of which the last eight bytes say how long it is.
+  /// Unit of message lengths in bytes, as MPI counts with int. Messages are padded to whole units;
+  /// the last eight bytes hold the length.
   static constexpr std::size_t kUnit = 64;
 
   struct Sending {
@@ -110,7 +110,7 @@ class MpiRanks : public Ranks {
     });
   }
 
-  /// Never waits for the rest of a message: who sent its beginning may have died since.
+  /// Returns a complete message. Does not wait for the rest of one, as its sender may have died.
   std::optional<Message> taken() {
     int there = 0;
     if (!coming_) {
@@ -135,8 +135,8 @@ class MpiRanks : public Ranks {
   int index_ = 0, count_ = 1;
   unsigned processors_ = 1;
   bool is_over_ = false, has_left_ = false;
-  std::list<Sending> sending_;     // whose bytes MPI still reads
-  std::optional<Message> coming_;  // whose bytes MPI still writes
+  std::list<Sending> sending_;     // buffers still read by MPI
+  std::optional<Message> coming_;  // buffer still written by MPI
   MPI_Request receiving_ = MPI_REQUEST_NULL;
 };
 

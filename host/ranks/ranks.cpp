@@ -13,7 +13,7 @@
 namespace raygate {
 namespace {
 
-/// Of the first of these variables that is there; 0: none is.
+/// Returns the number in the first of these variables that is set, or 0.
 int number_in(std::initializer_list<const char*> names) {
   for (const char* name : names) {
     if (const char* const text = std::getenv(name)) {

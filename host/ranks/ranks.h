@@ -60,7 +60,6 @@ class RankFailure : public std::runtime_error {
  public:
   explicit RankFailure(const Message& message)
       : RankFailure(message, value_of<int>(message.bytes)) {}
-  /// Returns the bytes of the kFailure message.
   [[nodiscard]] static std::string message_of(const Ending& ending) {
     return bytes_of(ending.status) + ending.line;
   }
@@ -82,11 +81,11 @@ class Ranks {
   Ranks() = default;
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
-  virtual ~Ranks() = default;  ///< leaves, unless leave() was called
+  virtual ~Ranks() = default;  ///< calls leave() if that was not done
 
   [[nodiscard]] virtual int index() const { return 0; }  ///< of this process
   [[nodiscard]] virtual int count() const { return 1; }
-  /// Number of processors for this rank.
+  /// Returns the number of processors for this rank.
   [[nodiscard]] virtual unsigned processors() const {
     return std::max(1u, std::thread::hardware_concurrency());
   }
@@ -116,13 +115,13 @@ struct RunIsOver : std::exception {};
 void run_rank(Ranks& ranks, const std::function<void()>& work,
               const std::function<Ending(std::exception_ptr)>& ending);
 
-/// Whether a launcher of MPI programs started this process: mpirun, or Slurm's srun by PMI or PMIx.
+/// Returns whether an MPI launcher started this process: mpirun, or Slurm's srun by PMI or PMIx.
 [[nodiscard]] bool is_launched();
 
-/// Number of processes as reported by the launcher, or 0.
+/// Returns the number of processes as reported by the launcher, or 0.
 [[nodiscard]] int launched_count();
 
-/// This process's rank as reported by the launcher, or 0.
+/// Returns this process's rank as reported by the launcher, or 0.
 [[nodiscard]] int launched_index();
 
 /// Removes the launcher's variables from the environment, for programs that this one starts.

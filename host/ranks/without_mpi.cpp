@@ -1,4 +1,4 @@
-// Of a program that was built without MPI.
+// Ranks of a program built without MPI.
 #include <cstdlib>
 #include <string>
 
@@ -10,7 +10,7 @@ namespace raygate {
 std::unique_ptr<Ranks> join_ranks() {
   const int count = launched_count();
   if (count > 1) {
-    if (launched_index() > 0) std::_Exit(2);  // the first one says it
+    if (launched_index() > 0) std::_Exit(2);  // rank 0 reports the error
     throw InputError("found " + std::to_string(count) +
                      " ranks, expected one: this program was built without MPI; "
                      "`make verilate MPI=1` builds it with it");

@@ -12,10 +12,9 @@ namespace {
 constexpr int kBlockWidth = 4, kBlockHeight = 2;
 static_assert(kErrorBlock % kBlockWidth == 0 && kErrorBlock % kBlockHeight == 0);
 constexpr int kSquare = 8;
-constexpr std::size_t kManySamples = 1 << 14;  // at once
+constexpr std::size_t kManySamples = 1 << 14;  // per batch
 
-/// Visits the blocks of width x height that cover `rect`, row by row; those at its ends may be
-/// smaller.
+/// Visits the blocks of width x height that cover `rect`, row by row. The last ones may be smaller.
 template <class Visit>
 void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit) {
   for (int y = rect.y0; y < rect.y1; y += height) {
@@ -25,7 +24,7 @@ void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit
   }
 }
 
-/// Whether the pixels of a block need no more, by RenderSettings::error.
+/// Returns whether the pixels of a block have converged, by RenderSettings::error.
 bool needs_no_more(const RenderSettings& settings, const Film& film, const PixelRect& block) {
   if (settings.error == 0.0) return false;
   const std::size_t index = film.index_of(block.x0, block.y0);
@@ -33,7 +32,7 @@ bool needs_no_more(const RenderSettings& settings, const Film& film, const Pixel
                        settings.error);
 }
 
-/// How many samples each pixel that needs more may take at once.
+/// Returns the number of samples that each unconverged pixel may take at once.
 int samples_ahead(const RenderSettings& settings, const Film& film, const PixelRect& tile,
                   int end) {
   if (settings.error == 0.0) return 0;
@@ -74,9 +73,9 @@ void update_block_error(Film& film, int x, int y, double exposure) {
 }
 
 double fraction_done(const Film& film, int most, double wanted) {
-  constexpr std::size_t kAsked = 4096;  // pixels, about
+  constexpr std::size_t kAsked = 4096;  // number of sampled pixels, approximately
   const FilmSums& sums = film.sums;
-  const std::size_t step = sums.samples.size() / kAsked | 1;  // odd, to come through all columns
+  const std::size_t step = sums.samples.size() / kAsked | 1;  // odd, to visit all columns
   double taken = 0.0, left = 0.0, judged = 0.0, expected = 0.0, unknown = 0.0;
   for (std::size_t i = 0; i < sums.samples.size(); i += step) {
     const auto samples = static_cast<int>(sums.samples[i]);
@@ -94,7 +93,7 @@ double fraction_done(const Film& film, int most, double wanted) {
     expected += in_the_end;
     left += in_the_end - samples;
   }
-  // What has not been judged is taken to be like what has.
+  // Pixels without an estimate are assumed to be like the others.
   left += unknown * (judged > 0.0 ? expected / judged : most);
   return taken + left > 0.0 ? std::clamp(taken / (taken + left), 0.0, 1.0) : 1.0;
 }

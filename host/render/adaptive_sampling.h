@@ -1,4 +1,4 @@
-// Adaptive sampling: which samples the pixels of a tile take next, by their error with --error.
+// Adaptive sampling: chooses the next samples of a tile's pixels by their error, for --error.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,13 @@
 
 namespace raygate {
 
-/// Error is estimated per block of 4 x 4 pixels, so that a pixel that is right by chance does not
-/// stop early. Blocks form a grid from the frame's upper left corner. Whether a block gets more
-/// samples depends only on its own pixels, so it does not matter which blocks are rendered
-/// together.
+/// Error is estimated per block of 4 x 4 pixels, so that a pixel with a small error by chance does
+/// not stop early. Blocks form a grid from the frame's upper left corner. Blocks are independent of
+/// each other, so it does not matter which are rendered together.
 inline constexpr int kErrorBlock = 4;
 
-/// Errors are checked at 8, 16, 32, ... samples per pixel. The first check gives no error yet; a
-/// block can stop from the second on.
+/// Errors are checked at 8, 16, 32, ... samples per pixel. The first check yields no error
+/// estimate, so a block can stop from the second one on.
 inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
 
 /// Returns the number of samples of the next check after `samples`.
@@ -32,10 +31,11 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
   return samples >= kFirstErrorCheck && (samples & (samples - 1)) == 0;
 }
 
-/// Whether pixels need no more samples. `error` is FilmSums::error, `wanted` RenderSettings::error.
+/// Returns whether pixels need no more samples. `error` is FilmSums::error, `wanted`
+/// RenderSettings::error.
 ///
 /// A pixel with 16 samples stops if its error is at most `wanted`; with n samples, if it is at most
-/// n / 16 times that. One more sample reduces an error e by e / 2n, and this rule stops every pixel
+/// n / 16 times that. One more sample reduces an error e by e / 2n, so this rule stops every pixel
 /// at the same gain per sample. A limit independent of n would distribute samples in proportion to
 /// the squared noise s^2 of a sample; the mean error is smallest for s^(2/3).
 [[nodiscard]] inline bool has_converged(float error, int samples, double wanted) {
@@ -43,8 +43,8 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
          error <= wanted * samples / kMinAdaptiveSamples;
 }
 
-/// Returns the expected number of samples until then, at least `samples` + 1, if the error falls as
-/// 1 / sqrt(n).
+/// Returns the expected samples until convergence, at least `samples` + 1, for errors ~ 1 /
+/// sqrt(n).
 [[nodiscard]] inline double expected_samples(float error, int samples, double wanted) {
   const double noise = double{error} * std::sqrt(samples);
   return std::max(samples + 1.0, std::cbrt(std::pow(kMinAdaptiveSamples * noise / wanted, 2.0)));
@@ -61,8 +61,7 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
 /// side (Student's t with 16 degrees of freedom).
 void update_block_error(Film& film, int x, int y, double exposure);
 
-/// Returns the estimated completed fraction of a render, in [0, 1]; `most`: maximum samples per
-/// pixel.
+/// Returns the estimated completed fraction of a render. `most` is the maximum samples per pixel.
 [[nodiscard]] double fraction_done(const Film& film, int most, double wanted);
 
 struct PixelSamples {
@@ -74,7 +73,7 @@ struct PixelSamples {
 };
 
 /// Returns the samples below `end` that the pixels of `tile` lack. With RenderSettings::error,
-/// pixels that have converged are left out, and if few are left they take samples beyond `end`, so
+/// pixels that have converged are skipped, and if few remain they take samples beyond `end`, so
 /// that batches have many rays. Pixels are ordered in squares of 8 x 8 and within these in blocks
 /// of 4 x 2, which become the cones and packets of intersectors.
 [[nodiscard]] std::vector<PixelSamples> samples_to_trace(const RenderSettings& settings,

@@ -11,8 +11,8 @@ namespace raygate {
 namespace {
 
 constexpr int kRaysPerSample = 8;
-constexpr std::size_t kManyRays = 1 << 11;   // at once
-constexpr float kLeastShare = 1.0f / 64.0f;  // of the brightest emitter
+constexpr std::size_t kManyRays = 1 << 11;   // per batch
+constexpr float kLeastShare = 1.0f / 64.0f;  // relative to the brightest emitter
 
 constexpr HistoryMask kDirect = 1u << 1, kAllHistories = ~1u;
 
@@ -23,7 +23,6 @@ void for_each(HistoryMask histories, const Visit& visit) {
   }
 }
 
-/// Returns the histories and all their prefixes.
 HistoryMask with_prefixes(HistoryMask histories) {
   HistoryMask all = histories;
   for_each(histories, [&](std::uint32_t history) {
@@ -41,7 +40,7 @@ EmitterSupersampler::EmitterSupersampler(const RenderContext& context, Intersect
       integrator_(IntegratorKind::kEmitters, context.prepared, context.lights, context.settings),
       counts_work_(counts_work),
       all_(kDirect) {
-  // Whitted's pictures have few samples: finding more histories would take longer than it saves.
+  // Whitted images have few samples: finding more histories would take longer than it saves.
   if (context.settings.integrator == IntegratorKind::kPath &&
       std::ranges::any_of(context.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
     all_ = kAllHistories;
@@ -87,7 +86,7 @@ void EmitterSupersampler::trace() {
 
 void EmitterSupersampler::find(const Film& film, const PixelRect& tile,
                                std::span<HistoryMask> histories, std::span<RayWork> work) {
-  // Corners of pixels, up to so many beyond the tile's own.
+  // Pixel corners, up to this number of pixels beyond the tile.
   const int beyond = static_cast<int>(std::ceil(filter_radius(context_.settings.filter) - 0.5));
   const auto may_see = [&](const AreaLight& light) {
     return may_see_box(light.low, light.high, context_.camera, film, tile, beyond + 1.0);
@@ -109,7 +108,7 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile,
     }
   }
   trace();
-  for (std::size_t i = 0; i < ray_work_.size(); ++i) {  // to the nearest pixel
+  for (std::size_t i = 0; i < ray_work_.size(); ++i) {  // assigns work to the nearest pixel
     const int x = static_cast<int>(i % std::size_t(columns)) - beyond;
     const int y = static_cast<int>(i / std::size_t(columns)) - beyond;
     const int column = std::clamp(x, 0, tile.width() - 1);

@@ -1,5 +1,5 @@
-// Emitter supersampler: more rays at the outlines of emitters that the camera sees, directly, in
-// mirrors and through glass.
+// Emitter supersampler: extra rays at the outlines of emitters that the camera sees directly, in
+// mirrors or through glass.
 #pragma once
 
 #include <array>
@@ -16,31 +16,30 @@
 
 namespace raygate {
 
-/// A bit mask of histories (PathState::history), of a pixel; kUnknownHistories before find().
+/// Bit mask of a pixel's histories (PathState::history); kUnknownHistories before find().
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 
 /// Emitters are usually much brighter than their surroundings, and the pixels on their outlines are
-/// the noisiest of a picture, whether the camera sees them directly or through up to four mirrors
-/// and glass borders. Emission along such a path is cheap to compute: it needs no lights, shadows
-/// or choice of a lobe. So these pixels get additional rays that collect emission only, and the
-/// pixel's samples leave it out.
+/// the noisiest of an image, whether the camera sees them directly or through up to four mirrors
+/// and glass interfaces. Emission along such a path is cheap to compute: it needs no lights,
+/// shadows or choice of a lobe. So these pixels get additional rays that collect emission only, and
+/// the pixel's samples omit it.
 ///
-/// A pixel has a history if rays through pixel corners, as far as the pixel's filter reaches, find
-/// different emission with it. The choice does not depend on any sample, so it adds no bias.
-/// Emitters between all corners, smaller than a pixel, are not found.
+/// A pixel has a history if rays through pixel corners, within the radius of the pixel's filter,
+/// find different emission with it. The choice does not depend on any sample, so it adds no bias.
+/// Emitters smaller than a pixel and between all corners are not found.
 class EmitterSupersampler {
  public:
-  /// The references must outlive this. `counts_work`: counts tests and doubts of each ray.
+  /// The references must outlive this object. `counts_work`: counts tests and doubts of rays.
   EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work);
 
-  /// Sets the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
-  /// Adds its work to `work`, by pixel of the tile, unless that is empty.
+  /// Finds the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
+  /// Adds the work to `work`, by pixel of the tile, unless that is empty.
   void find(const Film& film, const PixelRect& tile, std::span<HistoryMask> histories,
             std::span<RayWork> work);
 
-  /// Adds to sums[i] the emission that the samples of pixels[i] leave out, and its work to work[i]
-  /// unless that is empty.
+  /// Adds to sums[i] the emission that samples of pixels[i] omit, and the work to work[i], if any.
   void supersample(std::span<const PixelSamples> pixels, std::span<const HistoryMask> histories,
                    std::span<std::array<ExactAccumulator, 3>> sums, std::span<RayWork> work);
 
@@ -49,7 +48,6 @@ class EmitterSupersampler {
  private:
   void add(const Ray& ray, HistoryMask histories);
   void trace();
-  /// Returns the radiance of a camera ray with a history.
   [[nodiscard]] const glm::vec3& radiance(std::size_t ray, std::uint32_t history) const {
     return output_.radiance[ray * kSpecularHistories + history];
   }
@@ -58,10 +56,9 @@ class EmitterSupersampler {
   Intersector& intersector_;
   Integrator integrator_;
   bool counts_work_;
-  HistoryMask all_;     // the histories that can occur
+  HistoryMask all_;     // histories that can occur
   float least_ = 0.0f;  // dimmer emission is not supersampled
   RenderStats stats_;
-  // Of the current batch of rays.
   RayBatch batch_;
   ShadingOutput output_;
   std::vector<NearestHit> hits_;

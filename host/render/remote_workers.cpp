@@ -20,9 +20,9 @@
 namespace raygate {
 namespace {
 
-// What a rank that dies takes with it, at least, and how seldom it has to be answered.
+// Smallest limit on the seconds of work per message, which are lost if a rank dies.
 constexpr double kSeconds = 1.0;
-// Bytes a second that rank 0 may be sent: it takes in several times as many.
+// Bytes per second sent to rank 0, which can receive several times as many.
 constexpr double kRate = 250e6;
 
 double thread_seconds() {
@@ -60,7 +60,7 @@ bool RemoteWorkers::serve(TileQueue& queue) {
     came_back = came_back || message->about == About::kTraced;
     did_something = true;
   }
-  for (bool gave = true; gave;) {  // one each in turn
+  for (bool gave = true; gave;) {  // one tile for each rank in turn
     gave = false;
     for (int rank = 1; rank < ranks_.count(); ++rank) {
       int& room = room_[static_cast<std::size_t>(rank)];
@@ -100,8 +100,8 @@ void RemoteWorkers::take(const Message& message, TileQueue& queue) {
   }
 }
 
-/// Fewer and fewer towards the end, for all to end at once; and no more than take a second, or as
-/// long as so many ranks need for rank 0 to keep up with them.
+/// Returns the maximum passes per message. It decreases towards the end, so that all ranks end
+/// together. The work takes at most kSeconds, or longer if rank 0 would be overloaded.
 int RemoteWorkers::most_passes(const TileQueue& queue) const {
   const double share = static_cast<double>(queue.left()) / (4.0 * most_room_);
   if (passes_ == 0) return 1;
@@ -127,7 +127,7 @@ bool RemoteWorkers::finish(RenderStats& stats) {
   for (int rank = 1; !told_ && rank < ranks_.count(); ++rank) ranks_.send(rank, About::kFinish, {});
   told_ = true;
   while (const auto message = ranks_.receive()) {
-    if (message->about != About::kCounts) continue;  // one that has just come to help
+    if (message->about != About::kCounts) continue;  // from a rank that has just joined
     stats.add(value_of<RenderStats>(message->bytes));
     ++heard_;
   }
@@ -140,7 +140,7 @@ bool RemoteWorkers::finish(RenderStats& stats) {
 
 namespace {
 
-/// Threads that render, and the one that called, which talks with rank 0.
+/// The rendering threads of a rank, and the calling thread, which communicates with rank 0.
 class Worker : public TileWorkers {
  public:
   using TileWorkers::TileWorkers;
@@ -150,7 +150,7 @@ class Worker : public TileWorkers {
     const double busy = processor_seconds();
     start(context_.settings.threads);
     if (threads_.empty()) throw std::runtime_error("no thread could be started");
-    // One tile more than threads: there is something to do while messages travel.
+    // One tile more than threads hides the latency of messages.
     ranks.send(0, About::kRoom, bytes_of(static_cast<int>(threads_.size()) + 1));
     while (talk(ranks, monitor)) {
     }
@@ -162,7 +162,7 @@ class Worker : public TileWorkers {
   }
 
  private:
-  static constexpr std::chrono::milliseconds kLook{1};  // between looks for messages
+  static constexpr std::chrono::milliseconds kLook{1};  // polling interval
 
   std::optional<TileWork> take() override {
     if (to_do_.empty()) return std::nullopt;
@@ -177,7 +177,7 @@ class Worker : public TileWorkers {
     all.insert(all.end(), splats.begin(), splats.end());
   }
 
-  /// False when rank 0 has said that all is rendered, or the caller wants no more.
+  /// Processes messages. Returns false when rank 0 has ended the render, or the monitor stops it.
   bool talk(Ranks& ranks, const RenderMonitor& monitor) {
     while (auto message = ranks.receive()) {
       if (message->about == About::kFinish) return false;
@@ -206,7 +206,7 @@ class Worker : public TileWorkers {
 
   std::deque<TileWork> to_do_;
   std::vector<TileWork> traced_;
-  std::map<int, std::vector<Splat>> splats_;  // of tiles that rank 0 has not yet
+  std::map<int, std::vector<Splat>> splats_;  // splats of tiles that were not sent yet
 };
 
 }  // namespace

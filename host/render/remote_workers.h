@@ -1,4 +1,4 @@
-// Remote workers: the other ranks as seen by rank 0, and the messages about tiles.
+// Remote workers: the other ranks as seen by rank 0, and messages about tiles.
 #pragma once
 
 #include <memory>
@@ -24,22 +24,21 @@ namespace raygate {
       .append(reinterpret_cast<const char*>(splats.data()), splats.size_bytes())
       .append(region);
 }
-/// Throws InputError if the message has fewer splats than it says.
+/// Returns the splats of a message. Throws InputError if there are fewer than stated.
 [[nodiscard]] std::vector<Splat> splats_in(const std::string& message);
 [[nodiscard]] inline std::string_view region_in(const std::string& message) {
   return std::string_view(message).substr(sizeof(TileWork) +
                                           splats_in(message).size() * sizeof(Splat));
 }
 
-/// Sends tiles to the other ranks and puts their results into the film. Used by one thread at a
+/// Sends tiles to the other ranks and stores their results in the film. Used by one thread at a
 /// time, which must have exclusive access to the film and the queue during a call.
 class RemoteWorkers {
  public:
-  /// `first_sample`: of the render. The references must outlive this.
+  /// `first_sample` is that of the render. The references must outlive this object.
   RemoteWorkers(Ranks& ranks, const Tiles& tiles, int first_sample, Film& film, SplatLayer& splats);
 
-  /// Takes results that have arrived and sends work to ranks with room. Returns whether a tile came
-  /// back.
+  /// Stores results and sends work to ranks with free capacity. Returns whether a tile arrived.
   bool serve(TileQueue& queue);
 
   /// Tells the ranks that the render is complete and collects their statistics. Returns true once
@@ -56,14 +55,14 @@ class RemoteWorkers {
   int first_sample_;
   Film& film_;
   SplatLayer& splats_;
-  std::vector<int> room_;  // by rank: how many more tiles it can take
+  std::vector<int> room_;  // by rank: number of further tiles that it can take
   int most_room_ = 0;      // of all ranks together, when idle
   double seconds_ = 0.0;   // thread seconds of `passes_`
   std::int64_t passes_ = 0;
   double serving_ = 0.0;  // seconds spent in serve()
   std::uint64_t tiles_back_ = 0, bytes_back_ = 0;
   bool told_ = false;
-  int heard_ = 0;  // number of ranks whose statistics have come
+  int heard_ = 0;  // number of ranks whose statistics have arrived
 };
 
 /// Renders the tiles that rank 0 sends on options.threads threads, until rank 0 ends the render or

@@ -1,4 +1,4 @@
-// Render context: the data that all threads of a render read, and their camera rays.
+// Render context: read-only data shared by all threads of a render, and camera rays.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,11 @@ struct RenderContext {
   const PreparedScene& prepared;
   const Camera& camera;
   const RenderSettings& settings;
-  const Lights& lights;                     ///< the scene's, or those that go with the camera
+  const Lights& lights;                     ///< the scene's lights, or camera lights
   const LightPaths* light_paths = nullptr;  ///< null: only camera paths find caustics
 };
 
-/// Returns the query for a batch of rays; `work` is empty or has the size of the batch.
+/// Returns the query for a batch of rays. `work` is empty or has the size of the batch.
 [[nodiscard]] inline RayQuery query_of(const RenderContext& context, const RayBatch& batch,
                                        std::span<RayWork> work) {
   return {.common_origin = batch.depth == 0 && context.camera.has_common_origin(),
@@ -34,7 +34,7 @@ struct RenderContext {
           .work = work};
 }
 
-// Streams of random numbers of a pixel.
+// Streams of a pixel's random numbers.
 inline constexpr std::uint32_t kFilterStream = 0, kEmitterStream = 7, kLensStream = 8;
 
 /// Returns the camera ray of sample `index` of a pixel. `sampler` is the pixel's; `stream` is the

@@ -11,12 +11,12 @@
 
 namespace raygate {
 
-/// The user's choices for a picture; constant during renders. Values out of range are bugs of the
-/// caller. The defaults are those of ./render and of the Python module; four samples as in Mitsuba.
+/// User settings of an image; constant during a render. The caller ensures that values are in
+/// range. The defaults are those of ./render and of the Python module; four samples as in Mitsuba.
 struct RenderSettings : IntegratorSettings {
   int width = 640, height = 480;  ///< of the whole frame, at least 1
   PixelRect window;               ///< pixels to render, within the frame; empty: the whole frame
-  int threads = 1;                ///< at least 1; the film does not depend on it
+  int threads = 1;                ///< at least 1; does not affect the film
   int first_sample = 0;           ///< samples [first, end) are rendered
   int end_sample = 0;             ///< 0: all samples from the first on
   /// Above 0: adaptive sampling to this error, in steps of an 8-bit display after `exposure` stops
@@ -26,7 +26,7 @@ struct RenderSettings : IntegratorSettings {
   double error = 0.0;
   double exposure = 0.0;
   ReconstructionFilter filter = ReconstructionFilter::kBlackmanHarris;  ///< with several samples
-  std::uint64_t seed = 0;                                               ///< of all random numbers
+  std::uint64_t seed = 0;    ///< seed of all random numbers
   ExtraChannels channels{};  ///< in addition to colour, depth, normal and primitive
 
   /// Chooses defaults: scenes with an environment map use the path tracer, because Whitted neither
@@ -47,33 +47,32 @@ struct RenderMonitor {
   /// for a copy. The threads continue meanwhile.
   std::function<void(const Film*)> snapshot{};
   double snapshot_seconds = 10.0;
-  /// With other ranks: polled for whether one of them may have died; if so, `urgent_snapshot`
-  /// receives the film.
+  /// With other ranks, polled: whether one may have died. Then `urgent_snapshot` receives the film.
   std::function<bool()> is_urgent{};
   std::function<void(const Film*)> urgent_snapshot{};
-  /// Receives the film if the threads have not stopped half a second after they were told to; with
-  /// other ranks at once, because mpirun kills this process within a second. Must end the process.
+  /// Receives the film if the threads have not stopped within 0.5 s; with other ranks immediately,
+  /// because mpirun kills this process within a second. Must end the process.
   std::function<void(const Film&)> abandon{};
 };
 
 /// Statistics of a render. Seconds of parts are sums over the threads; `wall_seconds` is elapsed
 /// time, `processor_seconds` the processor time of all threads of all ranks.
 struct RenderStats {
-  std::uint64_t rays = 0;          ///< of all kinds
-  std::uint64_t camera_rays = 0;   ///< of which camera rays
-  std::uint64_t shadow_rays = 0;   ///< of which shadow rays; the rest are reflected or refracted
+  std::uint64_t rays = 0;         ///< number of rays of all kinds
+  std::uint64_t camera_rays = 0;  ///< camera rays among `rays`
+  std::uint64_t shadow_rays = 0;  ///< shadow rays among `rays`; the rest are reflected or refracted
   std::uint64_t point_doubts = 0;  ///< hits whose P the host computed, without shadow rays
   SkipCounters skipped;
   IntersectCounters intersect;  ///< summed over the threads' intersectors
   double shade_seconds = 0.0;   ///< generating and shading rays
   double wall_seconds = 0.0;
   double processor_seconds = 0.0;
-  std::uint64_t spare_samples = 0;   ///< not rendered because RenderSettings::error was reached
+  std::uint64_t spare_samples = 0;   ///< samples saved by RenderSettings::error
   double gather_seconds = 0.0;       ///< processor time of rank 0 for communication
   std::uint64_t gathered_tiles = 0;  ///< messages with tiles from other ranks
-  std::uint64_t gathered_bytes = 0;  ///< and their bytes
+  std::uint64_t gathered_bytes = 0;  ///< total size of these messages
   int missing_threads = 0;           ///< threads that could not be started
-  bool cancelled = false;            ///< stopped by the monitor: the film is incomplete
+  bool cancelled = false;            ///< stopped by the monitor; the film is incomplete
 
   /// Adds the counts of another rank, except its elapsed time.
   void add(const RenderStats& worker) {

@@ -25,7 +25,7 @@ namespace {
 
 int count_of(const Ranks* ranks) { return ranks == nullptr ? 1 : ranks->count(); }
 
-/// Renders a picture on rank 0: threads and other ranks take tiles from one queue. The calling
+/// Renders an image on rank 0: threads and other ranks take tiles from one queue. The calling
 /// thread reports progress and saves, so that no worker waits for a terminal or a disk.
 class Coordinator : public TileWorkers {
  public:
@@ -45,7 +45,7 @@ class Coordinator : public TileWorkers {
   }
   ~Coordinator() override { join(); }
 
-  /// Returns when the picture is complete or the monitor has stopped the render.
+  /// Returns when the image is complete or the monitor has stopped the render.
   void run() {
     look();
     {
@@ -73,9 +73,10 @@ class Coordinator : public TileWorkers {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kLook{50};    // between reports, at most
-  static constexpr std::chrono::milliseconds kServe{1};    // between looks for messages
-  static constexpr std::chrono::milliseconds kShare{500};  // between looks for what is left
+  static constexpr std::chrono::milliseconds kLook{50};  // maximum interval between reports
+  static constexpr std::chrono::milliseconds kServe{1};  // polling interval for messages
+  // Interval between estimates of the remaining work.
+  static constexpr std::chrono::milliseconds kShare{500};
 
   std::optional<TileWork> take() override {
     const auto step = queue_.begin();
@@ -90,7 +91,7 @@ class Coordinator : public TileWorkers {
     if (is_alone_) look();
   }
 
-  /// The other ranks', on a thread of its own: a save or a terminal keeps none of them waiting.
+  /// Serves the other ranks on a thread of its own, so that saving and reporting do not delay them.
   void serve() {
     try {
       std::unique_lock lock(mutex_);
@@ -106,7 +107,7 @@ class Coordinator : public TileWorkers {
     changed_.notify_all();
   }
 
-  /// Until so many threads are gone, and all other ranks have said their last word.
+  /// Waits until `threads` threads have ended, and all other ranks have sent their statistics.
   void watch(int threads) {
     std::unique_lock lock(mutex_);
     while (gone_ < threads || (remote_ && !served_)) {
@@ -117,7 +118,7 @@ class Coordinator : public TileWorkers {
     }
   }
 
-  /// Reports, and saves if it is time.
+  /// Reports progress, and saves when it is time.
   void look() {
     try {
       std::unique_lock lock(mutex_);
@@ -125,7 +126,7 @@ class Coordinator : public TileWorkers {
         if (!stopped_at_) stopped_at_ = Clock::now();
         if (monitor_.abandon && !error_ && Clock::now() - *stopped_at_ > grace_) {
           splats_.add_to(film_);
-          monitor_.abandon(film_);  // under the lock: nobody changes it any more
+          monitor_.abandon(film_);  // under the lock, so that the film does not change
         }
         return;
       }
@@ -151,7 +152,7 @@ class Coordinator : public TileWorkers {
     }
   }
 
-  /// Gives a copy of the film away, while the threads go on.
+  /// Passes a copy of the film to `take`, while the threads continue.
   void show(std::unique_lock<std::mutex>& lock, const std::function<void(const Film*)>& take) {
     lock.unlock();
     std::optional<Film> film;
@@ -162,8 +163,8 @@ class Coordinator : public TileWorkers {
     take(film ? &*film : nullptr);
   }
 
-  /// Tile by tile: a thread waits for the copy of one at most. With light paths, all at once: what
-  /// these have brought belongs to the samples that the film has.
+  /// Returns a copy of the film, made tile by tile, so that a thread waits for at most one tile.
+  /// With light paths, copies all at once, as splats belong to the film's current samples.
   Film copy_of_film() {
     Film copy;
     copy.width = film_.width;
@@ -183,7 +184,7 @@ class Coordinator : public TileWorkers {
     return copy;
   }
 
-  /// Looks at the film now and then, if that tells.
+  /// Returns the completed fraction. With an error limit, estimates it periodically from the film.
   double share_done() {
     const double wanted = context_.settings.error;
     if (wanted == 0.0) return queue_.fraction();
@@ -199,10 +200,10 @@ class Coordinator : public TileWorkers {
   const RenderMonitor& monitor_;
   TileQueue queue_;
   SplatLayer splats_;
-  std::optional<RemoteWorkers> remote_;  // none: there is one rank
+  std::optional<RemoteWorkers> remote_;  // none if there is one rank
   bool served_ = false;
-  // Of the watching thread alone.
-  std::chrono::milliseconds grace_{500};  // for threads that are to stop
+  // Members of the watching thread only.
+  std::chrono::milliseconds grace_{500};  // for threads to stop
   std::optional<Clock::time_point> stopped_at_;
   bool is_alone_ = false;
   Stopwatch watch_;
@@ -220,7 +221,7 @@ Film empty_film(const RenderSettings& settings) {
   return make_film(settings.width, settings.height, window, settings.channels);
 }
 
-/// Whether light paths are wanted and possible.
+/// Returns whether light paths are requested and possible.
 bool wants_light_paths(const RenderJob& job) {
   const RenderSettings& settings = job.settings;
   return settings.caustics != Caustics::kOff && settings.integrator == IntegratorKind::kPath &&
@@ -272,8 +273,8 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
     add_sums(film, settings.error > 0.0);
   }
   film.keeps_sums = settings.channels.sums || is_shared || unfinished != nullptr;
-  // A single sample goes through the pixel's middle, so its emitters have no edges to smooth; nor
-  // have emitters behind a lens.
+  // With a single sample through the pixel's centre, emitters have no edges to smooth. Emitters
+  // seen through a lens are not supersampled.
   std::vector<HistoryMask> emitter_histories;
   if (settings.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
     emitter_histories.assign(film.color.size(), kUnknownHistories);

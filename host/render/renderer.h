@@ -1,4 +1,4 @@
-// The renderer: renders a scene with a camera into a film.
+// Renderer: renders a scene with a camera into a film.
 #pragma once
 
 #include <optional>
@@ -16,30 +16,29 @@ namespace raygate {
 
 class Ranks;
 
-/// A picture to render. The references must outlive the call of render().
+/// An image to render. The references must outlive the call of render().
 struct RenderJob {
   const PreparedScene& prepared;
   const Camera& camera;
   const RenderSettings& settings;
-  std::optional<CameraLights> lights{};  ///< in place of the scene's
-  /// The unfinished film to resume, or null. It has sums and the same window, settings and first
+  std::optional<CameraLights> lights{};  ///< replace the scene's lights
+  /// An unfinished film to resume, or null. Has sums, and the job's window, settings and first
   /// sample.
   const Film* unfinished = nullptr;
-  /// The processes that share this render, called with the same job; null: only this process.
-  /// Rank 0 returns the film; the others have parts of it and call only RenderMonitor::progress. If
-  /// a rank fails, rank 0 calls `urgent_snapshot` and throws RankFailure.
+  /// The processes that share this render, called with the same job; null: only this process. Rank
+  /// 0 returns the film; the others have parts of it and call only RenderMonitor::progress. If a
+  /// rank fails, rank 0 calls `urgent_snapshot` and throws RankFailure.
   Ranks* ranks = nullptr;
 };
 
-/// Renders a picture. Several renders can share the prepared scene, also at the same time. The film
-/// does not depend, in any bit, on the intersector, the number of threads or the skips, and the
-/// film of a window is a part of the whole film. Films of several ranks and resumed films keep
-/// their sums until they are complete, so that they can be resumed. Rethrows exceptions of
-/// intersectors. A scene without lights is black except with kPrimary: see default_lights.
+/// Renders an image. Several renders can share a prepared scene, also concurrently. No bit of the
+/// film depends on the intersector, the number of threads or the skips, and the film of a window is
+/// a part of the whole film. Films of several ranks and resumed films keep their sums until they
+/// are complete, so that they can be resumed. Rethrows exceptions of intersectors. A scene without
+/// lights is black except with kPrimary: see default_lights.
 [[nodiscard]] Film render(const RenderJob& job, const IntersectorFactory& make_intersector,
                           RenderStats& stats, const RenderMonitor& monitor = {});
 
-/// Renders a scene that is not prepared.
 [[nodiscard]] inline Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
                                  const RenderSettings& settings,
                                  const IntersectorFactory& make_intersector, RenderStats& stats,

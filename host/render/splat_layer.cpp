@@ -15,7 +15,7 @@ void SplatLayer::add(std::span<const Splat> splats) {
   const double radius = filter_radius(filter_);
   for (const Splat& splat : splats) {
     const glm::dvec2 low = splat.place - radius, high = splat.place + radius;
-    // Places may be farther away than an int can say.
+    // Positions may exceed the range of int.
     const auto pixel = [](double at, int first, int end) {
       return static_cast<int>(std::clamp<double>(at, first, end));
     };

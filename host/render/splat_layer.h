@@ -1,4 +1,4 @@
-// Splat layer: light that light paths add to any pixel of a film.
+// Splat layer: light from light paths, at any pixel of a film.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace raygate {
 
-/// Light at a position of the frame, in pixels from its upper left corner.
+/// A contribution at a position of the frame, in pixels from its upper left corner.
 struct Splat {
   glm::dvec2 place{0.0};
   glm::dvec3 light{0.0};
 };
 
-/// Exact sums of splats by pixel of a film's window, each weighted with the density of the pixel's
-/// filter there. The order of splats does not matter.
+/// Exact sums of splats by pixel of a film's window, each weighted by the density of the pixel's
+/// filter. The order of splats does not matter.
 class SplatLayer {
  public:
   SplatLayer() = default;  ///< a layer without pixels

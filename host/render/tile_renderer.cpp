@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kManyShadowRays = 1 << 17;  // at once: 14 MB of questions
+constexpr std::size_t kManyShadowRays = 1 << 17;  // per batch: 14 MB of queries
 
 }  // namespace
 
@@ -73,7 +73,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   return (is_empty || trace_camera_rays(keep_going)) && trace_light_paths(keep_going);
 }
 
-/// Whether camera rays can meet nothing but the background.
+/// Returns whether camera rays can only meet the background.
 bool TileRenderer::is_empty_tile() const {
   const RenderSettings& settings = context_.settings;
   const double margin = 1.0 + (settings.samples > 1 ? filter_radius(settings.filter) : 0.0);
@@ -95,7 +95,7 @@ bool TileRenderer::trace_camera_rays(const std::function<bool()>& keep_going) {
   return true;
 }
 
-/// The batch, and all that follows from it; false if it was to stop.
+/// Traces the batch and all rays that result from it. Returns false if it was stopped.
 bool TileRenderer::trace_batch(Integrator& integrator, const std::function<bool()>& keep_going) {
   while (!batch_.rays.empty()) {
     if (!keep_going()) return false;
@@ -104,13 +104,14 @@ bool TileRenderer::trace_batch(Integrator& integrator, const std::function<bool(
   return true;
 }
 
-/// Each sample of a pixel has the same share of the frame's light paths with it, so that these are
-/// traced with the pixels, whoever traces what; a window's pixels have all of them.
+/// Traces the light paths of the current samples. Each sample of a pixel has an equal fraction of
+/// the frame's light paths, so the result does not depend on how work is distributed. The pixels of
+/// a window have all of them.
 bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   if (!light_integrator_) return true;
-  constexpr std::size_t kManyPaths = 1 << 16;  // at once
+  constexpr std::size_t kManyPaths = 1 << 16;  // per batch
   const std::uint64_t paths = context_.light_paths->count(), window = film_.color.size();
-  std::size_t camera_path = 0;  // the work is counted with
+  std::size_t camera_path = 0;  // path to which the work is attributed
   batch_.clear();
   for (const PixelSamples& pixel : pixels_) {
     for (int i = pixel.first; i < pixel.end; ++i, ++camera_path) {
@@ -133,7 +134,7 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   return trace_batch(*light_integrator_, keep_going);
 }
 
-/// See EmitterSupersampler.
+/// Adds the extra emission samples; see EmitterSupersampler.
 void TileRenderer::supersample_emitters() {
   if (!emitter_supersampler_) return;
   std::vector<RayWork> work(is_counting_ ? pixels_.size() : 0);
@@ -141,7 +142,7 @@ void TileRenderer::supersample_emitters() {
   for (std::size_t p = 0; p < work.size(); ++p) pixel_work_[place_in_tile(pixels_[p])] += work[p];
 }
 
-/// Sets hits_ and work_.
+/// Intersects the batch; sets hits_ and work_.
 void TileRenderer::intersect_batch() {
   stats_.rays += batch_.rays.size();
   hits_.resize(batch_.rays.size());
@@ -149,9 +150,9 @@ void TileRenderer::intersect_batch() {
   intersector_.intersect(batch_.rays, query_of(context_, batch_, work_), hits_);
 }
 
-/// The rays of one depth, and the shadow rays from where they end: these in several batches where
-/// there are many lights. Light from lights is added up apart from other light, so that the order
-/// of a sample's sums does not depend on the batches.
+/// Traces the rays of one depth, and the shadow rays from their hits: in several batches if there
+/// are many lights. Direct light is summed separately from other light, so that the order of a
+/// sample's sums does not depend on the batches.
 void TileRenderer::trace_wave(Integrator& integrator) {
   intersect_batch();
   Stopwatch watch;
@@ -188,7 +189,7 @@ void TileRenderer::trace_shadows() {
   output_.shadows.clear();
 }
 
-/// Where what is seen of a surface through a point of the lens comes to in the frame.
+/// Adds a splat at the image position of a surface seen through a point of the lens.
 void TileRenderer::add_splat(const ShadowRay& way) {
   if (way.radiance == glm::vec3(0.0f)) return;
   const auto place = context_.camera.place_of(glm::dvec3(way.surface), glm::dvec3(way.target));
@@ -205,7 +206,7 @@ void TileRenderer::write() {
   Stopwatch watch;
   FilmSums& kept = film_.sums;
   const bool has_albedo = !film_.albedo.empty();
-  std::size_t i = 0;  // a path
+  std::size_t i = 0;  // index of a path
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
     const PixelSamples& pixel = pixels_[p];
     const std::size_t at = pixel.index;
@@ -243,7 +244,7 @@ void TileRenderer::write() {
   stats_.shade_seconds += watch.lap();
 }
 
-/// At blocks whose samples that were traced last are enough for that.
+/// Updates the errors of blocks that have reached an error check.
 void TileRenderer::update_errors() {
   for (const PixelSamples& pixel : pixels_) {
     if (pixel.x % kErrorBlock != 0 || pixel.y % kErrorBlock != 0 || !is_error_check(pixel.end))
@@ -252,7 +253,7 @@ void TileRenderer::update_errors() {
   }
 }
 
-/// Those that are the first sample's.
+/// Writes the channels that are those of the first sample.
 void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
   const FirstSurface& first = output_.first_surface[sample];
   if (first.primitive == NearestHit::kNone) return;

@@ -22,23 +22,22 @@
 
 namespace raygate {
 
-/// Renders tiles into a film. All rays of one depth form a batch, and all shadow rays of a depth
+/// Renders tiles into a film. All rays of one depth form a batch, and all shadow rays of that depth
 /// another, because intersectors are faster with large batches. A pixel does not depend on its
 /// tile: the light of each path is summed separately, depth by depth.
 class TileRenderer {
  public:
-  /// `emitter_histories`: by pixel of the film, shared by all tiles and passes; empty: emitters are
-  /// not supersampled.
+  /// `emitter_histories`: by pixel of the film, shared by all tiles; empty: no supersampling.
   TileRenderer(const RenderContext& context, Intersector& intersector, Film& film,
                std::span<HistoryMask> emitter_histories);
 
-  /// Traces the samples that samples_to_trace() returns. `keep_going` is polled between batches; if
-  /// it returns false, so does this function, and the samples are incomplete.
+  /// Traces the samples of samples_to_trace(). `keep_going` is polled between batches; if it
+  /// returns false, so does this function, and the samples are incomplete.
   [[nodiscard]] bool trace(const PixelRect& tile, int end, const std::function<bool()>& keep_going);
 
   /// Adds the samples of the last trace() to the film.
   void write();
-  /// The splats of the light paths of these samples, anywhere in the frame.
+  /// Returns the splats of the light paths of these samples, anywhere in the frame.
   [[nodiscard]] std::span<const Splat> splats() const { return splats_; }
 
   void add_to(RenderStats& stats) const;
@@ -68,22 +67,23 @@ class TileRenderer {
   std::span<HistoryMask> emitter_histories_;
   std::optional<EmitterSupersampler> emitter_supersampler_;
   Integrator integrator_;
-  std::optional<Integrator> light_integrator_;  // of light paths
+  std::optional<Integrator> light_integrator_;  // for light paths
   ShadowRays shadow_rays_;
   RenderStats stats_;
-  // Of the samples that were traced last, pixel by pixel.
+  // The samples that were traced last, by pixel.
   std::vector<PixelSamples> pixels_;
-  std::size_t paths_ = 0;           // of all of them
-  std::vector<RayWork> path_work_;  // by path: of all its rays, if it is counted
+  std::size_t paths_ = 0;           // number of all their paths
+  std::vector<RayWork> path_work_;  // by path, for all its rays; if counted
   bool is_counting_;
   ShadingOutput output_;
-  std::vector<glm::vec3> direct_light_;  // by path: what shadow rays have brought
-  std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;  // by pixel, of emitter_supersampler_
+  std::vector<glm::vec3> direct_light_;  // by path: from shadow rays
+  // By pixel, from emitter_supersampler_.
+  std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;
   PixelRect tile_;
-  std::vector<RayWork> pixel_work_;  // by pixel of the tile: of rays that are of no path
+  std::vector<RayWork> pixel_work_;  // by pixel of the tile: of rays without a path
   RayBatch batch_;
   std::vector<NearestHit> hits_;  // of the batch
-  std::vector<RayWork> work_;     // of the batch, if it is counted
+  std::vector<RayWork> work_;     // of the batch, if counted
   std::vector<Splat> splats_;
 };
 

@@ -45,7 +45,7 @@ std::unique_ptr<Intersector> TileWorkers::take_intersector() {
   return make_intersector_();
 }
 
-/// None when there is none left, or the threads are to stop.
+/// Returns the next tile, or nullopt if there is none left or the threads must stop.
 std::optional<TileWork> TileWorkers::next() {
   std::unique_lock lock(mutex_);
   std::optional<TileWork> work;
@@ -57,7 +57,7 @@ std::optional<TileWork> TileWorkers::next() {
   return work;
 }
 
-/// False if it was to stop. Nobody else has this tile's pixels meanwhile.
+/// Renders a tile. Returns false if it was stopped. No other thread accesses its pixels meanwhile.
 bool TileWorkers::render(TileRenderer& renderer, const TileWork& work) {
   const auto keep_going = [this] {
     between_batches();

@@ -1,4 +1,4 @@
-// Tile workers: the threads of a process that render tiles into a film.
+// Tile workers: threads of a process that render tiles into a film.
 #pragma once
 
 #include <condition_variable>
@@ -23,12 +23,12 @@ struct TileWork {
   int number;
   PixelRect rect;
   int end, step, last;
-  double seconds;          ///< time of the thread that rendered it
-  std::size_t splats = 0;  ///< number of splats in a message about it
+  double seconds;          ///< rendering time of its thread
+  std::size_t splats = 0;  ///< number of splats in its message
 };
 
-/// The threads of a render, on rank 0 and on others. Derived classes supply the tiles and take the
-/// results; their destructors call join().
+/// The threads of a render, on rank 0 and on others. Derived classes supply tiles and take results;
+/// their destructors must call join().
 class TileWorkers {
  public:
   TileWorkers(const RenderContext& context, std::unique_ptr<Intersector> first_intersector,
@@ -46,17 +46,17 @@ class TileWorkers {
 
  protected:
   // Called with the lock held:
-  virtual std::optional<TileWork> take() = 0;      ///< returns a tile, or none for now
-  [[nodiscard]] virtual bool is_over() const = 0;  ///< whether no more tiles will come
-  virtual void done(const TileWork& work) = 0;     ///< the tile is in the film
+  virtual std::optional<TileWork> take() = 0;      ///< returns a tile, or nullopt for now
+  [[nodiscard]] virtual bool is_over() const = 0;  ///< returns whether no more tiles will come
+  virtual void done(const TileWork& work) = 0;     ///< called when the tile is in the film
   /// Takes the splats of a part of a tile that has just been written into the film.
   virtual void add(int tile, std::span<const Splat> splats) = 0;
-  /// Called without the lock by each thread between its batches.
+  /// Called by each thread between batches, without the lock.
   virtual void between_batches() {}
 
-  /// Starts up to `count` threads; fewer if the system has no more.
+  /// Starts up to `count` threads, or fewer if the system cannot start as many.
   void start(int count);
-  /// Renders tiles until there are no more; the body of a thread.
+  /// Renders tiles until there are no more. Runs on each thread.
   void work();
   /// Tells the threads to stop.
   void stop();
@@ -71,7 +71,7 @@ class TileWorkers {
   std::condition_variable changed_;
   Film& film_;
   RenderStats& stats_;
-  int gone_ = 0;  // threads that have ended
+  int gone_ = 0;  // number of threads that have ended
   bool stopped_ = false;
   std::exception_ptr error_;
   std::vector<std::jthread> threads_;

@@ -7,7 +7,7 @@
 namespace raygate {
 namespace {
 
-/// The frustum from the eye through a part of the picture.
+/// The frustum from the eye through a part of the image.
 class TileFrustum {
  public:
   TileFrustum(const Camera& camera, const Film& film, const PixelRect& tile, double margin)
@@ -21,8 +21,8 @@ class TileFrustum {
     }
   }
 
-  /// Whether the box is surely outside one of the planes. Directions are floats: they turn by less
-  /// than 2^-23, and the planes by little more.
+  /// Returns whether the box is surely outside one of the planes. Rounding directions to float
+  /// turns them by less than 2^-23, and the planes by little more.
   [[nodiscard]] bool is_outside(const glm::vec3& low, const glm::vec3& high) const {
     for (const glm::dvec3& normal : inwards_) {
       glm::dvec3 farthest_in;
@@ -39,7 +39,7 @@ class TileFrustum {
   std::array<glm::dvec3, 4> inwards_;
 };
 
-/// Meets the boxes that are not surely beside the frustum.
+/// Visits the boxes that are not surely outside the frustum.
 struct FrustumVisitor {
   const TileFrustum& frustum;
 

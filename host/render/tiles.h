@@ -1,4 +1,4 @@
-// Tiles: a picture split into tiles of pixels and passes of samples, and the queue of this work.
+// Tiles: splits an image into tiles of pixels and passes of samples; and the queue of this work.
 #pragma once
 
 #include <algorithm>
@@ -17,17 +17,18 @@
 
 namespace raygate {
 
-/// The window split into tiles, numbered row by row, and each pixel's samples into passes, so that
-/// a tile has about as many samples in a pass as an intersector prefers in a batch. Tiles are
-/// smaller if some threads would have none. With several ranks tiles are smaller and passes longer
-/// (unless `short_passes`) while a thread would have fewer than four tiles.
+/// The window split into tiles, numbered row by row, and each pixel's samples into passes, such
+/// that a pass over a tile has about the number of samples that an intersector prefers in a batch.
+/// Tiles are smaller if otherwise some threads would have none. With several ranks tiles are
+/// smaller and passes longer (unless `short_passes`) while a thread would have fewer than four
+/// tiles.
 struct Tiles {
   PixelRect window;
   int samples, samples_per_pass;
   int width, height;  ///< of a tile
   int columns, count;
 
-  /// `batch`: Intersector::preferred_batch(). `threads`: per rank.
+  /// `batch` is Intersector::preferred_batch(). `threads` is per rank.
   Tiles(const PixelRect& rect, int samples_per_pixel, std::size_t batch, int threads, int ranks = 1,
         bool short_passes = false)
       : window(rect), samples(samples_per_pixel), samples_per_pass(std::min(samples_per_pixel, 4)) {
@@ -64,13 +65,13 @@ struct Tiles {
 };
 
 /// The steps of a render, each one or more passes over a tile. The passes of a tile are sequential;
-/// tiles are independent. A tile stays with the rank that began it while other tiles are left for
-/// the other ranks, so that its pixels need not be sent.
+/// tiles are independent. A tile stays with its rank while other tiles are left for other ranks, so
+/// that its pixels need not be sent.
 class TileQueue {
  public:
   struct Step {
     int tile, pass, end_pass;  ///< passes [pass, end_pass)
-    bool moves;                ///< another rank rendered the pass before
+    bool moves;                ///< another rank rendered the previous pass
   };
 
   /// `is_begun`: rank 0 has samples of all tiles from an earlier run.
@@ -82,8 +83,7 @@ class TileQueue {
     std::iota(waiting_.begin(), waiting_.end(), 0);
   }
 
-  /// Begins one to `most` passes of a tile. Returns none if every tile is complete or being
-  /// rendered.
+  /// Begins up to `most` passes of a tile. Returns nullopt if all are complete or being rendered.
   [[nodiscard]] std::optional<Step> begin(int rank = 0, int most = 1) {
     if (waiting_.empty()) return std::nullopt;
     const auto may_stay = [&](int tile) {
@@ -101,7 +101,7 @@ class TileQueue {
     return step;
   }
 
-  /// Ends the step of `tile` that was begun.
+  /// Ends the current step of `tile`.
   void end(int tile) {
     Tile& ended = at(tile);
     ended_ += ended.begun - ended.ended;
@@ -112,7 +112,7 @@ class TileQueue {
 
   [[nodiscard]] bool all_begun() const { return begun_ == steps_; }
   [[nodiscard]] bool all_ended() const { return ended_ == steps_; }
-  /// Number of passes that have not begun.
+  /// Returns the number of passes that have not begun.
   [[nodiscard]] std::int64_t left() const { return steps_ - begun_; }
   [[nodiscard]] double fraction() const {
     return static_cast<double>(ended_) / static_cast<double>(steps_);
@@ -122,7 +122,7 @@ class TileQueue {
   static constexpr int kNobody = -1;
   struct Tile {
     int rank = kNobody;        // the rank that has its samples
-    int begun = 0, ended = 0;  // passes
+    int begun = 0, ended = 0;  // numbers of passes
   };
   [[nodiscard]] Tile& at(int tile) { return tiles_[static_cast<std::size_t>(tile)]; }
 
@@ -132,12 +132,12 @@ class TileQueue {
   std::vector<Tile> tiles_;
 };
 
-/// Whether a camera ray through `tile`, or up to `margin` pixels beside it, may enter a leaf of the
-/// tree. Conservative: false only if no ray does, including all rounding.
+/// Returns whether a camera ray through `tile`, or up to `margin` pixels beside it, may enter a
+/// leaf of the BVH. Conservative: false only if no ray does, including all rounding.
 [[nodiscard]] bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film,
                                     const PixelRect& tile, double margin);
 
-/// The same for the box from `low` to `high`.
+/// Returns whether such a camera ray may enter the box from `low` to `high`.
 [[nodiscard]] bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
                                const Film& film, const PixelRect& tile, double margin);
 

@@ -5,14 +5,14 @@
 namespace raygate {
 namespace {
 
-/// Expands the box by all positions of the scene's instances; no further than they ask for.
+/// Expands the box by the positions of all instances. Skips meshes whose bounds are inside it.
 void expand_by_instances(const Scene& scene, Bounds3& box) {
   std::vector<Bounds3> mesh_bounds;
   mesh_bounds.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) mesh_bounds.push_back(bounds_of(mesh.positions));
   for (const Instance& instance : scene.instances) {
     const Bounds3 whole = transform_bounds(instance.rows, mesh_bounds[instance.mesh]);
-    // Rounding to float keeps order: an instance in the middle of the scene need not be visited.
+    // Rounding to float is monotonic, so instances within the box need not be visited.
     if (glm::all(glm::lessThanEqual(box.low, glm::dvec3(glm::vec3(whole.low)))) &&
         glm::all(glm::lessThanEqual(glm::dvec3(glm::vec3(whole.high)), box.high))) {
       continue;
@@ -31,8 +31,8 @@ Bounds3 bounds_of(std::span<const glm::vec3> positions) {
   return box;
 }
 
-// The largest of a coordinate is at one of the box's corners, in the very operations of
-// transform_coordinate, too: each of them is monotonic in its operands, rounding included.
+// The extremes of a coordinate are at corners of the box even with rounding, as each operation of
+// transform_coordinate is monotonic in its operands.
 Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box) {
   Bounds3 result;
   for (int k = 0; k < 3; ++k) {

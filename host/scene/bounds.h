@@ -1,4 +1,4 @@
-// Bounding boxes of a scene, its instances included, and visits to all that lies in it.
+// Bounding boxes of scenes, with their instances, and visitors of their positions and triangles.
 #pragma once
 
 #include <algorithm>
@@ -28,18 +28,18 @@ struct Bounds3 {
 
 [[nodiscard]] Bounds3 bounds_of(std::span<const glm::vec3> positions);
 
-/// Bounds of what is in `box`, as an instance transforms it (and no tighter).
+/// Returns a box around the image of `box` under an instance transform. It is as tight as possible.
 [[nodiscard]] Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box);
-/// The same in the world, for a box of coordinates relative to `origin`.
+/// Returns a world-space box around `box`, whose coordinates are relative to `origin`.
 [[nodiscard]] Bounds3 transform_bounds(const glm::dmat4& world, const glm::dvec3& origin,
                                        const Bounds3& box);
 
-/// Bounds of the corners of all triangles.
+/// Returns the bounds of the corners of all triangles, including those of instances.
 [[nodiscard]] Bounds3 triangle_bounds(const Scene& scene);
-/// Bounds of all positions, those of no triangle included.
+/// Returns the bounds of all positions, including unreferenced ones and those of instances.
 [[nodiscard]] Bounds3 position_bounds(const Scene& scene);
 
-/// Neither instances nor triangles, but for faces without area.
+/// Returns whether the scene has neither instances nor triangles with an area.
 [[nodiscard]] inline bool is_empty(const Scene& scene) {
   return scene.instances.empty() && std::ranges::all_of(scene.triangles, is_left_out);
 }
@@ -55,8 +55,8 @@ void for_each_position(const Scene& scene, const Visit& visit) {
   }
 }
 
-/// Calls visit(corners, face) for all triangles of the scene in the order of their numbers, but not
-/// for faces without area.
+/// Calls visit(corners, triangle) for all triangles of the scene and of its instances, in the order
+/// of their indices. Skips triangles without area.
 template <class Visit>
 void for_each_face(const Scene& scene, const Visit& visit) {
   Corners corners;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kProjections[] = {"perspective", "orthographic", "panorama"};
 
-/// The tangent of half an angle in degrees.
+/// Returns the tangent of half an angle in degrees.
 double half_tangent(double degrees) {
   const SineCosine<double> half = sine_cosine(degrees / 720.0);
   return half.sine / half.cosine;
@@ -96,8 +96,7 @@ Camera Camera::look_at(const CameraSetting& setting, double aspect) {
   return camera;
 }
 
-/// A thin lens: all rays of a point of the picture meet where the ray through its middle is at the
-/// distance of focus.
+/// Models a thin lens: all rays of an image point meet in the plane of focus.
 Ray Camera::ray(double x, double y, const glm::dvec2& lens) const {
   const double across = 2.0 * x - 1.0, along = 1.0 - 2.0 * y;
   glm::dvec3 origin(eye_), way = forward_;
@@ -116,7 +115,7 @@ Ray Camera::ray(double x, double y, const glm::dvec2& lens) const {
   }
   if (aperture_ > 0.0) {
     const glm::dvec3 sharp = origin + focus_ * way;
-    // Across the view; a panorama's lens turns with it.
+    // Perpendicular to the view; a panorama's lens turns with the ray.
     glm::dvec3 u = right_, v = up_;
     if (projection_ == Projection::kPanorama) {
       const SineCosine<double> turn = sine_cosine(0.5 * across);
@@ -137,7 +136,7 @@ glm::dvec3 Camera::lens_point(const glm::dvec2& lens) const {
          aperture_ * std::sqrt(lens.x) * (turn.cosine * right_ + turn.sine * up_);
 }
 
-/// The ray meets the plane of focus where that of the lens's middle does.
+/// Finds the image point whose ray through the lens's centre meets the same focus point.
 std::optional<glm::dvec2> Camera::place_of(const glm::dvec3& point,
                                            const glm::dvec3& lens_point) const {
   const glm::dvec3 way = point - lens_point;

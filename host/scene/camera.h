@@ -1,4 +1,4 @@
-// Camera: origin and direction of the ray through each point of the picture.
+// Camera: maps points of the image to rays.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,76 +10,77 @@
 
 namespace raygate {
 
-/// How directions become places of the picture.
+/// Mapping from image positions to ray directions.
 enum class Projection {
   kPerspective,
-  kOrthographic,  ///< all rays along the view: as large as perspective has it at the target
-  kPanorama,      ///< all directions, as EnvironmentMap has them; the target is in the middle
+  kOrthographic,  ///< parallel rays; objects at the target have their perspective size
+  kPanorama,      ///< all directions, in the layout of EnvironmentMap, centred on the target
 };
 
-/// What a camera looks through; what is left out has a default.
+/// Projection and lens of a camera. Unset members have the defaults given here.
 struct LensSetting {
-  std::optional<Projection> projection;  ///< kPerspective
-  std::optional<double> aperture;        ///< radius of the lens; 0, which is sharp everywhere
-  /// From the lens along the view to what is sharp; the target's distance. Of a panorama from the
-  /// eye.
+  std::optional<Projection> projection;  ///< default: kPerspective
+  /// Radius of the lens, at least 0; default: 0 (everything is sharp).
+  std::optional<double> aperture;
+  /// Distance of the plane of focus from the lens along the view, or from the eye for a panorama.
+  /// Default: the distance of the target.
   std::optional<double> focus;
 
-  /// These, where `other` does not say something else.
+  /// Returns these settings, overridden by those that are set in `other`.
   [[nodiscard]] LensSetting overridden_by(const LensSetting& other) const {
     return {other.projection ? other.projection : projection,
             other.aperture ? other.aperture : aperture, other.focus ? other.focus : focus};
   }
 };
 
-/// What is left out has a default.
+/// Position, orientation and lens of a camera.
 struct CameraSetting {
-  glm::dvec3 eye{0.0}, target{0.0};  ///< not the same point
-  std::optional<glm::dvec3> up;      ///< upwards in the picture; not zero and not along the view
-  std::optional<double> fov;         ///< from the lower to the upper edge in degrees, in (0, 180)
+  glm::dvec3 eye{0.0}, target{0.0};  ///< must differ
+  /// Up direction in the image; not zero or parallel to the view; default: +y.
+  std::optional<glm::dvec3> up;
+  /// Vertical field of view in degrees, in (0, 180); default: kDefaultFov.
+  std::optional<double> fov;
   LensSetting lens = {};
 };
 
-/// "perspective", "orthographic" or "panorama".
+/// Returns the projection named "perspective", "orthographic" or "panorama".
 [[nodiscard]] std::optional<Projection> projection_named(std::string_view name);
 [[nodiscard]] std::string_view to_string(Projection projection);
 
-/// Coordinates are the scene's (a world point minus Scene::origin). Right-handed: seen from the
-/// eye, `right` is +x and `up` is +y of the picture, and the view goes along `forward`.
+/// Coordinates are relative to Scene::origin. The camera's frame is right-handed: in the image,
+/// `right` is +x and `up` is +y, and the camera looks along `forward`.
 class Camera {
  public:
-  /// From the lower to the upper edge, where nobody says otherwise.
+  /// Default vertical field of view in degrees.
   static constexpr double kDefaultFov = 35.0;
 
-  /// Looks from `eye` towards `target`, with `up` upwards in the picture.
-  /// `vertical_fov_degrees` is the angle from the lower to the upper edge, in (0, 180);
-  /// `aspect` is width / height of the picture.
-  /// Throws InputError: eye and target coincide, up is zero or along the view, an angle or an
-  /// aspect out of range, any number that is not finite.
+  /// Returns a camera at `eye` that looks towards `target`, with `up` upwards in the image.
+  /// `vertical_fov_degrees` is in (0, 180); `aspect` is the width of the image over its height.
+  /// Throws InputError if eye and target coincide, if `up` is zero or parallel to the view, if an
+  /// angle or aspect ratio is out of range, and for any number that is not finite.
   [[nodiscard]] static Camera look_at(const glm::dvec3& eye, const glm::dvec3& target,
                                       const glm::dvec3& up, double vertical_fov_degrees,
                                       double aspect);
 
-  /// Looks as `setting` says. Without `up`, +y is up; where the view goes along it, up is what a
-  /// map has there, -z. Without `fov` it is kDefaultFov. Throws as above, and for an aperture that
-  /// is negative, or a focus that is not positive.
+  /// Returns the camera of `setting`. The default of `up` is +y, or -z if the view is parallel to
+  /// y. Throws InputError as above, and for a negative aperture or a focus that is not positive.
   [[nodiscard]] static Camera look_at(const CameraSetting& setting, double aspect);
 
-  /// The origin of all camera rays, where has_common_origin(); of orthographic ones the middle.
+  /// Returns the common origin of all rays, or the centre of the image for an orthographic camera.
   [[nodiscard]] const glm::vec3& eye() const { return eye_; }
   [[nodiscard]] const glm::dvec3& right() const { return right_; }      ///< unit length
   [[nodiscard]] const glm::dvec3& up() const { return up_; }            ///< unit length
   [[nodiscard]] const glm::dvec3& forward() const { return forward_; }  ///< unit length
   [[nodiscard]] double vertical_fov_degrees() const { return vertical_fov_degrees_; }
 
-  /// Of the picture, at distance 1 along forward().
+  /// Returns half the height of the image plane at distance 1 along forward().
   [[nodiscard]] double half_height() const { return half_height_; }
 
-  /// Whether all rays begin at the eye: not those of an orthographic camera, or of a lens.
+  /// Returns whether all rays start at the eye: false for orthographic cameras and for thin lenses.
   [[nodiscard]] bool has_common_origin() const {
     return projection_ != Projection::kOrthographic && aperture_ == 0.0;
   }
-  /// Whether rays begin at the eye and fill the pyramid around direction()'s corners.
+  /// Returns whether this is a perspective camera without a lens, whose rays fill a pyramid.
   [[nodiscard]] bool is_pinhole() const {
     return projection_ == Projection::kPerspective && aperture_ == 0.0;
   }
@@ -87,33 +88,33 @@ class Camera {
   [[nodiscard]] double aperture() const { return aperture_; }
   [[nodiscard]] double focus() const { return focus_; }
 
-  /// The ray through a point of the picture, places as in direction(), and through the point of
-  /// the lens that a point of the unit square stands for; (0, 0) is its middle.
+  /// Returns the ray through a point of the image (coordinates as for direction()) and a point of
+  /// the lens, given by a point of the unit square. (0, 0) is the centre of the lens.
   [[nodiscard]] Ray ray(double x, double y, const glm::dvec2& lens) const;
-  /// Of a perspective camera: the point of the lens that a point of the unit square stands for,
+  /// Returns the point of a perspective camera's lens for a point of the unit square.
   [[nodiscard]] glm::dvec3 lens_point(const glm::dvec2& lens) const;
-  /// and the place in the picture of the ray through that and `point`: ray() the other way round.
-  /// None where `point` is not before the camera.
+  /// Returns the image coordinates of the ray of a perspective camera through `lens_point` and
+  /// `point`, the inverse of ray(), or nullopt if `point` is not in front of the camera.
   [[nodiscard]] std::optional<glm::dvec2> place_of(const glm::dvec3& point,
                                                    const glm::dvec3& lens_point) const;
-  /// The area of the picture at distance 1 along forward().
+  /// Returns the area of the image plane at distance 1 along forward().
   [[nodiscard]] double picture_area() const { return 4.0 * half_width_ * half_height_; }
-  /// How far a point is along the camera's axis, or of a panorama from the eye; `point` is relative
-  /// to that.
+  /// Returns the depth of a point, given relative to the eye: along the camera's axis, or its
+  /// distance for a panorama.
   [[nodiscard]] double depth(const glm::dvec3& point) const;
 
-  /// The direction of the pinhole camera's ray through a point of the picture: x from 0 (left edge)
-  /// to 1 (right), y from 0 (upper edge) to 1 (lower), so that pixel (i, j) has its centre at
-  /// ((i + 0.5) / width, (j + 0.5) / height). Scaled as scaled_direction says.
+  /// Returns the direction of the pinhole ray through a point of the image: x from 0 (left edge) to
+  /// 1 (right), y from 0 (upper edge) to 1 (lower). The centre of pixel (i, j) is at ((i + 0.5) /
+  /// width, (j + 0.5) / height). The length is that of scaled_direction().
   [[nodiscard]] glm::vec3 direction(double x, double y) const;
 
  private:
   glm::vec3 eye_{0.0f};
   glm::dvec3 right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, forward_{0.0, 0.0, -1.0};
   double vertical_fov_degrees_ = 0.0;
-  double half_width_ = 1.0, half_height_ = 1.0;  // of the picture, at distance 1 along forward
+  double half_width_ = 1.0, half_height_ = 1.0;  // of the image plane at distance 1 along forward_
   Projection projection_ = Projection::kPerspective;
-  double aperture_ = 0.0, focus_ = 1.0, distance_ = 1.0;  // distance: of the target
+  double aperture_ = 0.0, focus_ = 1.0, distance_ = 1.0;  // distance_: of the target
 };
 
 }  // namespace raygate

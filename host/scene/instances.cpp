@@ -13,7 +13,7 @@
 namespace raygate {
 namespace {
 
-/// Appends `more` and gives the number that its first element has now.
+/// Appends `more` and returns the new index of its first element.
 template <class T>
 std::uint32_t append(std::vector<T>& all, std::vector<T>&& more) {
   const auto first = static_cast<std::uint32_t>(all.size());
@@ -21,7 +21,7 @@ std::uint32_t append(std::vector<T>& all, std::vector<T>&& more) {
   return first;
 }
 
-/// Appends values that belong to the elements of another list, of which there are `count` so far.
+/// Appends attributes that are parallel to another list, which has `count` elements so far.
 template <class T>
 void append_parallel(std::vector<T>& all, std::size_t count, std::vector<T>&& more,
                      const T& missing = T(0.0f)) {
@@ -30,7 +30,7 @@ void append_parallel(std::vector<T>& all, std::size_t count, std::vector<T>&& mo
   (void)append(all, std::move(more));
 }
 
-/// Appends a tangent to those of the scene, for its last normal.
+/// Sets the tangent of the scene's last normal.
 void add_tangent(Scene& scene, const glm::vec4& tangent) {
   scene.tangents.resize(scene.normals.size(), glm::vec4(0.0f));
   scene.tangents.back() = tangent;
@@ -42,7 +42,7 @@ void shift(std::array<std::uint32_t, 3>& indices, std::uint32_t by) {
   }
 }
 
-/// Drops positions of no triangle.
+/// Removes unreferenced positions.
 void compact(Mesh& mesh) {
   std::vector<std::uint32_t> renumbered(mesh.positions.size(), kNoIndex);
   std::vector<glm::vec3> kept, kept_colors;
@@ -61,7 +61,7 @@ void compact(Mesh& mesh) {
   mesh.colors = std::move(kept_colors);
 }
 
-/// The range of Scene::normals that a mesh's triangles name; empty where they name none.
+/// The range of Scene::normals that a mesh's triangles use; empty if they use none.
 struct NormalRange {
   std::uint32_t begin = kNoIndex, end = 0;
 
@@ -134,7 +134,7 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
 
 std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh) {
   Mesh mirrored = scene.meshes[mesh];
-  // Normals point to the front, on whichever side that is.
+  // Normals point to the front, which is reversed here.
   const NormalRange normals(mirrored);
   const auto first = static_cast<std::uint32_t>(scene.normals.size());
   for (std::uint32_t i = normals.begin; i < normals.end; ++i) {
@@ -222,7 +222,7 @@ void flatten(Scene& scene, std::span<const Instance> instances) {
   }
 }
 
-/// Replaces the instances that emit, before all others.
+/// Flattens the emissive instances, before all others.
 void flatten_emitters(Scene& scene) {
   std::vector<bool> emits;
   emits.reserve(scene.meshes.size());
@@ -232,7 +232,7 @@ void flatten_emitters(Scene& scene) {
              scene.materials[triangle.material].emission != glm::vec3(0.0f);
     }));
   }
-  // Clang 14 doesn't compile the library's std::ranges::stable_partition.
+  // Clang 14 cannot compile the library's std::ranges::stable_partition.
   const auto others =
       std::stable_partition(scene.instances.begin(), scene.instances.end(),
                             [&](const Instance& instance) { return emits[instance.mesh]; });

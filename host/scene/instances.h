@@ -1,4 +1,4 @@
-// Instances of a scene: where they put the points of their mesh, how they are made and flattened.
+// Instances of meshes: transforms, construction and flattening.
 #pragma once
 
 #include <algorithm>
@@ -12,15 +12,15 @@
 
 namespace raygate {
 
-/// A coordinate of a point after a row of Instance::rows, before it is rounded to float. T: double,
-/// or a vector of them. One sequence of operations for everyone.
+/// Computes one coordinate of a transformed point, before rounding to float, from a row of
+/// Instance::rows. T is double or a SIMD vector. All callers share this sequence of operations.
 template <class T>
 RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point)[3], T& result) {
   result = ((row[0] * point[0] + row[1] * point[1]) + row[2] * point[2]) + row[3];
 }
 
-/// Where an instance of these rows has a position of its mesh: everybody's corners are these
-/// floats.
+/// Returns a mesh position transformed by an instance, as float. All intersectors use these
+/// corners.
 [[nodiscard]] inline glm::vec3 transform_point(const double (&rows)[3][4],
                                                const glm::vec3& position) {
   const double point[3] = {position.x, position.y, position.z};
@@ -33,8 +33,8 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   return result;
 }
 
-/// A normal of the mesh as the instance has it, of unit length; 0 where the instance leaves nothing
-/// of it. By the inverse transpose but for a factor, which a flat matrix has, too.
+/// Returns the unit normal of an instance for a normal of its mesh, or 0 if it collapses. Uses
+/// cofactors, the inverse transpose up to a factor, which also exist for singular matrices.
 [[nodiscard]] inline glm::vec3 transform_normal(const Instance& instance, const glm::vec3& normal) {
   glm::dvec3 row[3];
   for (int k = 0; k < 3; ++k) {
@@ -44,13 +44,13 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   const glm::dvec3 turned(glm::dot(glm::cross(row[1], row[2]), n),
                           glm::dot(glm::cross(row[2], row[0]), n),
                           glm::dot(glm::cross(row[0], row[1]), n));
-  // Scaled first, so that neither tiny nor huge components are lost in the squares.
+  // Scaling first keeps the squares of tiny and huge components in range.
   const double size = std::max({std::abs(turned.x), std::abs(turned.y), std::abs(turned.z)});
   if (!(size > 0.0 && std::isfinite(size))) return glm::vec3(0.0f);
   return glm::vec3(glm::normalize(turned / size));
 }
 
-/// Returns a tangent, as Scene::tangents has them, of a mesh as the instance has it.
+/// Returns the tangent of an instance for a tangent of its mesh, in the format of Scene::tangents.
 [[nodiscard]] inline glm::vec4 transform_tangent(const Instance& instance,
                                                  const glm::vec4& tangent) {
   glm::dvec3 turned;
@@ -63,10 +63,11 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   return {glm::vec3(turned / size), tangent.w};
 }
 
-/// A triangle, by where it is stored.
+/// Location of a stored triangle.
 struct FaceRef {
-  std::uint32_t instance = kNoIndex;  ///< kNoIndex: it is one of Scene::triangles
-  std::uint32_t triangle = 0;         ///< of these, or of the instance's mesh
+  std::uint32_t instance = kNoIndex;  ///< index into Scene::instances; kNoIndex: none
+  /// Index into Scene::triangles or into the triangles of the instance's mesh.
+  std::uint32_t triangle = 0;
 };
 
 [[nodiscard]] inline const Triangle& face_at(const Scene& scene, const FaceRef& face) {
@@ -75,70 +76,69 @@ struct FaceRef {
   return scene.meshes[scene.instances[face.instance].mesh].triangles[face.triangle];
 }
 
-/// The instance of a stored triangle; nullptr for one of Scene::triangles.
+/// Returns the instance of a stored triangle, or nullptr for one of Scene::triangles.
 [[nodiscard]] inline const Instance* instance_at(const Scene& scene, const FaceRef& face) {
   return face.instance == kNoIndex ? nullptr : &scene.instances[face.instance];
 }
 
-/// The number of its object.
+/// Returns the object index of a stored triangle.
 [[nodiscard]] inline std::uint32_t object_at(const Scene& scene, const FaceRef& face) {
   const Instance* const instance = instance_at(scene, face);
   return face_at(scene, face).object + (instance != nullptr ? instance->object : 0);
 }
 
-/// Of the scene, those of all instances included.
+/// Returns the number of triangles of the scene, including those of all instances.
 [[nodiscard]] std::uint64_t triangle_count(const Scene& scene);
 
-/// Sets the rows of a transform of the world, from coordinates relative to `from` to those relative
-/// to `to`.
+/// Sets an instance's rows from a world transform. Mesh coordinates are relative to `from`, and
+/// scene coordinates to `to`.
 void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3& to,
               Instance& instance);
 
-/// Makes triangles of the part's into a mesh of the scene, which takes over the part's normals,
-/// texture coordinates, materials, textures and objects, too; `part.materials` may be empty: its
-/// triangles have the scene's then. The mesh's number; its coordinates are relative to
-/// `part.origin`.
+/// Moves the triangles, normals, texture coordinates, materials, textures and objects of `part`
+/// into a new mesh of the scene and returns the mesh index. Mesh coordinates are relative to
+/// `part.origin`. If `part.materials` is empty, material indices refer to the scene's materials.
 std::uint32_t add_mesh(Scene& scene, Scene&& part);
 
-/// A copy of a mesh whose triangles run the other way round, their corners C, B, A; its number. For
-/// mirrored instances, whose fronts stay the fronts.
+/// Adds a copy of a mesh with reversed winding (corners C, B, A) and returns its index. Mirrored
+/// instances use it to keep their front sides.
 std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh);
 
-/// Makes the triangles of a part into a mesh of a scene, and adds instances of it.
+/// Adds a part as a mesh of a scene, and instances of this mesh.
 class MeshInstancer {
  public:
-  /// The scene must outlive this.
+  /// `scene` must outlive this object.
   MeshInstancer(Scene& scene, Scene&& part);
 
-  /// Adds an instance by its transform to the world; the scene's origin is known. Mirrored ones
-  /// have a mesh of their own. False, and none is added, where it is beyond the range of float.
+  /// Adds an instance with this transform to the world. The scene's origin must be set. Mirrored
+  /// instances share a mirrored mesh. Returns false, adding none, beyond the range of float.
   [[nodiscard]] bool add(const glm::dmat4& world, std::uint32_t object);
 
  private:
   Scene& scene_;
   glm::dvec3 origin_;  // of the mesh's coordinates
   std::uint32_t mesh_;
-  std::uint32_t mirrored_ = kNoIndex;  // none so far
-  glm::dvec3 size_{0.0};               // the largest magnitudes of its coordinates
+  std::uint32_t mirrored_ = kNoIndex;  // kNoIndex until a mirrored instance is added
+  glm::dvec3 size_{0.0};               // largest magnitudes of the mesh's coordinates
 };
 
-/// Replaces all instances by triangles like others, of the same numbers, corners and normals.
+/// Replaces all instances by triangles with the same indices, corners and normals.
 void flatten_instances(Scene& scene);
 
-/// What becomes of instances.
+/// Policy for instances in a loaded scene.
 enum class InstanceMode {
   kFlatten,
-  kKeep,       ///< each mesh is in memory once
-  kAutomatic,  ///< kept where more than kFlattenLimit triangles would be added
+  kKeep,       ///< instances share their mesh
+  kAutomatic,  ///< flattened unless this adds more than kFlattenLimit triangles
 };
 inline constexpr std::uint64_t kFlattenLimit = 4'000'000;
 
-/// Throws InputError, beginning with `file`, where there are about 2^31 triangles or 2^32 objects
-/// or more: not all would have a number. To be asked before anything looks at all of them.
+/// Throws InputError, which names `file`, for about 2^31 triangles or 2^32 objects and more, which
+/// exceed the index types. Call this before any loop over all of them.
 void require_numbers(const Scene& scene, const std::filesystem::path& file);
 
-/// Flattens what is not to be kept, and in any case what emits: area lights are lists of triangles.
-/// What is numbered how does not depend on `mode`. Throws as require_numbers does.
+/// Flattens instances as `mode` requires, and always those that emit, as area lights are lists of
+/// triangles. Indices do not depend on `mode`. Throws InputError as require_numbers() does.
 void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::path& file);
 
 }  // namespace raygate

@@ -8,7 +8,7 @@
 namespace raygate {
 namespace {
 
-/// The texture coordinates of a vertex of a triangle that has some.
+/// Returns the texture coordinates of a vertex. The triangle must have texture coordinates.
 glm::dvec2 texcoord(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
                     std::size_t vertex) {
   const std::uint32_t at = triangle.texcoords[vertex];
@@ -16,13 +16,13 @@ glm::dvec2 texcoord(const TextureMapping& mapping, const Scene& scene, const Tri
   return glm::dvec2(is_second ? scene.second_texcoords[at] : scene.texcoords[at]);
 }
 
-/// Texture coordinates, or differences of them, scaled and turned.
+/// Returns texture coordinates, or differences of them, scaled and rotated.
 glm::dvec2 turned(const TextureMapping& mapping, const glm::dvec2& uv) {
   const glm::dvec2 scaled = uv * glm::dvec2(mapping.scale), turn(mapping.turn);
   return {turn.x * scaled.x - turn.y * scaled.y, turn.y * scaled.x + turn.x * scaled.y};
 }
 
-/// Where on its texture a point of a triangle is that has texture coordinates.
+/// Returns the texture position of a point. The triangle must have texture coordinates.
 glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
                     const glm::dvec3& weights) {
   glm::dvec2 uv(0.0);
@@ -38,13 +38,13 @@ bool has_mask(const Scene& scene, const Triangle& triangle) {
          !material.opacity_blends && triangle.texcoords[0] != kNoIndex;
 }
 
-/// The opacity of a vertex of a triangle that has texture coordinates.
+/// Returns the opacity of a vertex. The triangle must have texture coordinates.
 double vertex_opacity(const Scene& scene, const Triangle& triangle, int vertex) {
   const std::uint32_t at = triangle.texcoords[static_cast<std::size_t>(vertex)];
   return at < scene.opacities.size() ? scene.opacities[at] : 1.0;
 }
 
-/// The codes of a map, from 0 to 1.
+/// Returns the codes of a map, from 0 to 1.
 glm::vec3 codes_of(const MaterialMap& map, const Scene& scene, const Triangle& triangle,
                    const glm::dvec3& weights) {
   if (map.texture == kNoIndex) return glm::vec3(1.0f);
@@ -52,7 +52,7 @@ glm::vec3 codes_of(const MaterialMap& map, const Scene& scene, const Triangle& t
                                               map.mapping.sampling);
 }
 
-/// What a map of opacity and the vertices say of a triangle that has texture coordinates.
+/// Returns opacity map times vertex opacity. The triangle must have texture coordinates.
 float opacity_of(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
   const float mapped = codes_of(material.opacity_map, scene, triangle, weights).r;
@@ -62,7 +62,7 @@ float opacity_of(const Scene& scene, const Triangle& triangle, const glm::dvec3&
   return mapped * static_cast<float>(between);
 }
 
-/// The tangent at a point of a triangle: a direction, and the side of y; 0: the file has none.
+/// Returns the tangent at a point: a direction, and the sign of y; 0 if the file has none.
 glm::dvec4 tangent_at(const Scene& scene, const Triangle& triangle, const Instance* instance,
                       const glm::dvec3& weights) {
   glm::dvec3 sum(0.0);
@@ -112,7 +112,7 @@ bool is_nowhere_masked(const Scene& scene, const Triangle& triangle, const glm::
   double least = 1.0;
   if (const MaterialMap& map = material.opacity_map; map.texture != kNoIndex) {
     const auto uv = [&](std::size_t k) { return texcoord(map.mapping, scene, triangle, k); };
-    // Changes of weights have the sum 0.
+    // The changes of the three coordinates sum to 0.
     const glm::dvec2 reach = change.y * glm::abs(turned(map.mapping, uv(1) - uv(0))) +
                              change.z * glm::abs(turned(map.mapping, uv(2) - uv(0)));
     least = scene.textures[map.texture].min_code_near(

@@ -1,4 +1,4 @@
-// Textured values of a triangle's material at a point: colour, opacity, normal, roughness ...
+// Textured material values at a point of a triangle: colour, opacity, normal, roughness.
 #pragma once
 
 #include <array>
@@ -8,51 +8,48 @@
 
 namespace raygate {
 
-/// The diffuse colour of `triangle`, one of the scene's, at the point with these weights of its
-/// vertices (they sum to 1): the material's Kd times its texture. Where the face has no texture
-/// coordinates the texture counts as white.
+/// Returns the diffuse colour at a point of `triangle`, given by its barycentric coordinates
+/// (`weights`, with sum 1): Kd times its texture. The texture counts as white if the triangle has
+/// no texture coordinates.
 [[nodiscard]] glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle,
                                    const glm::dvec3& weights);
 
-/// The vertices' colours, one of Scene::colors or Mesh::colors, at that point.
+/// Interpolates the vertex colours, Scene::colors or Mesh::colors, at a point of the triangle.
 [[nodiscard]] glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors,
                                         const Triangle& triangle, const glm::dvec3& weights);
 
-/// Whether the mask of the triangle's material hides that point. Never, where it has none or the
-/// face has no texture coordinates.
+/// Returns whether the opacity mask of the triangle's material hides the point. Returns false
+/// without a mask or texture coordinates.
 [[nodiscard]] bool is_masked_out(const Scene& scene, const Triangle& triangle,
                                  const glm::dvec3& weights);
 
-/// Whether its mask hides no point whose weights differ from these by no more than `change`. May
-/// say no where there is much of a texture to look at.
+/// Returns whether the mask hides no point whose barycentric coordinates differ from `weights` by
+/// at most `change`. Conservative: may return false if that region covers many texels.
 [[nodiscard]] bool is_nowhere_masked(const Scene& scene, const Triangle& triangle,
                                      const glm::dvec3& weights, const glm::dvec3& change);
 
-/// The normal at that point by the map of the triangle's material, around `normal`, a unit vector
-/// on the side where the vertices, at `corners`, run counter-clockwise: the map's x and y are along
-/// the directions in which u and v grow (their part across the normal), or along the file's
-/// tangents, which the `instance` of the triangle turns, if any. `normal` itself where there is no
-/// map or where the texture coordinates have no direction.
+/// Returns the normal map's shading normal at a point. `normal` is the unit normal on the side from
+/// which `corners` are counter-clockwise. The map's x and y axes are the directions in which u and
+/// v increase, projected onto the tangent plane, or the file's tangents, transformed by `instance`
+/// (nullptr: none). Returns `normal` if there is no map or the texture coordinates are degenerate.
 [[nodiscard]] glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
                                       const std::array<glm::vec3, 3>& corners,
                                       const Instance* instance, const glm::dvec3& weights,
                                       const glm::vec3& normal);
 
-/// What the texture of emission multiplies at that point: a colour. 1 where there is none, or the
-/// face has no texture coordinates.
+/// Returns the emission map's colour at a point, or 1 without a map or texture coordinates.
 [[nodiscard]] glm::vec3 emission_factor_at(const Scene& scene, const Triangle& triangle,
                                            const glm::dvec3& weights);
 
-/// The radiance that a material emits, in the mean over its texture.
+/// Returns the radiance that a material emits, averaged over its texture.
 [[nodiscard]] glm::dvec3 mean_emission(const Scene& scene, const Material& material);
 
-/// The opacity at that point by a map that blends, without the material's own. 1 where there is
-/// none, or the face has no texture coordinates.
+/// Returns the blended opacity map at a point, without the material's own opacity, or 1 without a
+/// map or texture coordinates.
 [[nodiscard]] float opacity_factor_at(const Scene& scene, const Triangle& triangle,
                                       const glm::dvec3& weights);
 
-/// What the textures of a metallic-roughness material multiply. 1 where it has none, or the face
-/// has no texture coordinates.
+/// Factors from metallic-roughness textures; 1 without a texture or texture coordinates.
 struct MetallicRoughnessFactors {
   float roughness = 1.0f, metallic = 1.0f, transmission = 1.0f, specular = 1.0f, coat = 1.0f,
         coat_roughness = 1.0f;

@@ -1,4 +1,4 @@
-// The names of a scene's objects, by number.
+// Names of a scene's objects, by index.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,7 @@
 
 namespace raygate {
 
-/// A list of names in which a sequence that is repeated, as instances repeat their model's names,
-/// is kept once.
+/// A list of names that stores repeated sequences, such as the object names of instances, once.
 class NameList {
  public:
   NameList() = default;
@@ -24,7 +23,7 @@ class NameList {
 
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// `index` is below size(). Takes the logarithm of the number of appends.
+  /// Returns a name. `index` is below size(). Takes O(log n) time for n appended sequences.
   [[nodiscard]] const std::string& operator[](std::size_t index) const {
     const Run& run =
         *std::prev(std::upper_bound(runs_.begin(), runs_.end(), index,
@@ -41,7 +40,7 @@ class NameList {
     ++size_;
   }
 
-  /// Adds all names of `names`, in order, so many times.
+  /// Appends all names of `names`, in order, `times` times.
   void append(const NameList& names, std::size_t times) {
     if (names.size() == 0 || times == 0) return;
     runs_.push_back({size_, texts_.size(), names.size()});
@@ -49,7 +48,7 @@ class NameList {
     size_ += names.size() * times;
   }
 
-  /// A copy, a text a name.
+  /// Returns a copy of the names as strings.
   [[nodiscard]] std::vector<std::string> all() const {
     std::vector<std::string> names;
     names.reserve(size_);
@@ -58,7 +57,7 @@ class NameList {
   }
 
  private:
-  // The names from number `first` to the next run's are `period` texts from `text` on, repeated.
+  // Names from index `first` to the next run repeat `period` texts from index `text` on.
   struct Run {
     std::size_t first, text, period;
   };

@@ -13,8 +13,8 @@
 namespace raygate {
 namespace {
 
-/// Takes values one after the other. Eight bytes are one step, each of which can be undone but
-/// changes all that follows: Steele and others' mixing function (SplitMix64, OOPSLA 2014).
+/// A sequential hash. Each step takes eight bytes, is invertible, and changes all later states
+/// (mixing function of Steele et al., SplitMix64, OOPSLA 2014).
 class Digest {
  public:
   [[nodiscard]] std::uint64_t value() const { return state_; }
@@ -39,8 +39,8 @@ class Digest {
     word(bits);
   }
 
-  // Only what is without gaps between its members, whose bytes may be anything, goes in by its
-  // bytes; floats have two zeros, which may draw two pictures.
+  // Only types without padding are hashed by their bytes. 0.0 and -0.0 have different digests, as
+  // they may give different images.
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void add(T value) { bytes(&value, sizeof value); }
@@ -66,8 +66,8 @@ class Digest {
   template <class... Values>
   requires(sizeof...(Values) > 1) void add(const Values&... values) { (add(values), ...); }
 
-  // All members are named, so that a new one does not compile until it is decided upon.
-  // What few materials have is left out where it is the default: files keep their digest.
+  // Structured bindings name all members: a new one does not compile until it is handled. Rarely
+  // used members are skipped at their defaults, which keeps older digests valid.
   void add(const TextureMapping& m) {
     const auto& [scale, offset, sampling, turn, is_second] = m;
     const bool clamps = sampling == Sampling(Wrap::kClamp);
@@ -135,7 +135,7 @@ class Digest {
     bytes(rows, sizeof rows);
     add(mesh, object);
   }
-  // Of the rest, views depend on `camera`, `up` and `is_usually_z_up`: pictures say their own view.
+  // `camera`, `up` and `is_usually_z_up` are omitted: images record their own view.
   void add(const Scene& s) {
     const auto& [positions, colors, normals, tangents, texcoords, second_texcoords, opacities,
                  triangles, meshes, instances, materials, textures, objects, lights,
@@ -147,7 +147,7 @@ class Digest {
     if (!tangents.empty()) add(tangents);
     if (!second_texcoords.empty()) add(second_texcoords);
     if (!opacities.empty()) add(opacities);
-    // Materials to which vertex colours, where there are any, do not apply.
+    // Indices of materials that ignore vertex colours, if there are vertex colours.
     const auto has_colors = [](const Mesh& mesh) { return !mesh.colors.empty(); };
     if (colors.empty() && std::ranges::none_of(meshes, has_colors)) return;
     for (std::size_t i = 0; i < materials.size(); ++i) {

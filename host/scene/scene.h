@@ -1,4 +1,4 @@
-// Scene: triangles, materials, textures, lights and instances, recentred on an origin.
+// Scene: triangles, materials, textures, lights and instances, relative to an origin.
 #pragma once
 
 #include <algorithm>
@@ -18,42 +18,45 @@
 
 namespace raygate {
 
-/// No normal, texture coordinate or material stands behind this index.
+/// Index that stands for no normal, texture coordinate, material or texture.
 inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::max();
 
-/// Where on a texture a surface's texture coordinates lead: scale * (u, v), turned, plus offset.
+/// Maps a surface's texture coordinates to a texture: scale * (u, v), rotated, plus offset.
 struct TextureMapping {
-  glm::vec2 scale{1.0f};       ///< -s
-  glm::vec2 offset{0.0f};      ///< -o
-  Sampling sampling;           ///< -clamp on: Wrap::kClamp
+  glm::vec2 scale{1.0f};       ///< MTL option -s
+  glm::vec2 offset{0.0f};      ///< MTL option -o
+  Sampling sampling;           ///< MTL's "-clamp on" is Wrap::kClamp
   glm::vec2 turn{1.0f, 0.0f};  ///< cosine and sine of a counter-clockwise rotation
-  bool is_second = false;      ///< it is of Scene::second_texcoords
+  bool is_second = false;      ///< uses Scene::second_texcoords
 };
 
-/// A texture that a material names, and where it lies.
+/// A texture of a material, and its mapping.
 struct MaterialMap {
-  std::string file;  ///< joined to the naming file's folder; empty: none, or embedded
+  std::string file;  ///< path, joined to the naming file's folder; empty: none, or embedded
   TextureMapping mapping;
   std::uint32_t texture = kNoIndex;  ///< index into Scene::textures
 };
 
-/// The metallic-roughness model of glTF 2.0 (its appendix B), in place of the lobes of `illum`. The
-/// base colour is Material::diffuse and its texture; what is not metallic reflects by
-/// Material::refraction_index, which counts as 1.5 where it is 1.
+/// The metallic-roughness model of glTF 2.0 (appendix B), which replaces the lobes of `illum`. The
+/// base colour is Material::diffuse and its texture. The dielectric part reflects by
+/// Material::refraction_index, where 1 counts as 1.5.
 struct MetallicRoughness {
   float metallic = 1.0f;      ///< in [0, 1]
-  float roughness = 1.0f;     ///< in [0, 1]; GGX's alpha is its square
-  float transmission = 0.0f;  ///< in [0, 1]: so much of what is not metallic is (rough) glass
-  MaterialMap map;            ///< times roughness (green code) and metallic (blue code)
-  std::string metallic_file;  ///< where `map.file` has roughness alone: grey, put into one map
-  float specular = 1.0f;      ///< in [0, 1]: so much of what is not metallic reflects at all, and
-  glm::vec3 specular_color{1.0f};  ///< straight on in this colour: KHR_materials_specular
-  float coat = 0.0f;  ///< in [0, 1]: weight of a clear layer over all, KHR_materials_clearcoat
+  float roughness = 1.0f;     ///< in [0, 1]; alpha of GGX is its square
+  float transmission = 0.0f;  ///< in [0, 1]: fraction of the dielectric part that is (rough) glass
+  MaterialMap map;            ///< multiplies roughness (green channel) and metallic (blue channel)
+  /// Grey metallic texture, if `map.file` has roughness alone; combined on loading.
+  std::string metallic_file;
+  float specular = 1.0f;  ///< in [0, 1]: strength of dielectric reflection (KHR_materials_specular)
+  /// colour of dielectric reflection at normal incidence (same extension)
+  glm::vec3 specular_color{1.0f};
+  float coat = 0.0f;  ///< in [0, 1]: weight of a clear top layer (KHR_materials_clearcoat)
   float coat_roughness = 0.0f;       ///< in [0, 1]
-  MaterialMap transmission_map{};    ///< times the transmission: red code
-  MaterialMap specular_map{};        ///< times `specular`: its opacity, as all three codes
-  MaterialMap specular_color_map{};  ///< times specular_color: a colour
-  MaterialMap coat_map{}, coat_roughness_map{};  ///< times these two: red code, green code
+  MaterialMap transmission_map{};    ///< multiplies transmission: red channel
+  MaterialMap specular_map{};        ///< multiplies `specular`: alpha, stored in all three channels
+  MaterialMap specular_color_map{};  ///< multiplies specular_color
+  /// Multiply coat: red channel; coat_roughness: green channel.
+  MaterialMap coat_map{}, coat_roughness_map{};
 };
 
 /// Calls visit(map) for each map of a metallic-roughness material.
@@ -64,7 +67,7 @@ void for_each_map(Shares& shares, const Visit& visit) {
     visit(*map);
 }
 
-/// One material: of an MTL file, or what other files have in its terms. Colours are scene-linear
+/// A material of an MTL file, or of another format converted to MTL terms. Colours are scene-linear
 /// RGB, usually in [0, 1].
 struct Material {
   std::string name;
@@ -80,103 +83,101 @@ struct Material {
   TextureMapping diffuse_mapping;
   std::uint32_t diffuse_texture = kNoIndex;  ///< index into Scene::textures
   std::optional<MetallicRoughness> metallic_roughness;
-  MaterialMap normal_map;           ///< codes 0 .. 1 are -1 .. 1 along tangent, bitangent, normal
-  float normal_scale = 1.0f;        ///< of the first two
-  MaterialMap emission_map;         ///< times the emission
-  MaterialMap opacity_map;          ///< what is below opacity_cutoff there is not there
-  float opacity_cutoff = 0.5f;      ///< in [0, 1]
-  bool opacity_blends = false;      ///< there is no cutoff: the map is times the opacity
+  MaterialMap normal_map;       ///< codes 0 to 1 are -1 to 1 along tangent, bitangent and normal
+  float normal_scale = 1.0f;    ///< multiplies the map's x and y
+  MaterialMap emission_map;     ///< multiplies emission
+  MaterialMap opacity_map;      ///< hides points where it is below opacity_cutoff
+  float opacity_cutoff = 0.5f;  ///< in [0, 1]
+  bool opacity_blends = false;  ///< the map multiplies the opacity; no cutoff
   bool has_vertex_opacity = false;  ///< Scene::opacities multiply the map
-  bool has_vertex_colors = true;    ///< those of its vertices count
+  bool has_vertex_colors = true;    ///< vertex colours multiply `diffuse`
 };
 
 [[nodiscard]] inline bool emits(const Material& material) {
   return glm::any(glm::greaterThan(material.emission, glm::vec3(0.0f)));
 }
 
-/// One triangle: indices into the scene's arrays. Vertices run counter-clockwise seen from the
-/// side the file means as the front.
+/// A triangle: indices into the scene's arrays. Vertices are counter-clockwise seen from the front.
 struct Triangle {
   std::array<std::uint32_t, 3> vertices{};
   std::array<std::uint32_t, 3> normals{kNoIndex, kNoIndex, kNoIndex};
   std::array<std::uint32_t, 3> texcoords{kNoIndex, kNoIndex, kNoIndex};
-  std::uint32_t material = 0;  ///< always valid: index into Scene::materials
-  std::uint32_t object = 0;    ///< always valid: index into Scene::objects
+  std::uint32_t material = 0;  ///< always a valid index into Scene::materials
+  std::uint32_t object = 0;    ///< always a valid index into Scene::objects
 };
 
-/// Whether a triangle is a placeholder for (part of) a face without area: its vertices coincide. It
-/// keeps the file's triangle number and is in no tree.
+/// Returns whether a triangle is a placeholder for (part of) a face without area: its vertices
+/// coincide. It keeps its index but is in no BVH.
 [[nodiscard]] inline bool is_left_out(const Triangle& triangle) {
   return triangle.vertices[0] == triangle.vertices[1];
 }
 
-/// Triangles that stand in several places: written once, in coordinates of their own. None of their
-/// materials emits.
+/// Triangles that instances share, in coordinates of their own. No material of them emits.
 struct Mesh {
-  std::vector<glm::vec3> positions;  ///< each of some triangle
-  std::vector<Triangle> triangles;  ///< `vertices` are of these positions, all else is as elsewhere
-  std::vector<glm::vec3> colors;    ///< as Scene::colors has them
+  std::vector<glm::vec3> positions;  ///< each belongs to some triangle
+  std::vector<Triangle> triangles;   ///< `vertices` index `positions`; other indices refer to Scene
+  std::vector<glm::vec3> colors;     ///< in the format of Scene::colors
 };
 
-/// A mesh in one of its places. instances.h has what it stands for.
+/// An instance of a mesh; see instances.h.
 struct Instance {
-  /// From the mesh's positions to the scene's: three rows of a 3 x 4 matrix. Finite, of a
-  /// determinant that is not negative: a mirrored mesh is a mesh of its own.
+  /// Transform from the mesh's positions to the scene's: a finite 3 x 4 matrix of non-negative
+  /// determinant. A mirrored mesh is stored as a mesh of its own.
   double rows[3][4] = {{1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}, {0.0, 0.0, 1.0, 0.0}};
   std::uint32_t mesh = 0;    ///< index into Scene::meshes
   std::uint32_t object = 0;  ///< added to the objects of the mesh's triangles
 };
 
-/// Where a spot light shines: within `inner` of its axis fully, beyond `outer` not at all, and
-/// between them as KHR_lights_punctual of glTF says. Angles from the axis, in degrees, 0 <= inner
-/// <= outer <= 90; equal ones make a hard edge.
+/// Cone of a spot light: full intensity within `inner`, none beyond `outer`, and the falloff of
+/// KHR_lights_punctual (glTF) between. Angles are from the axis, in degrees, 0 <= inner <= outer <=
+/// 90. Equal angles give a hard edge.
 struct SpotCone {
   glm::dvec3 axis{0.0, 0.0, -1.0};  ///< unit length, away from the light
   double inner = 0.0, outer = 45.0;
 };
 
-/// A light without size, whose irradiance at distance r is intensity / r^2.
+/// A point light. The irradiance at distance r is intensity / r^2.
 struct PointLight {
-  glm::vec3 position{0.0f};  ///< relative to the scene's origin
-  /// Radiant intensity, scene-linear RGB; double, for it goes with the square of lengths. Of a spot
-  /// light along its axis.
+  glm::vec3 position{0.0f};  ///< relative to Scene::origin
+  /// Radiant intensity, scene-linear RGB; for a spot light, along its axis. Double, as it scales
+  /// with the square of lengths.
   glm::dvec3 intensity{0.0};
-  std::optional<SpotCone> spot = {};  ///< none: it shines to all sides
+  std::optional<SpotCone> spot = {};  ///< none: isotropic
 };
 
-/// A light from one direction, infinitely far away.
+/// A directional light, infinitely far away.
 struct DirectionalLight {
-  glm::dvec3 direction{0.0, -1.0, 0.0};  ///< in which the light goes; unit length
-  glm::vec3 irradiance{0.0f};            ///< of a surface across it, scene-linear RGB
+  glm::dvec3 direction{0.0, -1.0, 0.0};  ///< direction of propagation; unit length
+  glm::vec3 irradiance{0.0f};  ///< on a surface perpendicular to `direction`, scene-linear RGB
 };
 
-/// Radiance from where no geometry is, in place of a background: a latitude-longitude picture. Its
-/// upper edge is straight up, its lower edge straight down; in its middle is what is ahead, to the
-/// right of that what is on the right. Between the middles of texels it is bilinear; it goes on
-/// from the right edge at the left one.
+/// A latitude-longitude image of the radiance from outside the scene, in place of a background. The
+/// upper edge is `up`, the lower edge -`up`, the centre `ahead`; to the right of the centre is what
+/// an observer who looks ahead sees on the right. Lookup is bilinear between texel centres and
+/// wraps horizontally.
 struct EnvironmentMap {
-  int width = 0, height = 0;         ///< at least 1
-  std::vector<glm::vec3> texels;     ///< row by row from the top; finite, none negative
-  float strength = 1.0f;             ///< times the texels: radiance, scene-linear RGB
-  glm::dvec3 up{0.0, 1.0, 0.0};      ///< where the picture's upper edge is; unit length
-  glm::dvec3 ahead{0.0, 0.0, -1.0};  ///< and where its middle is; unit length, across `up`
+  int width = 0, height = 0;      ///< at least 1
+  std::vector<glm::vec3> texels;  ///< row by row from the top; finite, not negative
+  float strength = 1.0f;          ///< factor from texels to radiance, scene-linear RGB
+  glm::dvec3 up{0.0, 1.0, 0.0};   ///< direction of the image's upper edge; unit length
+  /// Direction of its centre; unit length, perpendicular to `up`.
+  glm::dvec3 ahead{0.0, 0.0, -1.0};
 
   [[nodiscard]] const glm::vec3& texel(int x, int y) const {
     return texels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
   }
 };
 
-/// An environment map that is still in its file.
+/// An environment map that has not been loaded.
 struct EnvironmentSetting {
   std::filesystem::path file;  ///< OpenEXR or Radiance HDR, latitude-longitude
-  double rotation = 0.0;       ///< in degrees around what is up, counter-clockwise seen from above
-  double strength = 1.0;       ///< times what the file has; 0 or more
+  double rotation = 0.0;  ///< around the up axis, in degrees, counter-clockwise seen from above
+  double strength = 1.0;  ///< factor of the file's values; at least 0
 };
 
-/// Number of corners that binary32 does not hold as their files have them, and the largest error of
-/// one of their coordinates, in the unit of its file. The corners of a mesh with instances are
-/// counted once, in the mesh's own coordinates; their rounding after an instance's transform is not
-/// counted.
+/// Error statistics of rounding corners to binary32: the number of inexact corners, and the largest
+/// error of a coordinate, in the file's unit. A mesh with instances is counted once, in its own
+/// coordinates; rounding after an instance transform is not counted.
 struct CornerRounding {
   std::uint64_t corners = 0;
   double most = 0.0;
@@ -187,49 +188,49 @@ struct CornerRounding {
   }
 };
 
-/// All geometry, materials and lights besides the faces that emit. Positions are relative to
-/// `origin`, which is subtracted in double before rounding to float, so that a scene far from the
-/// world's origin keeps its digits.
+/// All geometry, materials and lights. Emissive triangles are lights, too. Positions are relative
+/// to `origin`, which is subtracted in double before rounding to float, so a scene far from the
+/// world's origin keeps its precision.
 ///
-/// A triangle's number is its place in `triangles`; those of the instances follow, one instance
-/// after the other. Faces without area have numbers, too (see is_left_out).
+/// Triangles are indexed in the order of `triangles`, followed by those of each instance in turn.
+/// Faces without area have indices, too (see is_left_out).
 struct Scene {
   std::vector<glm::vec3> positions;
-  /// Of the positions, in their order, scene-linear RGB: they multiply the diffuse colour. Beyond
-  /// its end, and where it is empty, they are white.
+  /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour; default
+  /// 1.
   std::vector<glm::vec3> colors;
-  std::vector<glm::vec3> normals;  ///< unit length, where a triangle uses them
-  /// Of the normals, in their order: where a normal map's x points, and the side of its y (1 or -1,
-  /// along cross(normal, x)). 0, and beyond the end: as the texture coordinates say.
+  std::vector<glm::vec3> normals;  ///< unit length if a triangle uses them
+  /// Tangents of the first normals: the normal map's x direction, and the sign of its y axis (1 or
+  /// -1) along cross(normal, x). If missing or 0, texture coordinates define the directions.
   std::vector<glm::vec4> tangents;
   std::vector<glm::vec2> texcoords;
-  /// Of the texture coordinates, in their order: a second set. It may be shorter.
+  /// Second texture coordinates of the first `texcoords`.
   std::vector<glm::vec2> second_texcoords;
-  /// Of the texture coordinates, in their order: the vertices' opacity. Beyond the end it is 1.
+  /// Vertex opacities of the first `texcoords`; 1 if missing.
   std::vector<float> opacities;
   std::vector<Triangle> triangles;
   std::vector<Mesh> meshes;
-  std::vector<Instance> instances;  ///< of meshes that are kept as such: see instances.h
-  std::vector<Material> materials;  ///< never empty; a default stands where the file names none
-  std::vector<Texture> textures;    ///< that materials of triangles name
+  std::vector<Instance> instances;  ///< instances that were not flattened; see instances.h
+  std::vector<Material> materials;  ///< never empty: has a default material if the file names none
+  std::vector<Texture> textures;    ///< used by materials of triangles
   NameList objects;                 ///< never empty; "o" and "g" names of the file
   std::vector<PointLight> lights;
   std::vector<DirectionalLight> directional_lights;
-  glm::vec3 background{0.0f};  ///< radiance from where no geometry is, scene-linear RGB
-  std::optional<EnvironmentMap> environment;  ///< takes the background's place
-  glm::dvec3 origin{0.0};                     ///< world = origin + position
+  glm::vec3 background{0.0f};                 ///< radiance from outside the scene, scene-linear RGB
+  std::optional<EnvironmentMap> environment;  ///< replaces `background`
+  glm::dvec3 origin{0.0};                     ///< world position = origin + position
   CornerRounding rounding;
-  std::optional<CameraSetting> camera;       ///< the file's first one, in world coordinates
-  std::optional<glm::dvec3> up;              ///< upwards, where the file's format says so
-  bool is_usually_z_up = false;              ///< else: what is usual in the format, z or y
-  std::vector<std::filesystem::path> files;  ///< that were read for it: OBJ, MTL and textures
-  std::vector<std::string> warnings;         ///< "file:line: ...": of statements, then of faces
+  std::optional<CameraSetting> camera;  ///< the file's first camera, in world coordinates
+  std::optional<glm::dvec3> up;         ///< up direction, if the file's format defines it
+  /// If `up` is unset: whether z (otherwise y) is usually up in the format.
+  bool is_usually_z_up = false;
+  std::vector<std::filesystem::path> files;  ///< all files read: OBJ, MTL and textures
+  std::vector<std::string> warnings;  ///< "file:line: ...": first of statements, then of faces
 };
 
-/// 64 bits, as 16 hexadecimal digits, of all that a scene was read to: geometry, materials,
-/// textures, lights, instances.
-/// Equal scenes have equal digests, on every machine of the same byte order; of two that differ,
-/// one pair in 2^64 would. Against mistakes, not against malice: it is no cryptographic hash.
+/// Returns a 64-bit digest, as 16 hexadecimal digits, of a scene's geometry, materials, textures,
+/// lights and instances. Equal scenes have equal digests on all machines of the same byte order;
+/// different ones collide with probability 2^-64. This is not a cryptographic hash.
 [[nodiscard]] std::string digest_of(const Scene& scene);
 
 }  // namespace raygate

@@ -35,14 +35,13 @@ const std::array<float, 256>& linear_of_code() {
   return table;
 }
 
-/// Two neighbouring texels of one row or column, and how much the second one counts.
+/// Two adjacent texels of a row or column, and the weight of the second one.
 struct Neighbours {
   int first, second;
   double share;
 };
 
-/// Where a coordinate is along an axis of so many texels, in steps from the first one's middle: in
-/// [-0.5, size - 0.5].
+/// Returns a coordinate in texels, relative to the centre of the first: in [-0.5, size - 0.5].
 double place_along(double coordinate, int size, Wrap wrap) {
   if (!std::isfinite(coordinate)) coordinate = 0.0;
   if (wrap == Wrap::kClamp) coordinate = std::clamp(coordinate, 0.0, 1.0);
@@ -54,7 +53,7 @@ double place_along(double coordinate, int size, Wrap wrap) {
   return coordinate * size - 0.5;
 }
 
-/// The texel that is seen as number i, in [-size, 2 size).
+/// Returns the texel at index i, in [-size, 2 size), after wrapping.
 int wrapped(int i, int size, Wrap wrap) {
   if (wrap == Wrap::kClamp) return std::clamp(i, 0, size - 1);
   if (wrap == Wrap::kMirror) return i < 0 ? -1 - i : i >= size ? 2 * size - 1 - i : i;
@@ -68,9 +67,8 @@ Neighbours neighbours(double coordinate, int size, Wrap wrap, bool is_nearest) {
   return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), is_nearest ? 0.0 : share};
 }
 
-/// Whether the bytes begin as one of the formats that Texture::load promises. The library knows
-/// more of them, and reads for ever at the header of a Radiance picture. TGA has no magic number
-/// but a header that leaves little room.
+/// Returns whether the bytes begin like a format that Texture::load() supports. The library has
+/// more formats, but hangs on some Radiance headers. TGA is detected by valid header fields.
 bool is_known_format(std::string_view bytes) {
   using namespace std::string_view_literals;
   if (bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff") ||
@@ -114,14 +112,14 @@ Texture Texture::decode(std::string_view bytes, const std::string& file, Content
     fail(file, "a texture of more than " + std::to_string(kMaxTexels) + " pixels");
   }
   const bool is_opacity = content != Content::kColour;
-  // The library gives no reason where the file ends too soon, or the last picture's.
+  // The library's error message is missing or stale when a file is truncated.
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(first, size, &width, &height, &channels, is_opacity ? 2 : 3),
       stbi_image_free);
   if (!pixels) fail(file, unreadable + "its pixels are damaged or end too soon");
   std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   if (is_opacity) {
-    // Grey and opacity, 1 where there is none.
+    // Pixels are grey and opacity (1 if there is none).
     const bool has_opacity = channels == 2 || channels == 4 || content == Content::kAlpha;
     const stbi_uc* code = pixels.get() + (has_opacity ? 1 : 0);
     for (Texel& texel : texels) {
@@ -193,7 +191,7 @@ glm::dvec3 Texture::mean_color() const {
   return sum / static_cast<double>(texels_.size());
 }
 
-/// Bilinear, of what `value` makes of a texel's codes.
+/// Interpolates value(texel) bilinearly.
 template <class TexelValue>
 glm::vec3 Texture::between(const glm::dvec2& uv, const Sampling& sampling,
                            const TexelValue& value) const {

@@ -1,4 +1,4 @@
-// Texture: an 8-bit picture, decoded and sampled.
+// Texture: an 8-bit image, decoded and sampled.
 #pragma once
 
 #include <array>
@@ -11,65 +11,66 @@
 
 namespace raygate {
 
-/// What a texture shows where a coordinate leaves [0, 1].
+/// Treatment of texture coordinates outside [0, 1].
 enum class Wrap : std::uint8_t { kRepeat, kClamp, kMirror };
 
-/// How a texture is sampled.
+/// Wrapping and filtering of texture lookups.
 struct Sampling {
   Sampling(Wrap both = Wrap::kRepeat) : u(both), v(both) {}
   Wrap u, v;
-  bool is_nearest = false;  ///< the nearest texel alone counts
+  bool is_nearest = false;  ///< nearest texel instead of bilinear interpolation
 
   [[nodiscard]] bool operator==(const Sampling&) const = default;
 };
 
-/// An 8-bit sRGB picture that gives scene-linear colours. Coordinate (0, 0) is its lower left
-/// corner and (1, 1) its upper right one, as OBJ files have it.
+/// An 8-bit sRGB image with lookup in scene-linear colours. Coordinate (0, 0) is the lower left
+/// corner and (1, 1) the upper right one, as in OBJ files.
 class Texture {
  public:
   using Texel = std::array<std::uint8_t, 3>;  ///< sRGB codes
 
-  /// What is read of a file: its colours; or its opacity, as all three codes. Where it has none:
-  /// what is bright (MTL), or 1 (kAlpha, glTF).
+  /// Channels to read from a file: its colours, or its opacity in all three channels. For images
+  /// without opacity, kOpacity reads the brightness (MTL) and kAlpha 1 (glTF).
   enum class Content : std::uint8_t { kColour, kOpacity, kAlpha };
 
-  /// `texels`, row by row from the top; width * height of them, at least one.
+  /// `texels` has width * height elements, at least one, row by row from the top.
   Texture(int width, int height, std::vector<Texel> texels);
 
-  /// Reads a PNG, JPEG, TGA or BMP file; a palette, grey and 16 bits become 24-bit RGB. Throws
-  /// InputError: what cannot be read or is none of these, is damaged, or has more than 2^26 pixels.
+  /// Reads a PNG, JPEG, TGA or BMP file. Converts palettes, grey and 16 bits to 24-bit RGB. Throws
+  /// InputError for an unreadable or damaged file, another format, or more than 2^26 pixels.
   [[nodiscard]] static Texture load(const std::filesystem::path& file,
                                     Content content = Content::kColour);
 
-  /// The same of a file's bytes; `name` is for messages.
+  /// Decodes the bytes of such a file; `name` is for messages.
   [[nodiscard]] static Texture decode(std::string_view bytes, const std::string& name,
                                       Content content = Content::kColour);
 
-  /// The red codes of two textures as green and blue codes of one, as large as the larger one; 255
-  /// for one that is not given. One of them is.
+  /// Returns a texture with the red channels of two textures in its green and blue channels, in the
+  /// size of the larger one. A missing texture gives 255; at least one must be given.
   [[nodiscard]] static Texture combine_channels(const Texture* green, const Texture* blue);
 
-  /// The least of the red codes, from 0 to 1.
+  /// Returns the smallest red code, from 0 to 1.
   [[nodiscard]] double min_code() const;
 
-  /// The least of the red codes that codes_at reads within `reach` of a point, on both axes; 0
-  /// where these are many texels.
+  /// Returns the smallest red code that codes_at() can read within `reach` of a point on both axes,
+  /// or 0 if that region has many texels.
   [[nodiscard]] double min_code_near(const glm::dvec2& uv, const glm::dvec2& reach,
                                      const Sampling& sampling) const;
 
-  /// The mean of all texels' scene-linear colours.
+  /// Returns the mean scene-linear colour of all texels.
   [[nodiscard]] glm::dvec3 mean_color() const;
 
-  /// Scene-linear colour, between the four nearest texels' middles in proportion (bilinear). Not
-  /// finite coordinates count as 0.
+  /// Returns the scene-linear colour at a point, with bilinear interpolation of texel centres.
+  /// Coordinates that are not finite count as 0.
   [[nodiscard]] glm::vec3 at(const glm::dvec2& uv, const Sampling& sampling) const;
 
-  /// The codes themselves, from 0 to 1, likewise between texels.
+  /// Returns the codes at a point, from 0 to 1, interpolated likewise.
   [[nodiscard]] glm::vec3 codes_at(const glm::dvec2& uv, const Sampling& sampling) const;
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
-  [[nodiscard]] const std::vector<Texel>& texels() const { return texels_; }  ///< row by row
+  /// Returns the texels, row by row from the top.
+  [[nodiscard]] const std::vector<Texel>& texels() const { return texels_; }
 
  private:
   template <class TexelValue>

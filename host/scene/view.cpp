@@ -19,7 +19,7 @@ Bounds3 bounding_box(const Scene& scene) {
   return triangle_bounds(scene);
 }
 
-/// Twice the area of a triangle as a vector along its normal; its corners.
+/// Corners of a triangle, and its normal with a length of twice its area.
 struct Face {
   glm::dvec3 corners[3];
   glm::dvec3 normal;
@@ -30,23 +30,22 @@ struct Face {
   }
 };
 
-/// How a scene stands on the lower end of one axis.
+/// Stability of a scene on the lower end of one axis.
 struct Stand {
-  /// The tangent of the angle by which it may be tilted before it falls over, to the side where
-  /// that is least; below 0 where it falls by itself.
+  /// Tangent of the smallest tilt angle at which the scene falls; negative if it falls untilted.
   double steadiness = 0.0;
-  double flat_share = 0.0;  ///< of the box's lower end: what faces lying flat on it cover
+  double flat_share = 0.0;  ///< fraction of the lower face covered by triangles in it
 };
 
 Stand stand(const Scene& scene, const Bounds3& box, const glm::dvec3& centre_of_mass, int axis) {
-  constexpr int kDirections = 64;  // to which it may fall
+  constexpr int kDirections = 64;  // directions of falling
   constexpr double kTouching = 0.01;
   const glm::dvec3 size = box.high - box.low;
   const int right = (axis + 1) % 3, ahead = (axis + 2) % 3;
   const double ground = box.low[axis] + kTouching * std::max({size.x, size.y, size.z});
   const double flat = box.low[axis] + kTouching * size[axis];
   std::array<SineCosine<double>, kDirections> directions;
-  std::array<double, kDirections> reach;  // of what touches the ground, from the centre of mass
+  std::array<double, kDirections> reach;  // extent of the contact points from the centre of mass
   reach.fill(-std::numeric_limits<double>::infinity());
   for (int k = 0; k < kDirections; ++k) {
     directions[k] = sine_cosine(static_cast<double>(k) / kDirections);
@@ -70,7 +69,7 @@ Stand stand(const Scene& scene, const Bounds3& box, const glm::dvec3& centre_of_
           std::min(1.0, area / (size[right] * size[ahead]))};
 }
 
-/// Of the surface, as if it were a sheet.
+/// Returns the centre of mass of the surface, as a thin sheet.
 glm::dvec3 centre_of_mass(const Scene& scene) {
   glm::dvec3 sum(0.0);
   double area = 0.0;
@@ -83,7 +82,7 @@ glm::dvec3 centre_of_mass(const Scene& scene) {
   return sum / area;
 }
 
-/// Of a scene whose up is `up`: right-handed, of length 1.
+/// The axes of a scene with this up direction: right-handed, of unit length.
 struct Axes {
   glm::dvec3 up, front, right;
 
@@ -94,7 +93,7 @@ struct Axes {
     right = glm::cross(up, front);
   }
 
-  /// Angles in degrees, as of View.
+  /// Returns the direction with these angles in degrees, as in View.
   [[nodiscard]] glm::dvec3 direction(double azimuth, double elevation) const {
     const SineCosine<double> turned = sine_cosine(azimuth / 360.0);
     const SineCosine<double> raised = sine_cosine(elevation / 360.0);
@@ -112,8 +111,8 @@ View front_view(const Scene& scene, const glm::dvec3& up) {
   return {0.0, 3.0 + 27.0 * flatness, up};
 }
 
-// The volume that faces enclose is negative where they look inwards. A closed box without one of
-// its walls has -5/6 of its volume, a ball turned inside out -0.52.
+// The enclosed volume is negative if triangles face inwards. A closed box without one of its walls
+// has -5/6 of its volume, a sphere turned inside out -0.52.
 bool is_interior(const Scene& scene) {
   const Bounds3 box = bounding_box(scene);
   const glm::dvec3 size = box.high - box.low, middle = box.middle();
@@ -127,7 +126,7 @@ bool is_interior(const Scene& scene) {
 
 View default_view(const Scene& scene, const glm::dvec3& up) {
   if (is_interior(scene)) return front_view(scene, up);
-  // The four sides, and of each how much of the scene's area is seen; a box shows half of it.
+  // For each of the four sides, the fraction of the scene's area that is visible; for a box, half.
   constexpr double kAzimuths[] = {kDefaultAzimuth, -kDefaultAzimuth, 90.0 + kDefaultAzimuth,
                                   -90.0 - kDefaultAzimuth};
   constexpr double kEdgeOn = 0.2;
@@ -155,7 +154,7 @@ glm::dvec3 guess_up_axis(const Scene& scene) {
   const Bounds3 box = bounding_box(scene);
   const glm::dvec3 size = box.high - box.low, mass = centre_of_mass(scene);
   if (std::min({size.x, size.y, size.z}) <= 0.0 || !is_finite(glm::vec3(mass))) return axes[usual];
-  constexpr double kFalls = 0.035, kStands = 0.09, kClearly = 0.3;  // 2 and 5 degrees
+  constexpr double kFalls = 0.035, kStands = 0.09, kClearly = 0.3;  // tilts of 2 and 5 degrees
   const Stand usually = stand(scene, box, mass, usual), else_ = stand(scene, box, mass, other);
   const bool is_other = (usually.steadiness < kFalls && else_.steadiness > kStands) ||
                         else_.flat_share > usually.flat_share + kClearly;
@@ -168,14 +167,14 @@ CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const V
   const glm::dvec3 centre = box.middle(), half = box.half_size();
   const Axes axes(view.up);
   const glm::dvec3 towards_eye = axes.direction(view.azimuth, view.elevation);
-  constexpr double kSteep = 89.0;  // up is along the view, or nearly
+  constexpr double kSteep = 89.0;  // up is (almost) parallel to the view
   const glm::dvec3 up = std::abs(view.elevation) < kSteep
                             ? axes.up
                             : axes.direction(view.azimuth, view.elevation + 90.0);
   const double size = std::max({half.x, half.y, half.z});
   const Camera at_centre = Camera::look_at(centre + towards_eye * size, centre, up, fov, aspect);
 
-  // The least distance at which all points are within the four sides of the view.
+  // The smallest distance at which all points are within the four sides of the view frustum.
   constexpr double kFilled = 0.96;
   const double half_height = at_centre.half_height(), half_width = half_height * aspect;
   double distance = 0.0;
@@ -210,7 +209,7 @@ void add_ground(Scene& scene, const glm::dvec3& up) {
   for_each_position(scene, [&](const glm::vec3& position) {
     lowest = std::min(lowest, glm::dot(glm::dvec3(position), upright));
   });
-  // A floor of the scene's own is seen, not this one.
+  // Slightly below the lowest point, so that a floor of the scene hides this one.
   constexpr double kBelow = 0x1p-11, kHalfSide = 16.0;
   const double size = glm::length(box.high - box.low);
   const glm::dvec3 middle = box.middle();

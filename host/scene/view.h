@@ -1,4 +1,4 @@
-// The view of a whole scene, and the ground below it, for a picture that names no camera.
+// Default views of whole scenes, and a ground plane, for images without a camera.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,53 +8,51 @@
 
 namespace raygate {
 
-/// From which side a scene is seen, in degrees. The front is towards +z; where z is up, towards -y,
-/// as modellers have it.
+/// Direction from which a scene is seen, in degrees. The front faces +z or, if z is up, -y.
 struct View {
   double azimuth = 0.0;          ///< 0 from the front, 90 from the right, counter-clockwise
   double elevation = 0.0;        ///< 0 level, 90 from straight above
-  glm::dvec3 up{0.0, 1.0, 0.0};  ///< upwards in the scene; not zero
+  glm::dvec3 up{0.0, 1.0, 0.0};  ///< up direction of the scene; not zero
 };
 
-/// A view that shows what most models are: from the right of the front and from above.
+/// The default view, which suits most models: from the front right and above.
 inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
 
-/// From the front: level for a tall scene (or the inside of a box), the higher the flatter it is.
+/// Returns a view from the front: level for tall scenes and interiors, higher for flatter ones.
 [[nodiscard]] View front_view(const Scene& scene, const glm::dvec3& up = {0.0, 1.0, 0.0});
 
-/// Whether most faces look inwards: the inside of a box, whose floor and walls are there.
+/// Returns whether most triangles face inwards, as in a room seen from inside.
 [[nodiscard]] bool is_interior(const Scene& scene);
 
-/// The view of a first look: kDefaultAzimuth and kDefaultElevation, or another side where that
-/// looks along the edges of a flat model; or front_view() of a room, whose walls would be in the
-/// way.
+/// Returns the default view of a scene: kDefaultAzimuth and kDefaultElevation, another side if that
+/// looks along the edges of a flat model, or front_view() of an interior.
 [[nodiscard]] View default_view(const Scene& scene, const glm::dvec3& up);
 
-/// +y or +z: the file's format says which (Scene::up), or it is what is usual there, but where the
-/// scene would then fall over and stands the other way, or lies clearly flatter on that end. What
-/// lies in one plane of the axes is as usual.
+/// Returns +y or +z: Scene::up if the file's format defines it. Otherwise returns the format's
+/// usual axis, unless the scene would fall over on it and stands on the other, or has a clearly
+/// larger flat base on the other. Planar scenes in an axis plane use the usual axis.
 [[nodiscard]] glm::dvec3 guess_up_axis(const Scene& scene);
 
-/// The part of a scene that fills the picture.
+/// Part of a scene that fills the image.
 enum class FrameFit {
   kVertices,  ///< the vertices of the scene
   kBox,       ///< their bounding box
 };
 
-/// A camera that shows all of `scene` from one side, in the scene's coordinates: `filling` fills
-/// the picture but for a margin of 4 %, and the box's middle is the target. `aspect` is width /
-/// height of the picture. Throws InputError for a scene without triangles or one too large for
-/// float.
+/// Returns a camera, in the scene's coordinates, that shows all of `scene` from one side: `filling`
+/// fills the image except for a margin of 4 %, and the target is the centre of the box. `aspect` is
+/// the image's width over its height. Throws InputError for a scene without triangles or one too
+/// large for float.
 [[nodiscard]] CameraSetting frame_scene(const Scene& scene, double aspect, double fov,
                                         const View& view, FrameFit filling = FrameFit::kVertices);
 
-/// A camera of front_view(): all of the scene's box in the picture.
+/// Returns a camera with front_view() that shows the scene's whole bounding box.
 [[nodiscard]] Camera front_camera(const Scene& scene, double aspect,
                                   double fov = Camera::kDefaultFov);
 
-/// Adds a square of two triangles under the scene, a hair below its lowest point and 32 times its
-/// size, of an object and a material of its own, "ground": it catches shadows (illum 10) and is
-/// else not to be seen. `up` is not zero. A scene too large for that is left as it is.
+/// Adds a square of two triangles slightly below the scene's lowest point, 32 times the scene's
+/// size, with an object and a shadow-catcher material (illum 10) named "ground". `up` is not zero.
+/// Leaves scenes that are too large for this unchanged.
 void add_ground(Scene& scene, const glm::dvec3& up);
 
 }  // namespace raygate

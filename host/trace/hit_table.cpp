@@ -16,10 +16,10 @@ namespace {
 struct Column {
   std::string_view name;
   bool is_integer;
-  std::array<std::string_view, 3> fields;  // the rest is empty
+  std::array<std::string_view, 3> fields;  // unused ones are empty
 };
 
-/// In the order of HitColumn.
+/// Columns in the order of HitColumn.
 constexpr Column kColumns[] = {{"ray", true, {"ray"}},
                                {"hit", true, {"hit"}},
                                {"triangle", true, {"triangle"}},
@@ -34,7 +34,7 @@ constexpr Column kColumns[] = {{"ray", true, {"ray"}},
                                {"unit-point", false, {"unit_x", "unit_y", "unit_z"}},
                                {"unit-error", false, {"unit_error"}}};
 
-/// Appends decimals and a comma (CSV), or a little-endian word of 64 bits (NPY).
+/// Appends a decimal number and a comma (CSV), or a little-endian 64-bit word (NPY).
 template <class T>
 void put(TableFormat format, T value, std::string& bytes) {
   if (format == TableFormat::kCsv) {
@@ -52,7 +52,7 @@ void put(TableFormat format, T value, std::string& bytes) {
 std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits, bool is_cpu,
                                   const std::string& dashes) {
   using enum HitColumn;
-  // Units keep nearest hits alone.
+  // Units return nearest hits only.
   if (hits == Hits::kAll && !is_cpu) {
     throw InputError(dashes + "engine: expected cpu with " + dashes + "hits all");
   }
@@ -73,7 +73,7 @@ std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
     }
     const auto column = static_cast<HitColumn>(at - std::begin(kColumns));
     if (std::ranges::find(columns, column) != columns.end()) fail(name, "each name once");
-    // Which hit is found first is the engine's affair; that there is one is not.
+    // Which hit is found first depends on the engine, but not whether there is one.
     if (hits == Hits::kAny && column != kRay && column != kHit && column != kDoubts) {
       fail(name, "ray, hit or doubts with " + dashes + "hits any");
     }
@@ -103,7 +103,7 @@ std::vector<std::pair<std::string, std::string>> HitTable::fields() const {
   return fields;
 }
 
-/// NPY: version 1.0, padded so that any number of rows fits and the rows begin at a multiple of 64.
+/// Returns the NPY header, version 1.0, padded to a multiple of 64 bytes for any number of rows.
 std::string HitTable::header(std::uint64_t rows) const {
   std::string text;
   for (const auto& [name, type] : fields()) {
@@ -137,7 +137,7 @@ void HitTable::append(const RayTable& rays, const RayHit& found, std::string& by
   Corners corners{};
   std::int64_t number = -1;
   FaceRef stored;
-  HitPoint place{std::numeric_limits<double>::infinity(), kNan, kNan};  // t of the scaled ray
+  HitPoint place{std::numeric_limits<double>::infinity(), kNan, kNan};  // for t of the scaled ray
   if (is_hit) {
     corners = bvh_.corners_of(hit.primitive);
     number = bvh_.triangle_of(hit.primitive);

@@ -17,26 +17,26 @@ namespace raygate {
 
 /// A column of the table, or the columns of a vector.
 enum class HitColumn {
-  kRay,        ///< the ray's number, from 0
+  kRay,        ///< index of the ray, from 0
   kHit,        ///< 1: a hit; 0: a miss, and the other columns are -1, inf or nan
-  kTriangle,   ///< number of the triangle, from 0: the file's faces in order, cut into triangles
-  kObject,     ///< number of its `o` or `g`, from 0, in the order of the file
-  kMaterial,   ///< number of its material, from 0
+  kTriangle,   ///< index of the triangle, from 0: the file's faces in order, cut into triangles
+  kObject,     ///< index of its `o` or `g`, from 0, in the order of the file
+  kMaterial,   ///< index of its material, from 0
   kT,          ///< P = O + t D
   kPoint,      ///< x, y, z: P in the file's coordinates
   kUv,         ///< u, v: P = (1 - u - v) A + u B + v C; 0 <= u, 0 <= v, u + v <= 1
-  kNormal,     ///< nx, ny, nz: (B - A) x (C - A) normalised; not turned towards the ray
+  kNormal,     ///< nx, ny, nz: (B - A) x (C - A) normalised; not flipped towards the ray
   kSide,       ///< exact sign of D . N: -1 for the front, 1 for the back
-  kDoubts,     ///< tests of this ray that binary32 left open, resolved exactly
+  kDoubts,     ///< tests of this ray that binary32 left in doubt, resolved exactly
   kUnitPoint,  ///< unit_x, unit_y, unit_z: P with the bits of the hit-test unit
   kUnitError,  ///< unit_error: its error bound, as NearestHit::point_error
 };
 
-/// Which hits of a ray are wanted.
+/// Hits to report for each ray.
 enum class Hits {
   kNearest,  ///< one row per ray
   kAny,      ///< one row per ray: whether there is a hit; the search ends at the first one
-  kAll,      ///< one row per hit, near before far, in exact order; none for a miss
+  kAll,      ///< one row per hit, nearest first, in exact order; none for a miss
 };
 
 /// Returns the columns of these names ("ray", "unit-point" ...), or the default ones without names.
@@ -67,7 +67,7 @@ enum class TableFormat { kCsv, kNpy };
 /// array is structured with one field per column.
 class HitTable {
  public:
-  /// The references must outlive this.
+  /// The references must outlive this object.
   HitTable(const Scene& scene, const Bvh& bvh, std::vector<HitColumn> columns, TableFormat format)
       : scene_(scene), bvh_(bvh), columns_(std::move(columns)), format_(format) {}
 
@@ -77,7 +77,7 @@ class HitTable {
   /// Returns the names and NumPy types of the fields of a row: {"t", "<f8"}.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> fields() const;
 
-  /// Appends the rows of `hits` of `rays` to `bytes`.
+  /// Appends the rows for `hits`, of `rays`, to `bytes`.
   void append(const RayTable& rays, std::span<const RayHit> hits, std::string& bytes) const;
 
  private:

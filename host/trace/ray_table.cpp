@@ -40,7 +40,7 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
   int exponent = 0;
   if (direction != glm::dvec3(0.0)) {
     ray.direction = scaled_direction(direction);
-    // A power of two, but for the rounding of the direction.
+    // The ratio is a power of two, up to the rounding of the direction.
     exponent = static_cast<int>(
         std::lround(std::log2(largest(glm::dvec3(ray.direction))) - std::log2(largest(direction))));
   }
@@ -63,7 +63,7 @@ namespace {
 constexpr int kMostNumbers = 7;
 constexpr const char* kWanted = "OX,OY,OZ,DX,DY,DZ or OX,OY,OZ,DX,DY,DZ,LIMIT";
 
-/// Bytes of a file or of standard input, some at a time.
+/// Buffered bytes of a file or of standard input.
 class Bytes {
  public:
   explicit Bytes(const std::filesystem::path& file)
@@ -79,7 +79,7 @@ class Bytes {
 
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// At least `count` bytes, or all that are left; count at most kMost. Later calls change them.
+  /// Returns at least `count` bytes (at most kMost), or all that remain. Valid until the next call.
   std::string_view peek(std::size_t count) {
     while (text_.size() - begin_ < count && !at_end_) {
       if (begin_ > kMost) text_.erase(0, std::exchange(begin_, 0));
@@ -134,7 +134,7 @@ bool begins_as_number(std::string_view text) {
          std::string_view("0123456789+-.").find(text.front()) != std::string_view::npos;
 }
 
-/// As an error message shows it: not too long, and of one line.
+/// Returns a word for an error message, shortened and on one line.
 std::string shown(std::string_view text) {
   constexpr std::size_t kMost = 40;
   std::string word = "'";
@@ -148,11 +148,11 @@ std::string shown(std::string_view text) {
 
 }  // namespace
 
-/// A table of numbers, row by row.
+/// Base of the readers of the table formats.
 class RayTableReader::Source {
  public:
   virtual ~Source() = default;
-  /// How many numbers the next row has, 6 or 7, and these; 0 at the end.
+  /// Reads the next row of 6 or 7 numbers. Returns their count, or 0 at the end.
   virtual int next(double (&numbers)[kMostNumbers]) = 0;
   /// Throws InputError about the last row.
   [[noreturn]] virtual void fail(const std::string& what) const = 0;
@@ -196,7 +196,7 @@ class RayTableReader::CsvSource : public RayTableReader::Source {
  private:
   static std::string wanted() { return kWanted; }
 
-  /// 0 for a header.
+  /// Reads the numbers of a line. Returns their count, or 0 for a header.
   int split(std::string_view line, double (&numbers)[kMostNumbers]) {
     std::string_view wrong;
     int count = 0;
@@ -231,7 +231,7 @@ class RayTableReader::CsvSource : public RayTableReader::Source {
 
 class RayTableReader::NpySource : public RayTableReader::Source {
  public:
-  /// After the magic string: two bytes of version, the header's length, the header.
+  /// Reads the header: two bytes of version, the header's length, and a Python dictionary.
   explicit NpySource(std::unique_ptr<Bytes> bytes) : bytes_(std::move(bytes)) {
     const std::string_view start = bytes_->peek(12);
     if (start.size() < 12) damaged();
@@ -288,7 +288,7 @@ class RayTableReader::NpySource : public RayTableReader::Source {
     return double{std::bit_cast<float>(static_cast<std::uint32_t>(word))};
   }
 
-  /// What stands behind 'key': in the header, a Python dictionary.
+  /// Returns the text after 'key': in the header, a Python dictionary.
   std::string_view value_of(std::string_view header, std::string_view key) const {
     std::string quoted = "'";
     quoted += key;

@@ -17,7 +17,7 @@ namespace raygate {
 
 /// A block of consecutive rays.
 struct RayTable {
-  std::uint64_t first = 0;     ///< number of the first ray, from 0
+  std::uint64_t first = 0;     ///< index of the first ray
   std::vector<Ray> rays;       ///< relative to the scene's origin, scaled
   std::vector<float> limits;   ///< of the scaled rays; +infinity: none
   std::vector<int> exponents;  ///< t of the given ray is 2^exponent times t of the scaled ray
@@ -48,8 +48,8 @@ class RayTableReader {
   RayTableReader(const RayTableReader&) = delete;
   RayTableReader& operator=(const RayTableReader&) = delete;
 
-  /// Replaces `block` by at most `most` next rays; returns false at the end. Throws InputError with
-  /// the line (CSV) or row (NPY): what was found and what was expected.
+  /// Replaces `block` by the next rays, at most `most`; returns false at the end. Throws InputError
+  /// with the line (CSV) or row (NPY), what was found and what was expected.
   bool read(std::size_t most, RayTable& block);
 
  private:

@@ -11,18 +11,19 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kManyRows = std::size_t{1} << 20;  // bytes
+// Bytes of rows after which a thread writes.
+constexpr std::size_t kManyRows = std::size_t{1} << 20;
 
-/// What one thread works with: a block of rays, and their rows until they are written.
+/// State of one thread: a block of rays, and its rows until they are written.
 struct Desk {
-  std::unique_ptr<Intersector> intersector;  ///< none where all hits are asked for
+  std::unique_ptr<Intersector> intersector;  ///< null for Hits::kAll
   RayTable block;
-  std::size_t next = 0;  ///< the first ray without rows
+  std::size_t next = 0;  ///< first ray without rows
   std::vector<NearestHit> nearest;
   std::vector<RayWork> work;
   std::vector<RayHit> found;
   std::string rows;
-  TraceCounts counts;  ///< of these rows
+  TraceCounts counts;  ///< counts of these rows
 
   void write_found(const HitTable& answers) {
     answers.append(block, found, rows);
@@ -33,7 +34,7 @@ struct Desk {
   }
 };
 
-/// One row for each ray: its nearest hit, or some hit.
+/// Finds one row for each ray: its nearest hit, or any hit.
 void find_one(Desk& desk, Hits asked, const HitTable& answers) {
   const std::size_t count = desk.block.rays.size();
   desk.nearest.assign(count, {});
@@ -48,7 +49,7 @@ void find_one(Desk& desk, Hits asked, const HitTable& answers) {
   desk.next = count;
 }
 
-/// A row for each hit, up to the ray whose rows are many: a block's may be more than memory holds.
+/// Finds a row for each hit, up to kManyRows bytes: all rows of a block may exceed memory.
 void find_all(Desk& desk, const Bvh& bvh, const HitTable& answers) {
   for (; desk.next < desk.block.rays.size() && desk.rows.size() < kManyRows; ++desk.next) {
     RayWork work;

@@ -12,19 +12,18 @@
 
 namespace raygate {
 
-/// Counts of a run.
+/// Statistics of a run.
 struct TraceCounts {
   std::uint64_t rays = 0, rows = 0, hits = 0;
   std::uint64_t rounded = 0;  ///< number of rays that were rounded to binary32
 };
 
-/// Replaces a block by at most that many next rays; returns false at the end.
+/// Replaces a block by at most the given number of next rays; returns false at the end.
 using ReadRays = std::function<bool(std::size_t, RayTable&)>;
 
-/// Reads all rays and gives the rows to `write`, block by block in the order of the rays. At most
-/// `threads` blocks are in memory at a time, and a megabyte of rows of each besides those of one
-/// ray. What `read` and `write` throw ends it. `keep_going` is
-/// asked between blocks.
+/// Reads all rays and passes the rows to `write`, block by block in the order of the rays. At most
+/// `threads` blocks are in memory, with about 1 MB of rows each, plus the rows of one ray.
+/// Exceptions of `read` and `write` end it. `keep_going` is called between blocks.
 [[nodiscard]] TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh,
                                 const HitTable& answers, const IntersectorFactory& make_intersector,
                                 unsigned threads,

@@ -11,7 +11,7 @@ constexpr int kDoubleDigits = 53;
 
 std::uint64_t bits_of(double x) { return std::bit_cast<std::uint64_t>(x); }
 
-/// a + b = sum + error, exactly (Knuth).
+/// Returns a + b rounded; sum + error equals a + b exactly (Knuth).
 double two_sum(double a, double b, double& error) {
   const double sum = a + b, b_seen = sum - a;
   error = (a - (sum - b_seen)) + (b - b_seen);
@@ -20,7 +20,7 @@ double two_sum(double a, double b, double& error) {
 
 float not_a_number() { return std::bit_cast<float>(0x7FC00000u); }
 
-/// `value` (not zero) rounded to a multiple of 2^quantum that it is not below half of, or of less.
+/// Returns `value` (not zero) rounded to a multiple of 2^quantum.
 double rounded_to(double value, int quantum, Rounding rounding) {
   const double scaled = std::ldexp(value, -quantum);
   switch (rounding) {
@@ -38,10 +38,9 @@ double rounded_to(double value, int quantum, Rounding rounding) {
   return std::ldexp(std::round(scaled), quantum);
 }
 
-/// value + rest with its last bit set where rest is not 0: rounded to odd (Boldo and Melquiond,
-/// "When double rounding is odd", 2005), so that a second rounding sees on which side of every
-/// boundary the exact value lies. Only the sign of `rest` matters: the double is one of the two
-/// next to the exact value.
+/// Returns value + rest rounded to odd: sets the last bit if `rest` is not 0 (Boldo and Melquiond,
+/// "When double rounding is odd", 2005). A second rounding is then correct. Only the sign of `rest`
+/// matters: `value` is one of the two doubles next to the exact value.
 double made_odd(double value, double rest) {
   if (rest == 0.0) return value;
   std::uint64_t bits = bits_of(value);
@@ -51,8 +50,8 @@ double made_odd(double value, double rest) {
 
 }  // namespace
 
-/// Rounds what lies between `value` and its neighbour on the side of the sign of `rest`, or is
-/// `value` where that is 0.
+/// Rounds the exact value, which is `value` if `rest` is 0, and otherwise lies between `value` and
+/// the next double in the direction of `rest`.
 float Arithmetic::fit(double value, double rest) const {
   if (std::isnan(value)) return not_a_number();
   if (!std::isfinite(value) || value == 0.0) return static_cast<float>(value);
@@ -60,8 +59,8 @@ float Arithmetic::fit(double value, double rest) const {
   const int exponent = static_cast<int>(bits_of(value) >> 52 & 0x7FF) - 1023;
   double rounded = 0.0;
   if (exponent >= min_exponent() && rounding == Rounding::kNearestEven) {
-    // The digits beyond the format's are the low bits of the double's: add half of their unit, less
-    // a little where the last digit that is kept is even. A carry makes the next exponent.
+    // The excess digits are the low bits of the double. Add half of their unit, or slightly less if
+    // the last digit kept is even. A carry correctly increments the exponent.
     const int dropped = kDoubleDigits - digits;
     const std::uint64_t bits = bits_of(value), unit = std::uint64_t{1} << dropped;
     rounded = std::bit_cast<double>((bits + (unit / 2 - 1) + (bits >> dropped & 1)) & ~(unit - 1));
@@ -88,7 +87,7 @@ float Arithmetic::multiply(float a, float b) const { return fit(static_cast<doub
 float Arithmetic::add(float a, float b) const {
   double rest = 0.0;
   const double sum = two_sum(a, b, rest);
-  // An exact zero from numbers of both signs is -0 where one rounds down.
+  // The exact zero sum of operands with different signs is -0 when rounding down.
   if (sum == 0.0 && rounding == Rounding::kDown &&
       (a != 0.0f || std::signbit(a) != std::signbit(b))) {
     return -0.0f;
@@ -101,7 +100,7 @@ float Arithmetic::divide(float a, float b) const {
   const double remainder = std::isfinite(ratio) ? std::fma(-ratio, y, x) : 0.0;
   const double rest = y < 0.0 ? -remainder : remainder;
   if (quotient_digits == 0 || !std::isfinite(ratio) || ratio == 0.0) return fit(ratio, rest);
-  // Cut off first, wherever the exponent; only a subnormal is then rounded again.
+  // Truncate first, regardless of the exponent. Only subnormals are then rounded again.
   const double odd = made_odd(ratio, rest);
   const std::uint64_t dropped = (std::uint64_t{1} << (kDoubleDigits - quotient_digits)) - 1;
   return fit(std::bit_cast<double>(bits_of(odd) & ~dropped), 0.0);
@@ -110,7 +109,7 @@ float Arithmetic::divide(float a, float b) const {
 float Arithmetic::dot(const glm::vec3& a, const glm::vec3& b) const {
   if (!fused) return add(add(multiply(a.x, b.x), multiply(a.y, b.y)), multiply(a.z, b.z));
   // Products of floats are exact in double. Their sum is high + low + rest: high is within half an
-  // ulp of it, and the sign of low + rest says on which side.
+  // ulp of it, and low + rest has the sign of the difference.
   const double x = static_cast<double>(a.x) * b.x, y = static_cast<double>(a.y) * b.y,
                z = static_cast<double>(a.z) * b.z;
   double error_1 = 0.0, error_2 = 0.0, error_3 = 0.0, low = 0.0, rest = 0.0;

@@ -1,4 +1,4 @@
-// Float arithmetic as cheaper hardware would do it, bit for bit.
+// Bit-exact model of reduced-precision hardware arithmetic.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace raygate {
 
-/// IEEE 754's rounding directions, numbered as hw/fp/fp_pkg.sv numbers them.
+/// IEEE 754 rounding directions, with the codes of hw/fp/fp_pkg.sv.
 enum class Rounding : std::uint8_t {
   kNearestEven = 0,
   kTowardZero = 1,
@@ -15,21 +15,20 @@ enum class Rounding : std::uint8_t {
   kNearestAway = 4
 };
 
-/// A binary format of at most float32's exponents and digits, whose numbers are held in floats, and
-/// its operations. Each gives the exact result, rounded once, as IEEE 754 defines it but for what
-/// the fields say; every NaN it gives is 0x7FC00000. Operands must be numbers of the format (see
-/// read).
+/// A binary floating-point format no wider than binary32, and its operations. Numbers are held in
+/// floats. Each operation rounds the exact result once, as in IEEE 754, except as the fields state.
+/// Every NaN result is 0x7FC00000. Operands must be numbers of the format (see read).
 struct Arithmetic {
-  int digits = 24;        ///< of a significand, the leading one counted: 3 to 24
+  int digits = 24;        ///< significand bits, including the leading one: 3 to 24
   int exponent_bits = 8;  ///< 3 to 8
   Rounding rounding = Rounding::kNearestEven;
-  bool flush = false;       ///< subnormals, read or made, are zeros
-  int quotient_digits = 0;  ///< not 0: quotients are cut off after so many digits, not rounded
+  bool flush = false;       ///< subnormal operands and results become zeros
+  int quotient_digits = 0;  ///< if not 0: quotients are truncated to this many digits, not rounded
   bool fused = false;       ///< dot products are rounded once, at the end
 
   friend bool operator==(const Arithmetic&, const Arithmetic&) = default;
 
-  /// A float taken into this format, rounded.
+  /// Returns a float rounded to this format.
   [[nodiscard]] float read(float x) const;
   [[nodiscard]] glm::vec3 read(const glm::vec3& v) const {
     return {read(v.x), read(v.y), read(v.z)};
@@ -37,25 +36,25 @@ struct Arithmetic {
   [[nodiscard]] float multiply(float a, float b) const;
   [[nodiscard]] float add(float a, float b) const;
   [[nodiscard]] float divide(float a, float b) const;
-  /// (ax bx + ay by) + az bz, rounded at each step or once.
+  /// Returns (ax bx + ay by) + az bz, rounded at each step or, if `fused`, once.
   [[nodiscard]] float dot(const glm::vec3& a, const glm::vec3& b) const;
 
-  /// What rounding to nearest can be off by, relative to the result: half an ulp. Twice that for
-  /// the other directions.
+  /// Returns the relative error bound of rounding to nearest, half an ulp; half of other
+  /// directions'.
   [[nodiscard]] double unit_roundoff() const;
   [[nodiscard]] int fraction_bits() const { return digits - 1; }
-  /// The exponents of the smallest and the largest normal numbers.
+  /// Exponents of the smallest and the largest normal number.
   [[nodiscard]] int min_exponent() const { return 2 - (1 << (exponent_bits - 1)); }
   [[nodiscard]] int max_exponent() const { return (1 << (exponent_bits - 1)) - 1; }
 
-  /// Whether x has an exponent field that is neither 0 nor the largest.
+  /// Returns whether the exponent field of x is neither 0 nor the largest.
   [[nodiscard]] bool is_normal(float x) const;
-  /// The biased exponent of x's word.
+  /// Returns the biased exponent of x in this format.
   [[nodiscard]] int exponent_field(float x) const {
     return static_cast<int>(to_word(x) >> fraction_bits() & ((1u << exponent_bits) - 1));
   }
 
-  /// The format's own bits of one of its numbers, and back: sign, biased exponent, fraction.
+  /// Convert between a number and its encoding in this format: sign, biased exponent, fraction.
   [[nodiscard]] std::uint32_t to_word(float x) const;
   [[nodiscard]] float from_word(std::uint32_t word) const;
   [[nodiscard]] int word_bits() const { return exponent_bits + digits; }

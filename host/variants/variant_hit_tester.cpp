@@ -34,7 +34,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// The format with the host's rounding.
+/// Returns the format with the host's rounding direction.
 Arithmetic to_nearest(Arithmetic math) {
   math.rounding = Rounding::kNearestEven;
   return math;
@@ -48,7 +48,7 @@ glm::vec3 scaled(const glm::vec3& v, int exponent) {
   return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
 }
 
-/// By how many powers of two the largest component has to grow to be in [1, 2).
+/// Returns the exponent of the power of two that scales the largest component into [1, 2).
 int to_unit(const glm::vec3& v) { return largest(v) == 0.0f ? 0 : -std::ilogb(largest(v)); }
 
 float rounded_up(const Arithmetic& math, double x) {
@@ -57,15 +57,15 @@ float rounded_up(const Arithmetic& math, double x) {
   return nearest > x ? nearest : math.from_word(math.to_word(nearest) + 1);
 }
 
-/// The numbers around a positive t that are as far off as its error allows.
+/// Returns the interval of possible values for a positive t with this error code.
 Interval around(const Arithmetic& math, float t, std::uint32_t error) {
   const std::uint32_t word = math.to_word(t), margin = 64u << error;
   return {math.from_word(word - std::min(word, margin)),
           math.from_word(std::min(word + margin, math.to_word(kInfinity)))};
 }
 
-/// NearestHit's, where a hit has been found as `point` by words of the format: infinite where its
-/// range is not enough for a coordinate. `wide` is the ray as it was before.
+/// Returns NearestHit's point_error for a `point` computed in the format, or infinity if the
+/// format's range is too small for a coordinate. `wide` is the direction before conversion.
 float point_error(const Arithmetic& math, float d, const glm::vec3& direction,
                   const glm::vec3& wide, const glm::vec3& point, std::uint32_t t_error) {
   for (int k = 0; k < 3; ++k) {
@@ -76,7 +76,7 @@ float point_error(const Arithmetic& math, float d, const glm::vec3& direction,
   return static_cast<float>(std::ldexp(math.unit_roundoff(), 6 + static_cast<int>(t_error)));
 }
 
-/// The paper's unit in a variant's format: software decides, in binary32, so only P is another.
+/// The paper's unit in a variant's format. Software decides in binary32, so only P differs.
 class SerialVariantTester : public SerialHitTester {
  public:
   SerialVariantTester(const Variant& variant, std::unique_ptr<PlaneUnit> unit)
@@ -90,8 +90,8 @@ class SerialVariantTester : public SerialHitTester {
   }
 
  private:
-  /// The error in the format, for one in binary32: as many units in the last place. Beyond an
-  /// eighth the bound of V's error no longer holds.
+  /// Scales an error in binary32 to the format: as many ulps. Errors above 1/8 become infinite, as
+  /// the bound of V's error does not hold for them.
   template <class Report>
   void widen(std::span<const RayBundle> batch, Report& report) const {
     if (variant_.math == Arithmetic{} || std::isinf(report.point_error)) return;
@@ -128,7 +128,7 @@ PolygonRecord variant_record(const Variant& variant, const PolygonRecord& wide) 
   record.d = math.read(std::ldexp(wide.d, shift));
   bool too_far = false;
   if (wide.d != 0.0f && !math.is_normal(record.d)) {
-    // Its sign must stay; what else is lost is for exact arithmetic to find.
+    // Keep the sign. Exact arithmetic handles the lost magnitude.
     too_far = true;
     const double low = std::ldexp(1.0, math.min_exponent());
     const double high = std::ldexp(2.0 - std::ldexp(1.0, 1 - math.digits), math.max_exponent());
@@ -162,13 +162,13 @@ float variant_t(const Variant& variant, const PolygonRecord& record, const glm::
 VariantHitTester::VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit)
     : variant_(variant), unit_(std::move(unit)), twin_(variant.math) {}
 
-/// The batch in the variant's format.
+/// Converts the batch to the variant's format.
 void VariantHitTester::narrow(std::span<const RayBundle> batch) {
   const Arithmetic math = to_nearest(variant_.math);
   std::size_t count = 0;
   for (const RayBundle& bundle : batch) count += bundle.record_count;
   records_.clear();
-  records_.reserve(count);  // bundles point into it
+  records_.reserve(count);  // bundles point into records_
   batch_.assign(batch.begin(), batch.end());
   for (RayBundle& bundle : batch_) {
     const PolygonRecord* wide = bundle.records;
@@ -209,7 +209,7 @@ void VariantHitTester::run(std::span<const RayBundle> batch, HitResults& results
   take_reports([](const TestReport&) { return true; });
 }
 
-/// What the unit only reports gets its P and t here, by the same formulas.
+/// Adds P and t to a report of the unit, by the unit's own formulas.
 void VariantHitTester::report(const RayBundle& wide, HitResults& results,
                               const TestReport& report) {
   const RayBundle& bundle = batch_[report.bundle];
@@ -226,23 +226,23 @@ void VariantHitTester::report(const RayBundle& wide, HitResults& results,
                             around(variant_.math, distance.t, distance.error)});
     return;
   }
-  // Should it be a hit, its P is as good as a sure one's where V may divide.
+  // If it is a hit, its P is as accurate as that of a sure hit, provided that V can be a divisor.
   const float v = variant_.math.dot(record.normal, direction);
   const bool divisible =
       variant_.math.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
       static_cast<int>(distance.error) <= std::max(variant_.math.fraction_bits() - 11, 0) &&
-      !std::isinf(record.bounds[0]);  // d is its own
+      !std::isinf(record.bounds[0]);  // d was not clamped
   results.doubts.push_back({report.bundle, report.lane, tag, point, divisible ? error : kInfinity});
 }
 
-/// One hit a burst: the kept one or, where it is nearer, one that the unit left open.
+/// Keeps one hit per burst: the unit's hit or a nearer one that the unit reported as a doubt.
 void VariantHitTester::resolve_nothing(std::span<const RayBundle> batch, HitResults& results) {
   const auto offer = [&](std::uint32_t index, std::uint32_t lane, std::uint32_t record, float t,
                          const glm::vec3& point) {
     const std::uint32_t tag = batch[index].first_tag + record;
-    // Equal distances become different ones, far below float32's digits, in the order of the tags.
+    // Separates equal distances in the order of the tags, far below the precision of float32.
     const double told_apart = t * (1.0 + std::ldexp(static_cast<double>(tag), -52));
-    // Plain arithmetic has no bounds: its P is the picture's, whatever it is.
+    // Without bounds, the unit's P is used as it is.
     const SureHit hit{index, lane, tag, point, 0.0f, {told_apart, told_apart}};
     const bool same_burst = !results.hits.empty() && results.hits.back().bundle == index &&
                             results.hits.back().lane == lane;

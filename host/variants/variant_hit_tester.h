@@ -1,4 +1,4 @@
-// Hit tests in a variant's arithmetic, for whole pictures.
+// Hit testers with a variant's arithmetic, for rendering whole images.
 #pragma once
 
 #include <memory>
@@ -11,32 +11,33 @@
 
 namespace raygate {
 
-/// Puts a record into a format, as the host would for such a unit: N and d, and each edge, scaled
-/// by powers of two where the format has fewer exponents than float32, and rounded to nearest. The
-/// bounds are 0 without `doubts`; with them |unit's U - exact I . E| < bound for any float32 I with
-/// components below 2 (the ray in the format is I rounded to nearest).
+/// Converts a record to a variant's format, as the host does for such a unit: N with d, and each
+/// edge, are scaled by powers of two if the format has fewer exponents than binary32, and rounded
+/// to nearest. The bounds are 0 without `doubts`. Otherwise |unit's U - exact I . E| < bound for
+/// any float32 I with components below 2 (the ray in the format is I rounded to nearest).
 [[nodiscard]] PolygonRecord variant_record(const Variant& variant, const PolygonRecord& record);
 
-/// The bound in units of 2^-digits |E|_1, for rounding to nearest.
+/// Returns the bound in units of 2^-digits |E|_1, for rounding to nearest.
 [[nodiscard]] double variant_edge_bound(const Arithmetic& math);
 
-/// t as the variant's unit has it, by its own formula, of a record that make_record has made; of
-/// the serial unit's host, in binary32.
+/// Returns t as the variant's unit computes it for a record of make_record(). The host of the
+/// serial unit computes t in binary32.
 [[nodiscard]] float variant_t(const Variant& variant, const PolygonRecord& record,
                               const glm::vec3& direction);
 
-/// Rays and records go to the unit in the variant's format.
+/// Converts rays and records to the variant's format, runs the unit on them, and resolves doubts if
+/// the variant has them.
 ///
-/// Doubts resolved: HitTester's promise holds in any format of 11 digits or more, since the bounds
-/// are scaled with it; the narrower, the more doubts. P has the unit's bits.
+/// With doubts, HitTester's guarantee holds in any format of 11 digits or more, since the bounds
+/// scale with the format; narrower formats have more doubts. P has the unit's bits.
 ///
-/// Doubts ignored: what plain arithmetic does. Edges of 0 are inside, a hit is whatever has three
-/// signs alike and a positive t, of two the one with the smaller t is nearer (of equals the first).
-/// Nothing is ever asked of exact arithmetic: t is reported as if it were known, and equal ones are
-/// told apart by less than their last digits.
+/// Without doubts, decisions are those of plain arithmetic: edge values of 0 are inside, a hit has
+/// three equal signs and a positive t, and the hit with the smaller t is nearer (the first of
+/// equals). Exact arithmetic is never used: t is reported as exact, and equal values of t are
+/// separated by less than an ulp.
 class VariantHitTester : public HitTester {
  public:
-  /// `unit`: computes in the format of `variant`, whose unit is the pipelined one.
+  /// `unit` computes in the format of `variant`, which must be a pipelined one.
   VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit);
 
   void run(std::span<const RayBundle> batch, HitResults& results) override;
@@ -49,18 +50,18 @@ class VariantHitTester : public HitTester {
 
   Variant variant_;
   std::unique_ptr<BurstUnit> unit_;
-  VariantBurstUnit twin_;  // t and P of what the unit only reports
-  // Room to work in.
+  VariantBurstUnit twin_;  // computes t and P for reports of the unit
+  // Reused buffers.
   std::vector<PolygonRecord> records_;
   std::vector<RayBundle> batch_;
   BurstResults found_;
 };
 
-/// The paper's unit, which computes P alone: the tester of a serial variant.
+/// Returns a tester for a serial variant, whose unit (that of the paper) computes P alone.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                              std::unique_ptr<PlaneUnit> unit);
 
-/// The reference model's tester for a variant of either unit.
+/// Returns a tester that uses the reference model of a variant of either unit.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant);
 
 }  // namespace raygate

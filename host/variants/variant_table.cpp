@@ -12,11 +12,11 @@ namespace {
 
 constexpr const char* kRoundings[] = {"nearest-even", "toward-zero", "down", "up", "nearest-away"};
 
-/// Throws where the format has no such hardware or no proof of its bounds.
+/// Throws InputError if the format has no hardware or no proven bounds.
 void require_possible(const Variant& variant) {
   const auto fail = [](const char* what) { throw InputError(what); };
   const Arithmetic& math = variant.math;
-  if (math.fraction_bits() > 1 << (math.exponent_bits - 1)) {  // what fp_pkg asks of a format
+  if (math.fraction_bits() > 1 << (math.exponent_bits - 1)) {  // required by fp_pkg
     fail("too many digits for so few exponent bits");
   }
   const bool pipeline = variant.unit == Variant::Unit::kPipeline;
@@ -31,7 +31,7 @@ void require_possible(const Variant& variant) {
 
 Variant parse_variant(const Json& object) {
   Json usual = Variant{}.row();
-  usual.erase("hardware");  // follows from the others
+  usual.erase("hardware");  // follows from the other columns
   const Json row = with_usual(object, usual, "a variant");
   const auto number = [&](const char* column, int low, int high) {
     return in_range(column, row[column], low, high);

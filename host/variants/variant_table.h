@@ -1,4 +1,4 @@
-// The variants of arithmetic that are compared, from variants.json.
+// Table of the arithmetic variants to compare, read from variants.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,56 +13,56 @@ namespace raygate {
 
 using Json = nlohmann::ordered_json;
 
-/// `object` with the values of `usual` where it has none. Throws InputError, "WHAT has ...": an
-/// unknown name, or a value that is not of the usual one's kind.
+/// Returns `object` with missing values filled in from `usual`. Throws InputError, "WHAT has ...",
+/// for an unknown name or a value of another type than in `usual`.
 [[nodiscard]] Json with_usual(const Json& object, Json usual, const std::string& what);
 
-/// Throws InputError, "NAME is ..., expected LOW to HIGH".
+/// Returns `value`. Throws InputError, "NAME is ..., expected LOW to HIGH", if it is out of range.
 int in_range(const std::string& name, int value, int low, int high);
 
-/// An object of variants.json. What it leaves out is as in binary32:
+/// An object of variants.json. Defaults are those of binary32:
 ///
-///   variant          its name; -raw where doubts are ignored
-///   unit             "pipeline" (decides, t, P), or "serial": the paper's, P alone
+///   variant          its name; ends in -raw if doubts are ignored
+///   unit             "pipeline" (decides, computes t and P) or "serial" (the paper's: P alone)
 ///   exponent_bits, digits, rounding ("nearest-even", "toward-zero", "down", "up", "nearest-away"),
-///   flush, quotient_digits (serial alone), fused (no hardware)      see Arithmetic
-///   doubts           whether exact arithmetic on the host resolves them; else there are no bounds
-///   brought          a folder of modules in place of those of hw/ (synth/brought.py); "": none
+///   flush, quotient_digits (serial only), fused (no hardware)      see Arithmetic
+///   doubts           whether the host resolves doubts exactly; otherwise there are no bounds
+///   brought          a folder of modules that replace those of hw/ (synth/brought.py); "": none
 ///
-/// That is all there is to a new variant: CMake verilates its design, if hw/ has such parameters,
-/// and `make bench` and `make stress` take their rows from here.
+/// An object is all that a new variant needs: CMake verilates its design if hw/ supports the
+/// parameters, and `make bench` and `make stress` read their rows from this table.
 struct Variant {
   enum class Unit : std::uint8_t {
-    kPipeline,  ///< decides hit, miss or doubt, orders hits, gives t and P
-    kSerial,    ///< the paper's: gives P; software decides, in binary32 and exactly
+    kPipeline,  ///< decides hit, miss or doubt, orders hits, computes t and P
+    kSerial,    ///< the paper's: computes P; software decides, in binary32 and exactly
   };
 
   std::string name = "binary32";
   Unit unit = Unit::kPipeline;
   Arithmetic math;
-  bool doubts = true;  ///< false: no error bounds; what the unit says is taken as it comes
+  bool doubts = true;  ///< false: no error bounds; decisions of the unit are final
 
   std::string brought;
 
-  /// Whether hw/ can be given these parameters; else there is the reference model alone.
+  /// Returns whether hw/ supports these parameters. Otherwise only the reference model exists.
   [[nodiscard]] bool has_hardware() const { return !math.flush && !math.fused; }
-  /// All columns of the object, and `hardware`.
+  /// Returns all columns of the object, and `hardware`.
   [[nodiscard]] Json row() const;
 };
 
-/// Reads such a table. Throws InputError that names `file` and the variant: unknown or wrong
-/// values, or a format for which no bound of its errors is proven although its doubts are to be
-/// resolved (see variant_hit_tester.h).
+/// Parses a table of variants. Throws InputError, which names `file` and the variant, for unknown
+/// names, invalid values, and a format whose doubts are to be resolved but that has no proven error
+/// bound (see variant_hit_tester.h).
 [[nodiscard]] std::vector<Variant> parse_variants(std::string_view text, const std::string& file);
 
-/// variants.json as it was when the program was built.
+/// Returns the contents of variants.json at build time.
 [[nodiscard]] const std::vector<Variant>& all_variants_of_arithmetic();
 
-/// The pipelined unit in a format such as e8p15: 8 exponent bits, 15 digits; e8p15-raw ignores
-/// doubts. Nothing for other texts. Throws InputError for a format without hardware or bounds.
+/// Returns the pipelined variant of a format such as e8p15: 8 exponent bits, 15 digits; -raw at the
+/// end ignores doubts. Returns nullopt for other texts. Throws InputError for unsupported ones.
 [[nodiscard]] std::optional<Variant> variant_of_format(std::string_view text);
 
-/// The one of that name. Throws InputError, with the names that there are.
+/// Returns the variant with this name. Throws InputError, which lists the names, if there is none.
 [[nodiscard]] const Variant& variant_named(std::string_view name);
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// The hit-test units with a variant's arithmetic, in C++: the twins of what is Verilated.
+// Reference models in C++ of the hit-test units with a variant's arithmetic.
 #pragma once
 
 #include "host/intersect/unit/burst_unit.h"
@@ -7,13 +7,12 @@
 
 namespace raygate {
 
-/// In binary32 it is ReferenceBurstUnit, slower.
+/// In binary32, equals ReferenceBurstUnit but is slower.
 extern template class BasicReferenceBurstUnit<Arithmetic>;
 using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
 
-/// PlaneUnit's contract in a variant's format: bit for bit hit_test_unit with these parameters.
-/// Tests need not hold numbers of the format: their words are rounded to it first, as the host
-/// would.
+/// Implements PlaneUnit in a variant's format, bit-exact to hit_test_unit with these parameters.
+/// Rounds inputs to the format first, as the host would.
 class VariantPlaneUnit : public PlaneUnit {
  public:
   explicit VariantPlaneUnit(const Arithmetic& math) : math_(math) {}

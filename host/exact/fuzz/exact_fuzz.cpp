@@ -1,4 +1,4 @@
-// libFuzzer target: any 60 bytes as a ray and a triangle; the predicates against rationals.
+// libFuzzer target: compares the predicates with rationals, for any bytes as ray and triangle.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// libFuzzer target: any bytes as an OpenEXR picture, for `compare`, `merge` and `--resume`.
+// libFuzzer target: arbitrary bytes as an OpenEXR image, for `compare`, `merge` and `--resume`.
 #include <unistd.h>
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Calls work(), which may refuse the file.
+/// Calls work(), which may throw InputError.
 template <class Work>
 void refusable(const Work& work) {
   try {
@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   refusable([&] { (void)read_exr(file, names); });
   refusable([&] {
     const FilmFile whole = merge({{"a.exr", read_film(file)}});
-    // What was read can be written, and encode_exr reads it back.
+    // A film that was read can be written; encode_exr reads it back.
     (void)encode_exr(whole.film, whole.metadata, 2);
   });
   return 0;

@@ -1,4 +1,4 @@
-// libFuzzer target: any bytes as a Radiance picture.
+// libFuzzer target: arbitrary bytes as a Radiance image.
 #include <unistd.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
     }
   } catch (const raygate::InputError&) {
-    // What a bad file deserves.
+    // Expected for invalid files.
   }
   return 0;
 }

@@ -17,13 +17,13 @@ CoreRay core_ray(const MemoryImage& image, const Ray& ray, const RayQuery& query
   CoreRay core{.ray = ray, .t_max = query.t_max_of(number), .tag = number};
   if (!query.skip_ids.empty()) core.skip_id = image.line_of(query.skip_ids[number]);
   if (!query.source_ids.empty()) core.source_id = image.line_of(query.source_ids[number]);
-  // A hit before the limit is before what is enough.
+  // Any hit before t_max ends the search if t_max is within any_hit_before.
   core.any_hit = !query.any_hit_before.empty() && query.any_hit_before[number] >= core.t_max;
   core.no_cull = !query.culling;
   return core;
 }
 
-/// For a ray whose end has an error: the memory that the core reads is not that of a tree.
+/// Throws InputError for a ray with an error: the core's memory is not that of a BVH.
 [[noreturn]] void throw_broken_memory(const CoreResult& end) {
   if (end.error == CoreResult::Error::kMemory) {
     throw InputError("ray core's memory: no line " + std::to_string(end.line));
@@ -93,7 +93,7 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
   counters_.record += watch.lap();
 }
 
-/// Takes a hit, or what may be one.
+/// Takes a sure hit or resolves a doubt.
 void CoreIntersector::resolve(const Ray& ray, const RayQuery& query, const CoreResult& result,
                               NearestHit& best) {
   NearestHit hit{.primitive = image_->primitive_at(result.triangle)};

@@ -1,4 +1,4 @@
-// Core intersector: sends rays to a ray core, hardware that traverses the tree by itself.
+// Core intersector: sends rays to a ray core, hardware that traverses the BVH.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,14 @@
 
 namespace raygate {
 
-/// Exact arithmetic on the host resolves the doubts of the core; a core that is_exact leaves only
-/// the comparison of hits of a ray whose stack overflowed. P is computed on the host for each
-/// nearest hit, with the same bits as in other intersectors. Throws InputError if the core reads a
-/// line that the memory does not have, or a node below itself.
+/// Resolves the core's doubts by exact arithmetic on the host. A core that is_exact leaves only the
+/// comparison of hits of a ray whose stack overflowed. The host computes P of each nearest hit,
+/// with the same bits as in other intersectors. Throws InputError if the core reads a line that the
+/// memory does not have, or a node below itself.
 class CoreIntersector : public Intersector {
  public:
-  /// `image`: the memory image of `bvh`. The tree must outlive this. Intersectors of one thread can
-  /// share a core.
+  /// `image` is the memory image of `bvh`, which must outlive this object. Intersectors of one
+  /// thread can share a core.
   CoreIntersector(const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
                   std::shared_ptr<CoreUnit> core)
       : bvh_(bvh), image_(std::move(image)), core_(std::move(core)) {}

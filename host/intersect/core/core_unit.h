@@ -1,5 +1,4 @@
-// Core unit: the interface of the ray core: rays in; hits, and doubts of a core that is not exact,
-// out.
+// Core unit: interface of a ray core. Takes rays; returns hits, and doubts if it is not exact.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +18,7 @@ struct CoreRay {
   static constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
 
   Ray ray;  ///< the direction scaled (see is_scaled)
-  /// Positive: hits with exact t >= t_max do not count; +infinity: no limit.
+  /// Positive. Only hits with exact t < t_max count; +infinity: no limit.
   float t_max = std::numeric_limits<float>::infinity();
   std::uint32_t skip_id = kNoTriangle;    ///< index of a triangle whose hits do not count
   std::uint32_t source_id = kNoTriangle;  ///< index of the triangle that the ray leaves
@@ -51,14 +50,14 @@ struct CoreResult {
   std::uint32_t tag = 0;  ///< CoreRay::tag
   std::uint32_t triangle = CoreRay::kNoTriangle;  ///< kEnd, kDoubt: its line in memory
   float t = 0.0f;              ///< kEnd: fewer than 2^t_error floats from the exact t
-  std::uint32_t t_error = 0;   ///< kNoT: t and P are unknown, and 0
+  std::uint32_t t_error = 0;   ///< kNoT: t and P are unknown and set to 0
   glm::vec3 point{0.0f};       ///< kEnd: P in the core's own bits, relative to the origin
   std::uint32_t tests = 0;     ///< kEnd: triangles tested
   Error error = Error::kNone;  ///< kEnd: if not kNone, only `tag` and `line` are valid
   std::uint32_t line = 0;      ///< kEnd with kMemory: the line
 };
 
-/// The counts of a core since its construction. Clocks are 0 without simulation.
+/// Statistics of a core since its construction. Clocks are 0 without simulation.
 struct CoreCounters {
   static constexpr std::uint64_t kSpan = 256;
 
@@ -73,7 +72,7 @@ struct CoreCounters {
   std::uint64_t exact_clocks = 0;  ///< busy clocks of the exact unit
   /// Busy clocks of the busier of box unit and triangle unit, summed over spans of kSpan clocks.
   std::uint64_t busier = 0;
-  /// The same with two box units, and with a triangle unit of half the throughput.
+  /// Likewise with two box units, and with a triangle unit of half the throughput.
   std::uint64_t busier_two_boxes = 0, busier_half_triangles = 0;
   std::uint64_t clocks = 0;
 
@@ -93,7 +92,7 @@ class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
 
-  /// Appends all results of the rays to `results`. `lines`: the lines of a MemoryImage.
+  /// Traces the rays and appends their results to `results`. `lines` are those of a MemoryImage.
   virtual void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
                      std::vector<CoreResult>& results) = 0;
 

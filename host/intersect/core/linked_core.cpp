@@ -64,9 +64,9 @@ void LinkedCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRa
   load(lines);
   const std::uint64_t begin = link_->clocks();
   std::size_t sent = 0, ended = 0;
-  std::vector<std::uint32_t> out;  // words of the ray that is being sent, the last first
+  std::vector<std::uint32_t> out;  // words of the ray being sent, in reverse
   for (;;) {
-    // Results first: what they make room for is sent before there is any waiting.
+    // Results first: they free capacity for rays.
     while (const std::optional<CoreResult> result = take_result()) {
       count(*result);
       ended += result->kind == CoreResult::Kind::kEnd;
@@ -85,7 +85,7 @@ void LinkedCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRa
 
 namespace {
 
-// As many words of zero end whatever message was cut off, and say nothing themselves.
+// This number of zero words completes any truncated message, and has no other effect.
 constexpr std::size_t kLongestMessage = 17;
 
 }  // namespace

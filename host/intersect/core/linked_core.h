@@ -1,4 +1,4 @@
-// Linked core: a ray core with a memory of its own, behind a link that carries words.
+// Linked core: a ray core with its own memory, behind a word link.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +16,14 @@
 
 namespace raygate {
 
-/// Fields of a packed struct in words of 32 bits, lowest first: the struct's last field first.
-/// `Words` has an operator [].
+/// Reads and writes the fields of a packed struct in 32-bit words, lowest bits first: the last
+/// field of the struct comes first. `Words` has an operator [].
 template <class Words>
 class PackedFields {
  public:
   explicit PackedFields(Words& words) : words_(words) {}
 
-  /// Writes the next field of `width` bits, 32 at most, into bits that are 0.
+  /// Writes the next field of `width` bits, at most 32. The bits must be 0 before.
   void put(std::uint32_t value, unsigned width = 32) {
     const std::uint64_t two = std::uint64_t{value} << at_ % 32;
     words_[at_ / 32] |= static_cast<std::uint32_t>(two);
@@ -69,7 +69,7 @@ CoreResult unpack_result(const Words& words) {
 /// A result of core_link.
 using ResultWords = std::array<std::uint32_t, 8>;
 
-/// Messages to core_link.
+/// Message formats of core_link.
 using LineMessage = std::array<std::uint32_t, 17>;
 using RayMessage = std::array<std::uint32_t, 11>;
 
@@ -78,7 +78,7 @@ using RayMessage = std::array<std::uint32_t, 11>;
   std::ranges::copy(line.words, message.begin() + 1);
   return message;
 }
-/// Message that memory has changed and has that many lines.
+/// Returns the message that the memory has changed and has `lines` lines.
 [[nodiscard]] inline std::uint32_t lines_message(std::uint32_t lines) { return 2u << 28 | lines; }
 [[nodiscard]] inline RayMessage ray_message(const CoreRay& ray) {
   RayMessage message{(4u | (ray.any_hit ? 1u : 0u) | (ray.no_cull ? 2u : 0u)) << 28, ray.tag,
@@ -101,7 +101,7 @@ class WordLink {
   virtual std::optional<std::uint32_t> receive() = 0;
   /// Waits: one clock in simulation. Throws if the board is silent for too long.
   virtual void wait() = 0;
-  /// Simulated clocks since construction; 0 without simulation.
+  /// Returns simulated clocks since construction; 0 without simulation.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
 };
 
@@ -126,12 +126,12 @@ class LinkedCore : public CoreUnit {
   std::unique_ptr<WordLink> link_;
   std::size_t most_;
   std::vector<MemoryLine> memory_;    ///< contents of the board's memory
-  std::vector<std::uint32_t> words_;  ///< of an incomplete result
+  std::vector<std::uint32_t> words_;  ///< words of an incomplete result
   CoreCounters counters_;
 };
 
-/// A serial port: words as four bytes, lowest first, 8N1, 2 Mbaud. Throws InputError with the
-/// port's name if it cannot be opened, or if the board does not answer within kPatience seconds.
+/// A serial port: four bytes per word, lowest first, 8N1, 2 Mbaud. Throws InputError with the
+/// port's name if it cannot be opened, or if the board is silent for kPatience seconds.
 class SerialLink : public WordLink {
  public:
   explicit SerialLink(std::filesystem::path port);
@@ -154,7 +154,7 @@ class SerialLink : public WordLink {
   std::filesystem::path port_;
   int file_;
   std::vector<unsigned char> out_, in_;
-  std::size_t taken_ = 0;  ///< of in_
+  std::size_t taken_ = 0;  ///< bytes taken from in_
 };
 
 }  // namespace raygate

@@ -14,7 +14,7 @@ namespace {
 
 using Ref = BinaryBvh::Ref;
 
-/// The exact bounds of triangles.
+/// Exact bounds of triangles.
 struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::infinity()};
   glm::vec3 high{-std::numeric_limits<float>::infinity()};
@@ -23,14 +23,14 @@ struct Bounds {
     low = glm::min(low, other.low);
     high = glm::max(high, other.high);
   }
-  /// Half its surface.
+  /// Returns half the surface area.
   [[nodiscard]] double area() const {
     const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
     return size.x * size.y + size.y * size.z + size.z * size.x;
   }
 };
 
-/// The tree's triangles as a scene, triangle i being primitive i.
+/// Returns the triangles of a BVH as a scene, in which triangle i is primitive i.
 Scene scene_of(const Bvh& bvh) {
   Scene scene;
   scene.positions.reserve(3 * std::size_t{bvh.primitive_count()});
@@ -46,8 +46,7 @@ Scene scene_of(const Bvh& bvh) {
 
 double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
 
-/// The difference of two floats, rounded up or down (Knuth's two-sum says which way it was
-/// rounded).
+/// Return the difference of two floats, rounded up or down (using Knuth's two-sum).
 double above(double a, double b) {
   const double d = a - b, minus_b = d - a, error = (a - (d - minus_b)) + (-b - minus_b);
   return error > 0.0 ? up(d) : d;
@@ -56,7 +55,7 @@ double below(double a, double b) { return -above(b, a); }
 
 }  // namespace
 
-/// Makes a binary tree seven wide.
+/// Collapses a binary BVH to seven children per node.
 class ImageWriter {
  public:
   ImageWriter(MemoryImage& image, const Bvh& bvh, const BinaryBvh& tree)
@@ -75,8 +74,8 @@ class ImageWriter {
   }
 
  private:
-  // Triangles whose boxes are hardly smaller than the box of all of them share a leaf: whoever
-  // enters one box enters all.
+  // Triangles share a leaf if their boxes are hardly smaller than its box: rays that enter one box
+  // usually enter all.
   static constexpr std::uint32_t kMostInLeaf = 4;
   static constexpr double kSameBox = 0.8;
 
@@ -94,7 +93,7 @@ class ImageWriter {
     return tree_.primitives[number].triangle;
   }
 
-  /// Bounds, and which nodes are leaves; the sum of the triangles' areas.
+  /// Computes bounds and decides which nodes are leaves. Returns the sum of the triangles' areas.
   double plan(Ref ref) {
     if (tree_.is_leaf(ref)) return bounds(ref).area();
     const double sum = plan(tree_.nodes[ref].child[0]) + plan(tree_.nodes[ref].child[1]);
@@ -104,8 +103,7 @@ class ImageWriter {
     return sum;
   }
 
-  /// The children of the wide node `ref`: those of the binary one, the largest opened again and
-  /// again.
+  /// Returns the children of the wide node `ref`, by repeatedly opening the largest binary node.
   [[nodiscard]] std::vector<Ref> children(Ref ref) const {
     std::vector<Ref> refs = {ref};
     while (refs.size() < NodeLine::kChildren) {
@@ -124,10 +122,10 @@ class ImageWriter {
     return refs;
   }
 
-  /// The grid on which the box goes from 0 to at most 255. An axis without extent gets cells
-  /// much smaller than the others'.
+  /// Sets the grid, on which the box extends from 0 to at most 255. An axis without extent has much
+  /// smaller cells than the others.
   static void set_grid(const Bounds& bounds, NodeLine& node) {
-    constexpr int kFinest = 24;  // so many binary orders below the coarsest
+    constexpr int kFinest = 24;  // in binary orders of magnitude below the coarsest axis
     node.origin = bounds.low;
     int coarsest = 1;
     for (int k = 0; k < 3; ++k) {
@@ -184,7 +182,7 @@ class ImageWriter {
   MemoryImage& image_;
   const Bvh& bvh_;
   const BinaryBvh& tree_;
-  std::vector<Bounds> bounds_;  // of inner nodes
+  std::vector<Bounds> bounds_;  // bounds of inner nodes
   std::vector<char> leaf_;
 };
 

@@ -1,4 +1,4 @@
-// Memory image: the nodes and triangles that the ray core reads.
+// Memory image: the nodes and triangles that a ray core reads.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@
 
 namespace raygate {
 
-/// 512 bits; bit 0 is the lowest of words[0].
+/// A 512-bit line; bit 0 is the lowest of words[0].
 struct alignas(64) MemoryLine {
   std::array<std::uint32_t, 16> words{};
 
-  /// Bits `first` to `first + width - 1`; width is 1 to 32.
+  /// Returns bits `first` to `first + width - 1`; width is 1 to 32.
   [[nodiscard]] std::uint32_t bits(unsigned first, unsigned width) const {
     std::uint64_t two = words[first / 32];
     if (first / 32 < 15) two |= std::uint64_t{words[first / 32 + 1]} << 32;
     return static_cast<std::uint32_t>(two >> first % 32 & ((std::uint64_t{1} << width) - 1));
   }
-  /// Writes `value`; the bits must be zero before.
+  /// Writes `value` at bit `first`. The bits must be 0 before.
   void set_bits(unsigned first, std::uint64_t value) {
     words[first / 32] |= static_cast<std::uint32_t>(value << first % 32);
     if (first % 32 != 0 && first / 32 < 15) {
@@ -36,8 +36,8 @@ struct alignas(64) MemoryLine {
 };
 static_assert(sizeof(MemoryLine) == 64);
 
-/// Up to seven children of an inner node with their boxes on the node's grid: on axis k, q means
-/// exactly origin[k] + q 2^(exponent[k] - 127).
+/// An inner node: up to seven children with their boxes on the node's grid. On axis k, the grid
+/// coordinate q stands for exactly origin[k] + q 2^(exponent[k] - 127).
 struct NodeLine {
   static constexpr int kChildren = 7;
   static constexpr std::uint32_t kAbsent = 0,
@@ -48,13 +48,13 @@ struct NodeLine {
     std::uint32_t kind = kAbsent;
     std::array<std::uint8_t, 3> low{}, high{};
 
-    /// Number of lines in memory.
+    /// Returns the number of lines in memory.
     [[nodiscard]] std::uint32_t size() const { return kind == kInner ? 1 : kind; }
   };
 
   glm::vec3 origin{0.0f};
   std::array<int, 3> exponent{1, 1, 1};  ///< 1 to 254
-  std::uint32_t base = 0;                ///< line of the first child; the others follow
+  std::uint32_t base = 0;                ///< line of the first child; the other children follow
   std::array<Child, kChildren> child{};
 
   NodeLine() = default;
@@ -93,8 +93,8 @@ struct NodeLine {
 /// A triangle with its indices.
 struct TriangleLine {
   Corners corners{};
-  std::uint32_t index = 0;      ///< the number of this line
-  std::uint32_t rank = 0;       ///< for hits at equal t the lowest rank is the nearest
+  std::uint32_t index = 0;      ///< index of this line
+  std::uint32_t rank = 0;       ///< of hits at equal t, the lowest rank is the nearest
   std::uint32_t primitive = 0;  ///< the host's primitive index, not read by the core
 
   TriangleLine() = default;
@@ -122,11 +122,11 @@ class MemoryImage {
   static constexpr std::uint32_t kRoot = 0;
   static constexpr int kMostDepth = Bvh::kMaxDepth;  ///< ray_core_pkg::Levels
 
-  /// Throws std::invalid_argument for a tree with instances, which must be flattened.
+  /// Throws std::invalid_argument for a BVH with instances, which must be flattened.
   explicit MemoryImage(const Bvh& bvh, int threads = 1);
 
   [[nodiscard]] std::span<const MemoryLine> lines() const { return lines_; }
-  /// Convert between a primitive of the Bvh and the line of its triangle; kNoTriangle: none.
+  /// Convert between a primitive of the BVH and the line of its triangle; kNoTriangle: none.
   static constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
   [[nodiscard]] std::uint32_t line_of(std::uint32_t primitive) const {
     return primitive < primitive_lines_.size() ? primitive_lines_[primitive] : kNoTriangle;
@@ -136,9 +136,9 @@ class MemoryImage {
         line < lines_.size() ? TriangleLine(lines_[line]).primitive : kNoTriangle;
     return line_of(primitive) == line ? primitive : kNoTriangle;
   }
-  /// Returns the bytes of the memory, as --dump-image writes them: line n is at byte 64 n.
+  /// Returns the bytes of the memory, in the format of --dump-image: line n is at byte 64 n.
   [[nodiscard]] std::string_view bytes() const;
-  /// Number of nodes on the longest path from the root to a leaf, from 1 to kMostDepth.
+  /// Returns the number of nodes on the longest path from the root to a leaf, from 1 to kMostDepth.
   [[nodiscard]] int depth() const { return depth_; }
 
  private:

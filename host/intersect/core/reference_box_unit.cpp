@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdlib>
 
-// The names and steps are those of hw/ray_core/box_unit.sv; its header has the proof.
+// Names and steps are those of hw/ray_core/box_unit.sv, which has the proof.
 
 namespace raygate {
 namespace {
@@ -14,28 +14,28 @@ constexpr std::int64_t kWhole = std::int64_t{1} << kFracBits;  // 2^E, in units
 
 int field(float x) { return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23 & 0xFF); }
 
-/// With its integer bit, which zeros and subnormals get too: they are below all units.
+/// Returns the significand with its integer bit, also for zeros and subnormals (below all units).
 std::int64_t significand(float x) {
   return (std::bit_cast<std::uint32_t>(x) & 0x7FFFFF) | 0x800000;
 }
 
-/// x >> amount for any amount: 0 beyond the word, x itself for less than none.
+/// Returns x >> amount for any amount: 0 beyond the word size, x if negative.
 std::int64_t shift_right(std::int64_t x, int amount) {
   if (amount <= 0) return x;
   return amount > 63 ? 0 : x >> amount;
 }
 
-/// An axis, seen from the ray: planes of the grid are at a +- q s / 256, in units.
+/// An axis, seen from the ray. Planes of the grid are at a +- q s / 256, in units.
 struct Axis {
   bool back;               // the ray goes towards smaller q
-  std::int64_t near, far;  // a without and with room for errors
+  std::int64_t near, far;  // a without and with the error margin
   std::int64_t step;       // s
 };
 
 }  // namespace
 
 BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
-  // How far the ray may go before it has left the node: 2^E.
+  // The ray surely leaves the node before 2^E.
   float distance[3];
   int exponent = field(ray.t_max) == 0xFF ? 511 : field(ray.t_max) + 1;
   for (int k = 0; k < 3; ++k) {
@@ -50,7 +50,7 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
   Axis axes[3];
   for (int k = 0; k < 3; ++k) {
     const bool back = std::signbit(ray.inverse[k]);
-    const int cap = exponent - node.exponent[k] + 129;  // field of the largest inverse
+    const int cap = exponent - node.exponent[k] + 129;  // exponent field of the largest inverse
     const bool capped = field(ray.inverse[k]) >= cap || field(ray.inverse[k]) == 0xFF;
     float inverse = ray.inverse[k];
     if (capped) {
@@ -74,7 +74,7 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
   const int amount = exponent + 1 - field(ray.t_max);
   const std::int64_t limit = amount <= 1 ? kWhole : shift_right(significand(ray.t_max), amount) + 1;
 
-  std::array<std::int64_t, NodeLine::kChildren> keys;  // {left out, enter, number}
+  std::array<std::int64_t, NodeLine::kChildren> keys;  // {skipped, enter, number}
   std::array<std::uint32_t, NodeLine::kChildren> offset;
   std::uint32_t next = 0;
   int size = 0;

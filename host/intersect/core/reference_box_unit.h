@@ -1,4 +1,4 @@
-// Reference box unit: the ray core's box unit in C++, bit for bit.
+// Bit-exact C++ reference model of the ray core's box unit.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@ struct BoxRay {
   glm::vec3 origin{0.0f};
   glm::vec3 inverse{0.0f};  ///< 1 / I_k, rounded to nearest; infinite if I_k is 0
   float t_max = 0.0f;       ///< positive or +infinity: hits beyond it do not count
-  bool no_cull = false;     ///< all children are entered
+  bool no_cull = false;     ///< the ray enters all children
 };
 
 /// The children that a ray enters, nearest first (a group in hw/ray_core/ray_core_pkg.sv).
 struct BoxGroup {
   struct Entry {
     std::uint32_t enter = 0;   ///< lower bound of t, in units of 2^(exponent - 127 - 12)
-    std::uint32_t offset = 0;  ///< of the child's first line from `base`
-    std::uint32_t count = 0;   ///< of a leaf's triangles; 0: an inner node
+    std::uint32_t offset = 0;  ///< first line of the child, relative to `base`
+    std::uint32_t count = 0;   ///< number of triangles of a leaf; 0: an inner node
 
     friend bool operator==(const Entry&, const Entry&) = default;
   };
@@ -36,7 +36,7 @@ struct BoxGroup {
 
 [[nodiscard]] BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray);
 
-/// Whether the entry surely starts beyond `limit`, which is not negative; +infinity: no limit.
+/// Returns whether the entry is surely beyond `limit`, at least 0; +infinity: no limit.
 [[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
 
 }  // namespace raygate

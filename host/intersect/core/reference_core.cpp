@@ -12,13 +12,12 @@
 namespace raygate {
 namespace {
 
-/// The nearest of a ray's sure hits, whose distances are off by fewer than 2^t_error numbers.
+/// The nearest of a ray's sure hits, whose distances have an error of fewer than 2^t_error floats.
 ///
-/// Kept is the hit whose upper bound is the smallest; what is surely not farther than that, and
-/// not kept, is given to the host. The limit stands for the upper bound of the hit before the
-/// first.
+/// Keeps the hit with the smallest upper bound. Other hits that are not surely farther than this
+/// bound go to the host. Before the first hit, the limit is the upper bound.
 struct NearestSureHit {
-  std::uint32_t t_max_word;  ///< of a float: no exact t at or beyond it matters any more
+  std::uint32_t t_max_word;  ///< bits of a float; hits with exact t at or beyond it are irrelevant
   bool found = false;
   std::uint32_t triangle = CoreRay::kNoTriangle;
   std::uint32_t t_word = 0;
@@ -28,7 +27,7 @@ struct NearestSureHit {
 
   [[nodiscard]] float limit() const { return std::bit_cast<float>(t_max_word); }
 
-  /// Takes a hit; the triangle that must go to the host for that, or kNoTriangle.
+  /// Takes a hit. Returns the triangle that must go to the host instead, or kNoTriangle.
   std::uint32_t take(std::uint32_t number, float t, std::uint32_t error) {
     constexpr std::uint32_t kInfinity = 0x7F800000;
     const std::uint32_t word = std::bit_cast<std::uint32_t>(t), margin = 1u << error;
@@ -46,7 +45,7 @@ struct NearestSureHit {
     return open;
   }
 
-  /// What exact arithmetic says, whatever was kept.
+  /// Sets the hit that exact arithmetic determined, regardless of the kept one.
   void settle(std::uint32_t number, float t, std::uint32_t error) {
     found = true;
     triangle = number;
@@ -55,12 +54,12 @@ struct NearestSureHit {
   }
 };
 
-/// The nearest hit among a ray's doubts, as hw/ray_core/exact_resolver.sv finds it.
+/// Finds the nearest hit among a ray's doubts, as hw/ray_core/exact_resolver.sv does.
 class DoubtResolver {
  public:
   DoubtResolver(std::span<const MemoryLine> lines, const CoreRay& ray) : lines_(lines), ray_(ray) {}
 
-  /// Takes a doubt; whether it `is_hit` surely.
+  /// Takes a doubt; `is_hit`: it is known to be a hit.
   void take(std::uint32_t line, bool is_hit) {
     const bool is_open = candidate_ != CoreRay::kNoTriangle;
     if ((is_hit && !is_open) ||
@@ -68,8 +67,7 @@ class DoubtResolver {
       candidate_ = line;
     }
   }
-  /// The candidate that is nearer than the nearest sure hit, or than the limit where there is none;
-  /// or kNoTriangle.
+  /// Returns the candidate if it is nearer than the sure hit or the limit, else kNoTriangle.
   std::uint32_t settle(const NearestSureHit& nearest) {
     if (candidate_ == CoreRay::kNoTriangle) return candidate_;
     limit_ = nearest.limit();
@@ -84,7 +82,7 @@ class DoubtResolver {
  private:
   using Against = ExactRequest::Against;
 
-  /// Whether the triangle of `line` is hit, and nearer than that of `other` or the limit.
+  /// Returns whether the triangle at `line` is hit, and nearer than `other` or the limit.
   bool ask(std::uint32_t line, bool asks_hit, Against against, std::uint32_t other) {
     const TriangleLine triangle(lines_[line]);
     ExactRequest request{.ray = ray_.ray,
@@ -108,10 +106,10 @@ class DoubtResolver {
   std::uint64_t clocks_ = 0;
 };
 
-/// Inner nodes of a group that wait.
+/// A group with inner nodes to visit.
 struct OpenGroup {
   BoxGroup group;
-  int next = 0;  // entry
+  int next = 0;  // index of the next entry
 };
 
 int depth_of(const std::vector<OpenGroup>& stack) { return static_cast<int>(stack.size()); }
@@ -175,7 +173,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
   std::vector<OpenGroup> stack;
   std::uint32_t line = MemoryImage::kRoot;
   std::size_t entered = 0;
-  bool shared = false;  // has groups that rays share, see traversal.sv
+  bool shared = false;  // has groups on the shared stack, see traversal.sv
   CoreResult end{.tag = ray.tag};
   const auto is_read = [&](std::uint32_t number) {
     if (number < lines.size()) return true;
@@ -193,7 +191,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     ++entered;
     const BoxRay box_ray{ray.ray.origin, 1.0f / ray.ray.direction, nearest.limit(), ray.no_cull};
     const BoxGroup group = enter_boxes(NodeLine(lines[line]), box_ray);
-    // Leaves first, then what is inside: as the core does.
+    // Leaves first, then inner nodes, as in the core.
     OpenGroup inside{group};
     inside.group.size = 0;
     for (int n = 0; n < group.size; ++n) {
@@ -214,7 +212,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
                        nearest.limit());
     };
     if (ended) break;
-    // Of those that are shared all have a turn.
+    // Groups on the shared stack are always scheduled.
     while (!stack.empty() && depth_of(stack) <= stack_depth_ && is_done(stack.back())) {
       stack.pop_back();
     }
@@ -225,7 +223,7 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     }
     OpenGroup& top = stack.back();
     line = top.group.base + top.group.entry[static_cast<std::size_t>(top.next++)].offset;
-    // A group that has given its last node makes room.
+    // A group without further nodes is popped.
     if (top.next == top.group.size) stack.pop_back();
     const bool shares = depth_of(stack) >= stack_depth_;
     counters_.overflows += shares && !shared;

@@ -1,16 +1,15 @@
-// Reference core: the ray core in C++ without clocks, one ray after the other.
+// Reference model of the ray core in C++, without timing: one ray at a time.
 #pragma once
 
 #include "host/intersect/core/core_unit.h"
 
 namespace raygate {
 
-/// Boxes, records and tests have the hardware's bits. Tests are done one after the other; the
-/// hardware overlaps them, so it can do more tests and leave other doubts. Lines that trace() is
-/// not given are memory errors.
+/// Boxes, records and tests are bit-exact. Tests are sequential, while the hardware overlaps them,
+/// so it may do more tests and report other doubts. Reading beyond `lines` is a memory error.
 class ReferenceCore : public CoreUnit {
  public:
-  /// `stack_depth`, `exact`: see ray_core.sv.
+  /// See ray_core.sv for `stack_depth` and `exact`.
   explicit ReferenceCore(int stack_depth = kStackDepth, bool exact = false)
       : stack_depth_(stack_depth), exact_(exact) {}
 

@@ -13,7 +13,7 @@ namespace {
 
 using Wide = __int128;
 
-// Clocks from the request to the first step; from a step to the clock in which its sum is seen.
+// Clocks from the request to the first step, and from a step to the clock that sees its sum.
 constexpr int kFirstStep = 5, kSeen = 4;
 
 /// A binary32 number as significand 2^(exponent - 150).
@@ -31,7 +31,7 @@ struct Fields {
   }
 };
 
-/// The least and the largest exponent of numbers that are not 0.
+/// The smallest and the largest exponent of non-zero numbers.
 struct Range {
   int low = 255, high = 0;
 
@@ -44,11 +44,11 @@ struct Range {
   }
 };
 
-/// Digits of a number, the lowest first, balanced.
+/// Digits of a number, least significant first, balanced.
 using Number = std::vector<std::int64_t>;
 using Vector = std::array<Number, 3>;
 
-/// x y, or its negative.
+/// The product x y, or its negative.
 struct Term {
   const Number& x;
   const Number& y;
@@ -117,7 +117,7 @@ class Machine {
   }
 
  private:
-  /// Products in a column, at most.
+  /// Returns the maximum number of products in a column.
   static unsigned products(int width) { return static_cast<unsigned>(6 * count(253, width)); }
   static int count(int spread, int width) { return (spread + 27 + width - 1) / width; }
   [[nodiscard]] int count(int spread) const { return count(spread, width_); }
@@ -147,7 +147,7 @@ class Machine {
     return found;
   }
 
-  /// Takes the low digit of a column's sum away.
+  /// Extracts the lowest digit of a column's sum.
   std::int64_t take_digit(Wide& sum) const {
     const Wide half = Wide{1} << (width_ - 1);
     const Wide digit = ((sum + half) & (2 * half - 1)) - half;
@@ -155,7 +155,7 @@ class Machine {
     return static_cast<std::int64_t>(digit);
   }
 
-  /// Digit k of significand 2^shift.
+  /// Returns digit k of significand 2^shift.
   [[nodiscard]] Wide slice(std::uint32_t significand, int shift, int k) const {
     const int by = shift - width_ * k;
     if (by >= width_ || by <= -24) return 0;
@@ -163,7 +163,7 @@ class Machine {
                   : (Wide{significand} << by) & ((Wide{1} << width_) - 1);
   }
 
-  /// x minus y, in units of 2^(unit - 150), a digit in each clock.
+  /// Returns x - y, in units of 2^(unit - 150), one digit per clock.
   Number difference(float x, float y, int unit, int digits) {
     const Fields a(x), b(y);
     Number number;
@@ -192,8 +192,8 @@ class Machine {
     }
     return vector;
   }
-  /// t = D / S in units of 2^(unit - direction's unit) against the limit: D times the one, S times
-  /// the limit times the other, in the smaller one's units. (One has a bit, the limit 24.)
+  /// Loads the limit for comparison with t = D / S in units of 2^(unit - direction's unit):
+  /// compares D `one` with S `limit`, both in the smaller unit. (`one` has one bit, `limit` 24.)
   void load_limit(Number& limit, Number& one) {
     const Fields fields(request_.limit);
     const int gap = unit_ - (fields.exponent + direction_unit_ - 150);
@@ -212,7 +212,7 @@ class Machine {
     one = load(1, std::max(gap, 0));
   }
 
-  /// The products of a column. Adds them up, a clock each; none at all take one, too.
+  /// Returns the sum of a column's products. Takes one clock per product, at least one.
   Wide column(std::initializer_list<Term> terms, int k) {
     const int x = static_cast<int>(terms.begin()->x.size());
     const int y = static_cast<int>(terms.begin()->y.size());
@@ -249,21 +249,22 @@ class Machine {
     return {component(1, 2), component(2, 0), component(0, 1)};
   }
 
-  /// Of the columns' sum from the top: as soon as those below cannot change it.
+  /// Returns the sign of the columns' sum, from the top down, once lower columns cannot change it.
   int sign(std::initializer_list<Term> terms) {
     const auto top = static_cast<int>(terms.begin()->x.size() + terms.begin()->y.size()) - 2;
     const Wide sure = Wide{1} << sure_bit_;
     Wide sum = 0;
     bool known = false;
     for (int k = top; k >= 0; --k) {
-      if (known && clock_ > answer_ - 1) break;  // it is seen, and the next instruction follows
+      // The sign is known, and the next instruction follows.
+      if (known && clock_ > answer_ - 1) break;
       const Wide more = column(terms, k);
       if (known) continue;
       sum = (sum << width_) + more;
       known = k == 0 || sum >= sure || sum < -sure;
       if (known) answer_ = clock_ - 1 + kSeen + 1;
     }
-    // Steps that had set out when it was seen count until then.
+    // Steps already in flight at that time still take their clocks.
     clock_ = std::min(clock_, answer_);
     return (sum > 0) - (sum < 0);
   }
@@ -273,8 +274,8 @@ class Machine {
 
   const ExactRequest& request_;
   int width_, sure_bit_, unit_, direction_unit_, digits_, direction_digits_;
-  int clock_ = kFirstStep;  // of the next step
-  int answer_ = 0;          // the clock after the latest sign was seen
+  int clock_ = kFirstStep;  // clock of the next step
+  int answer_ = 0;          // clock after the last sign was known
   Vector a_, direction_;
 };
 

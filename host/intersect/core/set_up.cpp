@@ -11,7 +11,7 @@
 namespace raygate {
 namespace {
 
-// As in set_up_unit.sv, which says why they are what they are.
+// Constants of set_up_unit.sv, where they are explained.
 constexpr int kLeastField = 27;
 constexpr int kBoundShift = 20;
 constexpr int kBias = 127;

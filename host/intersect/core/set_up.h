@@ -9,8 +9,8 @@
 
 namespace raygate {
 
-/// A record computed in binary32, with larger bounds than make_record's. d is NaN if its sign is
-/// not sure, or if N or d are too inaccurate for a hit.
+/// A record computed in binary32, with larger bounds than those of make_record. d is NaN if its
+/// sign is not sure, or if N or d are too inaccurate for a hit.
 struct SetUpRecord {
   PolygonRecord record;
   std::uint32_t normal_error = 0;    ///< number of bits that cancelled in N, unless d is NaN
@@ -20,12 +20,11 @@ struct SetUpRecord {
 /// Returns the record of set_up_unit, bit for bit, for any floats including NaN and infinities.
 [[nodiscard]] SetUpRecord set_up(const glm::vec3& origin, const Corners& triangle);
 
-/// Whether a hit of such a record is sure: set_up_pkg::is_good_hit. `grazing` is
-/// HitDistance::error.
+/// Returns whether a hit is sure (set_up_pkg::is_good_hit). `grazing` is HitDistance::error.
 [[nodiscard]] bool is_good_hit(const SetUpRecord& set_up, std::uint32_t grazing);
 
-/// Fewer than 2^(this) floats lie between the t of a good hit and the exact one:
-/// set_up_pkg::t_error_exponent.
+/// Returns e such that fewer than 2^e floats lie between t of a good hit and the exact t
+/// (set_up_pkg::t_error_exponent).
 [[nodiscard]] std::uint32_t t_error_exponent(const SetUpRecord& set_up, std::uint32_t grazing);
 
 }  // namespace raygate

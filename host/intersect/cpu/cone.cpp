@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kGroups = RayPacket::kGroups;
 
-/// The axis along which the active rays go farthest, by the one that goes least; -1 where that is
-/// less than 1/4 on every axis.
+/// Returns the axis on which the smallest component of the active rays is largest, or -1 if it is
+/// below 1/4 on every axis.
 RAYGATE_INLINE int t_scale_axis(const RayPacket& block, const LaneMask* active) {
   FloatLanes least[3] = {FloatLanes{} + 4.0f, FloatLanes{} + 4.0f, FloatLanes{} + 4.0f};
   for (int g = 0; g < kGroups; ++g) {
@@ -35,7 +35,7 @@ RAYGATE_INLINE int t_scale_axis(const RayPacket& block, const LaneMask* active) 
   return axis;
 }
 
-/// Lane g of the result is the largest of all lanes of each[g]; no NaN.
+/// Returns in lane g the largest lane of each[g]. There must be no NaN.
 RAYGATE_INLINE FloatLanes largest_of_each(const FloatLanes (&each)[kGroups]) {
   FloatLanes pairs[4], fours[2];
   for (std::size_t i = 0; i < 4; ++i) {
@@ -55,8 +55,8 @@ RAYGATE_INLINE FloatLanes largest_of_each(const FloatLanes (&each)[kGroups]) {
   return low > high ? low : high;
 }
 
-/// The directions of four rays, transposed. A direction is loaded with the float before it, which
-/// is the ray's too.
+/// Loads the directions of four rays, transposed. Each load includes the float before the
+/// direction, which belongs to the same ray.
 RAYGATE_INLINE void load_directions(const Ray* const (&rays)[kQuad], FloatQuad (&components)[3]) {
   static_assert(offsetof(Ray, direction) + sizeof(Ray::direction) == sizeof(Ray));
   FloatQuad rows[kQuad];
@@ -70,20 +70,20 @@ RAYGATE_INLINE void load_directions(const Ray* const (&rays)[kQuad], FloatQuad (
 
 std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
   return in_vectors([&](auto) RAYGATE_BODY {
-    LaneMask positive[3] = {}, negative[3] = {};  // whether any
+    LaneMask positive[3] = {}, negative[3] = {};  // whether any ray is
     std::uint64_t unscaled = 0;
     for (int group = 0; group < kGroups; ++group) {
       const std::size_t begin = std::size_t(group) * kLanes;
       const std::size_t count =
           begin < rays.size() ? std::min<std::size_t>(kLanes, rays.size() - begin) : 0;
-      const Ray* of[2][kQuad];  // past the end: the last one
+      const Ray* of[2][kQuad];  // beyond the end: the last ray
       for (std::size_t i = 0; i < kLanes; ++i) {
         of[i / kQuad][i % kQuad] = &rays[std::min(begin + i, rays.size() - 1)];
       }
       FloatQuad half[2][3];
       load_directions(of[0], half[0]);
       load_directions(of[1], half[1]);
-      IntLanes largest = {};  // of each ray's magnitudes: as bits, in the order of floats
+      IntLanes largest = {};  // largest magnitude of each ray, as bits of a float
       for (int k = 0; k < 3; ++k) {
         const FloatLanes d =
             __builtin_shufflevector(half[0][k], half[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
@@ -116,8 +116,8 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
 
 void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones) {
   in_vectors([&](auto) RAYGATE_BODY {
-    // Each rounding of what follows is off by a factor 1 + 2^-24 at most. Components over a t_scale
-    // are below 8, so that two roundings have them off by less than kScaleError.
+    // Each rounding changes a value by a factor of at most 1 + 2^-24. Components over a t_scale are
+    // below 8, so after two roundings their error is below kScaleError.
     constexpr float kScaleError = 0x1p-20f;
     constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
     cones.groups = 0;
@@ -159,7 +159,7 @@ void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Con
       FloatLanes smallest = (size - cones.radius[k]) * kDown;
       smallest = smallest > 0.0f ? smallest : FloatLanes{};
       cones.bounds8.set(k, octant, smallest, largest);
-      // The inverse of the largest is the smallest, and the other way round.
+      // The inverse of the largest value is the smallest, and vice versa.
       const float sign = (octant >> k & 1) != 0 ? -1.0f : 1.0f;
       const FloatLanes never = FloatLanes{} - std::numeric_limits<float>::infinity();
       const FloatLanes near = present ? -sign * cones.bounds8.inverse_near[k] : never;

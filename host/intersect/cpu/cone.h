@@ -10,14 +10,14 @@
 
 namespace raygate {
 
-/// The directions of up to 64 rays, ray k of group g being number 8 g + k of the block.
+/// The directions of up to 64 rays. Ray k of group g has index 8 g + k.
 struct RayPacket {
   static constexpr int kGroups = 8, kRays = kGroups * kLanes;
 
   FloatLanes direction[3][kGroups];
-  LaneMask negative[3][kGroups];  ///< whose component is below 0
-  LaneMask usable[kGroups];       ///< see is_usable; no bits beyond the end of the rays
-  std::uint32_t octants;          ///< bit i: usable rays may go into octant i; else none does
+  LaneMask negative[3][kGroups];  ///< rays with a negative component
+  LaneMask usable[kGroups];       ///< see is_usable; 0 for absent rays
+  std::uint32_t octants;          ///< bit i: some usable ray may be in octant i
 
   [[nodiscard]] LaneMask into_octant(int octant, int group) const {
     LaneMask lanes = usable[group];
@@ -28,24 +28,23 @@ struct RayPacket {
   }
 };
 
-/// Loads up to 64 rays. Bit k of the result is set where ray k is usable but not scaled.
+/// Loads up to 64 rays. Returns a mask of the rays that are usable but not scaled.
 [[nodiscard]] std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block);
 
-/// Cones around rays of one octant, whatever the lengths of their directions. Lane g of a member
-/// stands for group g; absent groups have a radius of 0. A ray I stands here as I / t_scale, where
-/// its t_scale is one component's magnitude, the same one's for all, or 1 for all; its t becomes
-/// t_scale t. On each axis |I_k / t_scale - center[k][g]| <= radius[k][g].
+/// Bounding cones of rays in one octant, independent of the lengths of directions. Lane g belongs
+/// to group g; absent groups have radius 0. A ray I is represented by I / t_scale, where t_scale is
+/// the magnitude of one component, the same for all rays, or 1 for all; t then becomes t_scale t.
+/// On each axis |I_k / t_scale - center[k][g]| <= radius[k][g].
 struct Cones {
-  LaneMask active[RayPacket::kGroups];     ///< the rays of each group
-  LaneMask groups;                         ///< the groups with any
-  FloatLanes t_scale[RayPacket::kGroups];  ///< of each ray; an absent one's is 1
+  LaneMask active[RayPacket::kGroups];     ///< rays of each group
+  LaneMask groups;                         ///< groups with any ray
+  FloatLanes t_scale[RayPacket::kGroups];  ///< of each ray; 1 for absent rays
   FloatLanes center[3], radius[3];
-  PacketBounds8 bounds8;  ///< cutoffs are left to the caller
-  PacketBounds whole;     ///< around all groups
+  PacketBounds8 bounds8;  ///< the caller sets the cutoffs
+  PacketBounds whole;     ///< bounds of all groups
 };
 
-/// Cones around the block's rays in `cones.active`, which are of this octant. `cones.groups` is
-/// found here, and so is all else.
+/// Computes all members for the packet's rays in `cones.active`, which must be in this octant.
 void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones);
 
 }  // namespace raygate

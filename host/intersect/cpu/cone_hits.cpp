@@ -11,18 +11,18 @@
 
 namespace raygate {
 
-/// Planes of the triangles that a packet's rays hit.
+/// Planes of the triangles that the rays of a packet hit.
 struct PacketIntersector::SeenPlanes {
   static constexpr int kMost = RayPacket::kRays;
 
   int count = 0;
   std::uint32_t primitives[kMost + 1] = {};
-  std::uint8_t of_rays[RayPacket::kGroups][kLanes] = {};  ///< the number of each ray's
-  LaneMask even = 0;                                      ///< the groups with one plane
-  float words[4][kMost];                                  ///< as Planes has them
+  std::uint8_t of_rays[RayPacket::kGroups][kLanes] = {};  ///< index of each ray's plane
+  LaneMask even = 0;                                      ///< groups whose rays hit the same plane
+  float words[4][kMost];                                  ///< in the format of Planes
   std::int32_t largest[kMost];                            ///< exponent field of N
 
-  /// What the planes that a group's rays hit have.
+  /// Returns a value of the planes that a group's rays hit, one per lane.
   template <class Word>
   [[nodiscard]] RAYGATE_INLINE auto get(const Word (&of)[kMost], int group) const {
     const std::uint8_t(&at)[kLanes] = of_rays[group];
@@ -32,7 +32,7 @@ struct PacketIntersector::SeenPlanes {
   }
 };
 
-/// pairs[i] = first[i], second[i].
+/// Sets pairs[i] to {first[i], second[i]}.
 RAYGATE_INLINE void pair_up(const DoubleQuad& first, const DoubleQuad& second,
                             Vec<double, 2>* pairs) {
   pairs[0] = __builtin_shufflevector(first, second, 0, 4);
@@ -41,11 +41,11 @@ RAYGATE_INLINE void pair_up(const DoubleQuad& first, const DoubleQuad& second,
   pairs[3] = __builtin_shufflevector(first, second, 3, 7);
 }
 
-/// Hands the nearest hits over, with their P where that is asked for.
+/// Writes the nearest hits, with P if requested.
 void PacketIntersector::finish(const ConeTraversal& walk) {
   in_vectors([&](auto) RAYGATE_BODY {
     if (!query_.work.empty()) put_work(walk);
-    std::uint64_t rays = 0;  // that hit something
+    std::uint64_t rays = 0;  // rays with a hit
     for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
       rays |= std::uint64_t{0xFF & ~sign_mask(walk.primitive[g])} << (8 * g);
@@ -75,14 +75,14 @@ RAYGATE_INLINE void PacketIntersector::put(const ConeTraversal& walk, std::uint6
   }
 }
 
-/// The planes of what these rays hit, few of them twice.
+/// Collects the planes that these rays hit, mostly without duplicates.
 RAYGATE_INLINE void PacketIntersector::find_planes(const ConeTraversal& walk, std::uint64_t rays,
                                                    SeenPlanes& planes) const {
-  std::uint8_t last[SeenPlanes::kMost] = {};  // by hash: the last plane of such a primitive
+  std::uint8_t last[SeenPlanes::kMost] = {};  // by hash: the last plane of a primitive
   const auto number_of = [&](std::int32_t hit) __attribute__((always_inline)) {
     const auto primitive = static_cast<std::uint32_t>(hit);
     std::uint8_t& number = last[primitive % SeenPlanes::kMost];
-    // Without a branch, which would be a guess.
+    // Branchless, as a branch would be unpredictable.
     const int known =
         (number < planes.count ? 1 : 0) & (planes.primitives[number] == primitive ? 1 : 0);
     number = static_cast<std::uint8_t>(known != 0 ? number : planes.count);
@@ -123,7 +123,7 @@ RAYGATE_INLINE void PacketIntersector::find_planes(const ConeTraversal& walk, st
   }
 }
 
-/// P has the bits of plane_point.
+/// Writes hits with P, which has the bits of plane_point.
 RAYGATE_INLINE void PacketIntersector::put_with_points(const ConeTraversal& walk,
                                                        std::uint64_t rays) {
   SeenPlanes planes;
@@ -138,7 +138,7 @@ RAYGATE_INLINE void PacketIntersector::put_with_points(const ConeTraversal& walk
     IntLanes error_bits;
     plane_points(n, planes.get(planes.words[3], g), planes.get(planes.largest, g),
                  {from[0][g], from[1][g], from[2][g]}, point, error_bits);
-    // What is to be written for each ray.
+    // The words to be written for each ray.
     const FloatLanes error = float_of(error_bits), primitive = float_of(walk.primitive[g]);
     FloatQuad rows[2][kQuad] = {
         {low_half(primitive), low_half(point[0]), low_half(point[1]), low_half(point[2])},

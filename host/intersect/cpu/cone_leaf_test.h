@@ -1,5 +1,5 @@
-// Leaf tests of a packet: one triangle against eight rays or, where few rays reach the leaf, one
-// ray against four triangles.
+// Leaf tests of a packet: one triangle against eight rays or, if few rays reach the leaf, one ray
+// against four triangles.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,26 @@
 #include "host/intersect/cpu/cone_traversal.h"
 #include "host/intersect/cpu/quad_test.h"
 
-// Why a group is never wrongly spared a triangle
+// Why a group never skips a triangle wrongly
 //
 // Let F be an edge's words, E the exact edge, b its bound, L and u as in quad_record.h, C the
-// group's middle and R its radius, I one of its rays over its t_scale; components are below 8. As
-// it has there for components below 2, float32(C . F) is off C . E by less than 8 (4 + 3.001) u L +
-// 2^-143 < 3.9 b, and b >= kQuadBound u L. And |I . E - C . E| <= R |E|_1 <= R L (1 + 4 u). So
-// where float32(C . F) < -b (4.1 + R / (kQuadBound u)), I . E < 0 for all the group's rays: the
-// edge has them all on its wrong side, and all miss. `slack`, the factor of b, is rounded up by
-// 2^-20 of itself, which covers the roundings of slack and of the product.
+// group's centre and R its radius, and I one of its rays over its t_scale; components are below 8.
+// As derived there for components below 2, float32(C . F) differs from C . E by less than 8 (4 +
+// 3.001) u L + 2^-143 < 3.9 b, and b >= kQuadBound u L. And |I . E - C . E| <= R |E|_1 <= R L (1 +
+// 4 u). So if float32(C . F) < -b (4.1 + R / (kQuadBound u)), I . E < 0 for all the group's rays:
+// all are outside of the edge and miss. `slack`, the factor of b, is rounded up by a factor of 1 +
+// 2^-20, which covers the rounding of slack and of the product.
 
 namespace raygate {
 
-/// I . E, or I . N, for eight directions.
+/// Computes I . E, or I . N, for eight directions.
 RAYGATE_INLINE void side_of(const FloatLanes& x, const FloatLanes& y, const FloatLanes& z,
                             const QuadRecord& record, int plane, int triangle, FloatLanes& side) {
   side = (x * record.word(plane, 0, triangle) + y * record.word(plane, 1, triangle)) +
          z * record.word(plane, 2, triangle);
 }
 
-/// The least of the edges' three.
+/// Computes the least value of the three edges.
 RAYGATE_INLINE void worst_side_of(const FloatLanes& x, const FloatLanes& y, const FloatLanes& z,
                                   const QuadRecord& record, int triangle, FloatLanes& worst) {
   FloatLanes side;
@@ -38,7 +38,7 @@ RAYGATE_INLINE void worst_side_of(const FloatLanes& x, const FloatLanes& y, cons
   worst = side < worst ? side : worst;
 }
 
-/// A factor of bounds for cones of these radii.
+/// Computes the factor of the edge bounds for cones of these radii.
 RAYGATE_INLINE void slack_of(const FloatLanes (&radius)[3], FloatLanes& slack) {
   FloatLanes largest = radius[0] > radius[1] ? radius[0] : radius[1];
   largest = largest > radius[2] ? largest : radius[2];
@@ -46,7 +46,7 @@ RAYGATE_INLINE void slack_of(const FloatLanes (&radius)[3], FloatLanes& slack) {
           (4.1f + largest * static_cast<float>(1.0 / (kQuadBound * 0x1p-24)));
 }
 
-/// The groups among these with rays that may hit the triangle.
+/// Returns those of `groups` with rays that may hit the triangle.
 template <Vectors kCode>
 RAYGATE_INLINE LaneMask groups_near(const ConeTraversal& walk, const QuadRecord& record,
                                     int triangle, LaneMask groups) {
@@ -57,9 +57,9 @@ RAYGATE_INLINE LaneMask groups_near(const ConeTraversal& walk, const QuadRecord&
   return groups & ~sign_mask<kCode>(worst < -(record.bounds[triangle] * walk.slack));
 }
 
-/// From bounds of |d| and of I . N to those of t, which is their quotient. Both are positive,
-/// whatever float32 makes of the latter. Four roundings each; a quotient that underflows is
-/// somewhere between 0 and the smallest normal float.
+/// Computes bounds of t from those of |d| and of I . N, t being their quotient. Both are positive,
+/// even if I . N is not in float32. There are four roundings each; a quotient that underflows is
+/// between 0 and the smallest normal float.
 template <class Lanes>
 RAYGATE_INLINE void bound_distance(Lanes& low, Lanes& high, const Lanes& least, const Lanes& most) {
   constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
@@ -72,11 +72,11 @@ RAYGATE_INLINE void bound_distance(Lanes& low, Lanes& high, const Lanes& least, 
   high = least > 0.0f ? high : Lanes{} + kInfinity;
 }
 
-/// What float32 says about a group's rays and a triangle.
+/// Result of testing a group's rays against a triangle in float32.
 struct GroupVerdict {
-  LaneMask hit;        ///< surely hit, ahead of the origin
-  LaneMask open;       ///< that, or in doubt
-  IntLanes low, high;  ///< of sure hits: bounds of t, as the bits of floats
+  LaneMask hit;        ///< sure hits, in front of the origin
+  LaneMask open;       ///< sure hits and doubts
+  IntLanes low, high;  ///< of sure hits: bounds of t, as bits of floats
 };
 
 template <Vectors kCode>
@@ -101,21 +101,21 @@ RAYGATE_INLINE void test_group(const ConeTraversal& walk, const QuadRecord& reco
   verdict.high = reinterpret_cast<IntLanes>(high);
 }
 
-/// Whether few enough of the groups' rays come to a leaf for tests ray by ray to be the faster.
-/// Without these `make speed` has 6 to 13 % fewer camera and shadow rays a second on sphere and
-/// landscape, 11 % fewer camera rays on teapot.
+/// Returns whether so few rays reach a leaf that tests ray by ray are faster. Without this, `make
+/// speed` has 6 to 13 % fewer camera and shadow rays per second on sphere and landscape, and 11 %
+/// fewer camera rays on teapot.
 RAYGATE_INLINE bool is_sparse(std::uint64_t rays, LaneMask groups, std::uint32_t triangles) {
   return static_cast<std::uint32_t>(std::popcount(rays)) <
          2 * static_cast<std::uint32_t>(std::popcount(groups)) * triangles;
 }
 
-/// As test_group, for one ray and the triangles that are there: lanes stand for these.
+/// Result like that of test_group, for one ray and the leaf's triangles, one per lane.
 struct RayVerdict {
   LaneMask hit, open;
   FloatQuad low, high;
 };
 
-/// One direction and two planes of four triangles each.
+/// Computes the sides of one direction for two planes of four triangles each.
 RAYGATE_INLINE void sides_of(const float (&direction)[3], const float (&planes)[3][2][kQuad],
                              FloatQuad (&sides)[2]) {
   const FloatLanes x = load<FloatLanes>(planes[0][0]), y = load<FloatLanes>(planes[1][0]),

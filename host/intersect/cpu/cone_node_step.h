@@ -9,7 +9,7 @@
 
 namespace raygate {
 
-/// PacketBounds8 around each ray of a group, as tight as can be.
+/// Computes the tightest PacketBounds8 around each ray of a group.
 RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   PacketBounds8& bounds8 = walk.ray_bounds8[group];
   constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
@@ -23,7 +23,7 @@ RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   walk.split |= 1u << group;
 }
 
-/// The children that any of the rays, which are of these groups, may meet; entry[i] is where.
+/// Returns the children that any of `rays`, in `groups`, may meet; entry[i] is the distance.
 template <Vectors kCode>
 RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& node,
                                  std::uint64_t rays, LaneMask groups, FloatLanes& entry) {
@@ -40,7 +40,7 @@ RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& nod
                                    bounds8.cutoff[lane], entry);
 }
 
-/// Puts a child of the node whose children are above `bottom` onto the stack, in its place.
+/// Inserts a child of a node into the stack, sorted by entry distance down to `bottom`.
 RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
                          const ConeTraversal::StackEntry& next) {
   tree.prefetch(next.child);
@@ -51,11 +51,11 @@ RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
   walk.stack[place] = next;
 }
 
-/// Rays of several groups, no more than that, go through a node one by one. Without this `make
-/// rays` has 0.7 as many light rays a second on sphereflake, 0.85 on landscape.
+/// Up to this number of rays in several groups pass a node one by one. Without this, `build/lab
+/// rays` has 0.7 times the light rays per second on sphereflake, 0.85 on landscape.
 constexpr int kFewRays = 8;
 
-/// step_through for a few rays.
+/// Does the work of step_through for a few rays.
 template <Vectors kCode>
 RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const BvhView& tree, const Bvh::Node& node,
                                     std::uint64_t rays) {
@@ -106,7 +106,7 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
   LaneMask met = meet_any<kCode>(walk, node, rays, groups, entry);
   LaneMask in[Bvh::kWidth];
   const bool ask = several(groups) && std::popcount(met) > kFew;
-  std::uint64_t counts = 0;  // byte g: how many children group g meets
+  std::uint64_t counts = 0;  // byte g: number of children that group g meets
   for (LaneMask left = met; left != 0; left &= left - 1) {
     const int i = std::countr_zero(left);
     in[i] = groups;

@@ -11,15 +11,15 @@
 
 namespace raygate {
 
-// Sets of a block's 64 rays: byte g holds the rays of group g.
+// Sets of a packet's 64 rays: byte g holds the rays of group g.
 
-/// Byte g is 1 where bit g is set, else 0.
+/// Returns a word in which byte g is 1 if bit g is set, else 0.
 RAYGATE_INLINE std::uint64_t ones_of(LaneMask groups) {
   const std::uint64_t bits = groups * 0x0101010101010101ull & 0x8040201008040201ull;
   return (bits + 0x7F7F7F7F7F7F7F7Full) >> 7 & 0x0101010101010101ull;
 }
 
-/// Bit g is set where byte g is not 0.
+/// Returns a mask in which bit g is set if byte g is not 0.
 RAYGATE_INLINE LaneMask groups_of(std::uint64_t rays) {
   const std::uint64_t any = ((rays & 0x7F7F7F7F7F7F7F7Full) + 0x7F7F7F7F7F7F7F7Full) | rays;
   return static_cast<LaneMask>(((any >> 7 & 0x0101010101010101ull) * 0x0102040810204080ull) >> 56);
@@ -31,45 +31,46 @@ RAYGATE_INLINE LaneMask rays_of(std::uint64_t rays, int group) {
 
 RAYGATE_INLINE bool several(std::uint64_t set) { return (set & (set - 1)) != 0; }
 
-/// Distances (t) are the bits of floats: positive floats are in the order of their bits.
+/// Traversal state. Distances (t) are stored as bits of positive floats, which have the same order.
 struct ConeTraversal {
   static constexpr int kGroups = RayPacket::kGroups;
 
-  /// What of the tree waits to be visited: the nearest last, as far as one node knows.
+  /// A subtree to visit. The nearest one, as far as known from its parent, is on top of the stack.
   struct StackEntry {
     Bvh::Child child;
     float entry;
-    std::uint64_t rays;  ///< those that may meet it
+    std::uint64_t rays;  ///< rays that may meet it
   };
 
   const RayPacket* block;
-  std::uint32_t first;  ///< the number of the block's first ray
+  std::uint32_t first;  ///< index of the packet's first ray
   Cones cones;
-  PacketBounds8 ray_bounds8[kGroups];    ///< around each ray, where a group has been split
-  LaneMask split;                        ///< the groups that have been
+  PacketBounds8 ray_bounds8[kGroups];    ///< bounds of each ray, for groups in `split`
+  LaneMask split;                        ///< groups with valid ray_bounds8
   IntLanes low[kGroups], high[kGroups];  ///< of each ray: bounds of the nearest hit's t
   IntLanes primitive[kGroups];           ///< of the nearest hit; -1: none
   IntLanes skip_id[kGroups];             ///< a primitive; -1: none
-  IntLanes enough[kGroups];              ///< a hit that is surely before is enough
-  FloatLanes slack;  ///< lane g: how many times an edge's bound all of group g may be off it
-  // If that is asked for: what each ray's query took, and which rays there are.
+  IntLanes enough[kGroups];              ///< a hit that is surely nearer than this ends the ray
+  FloatLanes slack;  ///< lane g: the factor of edge bounds for group g (see cone_leaf_test.h)
+  // If requested: the work of each ray, and the rays that were started.
   RayWork work[kGroups][kLanes];
   LaneMask started[kGroups];
-  std::uint64_t going;  ///< the rays that still look for something
-  float cutoff;         ///< boxes beyond matter to none
+  std::uint64_t going;  ///< rays that continue
+  float cutoff;         ///< boxes beyond this are skipped
   int depth;            ///< of the stack
   StackEntry stack[Bvh::kStackSize];
 
   [[nodiscard]] std::uint32_t number(int group, int lane) const {
     return first + static_cast<std::uint32_t>(group * kLanes + lane);
   }
-  /// Bounds of the nearest hit's t.
+  /// Returns bounds of the nearest hit's t.
   [[nodiscard]] Interval t(int group, int lane) const {
     return {std::bit_cast<float>(low[group][lane]), std::bit_cast<float>(high[group][lane])};
   }
 };
 
-/// Where boxes end to matter for rays of these t_scales that end at `high` (see cutoff_beyond).
+/// Computes distances beyond which boxes can be skipped for rays with these t_scales and maximum
+/// distances `high` (see cutoff_beyond).
 RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, const FloatLanes& t_scale, LaneMask active,
                                    FloatLanes& cutoffs) {
   constexpr float kGrow = 1.0f + 0x1p-20f;
@@ -77,7 +78,7 @@ RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, const FloatLanes& t_sca
   cutoffs = going ? reinterpret_cast<FloatLanes>(high) * t_scale * kGrow : FloatLanes{} - 1.0f;
 }
 
-/// Looks no farther than `high` and `cones.active` say, for the rays of a group.
+/// Updates the cutoffs of a group after changes of `high` and `cones.active`.
 RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
   Cones& cones = walk.cones;
   FloatLanes cutoffs;

@@ -33,7 +33,7 @@ void CpuIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
 
 namespace {
 
-/// What the tree asks (see next_leaf).
+/// Visitor of the traversal (see next_leaf).
 struct LineVisitor {
   PacketBounds bounds;
   float cutoff;
@@ -46,7 +46,7 @@ struct LineVisitor {
   RAYGATE_INLINE static SingleRay rays_of_child(int) { return {}; }
 };
 
-/// The primitives of a leaf's triangles that the ray hits at some t > 0.
+/// Appends the primitives of a leaf that the ray hits at t > 0.
 RAYGATE_INLINE void test_leaf(const Bvh& bvh, const BvhView& tree, const Ray& ray,
                               const ShearedRay& sheared, const Bvh::Child& leaf,
                               std::vector<NearestHit>& hits, RayWork& work) {

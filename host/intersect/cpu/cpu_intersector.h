@@ -1,4 +1,4 @@
-// CPU intersector: tests rays against triangles without a hit-test unit.
+// CPU intersector: intersects rays with triangles without a hit-test unit.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,12 @@
 
 namespace raygate {
 
-/// Rays of a common origin go as cones of 64 (PacketIntersector), others one by one
-/// (SingleRayIntersector). P has the bits of the hit-test unit's: computed once for each hit that
-/// is found.
+/// Traces rays with a common origin in packets of 64 (PacketIntersector), others one by one
+/// (SingleRayIntersector). P has the bits of the hit-test unit and is computed once for each
+/// nearest hit.
 class CpuIntersector : public Intersector {
  public:
-  /// The tree must outlive this.
+  /// `bvh` must outlive this object.
   explicit CpuIntersector(const Bvh& bvh) : bvh_(bvh) {}
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
@@ -25,9 +25,9 @@ class CpuIntersector : public Intersector {
   IntersectCounters counters_;
 };
 
-/// Replaces `hits` by all hits of `ray` with t < t_max, near before far; ties in t: lower triangle
-/// index first. `t_max` is positive, +infinity for all. The direction is scaled; one that is not
-/// usable hits nothing. `point` and `point_error` of the hits are not valid.
+/// Replaces `hits` by all hits of `ray` with t < t_max, nearest first, then by triangle index.
+/// `t_max` is positive; +infinity: no limit. The direction must be scaled, or is not usable and
+/// hits nothing. `point` and `point_error` of the hits are not valid.
 void all_hits(const Bvh& bvh, const Ray& ray, float t_max, std::vector<NearestHit>& hits,
               RayWork& work);
 

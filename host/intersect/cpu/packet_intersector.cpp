@@ -17,7 +17,7 @@ constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float
 float float_of(std::int32_t bits) { return std::bit_cast<float>(bits); }
 std::int32_t bits_of(float x) { return std::bit_cast<std::int32_t>(x); }
 
-/// What is wished for a group's rays; what is beyond the last one means nothing.
+/// Loads the query options of a group's rays. Lanes beyond the last ray are undefined.
 template <class Wish>
 RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first, IntLanes& lanes) {
   static_assert(sizeof(Wish) == sizeof(std::int32_t));
@@ -28,7 +28,7 @@ RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first
   }
 }
 
-/// A test of each of these rays, some of which it leaves in doubt.
+/// Counts one test of each of these rays, and the doubts.
 void count_work(RayWork (&work)[kLanes], LaneMask tested, LaneMask doubts) {
   for (int lane = 0; lane < kLanes; ++lane) {
     work[lane].tests += tested >> lane & 1;
@@ -38,7 +38,7 @@ void count_work(RayWork (&work)[kLanes], LaneMask tested, LaneMask doubts) {
 
 }  // namespace
 
-/// Sets everything of a traversal but its cones.
+/// Initialises a traversal, except for its cones.
 void PacketIntersector::begin(ConeTraversal& walk) const {
   in_vectors([&](auto) RAYGATE_BODY {
     const std::span limits = query_.t_max, enough = query_.any_hit_before;
@@ -72,7 +72,7 @@ void PacketIntersector::begin(ConeTraversal& walk) const {
   });
 }
 
-/// Tests a leaf's triangles that are there against the rays, a triangle and a group at a time. Sets
+/// Tests the leaf's triangles in `there` against the rays, one triangle and group at a time. Sets
 /// the bits of the groups whose nearest hits change.
 template <Vectors kCode>
 RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const QuadRecord& record,
@@ -118,7 +118,7 @@ RAYGATE_INLINE void PacketIntersector::test_groups(ConeTraversal& walk, const Qu
   }
 }
 
-/// The same, a ray at a time.
+/// Tests as test_groups() does, but one ray at a time.
 RAYGATE_INLINE void PacketIntersector::test_rays(ConeTraversal& walk, const QuadRecord& record,
                                                  const Bvh::Child& leaf, LaneMask there,
                                                  std::uint64_t rays, LaneMask& changed) {
@@ -156,7 +156,7 @@ RAYGATE_INLINE void PacketIntersector::test_rays(ConeTraversal& walk, const Quad
   }
 }
 
-/// Walks the tree, near before far, and tests what is there.
+/// Traverses the BVH, nearest children first, and tests its leaves.
 void PacketIntersector::traverse(ConeTraversal& walk) {
   in_vectors([&](auto code) RAYGATE_BODY {
     const BvhView tree(bvh_);
@@ -231,8 +231,8 @@ void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   }
 }
 
-/// On which side of each triangle the origin is, where float32 is not sure. Those in whose plane it
-/// is are hit by no ray: they leave those that are there.
+/// Finds the origin's side of each triangle where float32 is not sure. Removes triangles whose
+/// plane contains the origin from `there`, as no ray hits them.
 void PacketIntersector::resolve_sides(const Bvh::Child& leaf, QuadRecord& record,
                                       LaneMask& there) const {
   for (LaneMask unsure = record.unsure; unsure != 0; unsure &= unsure - 1) {
@@ -246,8 +246,8 @@ void PacketIntersector::resolve_sides(const Bvh::Child& leaf, QuadRecord& record
   }
 }
 
-/// The last word on what float32 leaves open about a ray and a primitive. `sure`: bounds of its t,
-/// or nullptr where it is not even sure that it is hit. True where it is the nearest hit now.
+/// Resolves a doubt of float32 about a ray and a primitive exactly. `sure` has bounds of t of a
+/// sure hit; it is null if the hit is not sure. Returns whether it is the nearest hit now.
 bool PacketIntersector::resolve(ConeTraversal& walk, int group, int lane, std::int32_t primitive,
                                 const Interval* sure) {
   const std::uint32_t number = walk.number(group, lane);

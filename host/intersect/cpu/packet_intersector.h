@@ -11,15 +11,15 @@
 
 namespace raygate {
 
-/// A part of CpuIntersector, for rays of one origin. A packet is eight groups of eight rays, each
-/// with a bounding cone. At a leaf the packet makes a QuadRecord in float32 and tests it against
-/// the groups whose cones it meets. Exact arithmetic resolves what float32 leaves open.
+/// The part of CpuIntersector for rays with a common origin. A packet has eight groups of eight
+/// rays, each with a bounding cone. At a leaf the packet computes a QuadRecord in float32 and tests
+/// it against the groups whose cones it meets. Exact arithmetic resolves doubts of float32.
 class PacketIntersector {
  public:
   PacketIntersector(const Bvh& bvh, IntersectCounters& counters) : bvh_(bvh), counters_(counters) {}
 
-  /// As Intersector::intersect, but always culling. All rays begin at the first one's origin;
-  /// `hits` are empty.
+  /// Intersects as Intersector::intersect does, but always culls. All rays start at the origin of
+  /// the first one; `hits` are initialised to misses.
   void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits);
 
  private:

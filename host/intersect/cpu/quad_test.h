@@ -13,78 +13,79 @@
 
 namespace raygate {
 
-// Why a sure answer is right
+// Why a sure result is correct
 //
 // Let z be the axis along which the ray goes farthest, so that |s_x|, |s_y| <= 1 for s_x = I_x /
 // I_z and s_y. Woop, Benthin and Wald ("Watertight ray/triangle intersection", 2013) shear a corner
 // p to the point (x, y) = ((p-O)_x - s_x (p-O)_z, (p-O)_y - s_y (p-O)_z): the ray is the origin of
-// that plane, and on which side of the edge from corner i to corner j it passes is the sign of
-// x_i y_j - y_i x_j, which is I . (A x B) times a number that is the same for all three edges. Two
-// edges of opposite signs are a miss. If all have one sign, the line of the ray goes through the
-// triangle's inside: a hit where that is ahead of O, a miss where it is behind. Nothing of this
-// needs the tilt of edge_side, which matters only where a sign is 0.
+// that plane, and the side on which it passes the edge from corner i to corner j is the sign of x_i
+// y_j - y_i x_j, which is I . (A x B) times a factor common to all three edges. Two edges of
+// opposite signs are a miss. If all have one sign, the line of the ray goes through the triangle's
+// interior: a hit if that is in front of O, a miss if it is behind. This does not need the
+// tie-breaking of edge_side, which matters only if a sign is 0.
 //
-// Let u = 2^-24, capitals be what float32 makes of all this, m >= |p-O| on each axis, for all three
-// corners, as computed, and S the sum of the six |X_i|, |Y_i|.
+// Let u = 2^-24, capitals be the float32 results, m >= |p-O| on each axis, for all three corners,
+// as computed, and S the sum of the six |X_i|, |Y_i|.
 //
-// 1. A difference is off by u of itself, the quotient by u of itself or 2^-150, its product with
-//    Z by u of itself or 2^-150, and the difference by u |X_i|. All these are at most m, but
-//    |X_i| <= 2.0001 m:  |X_i - x_i| < (1 + 3 + 2.001) u m + 2^-149 (1 + m) < 6.01 u m = e.
-// 2. X_i Y_j - x_i y_j = X_i (Y_j - y_j) + y_j (X_i - x_i), so the exact difference of products is
-//    off by less than e (|X_i| + |Y_j| + |Y_i| + |X_j|) + 2 e^2 <= 6.01 u m S + 72.3 u^2 m^2.
-// 3. The two products are off by u of themselves or 2^-150, their difference by u of itself: less
-//    than 2.001 u (|X_i Y_j| + |Y_i X_j|) + 2^-149 in all, and |X_i Y_j| <= 1.001 m (|X_i| +
+// 1. A difference has an error of u times itself, the quotient u times itself or 2^-150, its
+//    product with Z u times itself or 2^-150, and the difference u |X_i|. All these are at most m,
+//    but |X_i| <= 2.0001 m:  |X_i - x_i| < (1 + 3 + 2.001) u m + 2^-149 (1 + m) < 6.01 u m = e.
+// 2. X_i Y_j - x_i y_j = X_i (Y_j - y_j) + y_j (X_i - x_i), so the error of the exact difference of
+//    products is less than e (|X_i| + |Y_j| + |Y_i| + |X_j|) + 2 e^2 <= 6.01 u m S + 72.3 u^2 m^2.
+// 3. The two products have errors of u times themselves or 2^-150, their difference u times itself:
+//    less than 2.001 u (|X_i Y_j| + |Y_i X_j|) + 2^-149 in all, and |X_i Y_j| <= 1.001 m (|X_i| +
 //    |Y_j|) as neither is above 2.0001 m: less than 2.01 u m S + 2^-149.
-// 4. Where 2^-20 <= m <= 2^40, nothing overflows, the 2^-149 (1 + m) of step 1 is less than 2^-60 u
-//    m, and the 2^-149 of step 3 less than 2^-60 u^2 m^2. Elsewhere nothing is sure.
+// 4. If 2^-20 <= m <= 2^40, nothing overflows, the 2^-149 (1 + m) of step 1 is less than 2^-60 u m,
+//    and the 2^-149 of step 3 less than 2^-60 u^2 m^2. Otherwise nothing is sure.
 //
-// Sum: less than 8.02 u m S + 72.4 u^2 m^2. The bound computed is b = m (8.5 u S + 2^-41 m), where
-// 2^-41 = 128 u^2: its own roundings take less than 12 u of it. The m computed there is the largest
+// Sum: less than 8.02 u m S + 72.4 u^2 m^2. The computed bound is b = m (8.5 u S + 2^-41 m), where
+// 2^-41 = 128 u^2: its own rounding is less than 12 u of it. The m computed there is the largest
 // |Z_i| plus S: on the other axes |p-O|_x = |x + s_x (p-O)_z| as computed is at most |X_i| + |Z_i|
-// but for (1 + 3) u m and the like, which the same room pays for.
+// up to (1 + 3) u m and the like, which the same margin covers.
 //
-// Where on the z axis
+// Position on the z axis
 //
 // Let U_i be the three differences, all surely of one sign, say > b; they belong to the corners
-// across from their edges. z* = (sum u_i z_i) / (sum u_i), from the exact u_i = U_i +- b; let D be
-// the sum of the U_i as computed, D* that of the u_i, and R the z of the farthest corner less that
-// of the nearest one.
+// opposite their edges. z* = (sum u_i z_i) / (sum u_i), from the exact u_i = U_i +- b; let D be the
+// sum of the U_i as computed, D* that of the u_i, and R the z of the farthest corner minus that of
+// the nearest one.
 //
-// 5. Weights U_i / D' for D' = sum U_i (exact) instead of u_i / D*: each is off by |U_i (D* - D') +
-//    D' (U_i - u_i)| / (D' D*) <= (3 b U_i / D' + b) / D*, three of them by 6 b / D*, and D* > D'
-//    - 3 b. As both sum to 1, z* is off by less than 6 b R / (D' - 3 b). |U_i| is at most a product
-//    of two of the three |X_j| + |Y_j|, so D' <= S^2 / 3 <= m S / 3, and D, 2 u of itself off, is
-//    less than 0.1 b off: D' - 3 b > D - 3.2 b. R is 2 u max |Z_i| off, which matters only where
-//    the quotient is below 1, as z* is between the corners' z anyway: 2 u max |Z_i|.
+// 5. Weights U_i / D' for D' = sum U_i (exact) instead of u_i / D*: each has an error of |U_i (D* -
+//    D') + D' (U_i - u_i)| / (D' D*) <= (3 b U_i / D' + b) / D*, three of them 6 b / D*, and D* >
+//    D' - 3 b. As both sum to 1, z* has an error of less than 6 b R / (D' - 3 b). |U_i| is at most
+//    a product of two of the three |X_j| + |Y_j|, so D' <= S^2 / 3 <= m S / 3, and D, with an error
+//    of 2 u times itself, differs by less than 0.1 b: D' - 3 b > D - 3.2 b. R has an error of 2 u
+//    max |Z_i|, which matters only if the quotient is below 1, as z* is between the corners' z
+//    anyway: 2 u max |Z_i|.
 // 6. Three products, two sums of them, two sums in D, a quotient, the difference that gave Z_i and
-//    the one with the bound: less than 9 u of the largest |Z_i|, as weights are positive and sum to
-//    1. A product that underflows is off by 2^-150, that is 2^-150 / D' of z, where D' > 3 b >
+//    that with the bound: less than 9 u of the largest |Z_i|, as weights are positive and sum to 1.
+//    A product that underflows has an error of 2^-150, that is 2^-150 / D' of z, where D' > 3 b >
 //    2^-80: less than 2^-68 in all, and m 2^-45 >= 2^-65.
 //
-// The code has O-p for p-O, of which each sum, difference and product of steps 1 to 4 has the same
-// magnitude: so a corner is read by the instruction that subtracts it.
+// The code uses O-p instead of p-O, so that the instruction that subtracts a corner also loads it.
+// The magnitudes of all sums, differences and products of steps 1 to 4 are the same.
 //
-// So z* is within 6.5 b R / (D - 3.2 b) + 16 u max |Z_i| + 2^-45 m of the quotient, roundings of
-// this included, and within 16 u max |Z_i| of what is between the corners' z.
+// So z* is within 6.5 b R / (D - 3.2 b) + 16 u max |Z_i| + 2^-45 m of the quotient, including the
+// rounding of this bound, and within 16 u max |Z_i| of the range of the corners' z.
 
-/// A ray, made ready to be tested against triangles one quad after the other.
+/// A ray prepared for tests against many quads of triangles.
 struct ShearedRay {
-  std::int32_t axes[3];  ///< x, y, z of the shear: the ray goes farthest along the last one
-  float origin[3];       ///< along these axes
+  std::int32_t axes[3];  ///< x, y, z of the shear; the ray goes farthest along the last one
+  float origin[3];       ///< origin along these axes
   float shear[2];        ///< s_x, s_y
   float way;             ///< I_z
 
   ShearedRay() = default;
-  /// The direction usable (see is_usable).
+  /// The direction must be usable (see is_usable).
   RAYGATE_INLINE explicit ShearedRay(const Ray& ray);
 
-  /// The sign bit that (O-p)_z has for points p ahead: that of -I_z.
+  /// Returns the sign bit of (O-p)_z for points p in front of the origin: that of -I_z.
   [[nodiscard]] RAYGATE_INLINE std::int32_t sign_ahead() const {
     return std::bit_cast<std::int32_t>(-way) & std::numeric_limits<std::int32_t>::min();
   }
 };
 
-/// The words of four ShearedRays, lane by lane, from origins and directions by axis.
+/// Computes the words of four ShearedRays, one per lane, from origins and directions by axis.
 RAYGATE_INLINE void shear(const FloatQuad (&o)[3], const FloatQuad (&d)[3],
                           FloatQuad (&words)[sizeof(ShearedRay) / sizeof(float)]) {
   FloatQuad size[3];
@@ -119,27 +120,27 @@ RAYGATE_INLINE ShearedRay::ShearedRay(const Ray& ray) {
   std::memcpy(this, first, sizeof first);
 }
 
-/// Bit i of the masks, and lane i, stand for triangle i.
+/// Results of a quad test. Bit i of the masks, and lane i, belong to triangle i.
 struct QuadVerdict {
-  LaneMask hit;    ///< surely hit, ahead of the origin
-  LaneMask level;  ///< the line surely goes through, but perhaps behind the origin: see is_ahead
-  LaneMask doubt;  ///< neither these nor surely a miss
-  /// Of all these, if hit: between which bounds the hit is along the ray's longest axis.
+  LaneMask hit;    ///< sure hits, in front of the origin
+  LaneMask level;  ///< the line surely hits, but perhaps behind the origin: see is_ahead
+  LaneMask doubt;  ///< neither of these, nor a sure miss
+  /// Bounds of the hit's position along the ray's longest axis, for all of these.
   FloatQuad low, high;
 };
 
-/// What the first half of a test leaves for the second one.
+/// Intermediate results, from find_sides() to judge_sides().
 struct QuadSides {
-  FloatQuad z[3];  ///< of O-p
+  FloatQuad z[3];  ///< z of O-p
   FloatQuad across[3];
-  FloatQuad lowest, highest;  ///< of `across`
+  FloatQuad lowest, highest;  ///< least and largest of `across`
   FloatQuad farthest, m;
-  FloatQuad bound;  ///< a NaN where nothing is sure: no comparison with it holds
+  FloatQuad bound;  ///< NaN if nothing is sure, so that comparisons with it are false
 };
 
-/// Which of 1 to 4 triangles the ray does not surely miss, as far as the edges say. Coordinate k of
-/// corner v of triangle i is corners[(3 v + k) count + i]; whatever comes after the last one must
-/// be readable up to corners[8 count + 3].
+/// Returns which of 1 to 4 triangles the ray does not surely miss by its edges. Coordinate k of
+/// corner v of triangle i is corners[(3 v + k) count + i]; memory up to corners[8 count + 3] must
+/// be readable.
 [[nodiscard]] RAYGATE_INLINE LaneMask find_sides(const ShearedRay& ray, const float* corners,
                                                  std::uint32_t count, QuadSides& sides) {
   constexpr float kBoundOfSum = 8.5f * 0x1p-24f, kBoundOfSize = 0x1p-41f;
@@ -176,7 +177,7 @@ struct QuadSides {
   return ~sign_mask(miss) & ((1u << count) - 1);
 }
 
-/// The second half: what is sure about the triangles that are open.
+/// Computes the results of the second half, for the triangles in `open`.
 RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, LaneMask open,
                                 QuadVerdict& verdict) {
   const FloatQuad(&across)[3] = sides.across;
@@ -204,7 +205,7 @@ RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, L
   verdict.doubt = open & ~inside;
 }
 
-/// Both halves.
+/// Tests 1 to 4 triangles: find_sides(), then judge_sides().
 RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::uint32_t count,
                               QuadVerdict& verdict) {
   QuadSides sides;
@@ -212,37 +213,37 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
   judge_sides(ray, sides, open, verdict);
 }
 
-// Why a sure answer is right
+// Why a sure result is correct
 //
-// As in polygon_record.cpp, but all of it in float32. Let u = 2^-24, A, B, C the corners minus O, E
-// = A x (B-A) an edge plane, L the sum of the magnitudes of the six products that it is made of,
-// and I a direction with |I_i| < 2. Coordinates of A, B and C are at most 2^40.
+// As in polygon_record.cpp, but all in float32. Let u = 2^-24, A, B, C the corners minus O, E = A x
+// (B-A) an edge plane, L the sum of the magnitudes of its six products, and I a direction with
+// |I_i| < 2. Coordinates of A, B and C are at most 2^40.
 //
-// 1. Factors are differences, off by u of themselves, so a product is off by 3 u of itself, or
-//    2^-150 if it underflows, and their difference by u more: the words of E are off by (4 u L)_1
-//    in all, and 2^-147, and their magnitudes sum to L (1 + 4 u) at most.
-// 2. I . E in float32, in any order, rounds a word three times at most: it is off by 3.0001 u
-//    |I|.|E|, and 2^-148. So |float32(I . E) - I . (A x B)| < 2 (4 + 3.001) u L + 2^-145 < 14.1 u L
-//    + 2^-145. The bound computed, 14.5 u L + 2^-100 for the largest of three L, has room for its
-//    own roundings, 7 u of it.
-// 3. Likewise N = (B-A) x (C-B), with its own L: I . N is off by less than 14.5 u L + 2^-100. A . N
-//    has three more factors that are u off themselves, of size m at most: it is off by less than m
-//    (4 + 3.001 + 1.001) u L + 2^-105 < 8.5 u m L + 2^-100.
+// 1. Factors are differences with an error of u times themselves, so a product has an error of 3 u
+//    times itself, or 2^-150 if it underflows, and their difference u more: the error of E is (4 u
+//    L)_1 in all, plus 2^-147, and the magnitudes of its words sum to at most L (1 + 4 u).
+// 2. I . E in float32, in any order, rounds a word at most three times: its error is 3.0001 u
+//    |I|.|E|, plus 2^-148. So |float32(I . E) - I . (A x B)| < 2 (4 + 3.001) u L + 2^-145 < 14.1 u
+//    L + 2^-145. The computed bound, 14.5 u L + 2^-100 for the largest of three L, covers its own
+//    rounding, 7 u of it.
+// 3. Likewise N = (B-A) x (C-B), with its own L: I . N has an error of less than 14.5 u L + 2^-100.
+//    A . N has three more factors with errors of u times themselves, of size m at most: its error
+//    is less than m (4 + 3.001 + 1.001) u L + 2^-105 < 8.5 u m L + 2^-100.
 //
-// A hit has all three I . E of the sign of d = A . N (exact.cpp says why), and t = d / (I . N). All
-// words are stored with the sign of d, where float32 is sure of it.
+// A hit has all three I . E of the sign of d = A . N (see exact.cpp), and t = d / (I . N). All
+// words are stored multiplied by the sign of d, if float32 is sure of it.
 
-/// Four planes of four triangles: three edges', and N.
+/// Four planes of four triangles: those of three edges, and N.
 struct alignas(sizeof(FloatLanes)) QuadRecord {
   static constexpr int kNormal = 3;
 
-  /// Of d's sign: plane p is [p / 2][axis][p % 2], word i triangle i's.
+  /// Multiplied by the sign of d. Plane p is [p / 2][axis][p % 2]; word i belongs to triangle i.
   float planes[2][3][2][kQuad];
-  float bounds[kQuad];            ///< |float32(I . E) - exact| < bound, for each of the edges
+  float bounds[kQuad];            ///< |float32(I . E) - exact| < bound, for each edge
   float normal_bound[kQuad];      ///< likewise for I . N
-  float low[kQuad], high[kQuad];  ///< |d| is between them; low = 0 where the sign was unsure
+  float low[kQuad], high[kQuad];  ///< bounds of |d|; low = 0 if the sign was unsure
   std::int32_t flip[kQuad];       ///< the sign bit of d as computed
-  LaneMask unsure;                ///< whose d may have another sign
+  LaneMask unsure;                ///< triangles whose d may have the other sign
 
   [[nodiscard]] RAYGATE_INLINE float word(int plane, int axis, int triangle) const {
     return planes[plane / 2][axis][plane % 2][triangle];
@@ -252,7 +253,7 @@ struct alignas(sizeof(FloatLanes)) QuadRecord {
 /// A bound is kQuadBound u L, see above.
 inline constexpr float kQuadBound = 14.5f;
 
-/// The record of 1 to 4 triangles, their corners as test_quad takes them.
+/// Computes the record of 1 to 4 triangles, with corners in the format of test_quad.
 RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corners,
                                      std::uint32_t count, QuadRecord& record) {
   constexpr float kU = 0x1p-24f, kTiny = 0x1p-100f, kLargest = 0x1p40f;
@@ -271,7 +272,7 @@ RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corn
       farthest = maximum(absolute(p[v][k]), farthest);
     }
   }
-  // A x (B-A) and B x (C-B) side by side; C x (A-C) and (B-A) x (C-B), which is N.
+  // Side by side: A x (B-A) and B x (C-B); then C x (A-C) and N = (B-A) x (C-B).
   FloatLanes u[3], v[3], planes[2][3], sizes[2];
   for (int k = 0; k < 3; ++k) {
     u[k] = join(p[0][k], p[1][k]);
@@ -314,7 +315,7 @@ RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corn
   record.unsure = ~sign_mask(sure) & ((1u << count) - 1);
 }
 
-/// Says which sign d has, -1 or 1, where float32 is not sure.
+/// Sets the sign of d, -1 or 1, if float32 is not sure of it.
 RAYGATE_INLINE void set_side(QuadRecord& record, int triangle, int side) {
   if ((record.flip[triangle] != 0) == (side < 0)) return;
   for (auto& pair : record.planes) {

@@ -20,38 +20,37 @@
 
 // Why no true hit is culled
 //
-// Distances are measured along the ray's longest axis: they are t times the t_scale p, which is the
-// magnitude of the direction's largest component and in [1, 2). What packet_traversal.cpp says of t
-// and 1 / I holds of p t and p / I: t I = x - O is (p t) (I / p), p / I is one quotient, rounded
-// once; p / |I| >= 1 > 1/2, where the underflow of a product is paid for; |I| < 2^-100 has 2^100 <=
-// p / |I|, so that p 2^100, exactly, does for inverse_near; and along the longest axis p t = |x -
-// O| <= 2^127.
+// Distances are measured along the ray's longest axis: they are t times the t_scale p, the
+// magnitude of the direction's largest component, which is in [1, 2). The derivation of
+// packet_traversal.cpp for t and 1 / I holds for p t and p / I: t I = x - O is (p t) (I / p); p / I
+// is one quotient, rounded once; p / |I| >= 1 > 1/2, which covers the underflow of a product; |I| <
+// 2^-100 has 2^100 <= p / |I|, so that p 2^100, which is exact, is valid for inverse_near; and
+// along the longest axis p t = |x - O| <= 2^127.
 
 namespace raygate {
 
-/// One ray on its way. Many take turns, so that what a step needs of one is kept in few cache
-/// lines: the first for a node, the second for a leaf, the third for either, with the bottom of
-/// `keys`, and one with the bottom of `children`.
+/// State of one ray. Many rays are interleaved, so a step's data is in few cache lines: the first
+/// for a node, the second for a leaf, the third for either, with the bottom of `keys`, and one with
+/// the bottom of `children`.
 struct alignas(64) RayTraversal {
-  // Against boxes, by axis: see PacketBounds, whose inverses these are with the other sign, for
-  // (O - near) (-inverse) reads the plane in the instruction that subtracts it. A node has the
-  // planes to which the ray comes first, and last, so many bytes from its beginning.
+  // Box tests, by axis. The inverses are those of PacketBounds with reversed sign, as the
+  // instruction that subtracts in (O - near) (-inverse) also loads the plane. near_at and far_at
+  // are byte offsets in a node of the planes that the ray meets first and last.
   float origin[3], minus_inverse_near[3], minus_inverse_far[3];
   std::uint32_t near_at[3], far_at[3];
   float cutoff;  ///< cutoff_beyond the nearest hit
 
-  ShearedRay sheared;       ///< against triangles
-  float low, high;          ///< bounds of the nearest hit's depth; without one, the limit's
-  float enough;             ///< a hit whose depth is surely less is enough
-  std::uint32_t primitive;  ///< of the nearest hit
+  ShearedRay sheared;                ///< for triangle tests
+  float low, high;                   ///< bounds of the nearest hit's depth, or of the limit's
+  float enough;                      ///< a hit whose depth is surely less ends the ray
+  std::uint32_t primitive;           ///< of the nearest hit
   std::uint32_t skip_id, source_id;  ///< primitives
-  std::uint32_t number;              ///< of the ray
+  std::uint32_t number;              ///< index of the ray
 
   RayWork work;
-  // What waits: children of nodes, the nearest last, as far as one node knows; above them the one
-  // that is visited. A key is where the ray enters a child's box, a little less at most, with the
-  // child's number in the last bits. At the bottom is a child that always matters, and is none:
-  // there the way ends.
+  // Stack of children to visit, the nearest on top as far as known from their parent. The topmost
+  // is the one being visited. A key is a lower bound of the entry distance, with the child's number
+  // in its last bits. The bottom is a sentinel that is never skipped and ends the traversal.
   std::size_t depth;
   std::int32_t keys[1 + Bvh::kStackSize + Bvh::kWidth];
   Bvh::Child children[1 + Bvh::kStackSize + Bvh::kWidth];
@@ -61,10 +60,10 @@ struct alignas(64) RayTraversal {
     children[0] = {0, Bvh::kMaxLeafSize + 1};
   }
 
-  /// What is visited.
+  /// Returns the node or leaf that is visited.
   [[nodiscard]] const Bvh::Child& at() const { return children[depth]; }
   [[nodiscard]] double t_scale() const { return std::abs(sheared.way); }
-  /// The nearest hit, or the limit, is at a t, or at a depth, within these bounds.
+  /// Sets the bounds of t, or of the depth, of the nearest hit or the limit.
   RAYGATE_INLINE void end_at(const Interval& t) {
     end_at(float_below(t.low * t_scale()), float_above(t.high * t_scale()));
   }
@@ -74,12 +73,11 @@ struct alignas(64) RayTraversal {
     cutoff = cutoff_beyond(highest);
   }
   [[nodiscard]] Interval t() const { return {low / t_scale(), high / t_scale()}; }
-  /// Nothing that waits matters any more.
   void end() { depth = 1; }
 };
 
-/// Sends rays from the root on their ways, to no limit; bit i of the result where ray i is scaled,
-/// without which its walk means nothing.
+/// Starts rays at the root, without limits. Bit i of the result is set if ray i is scaled;
+/// otherwise its traversal is undefined.
 RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
                               RayTraversal* const (&walks)[kQuad]) {
   static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
@@ -93,7 +91,7 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   transpose(first);
   transpose(last);
   const FloatQuad o[3] = {first[0], first[1], first[2]}, d[3] = {last[1], last[2], last[3]};
-  // A RayTraversal's words, up to those of `work`.
+  // The words of a RayTraversal up to `work`.
   constexpr std::size_t kBoxWords = 16, kWords = 32;
   static_assert(offsetof(RayTraversal, sheared) == 4 * kBoxWords);
   static_assert(offsetof(RayTraversal, work) == 4 * kWords && kWords % kQuad == 0);
@@ -110,10 +108,11 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   const FloatQuad none = float_of(IntQuad{} + static_cast<std::int32_t>(NearestHit::kNone));
   word(offsetof(RayTraversal, primitive)) = none;
   word(offsetof(RayTraversal, skip_id)) = word(offsetof(RayTraversal, source_id)) = none;
-  word(offsetof(RayTraversal, number)) = none;  // the caller's to say
+  word(offsetof(RayTraversal, number)) = none;  // set by the caller
   IntQuad largest = {};
   for (const FloatQuad& component : d) {
-    largest = maximum(bits_in(absolute(component)), largest);  // a NaN's exceed any number's
+    // The bits of a NaN exceed those of any number.
+    largest = maximum(bits_in(absolute(component)), largest);
   }
   const FloatQuad longest = float_of(largest);
   for (int k = 0; k < 3; ++k) {
@@ -144,7 +143,7 @@ RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
   return sign_mask((largest >= 0x3F800000) & (largest < 0x40000000));
 }
 
-/// By sets of lanes: their numbers one after the other, and negative ones behind them.
+/// By mask of lanes: the indices of the set lanes in order, followed by negative values.
 inline constexpr auto kNumbersOf = [] {
   std::array<std::array<std::int32_t, kLanes>, 1 << kLanes> numbers{};
   for (std::size_t mask = 0; mask < numbers.size(); ++mask) {
@@ -157,8 +156,7 @@ inline constexpr auto kNumbersOf = [] {
   return numbers;
 }();
 
-/// Puts eight keys in order, the largest first: Batcher's bitonic network. All but `count` are
-/// negative, and behind the others.
+/// Sorts eight keys in descending order (Batcher's bitonic network); all but `count` are negative.
 RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count) {
   IntLanes other, larger, smaller;
   const auto compare = [&]() __attribute__((always_inline)) {
@@ -186,14 +184,14 @@ RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count) {
   of_pairs();
 }
 
-/// The children of a node, and which of their boxes a ray meets.
+/// The children of a node, and the boxes that a ray meets.
 struct MetChildren {
-  IntLanes keys;  ///< where it enters those that it meets: the bits of floats from 0 on
+  IntLanes keys;  ///< entry distances of the met children, as bits of non-negative floats
   const Bvh::Child* children;
   LaneMask mask;
 };
 
-/// Tests the ray against the boxes of the inner node where it is, which may be made in `room`.
+/// Tests the ray against the boxes of its current inner node, which may be decoded into `room`.
 template <Vectors kCode>
 RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk, Bvh::Node& room,
                                   MetChildren& met) {
@@ -219,8 +217,7 @@ RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk,
   met.mask = mask;
 }
 
-/// Puts the children that the ray meets onto its stack. Without a branch but for three or more, as
-/// which these are nobody can foretell.
+/// Pushes the children that the ray meets; branchless for up to two, as branches mispredict.
 template <Vectors kCode>
 RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   constexpr std::int32_t kNumber = Bvh::kWidth - 1;
@@ -233,7 +230,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   const auto push = [&](int first, int last) __attribute__((always_inline)) {
     for (int i = first; i < last; ++i) to_children[i] = met.children[to_keys[i] & kNumber];
   };
-  // Two of them one by one, where no register holds all eight.
+  // Two children one by one, if no register holds all eight.
   if (kCode == Vectors::kBaseline && count <= 2) {
     const auto key = [&](int i) __attribute__((always_inline)) {
       return (met.keys[numbers[i] & kNumber] & ~kNumber) | numbers[i];
@@ -245,7 +242,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
     push(0, 2);
     return;
   }
-  // Those that are met come first, or are the only ones that are not negative.
+  // Met children come first, or are the only ones that are not negative.
   IntLanes keys = met.keys & ~kNumber;
 #ifdef RAYGATE_AVX2
   if constexpr (kCode == Vectors::kAvx512) {
@@ -269,9 +266,9 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   push(4, Bvh::kWidth);
 }
 
-/// Goes on to what waits last and still matters.
+/// Pops the next subtree that is not beyond the cutoff.
 RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
-  // Floats from 0 on are in the order of their bits.
+  // Non-negative floats have the order of their bits.
   const std::int32_t last_key = std::bit_cast<std::int32_t>(walk.cutoff) | (Bvh::kWidth - 1);
   do {
     --walk.depth;

@@ -15,7 +15,7 @@
 
 namespace raygate {
 
-/// The second half of a leaf's tests. False where the ray need not go on.
+/// Does the second half of a leaf's tests. Returns false if the ray can end.
 RAYGATE_INLINE bool SingleRayIntersector::judge(RayTraversal& walk, const Bvh::Child& leaf,
                                                 const QuadSides& sides, LaneMask open) {
   QuadVerdict verdict;
@@ -60,8 +60,8 @@ RAYGATE_INLINE bool SingleRayIntersector::judge(RayTraversal& walk, const Bvh::C
   return true;
 }
 
-/// The last word on what float32 leaves open about a triangle that the ray may hit or, if `sure`,
-/// does hit. True where that is the nearest hit now.
+/// Resolves a doubt about a triangle that the ray may hit or, if `sure`, does hit. Returns whether
+/// it is the nearest hit now.
 bool SingleRayIntersector::resolve(RayTraversal& walk, std::uint32_t primitive, bool sure) {
   const Ray& ray = rays_[walk.number];
   NearestHit best;
@@ -82,7 +82,7 @@ bool SingleRayIntersector::resolve(RayTraversal& walk, std::uint32_t primitive, 
   return true;
 }
 
-/// Sends the next rays on their ways, with these walks; bit i of the result where walk i is on one.
+/// Starts the next rays with these walks. Returns a mask of the walks that have a ray.
 RAYGATE_INLINE LaneMask SingleRayIntersector::begin(RayTraversal* const (&walks)[kQuad]) {
   const auto first = static_cast<std::uint32_t>(next_);
   const std::size_t count = std::min<std::size_t>(kQuad, rays_.size() - next_);
@@ -109,7 +109,6 @@ RAYGATE_INLINE LaneMask SingleRayIntersector::begin(RayTraversal* const (&walks)
   return scaled;
 }
 
-/// A ray's way is at its end.
 RAYGATE_INLINE void SingleRayIntersector::finish(const RayTraversal& walk) {
   HitCounters& counters = counters_.hit;
   counters.tests += walk.work.tests;
@@ -121,7 +120,7 @@ RAYGATE_INLINE void SingleRayIntersector::finish(const RayTraversal& walk) {
   pointless_count_ += walk.primitive != NearestHit::kNone ? 1 : 0;
 }
 
-/// Each ray tests everything.
+/// Tests each ray against all triangles.
 void SingleRayIntersector::visit_all() {
   const BvhView tree(bvh_);
   const std::vector<Bvh::Child> leaves = bvh_.leaves();
@@ -144,18 +143,18 @@ void SingleRayIntersector::visit_all() {
   }
 }
 
-/// All rays walk the tree, near before far, and test what is there: kAtOnce of them take turns, so
-/// that none waits for memory. What depends on where a ray goes chooses between numbers, not
-/// between branches: a branch would be guessed wrongly as often as not.
+/// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
+/// memory latency. Choices that depend on a ray select values instead of branching, since branches
+/// would often be mispredicted.
 void SingleRayIntersector::walk_all() {
   const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
   in_vectors([&](auto code) RAYGATE_BODY {
-    // By where they are: those at their ends are idle.
+    // Rays by state: at inner nodes, at leaves, or without work.
     RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];
-    // What those inside meet.
+    // The children that rays at inner nodes meet.
     MetChildren met[kAtOnce];
     Bvh::Node rooms[kAtOnce];
-    // Those at leaves that do not surely miss all triangles there.
+    // Rays at leaves that do not surely miss all triangles.
     struct {
       RayTraversal* walk;
       LaneMask open;
@@ -178,7 +177,7 @@ void SingleRayIntersector::walk_all() {
         }
       }
       if (inside_count + leaf_count == 0) return;
-      // In two loops: the shorter a turn, the more rays a processor has in work at once.
+      // Two short loops let the processor overlap more rays.
       for (std::size_t i = 0; i < inside_count; ++i) {
         meet_children<code()>(tree, *inside[i], rooms[i], met[i]);
       }
@@ -227,7 +226,7 @@ void SingleRayIntersector::trace(std::span<const Ray> rays, const RayQuery& quer
   add_points(1);
 }
 
-/// P, which the query did without: four at a time, until fewer than `enough` rays wait for theirs.
+/// Computes missing points P, four at a time, until fewer than `enough` are missing.
 void SingleRayIntersector::add_points(int enough) {
   if (!query_.any_hit_before.empty()) pointless_count_ = 0;
   while (pointless_count_ >= enough) {
@@ -237,7 +236,7 @@ void SingleRayIntersector::add_points(int enough) {
   }
 }
 
-/// Of these rays, up to four, with the bits of plane_point.
+/// Computes P of these rays, at most four, with the bits of plane_point.
 void SingleRayIntersector::add_points(std::span<const std::uint32_t> numbers) {
   PlaneViews views;
   NearestHit* hits[kPlanes];
@@ -255,7 +254,7 @@ void SingleRayIntersector::add_points(std::span<const std::uint32_t> numbers) {
   make_planes(views, planes);
   std::memcpy(n, planes.words, sizeof n);
   in_vectors([&](auto) RAYGATE_BODY {
-    transpose(d);  // of d[0] nothing is wanted: it is the last coordinate of the origins
+    transpose(d);  // d[0] is unused: the last coordinate of the origins
     IntQuad fields[3], error;
     for (int k = 0; k < 3; ++k) fields[k] = bits_in(n[k]) >> 23 & 0xFF;
     const IntQuad largest = maximum(maximum(fields[0], fields[1]), fields[2]);

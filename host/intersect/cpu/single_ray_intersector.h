@@ -12,16 +12,15 @@
 
 namespace raygate {
 
-/// A part of CpuIntersector, for rays that share nothing. Several walk the tree at once, in turns.
-/// A leaf's triangles are tested straight from their corners by quad_test; what float32 leaves
-/// open, and which hit is nearest, exact arithmetic settles: decisions are the same, whatever
-/// decides first.
+/// The part of CpuIntersector for incoherent rays. Several rays traverse the BVH interleaved. A
+/// leaf's triangles are tested directly from their corners by quad_test. Exact arithmetic resolves
+/// doubts of float32 and orders hits, so decisions do not depend on the method.
 class SingleRayIntersector {
  public:
   SingleRayIntersector(const Bvh& bvh, IntersectCounters& counters)
       : bvh_(bvh), counters_(counters) {}
 
-  /// As Intersector::intersect. `hits` are empty.
+  /// Intersects as Intersector::intersect does. `hits` are initialised to misses.
   void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits);
 
  private:
@@ -34,8 +33,8 @@ class SingleRayIntersector {
   void add_points(int enough);
   void add_points(std::span<const std::uint32_t> numbers);
 
-  // Rays that take turns: enough to hide what they wait for, few enough for a cache of 32 KB that
-  // another thread of the processor may share.
+  // Number of interleaved rays: enough to hide memory latency, few enough for a 32 KB cache that
+  // another thread of the core may share.
   static constexpr int kAtOnce = 24;
 
   const Bvh& bvh_;
@@ -43,8 +42,8 @@ class SingleRayIntersector {
   std::span<const Ray> rays_;
   RayQuery query_;
   std::span<NearestHit> hits_;
-  std::size_t next_ = 0;                                    // ray to set out
-  std::array<std::uint32_t, kAtOnce + kPlanes> pointless_;  // rays whose P is still to be found
+  std::size_t next_ = 0;                                    // the next ray to start
+  std::array<std::uint32_t, kAtOnce + kPlanes> pointless_;  // hits whose P is not computed yet
   int pointless_count_ = 0;
 };
 

@@ -32,7 +32,7 @@ void require_same_list(std::span<const RayBundle> batch, std::span<const Result>
   const auto [a, e] = std::mismatch(actual.begin(), actual.end(), expected.begin(), expected.end());
   const bool a_left = a != actual.end(), e_left = e != expected.end();
   if (!a_left && !e_left) return;
-  // The earlier of the two is about the burst that differs.
+  // The burst that differs is that of the earlier result.
   const Result& culprit = !e_left || (a_left && earlier(*a, *e)) ? *a : *e;
   const auto part = [&](bool left, auto result) {
     return left && !earlier(culprit, *result) ? describe(*result) : std::string("nothing more");

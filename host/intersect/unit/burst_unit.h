@@ -23,7 +23,7 @@ struct BurstHit {
   friend bool operator==(const BurstHit& a, const BurstHit& b);  ///< compares all bits
 };
 
-/// A test that binary32 leaves open.
+/// A test that binary32 does not decide.
 struct TestReport {
   enum class Kind : std::uint8_t {
     kDoubt = 1,    ///< neither a sure hit nor a sure miss, or t cannot be computed
@@ -47,7 +47,7 @@ struct BurstResults {
   }
 };
 
-/// The counts of a unit since its construction. Clocks are 0 without simulation. Idle clocks and
+/// Statistics of a unit since its construction. Clocks are 0 without simulation. Idle clocks and
 /// stalls are counted per lane of the hardware; together they are lanes * clocks - tests.
 struct BurstCounters {
   std::uint64_t tests = 0;          ///< misses + hits + doubts
@@ -67,18 +67,19 @@ struct BurstCounters {
 /// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest
 /// even after each operation. Every implementation gives the same bits, for every bit pattern:
 ///
-///     U_k = (E_kx Ix + E_ky Iy) + E_kz Iz,  V likewise with N,  t = d / V,  P_k = (d I_k) / V
+///   U_k = (E_kx Ix + E_ky Iy) + E_kz Iz,  V likewise with N,  t = d / V,  P_k = (d I_k) / V
 ///
-///     U_k is sure where b_k < |U_k| < infinity (a NaN or negative b_k leaves nothing sure)
-///     miss   d is 0, or a sure U_k has the other sign than d
-///     hit    else, if all U_k are sure, V is normal and of d's sign, with an exponent at most 12
-///            below the largest of N's, and t is a positive normal number
-///     doubt  else
+///   U_k is sure if b_k < |U_k| < infinity (not with a NaN or negative b_k)
+///   miss   d is 0, or a sure U_k has the opposite sign of d
+///   hit    otherwise, if all U_k are sure, V is normal and has d's sign, its exponent is at most
+///   12
+///          below the largest of N's, and t is a positive normal number
+///   doubt  otherwise
 ///
-/// The error of t is 2^(6 + e), e being how far V's exponent is below the largest of N's, or 0
-/// (hw/hit_test/hit_test_pkg.sv has the proof). Of a burst's hits one is kept: the first; then
-/// each one whose t is smaller takes its place. Where the two are no farther apart, in floats,
-/// than the sum of their errors, the one that isn't kept is reported as a near tie.
+/// The error of t is 2^(6 + e), where e is how far V's exponent is below the largest of N's, or 0
+/// (proof in hw/hit_test/hit_test_pkg.sv). One hit of a burst is kept: the first, which each later
+/// hit with a smaller t replaces. If the distance of two hits, in floats, is at most the sum of
+/// their errors, the one that is not kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResults> {
  public:
   /// Must not be called between start and finish.
@@ -92,8 +93,7 @@ class BurstUnitMismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws BurstUnitMismatch at the first burst of `batch` for which `actual` and `expected` differ
-/// in any bit.
+/// Throws BurstUnitMismatch at the first burst whose `actual` bits differ from those `expected`.
 void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
                   const BurstResults& expected);
 
@@ -105,9 +105,9 @@ struct PlaneTest {
 };
 
 /// Computes P = d I / (I . H) for a stream of tests, in binary32, rounded to nearest even after
-/// each operation, in this order: dot = ((0 + Hx Ix) + Hy Iy) + Hz Iz; P[k] = (d I[k]) / dot.
-/// A ray parallel to the plane gives infinities or NaN, as IEEE 754 has them.
-/// A NaN's bits are always 0x7FC00000. Every implementation gives the same bits.
+/// each operation, in this order: dot = ((0 + Hx Ix) + Hy Iy) + Hz Iz; P[k] = (d I[k]) / dot. A ray
+/// parallel to the plane gives infinities or NaN, as in IEEE 754. A NaN is always 0x7FC00000. Every
+/// implementation gives the same bits.
 class PlaneUnit {
  public:
   virtual ~PlaneUnit() = default;
@@ -115,7 +115,7 @@ class PlaneUnit {
   /// Sets points[i] to the result of tests[i]; the spans have the same size.
   virtual void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) = 0;
 
-  /// Simulated clock cycles since construction; 0 where nothing is simulated.
+  /// Returns simulated clock cycles since construction; 0 without simulation.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
 };
 

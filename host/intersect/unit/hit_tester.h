@@ -21,22 +21,21 @@ struct alignas(32) RayBundle {
   float direction[3][kLanes];              ///< x, y, z of each lane; scaled (see is_scaled)
   const PolygonRecord* records = nullptr;  ///< made for the origin of these rays
   std::uint32_t record_count = 0;
-  std::uint32_t first_tag =
-      0;               ///< the caller's tag of records[0]; that of records[i] is first_tag + i
-  LaneMask lanes = 0;  ///< bit k: lane k holds a ray
+  std::uint32_t first_tag = 0;  ///< tag of records[0]; records[i] has tag first_tag + i
+  LaneMask lanes = 0;           ///< bit k: lane k holds a ray
 
   [[nodiscard]] glm::vec3 lane_direction(int lane) const {
     return {direction[0][lane], direction[1][lane], direction[2][lane]};
   }
 };
 
-/// A polygon that a ray surely hits, ahead of its origin.
+/// A polygon that a ray surely hits, in front of its origin.
 struct SureHit {
   std::uint32_t bundle = 0;  ///< index into the batch
   std::uint32_t lane = 0;
   std::uint32_t tag = 0;
   glm::vec3 point{0.0f};     ///< P = d I / (I . N) relative to the origin, in the unit's bits
-  float point_error = 0.0f;  ///< as NearestHit has it
+  float point_error = 0.0f;  ///< as in NearestHit
   Interval t{};              ///< high = +infinity if binary32 gives no bound
 };
 
@@ -46,13 +45,12 @@ struct Doubt {
   std::uint32_t lane = 0;
   std::uint32_t tag = 0;
   glm::vec3 point{0.0f};     ///< as in SureHit, if it is a hit
-  float point_error = 0.0f;  ///< likewise
+  float point_error = 0.0f;  ///< as in SureHit
 };
 
 /// The results of a batch. Bursts without a hit or doubt have none.
 struct HitResults {
-  /// The sure hits that may be the nearest of their burst: one, or several that binary32 cannot
-  /// order.
+  /// The possible nearest hits of each burst: one, or several that binary32 cannot order.
   std::vector<SureHit> hits;
   std::vector<Doubt> doubts;
 
@@ -81,8 +79,8 @@ class BatchTester {
   }
   virtual void finish(Results& results) { run(pop_started(), results); }
 
-  /// Number of tests below which a batch leaves the unit mostly idle, so that it is worth adding
-  /// tests that may turn out to be behind a hit.
+  /// Returns the number of tests below which a batch leaves the unit mostly idle, so that adding
+  /// tests beyond known hits is worthwhile.
   [[nodiscard]] virtual std::size_t enough_tests() const { return 0; }
 
  protected:

@@ -13,7 +13,7 @@
 namespace raygate {
 namespace {
 
-constexpr std::uint32_t kBatch = 4 * Bvh::kMaxLeafSize;  // as many as are made at once
+constexpr std::uint32_t kBatch = 4 * Bvh::kMaxLeafSize;  // records made at once
 
 }  // namespace
 
@@ -21,7 +21,7 @@ void RecordCache::Free::operator()(void* memory) const { std::free(memory); }
 
 RecordCache::RecordCache(const Bvh& bvh, const glm::vec3& origin) : bvh_(bvh), origin_(origin) {
   const std::size_t primitives = std::max<std::size_t>(bvh.primitive_count(), 1);
-  // Not initialised on purpose: a page is the system's until a record is written to it.
+  // Not initialised on purpose: a page takes no memory until a record is written to it.
   records_.reset(static_cast<PolygonRecord*>(
       std::aligned_alloc(alignof(PolygonRecord), primitives * sizeof(PolygonRecord))));
   if (records_ == nullptr) throw std::bad_alloc();
@@ -45,7 +45,7 @@ std::uint64_t RecordCache::make(std::uint32_t first, std::uint32_t count) {
         states_[i].store(State::kMade, std::memory_order_release);
       }
     }
-    if (primitive < end && primitive - begin < kBatch) ++primitive;  // somebody else's
+    if (primitive < end && primitive - begin < kBatch) ++primitive;  // made by another thread
   }
   for (std::uint32_t primitive = first; primitive < end; ++primitive) {
     while (states_[primitive].load(std::memory_order_acquire) != State::kMade)

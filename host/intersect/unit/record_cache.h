@@ -14,8 +14,8 @@
 
 namespace raygate {
 
-/// One record per primitive of the tree, made leaf by leaf. Thread-safe: the first thread makes a
-/// record, others wait for it. 65 bytes per primitive; untouched pages take no memory.
+/// One record per primitive of the BVH, made leaf by leaf. Thread-safe: the first thread makes a
+/// record, others wait for it. Takes 65 bytes per primitive; untouched pages take no memory.
 class RecordCache {
  public:
   RecordCache(const Bvh& bvh, const glm::vec3& origin);
@@ -48,14 +48,14 @@ class RecordCache {
   const Bvh& bvh_;
   glm::vec3 origin_;
   std::unique_ptr<PolygonRecord[], Free> records_;
-  std::unique_ptr<std::atomic<State>[]> states_;  // of the primitives
+  std::unique_ptr<std::atomic<State>[]> states_;  // by primitive
 };
 
 /// The caches of all common origins of a scene, each made on first use. Thread-safe.
 class RecordCaches {
  public:
-  /// `on_first_touch`: records are made when a ray comes near their polygon, otherwise all records
-  /// of an origin at once. The tree must outlive this.
+  /// `on_first_touch`: records are made when a ray approaches their polygon, otherwise all records
+  /// of an origin at once. `bvh` must outlive this object.
   explicit RecordCaches(const Bvh& bvh, bool on_first_touch = true)
       : bvh_(bvh), on_first_touch_(on_first_touch) {}
 

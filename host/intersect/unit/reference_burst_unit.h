@@ -17,18 +17,17 @@ namespace raygate {
 /// The unit's verdict on a single test.
 enum class UnitVerdict : std::uint8_t { kMiss, kHit, kDoubt };
 
-/// The distance of a hit; at most 2^(6 + error) numbers of the format lie between it and the exact
-/// t.
+/// The distance of a hit. At most 2^(6 + error) numbers of the format separate it from the exact t.
 struct HitDistance {
   float t = 0.0f;
   std::uint32_t error = 0;
 };
 
-/// BurstUnit's contract in the format and rounding of `Math` (Binary32, or Arithmetic of
-/// host/variants): every float of the records, rays and results is a number of that format,
-/// "floats" between two distances are its numbers, and the limit of grazing is
-/// hit_test_pkg::max_grazing's for it. The same operations in the same order as hit_test_pipeline
-/// with these parameters, so that the bits are equal.
+/// Implements BurstUnit in the format and rounding of `Math` (Binary32, or Arithmetic of
+/// host/variants): all floats of records, rays and results are numbers of that format, as are
+/// "floats" between two distances, and the limit of grazing is hit_test_pkg::max_grazing for it.
+/// Operations and their order are those of hit_test_pipeline with these parameters, so all bits are
+/// equal.
 template <typename Math>
 class BasicReferenceBurstUnit : public BurstUnit {
  public:
@@ -52,9 +51,9 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return math_.is_normal(math_.divide(record.d, v)) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// Returns the verdict of the edges alone; kHit if the triangle is hit provided it is ahead, that
-  /// is, of d's sign. If d is NaN, edges of opposite signs are a miss and everything else is in
-  /// doubt.
+  /// Returns the verdict of the edges alone; kHit if the triangle is hit provided that it is in
+  /// front of the origin (on the side of d's sign). If d is NaN, edges of opposite signs are a miss
+  /// and everything else is in doubt.
   [[nodiscard]] UnitVerdict edges_verdict(const PolygonRecord& record,
                                           const glm::vec3& direction) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -81,7 +80,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
 
   /// Returns BurstUnit's P (equation 10); any NaN is 0x7FC00000.
   [[nodiscard]] glm::vec3 point(const PolygonRecord& record, const glm::vec3& direction) const {
-    // The paper's accumulator starts from +0, which matters where V is a zero.
+    // The paper's accumulator starts from +0, which matters if V is a zero.
     const float v = math_.add(0.0f, math_.dot(record.normal, direction));
     glm::vec3 p;
     for (int k = 0; k < 3; ++k) p[k] = math_.divide(math_.multiply(record.d, direction[k]), v);
@@ -98,7 +97,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
            math_.exponent_field(v);
   }
 
-  /// hit_test_pkg::max_grazing.
+  /// Returns hit_test_pkg::max_grazing.
   [[nodiscard]] int max_grazing() const { return std::max(math_.fraction_bits() - 11, 0); }
 
   [[nodiscard]] HitDistance distance(const PolygonRecord& record, float v) const {
@@ -116,7 +115,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return divisible ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// Whether two positive distances differ by no more than the sum of their errors.
+  /// Returns whether two positive distances differ by at most the sum of their errors.
   [[nodiscard]] bool near_tie(const HitDistance& a, const BurstHit& b) const {
     const std::int64_t margin = (std::int64_t{1} << (kTErrorUnit + a.error)) +
                                 (std::int64_t{1} << (kTErrorUnit + b.t_error));
@@ -170,11 +169,11 @@ class BasicReferenceBurstUnit : public BurstUnit {
   BurstCounters counters_;
 };
 
-/// In the host's float arithmetic.
+/// The reference model in the host's float arithmetic.
 extern template class BasicReferenceBurstUnit<Binary32>;
 using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
 
-/// As BasicReferenceBurstUnit::distance, in binary32.
+/// Computes BasicReferenceBurstUnit::distance in binary32.
 [[nodiscard]] HitDistance hit_distance(const PolygonRecord& record, const glm::vec3& direction);
 
 /// P and its error bound, as in NearestHit.
@@ -183,11 +182,10 @@ struct UnitPoint {
   float error;
 };
 
-/// As BasicReferenceBurstUnit::point, in binary32.
+/// Computes BasicReferenceBurstUnit::point in binary32.
 [[nodiscard]] UnitPoint plane_point(const PolygonRecord& record, const glm::vec3& direction);
 
-/// Returns the error bound of a P of the unit. `grazing`: the value that the unit reported, or
-/// none.
+/// Returns the error bound of a P of the unit. `grazing` is the value reported by the unit, if any.
 [[nodiscard]] float point_error(const PolygonRecord& record, const glm::vec3& direction,
                                 std::optional<std::uint32_t> grazing = std::nullopt);
 

@@ -13,7 +13,7 @@
 namespace raygate {
 namespace {
 
-/// The floats around t that are as far off as its error allows.
+/// Returns the range of t within its error.
 Interval around(const HitDistance& distance) {
   constexpr std::uint32_t kInfinity = 0x7F800000;
   const auto bits = std::bit_cast<std::uint32_t>(distance.t);
@@ -22,8 +22,8 @@ Interval around(const HitDistance& distance) {
           std::bit_cast<float>(std::min(bits + margin, kInfinity))};
 }
 
-/// The bundle that a unit's word is about. Throws std::runtime_error where there is none, or it has
-/// no such lane or record: the unit is broken.
+/// Returns the bundle of a unit's result. Throws std::runtime_error if there is none, or if it has
+/// no such lane or record, which means that the unit is broken.
 template <class Word>
 const RayBundle& bundle_of(const Word& word, std::span<const RayBundle> batch) {
   if (word.bundle >= batch.size() || word.lane >= kLanes ||
@@ -54,7 +54,7 @@ void PipelineHitTester::finish(HitResults& results) {
   found_.clear();
   unit_->finish(found_);
   auto report = found_.reports.begin();
-  // A burst's near ties come before the hit that was kept, so that its sure hits are together.
+  // Near ties of a burst precede its kept hit, so that its sure hits are adjacent.
   const auto take_reports = [&](auto belongs_here) {
     for (; report != found_.reports.end() && belongs_here(*report); ++report) {
       const RayBundle& bundle = bundle_of(*report, batch);
@@ -104,9 +104,9 @@ HitCounters hit_counters(const BurstCounters& unit) {
 
 namespace {
 
-/// Where the exact t of a sure hit is. N is rounded like an edge plane, so the bound of an edge
-/// test holds for I . N too; d is off by 2^-24 + 2^-32 of itself at most (exact.h), which 2^-23
-/// covers together with the roundings of these lines.
+/// Returns bounds of the exact t of a sure hit. N is rounded like an edge plane, so the bound of an
+/// edge test also holds for I . N; the relative error of d is at most 2^-24 + 2^-32 (exact.h),
+/// which 2^-23 covers together with the rounding of these lines.
 Interval distance_bounds(const PolygonRecord& record, const glm::vec3& direction) {
   const double dot = std::abs((record.normal.x * direction.x + record.normal.y * direction.y) +
                               record.normal.z * direction.z);
@@ -168,11 +168,12 @@ void SerialHitTester::collect(std::uint32_t index, const RayBundle& bundle) {
   }
 }
 
-/// Pairs [first, last) are one ray's: its sure hits that no other surely precedes, and its doubts.
+/// Reports pairs [first, last), which belong to one ray: its doubts, and its sure hits that are not
+/// surely farther than another one.
 void SerialHitTester::report_burst(std::span<const RayBundle> batch, std::size_t first,
                                    std::size_t last, HitResults& results) {
   const std::size_t first_hit = results.hits.size();
-  double nearest = std::numeric_limits<double>::infinity();  // the nearest hit's t is at most this
+  double nearest = std::numeric_limits<double>::infinity();  // upper bound of the nearest hit's t
   for (std::size_t i = first; i < last; ++i) {
     const auto& [index, lane, record, verdict] = pairs_[i];
     const RayBundle& bundle = batch[index];

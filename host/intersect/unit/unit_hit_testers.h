@@ -1,5 +1,4 @@
-// Hit testers over the simulated units or their reference models: the pipelined unit, and the
-// paper's.
+// Hit testers for the pipelined unit and the paper's unit, simulated or as reference models.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +11,8 @@
 
 namespace raygate {
 
-/// The pipelined unit decides everything except doubts. P and t of reported tests (doubts and the
-/// farther one of a near tie) are computed here by the same formulas.
+/// The pipelined unit decides everything except doubts. P and t of reported tests (doubts, and the
+/// farther hit of a near tie) are computed here by the same formulas.
 class PipelineHitTester : public HitTester {
  public:
   explicit PipelineHitTester(std::unique_ptr<BurstUnit> unit);
@@ -26,7 +25,7 @@ class PipelineHitTester : public HitTester {
 
  private:
   std::unique_ptr<BurstUnit> unit_;
-  BurstResults found_;  // kept from batch to batch
+  BurstResults found_;  // reused for all batches
 };
 
 /// Converts the counts of a burst unit; three coordinates are one plane test.
@@ -36,7 +35,7 @@ class PipelineHitTester : public HitTester {
 /// inside the polygon and which hit is nearest, as in the paper.
 class SerialHitTester : public HitTester {
  public:
-  /// Which pairs are sent to the unit.
+  /// Pairs that are sent to the unit.
   enum class Order {
     kEdgesFirst,   ///< pairs that the edge planes do not exclude: a miss costs no clocks
     kPlanesFirst,  ///< all pairs, as in the paper
@@ -48,7 +47,7 @@ class SerialHitTester : public HitTester {
   [[nodiscard]] HitCounters counters() const override;
 
  private:
-  /// A pair in the unit.
+  /// A (ray, polygon) pair in the unit.
   struct Pair {
     std::uint32_t bundle, lane, record;
     UnitVerdict verdict;
@@ -61,8 +60,8 @@ class SerialHitTester : public HitTester {
   std::unique_ptr<PlaneUnit> unit_;
   Order order_;
   HitCounters counters_;
-  // Room to work in, kept from batch to batch.
-  std::vector<Pair> pairs_;  // bundle by bundle, lane by lane, in the order of the records
+  // Reused for all batches.
+  std::vector<Pair> pairs_;  // ordered by bundle, lane and record
   std::vector<PlaneTest> plane_tests_;
   std::vector<glm::vec3> points_;
 };

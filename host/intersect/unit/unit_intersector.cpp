@@ -17,7 +17,8 @@ UnitIntersector::UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> test
       caches_(caches ? std::move(caches) : std::make_shared<RecordCaches>(bvh)) {}
 
 std::size_t UnitIntersector::preferred_batch() const {
-  constexpr std::size_t kRaysPerTest = 256;  // so that batches are long against what fills the unit
+  // Makes batches long relative to the pipeline's fill time.
+  constexpr std::size_t kRaysPerTest = 256;
   return std::max(kBatch, kRaysPerTest * tester_->enough_tests());
 }
 
@@ -56,7 +57,7 @@ void UnitIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
   }
 }
 
-/// Takes the answers to a half's batch.
+/// Processes the results of a half's batch.
 void UnitIntersector::finish(Half& half) {
   Stopwatch watch;
   results_.clear();
@@ -67,12 +68,11 @@ void UnitIntersector::finish(Half& half) {
   counters_.hit_tests += watch.lap();
 }
 
-/// Packets are filled octant by octant, each in the order of the rays; the second half of them is
-/// the second half.
+/// Fills packets by octant, in the order of the rays. Each half gets half of the packets.
 void UnitIntersector::make_packets() {
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   packets_.clear();
-  std::array<std::uint32_t, 8> open;  // the packet of each octant that has room
+  std::array<std::uint32_t, 8> open;  // by octant: a packet with free lanes
   std::array<int, 8> filled{};
   open.fill(kNone);
   for (std::uint32_t number = 0; number < rays_.size(); ++number) {
@@ -112,8 +112,7 @@ LeafVisits UnitIntersector::next_leaf(Packet& packet) {
   return {{LeafVisit{first, count, packet.lanes}}, 1};
 }
 
-/// Fills the batch: every packet goes to its next leaf or, while there are too few tests, to the
-/// one after that.
+/// Fills the batch: advances every packet to its next leaf, repeatedly if there are too few tests.
 void UnitIntersector::collect(Half& half) {
   half.batch.clear();
   half.owner.clear();
@@ -138,7 +137,7 @@ RayBundle make_bundle(std::span<const Ray> rays, std::span<const std::uint32_t> 
   return bundle;
 }
 
-/// A bundle for each origin among the visiting rays.
+/// Adds a bundle for each origin among the visiting rays.
 void add_own_bundles(std::span<const Ray> rays, std::span<const std::uint32_t> numbers,
                      const LeafVisit& visit, std::vector<RayBundle>& batch) {
   for (LaneMask left = visit.lanes; left != 0;) {
@@ -155,8 +154,8 @@ void add_own_bundles(std::span<const Ray> rays, std::span<const std::uint32_t> n
 
 }  // namespace
 
-/// Sends every packet to its next leaf and writes the tests found there into the batch; their
-/// number. Packets that are through leave the active ones.
+/// Advances every packet to its next leaf, adds the tests there to the batch, and returns their
+/// number. Finished packets are removed from the active ones.
 std::size_t UnitIntersector::visit_leaves(Half& half) {
   std::size_t kept = 0, tests = 0;
   for (const std::uint32_t index : half.active) {
@@ -181,8 +180,8 @@ std::size_t UnitIntersector::visit_leaves(Half& half) {
   return tests;
 }
 
-/// All at once, when it is known how many: bundles point at their records. Those of instances are
-/// made here, too, even of a common origin: a cache would have a place for each.
+/// Makes the records that are not cached, all at once, as bundles point to them. Includes those of
+/// instances, even with a common origin, since a cache would reserve memory for each.
 void UnitIntersector::make_own_records(Half& half) {
   std::size_t count = 0;
   for (const RayBundle& bundle : half.batch) {
@@ -229,8 +228,8 @@ void UnitIntersector::offer(const Half& half, const Report& report) {
   packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);
 }
 
-/// A burst reports no hit that is surely farther than another one: where that one is ignored, exact
-/// arithmetic tries them all.
+/// Tests all triangles of the bundle exactly if its hit is ignored, since a burst does not report
+/// hits that are surely farther than another one.
 void UnitIntersector::offer_hidden(const Half& half, const SureHit& ignored) {
   const RayBundle& bundle = half.batch[ignored.bundle];
   const std::uint32_t number = packets_[half.owner[ignored.bundle]].rays[ignored.lane];

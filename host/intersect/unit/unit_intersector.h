@@ -23,14 +23,14 @@ namespace raygate {
 /// once for all rays of its packet with the same origin.
 class UnitIntersector : public Intersector {
  public:
-  /// `caches` can be shared by intersectors; null: own caches. The tree must outlive this.
+  /// `caches` can be shared by intersectors; null: own caches. `bvh` must outlive this object.
   UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester,
                   std::shared_ptr<RecordCaches> caches = nullptr);
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
 
-  /// Larger if several lanes share a batch.
+  /// Returns a larger batch if several lanes share it.
   [[nodiscard]] std::size_t preferred_batch() const override;
 
   [[nodiscard]] IntersectCounters counters() const override;
@@ -41,19 +41,19 @@ class UnitIntersector : public Intersector {
     Packet(const Bvh& bvh, int octant) : traversal(bvh, octant) {}
 
     PacketTraversal traversal;
-    std::array<std::uint32_t, kLanes> rays;  // numbers; lanes without a ray repeat lane 0
+    std::array<std::uint32_t, kLanes> rays;  // ray indices; lanes without a ray repeat lane 0
     LaneMask lanes = 0;
-    LaneMask ended = 0;                // early
-    std::uint32_t next_primitive = 0;  // without culling
+    LaneMask ended = 0;                // rays ended early
+    std::uint32_t next_primitive = 0;  // without culling: the next primitive
   };
 
   /// Half of the packets, with their batch.
   struct Half {
-    std::vector<std::uint32_t> active;  // packets still on their way
+    std::vector<std::uint32_t> active;  // packets that continue
     std::vector<RayBundle> batch;
-    std::vector<std::uint32_t> owner;    // the packet of each bundle
-    std::vector<PolygonRecord> records;  // of rays of their own origins, in the batch's order
-    bool started = false;                // the batch is with the tester
+    std::vector<std::uint32_t> owner;    // index of the packet of each bundle
+    std::vector<PolygonRecord> records;  // of rays with different origins, in the batch's order
+    bool started = false;                // the tester is working on the batch
   };
 
   void make_packets();
@@ -73,13 +73,12 @@ class UnitIntersector : public Intersector {
   const Bvh& bvh_;
   std::shared_ptr<HitTester> tester_;
   std::shared_ptr<RecordCaches> caches_;
-  IntersectCounters counters_;  // all but the tester's
-  // Of the query that goes on.
+  IntersectCounters counters_;  // without the tester's counts
   std::span<const Ray> rays_;
   RayQuery query_;
   std::span<NearestHit> hits_;
   RecordCache* common_ = nullptr;
-  // Room to work in, kept from query to query.
+  // Reused for all queries.
   std::vector<Packet> packets_;
   std::array<Half, 2> halves_;
   HitResults results_;

@@ -1,8 +1,8 @@
-"""Area, delay and energy of each variant's unit, from what `make synth` and `make layout TOP=energy` have measured.
+"""Area, delay and energy of each variant's unit, as measured by `make synth` and `make layout TOP=energy`.
 
-A unit that synthesis has measured in the variant's format counts as it is. For others the cores
-are added up: multiplier, adder and divider for the paper's unit, whose slowest path is a
-multiplication and a division.
+Uses the unit's own record if synthesis has measured it in the variant's format. Otherwise adds up the
+cores: multiplier, adder and divider for the paper's unit, whose critical path is a multiplication and
+a division.
 """
 
 import concurrent.futures
@@ -18,8 +18,8 @@ from synth import brought, catalogue, measure as synth, tools
 from synth.layout import energy as energy_of, flow as placement, formats, tests as operations
 from synth.layout.jobs import SPARSE
 
-LIBRARY = "osu035"  # the paper's era
-FLOWS = ("parts", "fast", "small")  # the first that there is
+LIBRARY = "osu035"  # of the paper's time
+FLOWS = ("parts", "fast", "small")  # the first available one is used
 UNITS = {"pipeline": "hit_test_pipeline", "serial": "hit_test_unit"}
 CORES = ("fp_multiplier", "fp_adder", "fp_divider")
 USUAL = {"ExpWidth": 8, "FracWidth": 23, "QuotientBits": 0, "RoundingMode": 0, "Adder": 2,
@@ -29,9 +29,9 @@ ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")  # as 
 
 @dataclasses.dataclass(frozen=True)
 class Cost:
-    """What a unit takes."""
+    """The cost of a unit."""
 
-    area: float  # the library's units
+    area: float  # in the library's unit
     period_ns: float
 
 
@@ -44,13 +44,13 @@ def _parameters(variant: dict) -> dict[str, int]:
 
 
 def design(variant: dict) -> catalogue.Design:
-    """The variant's unit."""
+    """Returns the design of the variant's unit."""
     return catalogue.design(UNITS[variant["unit"]], **{name: value for name, value in _parameters(variant).items()
                                                        if value != USUAL[name]})
 
 
 def _kept_apart(variant: dict) -> contextlib.AbstractContextManager:
-    """Within it, synthesis reads the modules that the variant brings along."""
+    """Returns a context in which synthesis reads the variant's user-supplied modules."""
     return brought.in_place(pathlib.Path(variant["brought"])) if variant["brought"] else contextlib.nullcontext()
 
 
@@ -65,9 +65,9 @@ def _measured(folder: str, rows: dict, workers: int, wires: bool) -> list[dict]:
 
 
 def synthesis(variants: list[dict], workers: int, measure: bool, wires: bool = False) -> list[dict]:
-    """Rows of what `make synth` has kept and, with `measure`, of each unit in each format of the
-    variants, with `wires` placed, too: `wired_ns` is the period with the wires that layout/estimate.py
-    gives it. What fails, or is missing to synthesise with, is said on standard error."""
+    """Returns rows of the results of `make synth` and, with `measure`, of each unit in each format of the variants.
+    With `wires`, units are also placed: `wired_ns` is the period with the wires estimated by layout/estimate.py.
+    Reports failures and missing tools on standard error."""
     file = ROOT / "build" / "synth" / "results.json"
     records = json.loads(file.read_text())["results"] if file.exists() else []
     if measure:
@@ -76,7 +76,7 @@ def synthesis(variants: list[dict], workers: int, measure: bool, wires: bool = F
             if variant["hardware"]:
                 designs[variant["brought"]][design(variant).name] = catalogue.Row("variants", design(variant), {LIBRARY: FLOWS[:1]})
         try:
-            with concurrent.futures.ProcessPoolExecutor() as pool:  # which files are read is a process's own
+            with concurrent.futures.ProcessPoolExecutor() as pool:  # the choice of files is per process
                 for made in pool.map(functools.partial(_measured, workers=-(-workers // len(designs)), wires=wires), *zip(*designs.items())):
                     records = made + records
         except (tools.MissingTool, tools.ToolFailed) as error:
@@ -86,12 +86,12 @@ def synthesis(variants: list[dict], workers: int, measure: bool, wires: bool = F
 
 
 def energies(variants: list[dict] | tuple = ()) -> list[dict]:
-    """Rows of what `make layout TOP=energy` has kept, and of the cores of these variants of the paper's unit: a core's operation
-    in a format, pJ, and how many a test has."""
+    """Returns rows of the results of `make layout TOP=energy`, and of the cores of these variants of the paper's unit:
+    energy per operation in a format in pJ, and the number of operations per test."""
     file = ROOT / "build" / "synth" / "energies.json"
     found = json.loads(file.read_text())["results"] if file.exists() else []
     for variant in variants:
-        if variant["unit"] == "serial" and variant["exponent_bits"] == 8:  # what layout/tests.py has words for
+        if variant["unit"] == "serial" and variant["exponent_bits"] == 8:  # the only format that layout/tests.py supports
             usual = {name: value for name, value in _parameters(variant).items() if name not in ("RoundingMode", "QuotientBits")
                      and value != USUAL[name]}
             with _kept_apart(variant):
@@ -102,7 +102,8 @@ def energies(variants: list[dict] | tuple = ()) -> list[dict]:
 
 
 def energy(records: list[dict], variant: dict) -> float | None:
-    """nJ that the cores take for a test of the paper's unit in the variant's format, where that is known."""
+    """Returns the energy in nJ of the cores for one test of the paper's unit in the variant's format, or None if
+    unknown."""
     if variant["unit"] != "serial" or variant["flush"] or variant["fused"] or variant["quotient_digits"]:
         return None
     wanted = variant["exponent_bits"], variant["digits"], variant.get("brought", "")
@@ -121,22 +122,22 @@ def _find(records: list[dict], top: str, variant: dict, flow: str) -> dict | Non
     if top not in ("fp_divider", UNITS["serial"]):
         wanted["QuotientBits"] = 0
     if top in CORES:
-        del wanted["RoundingMode"]  # they take it as an input
+        del wanted["RoundingMode"]  # an input of the cores
     return next((record for record in records if record["top"] == top and record["flow"] == flow
                  and record.get("brought", "") == variant.get("brought", "")
                  and all(_number(record, name) == value for name, value in wanted.items())), None)
 
 
 def unit(records: list[dict], variant: dict) -> dict | None:
-    """The record of the variant's unit in its format, if synthesis has measured it."""
+    """Returns the record of the variant's unit in its format, or None if synthesis has not measured it."""
     if variant["flush"] or variant["fused"]:
-        return None  # no such hardware
+        return None  # not supported by the hardware
     found = (_find(records, UNITS[variant["unit"]], variant, flow) for flow in FLOWS)
     return next((record for record in found if record), None)
 
 
 def cost(records: list[dict], variant: dict) -> Cost | None:
-    """The variant's cost; None where synthesis does not know its format or design."""
+    """Returns the variant's cost, or None if synthesis has not measured its format or design."""
     if variant["flush"] or variant["fused"]:
         return None
     record = unit(records, variant)

@@ -1,4 +1,4 @@
-"""The matrix: which pictures are rendered, by whom. Each run is an object for `lab pictures`."""
+"""The benchmark's images and engines. Each run is an object for `lab pictures`."""
 
 import pathlib
 
@@ -13,8 +13,7 @@ def _path(file: pathlib.Path) -> str:
 
 
 def variants(table: list[dict], quick: bool) -> list[dict]:
-    """Every variant on some scenes, by its reference model, and by its hardware in small for the
-    clocks."""
+    """Returns runs of every variant on some scenes: by the reference model, and in small by the hardware for clocks."""
     width, height = (160, 120) if quick else (320, 240)
     lights = {"cornell": {"integrator": "path", "samples": 1 if quick else 4},
               "paper": {"integrator": "whitted"}, "teapot": {"integrator": "primary"}}
@@ -32,7 +31,7 @@ def variants(table: list[dict], quick: bool) -> list[dict]:
 
 
 def engines(_: list[dict], quick: bool) -> list[dict]:
-    """The renderer's own engines and units, timed."""
+    """Returns timed runs of the renderer's own engines and units."""
     scenes = [SCENES / "cornell.obj", SCENES / "paper.obj", SCENES / "teapot.obj",
               MADE / "sphere.obj", MADE / "sphereflake.obj"]
     size = {"width": 96, "height": 72} if quick else {"width": 320, "height": 200}
@@ -43,11 +42,11 @@ def engines(_: list[dict], quick: bool) -> list[dict]:
 
 
 def lanes(_: list[dict], quick: bool) -> list[dict]:
-    """The paper's frame, with shadows and 4 bounces, by 1 to 8 lanes and by the paper's own unit."""
+    """Returns runs of the paper's frame, with shadows and 4 bounces, on 1 to 8 lanes and on the paper's unit."""
     frame = {"scene": _path(SCENES / "paper.obj"), "width": 320, "height": 200,
              "integrator": "whitted", "engine": "rtl", "repeats": 1 if quick else 3}
     return [{**frame, "lanes": count} for count in (1, 2, 4, 8)] + [{**frame, "variant": "serial"}]
 
 
-# Section -> its runs. The order is the report's.
+# The runs of each section, in the order of the report.
 SECTIONS = {"variants": variants, "engines": engines, "lanes": lanes}

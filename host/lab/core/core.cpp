@@ -1,7 +1,6 @@
-// Clocks, lines and bytes a ray of the simulated ray core, by kind of ray, or of all rays of a
-// picture, and by memory. Nothing
-// passes or fails here: each ray's answer is compared with the cpu engine's, and a difference ends
-// the run.
+// Clocks, lines and bytes per ray of the simulated ray core, by kind of ray or for all rays of an
+// image, and by memory. Each ray's result is compared with that of the cpu engine; a difference
+// ends the run.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -73,10 +72,10 @@ class CoreBench {
  private:
   static constexpr std::pair<const char*, IntegratorKind> kPictures[] = {
       {"whitted", IntegratorKind::kWhitted}, {"path", IntegratorKind::kPath}};
-  /// Traces rays; how many.
+  /// Traces rays, and returns their number.
   using Trace = std::function<std::size_t(const IntersectorFactory&)>;
 
-  /// One of `options_.every` rays.
+  /// Returns one of every `options_.every` rays.
   [[nodiscard]] RaySet every(const RaySet& set) const {
     RaySet some = set;
     some.rays.clear();

@@ -1,1 +1,1 @@
-"""`make peers`: pictures by raygate and by Mitsuba 3 of the same scenes, error against time."""
+"""`make peers`: compares error against time of raygate and Mitsuba 3 on the same scenes."""

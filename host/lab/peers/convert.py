@@ -1,7 +1,7 @@
-"""Writes a scene twice into one folder: OBJ, MTL and JSON for raygate; PLY and `mitsuba.json` for Mitsuba.
+"""Writes a scene in two formats into one folder: OBJ, MTL and JSON for raygate; PLY and `mitsuba.json` for Mitsuba.
 
-`mitsuba.json` is the dictionary that mitsuba.load_dict takes, but for what JSON cannot say, which `mitsuba_worker`
-puts in: a place for a camera ("look_at"), a texture times a colour ("times").
+`mitsuba.json` is the dictionary for mitsuba.load_dict, except for values that JSON cannot represent, which
+`mitsuba_worker` fills in: a camera transform ("look_at") and a texture times a colour ("times").
 """
 
 import json
@@ -14,19 +14,19 @@ from host.lab.peers.scene import Material, Mesh, Scene, colour
 
 # Mitsuba's samplers; the first is its default.
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
-LIGHT_TRACER = "ptracer"  # in place of a sampler: Mitsuba's integrator of that name, which has the first one
-# Rays that chance may end begin after this many surfaces, and a path has at most so many: raygate's path does the same.
+LIGHT_TRACER = "ptracer"  # Mitsuba's integrator of that name, in place of a sampler; uses the first sampler
+# Russian roulette begins after this number of surfaces; DEPTH limits paths. Both are those of raygate.
 SURE_SURFACES = 3
 DEPTH = 64
 
 
 def rgb(values: object) -> dict:
-    """A colour."""
+    """Returns a colour in Mitsuba's format."""
     return {"type": "rgb", "value": [float(value) for value in values]}
 
 
 def write_raygate(scene: Scene, folder: pathlib.Path) -> None:
-    """scene.json, beside the OBJ and an MTL of what both renderers have."""
+    """Writes scene.json, with the OBJ file and an MTL file of the properties that both renderers support."""
     shutil.copyfile(scene.obj, folder / scene.obj.name)
     lines = []
     for material in {mesh.material.name: mesh.material for mesh in scene.meshes}.values():
@@ -46,7 +46,7 @@ def write_raygate(scene: Scene, folder: pathlib.Path) -> None:
 
 
 def write_ply(mesh: Mesh, file: pathlib.Path) -> None:
-    """Binary; texture coordinates with v downwards, and scaled, as the picture is looked up."""
+    """Writes a binary PLY file, with v of texture coordinates downwards, and scaled as in the texture lookup."""
     columns = [("x", mesh.positions[:, 0]), ("y", mesh.positions[:, 1]), ("z", mesh.positions[:, 2])]
     if mesh.normals is not None:
         columns += [(f"n{axis}", mesh.normals[:, i]) for i, axis in enumerate("xyz")]
@@ -65,7 +65,7 @@ def write_ply(mesh: Mesh, file: pathlib.Path) -> None:
 
 
 def bsdf(material: Material) -> dict:
-    """A material of Mitsuba."""
+    """Returns a Mitsuba material."""
     if material.is_glass:
         return {"type": "dielectric", "int_ior": material.index, "ext_ior": 1.0,
                 "specular_transmittance": rgb(material.transmittance)}
@@ -78,14 +78,14 @@ def bsdf(material: Material) -> dict:
 
 
 def light_sides(corners: numpy.ndarray, normal: numpy.ndarray, everything: numpy.ndarray) -> list[bool]:
-    """The sides of a flat light on which there is anything to be lit: True is the one that its normal points to."""
+    """Returns the sides of a flat light that face any geometry; True is the side of its normal."""
     heights = (everything - corners[0]) @ normal
     flat = 1e-5 * float(numpy.ptp(everything, axis=0).max())
     return [side for side, lit in ((True, heights.max() > flat), (False, heights.min() < -flat)) if lit]
 
 
 def is_closed(mesh: Mesh) -> bool:
-    """Each edge is of two faces, which run along it in opposite directions."""
+    """Returns whether each edge belongs to two faces that traverse it in opposite directions."""
     places = {tuple(place): number for number, place in enumerate(numpy.unique(mesh.positions, axis=0))}
     faces = [[places[tuple(mesh.positions[corner])] for corner in face] for face in mesh.faces]
     edges = [(face[i], face[i - 2]) for face in faces for i in range(3)]
@@ -93,8 +93,9 @@ def is_closed(mesh: Mesh) -> bool:
 
 
 def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
-    """Mitsuba's lights shine to the front, raygate's to both sides: the light as it must face, twice if it lights
-    both sides, the two then apart by a hundred-thousandth of the scene. Closed ones are seen from outside."""
+    """Returns meshes that emit like a light of raygate, which emits from both sides, while Mitsuba's emit from the
+    front: the light facing the lit side, or two copies for both sides, 1e-5 of the scene's size apart. Closed
+    lights stay unchanged."""
     if is_closed(mesh):
         return [mesh]
     a, b, c = mesh.positions[mesh.faces[0]]
@@ -107,7 +108,7 @@ def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
 
 
 def write_mitsuba(scene: Scene, folder: pathlib.Path) -> None:
-    """mitsuba.json, a PLY file for each mesh, and a camera for each sampler."""
+    """Writes mitsuba.json, a PLY file for each mesh, and a camera for each sampler."""
     everything = numpy.concatenate([mesh.positions for mesh in scene.meshes])
     depths = {"rr_depth": SURE_SURFACES + 1, "max_depth": DEPTH + 2}
     found: dict = {"type": "scene", "integrator": {"type": "path"} | depths,
@@ -143,7 +144,7 @@ def write_mitsuba(scene: Scene, folder: pathlib.Path) -> None:
 
 
 def write(scene: Scene, folder: pathlib.Path) -> None:
-    """Both."""
+    """Writes both formats."""
     folder.mkdir(parents=True, exist_ok=True)
     write_raygate(scene, folder)
     write_mitsuba(scene, folder)

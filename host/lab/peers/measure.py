@@ -1,4 +1,4 @@
-"""Renders, times and judges: rows for the report."""
+"""Renders, times and compares images, and returns rows for the report."""
 
 import pathlib
 import statistics
@@ -10,11 +10,11 @@ from host.lab.peers import convert, scene as scenes
 from host.lab.machine import processors
 from host.lab.rows import ROOT
 
-# Scene -> width of its picture; the height is the same.
+# Width of each scene's image, which is square.
 SCENES = {"cornell": 128, "cornell_spheres": 128, "paper_room": 128, "still_life": 128, "columns": 128,
           "teapot": 128, "sphereflake": 128, "landscape": 128, "lanterns": 128}
 VARIANTS = ("scalar_rgb", "llvm_ad_rgb")
-# Of Mitsuba's samplers those that come out best: they are also timed with other numbers of samples.
+# The best of Mitsuba's samplers, which are also timed with other numbers of samples.
 BEST = ("multijitter", "orthogonal")
 NO_LIGHT_PATHS = "--caustics off"  # as Mitsuba's `path` has none
 ERRORS = (16, 8, 4, 2)  # of --error, which decides how many samples each pixel gets
@@ -24,24 +24,24 @@ REFERENCE_SEED = 1000
 
 
 def scene_file(name: str) -> pathlib.Path:
-    """Beside this file, or one of the gallery's."""
+    """Returns a scene file from this folder or from the gallery."""
     mine = pathlib.Path(__file__).parent / "scenes" / f"{name}.json"
     return mine if mine.exists() else ROOT / "scenes" / f"{name}.json"
 
 
 def mse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
-    """Over pixels and colours, scene-linear."""
+    """Returns the mean squared error over pixels and colours, scene-linear."""
     return float(numpy.mean((picture.astype(float) - reference) ** 2))
 
 
 def shown(light: numpy.ndarray) -> numpy.ndarray:
-    """As a display shows it (sRGB), from 0 to 1."""
+    """Returns displayed values (sRGB), from 0 to 1."""
     light = numpy.clip(light.astype(float), 0.0, 1.0)
     return numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 def display_rmse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
-    """As an 8-bit display shows both, in its steps."""
+    """Returns the RMSE of displayed images in steps of an 8-bit display."""
     return 255.0 * mse(shown(picture), shown(reference)) ** 0.5
 
 
@@ -51,13 +51,13 @@ def standard_error(values: list[float]) -> float:
 
 
 def reference(renderer: object, sampler: str, samples: int, size: dict) -> tuple[numpy.ndarray, float]:
-    """The mean of two long runs, and the MSE that their difference shows it still to have."""
+    """Returns the mean of two long runs, and its remaining MSE, estimated from their difference."""
     first, second = (renderer.render(sampler, samples, REFERENCE_SEED + i, **size)[1] for i in range(2))
     return (first.astype(float) + second) / 2.0, mse(first, second) / 4.0
 
 
 class Measurement:
-    """One scene."""
+    """The measurements of one scene."""
 
     def __init__(self, name: str, quick: bool, program: pathlib.Path) -> None:
         self.name, self.quick, self.program = name, quick, program
@@ -70,12 +70,12 @@ class Measurement:
         self.references: dict[str, numpy.ndarray] = {}
 
     def progress(self, text: str) -> None:
-        """On standard error."""
+        """Prints progress to standard error."""
         print(f"{self.name}: {text}", file=sys.stderr)
 
     def references_row(self, samples: int) -> dict:
-        """Do the two renderers compute the same picture?"""
-        from host.lab.peers.renderers import Mitsuba, Raygate  # need Mitsuba, which the tests do without
+        """Returns a row that compares the references of both renderers."""
+        from host.lab.peers.renderers import Mitsuba, Raygate  # need Mitsuba, which the tests do not use
         found = {}
         for renderer, sampler in ((Raygate(self.folder, processors(), self.program), ""),
                                   (Mitsuba(self.folder, processors(), "llvm_ad_rgb"), "multijitter")):
@@ -90,13 +90,13 @@ class Measurement:
                 "rmse": mse(ours, theirs) ** 0.5, "noise": (our_noise + their_noise) ** 0.5}
 
     def write_side_by_side(self, ours: numpy.ndarray, theirs: numpy.ndarray) -> None:
-        """references.png: raygate, Mitsuba, and their difference ten times as bright."""
+        """Writes references.png: raygate, Mitsuba, and ten times their difference."""
         import mitsuba
         strip = numpy.concatenate([ours, theirs, 10.0 * abs(ours - theirs)], axis=1)
         mitsuba.util.write_bitmap(str(self.folder / "references.png"), strip.astype(numpy.float32))
 
     def plan(self, threads: int) -> list[tuple[object, str, int]]:
-        """Renderer, sampler, samples per pixel."""
+        """Returns the renderer, sampler and samples per pixel of each measurement."""
         from host.lab.peers.renderers import Mitsuba, Raygate
         one_thread = threads == 1
         counts = ([8, COUNT] if self.quick else [2, 8, COUNT]) if one_thread else [COUNT]
@@ -113,7 +113,7 @@ class Measurement:
         return found
 
     def rows(self, threads: int, repeats: int) -> list[dict]:
-        """A row for each of the plan; repeats are of other seeds, and interleaved."""
+        """Returns a row for each planned measurement. Repeats use other seeds and are interleaved."""
         plan = self.plan(threads)
         runs: list[list[dict]] = [[] for _ in plan]
         for seed in range(repeats):
@@ -128,7 +128,7 @@ class Measurement:
                 for (renderer, sampler, _), mine in zip(plan, runs, strict=True)]
 
     def row(self, threads: int, renderer: str, sampler: str, runs: list[dict]) -> dict:
-        """Of one thread the processor's seconds count, which other programs do not stretch."""
+        """Returns the row of a measurement. With one thread, time is processor time, which excludes other programs."""
         key = "processor_seconds" if threads == 1 else "seconds"
         seconds = statistics.median(run[key] for run in runs)
         error = statistics.fmean(run["mse"] for run in runs)
@@ -142,7 +142,7 @@ class Measurement:
 
 
 def measure(name: str, quick: bool, program: pathlib.Path, threads: set[int]) -> list[dict]:
-    """The rows of one scene."""
+    """Returns the rows of one scene."""
     mine = Measurement(name, quick, program)
     return [mine.references_row(128 if quick else 512),
             *(row for count in sorted(threads) for row in mine.rows(count, 2 if quick else SEEDS))]

@@ -1,8 +1,8 @@
-"""A Mitsuba that renders what it is asked for: `python3 -m host.lab.peers.mitsuba_worker FOLDER VARIANT THREADS`.
+"""Renders with Mitsuba on request: `python3 -m host.lab.peers.mitsuba_worker FOLDER VARIANT THREADS`.
 
-Reads a line for each picture from standard input, a JSON object of `sampler`, `samples`, `seed`, `width`, `height` and
-perhaps `picture` (a file for its pixels, as numpy saves them), and answers with one: the seconds of mitsuba.render alone, those of the processor, and
-the samples that the sampler made of `samples`.
+Reads a line for each image from standard input, a JSON object of `sampler`, `samples`, `seed`, `width`, `height` and
+optionally `picture` (a file for its pixels, in numpy's format). Answers with one: the seconds of mitsuba.render alone,
+its processor seconds, and the number of samples that the sampler used for `samples`.
 """
 
 import json
@@ -17,19 +17,19 @@ import numpy
 
 from host.lab.peers.convert import LIGHT_TRACER, SAMPLERS
 
-# Debian 12's libLLVM of this version works; 14 is too old for Dr.Jit, and 15 fails on some kernels.
+# This version of Debian 12's libLLVM works; 14 is too old for Dr.Jit, and 15 fails on some kernels.
 LLVM = "libLLVM.so.19*"
 
 
 def find_llvm() -> None:
-    """Tells Dr.Jit where it is, unless the user did."""
+    """Sets the path of LLVM for Dr.Jit, unless the user has set it."""
     found = sorted(pathlib.Path("/usr/lib").glob(f"*/{LLVM}"))
     if found:
         os.environ.setdefault("DRJIT_LIBLLVM_PATH", str(found[-1]))
 
 
 def realised(value: object, folder: pathlib.Path) -> object:
-    """What load_dict takes, of what JSON can say."""
+    """Converts JSON values to those of mitsuba.load_dict."""
     if not isinstance(value, dict):
         return value
     made = {key: realised(part, folder) for key, part in value.items()}
@@ -56,7 +56,7 @@ class Worker:
     def _scene(self, width: int, height: int) -> object:
         if (width, height) not in self._scenes:
             asked = json.loads(self._text)
-            self._light_tracer = mitsuba.load_dict(asked.pop(LIGHT_TRACER))  # a scene has one integrator
+            self._light_tracer = mitsuba.load_dict(asked.pop(LIGHT_TRACER))  # a scene has only one integrator
             for part in asked.values():
                 if isinstance(part, dict) and "film" in part:
                     part["film"] |= {"width": width, "height": height}
@@ -64,7 +64,7 @@ class Worker:
         return self._scenes[width, height]
 
     def render(self, sampler: str, samples: int, seed: int, width: int, height: int, picture: str = "") -> dict:
-        """One picture."""
+        """Renders one image."""
         scene = self._scene(width, height)
         names = [sensor.id() for sensor in scene.sensors()]
         by_light = sampler == LIGHT_TRACER
@@ -82,7 +82,7 @@ class Worker:
 
 
 def main() -> None:
-    """Until standard input ends."""
+    """Serves requests until the end of standard input."""
     folder, variant, threads = pathlib.Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])
     find_llvm()
     mitsuba.set_variant(variant)

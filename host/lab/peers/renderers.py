@@ -1,4 +1,4 @@
-"""Who renders: raygate's program and Mitsuba's worker, asked alike."""
+"""Common interface of the renderers: raygate's program and Mitsuba's worker."""
 
 import json
 import pathlib
@@ -13,20 +13,20 @@ from host.lab.peers.convert import DEPTH
 from host.lab.rows import ROOT
 from host.lab.steps import render
 
-mitsuba.set_variant("scalar_rgb")  # to read EXR files
+mitsuba.set_variant("scalar_rgb")  # for reading EXR files
 
 
 def light_of(picture: mitsuba.Bitmap) -> numpy.ndarray:
-    """Red, green and blue, wherever they are among the channels."""
+    """Returns red, green and blue, in any order of channels."""
     names = [field.name for field in picture.struct_()]
     return numpy.array(picture)[..., [names.index(channel) for channel in "RGB"]]
 
 
 class Raygate:
-    """./render, the cpu engine."""
+    """The program ./render with the cpu engine."""
 
     name = "raygate"
-    most_samples = 1024  # of a pixel, with --error
+    most_samples = 1024  # per pixel, with --error
 
     def __init__(self, folder: pathlib.Path, threads: int, program: pathlib.Path) -> None:
         self._command = [program, folder / "scene.json", "--integrator", "path", "--filter", "box", "--depth", str(DEPTH),
@@ -46,11 +46,11 @@ class Raygate:
                 "samples": samples}, pixels
 
     def close(self) -> None:
-        """Nothing goes on."""
+        """Does nothing, as no process is left running."""
 
 
 class Mitsuba:
-    """A worker process, which loads the scene once and warms up for each new kind of picture."""
+    """A worker process, which loads the scene once and warms up for each new kind of image."""
 
     def __init__(self, folder: pathlib.Path, threads: int, variant: str) -> None:
         self.name = f"Mitsuba {variant}"
@@ -68,9 +68,9 @@ class Mitsuba:
         return json.loads(answer)
 
     def render(self, sampler: str, samples: int, seed: int, width: int, height: int) -> tuple[dict, numpy.ndarray]:
-        """What it took, and the picture."""
+        """Returns the timing and the image."""
         asked = {"sampler": sampler, "samples": samples, "width": width, "height": height}
-        # LLVM compiles a kernel for each; without LLVM one picture, and a small one, warms up.
+        # With LLVM, each kind needs its own kernel; otherwise one small image is enough for warming up.
         kind = tuple(asked.values()) if "llvm" in self.name else (width, height)
         if kind not in self._warm:
             self._ask(**asked | ({} if "llvm" in self.name else {"samples": 1}), seed=seed + 1)
@@ -80,6 +80,6 @@ class Mitsuba:
             return row, numpy.load(picture.name)
 
     def close(self) -> None:
-        """Lets it end."""
+        """Ends the process."""
         self._process.stdin.close()
         self._process.wait()

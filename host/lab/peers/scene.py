@@ -1,9 +1,9 @@
-"""A scene as both renderers can have it, read from the same OBJ, MTL and JSON files.
+"""A scene that both renderers support, read from the same OBJ, MTL and JSON files.
 
-Of materials there are: matte, perfect mirrors, clear glass that refracts. Two are simplified, for both renderers, and
-`Scene.left_out` says so. A glossy highlight (illum 2) becomes matte: Mitsuba has no Phong lobe. Of a mirror beside something matte
-the stronger stays: Mitsuba 3.9's blendbsdf gives the mirror another share than its weight (0.26 for 0.375 in a white
-furnace). What else they do not share is refused with a ValueError.
+Materials are matte, perfect mirrors, and clear refractive glass. Two kinds are simplified for both renderers, as
+reported in `Scene.left_out`. A glossy highlight (illum 2) becomes matte: Mitsuba has no Phong lobe. Of a mirror and a
+matte lobe the stronger one is kept: Mitsuba 3.9's blendbsdf gives the mirror a fraction other than its weight (0.26
+for 0.375 in a white furnace). Other unsupported features raise ValueError.
 """
 
 import dataclasses
@@ -18,7 +18,7 @@ Colour = tuple[float, float, float]
 
 @dataclasses.dataclass
 class Material:
-    """Of the statements of MTL, those that count."""
+    """The MTL statements that are used."""
 
     name: str
     diffuse: Colour = (0.8, 0.8, 0.8)
@@ -33,7 +33,7 @@ class Material:
 
 @dataclasses.dataclass
 class Mesh:
-    """All triangles of one material (and of one object, if they give off light)."""
+    """All triangles of one material (and of one object, if they emit light)."""
 
     material: Material
     positions: numpy.ndarray  # n x 3
@@ -44,26 +44,26 @@ class Mesh:
 
 @dataclasses.dataclass
 class Scene:
-    """Everything, in the file's coordinates."""
+    """A scene in the file's coordinates."""
 
-    camera: dict  # eye, target, up, fov (from the lower to the upper edge, in degrees)
+    camera: dict  # eye, target, up, fov (vertical, in degrees)
     meshes: list[Mesh]
     point_lights: list[dict]  # position, intensity
     area_lights: list[dict]  # corner, edges, radiance
     background: Colour
-    left_out: list[str]  # what was simplified, one sentence each
+    left_out: list[str]  # descriptions of simplifications, one sentence each
     obj: pathlib.Path
     mtl: pathlib.Path
 
 
 def colour(value: object) -> Colour:
-    """One number stands for three."""
+    """Returns a colour; one number stands for three."""
     values = [float(word) for word in (value if isinstance(value, list) else [value])]
     return tuple(values * 3 if len(values) == 1 else values)
 
 
 def read_materials(file: pathlib.Path, left_out: list[str]) -> dict[str, Material]:
-    """The materials of an MTL file, by name."""
+    """Returns the materials of an MTL file, by name."""
     statements: dict[str, dict[str, list[str]]] = {}
     for line in file.read_text().splitlines():
         word, *rest = line.split("#")[0].split() or [""]
@@ -75,7 +75,7 @@ def read_materials(file: pathlib.Path, left_out: list[str]) -> dict[str, Materia
 
 
 def material(name: str, folder: pathlib.Path, found: dict[str, list[str]], left_out: list[str]) -> Material:
-    """One, of its statements."""
+    """Returns one material from its statements."""
     made = Material(name)
     model = int(found.get("illum", ["2"])[0])
     opacity = float(found.get("d", ["1"])[0])
@@ -111,7 +111,7 @@ def material(name: str, folder: pathlib.Path, found: dict[str, list[str]], left_
 
 
 def read_meshes(file: pathlib.Path, materials: dict[str, Material]) -> list[Mesh]:
-    """The triangles of an OBJ file, convex polygons cut into fans."""
+    """Returns the meshes of an OBJ file, with convex polygons cut into fans."""
     vertices = {"v": [], "vn": [], "vt": []}
     corners: dict[tuple[str, str], list] = {}
     group = made_of = ""
@@ -149,7 +149,7 @@ def read_meshes(file: pathlib.Path, materials: dict[str, Material]) -> list[Mesh
 
 
 def read(file: pathlib.Path) -> Scene:
-    """The scene of a JSON file."""
+    """Returns the scene of a JSON file."""
     given = json.loads(file.read_text())
     obj = (file.parent / given.get("obj", file.with_suffix(".obj").name)).resolve()
     with obj.open() as lines:

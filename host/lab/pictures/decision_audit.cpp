@@ -14,12 +14,11 @@
 namespace raygate::lab {
 namespace {
 
-/// Of the tests of an audit.
 struct Counts {
   std::uint64_t tests = 0, doubts = 0, wrong_hits = 0, wrong_misses = 0;
 };
 
-/// Passes batches on, and judges each of their tests.
+/// Forwards batches to a tester, and audits each of their tests.
 class AuditTester : public HitTester {
  public:
   AuditTester(const Bvh& bvh, const glm::vec3& origin, const Variant& variant, HitTester& tester,
@@ -42,8 +41,7 @@ class AuditTester : public HitTester {
   [[nodiscard]] HitCounters counters() const override { return tester_.counters(); }
 
  private:
-  /// What modules brought along decide has no reference model: each record once more, in a burst of
-  /// its own.
+  /// Audits user-supplied modules, which have no model, by sending each record in its own burst.
   void judge_hardware(std::span<const RayBundle> batch) {
     std::vector<RayBundle> alone;
     for (const RayBundle& bundle : batch) {
@@ -107,12 +105,12 @@ class AuditTester : public HitTester {
   glm::vec3 origin_;
   const Variant& variant_;
   VariantBurstUnit unit_;
-  Arithmetic host_ = variant_.math;  // what puts a ray into the format
+  Arithmetic host_ = variant_.math;  // converts rays to the format
   HitTester& tester_;
   Counts& counts_;
 };
 
-/// In units of the last place of the float next to `exact`.
+/// Returns the error of `value` in ulps of the float next to `exact`.
 double ulps(double value, double exact) {
   const int exponent = exact == 0.0 ? -126 : std::max(std::ilogb(exact), -126);
   const double error = std::abs(value - exact);
@@ -120,7 +118,7 @@ double ulps(double value, double exact) {
                            : std::ldexp(error, 23 - exponent);
 }
 
-/// Rays through the pixels' centres, in blocks of eight close together.
+/// Returns rays through the pixel centres, in coherent blocks of eight.
 std::vector<Ray> camera_rays(const Camera& camera, int width, int height) {
   constexpr int kBlockWidth = 4, kBlockHeight = kLanes / kBlockWidth;
   std::vector<Ray> rays;

@@ -1,4 +1,4 @@
-// Decision audit: counts the wrong decisions of a variant's hit tests on a picture's camera rays.
+// Decision audit: counts wrong decisions of a variant's hit tests on an image's camera rays.
 #pragma once
 
 #include "host/bvh/bvh.h"
@@ -9,18 +9,18 @@
 
 namespace raygate::lab {
 
-/// What the rays through all pixels' centres meet by `tester`, which computes as `variant` says,
-/// against exact arithmetic on the same triangles:
+/// Compares the hits of rays through all pixel centres, found by `tester`, which uses the
+/// arithmetic of `variant`, with exact arithmetic on the same triangles. Columns:
 ///
-///   tests                     ray against polygon, as the traversal led to them
-///   doubts                    of these, left to exact arithmetic: never wrong
-///   wrong_hits, wrong_misses  decided otherwise than exact arithmetic does
-///   rays, wrong_rays          those whose first polygon is another than the exact one
-///   hits                      of the other rays: so many are in the errors
-///   t_ulp, point_ulp          errors of t and of P's worst coordinate in units of float32's last
-///   place: median (p50),
-///                             99th percentile, largest; 0 where there are none. No t_ulp where
-///                             modules are brought along, for t is the reference model's
+///   tests                     (ray, polygon) pairs tested by the traversal
+///   doubts                    tests resolved by exact arithmetic: never wrong
+///   wrong_hits, wrong_misses  decisions that differ from exact arithmetic
+///   rays, wrong_rays          all rays, and those whose nearest polygon is wrong
+///   hits                      hits of the other rays, over which errors are computed
+///   t_ulp, point_ulp          errors of t and of P's worst coordinate in float32 ulps: median
+///   (p50),
+///                             99th percentile, largest; 0 without hits. No t_ulp for user-supplied
+///                             modules, whose t is the reference model's
 [[nodiscard]] Row audit_decisions(const Bvh& bvh, const Camera& camera, int width, int height,
                                   const Variant& variant, HitTester& tester);
 

@@ -49,7 +49,7 @@ constexpr std::pair<const char*, IntegratorKind> kIntegrators[] = {
                    expected);
 }
 
-/// Binary32 as it stands: what the renderer's own engines are.
+/// Returns whether a variant is plain binary32, as used by the renderer's own engines.
 bool is_plain(const Variant& variant) {
   return variant.math == Arithmetic{} && variant.doubts && variant.brought.empty();
 }
@@ -84,7 +84,7 @@ bool same_picture(const Film& a, const Film& b) {
   return same(a.color, b.color) && same(a.depth, b.depth) && same(a.primitive, b.primitive);
 }
 
-/// A scene with its tree, lit, for as many pictures as are wanted.
+/// A scene with its BVH and lights, shared by several runs.
 struct LitScene {
   Scene scene;
   Bvh bvh;
@@ -95,13 +95,13 @@ struct LitScene {
         bvh(scene),
         lights(default_lights(scene, front_camera(scene, 4.0 / 3.0))) {}
 
-  /// The whole scene in view.
+  /// Returns a camera that shows the whole scene.
   [[nodiscard]] Camera camera(int width, int height) const {
     return front_camera(scene, static_cast<double>(width) / height);
   }
 };
 
-/// Red, green and blue, to compare.
+/// Returns red, green and blue, for comparison.
 ChannelPicture light_of(const Film& film) {
   ChannelPicture picture{film.width, film.height, film.window, {"R", "G", "B"}, {}};
   for (int k = 0; k < 3; ++k) {
@@ -111,8 +111,7 @@ ChannelPicture light_of(const Film& film) {
   return picture;
 }
 
-/// Processor seconds of a fixed piece of work that no change of this project touches: how fast the
-/// machine was in between.
+/// Returns the processor time of a fixed workload, which measures the current machine speed.
 double time_yardstick() {
   const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
   std::uint64_t state = 1;
@@ -121,11 +120,12 @@ double time_yardstick() {
     state = state * 6364136223846793005u + 1442695040888963407u;
     sum += 1.0 / static_cast<double>(1 + (state >> 40));
   }
-  if (!(sum > 0.0)) throw std::logic_error("the yardstick's sum");  // so that it must be computed
+  // Prevents elimination by the compiler.
+  if (!(sum > 0.0)) throw std::logic_error("the yardstick's sum");
   return seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
 }
 
-/// One run, from its first picture on.
+/// A run that is executed repeatedly.
 class TimedRun {
  public:
   TimedRun(const PictureRun& run, const LitScene& stage)
@@ -134,7 +134,7 @@ class TimedRun {
         stage_(stage),
         camera_(stage.camera(run.width, run.height)) {}
 
-  /// Renders once more; what was first is only kept as the picture where there are more repeats.
+  /// Renders once more. If there are several repeats, the first one is not timed.
   void render_once() {
     RenderSettings options;
     options.width = run_.width;
@@ -213,7 +213,7 @@ class TimedRun {
   std::vector<double> seconds_, processor_seconds_, yardstick_seconds_;
 };
 
-/// How far a picture is from its reference; psnr is null for equal ones.
+/// Returns error measures of an image against its reference; psnr is null for equal images.
 Row difference(const Film& film, const Film& reference) {
   const Comparison comparison = compare(light_of(film), light_of(reference));
   return {{"differing_pixels", comparison.differing},

@@ -1,5 +1,5 @@
-// Pictures by any variant of arithmetic, and whether the variants' reference models are the
-// hardware: what `make bench` is made of.
+// Commands for `make bench`: images by any variant of arithmetic, and checks of the variants'
+// reference models against hardware.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>

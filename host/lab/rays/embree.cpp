@@ -1,4 +1,4 @@
-// Embree 3, as a peer whose rays per second are compared, and as a subject of the stress test.
+// Embree 3, as a peer for speed comparisons and as a subject of the stress test.
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -10,7 +10,7 @@
 namespace raygate::lab {
 namespace {
 
-/// How Embree 3 is asked.
+/// Query functions of Embree 3.
 class Embree3Queries {
  public:
   Embree3Queries() { rtcInitIntersectContext(&context_); }
@@ -44,10 +44,10 @@ class Embree3Queries {
   RTCIntersectContext context_{};
 };
 
-/// The context of one query: where its hits go.
+/// Context of a query, which stores its hits.
 struct Collector {
-  RTCIntersectContext context;  // first: Embree hands back a pointer to it
-  Answer* answers;              // of the ray, triangle by triangle
+  RTCIntersectContext context;  // must be first: Embree returns a pointer to it
+  Answer* answers;              // answers of the ray, by triangle
   const glm::vec3* direction;
 };
 
@@ -57,7 +57,7 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
   answer.hit = true;
   answer.t = RTCRayN_tfar(arguments->ray, arguments->N, 0);
   answer.point = answer.t * *collector->direction;
-  arguments->valid[0] = 0;  // go on
+  arguments->valid[0] = 0;  // continue the traversal
 }
 
 /// Whether a ray and the triangles are within Embree's range (FLT_LARGE in its sources): it aborts
@@ -95,7 +95,7 @@ RTCRayHit query_of(const glm::vec3& origin, const glm::vec3& direction) {
   return query;
 }
 
-/// Its traversal included. Every hit of a ray is collected by a filter that turns it down.
+/// Collects every hit of a ray in a filter function that rejects it. Tests the traversal, too.
 class EmbreeSubject : public Subject {
  public:
   explicit EmbreeSubject(int flags)
@@ -134,7 +134,7 @@ class EmbreeSubject : public Subject {
   RTCSceneFlags flags_;
   std::shared_ptr<RTCDeviceTy> device_ = embree_device({});
   std::shared_ptr<RTCSceneTy> scene_;
-  std::shared_ptr<const Mesh> mesh_;  // whose scene it is
+  std::shared_ptr<const Mesh> mesh_;  // the mesh of the current scene
 };
 
 SubjectKind kind(const char* name, const char* what, RTCSceneFlags flags) {

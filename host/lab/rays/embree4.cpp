@@ -1,4 +1,4 @@
-// Embree 4, which Debian 12 does not have: loaded from a file, as a Python wheel brings it.
+// Embree 4, which Debian 12 does not have: loaded from a file, such as that of a Python wheel.
 #include <dlfcn.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace raygate::lab {
 namespace {
 
-/// A library, which stays loaded.
+/// A shared library, which stays loaded.
 class Library {
  public:
   explicit Library(std::string file)
@@ -31,9 +31,9 @@ class Library {
   void* handle_;
 };
 
-/// How Embree 4 is asked: by rtcIntersect1(scene, query, arguments) and the like ("Embree 4 API",
-/// 4.4), where Debian's headers have Embree 3's. Rays and hits have the same layout, but for
-/// RoomForHit.
+/// Query functions of Embree 4: rtcIntersect1(scene, query, arguments) and the like ("Embree 4
+/// API", 4.4), while Debian's headers declare those of Embree 3. Rays and hits have the same
+/// layout, except for RoomForHit.
 class Embree4Queries {
  public:
   explicit Embree4Queries(const Library& library) {
@@ -61,11 +61,11 @@ class Embree4Queries {
   }
 
  private:
-  /// RTCIntersectArguments and RTCOccludedArguments, whose fields are the same.
+  /// Arguments with the common layout of RTCIntersectArguments and RTCOccludedArguments.
   struct Arguments {
     std::uint32_t flags = 0, features = ~0u;
     void *context = nullptr, *filter = nullptr, *user_geometry = nullptr;
-    float least_width = 0.0f;  // of curves, in some builds
+    float least_width = 0.0f;  // width of curves, in some builds
   };
 
   Arguments arguments_;

@@ -1,4 +1,4 @@
-// Embree's peers: both versions trace the same way, and are asked differently.
+// Embree peers: common code for Embree 3 and 4, which differ only in their query functions.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -17,7 +17,7 @@
 
 namespace raygate::lab {
 
-/// What makes a scene: of Embree 3, which the lab is linked with, or the same of Embree 4.
+/// Functions that build a scene, of Embree 3, which the lab is linked with, or of Embree 4.
 struct EmbreeFunctions {
   decltype(&rtcNewDevice) new_device = rtcNewDevice;
   decltype(&rtcReleaseDevice) release_device = rtcReleaseDevice;
@@ -33,12 +33,11 @@ struct EmbreeFunctions {
   decltype(&rtcAttachGeometry) attach_geometry = rtcAttachGeometry;
 };
 
-/// A device of one thread.
 inline std::shared_ptr<RTCDeviceTy> embree_device(const EmbreeFunctions& embree) {
   return {embree.new_device("threads=1"), embree.release_device};
 }
 
-/// The committed scene, which keeps its device; triangle i is primitive i.
+/// Returns the committed scene, which keeps its device alive. Triangle i is primitive i.
 inline std::shared_ptr<RTCSceneTy> embree_scene(const EmbreeFunctions& embree,
                                                 const std::shared_ptr<RTCDeviceTy>& device,
                                                 const Scene& scene, RTCSceneFlags flags) {

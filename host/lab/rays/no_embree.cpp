@@ -1,4 +1,4 @@
-// Where CMake found no Embree 3: the lab leaves it out.
+// Replaces the Embree peers and subjects if CMake found no Embree 3.
 #include "host/base/input_error.h"
 #include "host/lab/rays/rays.h"
 #include "host/lab/stress/subjects.h"

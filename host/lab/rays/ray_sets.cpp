@@ -1,4 +1,4 @@
-// Rays of a picture: from the camera, from a light, scattered.
+// Rays of an image: from the camera, from a light, and scattered.
 #include <cmath>
 #include <random>
 
@@ -18,7 +18,7 @@ void for_blocks(const PixelRect& rect, int width, int height, const Visit& visit
   }
 }
 
-/// Beside the eye, a quarter of its distance from the scene's middle up and to the right.
+/// Returns a point above and to the right of the eye, each by a quarter of the eye's distance.
 glm::vec3 light_of(const Scene& scene) {
   const Camera camera = front_camera(scene, 1.0);
   const glm::dvec3 eye(camera.eye());
@@ -69,7 +69,7 @@ RaySet scattered_rays(const Scene& scene, const RaySet& camera, const Found& fou
     glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
     if (glm::dot(normal, glm::dvec3(direction)) > 0.0) normal = -normal;
     glm::dvec3 way = glm::normalize(glm::dvec3(gauss(random), gauss(random), gauss(random)));
-    way = glm::normalize(way + 1.0000001 * normal);  // as the cosine
+    way = glm::normalize(way + 1.0000001 * normal);  // cosine-distributed
     set.rays.push_back({glm::vec3(glm::dvec3(origin) + 0.9999 * found.t[i] * glm::dvec3(direction)),
                         scaled_direction(way)});
   }

@@ -1,5 +1,5 @@
-// This project's answers, as the renderer gets them from the cpu engine: a tile's rays at a time,
-// exact arithmetic for what float32 leaves open, and P for every nearest hit.
+// This project as a peer, used like in the renderer: the rays of a tile at a time, exact arithmetic
+// for doubts of float32, and P for every nearest hit.
 #include <algorithm>
 #include <memory>
 #include <vector>
@@ -36,7 +36,7 @@ class RaygatePeer : public Peer {
 
  private:
   [[nodiscard]] std::uint32_t triangle_of(const NearestHit& hit) const {
-    // Without a branch, which would be a guess at what the ray hits.
+    // Branchless, as a branch on the ray's hit would be unpredictable.
     const std::uint32_t found = hit.primitive != NearestHit::kNone ? 1 : 0;
     static_assert(Found::kNone == ~std::uint32_t{0});
     const std::uint32_t triangle = bvh_.triangle_of(hit.primitive & (0 - found));

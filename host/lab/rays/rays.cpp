@@ -1,6 +1,6 @@
-// Rays per second of the `cpu` engine and of Embree, one thread, medians of processor time. The
-// peers take turns, so that whatever else the machine does meets them alike; compare the rows of
-// one run.
+// Rays per second of the `cpu` engine and of Embree, on one thread, as medians of processor time.
+// The peers take turns, so that changes in the machine's speed affect them alike. Compare only rows
+// of the same run.
 #include "host/lab/rays/rays.h"
 
 #include <CLI/CLI.hpp>
@@ -18,11 +18,11 @@ struct RaysOptions {
   std::vector<std::string> scenes;
   int size = 1024, repeats = 15;
   bool alone = false;
-  std::string only;     // one set of rays; empty: all
-  std::string embree4;  // its library; empty: not asked
+  std::string only;     // name of one set of rays; empty: all
+  std::string embree4;  // path of its library; empty: none
 };
 
-/// The part of the rays about which two peers say the same: which triangle, or whether any.
+/// Returns the fraction of rays with equal results: the triangle, or whether any is hit.
 double agreement(const Found& a, const Found& b) {
   std::size_t same = 0;
   for (std::size_t i = 0; i < a.triangle.size(); ++i) same += a.triangle[i] == b.triangle[i];

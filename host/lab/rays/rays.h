@@ -15,15 +15,15 @@
 
 namespace raygate::lab {
 
-/// Rays to trace, in an order in which neighbours belong together.
+/// Rays to trace. Neighbouring rays are coherent.
 struct RaySet {
   std::string name;
   std::vector<Ray> rays;
   bool common_origin = false;  ///< all rays begin at rays[0].origin
-  std::vector<float> t_max;    ///< empty, or one a ray: only hits with t < t_max[i] count
-  bool any_hit = false;        ///< whether there is a hit is all that is asked for
+  std::vector<float> t_max;    ///< empty, or one per ray: only hits with t < t_max[i] count
+  bool any_hit = false;        ///< the query is only whether there is a hit
 
-  /// What an intersector is asked about `count` of the rays from `first` on.
+  /// Returns the query for `count` rays from `first` on.
   [[nodiscard]] RayQuery query(std::size_t first, std::size_t count) const {
     RayQuery query{.common_origin = common_origin};
     if (!t_max.empty()) query.t_max = std::span(t_max).subspan(first, count);
@@ -32,17 +32,17 @@ struct RaySet {
   }
 };
 
-/// The rays of a picture of size x size pixels with the whole scene in view: `camera`; `light`,
-/// from a point light, above the eye and to its right, to just before what the camera sees: does
-/// anything lie between; and `scattered` from there, in random directions as of diffuse light. The
-/// camera's are in tiles of 128 x 128 pixels, in them squares of 8 x 8, in them blocks of 4 x 2, as
-/// the renderer has them; so is the order of the others.
+/// Returns the rays of an image of size x size pixels that shows the whole scene: `camera`;
+/// `light`, occlusion rays from a point light above and to the right of the eye to just before the
+/// camera's hits; and `scattered`, from the hits in random directions of diffuse reflection. Camera
+/// rays are ordered as in the renderer: in tiles of 128 x 128 pixels, squares of 8 x 8, and blocks
+/// of 4 x 2. The other rays have the same order.
 [[nodiscard]] std::vector<RaySet> ray_sets(const Scene& scene, int size);
 
-/// What was found, one a ray.
+/// Hits, one per ray.
 struct Found {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  static constexpr std::uint32_t kSome = kNone - 1;  ///< any_hit: some triangle
+  static constexpr std::uint32_t kSome = kNone - 1;  ///< for any_hit: some triangle
 
   explicit Found(std::size_t rays) : triangle(rays), t(rays) {}
 
@@ -55,19 +55,19 @@ class Peer {
  public:
   virtual ~Peer() = default;
   [[nodiscard]] virtual const std::string& name() const = 0;
-  /// Makes ready for a set of rays; not timed.
+  /// Prepares for a set of rays; not timed.
   virtual void prepare(const RaySet& set) = 0;
   /// Traces the prepared set on one thread; timed.
   virtual void run(Found& found) = 0;
 };
 
-/// This project's `cpu` engine.
+/// Returns this project's `cpu` engine.
 [[nodiscard]] std::unique_ptr<Peer> make_raygate(const Scene& scene);
 
 /// Embree 3, single rays, packets of 8 and 16 and streams, each in its default and its robust mode,
 /// with trees of high quality; none if this was built without Embree.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees(const Scene& scene);
-/// The same of Embree 4, a shared library. Throws InputError where `file` is none.
+/// Returns the same peers of Embree 4, a shared library. Throws InputError if `file` is not one.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene& scene,
                                                                const std::string& file);
 

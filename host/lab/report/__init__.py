@@ -1,1 +1,1 @@
-"""The report generator: templates, tables, plots."""
+"""Report generator: templates, tables, plots."""

@@ -1,4 +1,4 @@
-"""The report generator: rows and a Jinja2 template make a page of Markdown, beside its plots and long tables, and one of HTML."""
+"""Generates reports from rows and a Jinja2 template: a Markdown page with plots and long tables, and an HTML page."""
 
 import base64
 import html
@@ -12,24 +12,24 @@ import pandas
 from host.lab.report.statistics import median_seconds, spread, times
 from host.lab.rows import of, scene_name
 
-# "HEAD = EXPRESSION :FORMAT": a column of a table. Without an expression the head names the row's value; without a
-# format the cells are text.
+# A table column, "HEAD = EXPRESSION :FORMAT". The default expression is the row's value named by HEAD; without a
+# format, cells are text.
 COLUMN = re.compile(r"(?P<head>.*?)(?: = (?P<expression>.*?))?(?: :(?P<form>\S*))?$")
 ENVIRONMENT = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent),
                                  undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 
 
 def number(value: object, form: str, dash: str = "-") -> str:
-    """A cell: text as it is, numbers by `form`, `dash` where there is none."""
+    """Returns the text of a cell: strings unchanged, numbers in format `form`, `dash` for missing values."""
     if isinstance(value, str):
         return value
     return dash if value is None or pandas.isna(value) else format(value, form)
 
 
 def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, comma: str) -> tuple[list[str], list[str], list[list[str]]]:
-    """Heads, formats, and the cells of each row: `dash` where it has no value, thousands apart by `comma`.
+    """Returns heads, formats, and the cells of each row. `dash` replaces missing values; `comma` separates thousands.
 
-    Columns see the row's values, `row`, and what templates see.
+    Expressions can use the row's values, `row`, and all names of templates.
     """
     parts = [COLUMN.match(column) for column in (one for each in columns for one in ([each] if isinstance(each, str) else each))]
     forms = [part["form"] or "" for part in parts]
@@ -38,7 +38,7 @@ def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, 
     def cell(value: object, row: dict, form: str) -> str:
         try:
             return number(value(**row, row=row), form.replace(",", comma), dash)
-        except (KeyError, TypeError, ZeroDivisionError, jinja2.UndefinedError):  # of something that the row does not have
+        except (KeyError, TypeError, ZeroDivisionError, jinja2.UndefinedError):  # the row lacks a value
             return dash
 
     return ([part["head"] for part in parts], forms,
@@ -46,7 +46,7 @@ def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, 
 
 
 def table(rows: list[dict], *columns: str | list[str]) -> str:
-    """Markdown: a line for each row."""
+    """Returns a Markdown table."""
     if not rows:
         return "(none)\n"
     heads, forms, cells = cells_of(rows, columns, "-", ",")
@@ -55,30 +55,30 @@ def table(rows: list[dict], *columns: str | list[str]) -> str:
 
 
 def save(file: pathlib.Path, rows: list[dict], *columns: str | list[str]) -> str:
-    """A table that is too long for a page: CSV beside it. Gives the link to it."""
+    """Writes a table that is too long for the page as a CSV file, and returns a link to it."""
     heads, _, cells = cells_of(rows, columns, "", "")
     pandas.DataFrame(cells, columns=heads).to_csv(file, index=False)
     return f"[{file.name}]({file.name})"
 
 
 def each(values: list, *columns: str) -> list[str]:
-    """The columns for each of the values, which take the place of {}."""
+    """Returns the columns for each value, which replaces {}."""
     return [column.replace("{}", str(value)) for column in columns for value in values]
 
 
 def rate(count: int, of_all: int) -> str:
-    """Per million; 0 only where there was none."""
+    """Returns the rate per million; "0" only if there were no occurrences."""
     value = 1e6 * count / of_all if of_all else 0.0
     return "-" if not of_all else "0" if not count else f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
 
 
-ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": False}  # variants and figures in their order
+ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": False}  # keeps the order of variants and figures
 ENVIRONMENT.globals |= {"table": table, "each": each, "rate": rate, "scene_name": scene_name, "median_seconds": median_seconds,
                         "spread_percent": lambda row: 100 * spread(times(row))}
 
 
 def render(template: str, folder: pathlib.Path, rows: list[dict], **values: object) -> str:
-    """The Markdown of host/lab/report/<template>; `of(table, ...)` in it gives rows."""
+    """Returns the Markdown of host/lab/report/<template>, in which `of(table, ...)` returns rows."""
     def figure(file: pathlib.Path, caption: str) -> str:
         return f"![{file.stem}]({file.relative_to(folder)})\n\n{caption}\n"
 
@@ -90,18 +90,18 @@ def render(template: str, folder: pathlib.Path, rows: list[dict], **values: obje
 
 
 def measured(about: dict) -> str:
-    """A report's last line: when and where it was measured."""
+    """Returns the last line of a report: date, commit and machine."""
     return (f"\nMeasured by `{about['command']}` at commit {about['commit']} ({about['changed_files']} files changed), "
             f"{about['date']}, on {about['processor']}, {about['processors']} processors.\n")
 
 
 def inlined(picture: pathlib.Path) -> str:
-    """A PNG as an address of its own."""
+    """Returns a PNG file as a data URL."""
     return f"data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}"
 
 
 def page(text: str, folder: pathlib.Path) -> str:
-    """The report as one HTML page that loads nothing: its pictures are inside."""
+    """Returns the report as a self-contained HTML page with embedded images."""
     body = markdown.markdown(text, extensions=["tables"])
     body = re.sub(r'src="([^":]+\.png)"', lambda match: f'src="{inlined(folder / match[1])}"', body)
     title = re.search(r"^# (.*)", text, re.MULTILINE)

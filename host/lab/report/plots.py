@@ -1,4 +1,4 @@
-"""The reports' pictures: galleries, maps and plots."""
+"""Images for reports: galleries, heat maps and plots."""
 
 import io
 import math
@@ -15,18 +15,18 @@ from synth.drawing import plt
 KINDS = {("pipeline", True): ("pipelined unit, doubts resolved", "#4477aa", "o"),
          ("pipeline", False): ("pipelined unit, doubts ignored", "#ee6677", "x"),
          ("serial", True): ("the paper's unit, software decides", "#228833", "s")}
-# On a logarithmic axis an error of 0 is drawn this factor below the smallest other error.
+# On logarithmic axes, an error of 0 is drawn as the smallest other error divided by this.
 BELOW = 10.0
 
 
 def write_png(drawn: bytes, file: pathlib.Path) -> None:
-    """A PNG as one of at most 256 colours, a fifth of its size."""
+    """Writes a PNG with at most 256 colours, 1/5 of the original size."""
     picture = Image.open(io.BytesIO(drawn)).convert("RGB")
     picture.quantize(256, dither=Image.Dither.NONE).save(file, optimize=True)
 
 
 def save(figure: plt.Figure, file: pathlib.Path) -> pathlib.Path:
-    """Writes and closes it; the same figure gives the same file."""
+    """Writes and closes a figure. Equal figures give equal files."""
     drawn = io.BytesIO()
     figure.savefig(drawn, dpi=110)
     plt.close(figure)
@@ -35,8 +35,8 @@ def save(figure: plt.Figure, file: pathlib.Path) -> pathlib.Path:
 
 
 def flip(reference: pathlib.Path, picture: pathlib.Path) -> tuple[numpy.ndarray, float]:
-    """The map of FLIP differences of two PNGs, and their mean."""
-    import flip_evaluator  # which tests of the tables do without
+    """Returns the FLIP difference map of two PNGs, and its mean."""
+    import flip_evaluator  # not needed by the tests of tables
 
     shown = [numpy.asarray(plt.imread(file), dtype=numpy.float32)[..., :3] for file in (reference, picture)]
     error_map, mean, _ = flip_evaluator.evaluate(*shown, "LDR")
@@ -44,12 +44,12 @@ def flip(reference: pathlib.Path, picture: pathlib.Path) -> tuple[numpy.ndarray,
 
 
 def save_pixels(pixels: numpy.ndarray, file: pathlib.Path) -> None:
-    """As they are, from 0 to 1."""
+    """Writes pixels with values from 0 to 1."""
     plt.imsave(file, numpy.clip(pixels, 0, 1))
 
 
 def panels(count: int, columns: int, size: tuple[float, float], **words: object) -> tuple[plt.Figure, list[plt.Axes]]:
-    """A figure of so many panels, in rows of `columns`, each of that size in inches."""
+    """Returns a figure with `count` panels, in rows of `columns`, each of this size in inches."""
     columns = min(count, columns)
     lines = -(-count // columns)
     figure, grid = plt.subplots(lines, columns, figsize=(size[0] * columns, size[1] * lines), squeeze=False,
@@ -60,7 +60,7 @@ def panels(count: int, columns: int, size: tuple[float, float], **words: object)
 
 
 def gallery(pictures: list[tuple[str, pathlib.Path]], file: pathlib.Path, columns: int = 4) -> pathlib.Path:
-    """Pictures side by side with their titles; in one column they are strips, three times as wide."""
+    """Draws images side by side with titles. With one column, they are strips of three times the width."""
     figure, grid = panels(len(pictures), columns, (9, 2.5) if columns == 1 else (3, 2.5))
     for axes, (title, picture) in zip(grid, pictures, strict=True):
         axes.imshow(plt.imread(picture), interpolation="nearest")
@@ -71,7 +71,7 @@ def gallery(pictures: list[tuple[str, pathlib.Path]], file: pathlib.Path, column
 
 def heat_map(values: list[list[float]], rows: list[str], columns: list[str], title: str,
            file: pathlib.Path) -> pathlib.Path:
-    """A map of shares from 1e-6 to 1, white where there are none."""
+    """Draws a heat map of fractions from 1e-6 to 1; white for missing values."""
     figure, axes = plt.subplots(figsize=(12, 0.4 * len(rows) + 2.5), layout="constrained")
     palette = plt.get_cmap("YlOrRd").with_extremes(bad="white")
     image = axes.imshow([[share or math.nan for share in row] for row in values], aspect="auto",
@@ -90,7 +90,7 @@ def heat_map(values: list[list[float]], rows: list[str], columns: list[str], tit
 def error_by_angle(curves: dict[str, list[tuple[float, float]]], unit: list[tuple[float, float]],
                    largest: list[tuple[float, float]], bound: list[tuple[float, float]],
                    file: pathlib.Path) -> pathlib.Path:
-    """The 99th percentile of each subject's t, and the largest of the unit's under its bound."""
+    """Plots the 99th percentile of each subject's error of t, and the unit's largest error with its bound."""
     figure, axes = plt.subplots(figsize=(10, 5.5), layout="constrained")
     axes.set_prop_cycle(color=plt.get_cmap("tab20").colors)
     for name, points in curves.items():
@@ -100,15 +100,15 @@ def error_by_angle(curves: dict[str, list[tuple[float, float]]], unit: list[tupl
     axes.loglog(*zip(*bound, strict=True), "k--", label="the unit, proven bound")
     axes.set_xlabel("sine of the angle between ray and plane (a decade each)")
     axes.set_ylabel("error of t, ulp: 99th percentile")
-    axes.set_ylim(top=1e9)  # above it are overflows of the narrow formats alone
+    axes.set_ylim(top=1e9)  # only overflows of narrow formats are above
     figure.legend(loc="outside right upper", fontsize="small")
     axes.grid(True, alpha=0.3)
     return save(figure, file)
 
 
 def pareto(frames: list[dict], costs: dict[str, str], error: str, label: str, title: str, file: pathlib.Path) -> pathlib.Path:
-    """A panel for each cost (key of the frames: label) against the key `error`, lower is better in both. A line joins the
-    variants that no other betters; these are named."""
+    """Plots each cost (key of the frames: label) against the key `error` in a panel. A line connects the
+    Pareto-optimal variants, which are labelled."""
     floor = min((frame[error] for frame in frames if frame[error] > 0), default=1.0) / BELOW
     figure, grid = panels(len(costs), 2, (5.5, 4))
     for axes, (cost, text) in zip(grid, costs.items(), strict=True):
@@ -133,7 +133,7 @@ def pareto(frames: list[dict], costs: dict[str, str], error: str, label: str, ti
 
 
 def lines(series: dict[str, list[tuple[float, float]]], xlabel: str, ylabel: str, title: str, file: pathlib.Path) -> pathlib.Path:
-    """The points (x, y) of each series on logarithmic axes, joined by lines."""
+    """Plots the points (x, y) of each series on logarithmic axes, connected by lines."""
     figure, axes = plt.subplots(figsize=(7.5, 5), layout="constrained")
     axes.set_prop_cycle(color=plt.get_cmap("tab20" if len(series) > 10 else "tab10").colors)
     for name, points in series.items():

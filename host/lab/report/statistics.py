@@ -1,29 +1,29 @@
-"""Spreads and fronts."""
+"""Spreads and Pareto fronts."""
 
 import math
 import statistics
 
 
 def times(row: dict) -> list[float]:
-    """Of one thread's work the processor's seconds, which other programs don't stretch; else wall."""
+    """Returns the times of a row: processor time for one thread, as it excludes other programs, otherwise wall time."""
     return row["processor_seconds"] if row["threads"] == 1 else row["seconds"]
 
 
 def median_seconds(row: dict) -> float:
-    """Of the repeats."""
+    """Returns the median time of the repeats."""
     return statistics.median(times(row))
 
 
 def spread(values: list[float]) -> float:
-    """The median distance from the median, as a part of the median; 0 for one value."""
+    """Returns the median absolute deviation relative to the median; 0 for one value."""
     center = statistics.median(values)
     return statistics.median(abs(value - center) for value in values) / center if center else 0.0
 
 
 def front(points: list[tuple[float, float]]) -> list[int]:
-    """Which points no other betters: none is at most as large in both and smaller in one.
+    """Returns the Pareto-optimal points: no other point is at most as large in both coordinates and smaller in one.
 
-    Indices, by growing first coordinate.
+    Returns indices, sorted by the first coordinate.
     """
     best, kept = math.inf, []
     for i in sorted(range(len(points)), key=lambda i: points[i]):

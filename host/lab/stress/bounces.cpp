@@ -16,7 +16,7 @@ glm::vec3 mirrored(const glm::vec3& direction, const Corners& t) {
   return scaled_direction(d - 2.0 * glm::dot(d, n) * n);
 }
 
-/// The primitive that the ray hits first.
+/// Returns the primitive that the ray hits first.
 std::optional<std::uint32_t> first_hit(const Bvh& bvh, const Ray& ray) {
   std::optional<std::uint32_t> best;
   for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
@@ -45,7 +45,7 @@ void Bounces::start_anew(Random& random) {
   bounces_left_ = kBounces;
 }
 
-/// Follows one ray of the last shot to its hit and on; starts anew where it ends.
+/// Follows one ray of the last shot to its hit and reflects it. Restarts if that is not possible.
 void Bounces::bounce(Random& random) {
   const Ray ray = {origin_, directions_[random.below(kRays)]};
   const auto primitive = first_hit(*bvh_, ray);
@@ -68,7 +68,7 @@ Shot Bounces::operator()(Random& random) {
   directions_.clear();
   if (mirrored_ != glm::vec3(0.0f)) directions_.push_back(mirrored_);
   while (directions_.size() < kRays) {
-    // Into the edge at which the first two side faces meet, and elsewhere.
+    // Towards edges and points near them, such as the edge between the first two side faces.
     const Corners& t = mesh_->triangles[random.below(static_cast<int>(mesh_->triangles.size()))];
     const glm::dvec3 aim =
         glm::mix(glm::dvec3(t[0]), glm::dvec3(t[random.below(3)]), random.uniform(0, 1)) +

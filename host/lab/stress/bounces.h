@@ -1,4 +1,4 @@
-// Bounces: rays reflected again and again in a concave corner, shot by shot.
+// Bounces: rays reflected repeatedly in a concave corner, one reflection per shot.
 #pragma once
 
 #include <memory>
@@ -11,9 +11,9 @@
 
 namespace raygate::lab {
 
-/// A generator whose shots are the bounces of one another: eight rays from a point in a wedge or a
-/// box; the next shot starts where one of them is mirrored, by the renderer's own rule for origins.
-/// All shots claim to start inside: the truth says where the rule fails.
+/// A generator whose shots are successive reflections: eight rays from a point in a wedge or a box.
+/// The next shot starts where one of them is reflected, at the renderer's spawn origin. All shots
+/// claim to start inside; the oracle finds out where the rule for origins fails.
 class Bounces {
  public:
   Shot operator()(Random& random);
@@ -25,7 +25,7 @@ class Bounces {
   std::shared_ptr<const Mesh> mesh_;
   std::shared_ptr<const Bvh> bvh_;
   glm::vec3 origin_{0.0f};
-  std::vector<glm::vec3> directions_;  // of the last shot
+  std::vector<glm::vec3> directions_;  // directions of the last shot
   glm::vec3 mirrored_{0.0f};           // of the ray that was followed; 0: none
   int bounces_left_ = 0;
 };

@@ -9,24 +9,25 @@
 // Let u = 2^-24, N and D the exact normal and plane distance, n and d the record's floats, V the
 // float result of I . n. |.| of a vector is its length, |.|_1 the sum of its magnitudes.
 //
-// 1. Words. triangle_normal promises a double within 2^-34 |N|_1, to the first order, of each
-//    component, and |N|_1 <= sqrt(3) |N|; then each is rounded to float, by u of itself. (A word
-//    that becomes subnormal adds 2^-150, next to a largest one of 2^-60 or more: nothing.)
+// 1. Words. triangle_normal guarantees a double within 2^-34 |N|_1 of each component, to first
+//    order, and |N|_1 <= sqrt(3) |N|; then each is rounded to float, by u times itself. (A word
+//    that becomes subnormal adds 2^-150, which is negligible next to a largest one of at least
+//    2^-60.)
 //      |I . n - I . N| <= u sum |I_k N_k| (1 + 2^-9) + 2^-34 sqrt(3) |N| |I|_1
 //    By Cauchy and Schwarz, sum |I_k N_k| <= |I| |N|, and |I|_1 <= sqrt(3) |I|:
-//                      <= (1 + 2^-9 + 3 * 2^-10) u |I| |N|.
+//      <= (1 + 2^-9 + 3 * 2^-10) u |I| |N|.
 //    plane_distance is within 2^-32 of D, and is rounded once: |d - D| <= (1 + 2^-7) u |D|.
-// 2. The dot product. Each product takes part in three roundings at most:
+// 2. The dot product. Each product takes part in at most three roundings:
 //      |V - I . n| <= 3.00001 u sum |I_k n_k| <= (3 + 2^-9) u |I| |N|.
-// 3. |I . N| = sine |I| |N|. So V is off by r = (4 + 2^-6) u / sine of the exact I . N, at most.
-// 4. The division rounds once, and so does the product d I_k that P has before it. I is taken as
-//    it is: a float.
+// 3. |I . N| = sine |I| |N|. So the relative error of V is at most r = (4 + 2^-6) u / sine.
+// 4. The division rounds once, and so does the product d I_k that precedes it in P. I is a float
+//    and exact.
 
 namespace raygate::lab {
 namespace {
 
-// A bin holds the doubles that agree in sign, exponent and six bits of the fraction. The first one
-// ends with 2^-64 and holds 0, the last one begins with 2^64.
+// A bin contains the doubles with the same sign, exponent and first six fraction bits. The first
+// bin ends at 2^-64 and contains 0; the last one begins at 2^64.
 constexpr int kShift = 52 - 6;
 constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(0x1p-64) >> kShift;
 constexpr std::size_t kBins = (std::bit_cast<std::uint64_t>(0x1p64) >> kShift) - kFirst + 2;

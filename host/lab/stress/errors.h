@@ -1,4 +1,4 @@
-// Errors of t and P: how far off they may be, by the angle between ray and plane, and histograms.
+// Errors of t and P: bounds by the angle between ray and plane, and histograms.
 #pragma once
 
 #include <cstddef>
@@ -8,35 +8,35 @@
 
 namespace raygate::lab {
 
-/// Counts errors in bins that are 1/64 of themselves wide or less, so that what several runs have
-/// counted adds up exactly, in any order (host/lab/targets/stress.py does that).
+/// A histogram of errors. Bins are at most 1/64 of their value wide, the same in all runs, so that
+/// sums over runs are exact in any order (see host/lab/targets/stress.py).
 class Errors {
  public:
-  /// Not negative, no NaN; infinity is an error like others.
+  /// Adds an error, which is not negative and not NaN; it may be infinite.
   void add(double error);
 
   [[nodiscard]] double max() const { return max_; }
-  /// The bins that hold any: where a bin ends (all its errors are smaller; in the last one they may
-  /// be anything), and how many.
+  /// Returns the end and the count of each non-empty bin. Errors are smaller than the end, except
+  /// that those in the last bin have no upper limit.
   [[nodiscard]] std::vector<std::pair<double, std::uint64_t>> bins() const;
 
  private:
-  std::vector<std::uint64_t> bins_;  // none, or kBins
+  std::vector<std::uint64_t> bins_;  // empty, or kBins
   double max_ = 0.0;
 };
 
-/// The largest relative error that the unit's t = d / (I . N) may have in a sure hit, and its
-/// P_k = (d I_k) / (I . N), the exact ones being normal floats; `sine` of the angle between ray
-/// and plane. About (2 + 4 / sine) 2^-24 and (3 + 4 / sine) 2^-24; infinite where nothing is
-/// proven. errors.cpp has the proof.
+/// Return the largest relative errors of the unit's t = d / (I . N) and P_k = (d I_k) / (I . N) in
+/// a sure hit whose exact values are normal floats. `sine` is that of the angle between ray and
+/// plane. About (2 + 4 / sine) 2^-24 and (3 + 4 / sine) 2^-24; infinite if no bound is proven. See
+/// errors.cpp for the proof.
 [[nodiscard]] double bound_of_t(double sine);
 [[nodiscard]] double bound_of_point(double sine);
 
-/// The same as errors in ulp (the step of floats near the exact value).
+/// Converts a relative error to ulps (float steps near the exact value).
 [[nodiscard]] double in_ulp(double relative);
 
-/// What the host delivers in the end, refined from the corners (precise_hit in host/exact/exact.h),
-/// is off by no more than so many ulp, at any angle.
+/// Largest error in ulps of the hits that the host delivers, which are computed from the corners
+/// (precise_hit in host/exact/exact.h), at any angle.
 inline constexpr double kDeliveredUlp = 0.5 + 0x1p-10;
 
 }  // namespace raygate::lab

@@ -1,4 +1,4 @@
-// What ray tracers do in float32.
+// Common float32 intersection tests of ray tracers.
 #include <cmath>
 #include <utility>
 

@@ -1,5 +1,4 @@
-// The engines and the variants of arithmetic, each through the Intersector that the renderer would
-// use.
+// Engines and variants of arithmetic as subjects, each through the renderer's Intersector.
 #include <deque>
 #include <type_traits>
 
@@ -23,17 +22,17 @@ namespace {
 
 using IntersectorOf = std::function<std::unique_ptr<Intersector>(const Bvh&)>;
 
-/// How a subject is asked, and what is known of it besides its hits.
+/// Properties of a subject.
 struct Way {
   bool one_origin =
-      false;              ///< shot by shot, as rays of a common origin; else several shots at once
-  bool exact = true;      ///< its intervals hold t
-  bool delivers = false;  ///< what the host makes of its hits is judged too
-  const Variant* unit = nullptr;  ///< whose t is judged; null: no unit's
+      false;          ///< shot by shot, as rays of a common origin; otherwise several shots at once
+  bool exact = true;  ///< its intervals contain t
+  bool delivers = false;          ///< the hits that the host delivers are checked, too
+  const Variant* unit = nullptr;  ///< the variant whose t is checked; null: none
 };
 
-/// A search tells a ray's nearest hit and no more. So each triangle is alone in a tree of its own,
-/// where that is the decision about it, and all of them are in one, for the nearest of them.
+/// Finds only nearest hits, so each triangle is tested alone in a BVH of its own, and all triangles
+/// in one BVH for the nearest hit.
 class IntersectorSubject : public Subject {
  public:
   IntersectorSubject(IntersectorOf make, const Way& way) : make_(std::move(make)), way_(way) {}
@@ -83,13 +82,13 @@ class IntersectorSubject : public Subject {
         answers.tests[first_test + ray * triangles.size() + i] = answer(ray, triangles[i]);
       }
     }
-    // One of the two must be wrong: no triangle has that number.
+    // Contradictory results get an invalid triangle index, so that the answer counts as wrong.
     for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
       if (torn_[ray]) answers.nearest[first_ray + ray] = triangles.size();
     }
   }
 
-  /// The trees of a mesh: one of all its triangles and, where they are several, one of each.
+  /// Builds the BVHs of a mesh: one of all triangles and, if there are several, one of each.
   void plant(const std::shared_ptr<const Mesh>& mesh) {
     if (mesh == mesh_) return;
     mesh_ = mesh;
@@ -99,9 +98,9 @@ class IntersectorSubject : public Subject {
     for (const Corners& triangle : mesh->triangles) trees_.emplace_back(Mesh{{triangle}}, make_);
   }
 
-  /// Finds the hits of all rays. Those of one origin are searched again as a full cone, each in
-  /// several groups and lanes, and alone where there was a doubt: what a ray finds must not depend
-  /// on its company.
+  /// Finds the hits of all rays. Rays with one origin are traced again as a full cone, each in
+  /// several groups and lanes, and alone if there was a doubt: results must not depend on other
+  /// rays.
   void search(Tree& tree) {
     hits_.assign(rays_.size(), {});
     work_.assign(rays_.size(), {});
@@ -124,7 +123,7 @@ class IntersectorSubject : public Subject {
     again(company_, nth);
   }
 
-  /// About ray `number` and the triangle that was searched for last.
+  /// Returns the answer for ray `number` and the triangle of the last search.
   [[nodiscard]] Answer answer(std::size_t number, const Corners& triangle) const {
     const Ray& ray = rays_[number];
     const NearestHit& hit = hits_[number];
@@ -144,13 +143,13 @@ class IntersectorSubject : public Subject {
     return answer;
   }
 
-  static constexpr std::size_t kCone = 64;  // rays of a full one
+  static constexpr std::size_t kCone = 64;  // rays of a full cone
 
   IntersectorOf make_;
   Way way_;
-  std::shared_ptr<const Mesh> mesh_;  // whose trees these are
+  std::shared_ptr<const Mesh> mesh_;  // mesh of the current BVHs
   std::deque<Tree> trees_;
-  // Room to work in: rays, what was found of them, and whether in other company it was another.
+  // Reused buffers: rays, their hits, and whether hits depend on other rays.
   std::vector<Ray> rays_, company_;
   std::vector<NearestHit> hits_, again_;
   std::vector<RayWork> work_;
@@ -165,7 +164,7 @@ SubjectKind cpu(const char* name, const char* what, bool one_origin) {
           }};
 }
 
-/// A unit behind the tester that `make_tester` makes, one for all trees.
+/// Returns a subject for the unit of `make_tester`, which all BVHs share.
 template <class MakeTester>
 std::unique_ptr<Subject> unit_subject(const MakeTester& make_tester, const Way& way) {
   return std::make_unique<IntersectorSubject>(
@@ -211,7 +210,7 @@ SubjectKind core(const char* name, const char* what, double share, bool simulate
           }};
 }
 
-/// "pipelined unit, 16 digits, doubts ignored".
+/// Returns a description such as "pipelined unit, 16 digits, doubts ignored".
 std::string description(const Variant& variant) {
   const Arithmetic& math = variant.math;
   std::string text = variant.unit == Variant::Unit::kPipeline ? "pipelined unit" : "paper's unit";
@@ -252,7 +251,7 @@ std::vector<SubjectKind> engine_subjects() {
 std::vector<SubjectKind> variant_subjects() {
   std::vector<SubjectKind> kinds;
   for (const Variant& variant : all_variants_of_arithmetic()) {
-    if (variant.math == Arithmetic{} && variant.doubts) continue;  // an engine
+    if (variant.math == Arithmetic{} && variant.doubts) continue;  // tested as an engine
     kinds.push_back({.name = variant.name,
                      .what = description(variant),
                      .exact = variant.doubts,

@@ -35,7 +35,7 @@ void icosahedron(Points& points, std::vector<Face>& faces) {
       }
     }
   }
-  // Every three points that are one edge apart, seen counter-clockwise from outside.
+  // All triples of adjacent points, in counter-clockwise order seen from outside.
   faces.clear();
   const auto near = [&](int i, int j) { return glm::distance(points[i], points[j]) < 1.2; };
   for (int a = 0; a < 12; ++a) {
@@ -49,9 +49,9 @@ void icosahedron(Points& points, std::vector<Face>& faces) {
   }
 }
 
-/// Triangles around a sphere, their points added one by one: each splits the triangle above which
-/// it lies, and edges are flipped until no triangle has a point above it (Lawson, "Software for C1
-/// surface interpolation", 1977). Flips keep the mesh closed, whatever rounding does.
+/// Incremental triangulation of a sphere: a new point splits the triangle below it, and edges are
+/// flipped until no triangle has a point above it (Lawson, "Software for C1 surface interpolation",
+/// 1977). Flips keep the mesh closed, regardless of rounding.
 class Triangulation {
  public:
   Triangulation() { icosahedron(points_, faces_); }
@@ -80,7 +80,7 @@ class Triangulation {
     return glm::dot(glm::cross(points_[a], points_[b]), p) > 0.0;
   }
 
-  /// The face that has the edge from -> to, turned so that the edge comes first.
+  /// Returns the face with the edge from -> to, rotated so that this edge is first.
   Face* face_with(int from, int to) {
     for (Face& face : faces_) {
       for (int k = 0; k < 3; ++k) {
@@ -92,7 +92,7 @@ class Triangulation {
     return nullptr;
   }
 
-  /// Flips the edge between the face of `p` and its neighbour where that one's far point is above.
+  /// Flips the edge between the face of `p` and its neighbour if the neighbour's point is above.
   void legalize(int from, int to, int p) {
     Face* const mine = face_with(from, to);
     Face* const other = face_with(to, from);

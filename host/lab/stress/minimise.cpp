@@ -20,7 +20,7 @@ int word_complexity(float x) {
   return 2 + 2 * std::popcount(bits & 0x7FFFFF) + std::abs(exponent) + static_cast<int>(bits >> 31);
 }
 
-/// Every coordinate of a case: origin, direction, vertices.
+/// Visits every vector of a case: origin, direction, vertices.
 template <class AnyCase, class Visit>
 void for_each_vector(AnyCase& failure, Visit visit) {
   visit(failure.origin);
@@ -38,14 +38,14 @@ std::vector<float*> words(Case& failure) {
   return result;
 }
 
-/// x with so many digits, at most.
+/// Returns x rounded to at most this number of digits.
 float rounded(float x, int digits) {
   int exponent;
   const float fraction = std::frexp(x, &exponent);
   return std::ldexp(std::nearbyint(std::ldexp(fraction, digits)), exponent - digits);
 }
 
-/// Useful directions stay so, and as the engines expect them.
+/// Returns whether a case is valid: usable directions must stay usable, and scaled.
 bool admissible(const Case& failure, bool useful) {
   bool fine = true;
   const auto finite = [](const glm::vec3& v) {
@@ -79,7 +79,7 @@ class Minimiser {
   }
 
  private:
-  /// Takes the candidate if it is simpler and fails.
+  /// Accepts the candidate if it is simpler and fails.
   bool offer(const Case& candidate) {
     if (complexity(candidate) >= complexity(best_) || !admissible(candidate, useful_) ||
         !fails_(candidate))
@@ -88,8 +88,8 @@ class Minimiser {
     return true;
   }
 
-  /// The same, with the ray as it is or aimed anew at a simple place of an edge: where a failure
-  /// hangs on the ray passing through it, nothing else can change alone.
+  /// Also tries rays aimed at simple points of edges: if a failure depends on a ray through an
+  /// edge, no other value can be changed alone.
   bool offer_aimed(const Case& candidate) {
     if (offer(candidate)) return true;
     for (const Corners& triangle : candidate.triangles) {

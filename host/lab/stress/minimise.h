@@ -1,4 +1,4 @@
-// Failures made as simple as they can be while they still fail.
+// Minimises failing cases.
 #pragma once
 
 #include <functional>
@@ -8,18 +8,18 @@
 
 namespace raygate::lab {
 
-/// How much there is to a case: fewer triangles, then fewer bits set and exponents nearer to that
-/// of 1 are less.
+/// Returns the complexity of a case: lower for fewer triangles, then for fewer set bits and
+/// exponents closer to that of 1.
 [[nodiscard]] int complexity(const Case& failure);
 
-/// A case for which `fails` holds and which none of these makes simpler: leave a triangle out, move
-/// the origin to 0, scale all by a power of two, replace a coordinate by 0, by that of another
-/// vertex, or by one of fewer digits, with the ray as it is or aimed anew. Directions stay scaled
-/// (scaled_direction). `failure` itself must fail.
+/// Returns a failing case that cannot be simplified further by any of these steps: remove a
+/// triangle, move the origin to 0, scale all by a power of two, replace a coordinate by 0, by that
+/// of another vertex, or by one with fewer digits, with the same or a newly aimed ray. Directions
+/// stay scaled (scaled_direction). `failure` must fail.
 [[nodiscard]] Case minimise(Case failure, const std::function<bool(const Case&)>& fails);
 
-/// Whether a subject decides a case otherwise than the truth: hit or miss, or which triangle is
-/// nearest. Ties count for those that promise to be exact.
+/// Returns whether a subject's decision on a case is wrong: hit or miss, or the nearest triangle.
+/// Ties count for exact subjects.
 [[nodiscard]] bool decides_wrongly(const SubjectKind& kind, Subject& subject, const Case& failure);
 
 }  // namespace raygate::lab

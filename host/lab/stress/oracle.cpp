@@ -47,7 +47,7 @@ mpz_class big(const Wide& x) {
   return negative ? mpz_class(-result) : result;
 }
 
-/// Which powers of two a set of floats spans.
+/// The range of powers of two of a set of floats.
 struct Span {
   int low = 200, high = -200;  // all are multiples of 2^low and below 2^high
 
@@ -74,7 +74,7 @@ Int whole(float x, int low) {
   if (shift >= 0) {
     result <<= shift;
   } else {
-    result >>= -shift;  // drops zeros alone
+    result >>= -shift;  // drops only zero bits
   }
   return result;
 }
@@ -90,7 +90,7 @@ struct Depth {
   Int distance, slope;
 };
 
-/// value * 2^exponent: what may not fit a double.
+/// value * 2^exponent, which may exceed the range of double.
 struct Scaled {
   double value;
   long exponent;
@@ -141,7 +141,7 @@ bool usable(const glm::vec3& direction) {
          std::isfinite(direction.z);
 }
 
-/// What does not depend on the ray.
+/// Values that do not depend on the ray.
 template <class Int>
 struct Target {
   Vector<Int> normal, edges[3];
@@ -180,7 +180,7 @@ Truth find(const Shot& shot, int low, int direction_low) {
   truth.verdicts.reserve(shot.tests());
   std::vector<Target<Int>> targets;
   targets.reserve(shot.mesh->triangles.size());
-  std::vector<Depth<Int>> depths;  // of the ray's hits so far, in their order
+  std::vector<Depth<Int>> depths;  // depths of the ray's hits so far, in order
   const Vector<Int> origin = whole<Int>(shot.origin, low);
   for (const Corners& corners : shot.mesh->triangles) targets.emplace_back(origin, corners, low);
   for (const glm::vec3& ray : shot.directions) {
@@ -203,7 +203,7 @@ Truth find(const Shot& shot, int low, int direction_low) {
         const Scaled normal = length(targets[i].normal);
         verdict.sine = quotient(scaled(depth.slope), {normal.value * direction_length.value,
                                                       normal.exponent + direction_length.exponent});
-        // Those as far as this one are already there, and their indices are lower.
+        // Hits at equal distance that are already in the list have lower indices.
         std::size_t place = order.size();
         for (; place > 0; --place) {
           const int before = compare(depth, depths[place - 1]);
@@ -231,7 +231,7 @@ Truth find_truth(const Shot& shot) {
   for (const glm::vec3& direction : shot.directions) {
     if (usable(direction)) directions.add(direction);
   }
-  // A difference has a bit more, the sum of n products another (n - 1).
+  // A difference has one more bit, the sum of n products n - 1 more.
   const int normal_bits = 2 * (coordinates.bits() + 2) + 1;
   const bool fits =
       normal_bits + coordinates.bits() + 1 + 2 <= 126 && normal_bits + directions.bits() + 2 <= 126;

@@ -1,4 +1,4 @@
-// The truth about a shot, by brute force in integers. Shares no code with the renderer.
+// Oracle: finds exact results by brute force in integers. Shares no code with the renderer.
 #pragma once
 
 #include <cstdint>
@@ -9,33 +9,33 @@
 
 namespace raygate::lab {
 
-/// The truth about one ray and one triangle.
+/// The exact result for one ray and one triangle.
 struct Verdict {
   bool hit = false;
-  bool tie = false;   ///< the ray meets an edge's line exactly: only the tie-break decides
-  double t = 0.0;     ///< of a hit, off by 2^-50 of itself at most
-  double sine = 0.0;  ///< of a hit: of the angle between ray and plane, as good
+  bool tie = false;   ///< the ray meets the line of an edge exactly: the tie-break decides
+  double t = 0.0;     ///< of a hit; relative error at most 2^-50
+  double sine = 0.0;  ///< of a hit: sine of the angle between ray and plane, as accurate
 };
 
 struct Truth {
-  std::vector<Verdict> verdicts;  ///< ray by ray, triangle by triangle
-  /// For each ray the triangles it hits, near before far, exactly; of those equally far the lower
-  /// index first.
+  std::vector<Verdict> verdicts;  ///< by ray, then by triangle
+  /// For each ray the triangles that it hits, nearest first, exactly; then by index.
   std::vector<std::vector<std::uint32_t>> orders;
-  std::vector<bool> nearest_tied;  ///< another is as far, or the tie-break had a say
+  /// There is another hit at equal distance, or the tie-break was used.
+  std::vector<bool> nearest_tied;
 
-  /// The triangle that a ray hits first.
+  /// Returns the triangle that a ray hits first.
   [[nodiscard]] std::optional<std::uint32_t> nearest(std::size_t ray) const {
     return orders[ray].empty() ? std::nullopt : std::optional(orders[ray].front());
   }
 };
 
-/// The definition: all coordinates are whole multiples of a power of two, so the determinants are
-/// integers. With A, B, C the vertices minus the origin, a ray hits where
-///     D = A . (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have its sign;
-/// where one of the three is 0, its sign is that of the first component of the cross product that
-/// is not 0, as for a direction tilted by (e, e^2, e^3). A direction that is zero or not finite
-/// hits nothing. 128 bits where they are enough, GMP's integers elsewhere.
+/// Computes the results by definition: all coordinates are integer multiples of a power of two, so
+/// the determinants are integers. With A, B, C the vertices minus the origin, a ray hits if D = A .
+/// (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have its sign. If one of the three
+/// is 0, its sign is that of the first non-zero component of the cross product, as for a direction
+/// tilted by (e, e^2, e^3). A direction that is zero or not finite hits nothing. Uses 128 bits if
+/// sufficient, otherwise GMP integers.
 [[nodiscard]] Truth find_truth(const Shot& shot);
 
 }  // namespace raygate::lab

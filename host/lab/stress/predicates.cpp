@@ -1,6 +1,6 @@
-// What an exact decision costs: nanoseconds of a processor for each ray and triangle, by method and
-// suite. double and __float128 are not exact. Compare the columns of one run. And what it costs
-// that a call does not depend on the state of the thread's floating point.
+// Cost of an exact decision: processor time in nanoseconds per ray and triangle, by method and
+// suite; and the cost of making calls independent of the thread's floating-point state. double and
+// __float128 are not exact. Compare only columns of the same run.
 #include <gmpxx.h>
 
 #include <CLI/CLI.hpp>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kRepeats = 7;
 
-/// Some shots of a suite; a benchmark goes through all their tests, again and again.
+/// Some shots of a suite, all of whose tests a benchmark repeats.
 struct Cases {
   std::vector<Shot> shots;
   std::size_t tests = 0;
@@ -29,7 +29,7 @@ struct Cases {
     while (tests < count) tests += shots.emplace_back(generate(random)).tests();
   }
 
-  /// How many of the tests `hits` says are hits.
+  /// Returns the number of tests for which `hits` returns true.
   template <class Hits>
   std::size_t count(const Hits& hits) const {
     std::size_t sum = 0;
@@ -42,7 +42,7 @@ struct Cases {
   }
 };
 
-/// The definition in any arithmetic, without the tie-break.
+/// Decides by definition in any arithmetic, without the tie-break.
 template <class Number>
 bool plain(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
   using Vector = std::array<Number, 3>;
@@ -67,7 +67,7 @@ bool plain(const glm::vec3& origin, const glm::vec3& direction, const Corners& t
 
 struct Method {
   const char* key;
-  std::size_t (*hits)(const Cases& cases);  // how many of the tests
+  std::size_t (*hits)(const Cases& cases);  // returns the number of hits
 };
 
 template <bool (*hits)(const glm::vec3&, const glm::vec3&, const Corners&)>
@@ -128,7 +128,7 @@ double guard_time() {
 }
 
 Row row_of(const Suite& suite) {
-  // Rationals are slow: few cases, each often.
+  // Rationals are slow, so there are few cases, with many repeats.
   const Cases cases(suite, 2000);
   const Method methods[] = {{"double_ns", count_with<plain<double>>},
                             {"raygate_ns", count_with<ours>},
@@ -153,7 +153,7 @@ void add_predicates(CLI::App& lab, Outcome& outcome) {
                                  "what an exact decision costs, beside rationals and __float128");
   app->callback([&outcome] {
     for (const Suite& suite : all_suites()) {
-      if (suite.name == "useless") continue;  // has no rationals
+      if (suite.name == "useless") continue;  // cannot be computed in rationals
       outcome.results.add(row_of(suite));
       if (outcome.results.rows().back()["raygate"] != "right") outcome.status = 1;
     }

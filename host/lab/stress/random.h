@@ -15,14 +15,14 @@ class Random {
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
-  /// Of evenly spread logarithm.
+  /// Returns a number whose logarithm is uniformly distributed.
   double log_uniform(double low, double high) {
     return std::exp(uniform(std::log(low), std::log(high)));
   }
   int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
   bool one_in(int n) { return below(n) == 0; }
   double sign() { return one_in(2) ? 1.0 : -1.0; }
-  /// In the cube from -1 to 1.
+  /// Returns a point in the cube from -1 to 1.
   glm::dvec3 point() {
     const double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
     return {x, y, z};

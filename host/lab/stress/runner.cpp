@@ -11,15 +11,15 @@
 namespace raygate::lab {
 namespace {
 
-constexpr std::uint64_t kBlockTests = 4096;  // made, decided and counted at once
+constexpr std::uint64_t kBlockTests = 4096;  // tests per block
 
-/// What each subject did in a suite.
+/// Runs a suite with all subjects, and returns a row for each.
 std::vector<Row> run_suite(const Suite& suite, const std::vector<SubjectKind>& kinds,
                            const StressOptions& options) {
   const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
   std::vector<Tally> tallies(kinds.size());
-  // Rays that start inside a closed mesh but cross it an even number of times, in truth: the
-  // generator's own claim is broken, or the rule for the origins of mirrored rays.
+  // Rays that start inside a closed mesh but cross it an even number of times, by the oracle:
+  // either the generator's claim is wrong, or the rule for origins of reflected rays.
   std::uint64_t broken_claims = 0;
   std::vector<std::unique_ptr<Subject>> subjects;
   std::vector<std::uint64_t> wanted;
@@ -96,7 +96,7 @@ Verdicts sum_up(std::span<const Row> rows, std::uint64_t seed) {
   double seconds = 0.0;
   bool spotless = true;
   for (const Row& row : rows) {
-    if (suites.insert(row["suite"]).second) {  // these two are the suite's
+    if (suites.insert(row["suite"]).second) {  // these two columns are the suite's
       broken_claims += row["broken_claims"].get<std::uint64_t>();
       seconds += row["seconds"].get<double>();
     }

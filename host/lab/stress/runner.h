@@ -12,22 +12,22 @@
 namespace raygate::lab {
 
 struct StressOptions {
-  std::uint64_t tests = 0;  ///< for each suite, by the subjects whose share is 1
+  std::uint64_t tests = 0;  ///< per suite, for subjects whose share is 1
   std::uint64_t seed = 1;
   int threads = 1;
 };
 
-/// Every suite against every subject: a row for each pair, suite by suite. Each suite draws from
-/// its own random numbers and is run by one thread, so the rows do not depend on how many there
-/// are.
+/// Runs every suite with every subject and returns a row for each pair, ordered by suite. Each
+/// suite has its own random numbers and is run by one thread, so the rows do not depend on the
+/// number of threads.
 [[nodiscard]] std::vector<Row> run(const std::vector<const Suite*>& suites,
                                    const std::vector<SubjectKind>& subjects,
                                    const StressOptions& options);
 
-/// What a whole run comes to, from its rows.
+/// Summary of a run.
 struct Verdicts {
-  bool judged = false;  ///< any exact subject
-  /// Every exact subject spotless (see Tally), in tests that were really done, and no claim broken.
+  bool judged = false;  ///< whether there were exact subjects
+  /// Whether all exact subjects are spotless (see Tally), with tests, and no claim is broken.
   bool passed = false;
   std::string summary;  ///< one line: "stress: PASSED: 20 suites, ..."
 };

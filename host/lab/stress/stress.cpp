@@ -1,4 +1,4 @@
-// The stress test: engines and cheaper subjects against exact integers, on cases made to be hard.
+// Stress test: checks engines and variants against exact integers, on hard cases.
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
@@ -31,7 +31,7 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-/// Those of exact subjects, and with `all` everyone's, as test/regressions.txt takes them.
+/// Prints the failures of exact subjects, or of all, as lines of test/regressions.txt.
 void print_failures(std::span<const Row> rows, const std::vector<SubjectKind>& subjects, bool all) {
   for (const SubjectKind& kind : subjects) {
     if (!kind.exact && !all) continue;
@@ -43,7 +43,7 @@ void print_failures(std::span<const Row> rows, const std::vector<SubjectKind>& s
     for (const Row& row : rows) {
       if (row["subject"] != kind.name) continue;
       for (const std::string text : row["failures"]) {
-        // Alone, it may be decided otherwise than among others.
+        // The decision may differ for the case alone.
         const Case failure = case_from(text);
         const bool alone = fails(failure);
         const std::string line = alone ? to_text(minimise(failure, fails)) : text;
@@ -55,14 +55,14 @@ void print_failures(std::span<const Row> rows, const std::vector<SubjectKind>& s
   }
 }
 
-/// Exact arithmetic about depths asks for 2 MB, all the time in some suites: the heap keeps them,
-/// or the system would take and give every page of them again and again.
+/// Makes the heap keep freed memory. Some suites repeatedly allocate 2 MB for exact comparisons of
+/// distances, whose pages would otherwise be returned to the system each time.
 void keep_memory() {
   mallopt(M_MMAP_THRESHOLD, 1 << 24);
   mallopt(M_TRIM_THRESHOLD, 1 << 25);
 }
 
-/// How far off the unit's t may be, from a sine of 1 down to 1e-8, ten steps a decade.
+/// Returns the bounds of the unit's error of t, for sines from 1 to 1e-8, ten steps per decade.
 Row bounds() {
   Row sines = Row::array(), ulps = Row::array();
   for (int tenths = 0; tenths <= 80; ++tenths) {

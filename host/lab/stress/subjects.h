@@ -1,4 +1,4 @@
-// Subjects of the stress test: the engines, cheaper arithmetic, and other people's tests.
+// Subjects of the stress test: engines, variants of arithmetic, and other ray tracers' tests.
 #pragma once
 
 #include <cstdint>
@@ -17,24 +17,26 @@
 
 namespace raygate::lab {
 
-/// What a variant says about one ray and one triangle.
+/// A subject's result for one ray and one triangle.
 struct Answer {
   bool hit = false;
-  bool doubt = false;                                 ///< exact arithmetic on the host was asked
-  float t = std::numeric_limits<float>::quiet_NaN();  ///< of a hit; NaN: the variant has none
-  glm::vec3 point{std::numeric_limits<float>::quiet_NaN()};  ///< P, seen from the origin; likewise
-  float point_error = std::numeric_limits<float>::infinity();     ///< of itself, P's at most
-  Interval bounds{0.0, std::numeric_limits<double>::infinity()};  ///< of a hit's exact t
-  /// What the renderer goes on with, where that is another.
+  bool doubt = false;                                 ///< resolved by exact arithmetic on the host
+  float t = std::numeric_limits<float>::quiet_NaN();  ///< of a hit; NaN: not computed
+  /// P, relative to the origin; NaN: not computed.
+  glm::vec3 point{std::numeric_limits<float>::quiet_NaN()};
+  float point_error = std::numeric_limits<float>::infinity();  ///< bound of the relative error of P
+  Interval bounds{0.0, std::numeric_limits<double>::infinity()};  ///< bounds of a hit's exact t
+  /// The hit that the renderer uses, if that is another.
   PreciseHit delivered{std::numeric_limits<float>::quiet_NaN(),
                        glm::vec3(std::numeric_limits<float>::quiet_NaN())};
 };
 
-/// What a variant says about some shots.
+/// A subject's results for some shots.
 struct Answers {
-  std::vector<Answer> tests;                          ///< shot by shot, as Shot::tests says
-  std::vector<std::optional<std::uint32_t>> nearest;  ///< shot by shot, ray by ray: its triangle
-  /// The same: all triangles that the ray hits, near before far. Empty: the subject gives no order.
+  std::vector<Answer> tests;  ///< by shot, in the order of Shot::tests
+  /// By shot, then by ray: the nearest triangle.
+  std::vector<std::optional<std::uint32_t>> nearest;
+  /// By shot, then by ray: all triangles that the ray hits, nearest first. Empty if not provided.
   std::vector<std::vector<std::uint32_t>> orders;
   std::vector<bool> refused;  ///< likewise: rays out of the subject's range. Empty: none
 };
@@ -57,15 +59,15 @@ struct SubjectKind {
   std::function<std::unique_ptr<Subject>()> make{};  ///< one for each thread
 };
 
-/// All subjects of this build, in the order of the report.
+/// Returns all subjects of this build, in the order of the report.
 [[nodiscard]] std::vector<SubjectKind> all_subjects();
 
-/// The parts of that list.
+/// Return parts of that list.
 [[nodiscard]] std::vector<SubjectKind> engine_subjects();
 [[nodiscard]] std::vector<SubjectKind> trace_subjects();
 [[nodiscard]] std::vector<SubjectKind> variant_subjects();  ///< of variants.json
-[[nodiscard]] std::vector<SubjectKind> float_subjects();    ///< what ray tracers do in float32
-[[nodiscard]] std::vector<SubjectKind> embree_subjects();   ///< none without Embree
+[[nodiscard]] std::vector<SubjectKind> float_subjects();    ///< common float32 tests of ray tracers
+[[nodiscard]] std::vector<SubjectKind> embree_subjects();   ///< empty without Embree
 
 /// Hit tests in float32.
 using TriangleTest = Answer(const glm::vec3& origin, const glm::vec3& direction,
@@ -85,7 +87,7 @@ TriangleTest woop;
 /// Fills `nearest` from the smallest t of each ray's hits, the first of equals.
 void nearest_by_t(std::span<const Shot> shots, Answers& answers);
 
-/// A scene of these triangles, one material.
+/// Returns a scene of these triangles with one material.
 [[nodiscard]] Scene scene_of(const Mesh& mesh);
 
 }  // namespace raygate::lab

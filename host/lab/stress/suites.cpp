@@ -35,14 +35,14 @@ glm::dvec3 inside_of(const Corners& t, Random& random) {
   return a + u * (b - a) + v * (c - a);
 }
 
-/// A point of an edge, or a vertex one time in four.
+/// Returns a point of an edge, or a vertex with probability 1/4.
 glm::dvec3 on_edge(const Corners& t, Random& random) {
   const int k = random.below(3);
   const double along = random.one_in(4) ? 0.0 : random.uniform(0, 1);
   return glm::mix(glm::dvec3(t[k]), glm::dvec3(t[(k + 1) % 3]), along);
 }
 
-/// The interior, edges, vertices, and close by, of any of the triangles.
+/// Aims at the interior, edges, vertices, and points nearby, of any of the triangles.
 void aim_everywhere(Shot& shot, Random& random) {
   const auto& triangles = shot.mesh->triangles;
   for (int i = 0; i < kRays; ++i) {
@@ -70,7 +70,7 @@ Shot random_shot(Random& random) {
   return shot;
 }
 
-/// Down to 1e-7 rad between the ray and the plane.
+/// Makes angles down to 1e-7 rad between ray and plane.
 Shot grazing_shot(Random& random) {
   const Corners t = random_triangle(random);
   const glm::dvec3 normal = glm::normalize(
@@ -97,7 +97,7 @@ Shot needle_shot(Random& random) {
   return shot;
 }
 
-/// All of one size, whichever that is.
+/// Makes shots of one random size.
 Shot scaled_shot(Random& random, double least, double most) {
   const glm::dvec3 scale(random.log_uniform(least, most));
   Shot shot = shot_at({random_triangle(random, scale)}, random.point() * scale);
@@ -105,7 +105,7 @@ Shot scaled_shot(Random& random, double least, double most) {
   return shot;
 }
 
-/// 1e3 to 1e7 sizes away from the world's origin.
+/// Makes shots at distances of 1e3 to 1e7 sizes from the world's origin.
 Shot far_shot(Random& random) {
   const glm::dvec3 shift = random.unit() * random.log_uniform(1e3, 1e7);
   Shot shot = shot_at({random_triangle(random, glm::dvec3(1), shift)}, random.point() + shift);
@@ -113,7 +113,7 @@ Shot far_shot(Random& random) {
   return shot;
 }
 
-/// Parts of one plane, or of planes that hardly differ, over one another.
+/// Makes overlapping triangles in one plane, or in slightly tilted planes.
 Shot coplanar_shot(Random& random) {
   const Corners base = random_triangle(random);
   const glm::dvec3 a(base[0]), u = glm::dvec3(base[1]) - a, v = glm::dvec3(base[2]) - a;
@@ -133,7 +133,7 @@ Shot coplanar_shot(Random& random) {
   return shot;
 }
 
-/// Copies of a triangle moved by a few floats, in any order.
+/// Makes copies of a triangle moved by a few float steps, in any order.
 Shot near_tie_shot(Random& random) {
   const Corners base = random_triangle(random);
   std::vector<Corners> triangles;
@@ -152,14 +152,14 @@ Shot near_tie_shot(Random& random) {
   return shot;
 }
 
-/// Along axes and nearly so, from points in the planes of faces: boxes must not cull.
+/// Makes rays (almost) parallel to axes, from points in planes of faces, which must not be culled.
 Shot axis_shot(Random& random, const MeshPointer& mesh) {
   Shot shot;
   shot.mesh = mesh;
   const auto& triangles = mesh->triangles;
   const int axis = random.below(3);
   const Corners& t = triangles[random.below(static_cast<int>(triangles.size()))];
-  // In the planes of a vertex's coordinates, or of none.
+  // In the planes of a vertex's coordinates, or in none.
   for (int k = 0; k < 3; ++k) {
     shot.origin[k] = random.one_in(2) ? t[0][k] : static_cast<float>(random.uniform(-0.9, 0.9));
   }
@@ -193,7 +193,7 @@ Shot useless_shot(Random& random) {
   return shot;
 }
 
-/// No area, no thickness, or the origin in the plane or at a vertex.
+/// Makes triangles without area or thickness, or origins in their plane or at a vertex.
 Shot degenerate_shot(Random& random) {
   Corners t = random_triangle(random);
   glm::dvec3 origin = random.point();
@@ -204,7 +204,7 @@ Shot degenerate_shot(Random& random) {
     case 1:
       t[2] = t[1] = t[0];
       break;
-    case 2:  // on a line, exactly
+    case 2:  // exactly collinear
       t[0] = glm::round(t[0] * 256.0f) / 256.0f;
       t[1] = glm::round(t[1] * 256.0f) / 256.0f;
       t[2] = 2.0f * t[1] - t[0];
@@ -212,7 +212,7 @@ Shot degenerate_shot(Random& random) {
     case 3:
       origin = glm::dvec3(t[random.below(3)]);
       break;
-    default:  // in its plane, exactly
+    default:  // exactly in its plane
       t[0].z = t[1].z = t[2].z;
       origin.z = t[0].z;
       break;
@@ -224,7 +224,7 @@ Shot degenerate_shot(Random& random) {
 
 enum class Aim { kEdges, kVertices };
 
-/// From inside a closed mesh at the places where its triangles meet. A mesh serves for a while.
+/// Aims from inside a closed mesh at edges and vertices. Reuses a mesh for several shots.
 Generator closed_mesh(const std::function<MeshPointer(Random&)>& make_mesh, Aim aim) {
   return [make_mesh, aim, mesh = MeshPointer(), left = 0](Random& random) mutable {
     if (left-- == 0) {

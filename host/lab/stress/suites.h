@@ -1,4 +1,4 @@
-// Suites: generators of hard cases, one for each way in which a hit test goes wrong.
+// Suites: generators of hard cases, one for each kind of failure of hit tests.
 #pragma once
 
 #include <functional>
@@ -15,11 +15,11 @@ using Generator = std::function<Shot(Random&)>;
 struct Suite {
   std::string name;
   std::string what;  ///< one line for the report
-  /// Makes a generator with what it keeps from shot to shot: one for each thread.
+  /// Makes a generator with its own state; called once per thread.
   std::function<Generator()> make;
 };
 
-/// All suites, in the order of the report.
+/// Returns all suites, in the order of the report.
 [[nodiscard]] const std::vector<Suite>& all_suites();
 
 }  // namespace raygate::lab

@@ -11,19 +11,19 @@ namespace {
 
 constexpr std::size_t kFailures = 5;
 
-/// The distance of floats near x, in double.
+/// Returns the distance of neighbouring floats near x, in double.
 double ulp(double x) { return std::ldexp(1.0, std::max(std::ilogb(x), -126) - 23); }
 
-/// Whether a float can hold x with all its digits.
+/// Returns whether x is in the range of normal floats.
 bool ordinary(double x) { return std::abs(x) >= 0x1p-126 && std::abs(x) < 0x1p127; }
 
-/// Whether t is in the interval, as far as the oracle's t tells.
+/// Returns whether t is in the interval, within the error of the oracle's t.
 bool holds(const Interval& interval, double t) {
-  constexpr double kError = 0x1p-49;  // of t, and of this
+  constexpr double kError = 0x1p-49;  // of t, and of this computation
   return interval.low <= t * (1.0 + kError) && t * (1.0 - kError) <= interval.high;
 }
 
-/// The error of `value` in ulp of `exact`, and relative to it; none where a float does not hold it.
+/// Error of `value` in ulps of `exact`, and relative to it; none if it exceeds the range of float.
 struct Off {
   double ulps, relative;
 };
@@ -34,7 +34,7 @@ std::optional<Off> off(float value, double exact) {
   return Off{difference / ulp(exact), difference / std::abs(exact)};
 }
 
-/// The worst of the three coordinates.
+/// Returns the largest error of the three coordinates.
 std::optional<Off> off(const glm::vec3& point, const glm::vec3& direction, double t) {
   std::optional<Off> worst;
   for (int k = 0; k < 3; ++k) {

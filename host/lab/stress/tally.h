@@ -1,4 +1,4 @@
-// Tally: counts of wrong decisions of a subject, and its errors in units of the last place.
+// Tally: counts of a subject's wrong decisions, and its errors in ulps.
 #pragma once
 
 #include <array>
@@ -28,32 +28,30 @@ struct Tally {
   std::uint64_t orders = 0;              ///< rays of which the subject gave all hits in order
   std::uint64_t wrong_order = 0;         ///< of these, with another order or other hits
   std::uint64_t hits = 0, doubts = 0;
-  /// Of hits that are hits, in ulp of the exact value: t, and the worst coordinate of P; and t's
-  /// relative error.
+  /// Errors of correct hits: of t, and the worst coordinate of P, in ulps; of t, relative.
   Errors t_ulp, point_ulp, t_relative;
-  /// What the host makes of them in the end.
+  /// Errors of the hits that the host delivers.
   Errors delivered_t_ulp, delivered_point_ulp;
-  /// t_ulp of sure hits by the angle between ray and plane: decade k holds sines from 10^-k-1 to
-  /// 10^-k.
+  /// t_ulp of sure hits by angle: decade k has sines of ray and plane from 10^-k-1 to 10^-k.
   static constexpr int kDecades = 8;
   std::array<Errors, kDecades> t_ulp_by_angle;
-  /// The largest errors of sure hits over what errors.h allows binary32.
+  /// Largest errors of sure hits, relative to the bounds of errors.h for binary32.
   double t_of_bound = 0.0, point_of_bound = 0.0;
-  /// The largest error of P over what the hit itself says (NearestHit::point_error).
+  /// Largest error of P, relative to the reported bound (NearestHit::point_error).
   double point_of_said = 0.0;
-  std::vector<Case> failures;  ///< the first few, ties only of exact subjects
+  std::vector<Case> failures;  ///< the first few; ties only for exact subjects
 
-  /// Hit or miss, nearest and order, those on ties for exact subjects alone.
+  /// Returns the number of wrong decisions on hits, nearest and order; ties if `exact`.
   [[nodiscard]] std::uint64_t wrong_decisions(bool exact) const {
     return wrong + wrong_nearest + (exact ? wrong_ties + wrong_tied_nearest + wrong_order : 0);
   }
-  /// What an exact subject must be: never wrong, and no farther off than is proven.
+  /// Returns whether an exact subject passes: no wrong decision, and errors within proven bounds.
   [[nodiscard]] bool spotless() const;
-  /// A column for each member; errors as lists of [end of a bin, errors in it].
+  /// Returns a column for each member; errors as lists of [end of a bin, errors in it].
   [[nodiscard]] Row row() const;
 };
 
-/// Compares a subject's answers for some shots with the truth about them.
+/// Compares a subject's answers for some shots with the oracle's.
 void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
            const SubjectKind& subject, Tally& tally);
 

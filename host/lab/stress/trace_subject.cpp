@@ -1,4 +1,4 @@
-// What `./trace` and the Python module say: all hits of each ray, by the tables that they give out.
+// `./trace` and the Python module as a subject: all hits of each ray, from their tables.
 #include <cmath>
 #include <cstring>
 
@@ -32,7 +32,7 @@ class TraceSubject : public Subject {
     std::int64_t doubts;
   };
 
-  /// A mesh as `trace` sees it.
+  /// A mesh prepared for tracing.
   struct Target {
     explicit Target(const Mesh& mesh)
         : scene(scene_of(mesh)),
@@ -49,7 +49,7 @@ class TraceSubject : public Subject {
     raygate::HitTable table;
   };
 
-  /// Directions are not scaled as intersectors want them, but by powers of two from 2^-20 to 2^20.
+  /// Returns the exponent of the power of two by which a direction is scaled, from 2^-20 to 2^20.
   static int exponent(std::size_t ray) { return static_cast<int>(ray % 41) - 20; }
 
   std::vector<RowOfTable> rows(std::span<const Shot> shots, Hits hits) const {
@@ -103,7 +103,7 @@ class TraceSubject : public Subject {
       const RowOfTable& row = nearest[ray];
       const bool is_hit = row.triangle >= 0;
       const auto triangle = static_cast<std::uint32_t>(row.triangle);
-      // No triangle has the number of those that contradict each other.
+      // Contradictory results get an invalid triangle index.
       const bool agree = is_hit == (any[ray].triangle >= 0) &&
                          (!is_hit || holds_same(answers, first_test + ray * triangles + triangle,
                                                 bounds(row, ray)));
@@ -113,7 +113,7 @@ class TraceSubject : public Subject {
     }
   }
 
-  /// What the table promises of t, for the direction as the shot has it.
+  /// Returns the table's guaranteed bounds of t, for the direction of the shot.
   static Interval bounds(const RowOfTable& row, std::size_t ray) {
     const double t = std::ldexp(row.t, exponent(ray));
     return {t * (1.0 - 0x1p-33), t * (1.0 + 0x1p-33)};
@@ -123,7 +123,7 @@ class TraceSubject : public Subject {
     return answers.tests[test].hit && all.low == bounds.low && all.high == bounds.high;
   }
 
-  std::shared_ptr<const Mesh> mesh_;  // whose target this is
+  std::shared_ptr<const Mesh> mesh_;  // mesh of the current target
   std::unique_ptr<Target> target_;
 };
 

@@ -1,4 +1,4 @@
-"""`make bench`: run time against error, from the adder to the picture."""
+"""`make bench`: run time against error, from the adder to the image."""
 
 import argparse
 import functools
@@ -15,26 +15,26 @@ from host.lab.report import plots
 from host.lab.rows import KEPT, ROOT, of, read, scene_name
 from host.lab.steps import LAB, Step
 
-# The axes of the Pareto plots: key of a frame, label.
+# Costs on the axes of the Pareto plots: key of a frame, label.
 COSTS = {"clocks": "clocks per frame", "frame_ms": "ms per frame at the clock of synthesis",
          "area": "area, um2 in OSU 0.35 um", "area_time": "area x ms per frame",
          "energy_uj": "uJ per frame in the cores, OSU 0.35 um"}
 ERRORS = {"point": "error of P, 99th percentile, ulp of binary32",
           "wrong": "wrong hit decisions per million tests",
           "rmse": "RMSE of the picture, scene-linear"}
-# Pictures that differ by less are not shown: their maps are black.
+# Images with smaller differences are omitted, as their maps are black.
 LEAST_FLIP = 0.00005
 
 
 @functools.cache
 def variants() -> list[dict]:
-    """The rows of `lab variants`."""
+    """Returns the rows of `lab variants`."""
     subprocess.run([LAB, "--results", KEPT / "variants.jsonl", "variants"], cwd=ROOT, stdout=sys.stderr, check=True)
     return read(KEPT / "variants.jsonl")
 
 
 def section(name: str) -> Callable[[argparse.Namespace], list[Step]]:
-    """The pictures of a section of the report, their repeats interleaved."""
+    """Returns a function that makes the steps of a section: its images, with interleaved repeats."""
     def steps(given: argparse.Namespace) -> list[Step]:
         (ROOT / runs.PICTURES).mkdir(parents=True, exist_ok=True)
         file = KEPT / f"runs-{name}.json"
@@ -44,7 +44,7 @@ def section(name: str) -> Callable[[argparse.Namespace], list[Step]]:
 
 
 def simulation() -> list[dict]:
-    """The simulated units' tests per second, and their instructions where valgrind counts them."""
+    """Returns the simulated units' tests per second, and their instructions if valgrind can count them."""
     done = subprocess.run([ROOT / "build/sim/unit_bench"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
     row = (r"(?P<unit>.+?) +(?P<arithmetic>\S+) +(?P<lanes>\S+) +(?P<hits_percent>[\d.]+) +"
            r"(?P<tests_per_second>\d+)(?: +(?P<instructions>\d+))?$")
@@ -61,8 +61,9 @@ PARTS = {
 
 
 def judge_pictures(rows: list[dict]) -> list[dict]:
-    """With FLIP of each picture that is compared with another: Andersson et al., "FLIP: a difference evaluator for
-    alternating images", 2020, its authors' own implementation (PyPI flip-evaluator), at its default of 67 pixels a degree."""
+    """Adds FLIP to each image that is compared with another: Andersson et al., "FLIP: a difference evaluator for
+    alternating images", 2020, in the authors' implementation (PyPI flip-evaluator), at its default of 67 pixels per
+    degree."""
     for row in of(rows, "pictures"):
         if row.get("against"):
             error_map, row["flip"] = plots.flip(*(ROOT / f"{row[key]}.png" for key in ("against", "picture")))
@@ -72,18 +73,18 @@ def judge_pictures(rows: list[dict]) -> list[dict]:
 
 
 def finish(rows: list[dict]) -> list[dict]:
-    """With the variants, and the pictures judged."""
+    """Adds the variants and the FLIP of images."""
     return [rows[0], *variants(), *judge_pictures(rows)[1:]]
 
 
 def frames(rows: list[dict]) -> list[dict]:
-    """A copy of each picture's row of the section `variants`, with its variant's columns, and
+    """Returns a copy of each image's row of the section `variants`, with its variant's columns, and
 
-    clocks      of the frame: its tests through the unit, times the clocks per test of the variant's
-                simulation (of binary32's where it has no hardware: then `clocks_modelled`)
-    wrong, doubtful          tests per million
-    area, period_ns, frame_ms, area_time    where synthesis knows the unit
-    energy_uj   of the cores, where it was simulated
+      clocks      per frame: the tests through the unit times the clocks per test of the variant's
+                  simulation (of binary32's if it has no hardware: then `clocks_modelled`)
+      wrong, doubtful          tests per million
+      area, period_ns, frame_ms, area_time    if synthesis has measured the unit
+      energy_uj   of the cores, if simulated
     """
     pictures = of(rows, "pictures", section="variants")
     clocks_a_test = {row["variant"]: row["clocks"] / row["unit_tests"] for row in pictures
@@ -92,7 +93,7 @@ def frames(rows: list[dict]) -> list[dict]:
     synthesis, energies = of(rows, "synthesis"), of(rows, "energy")
     found = []
     for row in pictures:
-        if row["engine"] == "unit" and not row.get("audit"):  # of the unit alone, for its clocks
+        if row["engine"] == "unit" and not row.get("audit"):  # runs of the unit alone, for its clocks
             continue
         variant, judged = known[row["variant"]], row["decisions"]
         usual = "serial" if variant["unit"] == "serial" else "binary32"
@@ -115,7 +116,7 @@ def frames(rows: list[dict]) -> list[dict]:
 
 
 def by_scene(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Frames by scene, Pareto plots of the first one, and where pictures differ."""
+    """Returns frames by scene, Pareto plots of the first scene, and images that differ."""
     scenes: dict[str, list] = {}
     for frame in frames(rows):
         scenes.setdefault(frame["scene"], []).append(frame)
@@ -134,7 +135,7 @@ def by_scene(rows: list[dict], folder: pathlib.Path) -> dict:
 
 
 def lanes(rows: list[dict], folder: pathlib.Path) -> dict | None:
-    """Clocks by lanes."""
+    """Returns the clocks by number of lanes."""
     mine = of(rows, "pictures", section="lanes", variant="binary32")
     if not mine:
         return None
@@ -143,5 +144,5 @@ def lanes(rows: list[dict], folder: pathlib.Path) -> dict | None:
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """The report's tables and plots."""
+    """Returns the report's tables and plots."""
     return {**by_scene(rows, folder), "lanes": lanes(rows, folder)}

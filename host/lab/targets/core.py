@@ -18,7 +18,7 @@ PICTURES = ("--kinds", "whitted", "path", "--latency", 50)
 
 
 def part(name: str, scenes: tuple, *words: object, every: int = 1) -> Callable[[argparse.Namespace], list[Step]]:
-    """A run of `lab core` for each scene, with one ray of `every`."""
+    """Returns a function that makes the steps of a part: a run of `lab core` for each scene, with one of `every` rays."""
     def steps(given: argparse.Namespace) -> list[Step]:
         return [Step(name, f"{name} {scene}", ("core", scene, *words, "--every", 64 if given.quick else every))
                 for scene in (FEW[:1] if given.quick else scenes)]
@@ -33,7 +33,7 @@ PARTS = {"scenes": part("scenes", ALL),
 
 
 def draw(rows: list[dict], file: pathlib.Path) -> pathlib.Path:
-    """Clocks a ray against rays in flight: a panel for each scene and kind, a line for each latency."""
+    """Plots clocks per ray against rays in flight: a panel for each scene and kind of ray, a line for each latency."""
     panels = list(dict.fromkeys((row["scene"], row["rays"]) for row in rows))
     figure, grid = plots.panels(len(panels), 3, (4.2, 3.6), sharex=True)
     for axes, (scene, kind) in zip(grid, panels, strict=True):
@@ -56,7 +56,7 @@ def draw(rows: list[dict], file: pathlib.Path) -> pathlib.Path:
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Rows side by side, by latency and by cores; the plot."""
+    """Returns tables by latency and by number of cores, and the plot."""
     scenes, cores, wide, exact = (of(rows, "core", part=name) for name in ("scenes", "cores", "wide", "exact"))
     latencies = sorted({row["latency"] for row in scenes})
     by_latency = grouped(scenes, ("scene", "rays"), "latency")

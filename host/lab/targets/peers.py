@@ -1,4 +1,4 @@
-"""`make peers`: raygate next to Mitsuba 3: time, error, and their product."""
+"""`make peers`: compares raygate with Mitsuba 3: time, error, and their product."""
 
 import argparse
 import math
@@ -12,7 +12,7 @@ from host.lab.steps import Step
 
 
 def scenes_of(given: argparse.Namespace, usual: tuple[str, ...], known: tuple[str, ...] = tuple(SCENES)) -> list[str]:
-    """Those asked for; else all, or the usual ones of a quick run."""
+    """Returns the requested scenes, or all; for a quick run the usual ones."""
     unknown = set(given.scenes.split()) - set(known)
     if unknown:
         raise ValueError(f"{', '.join(sorted(unknown))}: expected {', '.join(known)}")
@@ -20,7 +20,7 @@ def scenes_of(given: argparse.Namespace, usual: tuple[str, ...], known: tuple[st
 
 
 def pictures_steps(given: argparse.Namespace) -> list[Step]:
-    """The same scenes by both renderers."""
+    """Returns steps that render each scene with both renderers."""
     from host.lab.peers import measure
 
     return [Step("pictures", scene, measure=lambda scene=scene: measure.measure(
@@ -31,19 +31,19 @@ PARTS = {"pictures": pictures_steps}
 
 
 def name(row: dict) -> str:
-    """Who rendered, and how."""
+    """Returns the name of a renderer and its sampler."""
     if row["renderer"] == "raygate":
         return f"raygate, {row['sampler'].split(' ')[0]}" if row["sampler"].startswith("--") else "raygate"
     return f"{row['renderer']}, {row['sampler']}"
 
 
 def at_count(rows: list[dict]) -> list[dict]:
-    """Those of about COUNT samples."""
+    """Returns the rows with about COUNT samples."""
     return [row for row in rows if COUNT / 2 < row["samples"] < 2 * COUNT and name(row) != "raygate, --error"]
 
 
 def beside_ours(rows: list[dict]) -> list[dict]:
-    """A line for each renderer, sampler and number of threads, with raygate's of as many threads."""
+    """Returns rows by renderer, sampler and number of threads, with raygate's row for as many threads."""
     mine = at_count(rows)
     ours = {row["threads"]: row for row in mine if row["renderer"] == "raygate"}
     return [{**row, "by": name(row), "ours": ours[row["threads"]], "pixels": row["width"] * row["height"]} for row in mine]
@@ -74,7 +74,8 @@ def summary(rows: list[dict], variant: str) -> list[dict]:
 
 
 def error_against_time(rows: list[dict], scene: str, file: pathlib.Path) -> pathlib.Path:
-    """Of one thread: a line for each renderer and sampler of several numbers of samples, a point for the others."""
+    """Plots error against time for one thread: a line for renderers and samplers with several sample counts, otherwise
+    a point."""
     series: dict[str, list] = {}
     mine = of(rows, "peers", scene=scene, threads=1)
     for row in mine:
@@ -84,7 +85,7 @@ def error_against_time(rows: list[dict], scene: str, file: pathlib.Path) -> path
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Tables by scene, and plots."""
+    """Returns tables by scene, and plots."""
     beyond = max(((max(row["rmse"] ** 2 - row["noise"] ** 2, 0.0)) ** 0.5 for row in of(rows, "references")), default=0.0)
     return {"variants": VARIANTS, "beyond": beyond, "summaries": [(variant, summary(rows, variant)) for variant in VARIANTS],
             "scenes": [{"reference": reference,

@@ -1,4 +1,4 @@
-"""`make speed`: rays per second, exact decisions, skips; where a picture's work and time go; rates of ./trace."""
+"""`make speed`: rays per second, exact decisions, skips; profile and phases of rendering; rates of ./trace."""
 
 import argparse
 import collections
@@ -16,23 +16,23 @@ from host.lab.steps import Step, difference, render
 SMALL = ("scenes/cornell.obj", "scenes/teapot.obj")
 LARGE = ("build/scenes/sphere.obj", "build/scenes/sphereflake.obj", "build/scenes/landscape.obj")
 PHASES = ("load", "tree", "render", "write", "total")
-# Questions to ./trace, by their names in the report.
+# Options of ./trace, by their names in the report.
 HITS = {"nearest": (), "any": (), "all": (),
         "nearest, with u, v, the unit's P and its error": ("--columns", "ray,triangle,t,uv,unit-point,unit-error")}
-# Of `--no-skip`, but for divisions, of which the pipelined unit has no switch.
+# Values of `--no-skip`, except divisions, which the pipelined unit does not have.
 SKIPS = ("culling", "records", "light-behind", "weightless", "empty-tiles", "first-occluder")
-# Without culling every ray is tested against every polygon: with more tests than these nobody can wait for the picture.
+# Without culling every ray is tested against every polygon. Images with more tests than this take too long.
 MOST_TESTS = 3e8
 
-# Where each part begins, as callgrind names the functions. What is neither of the others is shading: making rays,
-# materials, lights, sampling, the film.
+# Functions in which each part begins, as named by callgrind. All else is shading: generating rays, materials, lights,
+# sampling, the film.
 WHOLE = r"raygate::TileRenderer::trace\("
 PARTS_OF_A_PICTURE = {"hit_tests": r"raygate::CpuIntersector::intersect\(", "doubts": r"raygate::resolve_doubt\(",
          "departures": r"raygate::RaySpawner::"}
 
 
 def calls(profile: str) -> collections.Counter:
-    """(caller, callee) -> instructions in the callee and all it calls, of a file of callgrind's."""
+    """Returns (caller, callee) -> instructions in the callee and its callees, from a callgrind file."""
     names: dict[str, str] = {}
     found: collections.Counter = collections.Counter()
     caller = callee = ""
@@ -49,14 +49,15 @@ def calls(profile: str) -> collections.Counter:
 
 
 def inside(found: collections.Counter, part: str) -> int:
-    """Instructions of a part: of its functions where others call them."""
+    """Returns the instructions of a part: those of its functions called from other parts."""
     return sum(count for (caller, callee), count in found.items()
                if re.match(part, callee) and not re.match(part, caller))
 
 
 
 def skips(program: pathlib.Path, scene: str, repeats: int) -> list[dict]:
-    """A row for the picture with all skips, one by the simulated unit, and one without each skip. All must be the same."""
+    """Returns rows for the image with all skips, with the simulated unit, and without each skip. All images must be
+    equal."""
     ways = {"all skips": (), "the simulated unit": ("--engine", "rtl"),
             **{f"without {skip}": ("--no-skip", skip) for skip in SKIPS}}
     found: list[dict] = []
@@ -72,7 +73,7 @@ def skips(program: pathlib.Path, scene: str, repeats: int) -> list[dict]:
             found.append({"table": "skips", "scene": pathlib.Path(scene).stem, "polygons": stats["triangles"], "what": what,
                           "rays": stats["rays"], "tests": stats["tests"], "records": stats["records"] + stats["common_records"],
                           "milliseconds": 1000 * seconds, "picture": "same" if same else "ANOTHER"})
-            # As in the paper: every ray on every polygon.
+            # As in the paper: every ray against every polygon.
             found[-1]["every_test"] = found[0]["rays"] * stats["triangles"]
             found[-1]["times_fewer_tests"] = found[-1]["every_test"] / stats["tests"]
             found[-1]["time_over_all_skips"] = found[-1]["milliseconds"] / found[0]["milliseconds"]
@@ -80,7 +81,7 @@ def skips(program: pathlib.Path, scene: str, repeats: int) -> list[dict]:
 
 
 def profile(program: pathlib.Path, scene: str, size: str) -> dict:
-    """Shares of the instructions of a path-traced picture, in percent; the same in every run."""
+    """Returns the percentage of instructions by part of a path-traced image; deterministic."""
     with tempfile.TemporaryDirectory() as name:
         file = pathlib.Path(name) / "profile"
         counts = render(["valgrind", "--quiet", "--tool=callgrind", f"--callgrind-out-file={file}", program, scene],
@@ -95,7 +96,7 @@ def profile(program: pathlib.Path, scene: str, size: str) -> dict:
 
 
 def phases(programs: list[pathlib.Path], scene: str, size: str, repeats: int) -> list[dict]:
-    """A row for each program, which take turns: seconds of each phase of a picture, the least of the repeats."""
+    """Returns a row for each program: the least seconds of each phase of an image over interleaved repeats."""
     runs = [[render([program, scene], "--integrator", "whitted", "--spp", "1", "--size", size)
              for program in programs] for _ in range(repeats)]
     return [{"table": "phase_times", "scene": scene, "program": number, "triangles": mine[0]["triangles"],
@@ -104,13 +105,13 @@ def phases(programs: list[pathlib.Path], scene: str, size: str, repeats: int) ->
 
 
 def positions_of(scene: pathlib.Path) -> numpy.ndarray:
-    """The vertices of an OBJ file."""
+    """Returns the vertices of an OBJ file."""
     with open(scene, encoding="utf-8") as file:
         return numpy.array([line.split()[1:4] for line in file if line.startswith("v ")], float)
 
 
 def rays_around(scene: pathlib.Path, count: int) -> numpy.ndarray:
-    """From a sphere around the scene to points of its box: origins and directions, seeded."""
+    """Returns origins on a sphere around the scene and directions to points of its box, seeded."""
     numbers = numpy.random.default_rng(1)
     positions = positions_of(scene)
     low, high = positions.min(axis=0), positions.max(axis=0)
@@ -122,7 +123,7 @@ def rays_around(scene: pathlib.Path, count: int) -> numpy.ndarray:
 
 
 def trace_rates(program: pathlib.Path, scene: str, count: int) -> list[dict]:
-    """A row for each kind of question; the summary of ./trace says how long it took, tables in and out included."""
+    """Returns a row for each kind of query: rates from the summary of ./trace, including reading and writing tables."""
     found = []
     with tempfile.TemporaryDirectory() as folder:
         rays, hits = pathlib.Path(folder) / "rays.npy", pathlib.Path(folder) / "hits.npy"
@@ -139,12 +140,12 @@ def trace_rates(program: pathlib.Path, scene: str, count: int) -> list[dict]:
 
 
 def embree4() -> list[pathlib.Path]:
-    """Its library, from embreex of PyPI, if that is there."""
+    """Returns the library of Embree 4, from embreex of PyPI, if installed."""
     return sorted(pathlib.Path(sysconfig.get_path("platlib")).glob("embreex.libs/libembree4*"))[:1]
 
 
 def rays_steps(given: argparse.Namespace) -> list[Step]:
-    """Rays per second next to Embree's."""
+    """Returns steps that measure rays per second, compared with Embree."""
     scenes = SMALL[:1] if given.quick else (*SMALL, "scenes/paper.obj", *LARGE)
     words = ("--size", 128, "--repeats", 1) if given.quick else ()
     for library in embree4():
@@ -153,12 +154,12 @@ def rays_steps(given: argparse.Namespace) -> list[Step]:
 
 
 def predicates_steps(_: argparse.Namespace) -> list[Step]:
-    """What an exact decision costs."""
+    """Returns the step that measures the cost of an exact decision."""
     return [Step("predicates", "exact decisions", ("predicates",))]
 
 
 def skips_steps(given: argparse.Namespace) -> list[Step]:
-    """What each skip saves."""
+    """Returns steps that measure the savings of each skip."""
     scenes = ("scenes/cornell.obj",) if given.quick else \
         ("scenes/paper.obj", "build/scenes/teapot_coarse.obj", "scenes/teapot.obj", *LARGE[:2])
     return [Step("skips", scene, measure=lambda scene=scene: skips(given.render, scene, 1 if given.quick else 3))
@@ -166,7 +167,7 @@ def skips_steps(given: argparse.Namespace) -> list[Step]:
 
 
 def profile_steps(given: argparse.Namespace) -> list[Step]:
-    """Where the instructions of a picture go."""
+    """Returns steps that profile rendering."""
     gallery = sorted(str(file.relative_to(ROOT)) for file in (ROOT / "scenes").glob("*_*.json"))
     scenes = SMALL[:1] if given.quick else (*SMALL, *gallery, "scenes/columns.json", "scenes/sphereflake.json", LARGE[2])
     size = "32x24" if given.quick else "128x96"
@@ -174,7 +175,7 @@ def profile_steps(given: argparse.Namespace) -> list[Step]:
 
 
 def phases_steps(given: argparse.Namespace) -> list[Step]:
-    """How long each phase of a picture takes."""
+    """Returns steps that time each phase of rendering."""
     programs = [given.render] + ([given.before.resolve()] if given.before else [])
     size, repeats = ("64x48", 2) if given.quick else ("640x480", 9)
     return [Step("phases", scene, measure=lambda scene=scene: phases(programs, scene, size, repeats))
@@ -182,7 +183,7 @@ def phases_steps(given: argparse.Namespace) -> list[Step]:
 
 
 def trace_steps(given: argparse.Namespace) -> list[Step]:
-    """Rays per second of ./trace."""
+    """Returns steps that measure the rays per second of ./trace."""
     count = 10_000 if given.quick else 1_000_000
     return [Step("trace", scene, measure=lambda scene=scene: trace_rates(ROOT / "trace", scene, count))
             for scene in (SMALL[:1] if given.quick else (*SMALL, *LARGE))]
@@ -214,7 +215,7 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
 
 
 def failures(rows: list[dict]) -> list[str]:
-    """Decisions that are not exact, and skips that change the picture."""
+    """Returns methods whose exact decisions are wrong, and skips that change the image."""
     return [f"{row['suite']}: exact decisions are {row['raygate']}" for row in of(rows, "predicates")
             if row["raygate"] != "right"] + \
         [f"{row['scene']}: {row['what']}: {row['picture']} picture" for row in of(rows, "skips")

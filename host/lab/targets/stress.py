@@ -1,4 +1,4 @@
-"""`make stress`: every engine and variant of arithmetic in suites of hard cases, judged by exact integers."""
+"""`make stress`: every engine and variant of arithmetic on suites of hard cases, checked by exact integers."""
 
 import argparse
 import collections
@@ -10,7 +10,7 @@ from host.lab.report import plots
 from host.lab.rows import grouped, of
 from host.lab.steps import LAB, Step
 
-# A report of fewer tests in each suite is not published.
+# Minimum number of tests per suite of a published report.
 ENOUGH = 1_000_000
 COUNTS = ("tests", "rays", "refused", "wrong", "wrong_ties", "escapes", "double_hits",
           "wrong_nearest", "wrong_tied_nearest", "orders", "wrong_order", "doubts")
@@ -22,7 +22,7 @@ KINDS = ("escapes", "double_hits", "wrong_nearest")
 
 
 def steps(part: str, given: argparse.Namespace, tests: int, *words: object) -> list[Step]:
-    """Each suite by itself. ValueError where there is too little to publish."""
+    """Returns a step for each suite. Raises ValueError if there are too few tests to publish."""
     tests = given.tests or (20_000 if given.quick else tests)
     if given.publish and tests < ENOUGH:
         raise ValueError(f"found {tests:,} tests in each suite, expected {ENOUGH:,} to publish")
@@ -44,9 +44,9 @@ USUAL = ("all",)
 
 
 def summary(binned: list[dict]) -> dict:
-    """Median, 99th percentile and largest of errors that `lab stress` has counted in bins.
+    """Returns median, 99th percentile and largest of errors that `lab stress` has counted in bins.
 
-    Quantiles are rounded up to the end of their bins, by 1/64 at most; JSON's null is infinity.
+    Quantiles are rounded up to the end of their bins, by at most 1/64; JSON's null is infinity.
     """
     counts: collections.Counter = collections.Counter()
     largest = 0.0
@@ -58,7 +58,7 @@ def summary(binned: list[dict]) -> dict:
         return {"count": 0, "median": None, "p99": None, "max": None}
 
     def quantile(rank: int) -> float:
-        """Of the error with `rank` smaller ones."""
+        """Returns the error with `rank` smaller ones."""
         seen = 0
         for end in sorted(counts):
             seen += counts[end]
@@ -71,7 +71,7 @@ def summary(binned: list[dict]) -> dict:
 
 
 def total(rows: list[dict]) -> dict:
-    """A subject's rows of all suites as one."""
+    """Returns the sum of a subject's rows over all suites."""
     return {**rows[0], **{key: sum(row[key] for row in rows) for key in COUNTS},
             **{key: max(row[key] for row in rows) for key in LARGEST},
             **{key: summary([row[key] for row in rows]) for key in ERRORS},
@@ -87,18 +87,18 @@ def cases(rows: list[dict], key: str) -> int:
 
 
 def with_errors(totals: list[dict]) -> list[dict]:
-    """Those that give any t or P."""
+    """Returns the subjects that report any t or P."""
     return [found for found in totals if any(found[key]["count"] for key in ERRORS)]
 
 
 def curve(subject: dict, key: str) -> list[tuple[float, float]]:
-    """Errors of t by the sine of the angle between ray and plane."""
+    """Returns errors of t by the sine of the angle between ray and plane."""
     return [(10 ** -(decade + 0.5), errors[key]) for decade, errors in enumerate(subject["t_ulp_by_angle"])
             if errors["count"] > 100 and errors[key]]
 
 
 def plot(suites: list[dict], totals: list[dict], unit: dict | None, bounds: dict, folder: pathlib.Path) -> dict:
-    """The heat map of wrong decisions and the errors by angle; None where no subject has any."""
+    """Draws the heat map of wrong decisions and the errors by angle; None without such data."""
     others = [t for t in totals if not t["exact"]]
     found = {"wrong_plot": None, "angle_plot": None}
     if others:
@@ -116,8 +116,8 @@ def plot(suites: list[dict], totals: list[dict], unit: dict | None, bounds: dict
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Sums over the suites, and suites side by side."""
-    # Where only the tie-break decides, exact subjects alone can be wrong.
+    """Returns sums over the suites, and suites side by side."""
+    # Exact subjects must also decide ties correctly.
     mine = [row | {"wrong": row["wrong"] + row["exact"] * row["wrong_ties"]} for row in of(rows, "stress")]
     suites, bounds = grouped(mine, ("suite",), "subject"), of(rows, "bounds")[0]
     totals = [total([suite["at"][name] for suite in suites]) for name in suites[0]["at"]]
@@ -135,7 +135,7 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
 
 
 def failures(rows: list[dict]) -> list[str]:
-    """Exact subjects that were wrong, and suites whose rays from inside a mesh are not inside."""
+    """Returns exact subjects with wrong decisions, and suites whose claims of being inside a mesh are wrong."""
     return [f"{row['subject']}, suite {row['suite']}: wrong, or beyond a proven bound"
             for row in of(rows, "stress") if row["exact"] and not (row["spotless"] and row["tests"])] + \
         [f"{row['by']}, {row['test']}: {row['escapes']} escapes, {row['double_hits'] or 0} double hits"

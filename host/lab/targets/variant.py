@@ -1,4 +1,4 @@
-"""`make variant`: one variant of arithmetic on one card, from its gates to its picture, beside binary32's."""
+"""`make variant`: compares one variant of arithmetic with binary32 on one card, from gates to image."""
 
 import argparse
 import json
@@ -15,22 +15,22 @@ from host.lab.steps import Step
 from host.lab.targets import bench
 from synth import brought, catalogue, report, store, tools
 
-# The table that `lab` is built with: host/lab/variants/CMakeLists.txt.
+# The variants that the program `lab` is built with: host/lab/variants/CMakeLists.txt.
 TABLE = KEPT / "variant.json"
-# The cards made so far, by name and scene.
+# All cards so far, by name and scene.
 CARDS = KEPT / "cards.jsonl"
-# Words of make's command line: the column of variants.json, and what it may be.
+# Options of make's command line: the column of variants.json, and its valid values.
 WORDS = {"EXP_WIDTH": ("exponent_bits", range(3, 9)), "FRAC_WIDTH": ("digits", range(2, 24)),
          "QUOTIENT_BITS": ("quotient_digits", range(1, 25)), "ROUNDING": ("rounding", costs.ROUNDINGS),
          "UNIT": ("unit", tuple(costs.UNITS)), "ADDER": ("adder", None), **dict.fromkeys(("MULTIPLIER", "DIVIDER_ROW", "ROUNDER"), ("", ()))}
-# In place of a value: a file with a module that is taken in the place of hw/'s.
+# Instead of a value, a file with a module that replaces that of hw/.
 FILES = (".sv", ".v")
-# Points of the Pareto plots.
+# Costs in the Pareto plots.
 COSTS = {"area": "area, um2 in OSU 0.35 um", "frame_ms": "ms per frame at the clock of synthesis"}
 ERRORS = {"wrong": "wrong hit decisions per million tests", "point": "error of P, 99th percentile, ulp of binary32"}
 
 
-# The lines of a card: name, value of a frame (targets/bench.py), format.
+# Rows of a card: name, value of a frame (targets/bench.py), format.
 FIGURES = (("area, um2 in OSU 0.35 um", "area", ",.0f"), ("period, ns", "period_ns", ".2f"),
            ("period with estimated wires, ns", "wired_ns", ".2f"),
            ("clocks a frame", "clocks", ",.0f"), ("ms a frame", "frame_ms", ".3f"), ("uJ a frame, cores", "energy_uj", ".3g"),
@@ -42,7 +42,7 @@ FIGURES = (("area, um2 in OSU 0.35 um", "area", ",.0f"), ("period, ns", "period_
 
 
 def read_word(word: str) -> tuple[str, object]:
-    """Column and value of a word like FRAC_WIDTH=15."""
+    """Returns the column and value of an option such as FRAC_WIDTH=15."""
     name, _, text = word.partition("=")
     if name not in WORDS:
         raise ValueError(f"{word}: expected one of {', '.join(WORDS)}")
@@ -58,14 +58,14 @@ def read_word(word: str) -> tuple[str, object]:
 
 
 def brought_files(words: list[str]) -> dict[str, str]:
-    """Files of modules that are brought along, by brought.PLACES."""
+    """Returns the files of user-supplied modules, by brought.PLACES."""
     return {name: text for name, _, text in (word.partition("=") for word in words)
             if name in brought.PLACES and text.endswith(FILES)}
 
 
 def table(words: list[str]) -> list[dict]:
-    """Lines of variants.json: binary32's, that of binary32 in the same unit, and the one that the words describe, which
-    may have an `adder`, too."""
+    """Returns rows of variants.json: binary32, binary32 in the same unit, and the variant of the options, which may
+    also have an `adder`."""
     files = brought_files(words)
     mine: dict = dict(read_word(word) for word in words if word.partition("=")[0] not in files)
     if files:
@@ -80,7 +80,7 @@ def table(words: list[str]) -> list[dict]:
     if mine.get("unit") == "serial":
         usual.append({"variant": "serial", "unit": "serial"})
     elif mine.get("rounding", "nearest-even") != "nearest-even" or digits < 11:
-        mine["doubts"] = False  # no bound of its errors is proven: what the unit says is taken as it comes
+        mine["doubts"] = False  # no error bound is proven, so decisions of the unit are final
     parts = ["serial" if len(usual) > 1 else "", f"e{exponent_bits}p{digits}",
              f"q{mine.get('quotient_digits', '')}".removesuffix("q"), mine.get("rounding"), "" if "ADDER" in files else mine.get("adder"),
              *(pathlib.Path(name).stem for name in files.values())]
@@ -88,7 +88,7 @@ def table(words: list[str]) -> list[dict]:
 
 
 def prepare(words: list[str]) -> None:
-    """Writes the table that the build reads; not where it is the same, so that nothing is built again."""
+    """Writes the table for the build, unless it is unchanged, which avoids rebuilding."""
     text = json.dumps([{key: value for key, value in line.items() if key != "adder"} for line in table(words)], indent=1)
     if not TABLE.exists() or TABLE.read_text() != text:
         TABLE.parent.mkdir(parents=True, exist_ok=True)
@@ -96,20 +96,20 @@ def prepare(words: list[str]) -> None:
 
 
 def judged(words: list[str]) -> list[dict]:
-    """Proofs of what is brought along, see brought.judge."""
+    """Returns proofs of user-supplied modules, see brought.judge."""
     usual = {"unit": "pipeline", "exponent_bits": 8, "digits": 24, "quotient_digits": 0, "rounding": "nearest-even"}
     return brought.judge(brought_files(words), costs.design({**usual, **table(words)[-1]}))
 
 
 def variants(given: argparse.Namespace) -> list[dict]:
-    """The rows of `lab variants`, with the adder."""
+    """Returns the rows of `lab variants`, with the adder."""
     return [{**row, "adder": line.get("adder", "")}
             for row, line in zip(bench.variants(), table(given.variant), strict=True)]
 
 
 def pictures(given: argparse.Namespace) -> list[Step]:
-    """The scene by each variant's reference model, judged exactly, and in small by its hardware, for the clocks; with modules
-    brought along both by the hardware."""
+    """Returns steps that render the scene with each reference model, audited, and small with hardware for clocks. With
+    user-supplied modules, both are rendered by the hardware."""
     (ROOT / "build/bench/pictures").mkdir(parents=True, exist_ok=True)
     scene = str(pathlib.Path(given.scenes or "scenes/cornell.obj"))
     rows = bench.variants()
@@ -117,7 +117,7 @@ def pictures(given: argparse.Namespace) -> list[Step]:
     file = KEPT / "runs-card.json"
     file.write_text(json.dumps(
         [{"section": "variants", "scene": scene, "width": 320, "height": 240, "integrator": "whitted", "audit": True,
-          "variant": row["variant"], "engine": "unit" if row["brought"] else "model",  # what is brought has no model
+          "variant": row["variant"], "engine": "unit" if row["brought"] else "model",  # such modules have no model
          "picture": f"{stem}-{row['variant']}", "against": f"{stem}-binary32"} for row in rows]
         + [{"section": "variants", "scene": scene, "width": 80, "height": 60, "variant": row["variant"], "engine": "unit"}
            for row in rows]))
@@ -130,7 +130,7 @@ PARTS = {
     "checks": lambda given: [Step("checks", "models against hardware", ("check", "--tests", 100_000))],
     "pictures": pictures,
     "synthesis": lambda given: [Step("synthesis", "area and clock", measure=lambda: costs.synthesis(
-        variants(given)[-2:], processors(), measure=True, wires=given.wires))],  # of the two that the card shows
+        variants(given)[-2:], processors(), measure=True, wires=given.wires))],  # the two on the card
     "energy": lambda given: [Step("energy", "of operations", measure=lambda: costs.energies(variants(given) if given.energy else ()))]}
 finish = bench.judge_pictures
 
@@ -142,8 +142,8 @@ def _value(frame: dict, path: str) -> float | None:
 
 
 def figures(usual: dict, mine: dict, made: dict[str, str] = {}) -> list[dict]:
-    """Lines of a card: both values as text, a dash where there is none, their ratio, and the file in `made` that the variant's
-    is from."""
+    """Returns rows of a card: both values as text, or a dash, their ratio, and the file in `made` with the variant's
+    value."""
     found = []
     for name, path, form in FIGURES:
         numbers = [_value(usual, path), _value(mine, path)]
@@ -155,7 +155,7 @@ def figures(usual: dict, mine: dict, made: dict[str, str] = {}) -> list[dict]:
 
 
 def kept_cards(mine: dict) -> list[dict]:
-    """All cards of the same scene, this one new."""
+    """Returns all cards of the same scene, with this one added or replaced."""
     others = [card for card in (read(CARDS) if CARDS.exists() else [])
               if (card["variant"], card["scene"]) != (mine["variant"], mine["scene"])]
     write(CARDS, [*others, mine])
@@ -163,7 +163,7 @@ def kept_cards(mine: dict) -> list[dict]:
 
 
 def standing(cards: list[dict]) -> list[dict]:
-    """Whether the last card is on the front of all, by cost and error; else who is better in both."""
+    """Returns whether the last card is Pareto-optimal by cost and error, or else the better cards."""
     found = []
     for cost, error in ((cost, error) for cost in COSTS for error in ERRORS):
         known = [card for card in cards if card.get(cost)]
@@ -175,7 +175,7 @@ def standing(cards: list[dict]) -> list[dict]:
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Frames of binary32 and the variant, its critical path and the files behind it, pictures, plots."""
+    """Returns frames of binary32 and the variant, the critical path with its files, images and plots."""
     frames = bench.frames(rows)
     usual, mine = frames[max(len(frames) - 2, 0)], frames[-1]
     known = {row["variant"]: row for row in of(rows, "variants")}
@@ -204,12 +204,12 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
 
 
 def own_folder(rows: list[dict]) -> str:
-    """A folder for each card."""
+    """Returns the name of the card's folder."""
     return f"{of(rows, 'variants')[-1]['variant']}-{scene_name(of(rows, 'pictures')[0])}"
 
 
 def failures(rows: list[dict]) -> list[str]:
-    """A model that is not its hardware; a unit that could not be synthesised."""
+    """Returns differences between model and hardware, refuted proofs, and failed synthesis."""
     missing = costs.unit(of(rows, "synthesis"), of(rows, "variants")[-1]) is None
     return ([f"{row['file']}: {row['counterexample']}" for row in of(rows, "proofs") if not row["holds"]]
             + [f"{row['variant']}: model and hardware differ: {row['difference'].split('; direction')[0]}"
@@ -218,7 +218,8 @@ def failures(rows: list[dict]) -> list[str]:
 
 
 def main() -> int:
-    """Reads the words, proves what they bring along and prepares the build; 1 where it is refuted, 2 for wrong words."""
+    """Parses the options, proves user-supplied modules and prepares the build. Returns 1 if a proof is refuted, 2 for
+    invalid options."""
     keep_going = "--keep-going" in sys.argv
     words = [word for word in sys.argv[1:] if word != "--keep-going"]
     try:

@@ -14,7 +14,7 @@
 namespace raygate {
 namespace {
 
-/// Numbers of any format in a port of one lane, the first at the lowest bits.
+/// Numbers of any format in a port of one lane, the first in the lowest bits.
 class PackedNumbers {
  public:
   explicit PackedNumbers(const Arithmetic& math) : math_(math) {}
@@ -48,7 +48,7 @@ class PackedNumbers {
   [[nodiscard]] float from_word(std::uint32_t word) const { return math_.from_word(word); }
 
  private:
-  using Bits = std::array<std::uint64_t, 9>;  // sixteen words of 32 bits, and one to spill into
+  using Bits = std::array<std::uint64_t, 9>;  // sixteen 32-bit words, and one for overflow
   [[nodiscard]] std::size_t place(int i) const {
     return static_cast<std::size_t>(i * math_.word_bits());
   }
@@ -56,7 +56,7 @@ class PackedNumbers {
   Arithmetic math_;
 };
 
-/// Whether a model with these parameters computes as the variant does.
+/// Returns whether a model with these parameters implements the variant.
 bool matches(const Variant& variant, int exponent_bits, int digits, int rounding,
              int quotient_digits, std::string_view brought) {
   const Arithmetic& math = variant.math;

@@ -1,4 +1,4 @@
-// Whether the reference model of a variant is its hardware, bit by bit.
+// Compares the reference model of a variant with its hardware, bit for bit.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -20,7 +20,7 @@ class VariantBursts {
  public:
   VariantBursts(const Variant& variant, std::uint64_t seed)
       : variant_(variant), math_(variant.math), bursts_(seed), random_(seed) {
-    math_.rounding = Rounding::kNearestEven;  // the host's
+    math_.rounding = Rounding::kNearestEven;  // the host's rounding
   }
 
   BurstBatch make(std::uint64_t tests) {
@@ -41,7 +41,7 @@ class VariantBursts {
  private:
   std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(random_() >> 32) % n; }
 
-  /// `x`, some of the format's numbers further up or down.
+  /// Returns the number of the format that is `steps` above or below `x`.
   float stepped(float x, int steps) const {
     const std::uint32_t mask = (1u << (math_.word_bits() - 1) << 1) - 1;
     return math_.from_word((math_.to_word(x) + static_cast<std::uint32_t>(steps)) & mask);
@@ -62,7 +62,8 @@ class VariantBursts {
     for (float& bound : record.bounds) function(bound);
   }
 
-  /// As the host would send it, or, where that means nothing, word by word.
+  /// Returns the record as the host would send it. Records that are not finite, and some others,
+  /// are rounded word by word.
   PolygonRecord narrow(const PolygonRecord& wide) {
     PolygonRecord record = wide;
     bool finite = true;
@@ -79,13 +80,13 @@ class VariantBursts {
       case 0:
         for_each_word(record, [&](float& x) { x = random_number(); });
         break;
-      case 1:  // exactly on the bound, or a step off
+      case 1:  // exactly at the bound, or one step off
         for (int k = 0; k < 3; ++k) {
           const float u = variant_.math.dot(record.edges[k], direction);
           record.bounds[k] = stepped(std::abs(u), static_cast<int>(below(3)) - 1);
         }
         break;
-      case 2: {  // as far as the one before, or nearly so: around the margin of 64 + 64 steps
+      case 2: {  // about the distance of the previous one: around the margin of 64 + 64 steps
         record = before;
         const int reach = 1 << below(9);
         record.d = stepped(record.d,

@@ -1,5 +1,4 @@
-// A square of two triangles, and a ray exactly through the edge that they share: one of them is
-// hit.
+// A square of two triangles, and a ray exactly through their shared edge: exactly one is hit.
 #include <raygate/raygate.h>
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-"""Checks of the arrays that callers pass. What cannot be used raises an InputError of one line."""
+"""Checks of the arrays that callers pass. Invalid arrays raise an InputError of one line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Array = npt.NDArray[Any]
 
 
 def plain(name: str, values: npt.ArrayLike) -> Array:
-    """Returns `values` as an array of numbers. Raises InputError for masked elements and for anything but numbers."""
+    """Returns `values` as an array of numbers. Raises InputError for masked elements and non-numbers."""
     if np.ma.is_masked(values):
         raise InputError(f"{name}: found masked elements, expected none: leave their rows out or fill them")
     try:
@@ -54,7 +54,8 @@ def rays(origins: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Array, Arra
 
 
 def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
-    """Raises InputError unless all numbers are finite and of magnitude at most 2^exponent. `each`: a word for a row."""
+    """Raises InputError unless all numbers are finite with a magnitude of at most 2^exponent. `each`: a word for a
+    row."""
     wrong = ~(np.abs(array) <= 2.0 ** exponent).all(axis=tuple(range(1, array.ndim)))
     if wrong.any():
         row = int(wrong.argmax())
@@ -71,7 +72,7 @@ def triangles(name: str, corners: Array) -> Array:
 
 
 def vertex_numbers(faces: npt.ArrayLike | None, count: int) -> Array:
-    """Returns faces, of shape (M, 3): numbers from 0 to `count` - 1."""
+    """Returns faces, of shape (M, 3), as numbers from 0 to `count` - 1."""
     if faces is None:
         raise InputError("faces: found None, expected the numbers of three vertices in each row")
     array = plain("faces", faces)

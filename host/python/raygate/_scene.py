@@ -1,4 +1,4 @@
-"""Scenes of triangles: traced, asked about points, rendered."""
+"""Scenes of triangles: ray tracing, point queries, rendering."""
 
 from __future__ import annotations
 
@@ -120,8 +120,8 @@ class Scene:
 
     @property
     def rounding(self) -> tuple[int, float]:
-        """How many corners of faces binary32 cannot hold as they were given, and the largest error of one coordinate,
-        in the scene's unit of length."""
+        """Number of face corners that binary32 cannot represent exactly, and the largest error of one coordinate, in
+        the scene's unit of length."""
         return self._scene.rounding
 
     @property
@@ -189,7 +189,7 @@ class Scene:
         coordinates beyond 2^125."""
         points = _arrays.vectors("points", points)
         _arrays.check_finite("points", points, "point", 125)
-        direction = np.array([0.36, 0.48, 0.8], np.float32)  # as good as any
+        direction = np.array([0.36, 0.48, 0.8], np.float32)  # arbitrary
         hits = self.trace(points, direction, hits="all", columns=["ray", "side"])
         is_inside: npt.NDArray[np.bool_] = np.bincount(hits["ray"], hits["side"], minlength=len(points)) != 0
         return is_inside

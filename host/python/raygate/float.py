@@ -6,10 +6,10 @@
     rf.fp_add(np.float32(1), np.float32(2 ** -24), rounding="up")   # 1.0000001, INEXACT
     rf.fp_multiply(np.uint32([0x7F7FFFFF]), np.uint32([0x40000000])).flag_names  # OVERFLOW|INEXACT
 
-Operands are of one of three kinds. Python's numbers, or lists of them, are rounded to the nearest number of the
+There are three kinds of operands. Python's numbers, or lists of them, are rounded to the nearest number of the
 format, with a RoundingWarning. NumPy's arrays and scalars of floats or signed integers must be numbers of the format,
-as round_to returns them. NumPy's unsigned integers are words of the format: sign, exponent, fraction. Results are of
-the kind of the operands. Arrays of any shape are broadcast; empty ones give empty results. Masked elements and other
+as returned by round_to. NumPy's unsigned integers are words of the format: sign, exponent, fraction. Results have the
+kind of the operands. Arrays of any shape are broadcast; empty ones give empty results. Masked elements and other
 operands raise an InputError.
 
 Results are those of the reference model that this repository's tests (sim/test/fp) compare with the simulated cores of

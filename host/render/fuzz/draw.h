@@ -1,4 +1,4 @@
-// A picture of whatever a reader accepted.
+// Renders an image of a scene that a reader accepted.
 #pragma once
 
 #include <cmath>
@@ -14,8 +14,8 @@
 
 namespace raygate::test {
 
-/// Draws a few pixels of a scene by its first view, if it has up to 100,000 triangles; aborts where
-/// a pixel is no colour. Throws InputError: a scene too large for float.
+/// Renders a few pixels of a scene from its default view, if it has up to 100,000 triangles; aborts
+/// if a pixel is not a valid colour. Throws InputError for a scene that is too large for float.
 inline void draw(const Scene& scene) {
   if (triangle_count(scene) > 100'000) return;
   const glm::dvec3 up = scene.up.value_or(glm::dvec3(0.0, 1.0, 0.0));

@@ -1,5 +1,4 @@
-// libFuzzer target: a picture of any bytes as a scene file beside a model, "model.obj", that it may
-// place.
+// libFuzzer target: renders arbitrary bytes as a scene file next to a model, "model.obj".
 #include <unistd.h>
 
 #include <cstdint>
@@ -27,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     raygate::Scene scene = raygate::load_scene(read, {.keep_instances = true});
     raygate::test::draw(scene);
   } catch (const raygate::InputError&) {
-    // What a bad file deserves.
+    // Expected for invalid files.
   }
   return 0;
 }

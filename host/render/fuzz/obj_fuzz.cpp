@@ -1,5 +1,4 @@
-// libFuzzer target: a picture of any bytes as an OBJ file, and what follows a byte 0x1E as its
-// s.mtl.
+// libFuzzer target: renders arbitrary bytes as an OBJ file; bytes after a byte 0x1E are its s.mtl.
 #include <unistd.h>
 
 #include <cstdint>
@@ -31,10 +30,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   write(folder / "s.obj", bytes.substr(0, split));
   write(folder / "s.mtl", split < size ? bytes.substr(split + 1) : std::string_view());
   try {
-    // In parts of a line or a few.
+    // In chunks of one or a few lines.
     raygate::test::draw(raygate::load_obj(folder / "s.obj", {.threads = 2, .chunk_size = 1}));
   } catch (const raygate::InputError&) {
-    // What a bad file deserves.
+    // Expected for invalid files.
   }
   return 0;
 }

@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     raygate::test::draw(raygate::load_scene(file));
   } catch (const raygate::InputError&) {
-    // What a bad file deserves.
+    // Expected for invalid files.
   }
   return 0;
 }

@@ -9,9 +9,9 @@
 
 namespace raygate {
 
-/// A kd-tree of points in the plane that tells whether a triangle contains any of them. Points can
-/// be removed, not added. Building it for n points takes O(n log n); a query with a thin or small
-/// triangle visits far fewer than n points. All predicates are exact.
+/// A kd-tree of points in the plane, for finding whether a triangle contains any of them. Points
+/// can be removed, not added. Building it for n points takes O(n log n); a query with a thin or
+/// small triangle visits far fewer than n points. All predicates are exact.
 class PointTree {
  public:
   struct Point {
@@ -76,7 +76,7 @@ class EarClipper {
     glm::vec2 position{0.0f};              // projected, so that the polygon runs counter-clockwise
     std::uint32_t number = 0;              // among the polygon's corners
     std::uint32_t previous = 0, next = 0;  // in ring_
-    std::uint32_t round = 0;               // in which a neighbour was cut off last
+    std::uint32_t round = 0;               // round in which a neighbour was cut off last
     bool reflex = false;                   // not strictly convex, so it may lie in an ear
     bool gone = false;
   };

@@ -24,7 +24,7 @@ std::string with_slashes(std::string_view name) {
   return slashed;
 }
 
-/// Returns the name without the backslashes that some exporters put before blanks.
+/// Returns the name without the backslashes that some exporters put before spaces.
 std::string with_plain_blanks(std::string_view name) {
   std::string plain(name);
   for (std::size_t at = 0; (at = plain.find("\\ ", at)) != plain.npos;) plain.erase(at, 1);

@@ -1,4 +1,4 @@
-// Files that a model names, as another machine may have written the name.
+// Finds files by names that may have been written on another operating system.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 
 namespace raygate {
 
-/// Returns the file that a model in `folder` means by `name`: the file of that name or, if there is
-/// none, of the name without quotes and with '/' for '\', or without the '\' before blanks. Returns
-/// nullopt if there is none of these.
+/// Returns the file that a model in `folder` refers to as `name`: the file of that name or, if
+/// there is none, of the name without quotes and with '/' for '\', or without the '\' before
+/// spaces. Returns nullopt if none of these exists.
 [[nodiscard]] std::optional<std::filesystem::path> find_exact_file(
     const std::filesystem::path& folder, std::string_view name);
 
-/// Returns the same or, if there is none, the file that is called like the last part of `name` in
-/// any letter case, in the folder of `name` or in `folder`, with a warning that begins with
-/// `place`.
+/// Returns the result of find_exact_file() or, if there is none, the file whose name matches the
+/// last part of `name` in any letter case, in the folder of `name` or in `folder`. Warns about the
+/// other spelling; the warning begins with `place`.
 [[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
                                                              std::string_view name,
                                                              const std::string& place,

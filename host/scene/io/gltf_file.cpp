@@ -1,4 +1,4 @@
-// Pictures are decoded by Texture.
+// GltfFile: parsing and checks. Texture decodes the images.
 #define TINYGLTF_IMPLEMENTATION
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
@@ -28,8 +28,7 @@ constexpr std::string_view kRead[] = {
     "KHR_materials_transmission", "KHR_materials_unlit",
     "KHR_mesh_quantization",      "KHR_texture_transform"};
 
-/// Extensions that are not read and whose absence only makes surfaces plainer, so that a file may
-/// require them.
+/// Extensions that are not read but may be required: without them, surfaces are only plainer.
 constexpr std::string_view kDispensable[] = {"KHR_materials_sheen", "KHR_materials_variants",
                                              "KHR_materials_volume"};
 
@@ -174,7 +173,7 @@ GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), fi
     for (const std::string& what : mended) warn_once(what, warnings_);
   }
   if (!is_read) {
-    // The error may be due to a compression, which is then the better message.
+    // The file may be compressed; then the extension's message is more helpful.
     for (const std::string_view extension : kCompressions) {
       if (json.find(extension) != std::string_view::npos) fail_extension(std::string(extension));
     }

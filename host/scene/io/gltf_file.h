@@ -27,9 +27,9 @@ class GltfFile {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns the paths of all files that were read.
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
-  /// Returns the warnings about these files.
+  /// Returns the warnings from reading them.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Returns the size of all these files together.
+  /// Returns the total size of these files in bytes.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   /// Throws InputError, "file: what".
@@ -53,16 +53,16 @@ class GltfFile {
   /// Returns the first `width` components of each element of an accessor. Throws InputError if they
   /// cannot be read or are not finite.
   [[nodiscard]] std::vector<double> vectors(int accessor, int width, const char* what) const;
-  /// Returns the same for an optional attribute of a primitive of so many vertices, except that the
-  /// numbers may be infinite or NaN. Returns an empty list for accessor -1 and, with a warning, for
+  /// Returns the vectors of an optional attribute of a primitive with this number of vertices,
+  /// which may be infinite or NaN. Returns an empty list for accessor -1 and, with a warning, for
   /// an accessor that cannot be read.
   [[nodiscard]] std::vector<double> optional_vectors(int accessor, int width, const char* what,
                                                      std::size_t vertices,
                                                      std::vector<std::string>& warnings) const;
   /// Returns the numbers of an accessor of indices.
   [[nodiscard]] std::vector<std::uint32_t> indices(int accessor) const;
-  /// Returns the file of a picture as it stands; empty if it is missing. Decodes data URIs of types
-  /// that tinygltf does not know. Throws InputError for a picture beyond its buffer.
+  /// Returns the bytes of an image file, or an empty string if it is missing. Decodes data URIs of
+  /// types that tinygltf does not know. Throws InputError for an image beyond its buffer.
   [[nodiscard]] std::string picture_bytes(int image) const;
   /// Returns the number of elements of an accessor.
   [[nodiscard]] std::size_t count(int accessor) const;
@@ -78,8 +78,7 @@ class GltfFile {
   /// Returns the bytes of a buffer view. Throws InputError, which names `place`, if it has none or
   /// is not within its buffer.
   [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;
-  /// Sets where elements of that type and count are stored. Throws InputError if they are not
-  /// within their buffer view.
+  /// Locates elements of this type and count. Throws InputError if they exceed their buffer view.
   void find_stored(int buffer_view, std::size_t offset, const std::string& number,
                    Elements& elements) const;
   [[nodiscard]] std::vector<double> numbers(int accessor, int width, const char* what) const;

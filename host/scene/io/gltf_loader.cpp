@@ -57,7 +57,7 @@ struct PlacedLight {
   std::optional<SpotCone> spot;
 };
 
-/// glTF 2.0, 3.7.2.1: primitives without normals are flat.
+/// Returns the options required by glTF 2.0, 3.7.2.1: primitives without normals are flat.
 LoadOptions as_specified(LoadOptions options) {
   options.smooth_if_unsaid = false;
   return options;
@@ -229,8 +229,7 @@ class GltfReader {
     return at->second;
   }
 
-  /// Includes an instance in the bounds for recentring, and counts its vertices if it will be
-  /// flattened.
+  /// Includes an instance in the bounds for recentring. Counts its vertices if it is flattened.
   void expand_extent(const MeshInstance& instance) {
     const auto& [part, own_box, ignored] = shared(instance.shape);
     if (is_empty(part)) return;
@@ -279,8 +278,8 @@ class GltfReader {
     if (is_orthographic) scene_.camera->lens.projection = Projection::kOrthographic;
   }
 
-  /// Moves the camera's target along the view to the depth of the scene's middle, without changing
-  /// the size of the picture. The scene is complete by now.
+  /// Moves the camera's target along the view to the depth of the scene's centre, without changing
+  /// the size of the picture. The scene must be complete.
   void aim_camera() {
     if (!scene_.camera) return;
     CameraSetting& camera = *scene_.camera;
@@ -335,7 +334,7 @@ class GltfReader {
     cone.inner = inner >= 0.0 ? std::min(inner, cone.outer) : 0.0;
   }
 
-  /// Adds the point lights to the scene, whose origin is known by now.
+  /// Adds the point lights to the scene, whose origin must be set.
   void place_lights() {
     for (const PlacedLight& light : lights_) {
       const glm::vec3 rounded(light.position - scene_.origin);

@@ -39,7 +39,7 @@ class GltfMaterials {
   /// Returns the texture's index in the scene and its mapping; no texture for index -1.
   template <class TextureInfo>
   MaterialMap read_map(const TextureInfo& info, Texture::Content content);
-  /// Returns the same, or no texture, with a warning, if it cannot be read.
+  /// Returns read_map() or, with a warning, no texture if the map cannot be read.
   template <class TextureInfo>
   MaterialMap map_of(const TextureInfo& info, Texture::Content content);
   /// Returns a decoded image; nullopt, with a warning, if the texture has none. Throws InputError

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Returns the value, which is made an object if it is none.
+/// Replaces a value that is not an object by an empty object, and returns it.
 Json& as_object(Json& value) {
   if (!value.is_object()) value = Json::object();
   return value;

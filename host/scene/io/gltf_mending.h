@@ -1,4 +1,4 @@
-// Optional parts of a glTF file that tinygltf would refuse the whole file for.
+// Repairs optional parts of a glTF file for which tinygltf would refuse the whole file.
 #pragma once
 
 #include <string>
@@ -7,11 +7,10 @@
 
 namespace raygate {
 
-/// Returns the JSON of a glTF file with stand-ins for images, cameras, lights, skins, sparse
-/// elements and members of materials that tinygltf refuses. A stand-in has no picture, direction
-/// or element, so that the reader leaves it out where it is used, as it does with other bad parts.
-/// Appends a warning, perhaps repeatedly, about parts that are left out or changed here. Returns
-/// text that is no JSON object as it is.
+/// Returns the JSON of a glTF file with placeholders for images, cameras, lights, skins, sparse
+/// elements and members of materials that tinygltf refuses. A placeholder is empty, so the loader
+/// skips it, as it does other bad parts. Appends a warning, possibly repeatedly, for each part that
+/// is changed. Returns text that is not a JSON object unchanged.
 [[nodiscard]] std::string mend_gltf(std::string_view json, std::vector<std::string>& warnings);
 
 }  // namespace raygate

@@ -59,7 +59,7 @@ class GltfMeshes {
   const GltfFile& file_;
   Scene& scene_;
   GltfMaterials materials_;
-  std::size_t vertices_ = 0;  // of vertices and corners that were counted
+  std::size_t vertices_ = 0;  // vertices and corners counted so far
 };
 
 }  // namespace raygate

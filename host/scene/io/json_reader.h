@@ -18,11 +18,12 @@ struct JsonNode {
   enum class Kind { kNull, kBool, kNumber, kString, kArray, kObject };
 
   Kind kind = Kind::kNull;
-  std::size_t line = 0;  ///< from 1: of an array's or object's beginning, of another value's end
-  double number = 0.0;   ///< a bool is 0 or 1; 1e999 is infinite
-  std::string text;      ///< of a string, or of a number as written in the file
+  /// From 1; arrays and objects: line of their start; other values: line of their end.
+  std::size_t line = 0;
+  double number = 0.0;  ///< a bool is 0 or 1; 1e999 is infinite
+  std::string text;     ///< of a string, or a number as written in the file
   std::vector<JsonNode> elements;
-  std::vector<std::string> keys;  ///< of an object, in the file's order: those of `elements`
+  std::vector<std::string> keys;  ///< keys of an object's `elements`, in the file's order
 };
 
 /// A value of a JsonFile, which must outlive this object. Functions throw InputError for a value of
@@ -62,8 +63,7 @@ class JsonValue {
   [[nodiscard]] glm::dvec3 vector() const;
   /// Returns the unit vector in the direction of an array [x, y, z] that is not zero.
   [[nodiscard]] glm::dvec3 direction() const;
-  /// Returns the colour of an array [red, green, blue], or of one number for all three; none is
-  /// negative.
+  /// Returns the colour of an array [red, green, blue] or of one number, none negative.
   [[nodiscard]] glm::vec3 light() const;
 
  private:

@@ -17,8 +17,8 @@ namespace raygate {
 
 class MaterialLibrary {
  public:
-  /// Searches for MTL files in `folder`. `obj` gives the place of warnings. `obj` and `warnings`
-  /// must outlive this object.
+  /// Searches for MTL files in `folder`. Warnings refer to the current line of `obj`. `obj` and
+  /// `warnings` must outlive this object.
   MaterialLibrary(std::filesystem::path folder, const TextLines& obj,
                   std::vector<std::string>& warnings)
       : folder_(std::move(folder)), obj_(obj), warnings_(warnings) {}
@@ -47,7 +47,7 @@ class MaterialLibrary {
 
 /// Loads the texture files of all materials that triangles use, once for each kind of content, into
 /// Scene::textures, and sets the materials' indices. Combines textures of roughness and metalness.
-/// Leaves out opacity maps that hide nothing. Warns about a file that is missing or cannot be read.
+/// Drops fully opaque opacity maps. Warns about a file that is missing or cannot be read.
 void load_textures(Scene& scene);
 
 }  // namespace raygate

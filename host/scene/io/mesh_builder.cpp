@@ -16,13 +16,13 @@ namespace raygate {
 namespace {
 
 constexpr glm::vec3 kNoColor(-1.0f);
-/// Index of a corner whose index in the file is out of range.
+/// Marks a corner whose index in the file is out of range.
 constexpr std::uint32_t kBadIndex = kNoIndex - 1;
 constexpr std::size_t kCheckpointFaces = 4096;
 
 }  // namespace
 
-// Counts a frequent problem, for one warning with its first line.
+// Counts occurrences of a frequent problem, for one warning with its first line.
 class MeshBuilder::WarningCount {
  public:
   void note(std::size_t line) {
@@ -208,8 +208,7 @@ void MeshBuilder::recentre(Scene& scene) {
   for (Corner& corner : corners_) corner.position = new_index[corner.position];
 }
 
-// Returns whether a polygon has no area in its file either, except for the rounding of decimals to
-// double.
+// Returns whether a polygon has no area in its file, up to the rounding of decimals to double.
 bool MeshBuilder::was_flat(std::span<const Corner> corners) const {
   const glm::dvec3& first = positions_[corners[0].position];
   glm::dvec3 area(0.0), size(0.0), reach = glm::abs(first);

@@ -24,7 +24,7 @@ struct FileCorner {
 /// bounds (to recentre) and the number of vertices (which may follow their faces) are known.
 class MeshBuilder {
  public:
-  /// Where faces come from, for messages: "scene.obj:12: ..." or, of an array, "faces[12]: ...".
+  /// Origin of faces, for messages: "scene.obj:12: ..." or, for an array, "faces[12]: ...".
   enum class Source { kFile, kArray };
 
   explicit MeshBuilder(std::string file_name, Source source = Source::kFile)
@@ -67,10 +67,10 @@ class MeshBuilder {
   [[nodiscard]] Counts counts() const {
     return {positions_.size(), texcoords_.size(), normals_.size()};
   }
-  /// Makes indices count from the start of a file of which other builders have the earlier part,
-  /// with so many elements. To be called first.
+  /// Makes indices relative to a file whose earlier part has `earlier` elements, held by other
+  /// builders. Must be called first.
   void begin_after(const Counts& earlier) { earlier_ = earlier; }
-  /// Appends the next part of the file, whose builder began after this one's counts.
+  /// Appends the next part of the file, whose builder was given the counts of this builder.
   void append(MeshBuilder&& part);
 
   /// Includes this box in the bounds by which the scene is recentred.
@@ -87,7 +87,7 @@ class MeshBuilder {
   /// InputError for an index out of range, if there is no face with an area, and with
   /// options.strict for any face without an area.
   void build(const LoadOptions& options, Scene& scene);
-  /// Does the same and makes all faces one object of a default material.
+  /// Builds a scene in which all faces belong to one object of a default material.
   void build_plain(const LoadOptions& options, Scene& scene);
 
  private:
@@ -95,17 +95,17 @@ class MeshBuilder {
     std::uint32_t position, texcoord, normal;  // from 0, or kNoIndex
   };
   struct Face {
-    std::size_t end;  // of its corners; they begin where the last face's end
+    std::size_t end;  // end of its corners; they start at the previous face's end
     std::size_t line;
     std::uint32_t material = 0, object = 0, group = 0;
   };
   class WarningCount;
 
   [[nodiscard]] static std::uint32_t resolve(std::int32_t index, std::size_t count);
-  /// Throws the InputError of a face; what --strict refuses says so.
+  /// Throws the InputError of a face; fail_strictly() adds that --strict caused it.
   [[noreturn]] void fail(std::size_t line, const std::string& what) const;
   [[noreturn]] void fail_strictly(std::size_t line, const std::string& what) const;
-  /// The beginning of messages about the face of this line.
+  /// Returns the prefix of messages about the face on this line.
   [[nodiscard]] std::string location(std::size_t line) const;
   void check_indices() const;
   void recentre(Scene& scene);
@@ -123,7 +123,7 @@ class MeshBuilder {
   Counts earlier_;
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> colors_;  // of the first positions; kNoColor: white
-  std::size_t bad_colors_ = 0;     // that are not finite
+  std::size_t bad_colors_ = 0;     // number of colours that are not finite
   bool has_linear_colors_ = false;
   std::vector<glm::vec3> normals_;
   std::vector<glm::vec4> tangents_;  // of the first normals

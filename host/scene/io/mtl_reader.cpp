@@ -72,7 +72,7 @@ glm::vec3* colour_of(Material& material, glm::vec3& unused, std::string_view key
   return keyword == "Ka" ? &unused : nullptr;
 }
 
-/// Returns whether an illumination model is one of glass, whose opacity of 1 means nothing.
+/// Returns whether an illumination model is glass, for which an opacity of 1 is ignored.
 bool is_clear(int model) { return model == 4 || model == 6 || model == 7 || model == 9; }
 
 }  // namespace

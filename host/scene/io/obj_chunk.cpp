@@ -14,13 +14,13 @@ bool is_one_of(const std::array<std::string_view, size>& list, std::string_view 
   return std::find(list.begin(), list.end(), keyword) != list.end();
 }
 
-// Statements of shapes that are not polygons.
+// Statements of shapes other than polygons.
 constexpr std::array<std::string_view, 26> kOtherShapes{
     "p",     "l",    "vp",   "cstype", "deg",  "bmat", "step", "curv", "curv2",
     "surf",  "parm", "trim", "hole",   "scrv", "sp",   "end",  "con",  "ctech",
     "stech", "bsp",  "bzp",  "cdc",    "cdp",  "res",  "t",    "vw"};
 
-// Statements that change no polygon and no material: merging groups, display attributes.
+// Statements that affect neither polygons nor materials: merging groups, display attributes.
 constexpr std::array<std::string_view, 9> kOfNoConsequence{
     "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "usemap", "maplib"};
 
@@ -65,7 +65,7 @@ void ObjChunk::read_statement(std::string_view statement) {
   } else if (keyword == "vt") {
     const auto numbers = read_numbers(keyword, words);
     mesh_.add_texcoord({numbers[0], numbers.size() > 1 ? numbers[1] : 0.0});
-  } else if (keyword == "f" || keyword == "fo") {  // fo: of old files, to be read as f
+  } else if (keyword == "f" || keyword == "fo") {  // old files use fo for f
     read_face(words);
   } else if (keyword == "g" || keyword == "o" || keyword == "s" || keyword == "usemtl" ||
              keyword == "mtllib") {
@@ -156,7 +156,7 @@ FileCorner ObjChunk::read_corner(std::string_view corner) const {
       lines_.fail("face corner " + in_quotes(corner) +
                   ": index 0, expected 1 for the first or -1 for the last so far");
     }
-    if (index == 0) index = INT32_MIN;  // names nothing
+    if (index == 0) index = INT32_MIN;  // refers to no element
     at = rest;
     if (at == end) return {indices[0], indices[1], indices[2]};
     if (*at++ != '/') malformed();

@@ -20,16 +20,16 @@ namespace raygate {
 /// and other files depend on earlier chunks, so they are kept for ObjReader.
 class ObjChunk {
  public:
-  /// A statement that is neither of a vertex nor of a face.
+  /// A statement other than a vertex or a face.
   struct Rest {
     std::string statement;
     std::size_t line;
-    std::size_t faces;  ///< of the chunk that precede it
+    std::size_t faces;  ///< number of the chunk's faces before it
   };
 
   explicit ObjChunk(TextLines lines) : lines_(std::move(lines)), mesh_(lines_.file_name()) {}
 
-  /// Numbers of lines and vertices, which count() finds without parsing the numbers in them.
+  /// Numbers of lines and vertices, as counted without parsing numbers.
   struct Counts {
     std::size_t lines = 0;
     MeshBuilder::Counts mesh;
@@ -60,7 +60,7 @@ class ObjChunk {
   TextLines lines_;
   MeshBuilder mesh_;
   std::vector<Rest> rest_;
-  std::set<std::string, std::less<>> kept_;  // by keep_once
+  std::set<std::string, std::less<>> kept_;  // keywords passed to keep_once()
   std::exception_ptr error_;
   std::array<double, 7> numbers_{};  // of one statement
   std::vector<FileCorner> corners_;  // of one face

@@ -54,8 +54,7 @@ class ObjReader final : public StatementReader {
   }
 
  private:
-  // Lines and vertices are counted first, so that each chunk knows its line numbers and can resolve
-  // negative indices.
+  // Counts lines and vertices first, for the line numbers and negative indices of chunks.
   void read_statements(const LoadOptions& options) {
     const std::size_t most = options.threads > 1 ? std::size_t{4} * options.threads : 1;
     std::vector<ObjChunk> chunks;
@@ -151,7 +150,7 @@ class ObjReader final : public StatementReader {
   /// Resolves the names of materials at the end of the file, as mtllib may come after usemtl.
   void assign_materials() {
     scene_.materials = mtl_.materials();
-    // Scanners write the colours of a texture once more at the vertices.
+    // Scanners duplicate the texture's colours at the vertices.
     for (Material& material : scene_.materials) {
       material.has_vertex_colors = material.diffuse_map.empty();
     }
@@ -182,7 +181,7 @@ class ObjReader final : public StatementReader {
   MaterialLibrary mtl_;
   Scene& scene_;
   NameTable objects_;
-  NameTable materials_;                  // of usemtl; faces have their indices (kNoIndex: none)
+  NameTable materials_;                  // of usemtl; faces store their indices (kNoIndex: none)
   std::vector<std::string> first_uses_;  // "file:line: " of the first use of each material
   std::string object_, group_;           // the current ones; empty: none
   std::uint32_t object_number_ = 0;

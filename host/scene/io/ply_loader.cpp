@@ -90,8 +90,7 @@ class PlyReader {
 
   std::string_view next_line() {
     ++line_;
-    // The first line tells the kind of line ends, as binary data after the header can look like
-    // one.
+    // The first line determines the line ending, as binary data after the header may resemble one.
     const bool is_old_mac = text_.starts_with("ply\r") && !text_.starts_with("ply\r\n");
     const std::size_t end = text_.find(is_old_mac ? '\r' : '\n', at_);
     if (end == std::string_view::npos) fail("the header has no end_header");
@@ -322,7 +321,7 @@ class PlyReader {
           const std::int32_t position = position_of(index);
           const bool is_flat =
               position == before[0] || position == before[1] || before[0] == before[1];
-          if (known == 2 && !is_flat) {  // flat ones connect parts of a strip
+          if (known == 2 && !is_flat) {  // degenerate triangles connect parts of a strip
             const FileCorner corners[] = {corner_of(before[is_odd ? 1 : 0]),
                                           corner_of(before[is_odd ? 0 : 1]), corner_of(position)};
             mesh_.add_face(corners, strip_line);
@@ -380,7 +379,7 @@ class PlyReader {
     const std::filesystem::path folder = std::filesystem::path(name_).parent_path();
     Material& material = scene.materials[0];
     material.diffuse = glm::vec3(1.0f);
-    material.has_vertex_colors = false;  // scanners write the colours of the picture once more
+    material.has_vertex_colors = false;  // scanners duplicate the image's colours at the vertices
     material.diffuse_map = find_file(folder, texture_, name_ + ": ", scene.warnings)
                                .value_or(folder / texture_)
                                .string();

@@ -47,7 +47,7 @@ struct InstanceSetting {
 /// A default for a command-line option.
 struct OptionSetting {
   std::string name;   ///< "size": --size
-  std::string value;  ///< as it would be typed
+  std::string value;  ///< as typed on the command line
   std::size_t line = 0;
 };
 
@@ -56,9 +56,9 @@ struct SceneFile {
   std::filesystem::path file = {};
   std::filesystem::path obj = {};
   std::optional<CameraSetting> camera = {};
-  std::optional<glm::dvec3> up = {};  ///< "camera.up"; also used by --view, without a camera
+  std::optional<glm::dvec3> up = {};  ///< "camera.up"; --view uses it even without a camera
   std::optional<double> fov = {};     ///< "camera.fov", likewise
-  LensSetting lens = {};              ///< of "camera", likewise
+  LensSetting lens = {};              ///< lens of "camera", likewise
   LightSettings lights = {};
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionSetting> options = {};

@@ -19,11 +19,11 @@ struct LoadOptions {
   /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
   std::optional<double> smooth = {};
   /// Whether curved surfaces of an OBJ, PLY or STL file without normals and smoothing groups are
-  /// smoothed as by kSmoothAngle, unless `smooth` is given.
+  /// smoothed with kSmoothAngle, unless `smooth` is set.
   bool smooth_if_unsaid = false;
   static constexpr double kSmoothAngle = 30.0;
-  int threads = 1;                    ///< to read an OBJ file; the scene does not depend on it
-  std::size_t chunk_size = 1u << 18;  ///< smallest part of an OBJ file for a thread, in bytes
+  int threads = 1;  ///< threads for reading an OBJ file; they do not affect the scene
+  std::size_t chunk_size = 1u << 18;  ///< smallest part of an OBJ file per thread, in bytes
 };
 
 /// Loads a model. The ending of its name gives the format: .obj (or none), .gltf, .glb, .ply or
@@ -39,8 +39,7 @@ struct LoadOptions {
 /// or damaged, a bad normal or texture coordinate, and all that is left out.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Returns the existing file with this stem and the first of these endings; "STEM.obj" if there is
-/// none.
+/// Returns the existing file with this stem and the first of these endings, or else "STEM.obj".
 [[nodiscard]] std::filesystem::path find_scene_file(const std::filesystem::path& stem);
 
 /// Loads a Wavefront OBJ file, with its MTL files (relative to its folder) and their textures.

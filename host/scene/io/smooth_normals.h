@@ -9,7 +9,7 @@
 
 namespace raygate {
 
-/// Whether a triangle whose smooth normals all equal its geometric normal gets them.
+/// Whether triangles get smooth normals that equal their geometric normal.
 enum class FlatFaces { kHaveNormals, kStayFlat };
 
 /// Sets the normals of triangles that have none and have a smooth edge. The normal at a corner is

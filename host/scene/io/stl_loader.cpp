@@ -51,14 +51,14 @@ void read_binary(const std::string& name, std::string_view bytes, std::size_t fa
   }
 }
 
-/// Returns whether the next word is this one, in capital or small letters.
+/// Returns whether the next word equals `word`, ignoring case.
 bool is_next(std::string_view word, const TokenReader& tokens) {
   return std::ranges::equal(word, tokens.peek(), [](char small, char letter) {
     return letter == small || (letter >= 'A' && letter <= 'Z' && letter - 'A' + 'a' == small);
   });
 }
 
-/// Takes the next word, which must be this one, in capital or small letters.
+/// Takes the next word, which must equal `word`, ignoring case.
 void expect(std::string_view word, TokenReader& tokens) {
   if (is_next(word, tokens)) {
     (void)tokens.take();
@@ -128,7 +128,7 @@ Scene load_stl(const std::filesystem::path& file, const LoadOptions& options) {
   // A binary file may also begin with "solid". Unlike text, it has a zero byte near its beginning.
   const bool has_zero = bytes.find('\0') < 1024;
   if (facets > 0 && (bytes.size() == length || (has_zero && bytes.size() > length))) {
-    read_binary(name, bytes, facets, mesh);  // perhaps with something after it
+    read_binary(name, bytes, facets, mesh);  // may be followed by other data
     if (const std::size_t more = (bytes.size() - length) / kFacet; more > 0) {
       scene.warnings.push_back(name + ": room for " + std::to_string(more) + " facets after the " +
                                std::to_string(facets) + " that its header counts, ignored");

@@ -79,7 +79,7 @@ std::optional<std::string_view> TextLines::next() {
   return std::nullopt;
 }
 
-// Parts begin after an LF that no backslash precedes, as that may join two lines.
+// Parts start after an LF without a preceding backslash, which might join two lines.
 std::vector<TextLines> TextLines::split(std::size_t most, std::size_t size) const {
   std::vector<TextLines> parts;
   const std::size_t step = std::max(size, (text_.size() - position_) / most + 1);

@@ -26,8 +26,8 @@ class TextLines {
   /// at the end of the file. The result is valid until the next call.
   [[nodiscard]] std::optional<std::string_view> next();
 
-  /// Splits the unread rest, between statements, into at most `most` parts of at least about `size`
-  /// bytes. Each part counts its lines from 1.
+  /// Splits the unread part, at statement boundaries, into at most `most` parts of at least about
+  /// `size` bytes. Each part counts its lines from 1.
   [[nodiscard]] std::vector<TextLines> split(std::size_t most, std::size_t size) const;
   /// Counts lines from lines + 1. To be called before the first next().
   void begin_after(std::size_t lines) { lines_taken_ = lines; }

@@ -12,7 +12,7 @@ namespace raygate {
 /// and returns it. Returns an empty word if `text` is empty.
 [[nodiscard]] std::string_view take_token(std::string_view& text);
 
-/// Does the same, but treats a word that begins with # and all text after it as a comment.
+/// Takes a token, but treats a word that begins with # and all text after it as a comment.
 [[nodiscard]] std::string_view take_token_before_comment(std::string_view& text);
 
 /// Returns the word in quotes for a message: its first 40 characters, with unprintable ones as
@@ -53,9 +53,9 @@ class TokenReader {
 
   std::string name_;
   std::string_view text_;
-  std::string_view word_;      // the next one
-  std::size_t last_ = 0;       // where the word before it ends
-  std::size_t last_line_ = 0;  // and its line
+  std::string_view word_;      // the next word
+  std::size_t last_ = 0;       // end of the word before it
+  std::size_t last_line_ = 0;  // line of the word before it
   std::size_t line_;
 };
 

@@ -1,4 +1,4 @@
-// libFuzzer target: any bytes as a table of rays, CSV or NPY.
+// libFuzzer target: arbitrary bytes as a table of rays, CSV or NPY.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -21,12 +21,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     raygate::RayTable block;
     while (rays.read(7, block)) {
       for (const raygate::Ray& ray : block.rays) {
-        // What intersectors refuse must not get to them.
+        // Rays that intersectors refuse must not be returned.
         if (raygate::is_usable(ray.direction) && !raygate::is_scaled(ray.direction)) std::abort();
       }
     }
   } catch (const raygate::InputError&) {
-    // What a bad table deserves.
+    // Expected for invalid tables.
   }
   return 0;
 }
