@@ -121,12 +121,7 @@ void check_crop(const OptionTable& table, RenderSettings& options) {
 /// Checks options that --error excludes or changes.
 void check_error(const OptionTable& table, RenderSettings& options) {
   if (options.error == 0.0) return;
-  if (table.typed("spp").empty()) options.samples = kMostSamples;
-  if (options.samples <= kMinAdaptiveSamples) {
-    fail_value(
-        "--spp", table.typed("spp"),
-        "more than the " + std::to_string(kMinAdaptiveSamples) + " that --error begins with");
-  }
+  check_adaptive_samples("--", table.typed("spp"), options);
   if (options.end_sample > 0) throw InputError("--samples and --error exclude each other");
   const PixelRect& window = options.window;
   const auto is_edge = [](int at, int end) { return at % kErrorBlock == 0 || at == end; };

@@ -10,6 +10,7 @@
 #include "host/exact/exact.h"
 #include "host/film/film.h"
 #include "host/film/merge.h"
+#include "host/render/adaptive_sampling.h"
 
 namespace raygate {
 namespace {
@@ -118,7 +119,7 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
                "samples if its error is X, after n if it is X n / 16",
                settings.error,
                Range{kAboveZero, 255.0, "steps of an 8-bit display, above 0 and up to 255"},
-               kInExr | kInStats | kInSceneFile);
+               kInExr | kInStats | kInPython | kInSceneFile);
   table.add("--samples", "A:B", "render only samples A to B-1, for ./merge",
             [&settings](const std::string& option, const std::string& text) {
               const auto range = parse_sample_range(text);
@@ -160,6 +161,18 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
   table.number("--seed", "N", "seed of the random numbers ({})", settings.seed,
                Range<std::uint64_t>{0, std::numeric_limits<std::uint64_t>::max()},
                kInStats | kInPython | kInSceneFile | kInPage);
+}
+
+void check_adaptive_samples(const std::string& dashes, const std::string& spp,
+                            RenderSettings& settings) {
+  constexpr int kMostSamples = 1024;
+  if (settings.error == 0.0) return;
+  if (spp.empty()) settings.samples = kMostSamples;
+  if (settings.samples <= kMinAdaptiveSamples) {
+    fail_value(dashes + "spp", spp,
+               "more than the " + std::to_string(kMinAdaptiveSamples) + " that " + dashes +
+                   "error begins with");
+  }
 }
 
 void add_skip_options(OptionTable& table, RenderSettings& settings) {

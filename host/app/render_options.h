@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "host/app/framing.h"
 #include "host/app/option_table.h"
@@ -9,9 +10,6 @@
 #include "host/scene/scene.h"
 
 namespace raygate {
-
-/// The maximum samples per pixel with --error if --spp is not given.
-inline constexpr int kMostSamples = 1024;
 
 /// Ranges of options that several programs have.
 inline constexpr Range<int> kThreadRange{1, 1024}, kSideRange{1, 65536};
@@ -25,6 +23,11 @@ void add_light_options(OptionTable& table, RenderSettings& settings);
 void add_skip_options(OptionTable& table, RenderSettings& settings);
 void add_camera_options(OptionTable& table, CameraRequest& request);
 void add_environment_options(OptionTable& table, std::optional<EnvironmentSetting>& environment);
+
+/// With --error: sets the default of --spp. Throws InputError for too few samples. `dashes` precede
+/// the names of options in messages; `spp`: its value as typed, or "".
+void check_adaptive_samples(const std::string& dashes, const std::string& spp,
+                            RenderSettings& settings);
 
 /// The name of a skip for --no-skip, and its switch.
 struct SkipName {

@@ -291,11 +291,13 @@ class PythonScene {
     keywords.add_engine();
     add_light_options(keywords, chosen);
     keywords.read(settings);
-    const auto is_given = [&](const char* name) {
-      return std::ranges::any_of(settings, [&](const auto& word) { return word.first == name; });
+    const auto given = [&](const char* name) -> std::string {
+      const auto at = std::ranges::find(settings, name, &Settings::value_type::first);
+      return at == settings.end() ? "" : at->second;
     };
-    chosen.choose_integrator(scene_.environment.has_value(), is_given("integrator"),
-                             is_given("spp"));
+    chosen.choose_integrator(scene_.environment.has_value(), !given("integrator").empty(),
+                             !given("spp").empty());
+    check_adaptive_samples("", given("spp"), chosen);
     chosen.threads = keywords.threads;
     const int width = chosen.width, height = chosen.height;
     if (std::int64_t{width} * height > kMaxPixels) {

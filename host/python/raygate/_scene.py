@@ -174,8 +174,8 @@ class Scene:
         (height, width, 3); "depth", shape (height, width): float32. "triangle" and "object", shape (height, width):
         uint32, 4294967295 where nothing is hit. eye, target, up: three numbers each, in the file's coordinates; the
         camera of the scene file by default, or one that sees the whole scene. Other keywords are options of ./render,
-        with its defaults: spp, integrator, fov (degrees), depth, seed, filter, threshold, ambient, threads. engine: as
-        in trace(). Raises InputError, which names the option, for values that cannot be used."""
+        with its defaults: spp, error, integrator, fov (degrees), depth, seed, filter, threshold, ambient, threads.
+        engine: as in trace(). Raises InputError, which names the option, for values that cannot be used."""
         channels, film = self._scene.render(_arrays.point("eye", eye), _arrays.point("target", target),
                                             _arrays.point("up", up),
                                             _settings(width=width, height=height, engine=engine, **options))

@@ -328,6 +328,13 @@ class Render(unittest.TestCase):
             signal.signal(signal.SIGALRM, raised)
         np.testing.assert_array_equal(scene.render(16, 16, spp=1)["color"], before)
 
+    def test_samples_until_the_error_is_small(self):
+        scene = raygate.Scene(SCENES / "cornell.json")
+        coarse, fine = (scene.render(16, 12, integrator="path", error=error)["color"] for error in (200, 8))
+        self.assertFalse((coarse == fine).all())
+        with self.assertRaisesRegex(raygate.InputError, "spp: expected more than the 16 that error begins with, got '4'"):
+            scene.render(16, 12, spp=4, error=2)
+
     def test_threads_render_by_their_own_lights(self):
         scene = raygate.Scene(SCENES / "teapot.obj")
         eyes = [[9, 9, 9], [-9, 9, -9]]
