@@ -235,7 +235,8 @@ std::vector<Row> watertight_rows(const WatertightOptions& asked) {
   }
   Random random(1);
   const Placement far{glm::dvec3(2.0), {148376.0, 1234.0, -223423.0}};
-  tests.push_back(singlehit(asked.triangles));
+  constexpr int kMostInFan = 1024;  // in larger fans, each ray meets most of the long boxes
+  tests.push_back(singlehit(std::min(asked.triangles, kMostInFan)));
   tests.push_back(from_inside("sphere", far, asked.triangles, Targets::kAnywhere, random));
   tests.push_back(from_inside("edges", {}, asked.triangles, Targets::kEdges, random));
   tests.push_back(from_inside("vertices", {}, asked.triangles, Targets::kVertices, random));

@@ -1,15 +1,15 @@
 // Public acceptance tests of watertightness, for engines and other ray tracers' hit tests.
 //
 // nomiss: from the Vulkan conformance tests (ray_tracing_pipeline.watertightness.nomiss). A square
-// of two triangles is refined to N by points in random triangles, at random heights. Every ray of a
-// grid along -z (256 x 256 for 65,536 triangles) must hit.
-// singlehit: from the same tests. A closed fan of N triangles, and rays from its axis to its centre
-// and to the middle of every inner edge. The original counts repeated hits of one triangle as
-// duplicates; here, more than one hit is a duplicate.
+//   of two triangles is refined to N by points in random triangles, at random heights. Every ray of
+//   a grid along -z (256 x 256 for 65,536 triangles) must hit.
+// singlehit: from the same tests. A closed fan of up to 1,024 triangles, and rays from its axis to
+//   its centre and to the middle of every inner edge. The original counts repeated hits of one
+//   triangle as duplicates; here, more than one hit is a duplicate.
 // sphere: from Embree (tutorials/verify, watertight). Random rays from around the centre of a
-// sphere far from the origin must hit.
+//   sphere far from the origin must hit.
 // edges, vertices: as in Woop, Benthin and Wald 2013. Rays from inside a sphere at its edges and
-// vertices must hit.
+//   vertices must hit.
 //
 // The random numbers and the sphere's triangles differ from the originals.
 #pragma once
