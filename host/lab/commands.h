@@ -17,11 +17,11 @@ struct Outcome {
 /// Declares a command with its options; parsing its name runs it.
 using AddCommand = void(CLI::App& lab, Outcome& outcome);
 
-AddCommand add_stress;      ///< engines and variants in hard cases
+AddCommand add_stress;      ///< correctness of engines and variants in hard cases
 AddCommand add_watertight;  ///< public tests of watertightness
-AddCommand add_predicates;  ///< what an exact decision costs
-AddCommand add_rays;        ///< rays per second, next to Embree's
-AddCommand add_core;        ///< clocks a ray of the ray core
+AddCommand add_predicates;  ///< cost of an exact decision
+AddCommand add_rays;        ///< rays per second, compared with Embree
+AddCommand add_core;        ///< clocks per ray of the ray core
 AddCommand add_variants;    ///< the table of variants
 AddCommand add_check;       ///< reference models against hardware
 AddCommand add_pictures;    ///< images by any variant, timed and audited

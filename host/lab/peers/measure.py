@@ -16,10 +16,10 @@ SCENES = {"cornell": 128, "cornell_spheres": 128, "paper_room": 128, "still_life
 VARIANTS = ("scalar_rgb", "llvm_ad_rgb")
 # The best of Mitsuba's samplers, which are also timed with other numbers of samples.
 BEST = ("multijitter", "orthogonal")
-NO_LIGHT_PATHS = "--caustics off"  # as Mitsuba's `path` has none
-ERRORS = (16, 8, 4, 2)  # of --error, which decides how many samples each pixel gets
-SEEDS = 10  # of each picture
-COUNT = 32  # samples per pixel of the tables; samplers that cannot have it take the next they can
+NO_LIGHT_PATHS = "--caustics off"  # Mitsuba's `path` has no light paths
+ERRORS = (16, 8, 4, 2)  # of --error, for adaptive sampling
+SEEDS = 10  # per image
+COUNT = 32  # samples per pixel in the tables, or the next number that a sampler supports
 REFERENCE_SEED = 1000
 
 
@@ -46,7 +46,7 @@ def display_rmse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
 
 
 def standard_error(values: list[float]) -> float:
-    """Of the mean of several seeds; 0 for one."""
+    """Returns the standard error of the mean over seeds; 0 for one value."""
     return statistics.stdev(values) / len(values) ** 0.5 if len(values) > 1 else 0.0
 
 

@@ -33,7 +33,7 @@ class Raygate:
                          "--threads", str(threads)]
 
     def render(self, sampler: str, samples: int, seed: int, width: int, height: int) -> tuple[dict, numpy.ndarray]:
-        """What it took, and the picture. `sampler`: options in place of the one sampler."""
+        """Returns the timing and the image. `sampler` may hold options of ./render, which has only one sampler."""
         options = sampler.split() if sampler.startswith("--") else []
         samples = self.most_samples if "--error" in options else samples
         with tempfile.TemporaryDirectory() as name:

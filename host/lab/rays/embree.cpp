@@ -60,8 +60,8 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
   arguments->valid[0] = 0;  // continue the traversal
 }
 
-/// Whether a ray and the triangles are within Embree's range (FLT_LARGE in its sources): it aborts
-/// for rays beyond it and leaves out such triangles.
+/// Returns whether a ray and the triangles are within Embree's range (FLT_LARGE in its sources).
+/// Embree aborts for rays beyond it and skips such triangles.
 bool accepts(const Shot& shot, const glm::vec3& direction) {
   constexpr float kLargest = 1.8e18f;
   const auto is_small = [](const glm::vec3& v) {
@@ -74,9 +74,9 @@ bool accepts(const Shot& shot, const glm::vec3& direction) {
          });
 }
 
-/// Counts the hits of one ray and turns them down.
+/// Counts the hits of one ray in a filter function that rejects them.
 struct Counter {
-  RTCIntersectContext context;  // first: Embree hands back a pointer to it
+  RTCIntersectContext context;  // must be first: Embree returns a pointer to it
   std::uint32_t hits;
 };
 

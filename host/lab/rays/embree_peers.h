@@ -78,13 +78,13 @@ struct Packet<16> {
   using Hits = RTCRayHit16;
 };
 
-/// Embree 4's hits end with one more word a ray.
+/// A query with room for the additional word per ray of Embree 4's hits.
 template <class RayHit, std::size_t kWords>
 struct RoomForHit : RayHit {
   std::uint32_t more[kWords];
 };
 
-/// `Queries` asks Embree: set_coherent(), intersect() and occluded() for one ray, 8 or 16.
+/// `Queries` calls Embree: set_coherent(), intersect() and occluded() for one ray, 8 or 16.
 template <class Queries>
 class EmbreePeer : public Peer {
  public:
@@ -115,7 +115,7 @@ inline RTCRay embree_ray(const Ray& ray, float limit) {
   return query;
 }
 
-/// rtcIntersect1 / rtcOccluded1.
+/// Traces rays one by one, by rtcIntersect1 and rtcOccluded1.
 template <class Queries>
 class SingleRays : public EmbreePeer<Queries> {
  public:
@@ -150,7 +150,8 @@ class SingleRays : public EmbreePeer<Queries> {
   std::vector<RTCRay> rays_;
 };
 
-/// rtcIntersect8, rtcIntersect16 and the like, with the coherent flag for rays of one origin.
+/// Traces packets of rays, by rtcIntersect8 and the like, with the coherent flag for a common
+/// origin.
 template <std::size_t kWidth, class Queries>
 class RayPackets : public EmbreePeer<Queries> {
  public:
@@ -201,7 +202,7 @@ class RayPackets : public EmbreePeer<Queries> {
   std::size_t count_ = 0;
 };
 
-/// Streams of Embree 3 (rtcIntersect1M), likewise.
+/// Traces streams of rays with Embree 3 (rtcIntersect1M), with the same flag.
 template <class Queries>
 class RayStreams : public EmbreePeer<Queries> {
  public:
@@ -237,13 +238,14 @@ class RayStreams : public EmbreePeer<Queries> {
   }
 
  private:
-  static constexpr std::size_t kStream = 1024;  // rays of a stream, which fit into the first caches
+  // Rays per stream, which fit into the first-level cache.
+  static constexpr std::size_t kStream = 1024;
 
   std::vector<RTCRayHit> queries_of_rays_;
 };
 
-/// Single rays, packets and, where `Queries` has them, streams, each in its default and its robust
-/// mode.
+/// Returns peers for single rays, packets and, if `Queries` supports them, streams, each in default
+/// and robust mode.
 template <class Queries>
 std::vector<std::unique_ptr<Peer>> make_embree_peers(const std::string& name,
                                                      const EmbreeFunctions& embree,

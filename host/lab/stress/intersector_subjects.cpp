@@ -191,8 +191,8 @@ SubjectKind unit(const char* name, const char* what, double share, Lanes... lane
           }};
 }
 
-/// The ray core that `make_core` makes, one for all trees. One that settles doubts does not tell of
-/// them, so that `binary32`'s bounds of P cannot be asked of the others.
+/// Returns a subject for the ray core of `make_core`, which all BVHs share. A core that resolves
+/// doubts does not report them, so the error bounds of P for `binary32` do not apply to it.
 SubjectKind core(const char* name, const char* what, double share, bool simulated, bool binary32,
                  std::unique_ptr<CoreUnit> (*make_core)()) {
   return {.name = name,

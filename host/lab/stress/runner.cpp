@@ -52,7 +52,7 @@ std::vector<Row> run_suite(const Suite& suite, const std::vector<SubjectKind>& k
     for (std::size_t v = 0; v < subjects.size(); ++v) {
       Tally& tally = tallies[v];
       if (tally.tests >= wanted[v]) continue;
-      answers.orders.clear();  // few subjects give any
+      answers.orders.clear();  // only some subjects set it
       answers.refused.clear();
       subjects[v]->run(shots, answers);
       count(shots, truths, answers, kinds[v], tally);
@@ -109,7 +109,7 @@ Verdicts sum_up(std::span<const Row> rows, std::uint64_t seed) {
     return verdicts;
   }
   verdicts.passed = spotless && broken_claims == 0;
-  // The subjects see the beginning of one sequence of cases: the longest one has all.
+  // All subjects see prefixes of one sequence of cases, so the longest one contains all cases.
   const auto cases = [&](const char* key) {
     std::map<std::string, std::uint64_t> most;
     for (const Row& row : rows) {

@@ -38,7 +38,7 @@ struct Answers {
   std::vector<std::optional<std::uint32_t>> nearest;
   /// By shot, then by ray: all triangles that the ray hits, nearest first. Empty if not provided.
   std::vector<std::vector<std::uint32_t>> orders;
-  std::vector<bool> refused;  ///< likewise: rays out of the subject's range. Empty: none
+  std::vector<bool> refused;  ///< by shot, then by ray: outside of the subject's range; empty: none
 };
 
 class Subject {
@@ -51,12 +51,12 @@ class Subject {
 
 struct SubjectKind {
   std::string name{};
-  std::string what{};      ///< one line for the report
-  bool exact = false;      ///< it promises to be never wrong: the run fails where it is
-  bool simulated = false;  ///< Verilated hardware
-  bool binary32 = false;   ///< what errors.h says of t and P holds
-  double share = 0.1;      ///< of the number of tests asked for
-  std::function<std::unique_ptr<Subject>()> make{};  ///< one for each thread
+  std::string what{};                                ///< one line for the report
+  bool exact = false;                                ///< any wrong decision fails the run
+  bool simulated = false;                            ///< Verilated hardware
+  bool binary32 = false;                             ///< the bounds of errors.h for t and P apply
+  double share = 0.1;                                ///< fraction of the requested number of tests
+  std::function<std::unique_ptr<Subject>()> make{};  ///< called once per thread
 };
 
 /// Returns all subjects of this build, in the order of the report.
@@ -69,22 +69,22 @@ struct SubjectKind {
 [[nodiscard]] std::vector<SubjectKind> float_subjects();    ///< common float32 tests of ray tracers
 [[nodiscard]] std::vector<SubjectKind> embree_subjects();   ///< empty without Embree
 
-/// Hit tests in float32.
+/// A hit test in float32.
 using TriangleTest = Answer(const glm::vec3& origin, const glm::vec3& direction,
                             const Corners& triangle);
-/// Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, both sides,
-/// without an epsilon.
+/// The test of Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for
+/// both sides, without an epsilon.
 TriangleTest moeller_trumbore;
-/// Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013: the triangle is sheared so
-/// that the ray runs along an axis; edge functions of zero are computed again in double.
+/// The test of Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013: shears the
+/// triangle so that the ray runs along an axis; recomputes zero edge functions in double.
 TriangleTest woop;
 
-/// Returns the number of hits of each ray by Embree, in its default and its robust mode, by name;
-/// none without Embree.
+/// Returns the number of hits of each ray with Embree, in default and robust mode, by name; empty
+/// without Embree.
 [[nodiscard]] std::vector<std::pair<std::string, std::vector<std::uint32_t>>> embree_hit_counts(
     const Scene& scene, std::span<const Ray> rays);
 
-/// Fills `nearest` from the smallest t of each ray's hits, the first of equals.
+/// Sets `nearest` to the hit of each ray with the smallest t, the first of equals.
 void nearest_by_t(std::span<const Shot> shots, Answers& answers);
 
 /// Returns a scene of these triangles with one material.

@@ -15,18 +15,19 @@ namespace raygate::lab {
 
 /// Results of one subject in one suite.
 struct Tally {
-  std::uint64_t tests = 0, rays = 0;  ///< without rays out of the subject's range
-  std::uint64_t refused = 0;          ///< rays out of the subject's range
-  /// Tests decided otherwise than the truth, or hit at another t than they say, ties aside.
+  std::uint64_t tests = 0, rays = 0;  ///< rays within the subject's range
+  std::uint64_t refused = 0;          ///< rays outside of the subject's range
+  /// Tests with a wrong decision, or with an interval that does not contain t, except ties.
   std::uint64_t wrong = 0;
-  std::uint64_t ties = 0;           ///< tests that only the tie-break decides
-  std::uint64_t wrong_ties = 0;     ///< of these, decided otherwise: a sin of exact subjects only
-  std::uint64_t escapes = 0;        ///< rays from inside a closed mesh without a hit
-  std::uint64_t double_hits = 0;    ///< rays from inside with more hits than there are
-  std::uint64_t wrong_nearest = 0;  ///< rays whose first triangle is another, ties aside
-  std::uint64_t wrong_tied_nearest = 0;  ///< the same among ties
-  std::uint64_t orders = 0;              ///< rays of which the subject gave all hits in order
-  std::uint64_t wrong_order = 0;         ///< of these, with another order or other hits
+  std::uint64_t ties = 0;  ///< tests that only the tie-break decides
+  /// Wrong decisions among `ties`; allowed unless the subject is exact.
+  std::uint64_t wrong_ties = 0;
+  std::uint64_t escapes = 0;             ///< rays from inside a closed mesh without a hit
+  std::uint64_t double_hits = 0;         ///< rays from inside with too many hits
+  std::uint64_t wrong_nearest = 0;       ///< rays with a wrong nearest triangle, except ties
+  std::uint64_t wrong_tied_nearest = 0;  ///< likewise among ties
+  std::uint64_t orders = 0;              ///< rays for which the subject returned all hits in order
+  std::uint64_t wrong_order = 0;         ///< rays among `orders` with a wrong order or wrong hits
   std::uint64_t hits = 0, doubts = 0;
   /// Errors of correct hits: of t, and the worst coordinate of P, in ulps; of t, relative.
   Errors t_ulp, point_ulp, t_relative;

@@ -101,10 +101,10 @@ Watertight from_inside(const char* name, const Placement& placement, int count, 
   return test;
 }
 
-/// Counts the hits of each ray; those that find only the nearest hit count 0 or 1.
+/// Returns the number of hits of each ray; 0 or 1 for hit tests that find only the nearest hit.
 using CountHits = std::function<std::vector<std::uint32_t>(std::span<const Ray>)>;
 
-/// An engine or other hit test, and the number of its rays: simulations are slow.
+/// A hit test, such as an engine, and its maximum number of rays, which is small for simulations.
 struct Contestant {
   std::string name;
   bool is_exact, finds_all;
@@ -122,7 +122,7 @@ CountHits count_nearest(std::shared_ptr<Intersector> intersector) {
   };
 }
 
-/// Visits the boxes that a ray may enter, however it is rounded.
+/// Visits the boxes that a ray may enter, including all rounding.
 struct SlabVisitor {
   const Ray& ray;
 
@@ -235,12 +235,12 @@ std::vector<Row> watertight_rows(const WatertightOptions& asked) {
   }
   Random random(1);
   const Placement far{glm::dvec3(2.0), {148376.0, 1234.0, -223423.0}};
-  constexpr int kMostInFan = 1024;  // each ray meets most of the long boxes of a larger one
+  constexpr int kMostInFan = 1024;  // in larger fans, each ray meets most of the long boxes
   tests.push_back(singlehit(std::min(asked.triangles, kMostInFan)));
   tests.push_back(from_inside("sphere", far, asked.triangles, Targets::kAnywhere, random));
   tests.push_back(from_inside("edges", {}, asked.triangles, Targets::kEdges, random));
   tests.push_back(from_inside("vertices", {}, asked.triangles, Targets::kVertices, random));
-  // The tests of one name are one row.
+  // Tests with the same name are combined into one row.
   for (std::size_t first = 0; first < tests.size();) {
     std::size_t end = first;
     std::vector<Contestant> all = contestants();

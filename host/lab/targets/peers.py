@@ -50,14 +50,16 @@ def beside_ours(rows: list[dict]) -> list[dict]:
 
 
 def ratio(ours: dict, theirs: dict, key: str, *, with_time: bool = True) -> str:
-    """raygate's error over the other's, times its time over the other's, with the standard error of the seeds."""
+    """Returns raygate's error relative to the other's, optionally times the ratio of times, and its standard error
+    over seeds."""
     value = ours[key] / theirs[key] * (ours["median_seconds"] / theirs["median_seconds"] if with_time else 1.0)
     relative = math.hypot(ours[f"{key}_error"] / ours[key], theirs[f"{key}_error"] / theirs[key])
     return f"{value:.2f} ± {value * relative:.2f}"
 
 
 def summary(rows: list[dict], variant: str) -> list[dict]:
-    """raygate beside one Mitsuba's best sampler, by each measure of error; one thread, the same number of samples."""
+    """Compares raygate with the best sampler of one Mitsuba by each error measure; one thread, equal numbers of
+    samples."""
     found = []
     for reference in of(rows, "references"):
         mine = at_count(of(rows, "peers", scene=reference["scene"], threads=1))

@@ -194,7 +194,7 @@ PARTS = {"rays": rays_steps, "predicates": predicates_steps, "skips": skips_step
 
 
 def over_best(row: dict) -> dict:
-    """raygate's rays per second over those of Embree's fastest mode of all versions, and of its fastest robust one."""
+    """Returns raygate's rays per second relative to Embree's fastest mode and fastest robust mode, over all versions."""
     ours = row["at"]["raygate"]
     found = {**row, "mrays": ours["mrays_per_second"]}
     for kind, is_robust in (("fast", False), ("robust", True)):
@@ -207,7 +207,7 @@ def over_best(row: dict) -> dict:
 
 
 def values(rows: list[dict], _: pathlib.Path) -> dict:
-    """Rays beside Embree's best modes, the skips of two scenes, and the phase times of two programs side by side."""
+    """Returns rays compared with Embree's best modes, the skips by scene, and the phase times of two programs."""
     rays, skips = of(rows, "rays"), of(rows, "skips")
     return {"over_best": [over_best(row) for row in grouped(rays, ("scene", "rays"), "by")],
             "skips_of_two": [row for row in skips if row["scene"] in (skips[0]["scene"], skips[-1]["scene"])],

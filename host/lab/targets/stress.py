@@ -17,7 +17,7 @@ COUNTS = ("tests", "rays", "refused", "wrong", "wrong_ties", "escapes", "double_
 ERRORS = ("t_ulp", "t_relative", "point_ulp", "delivered_t_ulp", "delivered_point_ulp")
 LARGEST = ("t_of_bound", "point_of_bound", "point_of_said")
 DECADES = 8
-# What can be wrong about a ray, apart.
+# Kinds of wrong results per ray, reported separately.
 KINDS = ("escapes", "double_hits", "wrong_nearest")
 
 
@@ -32,11 +32,11 @@ def steps(part: str, given: argparse.Namespace, tests: int, *words: object) -> l
 
 
 def watertight(given: argparse.Namespace) -> Step:
-    """The public tests of watertightness."""
+    """Returns the step of the public tests of watertightness."""
     return Step("all", "watertight", ("watertight", *(("--triangles", 4096, "--seeds", 1) if given.quick else ())))
 
 
-# Half a million tests a suite by the core's reference model, 50,000 by the simulated hardware.
+# Half a million tests per suite on the core's reference model, 50,000 on the simulated hardware.
 PARTS = {"all": lambda given: [*steps("all", given, 10_000_000), watertight(given)],
          "core": lambda given: steps("core", given, 2_500_000, "--subject", "model core", "rtl core",
                                      "model exact core", "rtl exact core")}
@@ -79,7 +79,7 @@ def total(rows: list[dict]) -> dict:
 
 
 def cases(rows: list[dict], key: str) -> int:
-    """The distinct cases that the subjects with this key saw: each sees the beginning of its suite's sequence."""
+    """Returns the number of distinct cases of the subjects with this key. Each sees a prefix of its suite's sequence."""
     most: dict[str, int] = {}
     for row in rows:
         most[row["suite"]] = max(most.get(row["suite"], 0), row["tests"] if row[key] else 0)
