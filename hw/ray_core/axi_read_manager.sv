@@ -54,8 +54,11 @@ module axi_read_manager #(
   localparam int unsigned BeatWidth = (Beats == 1) ? 1 : $clog2(Beats);
   localparam logic [1:0] BurstIncrement = 2'b01;
 
-  if (DataWidth < 32 || Beats * DataWidth != LineWidth || DataWidth % 32 != 0) begin : gen_check
-    $error("axi_read_manager: expected a DataWidth of 32 to 512, a power of two");
+  if (DataWidth < 32 || Beats * DataWidth != LineWidth || DataWidth % 32 != 0 || IdWidth < 1)
+  begin : gen_check
+    $error(
+      "axi_read_manager: expected a DataWidth of 32 to 512, a power of two, and an IdWidth of 1 or more"
+    );
   end
 
   // ---- Requests: a free ID for each
