@@ -3,193 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdlib>
-#include <cstring>
-#include <deque>
-#include <limits>
 #include <map>
-#include <random>
+#include <string>
 #include <vector>
 
 #include "Vray_core_axi.h"
-#include "host/intersect/core/memory_image.h"
-#include "host/intersect/core/reference_core.h"
-#include "host/intersect/core/test/core_cases.h"
-#include "hw/ray_core/registers.h"
-#include "sim/core_port.h"
-#include "sim/test/ray_core/pixel_grid.h"
+#include "sim/test/ray_core/axi_bench.h"
 
 namespace raygate {
 namespace {
 
-constexpr std::uint32_t kSeed = 20261122;
-constexpr std::uint64_t kBase = 0x9234'5678'8000'0000, kOtherBase = 0x0000'0001'4000'0000,
-                        kResults = 0x0123'4567'89AB'CFC0;
+using test::kBase;
+using test::kOtherBase;
+using test::kResults;
+using test::kSeed;
 
-class RayCoreAxiTest : public testing::Test {
- protected:
-  RayCoreAxiTest() {
-    model_->reg_awvalid_i = model_->reg_wvalid_i = model_->reg_arvalid_i = 0;
-    model_->reg_bready_i = model_->reg_rready_i = 1;
-    model_->reg_wstrb_i = 15;
-    model_->mem_arready_i = model_->mem_rvalid_i = 0;
-    model_->mem_rresp_i = 0;
-    model_->mem_rlast_i = 0;
-    model_->mem_awready_i = model_->mem_wready_i = model_->mem_bvalid_i = 0;
-    model_->mem_bresp_i = 0;
-    model_->ray_valid_i = model_->stream_tready_i = 0;
-    model_.reset();
-  }
-
-  /// A clock of the whole: memory and results too.
-  void clock() {
-    const bool is_reading = !beats_.empty() || model_->mem_rvalid_i != 0;
-    const bool is_writing = bursts_ != answered_;
-    model_->mem_arready_i = random_() % 4 != 0 && !(is_single_ && is_writing);
-    model_->stream_tready_i = random_() % 4 != 0 && takes_results_;
-    model_->mem_awready_i = random_() % 4 != 0 && !(is_single_ && (is_reading || is_writing));
-    model_->mem_wready_i = random_() % 4 != 0;
-    if (model_->mem_bvalid_i == 0 && unanswered_ != 0 && random_() % 4 == 0) {
-      model_->mem_bvalid_i = 1;
-    }
-    if (model_->mem_rvalid_i == 0 && !beats_.empty() && random_() % 4 != 0) {
-      model_->mem_rid_i = beats_.front().id;
-      model_->mem_rdata_i = beats_.front().data;
-      model_->mem_rlast_i = beats_.front().last;
-      model_->mem_rresp_i = beats_.front().fails ? 3 : 0;
-      model_->mem_rvalid_i = 1;
-      beats_.pop_front();
-    }
-    model_.eval();
-    if (is_single_ && model_->mem_arvalid_o != 0 && random_() % 2 != 0) model_->mem_awready_i = 0;
-    if (is_single_ && (model_->mem_awvalid_o & model_->mem_awready_i) != 0)
-      model_->mem_arready_i = 0;
-    stalled_ = model_->mem_rvalid_i > model_->mem_rready_o ? stalled_ + 1 : 0;
-    ASSERT_LT(stalled_, 64) << "RREADY is low; at most 32 requests wait for lines";
-    if ((model_->mem_arvalid_o & model_->mem_arready_i) != 0) {
-      const bool is_other = model_->mem_araddr_o < kBase;
-      const std::uint64_t line = (model_->mem_araddr_o - (is_other ? kOtherBase : kBase)) / 64;
-      const MemoryImage& image = is_other ? other_image_ : image_;
-      ASSERT_LT(line, image.lines().size());
-      ASSERT_EQ(model_->mem_arlen_o, 7);
-      ASSERT_EQ(model_->mem_arsize_o, 3);
-      ASSERT_EQ(model_->mem_arburst_o, 1);
-      ASSERT_EQ(model_->mem_arprot_o, 0);
-      for (unsigned beat = 0; beat < 8; ++beat) {
-        const auto& words = image.lines()[line].words;
-        const std::uint64_t data = std::uint64_t{words[2 * beat + 1]} << 32 | words[2 * beat];
-        const bool fails = line == failing_line_ && beat == 2;
-        beats_.push_back({model_->mem_arid_o, fails ? 0 : data, beat == 7, fails});
-      }
-    }
-    const bool beat_taken = (model_->mem_rvalid_i & model_->mem_rready_o) != 0;
-    const bool ray_taken = (model_->ray_valid_i & model_->ray_ready_o) != 0;
-    if ((model_->stream_tvalid_o & model_->stream_tready_i) != 0) {
-      std::array<std::uint32_t, 8> record;
-      std::memcpy(record.data(), &model_->stream_tdata_o, sizeof record);
-      results_.push_back(result_of(record));
-      ASSERT_EQ(model_->stream_tlast_o, results_.back().kind == CoreResult::Kind::kEnd);
-    }
-    if ((model_->mem_awvalid_o & model_->mem_awready_i) != 0) {
-      ASSERT_EQ(model_->mem_awaddr_o, kResults + 32 * bursts_++);
-      ASSERT_EQ(model_->mem_awlen_o, 3);
-      ASSERT_EQ(model_->mem_awsize_o, 3);
-      ASSERT_EQ(model_->mem_awburst_o, 1);
-      ASSERT_EQ(model_->mem_awprot_o, 0);
-    }
-    if ((model_->mem_wvalid_o & model_->mem_wready_i) != 0) {
-      ASSERT_EQ(model_->mem_wstrb_o, 0xFF);
-      ASSERT_EQ(model_->mem_wlast_o, written_.size() % 8 == 6);
-      written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o));
-      written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o >> 32));
-    }
-    unanswered_ = std::min<std::size_t>(bursts_, written_.size() / 8) - answered_;
-    const bool answered = model_->mem_bvalid_i != 0;
-    model_.clock();
-    if (answered) {
-      ++answered_;
-      --unanswered_;
-      model_->mem_bvalid_i = 0;
-    }
-    if (beat_taken) model_->mem_rvalid_i = 0;
-    if (ray_taken) model_->ray_valid_i = 0;
-  }
-
-  /// The answer: 0, or 2 for what is refused.
-  unsigned write(std::uint32_t address, std::uint32_t data) {
-    model_->reg_awaddr_i = address;
-    model_->reg_wdata_i = data;
-    model_->reg_awvalid_i = model_->reg_wvalid_i = 1;
-    EXPECT_EQ(model_->reg_awready_o & model_->reg_wready_o, 1);
-    clock();
-    model_->reg_awvalid_i = model_->reg_wvalid_i = 0;
-    clock();
-    EXPECT_EQ(model_->reg_bvalid_o, 1);
-    return model_->reg_bresp_o;
-  }
-  void write(std::uint32_t address, const glm::vec3& vector) {
-    for (int k = 0; k < 3; ++k) {
-      write(address + 4 * static_cast<unsigned>(k), std::bit_cast<std::uint32_t>(vector[k]));
-    }
-  }
-
-  std::uint32_t read(std::uint32_t address) {
-    model_->reg_araddr_i = address;
-    model_->reg_arvalid_i = 1;
-    clock();
-    model_->reg_arvalid_i = 0;
-    const std::uint32_t data = model_->reg_rdata_o;
-    EXPECT_EQ(model_->reg_rvalid_o, 1);
-    EXPECT_EQ(model_->reg_rresp_o, 0);
-    clock();
-    return data;
-  }
-
-  /// Takes the records in memory for results; those that come later go to the buffer's beginning.
-  void collect() {
-    ASSERT_EQ(read(RAYGATE_WRITTEN), answered_);
-    for (std::size_t at = 0; at < 8 * answered_; at += 8) {
-      std::array<std::uint32_t, 8> record;
-      std::copy_n(written_.begin() + static_cast<std::ptrdiff_t>(at), 8, record.begin());
-      results_.push_back(result_of(record));
-    }
-    bursts_ = answered_ = 0;
-    written_.clear();
-    ASSERT_EQ(write(RAYGATE_COMMAND, RAYGATE_COMMAND_REWIND), 0u);
-  }
-
-  void look();
-  void draw(std::uint32_t side);
-  void trace(std::size_t rays, int clocks);
-  static CoreResult reference(const MemoryImage& image, std::uint32_t pixel);
-
-  static constexpr glm::vec3 kEye{0.25f, 0.3f, 2.5f};
-  static constexpr PixelGrid kGrid{glm::vec3(-0.6f, 0.5f, -1.0f), glm::vec3(0.05f, 0.001f, 0.0f),
-                                   glm::vec3(0.0f, -0.05f, 0.002f)};
-
-  struct Beat {
-    std::uint32_t id;
-    std::uint64_t data;
-    bool last, fails;
-  };
-
-  Bvh bvh_{test::scene_of(test::bodies())};
-  MemoryImage image_{bvh_};
-  Bvh other_bvh_{test::scene_of(test::box(glm::vec3(-0.7f), glm::vec3(0.6f)))};
-  MemoryImage other_image_{other_bvh_};
-  std::uint64_t failing_line_ = ~std::uint64_t{0};  // answered with DECERR
-  bool is_single_ = false;     // memory accepts a write only while no read is open, and vice versa
-  bool takes_results_ = true;  // the stream's user
-  int stalled_ = 0;            // clocks for which a beat has waited for RREADY
-  std::mt19937 random_{kSeed};
-  Model<Vray_core_axi> model_;
-  std::deque<Beat> beats_;
-  std::size_t bursts_ = 0, answered_ = 0, unanswered_ = 0;  // records on their way to memory
-  std::vector<std::uint32_t> written_;
-  std::vector<CoreResult> results_;
-  std::map<std::uint32_t, CoreResult> ends_;  // by pixel
-};
+class RayCoreAxiTest : public test::AxiBench<Vray_core_axi> {};
 
 TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
@@ -349,44 +179,6 @@ TEST_F(RayCoreAxiTest, ACommandWhileRaysAreInTheCoreIsRefused) {
   EXPECT_EQ(write(0x004, 1), 0u);
 }
 
-/// Where a camera stands that looks at the middle of things, through pixels of 0.03.
-void RayCoreAxiTest::look() {
-  write(0x014, static_cast<std::uint32_t>(kBase));
-  write(0x018, static_cast<std::uint32_t>(kBase >> 32));
-  write(0x030, kEye);
-  write(0x040, kGrid.first);
-  write(0x050, kGrid.right);
-  write(0x060, kGrid.down);
-}
-
-/// Draws `side` x `side` pixels; what each pixel's end says.
-void RayCoreAxiTest::draw(std::uint32_t side) {
-  results_.clear();
-  ends_.clear();
-  write(0x00C, 2);
-  write(0x010, 15);
-  write(0x024, side << 16 | side);
-  ASSERT_EQ(write(0x004, 1), 0u);
-  for (int n = 0; model_->interrupt_o == 0; ++n) {
-    ASSERT_LT(n, 100'000);
-    clock();
-  }
-  while ((read(0x008) & 4) != 0) clock();  // lines that were read ahead
-  for (const CoreResult& result : results_) {
-    if (result.kind == CoreResult::Kind::kEnd) ends_[result.tag] = result;
-  }
-  ASSERT_EQ(ends_.size(), side * side);
-}
-
-/// What the reference says of the same pixel.
-CoreResult RayCoreAxiTest::reference(const MemoryImage& image, std::uint32_t pixel) {
-  const CoreRay ray{.ray = {kEye, kGrid.direction(static_cast<std::uint16_t>(pixel),
-                                                  static_cast<std::uint16_t>(pixel >> 16))}};
-  std::vector<CoreResult> results;
-  ReferenceCore().trace(image.lines(), {&ray, 1}, results);
-  return results.back();
-}
-
 /// A line that memory fails to give is told of, by its number and by the ends of the rays that
 /// needed it, and is read again by those that come later.
 TEST_F(RayCoreAxiTest, AnErrorOfMemoryStaysOne) {
@@ -509,28 +301,6 @@ TEST_F(RayCoreAxiTest, NodesAreLimitedByTheLinesOfMemory) {
   write(0x01C, static_cast<std::uint32_t>(image_.lines().size()));
   draw(10);
   for (const auto& [pixel, end] : ends_) ASSERT_EQ(end.error, CoreResult::Error::kNone);
-}
-
-/// Traces rays that leave triangles and do not name them, so that many end in doubt, every fourth
-/// with a limit before which it hits nothing; for so many clocks, or until all have ended.
-void RayCoreAxiTest::trace(std::size_t rays, int clocks) {
-  test::Random random;
-  std::size_t sent = 0, ended = 0, seen = 0;
-  for (int n = 0; n < clocks && ended < rays; ++n) {
-    if (sent < rays && model_->ray_valid_i == 0) {
-      Ray ray = test::some_rays(test::bodies(), random, 1).front();
-      const auto corners =
-          bvh_.corners_of(static_cast<std::uint32_t>(sent % bvh_.primitive_count()));
-      ray.origin = (corners[0] + corners[1] + corners[2]) / 3.0f;
-      const float t_max = sent % 4 == 0 ? 0.001f : std::numeric_limits<float>::infinity();
-      put_ray(*model_, {.ray = ray, .t_max = t_max, .tag = static_cast<std::uint32_t>(sent++)});
-    }
-    clock();
-    if (HasFatalFailure()) return;
-    for (; seen < results_.size(); ++seen) {
-      ended += results_[seen].kind == CoreResult::Kind::kEnd;
-    }
-  }
 }
 
 /// Memory is read whether results are taken or not: where the stream's user or the buffer's takes
