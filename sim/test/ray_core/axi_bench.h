@@ -144,6 +144,13 @@ class AxiBench : public testing::Test {
     }
   }
 
+  /// Results go to a buffer of so many records, or, with 0, leave by the stream.
+  void use_buffer(std::uint32_t records) {
+    write(RAYGATE_RESULTS, static_cast<std::uint32_t>(kResults) | 31);
+    write(RAYGATE_RESULTS_HIGH, static_cast<std::uint32_t>(kResults >> 32));
+    write(RAYGATE_LENGTH, records);
+  }
+
   std::uint32_t read(std::uint32_t address) {
     model_->s_axil_araddr = address;
     model_->s_axil_arvalid = 1;

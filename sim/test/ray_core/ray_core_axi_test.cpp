@@ -16,7 +16,6 @@ namespace {
 
 using test::kBase;
 using test::kOtherBase;
-using test::kResults;
 using test::kSeed;
 
 class RayCoreAxiTest : public test::AxiBench<Vray_core_axi> {};
@@ -41,9 +40,7 @@ TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
     write(0x010, 63);
     write(0x024, kHeight << 16 | kWidth);
     // The second one to memory, through a buffer that is read and rewound when it is full.
-    write(RAYGATE_RESULTS, static_cast<std::uint32_t>(kResults) | 31);
-    write(RAYGATE_RESULTS_HIGH, static_cast<std::uint32_t>(kResults >> 32));
-    write(RAYGATE_LENGTH, frame == 0 ? 0 : 100);
+    use_buffer(frame == 0 ? 0 : 100);
     write(0x00C, RAYGATE_FLAGS_DONE | RAYGATE_FLAGS_FULL);
     write(0x004, 1 | 4);
     int rewound = 0;
@@ -323,9 +320,7 @@ TEST_F(RayCoreAxiTest, ReadsDoNotWaitForResults) {
 TEST_F(RayCoreAxiTest, WritesWaitForReadsAndCome) {
   look();
   is_single_ = true;
-  write(RAYGATE_RESULTS, static_cast<std::uint32_t>(kResults) | 31);
-  write(RAYGATE_RESULTS_HIGH, static_cast<std::uint32_t>(kResults >> 32));
-  write(RAYGATE_LENGTH, 10'000);
+  use_buffer(10'000);
   trace(300, 50'000);
   for (int n = 0; (read(RAYGATE_STATUS) & RAYGATE_STATUS_TRACING) != 0; ++n) ASSERT_LT(n, 50'000);
   EXPECT_GT(answered_, 400u) << "300 ends, and doubts";
@@ -334,9 +329,7 @@ TEST_F(RayCoreAxiTest, WritesWaitForReadsAndCome) {
 /// A full buffer that nobody empties: all lines that were asked for are accepted.
 TEST_F(RayCoreAxiTest, AFullBufferStopsNoRead) {
   look();
-  write(RAYGATE_RESULTS, static_cast<std::uint32_t>(kResults) | 31);
-  write(RAYGATE_RESULTS_HIGH, static_cast<std::uint32_t>(kResults >> 32));
-  write(RAYGATE_LENGTH, 4);
+  use_buffer(4);
   trace(300, 20'000);
   EXPECT_TRUE(beats_.empty());
   EXPECT_EQ(answered_, 4u);
@@ -347,9 +340,7 @@ class Frame : public RayCoreAxiTest {
  public:
   std::vector<std::uint32_t> words() {
     look();
-    write(RAYGATE_RESULTS, static_cast<std::uint32_t>(kResults) | 31);
-    write(RAYGATE_RESULTS_HIGH, static_cast<std::uint32_t>(kResults >> 32));
-    write(RAYGATE_LENGTH, 10'000);
+    use_buffer(10'000);
     write(RAYGATE_SIZE, 20u << 16 | 20u);
     write(RAYGATE_COMMAND, RAYGATE_COMMAND_START);
     for (int n = 0; (read(RAYGATE_FLAGS) & RAYGATE_FLAGS_DONE) == 0; ++n) EXPECT_LT(n, 50'000);
