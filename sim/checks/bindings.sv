@@ -27,15 +27,6 @@ bind ram_fifo fifo_checks #(
   .pop_i,
   .valid_o
 );
-bind stream_arbiter stream_checks #(
-  .Width($bits({data_o, source_o}))
-) u_output_checks (
-  .clk_i,
-  .rst_ni,
-  .valid(valid_o & rst_ni),
-  .ready(ready_i),
-  .data ({data_o, source_o})
-);
 bind hit_test_pipeline stream_checks #(
   .Width($bits({first_i, last_i, tag_i, direction_i, record_i}))
 ) u_input_checks (
