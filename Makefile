@@ -71,7 +71,7 @@ wave: ## use: the waveform of one pixel's ray through the ray core: make wave PI
 	@$(PYTHON) -m synth.ray_timeline build/pixel.vcd sim/ray_core.gtkw build/pixel.svg
 	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw; drawn: build/pixel.svg'
 
-# Long runs of single tests: ten million tests of the pipelined unit; the core's AXI ports by random traffic; renders and
+# Long runs of single tests: ten million tests of the pipelined unit; the core's AXI ports by random traffic, and driven by cocotb; renders and
 # ranks that are killed; each allocation, write, sync and rename failing in turn; the intervals of --error; a fault under
 # each guard of .ci/guards.toml, in a clone; every command of the README and the tutorials, in a clone and with nothing built before; the
 # image of Dockerfile, from a base that debootstrap makes; damaged copies of files of every format.
@@ -86,10 +86,13 @@ LONG_commands = python3 -B host/docs/commands.py
 LONG_image = .ci/image
 LONG_damage = python3 -B host/test/damage_files.py build/render build/trace --count $(or $(COUNT),300) --seed $(or $(SEED),1)
 LONG_page = $(PYTHON) -m unittest sim/page/test/page_test.py
+LONG_cocotb = (test -e build/cocotb/bin/pip || python3 -m venv build/cocotb) && \
+  build/cocotb/bin/pip install --quiet --disable-pip-version-check -r sim/cocotb/requirements.txt && \
+  build/cocotb/bin/python3 sim/cocotb
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=damage COUNT=300 | LONG=page | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
+test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=damage COUNT=300 | LONG=page | LONG=cocotb | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page, error, commands, image, damage or guards))
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page, cocotb, error, commands, image, damage or guards))
 	$(if $(filter commands image,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),worked_example)))
 	@$(LONG_$(LONG))
 else

@@ -16,7 +16,7 @@ template <class Top>
 class BoardLink : public WordLink {
  public:
   BoardLink() {
-    model_->word_valid_i = 0;
+    model_->word_valid_i = model_->break_i = 0;
     model_->word_ready_i = 1;
     model_->sdram_data_i = 0;
     model_.reset();
@@ -54,10 +54,18 @@ class BoardLink : public WordLink {
         .data = model_->sdram_data_o,
     });
   }
+  void restart() override {
+    model_->word_valid_i = 0;
+    model_->break_i = 1;
+    wait();
+    model_->break_i = 0;
+    for (quiet_ = 0; quiet_ < kQuiet;) wait();
+    received_.clear();
+  }
   [[nodiscard]] std::uint64_t clocks() const override { return model_.clocks(); }
 
  private:
-  static constexpr int kPatience = 100'000;
+  static constexpr int kPatience = 100'000, kQuiet = 100;
   static constexpr double kClockMhz = 40.0;  // board_core's ClockMhz
 
   Model<Top> model_;

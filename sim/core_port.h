@@ -43,13 +43,13 @@ void put_ray(Top& top, const CoreRay& ray) {
   top.ray_valid_i = 1;
 }
 
-/// The word at the result port of `top`, of ray_core or ray_cores.
+/// The word at the result port of `top`, of ray_core.
 template <class Top>
 CoreResult result_at(const Top& top) {
   return unpack_result(top.result_o);
 }
 
-/// The core `Top` (a class that Verilator made of ray_core or ray_cores), held by a `Holder`:
+/// The core `Top` (a class that Verilator made of ray_core), held by a `Holder`:
 /// Model, or WaveModel for waves.
 template <class Top, template <class> class Holder = Model>
 class CorePort {
@@ -135,19 +135,9 @@ class CorePort {
   }
 
  private:
-  static constexpr unsigned kEvents = 11;  // ray_core_pkg::NumEvents
-
-  /// ray_core_pkg::event_e; of several cores one after the other.
+  /// Counts ray_core_pkg::event_e.
   void count() {
-    for (unsigned events = model_->events_o; events != 0; events >>= kEvents) count(events);
-    if (model_.clocks() % CoreCounters::kSpan == 0) {
-      counters_.busier += std::max(nodes_in_span_, triangles_in_span_);
-      counters_.busier_two_boxes += std::max((nodes_in_span_ + 1) / 2, triangles_in_span_);
-      counters_.busier_half_triangles += std::max(nodes_in_span_, 2 * triangles_in_span_);
-      nodes_in_span_ = triangles_in_span_ = 0;
-    }
-  }
-  void count(unsigned events) {
+    const unsigned events = model_->events_o;
     counters_.rays += events & 1;
     counters_.nodes += events >> 1 & 1;
     counters_.triangles += events >> 2 & 1;
@@ -161,6 +151,12 @@ class CorePort {
     counters_.exact_clocks += events >> 10 & 1;
     nodes_in_span_ += events >> 1 & 1;
     triangles_in_span_ += events >> 2 & 1;
+    if (model_.clocks() % CoreCounters::kSpan == 0) {
+      counters_.busier += std::max(nodes_in_span_, triangles_in_span_);
+      counters_.busier_two_boxes += std::max((nodes_in_span_ + 1) / 2, triangles_in_span_);
+      counters_.busier_half_triangles += std::max(nodes_in_span_, 2 * triangles_in_span_);
+      nodes_in_span_ = triangles_in_span_ = 0;
+    }
   }
 
   Holder<Top> model_;

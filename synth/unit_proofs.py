@@ -113,12 +113,12 @@ def hits_keep_nearest() -> tuple[dict, bool]:
     """closest_hit keeps a ray's nearest hit and tells what may be nearer, by induction: of two rays."""
     wires = ("found_q any_hit_q traversal_ray_q leaf_ray_q box_ray_q is_over_q is_hit_q is_sure_q is_vague_q ray_q tag_q triangle_q t_q t_error_q low_q high_q "
              "old_found_q old_t_max_q old_low_q old_triangle_q replace test_q test_ray_q u_doubts.push_i u_doubts.data_i *.count_q "
-             "u_points.read_q u_points.write_q")
+             "u_points.read_q u_points.write_q here_q")
     memories = ("t_max 2 31 nearest_t 2 32 nearest_low 2 32 nearest_error 2 5 nearest_triangle 2 32 u_kept.words 2 96 tests 2 28 "
-                "counts 2 10 u_points.words 2 2")
+                "counts 2 5 u_points.words 2 2")
     return holds("hits_keep_nearest", "Bitwuzla", cores.used("closest_hit", cores.files("ray_core")), "open.tcl",
                  steps=1, reach=8,
-                 prepared=f"closest_hit {{Rays 2 InFlight 2}} {{{wires}}} {{{memories}}}")
+                 prepared=f"closest_hit {{Rays 2 Queue 18 InFlight 2}} {{{wires}}} {{{memories}}}")
 
 
 def leaves_are_asked_for() -> tuple[dict, bool]:

@@ -20,6 +20,10 @@ module adder #(
   output logic             carry_o
 );
 
+  if (Arith > arith_pkg::Behavioural || Adder > arith_pkg::AdderPrefix) begin : gen_check
+    $error("adder: expected an Arith of arith_pkg::arith_e and an Adder of adder_e");
+  end
+
   if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     assign {carry_o, sum_o} = (Width + 1)'(a_i) + (Width + 1)'(b_i) + (Width + 1)'(carry_i);
   end else if (Adder == arith_pkg::AdderRipple) begin : gen_ripple

@@ -66,7 +66,7 @@ package arith_pkg;
   function automatic int unsigned num_groups(bit [8*MaxGroups-1:0] widths);
     num_groups = 0;
     for (int unsigned k = 0; k < MaxGroups; k++) begin
-      if (widths[8*k+:8] != 0) num_groups = k + 1;
+      if (num_groups == k && widths[8*k+:8] != 0) num_groups = k + 1;
     end
   endfunction
 

@@ -9,7 +9,7 @@
 // which saves a level.
 // Adder, GroupWidths, LookAhead: the last adder, see there. Combinational.
 module booth_multiplier #(
-  parameter int unsigned Width = 24,  // at least 2
+  parameter int unsigned Width = 24,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = '0,
   parameter bit LookAhead = 1'b1,
@@ -22,6 +22,10 @@ module booth_multiplier #(
 
   localparam int unsigned Digits = Width / 2 + 1;
   localparam int unsigned Rows = ConstantRow ? Digits + 1 : Digits;
+
+  if (Width < 2) begin : gen_check
+    $error("booth_multiplier: expected a Width of 2 or more");
+  end
 
   // Recode: digit k at bit 2k of each word
 

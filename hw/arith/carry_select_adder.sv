@@ -22,8 +22,14 @@ module carry_select_adder #(
 
   localparam int unsigned NumGroups = arith_pkg::num_groups(GroupWidths);
 
-  if (arith_pkg::group_low(GroupWidths, arith_pkg::MaxGroups) != Width) begin : gen_bad_groups
-    $error("carry_select_adder: GroupWidths do not add up to Width");
+  if (arith_pkg::group_low(
+      GroupWidths, arith_pkg::MaxGroups
+    ) != Width || arith_pkg::group_low(
+      GroupWidths, NumGroups
+    ) != Width) begin : gen_check
+    $error(
+      "carry_select_adder: expected GroupWidths that add up to Width, without a 0 between them"
+    );
   end
 
   // Both sums of each group

@@ -15,6 +15,10 @@ module comparator #(
   output logic             equal_o
 );
 
+  if (Arith > arith_pkg::Behavioural) begin : gen_check
+    $error("comparator: expected an Arith of arith_pkg::arith_e");
+  end
+
   if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     assign less_o = a_i < b_i;
     assign equal_o = a_i == b_i;

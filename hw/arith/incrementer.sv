@@ -7,13 +7,17 @@
 // Arith: Behavioural is the language's own `+`.
 // Combinational. Any input; all ones wrap to zero.
 module incrementer #(
-  parameter int unsigned Width = 8,  // at least 2
+  parameter int unsigned Width = 8,
   parameter int unsigned Arith = arith_pkg::Structural
 ) (
   input  logic [Width-1:0] a_i,
   input  logic             carry_i,
   output logic [Width-1:0] sum_o
 );
+
+  if (Width < 2 || Arith > arith_pkg::Behavioural) begin : gen_check
+    $error("incrementer: expected a Width of 2 or more and an Arith of arith_pkg::arith_e");
+  end
 
   if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     assign sum_o = a_i + Width'(carry_i);

@@ -6,7 +6,7 @@
 // Combinational, $clog2(Width) levels, one AND, and an OR of half the places. For a_i = 0, zero_o is 1
 // and count_o is all ones.
 module leading_zero_counter #(
-  parameter int unsigned Width = 24  // at least 2
+  parameter int unsigned Width = 24
 ) (
   input  logic [Width-1:0]         a_i,
   output logic [$clog2(Width)-1:0] count_o,
@@ -14,6 +14,10 @@ module leading_zero_counter #(
 );
 
   localparam int unsigned CountWidth = $clog2(Width);
+
+  if (Width < 2) begin : gen_check
+    $error("leading_zero_counter: expected a Width of 2 or more");
+  end
 
   // The places whose number of zeros above them has bit j.
   function automatic bit [Width-1:0] places(int unsigned j);

@@ -2,7 +2,7 @@
 //
 // Arith: Structural is booth_multiplier, whose the other parameters are; Behavioural is `*`.
 module multiplier #(
-  parameter int unsigned Width = 24,  // at least 2
+  parameter int unsigned Width = 24,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   parameter bit ConstantRow = 1'b0
@@ -12,7 +12,9 @@ module multiplier #(
   output logic [2*Width-1:0] product_o
 );
 
-  if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
+  if (Width < 2 || Arith > arith_pkg::Behavioural) begin : gen_check
+    $error("multiplier: expected a Width of 2 or more and an Arith of arith_pkg::arith_e");
+  end else if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     assign product_o = (2 * Width)'(a_i) * (2 * Width)'(b_i);
   end else begin : gen_booth
     booth_multiplier #(

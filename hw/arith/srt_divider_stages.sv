@@ -39,7 +39,7 @@ module srt_divider_stages #(
   localparam int unsigned PadWidth = FracWidth + 1 - Width;
 
   if (!srt_pkg::sound() || !srt_pkg::first_sound()) begin : gen_check
-    $error("srt_divider: selection constants without overlap");
+    $error("srt_divider_stages: expected selection constants that overlap");
   end
 
   // ---- Rows: residuals, and the digits so far, the first one at the top of the words

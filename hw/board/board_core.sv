@@ -16,6 +16,7 @@ module board_core #(
   input  logic        word_valid_i,
   output logic        word_ready_o,
   input  logic [31:0] word_i,
+  input  logic        break_i,  // see core_link
   output logic        word_valid_o,
   input  logic        word_ready_i,
   output logic [31:0] word_o,
@@ -35,7 +36,7 @@ module board_core #(
     NodeLines > TriangleLines ? NodeLines : TriangleLines
   );
 
-  logic invalidate, outstanding, ray_valid, ray_ready, result_valid, result_ready;
+  logic invalidate, abort, outstanding, ray_valid, ray_ready, result_valid, result_ready;
   logic read_valid, read_ready, line_valid, line_ready, write_valid, write_ready;
   logic [AddressWidth-1:0] lines, read_line, write_line;
   logic [ReadIdWidth-1:0] read_id, line_id;
@@ -50,6 +51,7 @@ module board_core #(
     .word_valid_i,
     .word_ready_o,
     .word_i,
+    .break_i,
     .word_valid_o,
     .word_ready_i,
     .word_o,
@@ -58,6 +60,7 @@ module board_core #(
     .write_line_o(write_line),
     .write_data_o(write_data),
     .invalidate_o(invalidate),
+    .abort_o(abort),
     .outstanding_i(outstanding),
     .lines_o(lines),
     .ray_valid_o(ray_valid),
@@ -80,7 +83,7 @@ module board_core #(
     .rst_ni,
     .invalidate_i(invalidate),
     .outstanding_o(outstanding),
-    .abort_i(1'b0),
+    .abort_i(abort),
     .lines_i(lines),
     .ray_valid_i(ray_valid),
     .ray_ready_o(ray_ready),

@@ -9,6 +9,9 @@
 //
 // The host sends lines, and says that memory has changed, while no ray is in the core; both wait until no line is
 // on its way to it. Words: valid/ready.
+//
+// A break (break_i, for a clock) ends the host's session: the next word is a message's first, and the rays in the core are
+// aborted. Of their results only the one that is being sent goes out. Words are accepted again when no ray is left.
 module core_link (
   input  logic                       clk_i,
   input  logic                       rst_ni,
@@ -16,6 +19,7 @@ module core_link (
   input  logic                       word_valid_i,
   output logic                       word_ready_o,
   input  logic [31:0]                word_i,
+  input  logic                       break_i,
   // words to the host
   output logic                       word_valid_o,
   input  logic                       word_ready_i,
@@ -27,6 +31,7 @@ module core_link (
   output logic [ray_core_pkg::LineWidth-1:0] write_data_o,
   // the core
   output logic                       invalidate_o,
+  output logic                       abort_o,
   input  logic                       outstanding_i,
   output logic [ray_core_pkg::AddressWidth-1:0] lines_o,
   output logic                       ray_valid_o,
@@ -52,8 +57,10 @@ module core_link (
   logic [4:0] left_q;  // words of the message that are to come
   logic [AddressWidth-1:0] number_q;
   logic [LineWords*32-1:0] words_q;
+  logic [15:0] rays_q;  // in the core
+  logic ray_fire, ended, result_load;
 
-  assign word_ready_o = ~full_q;
+  assign word_ready_o = ~full_q & ~abort_o;
   assign is_ray       = kind_q[3:2] == 2'b01;
 
   always_comb begin
@@ -69,7 +76,11 @@ module core_link (
       full_q  <= 1'b0;
       left_q  <= '0;
       lines_o <= '0;
+      rays_q  <= '0;
+      abort_o <= 1'b0;
     end else begin
+      rays_q  <= rays_q + 16'(ray_fire) - 16'(ended);
+      abort_o <= break_i | (abort_o & (full_q | (rays_q != '0)));
       if (word_valid_i && word_ready_o) begin
         if (first_q) begin
           left_q  <= (word_i[31:28] == KindLine) ? 5'(LineWords)
@@ -84,6 +95,7 @@ module core_link (
       end
       if (full_q && done) full_q <= 1'b0;
       if (invalidate_o) lines_o <= number_q;
+      if (break_i) first_q <= 1'b1;
     end
   end
   always_ff @(posedge clk_i) begin
@@ -101,6 +113,7 @@ module core_link (
 
   localparam int unsigned Ray = (LineWords - RayWords) * 32;  // its first bit
   assign ray_valid_o     = full_q & is_ray;
+  assign ray_fire        = ray_valid_o & ray_ready_i;
   assign ray_o.tag       = words_q[Ray+:32];
   assign ray_o.source_id = words_q[Ray+32+:32];
   assign ray_o.skip_id   = words_q[Ray+64+:32];
@@ -117,15 +130,17 @@ module core_link (
 
   assign word_valid_o   = result_left_q[0];
   assign word_o         = result_q[31:0];
-  assign result_ready_o = ~result_left_q[0];
+  assign result_load    = result_valid_i & ~result_left_q[0] & ~abort_o;
+  assign result_ready_o = ~result_left_q[0] | abort_o;
+  assign ended = result_valid_i & result_ready_o & (result_i.kind == ray_core_pkg::ResultEnd);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) result_left_q <= '0;
-    else if (result_valid_i && result_ready_o) result_left_q <= '1;
+    else if (result_load) result_left_q <= '1;
     else if (word_ready_i) result_left_q <= result_left_q >> 1;
   end
   always_ff @(posedge clk_i) begin
-    if (result_valid_i && result_ready_o) result_q <= (ResultWords * 32)'(result_i);
+    if (result_load) result_q <= (ResultWords * 32)'(result_i);
     else if (word_ready_i) result_q <= result_q >> 32;
   end
 

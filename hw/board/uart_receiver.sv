@@ -1,16 +1,21 @@
 // Serial line to words of 32 bits: 8N1, four bytes a word, lowest byte and bit first.
 //
-// A bit takes ClocksPerBit clocks; it is taken in its middle. A byte whose stop bit is low is dropped, with the
-// bytes before it in its word, and what follows until the line is high. A word is at word_o for the clock of valid_o: whoever takes it must be ready by then.
+// A bit takes ClocksPerBit clocks and is sampled in its middle. A low stop bit is a break: break_o is high for a clock, and the
+// next byte is the first of a word. A word is at word_o in the clock of valid_o only.
 module uart_receiver #(
-  parameter int unsigned ClocksPerBit = 20  // at least 4
+  parameter int unsigned ClocksPerBit = 20
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
   input  logic        serial_i,  // from the pin, of no clock
   output logic        valid_o,
-  output logic [31:0] word_o
+  output logic [31:0] word_o,
+  output logic        break_o
 );
+
+  if (ClocksPerBit < 4) begin : gen_check
+    $error("uart_receiver: expected ClocksPerBit to be 4 or more");
+  end
 
   localparam int unsigned CountWidth = $clog2(ClocksPerBit);
 
@@ -29,10 +34,11 @@ module uart_receiver #(
       count_q  <= '0;
       bit_q    <= '0;
       byte_q   <= '0;
-      valid_o  <= 1'b0;
+      {valid_o, break_o} <= '0;
     end else begin
       serial_q <= {serial_q[1:0], serial_i};
       valid_o  <= stop & serial_q[1] & (byte_q == 2'd3);
+      break_o  <= stop & ~serial_q[1];
       if (bit_q == '0) begin
         count_q <= CountWidth'(ClocksPerBit / 2 - 1);
         if (serial_q[2:1] == 2'b10) bit_q <= 4'd1;

@@ -14,6 +14,10 @@ module uart_transmitter #(
   localparam int unsigned CountWidth = $clog2(ClocksPerBit);
   localparam int unsigned Bits = 40;
 
+  if (ClocksPerBit < 2) begin : gen_check
+    $error("uart_transmitter: expected ClocksPerBit to be 2 or more");
+  end
+
   logic [Bits-1:0] bits_q;  // the one that is out lowest; ones behind the last
   logic [$clog2(Bits+1)-1:0] left_q;
   logic [CountWidth-1:0] count_q;

@@ -5,8 +5,8 @@
 // is the same row with its top bit turned, less 2**DigitWidth: all those together are a constant, which shares a
 // row with the ones that complements lack. Combinational.
 module exact_product #(
-  parameter int unsigned DigitWidth = 48,  // even
-  parameter int unsigned Width = 103,  // from 2 DigitWidth
+  parameter int unsigned DigitWidth = 48,
+  parameter int unsigned Width = 103,
   parameter int unsigned Arith = arith_pkg::Structural
 ) (
   input  logic [DigitWidth-1:0] a_i,
@@ -15,6 +15,10 @@ module exact_product #(
   output logic [Width-1:0]      sum_o,
   output logic [Width-1:0]      carry_o
 );
+
+  if (DigitWidth % 2 != 0 || Width < 2 * DigitWidth) begin : gen_check
+    $error("exact_product: expected an even DigitWidth and a Width of 2 DigitWidth or more");
+  end
 
   if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     assign sum_o   = (Width'($signed(a_i)) * Width'($signed(b_i))) ^ {Width{negate_i}};

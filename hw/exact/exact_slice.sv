@@ -2,7 +2,7 @@
 //
 // shift_i is at most MaxShift; any digit_i.
 module exact_slice #(
-  parameter int unsigned SignificandWidth = 24,  // at most DigitWidth
+  parameter int unsigned SignificandWidth = 24,
   parameter int unsigned MaxShift = 405,
   parameter int unsigned DigitWidth = 48,
   localparam int unsigned ShiftWidth = $clog2(MaxShift + 1),

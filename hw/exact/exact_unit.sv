@@ -19,7 +19,7 @@
 module exact_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned DigitWidth = 48,  // even, more than FracWidth
+  parameter int unsigned DigitWidth = 48,  // see exact_product and exact_slice
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth

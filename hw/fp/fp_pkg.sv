@@ -3,8 +3,9 @@
 // Every core takes a format as two parameters, ExpWidth and FracWidth (binary32: 8 and 23,
 // binary16: 5 and 10, bfloat16: 8 and 7), packed as IEEE 754 has it: sign, biased exponent,
 // fraction. Subnormals are read and given; every NaN result is the one quiet NaN with sign 0 and
-// only the top fraction bit set (0x7fc00000 in binary32). Formats need 2 <= FracWidth <=
-// 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2 signed bits.
+// only the top fraction bit set (0x7fc00000 in binary32). Formats need 3 <= ExpWidth and 2 <= FracWidth <=
+// 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2 signed bits; the divider needs FracWidth <= 53,
+// the multiplier, with arith_pkg's groups, FracWidth <= 75.
 //
 // What the cores are made of: sums and differences of significands and exponents are instances of
 // hw/arith's adder (its kind is their parameter Adder), steps by one of its incrementer, products

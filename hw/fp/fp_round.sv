@@ -43,8 +43,8 @@ module fp_round #(
   output fp_pkg::flags_t                flags_o
 );
 
-  if (FracWidth < 2 || FracWidth > 2 ** (ExpWidth - 1)) begin : g_check
-    $error("fp_round: a format needs 2 <= FracWidth <= 2**(ExpWidth-1)");
+  if (ExpWidth < 3 || FracWidth < 2 || FracWidth > 2 ** (ExpWidth - 1)) begin : gen_check
+    $error("fp_round: expected an ExpWidth of 3 or more and a FracWidth of 2 to 2**(ExpWidth-1)");
   end
 
   localparam int unsigned SigWidth = FracWidth + 5;  // 2 integer, fraction, guard, round, sticky

@@ -7,7 +7,7 @@ module fp_vector_adder #(
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Words = 3,
   parameter bit [Words-1:0] Subtract = '0,  // of these words the difference
-  parameter int unsigned Clocks = 9,  // at least 5
+  parameter int unsigned Clocks = 9,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
@@ -21,6 +21,10 @@ module fp_vector_adder #(
 
   localparam int unsigned Share = Clocks - 3;  // of words an adder
   localparam int unsigned Units = (Words + Share - 1) / Share;
+
+  if (Clocks < 5) begin : gen_check
+    $error("fp_vector_adder: expected 5 Clocks or more");
+  end
 
   for (genvar u = 0; u < Units; u++) begin : gen_unit
     localparam int unsigned First = Share * u;

@@ -6,7 +6,7 @@ module fp_vector_multiplier #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Words = 3,
-  parameter int unsigned Clocks = 9,  // at least 5
+  parameter int unsigned Clocks = 9,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
@@ -20,6 +20,10 @@ module fp_vector_multiplier #(
 
   localparam int unsigned Share = Clocks - 3;  // of words a multiplier
   localparam int unsigned Units = (Words + Share - 1) / Share;
+
+  if (Clocks < 5) begin : gen_check
+    $error("fp_vector_multiplier: expected 5 Clocks or more");
+  end
 
   for (genvar u = 0; u < Units; u++) begin : gen_unit
     localparam int unsigned First = Share * u;

@@ -28,7 +28,7 @@ module hit_decision #(
 );
 
   if (FracWidth < 7 || FracWidth > 26) begin : gen_check
-    $error("hit_decision: the bound of t's error holds for 7 <= FracWidth <= 26");
+    $error("hit_decision: expected a FracWidth of 7 to 26, for which t's bound is derived");
   end
 
   localparam int unsigned MaxGrazing = hit_test_pkg::max_grazing(FracWidth);

@@ -9,7 +9,7 @@
 // Source: the paper's figures 4 and 9, where a counter drives enables and selects.
 module hit_test_control #(
   parameter int unsigned NumWords = 7,
-  parameter int unsigned NumSteps = 3,  // below NumWords, so that two tests' steps never meet
+  parameter int unsigned NumSteps = 3,  // two tests' steps never meet
   localparam int unsigned WordWidth = $clog2(NumWords),
   localparam int unsigned StepWidth = $clog2(NumSteps + 1)
 ) (
@@ -21,8 +21,8 @@ module hit_test_control #(
   output logic [StepWidth-1:0] step_o
 );
 
-  if (NumSteps >= NumWords) begin : g_check
-    $error("hit_test_control: NumSteps must be below NumWords");
+  if (NumSteps >= NumWords) begin : gen_check
+    $error("hit_test_control: expected NumSteps below NumWords");
   end
 
   localparam logic [WordWidth-1:0] LastWord = WordWidth'(NumWords - 1);

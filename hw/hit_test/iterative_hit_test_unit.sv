@@ -46,7 +46,7 @@ module iterative_hit_test_unit #(
   // The adder's two turns must not meet in the period; kept products wait for longer than three arrive, and no longer than
   // until the next ones do.
   if (AdderLatency < 2 || 2 * AdderLatency - 1 > NumWords) begin : gen_check
-    $error("iterative_hit_test_unit: its timetable needs other latencies");
+    $error("iterative_hit_test_unit: expected an AdderLatency of 2 to (NumWords + 1) / 2");
   end
 
   // ---- Control: word k is taken at edge k + 1; since_q[n] is n + 1 clocks after the last word's

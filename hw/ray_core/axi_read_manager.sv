@@ -37,7 +37,6 @@ module axi_read_manager #(
   output logic [7:0]              axi_arlen_o,
   output logic [2:0]              axi_arsize_o,
   output logic [1:0]              axi_arburst_o,
-  output logic [2:0]              axi_arprot_o,
   // AXI4, read data
   input  logic                    axi_rvalid_i,
   output logic                    axi_rready_o,
@@ -54,8 +53,11 @@ module axi_read_manager #(
   localparam int unsigned BeatWidth = (Beats == 1) ? 1 : $clog2(Beats);
   localparam logic [1:0] BurstIncrement = 2'b01;
 
-  if (DataWidth < 32 || Beats * DataWidth != LineWidth || DataWidth % 32 != 0) begin : gen_check
-    $error("axi_read_manager: expected a DataWidth of 32 to 512, a power of two");
+  if (DataWidth < 32 || Beats * DataWidth != LineWidth || DataWidth % 32 != 0 || IdWidth < 1)
+  begin : gen_check
+    $error(
+      "axi_read_manager: expected a DataWidth of 32 to 512, a power of two, and an IdWidth of 1 or more"
+    );
   end
 
   // ---- Requests: a free ID for each
@@ -102,7 +104,6 @@ module axi_read_manager #(
   assign axi_arlen_o   = 8'(Beats - 1);
   assign axi_arsize_o  = 3'($clog2(DataWidth / 8));
   assign axi_arburst_o = BurstIncrement;
-  assign axi_arprot_o  = 3'b000;  // data, secure, unprivileged
 
   // ---- Beats: all but a line's last one wait for it, each in a memory of its own
 

@@ -30,7 +30,6 @@ module axi_write_manager #(
   output logic [7:0]             axi_awlen_o,
   output logic [2:0]             axi_awsize_o,
   output logic [1:0]             axi_awburst_o,
-  output logic [2:0]             axi_awprot_o,
   // AXI4, write data
   output logic                   axi_wvalid_o,
   input  logic                   axi_wready_i,
@@ -90,7 +89,6 @@ module axi_write_manager #(
   assign axi_awlen_o   = 8'(Beats - 1);
   assign axi_awsize_o  = 3'($clog2(BeatWidth / 8));
   assign axi_awburst_o = 2'b01;  // INCR
-  assign axi_awprot_o  = 3'b000;  // data, secure, unprivileged
   assign axi_wdata_o   = {DataWidth / BeatWidth{record_q[BeatWidth-1:0]}};
   assign axi_wlast_o   = left_q == '0;
   if (DataWidth > RecordWidth) begin : gen_half

@@ -77,7 +77,7 @@ module box_unit #(
 
   if (ray_core_pkg::BoxLatency != Take + Subtract + Scale + Multiply + Align + Slab + Sort)
   begin : gen_check
-    $error("box_unit: ray_core_pkg::BoxLatency is not the number of its stages");
+    $error("box_unit: expected ray_core_pkg::BoxLatency to be the number of its stages");
   end
 
   // ---- Take

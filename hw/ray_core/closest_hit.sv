@@ -6,6 +6,9 @@
 // hit's may be off by 2**t_error units (set_up_pkg). At first t_max is the user's, so that a hit that may be
 // beyond it is a doubt. A ray that wants any hit ends with its first sure one.
 //
+// Credits cover tests in flight, from test_i on, and doubts that wait: tests_allowed_o is low while all Queue are used. So tests
+// never wait for doubts to leave, and no line from memory does.
+//
 // With Exact no doubt leaves: open_o tells exact_resolver of each in the clock in which its test is over. The one that turns
 // out to be the ray's nearest hit is tested again, settle_i: whatever the test says, it is kept, with t and P where that
 // is a sure hit, else with NoT. It is the ray's last test.
@@ -15,8 +18,8 @@
 module closest_hit #(
   parameter int unsigned Rays = 64,
   parameter bit Exact = 1'b0,
-  // Tests on their way when tests_allowed_o falls: from the clock in which a triangle line leaves memory to that in
-  // which its test is over, and one more
+  parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be in flight
+  // Tests from the clock in which a triangle line leaves memory to that in which the test's P has come, and one more
   parameter int unsigned InFlight = set_up_pkg::Latency + hit_test_pkg::DotLatency
                                   + hit_test_pkg::divide_latency(23) + 8,
   localparam int unsigned RayWidth = $clog2(Rays),
@@ -34,7 +37,7 @@ module closest_hit #(
   input  logic                       test_i,
   input  logic [RayWidth-1:0]        test_ray_i,
   input  logic                       settle_i,  // with test_i
-  output logic                       tests_allowed_o,  // room for the doubts of all on their way
+  output logic                       tests_allowed_o,
   // a test is over, or P of an earlier one is there
   input  logic [RayWidth-1:0]        result_ray_i,
   input  logic [31:0]                result_tag_i,  // the ray's, for doubts
@@ -47,7 +50,6 @@ module closest_hit #(
   input  logic [RayWidth-1:0]        leaf_ray_i,
   output logic [30:0]                leaf_t_max_o,
   output logic                       leaf_ended_o,
-  output logic                       leaf_counter_full_o,
   input  logic [RayWidth-1:0]        box_ray_i,
   output logic [30:0]                box_t_max_o,
   input  logic [RayWidth-1:0]        exact_ray_i,
@@ -58,10 +60,9 @@ module closest_hit #(
   output logic [Rays-1:0]            testing_o,
   // doubts
   output ray_core_pkg::doubt_t       doubt_o,
-  input  logic                       doubt_fire_i,
+  input  logic                       doubt_fire_i,  // or exact_resolver takes one up
   output logic [RayWidth-1:0]        open_ray_o,
   output ray_core_pkg::open_t        open_o,
-  output logic                       over_o,  // a test is over, none of settle_i
   // the nearest hit of a ray, in the same clock
   input  logic [RayWidth-1:0]        end_ray_i,
   output ray_core_pkg::hit_t         end_o,
@@ -72,13 +73,11 @@ module closest_hit #(
   output logic                       near_tie_o
 );
 
-  localparam int unsigned CountWidth = 10;
-  // A test may wait to be counted
-  localparam logic [CountWidth-1:0] NearlyFull = {{CountWidth - 1{1'b1}}, 1'b0};
+  localparam int unsigned CountWidth = $clog2(Queue + 2);  // with a test of settle_i
   localparam logic [31:0] Infinity = 32'h7f80_0000;
 
   if (ray_core_pkg::TErrorWidth != TErrorWidth) begin : gen_check
-    $error("closest_hit: TErrorWidth of ray_core_pkg is not set_up_pkg's");
+    $error("closest_hit: expected TErrorWidth of ray_core_pkg to be set_up_pkg's");
   end
 
   logic [30:0] t_max[Rays];
@@ -101,7 +100,6 @@ module closest_hit #(
   assign traversal_ended_o   = ended[traversal_ray_q];
   assign leaf_t_max_o        = t_max[leaf_ray_q];
   assign leaf_ended_o        = ended[leaf_ray_q];
-  assign leaf_counter_full_o = counts[leaf_ray_q] >= NearlyFull;
   assign box_t_max_o         = t_max[box_ray_q];
   assign exact_found_o       = found_q[exact_ray_i];
   assign exact_ended_o       = ended[exact_ray_i];
@@ -204,17 +202,30 @@ module closest_hit #(
 
   // ---- Doubts
 
+  logic [CountWidth-1:0] here_q;  // tests in flight and doubts, but tests of settle_i
+  logic taken, returned, unused_doubt_space;  // credits
+
+  assign taken    = test_i & ~settle_i;
+  assign returned = is_over_q & ~settled_q & ~doubt;
+  assign tests_allowed_o = here_q < CountWidth'(Queue);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) here_q <= '0;
+    else begin
+      here_q <= here_q + CountWidth'(taken) - CountWidth'(returned) - CountWidth'(doubt_fire_i);
+    end
+  end
+
   ram_fifo #(
     .Width(32 + 32),
-    .Depth(InFlight + 16),
-    .Reserve(InFlight)
+    .Depth(Exact ? 2 : Queue)
   ) u_doubts (
     .clk_i,
     .rst_ni,
     .push_i(doubt & ~Exact),
     .data_i({tag_q, doubt_triangle}),
-    .space_o(tests_allowed_o),
-    .pop_i(doubt_fire_i),
+    .space_o(unused_doubt_space),
+    .pop_i(doubt_fire_i & ~Exact),
     .valid_o(doubt_o.valid),
     .data_o({doubt_o.tag, doubt_o.triangle})
   );
@@ -223,7 +234,6 @@ module closest_hit #(
   assign open_o.valid  = doubt & Exact;
   assign open_o.is_hit = near_tie_o;
   assign open_o.line   = ray_core_pkg::AddressWidth'(doubt_triangle);
-  assign over_o        = is_over_q & ~settled_q;
 
   // ---- P: of every hit in turn, kept if the hit was
 

@@ -6,6 +6,7 @@
 // interrupt_o is high while a flag is that is enabled.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
 module csr #(
+  parameter bit [31:0] Capability = '0,
   localparam int unsigned AddressWidth = 12,
   localparam int unsigned LineNumberWidth = ray_core_pkg::AddressWidth
 ) (
@@ -224,6 +225,7 @@ module csr #(
       if (read_word == csr_pkg::WordCounters + 10'(2 * n + 1)) value = 32'(high_q);
     end
     if (read_word == csr_pkg::WordIdentity) value = Identity;
+    if (read_word == csr_pkg::WordCapability) value = Capability;
     if (read_word == csr_pkg::WordStatus) value = 32'(status);
     if (read_word == csr_pkg::WordWritten) value = written_i;
     if (read_word == csr_pkg::WordErrorLine) value = 32'(error_line_q);

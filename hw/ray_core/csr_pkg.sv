@@ -15,6 +15,7 @@ package csr_pkg;
   localparam logic [9:0] WordCorner = 10'h008;
   localparam logic [9:0] WordSize = 10'h009;
   localparam logic [9:0] WordErrorLine = 10'h00a;
+  localparam logic [9:0] WordCapability = 10'h00b;
   localparam logic [9:0] WordEye = 10'h00c;
   localparam logic [9:0] WordFirst = 10'h010;
   localparam logic [9:0] WordRight = 10'h014;
@@ -45,6 +46,11 @@ package csr_pkg;
   localparam int unsigned FlagsRayError = 3;
   localparam int unsigned FlagsFull = 4;
   localparam int unsigned FlagsWriteError = 5;
+
+  localparam int unsigned NumCapability = 31;
+  localparam int unsigned CapabilityGenerator = 28;
+  localparam int unsigned CapabilityBuffer = 29;
+  localparam int unsigned CapabilityStream = 30;
 
   localparam int unsigned NumCounters = 12;
 

@@ -10,8 +10,8 @@
 // clocks, eight more, and twice the way to the triangles' cache. Questions of a ray follow each other, those of several rays
 // are asked of Units exact_units. Doubts of a ray that has ended (ended_i) are dropped.
 //
-// Tests on their way and doubts that wait are Queue together at most, so that each doubt has room and tests
-// never wait for the resolver: it waits for lines that come behind them.
+// closest_hit's credits give every doubt room here, so that tests never wait for the resolver: it waits for lines that come
+// behind them.
 module exact_resolver #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Units = 1,
@@ -28,12 +28,10 @@ module exact_resolver #(
   input  logic [RayWidth-1:0]     load_ctx_i,
   input  logic [95:0]             load_origin_i,
   input  logic [95:0]             load_direction_i,
-  // tests set out, are over, and may leave a doubt
-  input  logic                    test_i,
-  input  logic                    over_i,
-  output logic                    tests_allowed_o,
+  // a test leaves a doubt; one is taken up
   input  logic [RayWidth-1:0]     open_ctx_i,
   input  ray_core_pkg::open_t     open_i,
+  output logic                    taken_o,
   // rays of which nothing else is to be done, and those that have doubts or a candidate
   input  logic [Rays-1:0]         idle_i,
   output logic [Rays-1:0]         busy_o,
@@ -74,12 +72,12 @@ module exact_resolver #(
 
   // ---- Doubts that wait
 
-  logic push, pop, freed, queued, queued_hit, unused_space;
+  logic push, pop, queued, queued_hit, unused_space;
   logic [RayWidth-1:0] queued_ctx;
   logic [AddressWidth-1:0] queued_line;
-  logic [CountWidth-1:0] here_q;  // tests on their way and doubts
 
-  assign push = open_i.valid;
+  assign push    = open_i.valid;
+  assign taken_o = pop;
 
   ram_fifo #(
     .Width(RayWidth + 1 + AddressWidth),
@@ -94,14 +92,6 @@ module exact_resolver #(
     .valid_o(queued),
     .data_o({queued_ctx, queued_hit, queued_line})
   );
-
-  assign freed           = over_i & ~push;
-  assign tests_allowed_o = here_q < CountWidth'(Queue - 1);
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) here_q <= '0;
-    else here_q <= here_q + CountWidth'(test_i) - CountWidth'(freed) - CountWidth'(pop);
-  end
 
   // ---- Of each ray: whether doubts of it wait, its candidate, and whether a question of it is open
 

@@ -7,7 +7,7 @@
 // it is forgotten. Its line may come when the last ray has long ended: memory must not change, nor the caches
 // be emptied, while outstanding_o.
 //
-// Lines leave with step_o, which is high in one of Clocks clocks.
+// Lines leave with step_o, which is high in one of Clocks clocks, and wait for nothing else: line_ready_o depends on no result.
 //
 // A line with an error is given to the rays that wait for it, and read again for the next.
 module memory_subsystem #(
@@ -47,7 +47,6 @@ module memory_subsystem #(
   input  logic [LineWidth-1:0]    line_i,
   input  logic                    line_error_i,
   // lines
-  input  logic                    tests_allowed_i,  // else no triangle leaves
   output logic                    step_o,
   output logic [RayWidth-1:0]     node_ctx_o,
   output ray_core_pkg::node_line_t node_o,
@@ -139,7 +138,7 @@ module memory_subsystem #(
     .data_o({line_error, fill_triangle, fill_entry, line})
   );
   assign prefetch_fire = prefetch_valid & ~node_valid & node_ready;
-  assign fill          = line_valid & tests_allowed_i & step_o;
+  assign fill          = line_valid & step_o;
 
   if (Clocks == 1) begin : gen_always
     assign step_o = 1'b1;
@@ -207,7 +206,7 @@ module memory_subsystem #(
     .fill_line_i(line[KeptWidth-1:0]),
     .fill_error_i(line_error),
     .valid_o(triangle_o.valid),
-    .ready_i(tests_allowed_i & step_o),
+    .ready_i(step_o),
     .ray_o(triangle_who),
     .line_o(triangle_kept),
     .error_o(triangle_o.error)

@@ -18,7 +18,6 @@ module primitive_fetch #(
   output logic [RayWidth-1:0]     t_max_ray_o,
   input  logic [30:0]             t_max_i,   // of t_max_ray_o of the clock before
   input  logic                    ended_i,   // of that ray: it needs nothing any more
-  input  logic                    counter_full_i, // of it: no more tests can be counted
   output logic [Rays-1:0]         leaf_pending_o,  // has a group here
   // triangles asked for
   output logic [RayWidth-1:0]     triangle_ray_o,
@@ -75,7 +74,7 @@ module primitive_fetch #(
 
   assign t_max_ray_o = load ? queued_ray : ray_q;
   assign beyond = ended_i | ray_core_pkg::is_beyond(entry[EntryWidth-1-:EnterWidth], t_max_i);
-  assign triangle_o.valid = valid_q & ~beyond & ~counter_full_i;
+  assign triangle_o.valid = valid_q & ~beyond;
   assign triangle_ray_o   = ray_q;
   assign triangle_o.line  = group_q.base + AddressWidth'(entry[CountWidth +: OffsetWidth])
                           + AddressWidth'(number_q);

@@ -3,7 +3,7 @@
 // A ray waits in a queue until its reciprocals have come, a division's latency later, and a context is free: the
 // lowest free one is start_ctx_o. So no context is held by a division. Throughput a ray in Clocks clocks.
 module ray_alloc #(
-  parameter int unsigned Rays  = 64,  // contexts; a power of two
+  parameter int unsigned Rays  = 64,  // contexts
   parameter int unsigned Width = 32,  // of what else there is of a ray
   parameter int unsigned Clocks = 1,  // of a ray, see reciprocals
   parameter int unsigned Arith = arith_pkg::Structural,
@@ -26,6 +26,10 @@ module ray_alloc #(
 );
 
   localparam int unsigned Depth = hit_test_pkg::divide_latency(23) + 3;  // for a ray a clock
+
+  if (Rays < 2 || 2 ** RayWidth != Rays) begin : gen_check
+    $error("ray_alloc: expected Rays to be a power of two, at least 2");
+  end
 
   // ---- Contexts
 

@@ -44,7 +44,7 @@ module ray_core #(
   input  logic                    line_error_i,
   output logic [ray_core_pkg::NumEvents-1:0] events_o  // of the clock before, see event_e
 );
-  logic start_fire, triangle_ready, tests_allowed, step, ending, doubt_fire;
+  logic start_fire, triangle_ready, step, ending, doubt_fire;
   logic [RayWidth-1:0] start_ctx, node_ctx, triangle_ctx, node_line_ctx, triangle_line_ctx;
   logic [RayWidth-1:0] box_ctx, verdict_ctx, ending_ctx, end_ctx, point_ctx;
   logic [Rays-1:0] busy;
@@ -87,7 +87,6 @@ module ray_core #(
     .triangle_ctx_o(triangle_ctx),
     .triangle_o(triangle),
     .triangle_ready_i(triangle_ready),
-    .tests_allowed_o(tests_allowed),
     .node_line_ctx_i(node_line_ctx),
     .node_error_i(node_line.valid & node_line.error),
     .t_max_o(t_max),
@@ -129,7 +128,6 @@ module ray_core #(
     .line_id_i,
     .line_i,
     .line_error_i,
-    .tests_allowed_i(tests_allowed),
     .step_o(step),
     .node_ctx_o(node_line_ctx),
     .node_o(node_line),

@@ -6,6 +6,8 @@
 //   axi_read_manager   its memory port
 //   axi_write_manager  results to memory, where register `length` is not 0; else they leave by the stream
 //
+// AxPROT and AxCACHE are constant. By default accesses are non-secure, unprivileged, to data; memory is normal, not cacheable,
+// bufferable, so that bridges may merge beats. Writes have ID 0.
 // Rays of the user's (ray_*) wait while a rectangle is drawn or rays are given up. A generated ray has no t_max, skips no triangle,
 // and begins at the root. The rest as in those modules.
 module ray_core_axi #(
@@ -13,9 +15,12 @@ module ray_core_axi #(
   parameter int unsigned Depth = 8,
   parameter int unsigned NodeLines     = 256,
   parameter int unsigned TriangleLines = 256,
+  parameter int unsigned Clocks = 1,
   parameter int unsigned Exact = 0,
   parameter int unsigned DataWidth = 128,  // of the AXI4 port
   parameter int unsigned IdWidth   = 6,
+  parameter bit [2:0] AxProt  = 3'b010,
+  parameter bit [3:0] AxCache = 4'b0011,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned RegisterAddressWidth = 12,
@@ -25,63 +30,69 @@ module ray_core_axi #(
   input  logic                   rst_ni,
   output logic                   interrupt_o,
   // registers: AXI4-Lite
-  input  logic                   reg_awvalid_i,
-  output logic                   reg_awready_o,
-  input  logic [RegisterAddressWidth-1:0] reg_awaddr_i,
-  input  logic                   reg_wvalid_i,
-  output logic                   reg_wready_o,
-  input  logic [31:0]            reg_wdata_i,
-  input  logic [3:0]             reg_wstrb_i,
-  output logic                   reg_bvalid_o,
-  input  logic                   reg_bready_i,
-  output logic [1:0]             reg_bresp_o,
-  input  logic                   reg_arvalid_i,
-  output logic                   reg_arready_o,
-  input  logic [RegisterAddressWidth-1:0] reg_araddr_i,
-  output logic                   reg_rvalid_o,
-  input  logic                   reg_rready_i,
-  output logic [31:0]            reg_rdata_o,
-  output logic [1:0]             reg_rresp_o,
+  input  logic                   s_axil_awvalid,
+  output logic                   s_axil_awready,
+  input  logic [RegisterAddressWidth-1:0] s_axil_awaddr,
+  input  logic                   s_axil_wvalid,
+  output logic                   s_axil_wready,
+  input  logic [31:0]            s_axil_wdata,
+  input  logic [3:0]             s_axil_wstrb,
+  output logic                   s_axil_bvalid,
+  input  logic                   s_axil_bready,
+  output logic [1:0]             s_axil_bresp,
+  input  logic                   s_axil_arvalid,
+  output logic                   s_axil_arready,
+  input  logic [RegisterAddressWidth-1:0] s_axil_araddr,
+  output logic                   s_axil_rvalid,
+  input  logic                   s_axil_rready,
+  output logic [31:0]            s_axil_rdata,
+  output logic [1:0]             s_axil_rresp,
   // memory: AXI4, reads
-  output logic                   mem_arvalid_o,
-  input  logic                   mem_arready_i,
-  output logic [IdWidth-1:0]     mem_arid_o,
-  output logic [63:0]            mem_araddr_o,
-  output logic [7:0]             mem_arlen_o,
-  output logic [2:0]             mem_arsize_o,
-  output logic [1:0]             mem_arburst_o,
-  output logic [2:0]             mem_arprot_o,
-  input  logic                   mem_rvalid_i,
-  output logic                   mem_rready_o,
-  input  logic [IdWidth-1:0]     mem_rid_i,
-  input  logic [DataWidth-1:0]   mem_rdata_i,
-  input  logic [1:0]             mem_rresp_i,
-  input  logic                   mem_rlast_i,
+  output logic                   m_axi_arvalid,
+  input  logic                   m_axi_arready,
+  output logic [IdWidth-1:0]     m_axi_arid,
+  output logic [63:0]            m_axi_araddr,
+  output logic [7:0]             m_axi_arlen,
+  output logic [2:0]             m_axi_arsize,
+  output logic [1:0]             m_axi_arburst,
+  output logic [3:0]             m_axi_arcache,
+  output logic [2:0]             m_axi_arprot,
+  input  logic                   m_axi_rvalid,
+  output logic                   m_axi_rready,
+  input  logic [IdWidth-1:0]     m_axi_rid,
+  input  logic [DataWidth-1:0]   m_axi_rdata,
+  input  logic [1:0]             m_axi_rresp,
+  input  logic                   m_axi_rlast,
   // rays
   input  logic                   ray_valid_i,
   output logic                   ray_ready_o,
   input  ray_core_pkg::ray_t       ray_i,
   // results to memory: AXI4, writes
-  output logic                   mem_awvalid_o,
-  input  logic                   mem_awready_i,
-  output logic [63:0]            mem_awaddr_o,
-  output logic [7:0]             mem_awlen_o,
-  output logic [2:0]             mem_awsize_o,
-  output logic [1:0]             mem_awburst_o,
-  output logic [2:0]             mem_awprot_o,
-  output logic                   mem_wvalid_o,
-  input  logic                   mem_wready_i,
-  output logic [DataWidth-1:0]   mem_wdata_o,
-  output logic [DataWidth/8-1:0] mem_wstrb_o,
-  output logic                   mem_wlast_o,
-  input  logic                   mem_bvalid_i,
-  output logic                   mem_bready_o,
-  input  logic [1:0]             mem_bresp_i,
+  output logic                   m_axi_awvalid,
+  input  logic                   m_axi_awready,
+  output logic [IdWidth-1:0]     m_axi_awid,
+  output logic [63:0]            m_axi_awaddr,
+  output logic [7:0]             m_axi_awlen,
+  output logic [2:0]             m_axi_awsize,
+  output logic [1:0]             m_axi_awburst,
+  output logic [3:0]             m_axi_awcache,
+  output logic [2:0]             m_axi_awprot,
+  output logic                   m_axi_wvalid,
+  input  logic                   m_axi_wready,
+  output logic [DataWidth-1:0]   m_axi_wdata,
+  output logic [DataWidth/8-1:0] m_axi_wstrb,
+  output logic                   m_axi_wlast,
+  input  logic                   m_axi_bvalid,
+  output logic                   m_axi_bready,
+  // verilator lint_off UNUSEDSIGNAL
+  input  logic [IdWidth-1:0]     m_axi_bid,  // 0
+  // verilator lint_on UNUSEDSIGNAL
+  input  logic [1:0]             m_axi_bresp,
   // results: AXI4-Stream, a record a transfer, see registers.md
-  output logic                   stream_tvalid_o,
-  input  logic                   stream_tready_i,
-  output logic [255:0]           stream_tdata_o,
-  output logic                   stream_tlast_o
+  output logic                   m_axis_tvalid,
+  input  logic                   m_axis_tready,
+  output logic [255:0]           m_axis_tdata,
+  output logic                   m_axis_tlast
 );
 
   localparam int unsigned ReadIdWidth = 1 + $clog2(
@@ -89,6 +100,13 @@ module ray_core_axi #(
   );
   localparam logic [30:0] Infinity = 31'h7f80_0000;
   localparam logic [31:0] NoTriangle = 32'hffff_ffff;
+  localparam logic [31:0] Capability = {  // see registers.md
+    4'b0111, 8'(Clocks), 4'($clog2(DataWidth / 8)), 4'(Exact), 4'($clog2(Rays)), 8'd1
+  };
+
+  assign {m_axi_arcache, m_axi_arprot} = {AxCache, AxProt};
+  assign {m_axi_awcache, m_axi_awprot} = {AxCache, AxProt};
+  assign m_axi_awid = '0;
 
   // ---- Registers
 
@@ -109,26 +127,28 @@ module ray_core_axi #(
   assign is_doubt    = result_fire & (result.kind == ray_core_pkg::ResultDoubt);
   assign ended       = result_fire & (result.kind == ray_core_pkg::ResultEnd);
 
-  csr u_csr (
+  csr #(
+    .Capability(Capability)
+  ) u_csr (
     .clk_i,
     .rst_ni,
-    .axi_awvalid_i(reg_awvalid_i),
-    .axi_awready_o(reg_awready_o),
-    .axi_awaddr_i(reg_awaddr_i),
-    .axi_wvalid_i(reg_wvalid_i),
-    .axi_wready_o(reg_wready_o),
-    .axi_wdata_i(reg_wdata_i),
-    .axi_wstrb_i(reg_wstrb_i),
-    .axi_bvalid_o(reg_bvalid_o),
-    .axi_bready_i(reg_bready_i),
-    .axi_bresp_o(reg_bresp_o),
-    .axi_arvalid_i(reg_arvalid_i),
-    .axi_arready_o(reg_arready_o),
-    .axi_araddr_i(reg_araddr_i),
-    .axi_rvalid_o(reg_rvalid_o),
-    .axi_rready_i(reg_rready_i),
-    .axi_rdata_o(reg_rdata_o),
-    .axi_rresp_o(reg_rresp_o),
+    .axi_awvalid_i(s_axil_awvalid),
+    .axi_awready_o(s_axil_awready),
+    .axi_awaddr_i(s_axil_awaddr),
+    .axi_wvalid_i(s_axil_wvalid),
+    .axi_wready_o(s_axil_wready),
+    .axi_wdata_i(s_axil_wdata),
+    .axi_wstrb_i(s_axil_wstrb),
+    .axi_bvalid_o(s_axil_bvalid),
+    .axi_bready_i(s_axil_bready),
+    .axi_bresp_o(s_axil_bresp),
+    .axi_arvalid_i(s_axil_arvalid),
+    .axi_arready_o(s_axil_arready),
+    .axi_araddr_i(s_axil_araddr),
+    .axi_rvalid_o(s_axil_rvalid),
+    .axi_rready_i(s_axil_rready),
+    .axi_rdata_o(s_axil_rdata),
+    .axi_rresp_o(s_axil_rresp),
     .start_o(start),
     .invalidate_o(invalidate),
     .abort_o(abort),
@@ -219,6 +239,7 @@ module ray_core_axi #(
     .Depth(Depth),
     .NodeLines(NodeLines),
     .TriangleLines(TriangleLines),
+    .Clocks(Clocks),
     .Exact(Exact),
     .Arith(Arith),
     .Adder(Adder)
@@ -264,20 +285,19 @@ module ray_core_axi #(
     .line_id_o(line_id),
     .line_o(line),
     .line_error_o(line_error),
-    .axi_arvalid_o(mem_arvalid_o),
-    .axi_arready_i(mem_arready_i),
-    .axi_arid_o(mem_arid_o),
-    .axi_araddr_o(mem_araddr_o),
-    .axi_arlen_o(mem_arlen_o),
-    .axi_arsize_o(mem_arsize_o),
-    .axi_arburst_o(mem_arburst_o),
-    .axi_arprot_o(mem_arprot_o),
-    .axi_rvalid_i(mem_rvalid_i),
-    .axi_rready_o(mem_rready_o),
-    .axi_rid_i(mem_rid_i),
-    .axi_rdata_i(mem_rdata_i),
-    .axi_rresp_i(mem_rresp_i),
-    .axi_rlast_i(mem_rlast_i),
+    .axi_arvalid_o(m_axi_arvalid),
+    .axi_arready_i(m_axi_arready),
+    .axi_arid_o(m_axi_arid),
+    .axi_araddr_o(m_axi_araddr),
+    .axi_arlen_o(m_axi_arlen),
+    .axi_arsize_o(m_axi_arsize),
+    .axi_arburst_o(m_axi_arburst),
+    .axi_rvalid_i(m_axi_rvalid),
+    .axi_rready_o(m_axi_rready),
+    .axi_rid_i(m_axi_rid),
+    .axi_rdata_i(m_axi_rdata),
+    .axi_rresp_i(m_axi_rresp),
+    .axi_rlast_i(m_axi_rlast),
     .bus_error_o(bus_error),
     .error_number_o(error_number)
   );
@@ -292,10 +312,10 @@ module ray_core_axi #(
     32'({result.t_error, result.error, result.found, result.kind})
   };
   assign to_memory       = length != '0;
-  assign result_ready    = to_memory ? record_ready : stream_tready_i;
-  assign stream_tvalid_o = result_valid & ~to_memory;
-  assign stream_tdata_o  = record;
-  assign stream_tlast_o  = result.kind == ray_core_pkg::ResultEnd;
+  assign result_ready    = to_memory ? record_ready : m_axis_tready;
+  assign m_axis_tvalid = result_valid & ~to_memory;
+  assign m_axis_tdata  = record;
+  assign m_axis_tlast  = result.kind == ray_core_pkg::ResultEnd;
 
   axi_write_manager #(
     .DataWidth(DataWidth)
@@ -312,21 +332,20 @@ module ray_core_axi #(
     .record_valid_i(result_valid & to_memory),
     .record_ready_o(record_ready),
     .record_i(record),
-    .axi_awvalid_o(mem_awvalid_o),
-    .axi_awready_i(mem_awready_i),
-    .axi_awaddr_o(mem_awaddr_o),
-    .axi_awlen_o(mem_awlen_o),
-    .axi_awsize_o(mem_awsize_o),
-    .axi_awburst_o(mem_awburst_o),
-    .axi_awprot_o(mem_awprot_o),
-    .axi_wvalid_o(mem_wvalid_o),
-    .axi_wready_i(mem_wready_i),
-    .axi_wdata_o(mem_wdata_o),
-    .axi_wstrb_o(mem_wstrb_o),
-    .axi_wlast_o(mem_wlast_o),
-    .axi_bvalid_i(mem_bvalid_i),
-    .axi_bready_o(mem_bready_o),
-    .axi_bresp_i(mem_bresp_i)
+    .axi_awvalid_o(m_axi_awvalid),
+    .axi_awready_i(m_axi_awready),
+    .axi_awaddr_o(m_axi_awaddr),
+    .axi_awlen_o(m_axi_awlen),
+    .axi_awsize_o(m_axi_awsize),
+    .axi_awburst_o(m_axi_awburst),
+    .axi_wvalid_o(m_axi_wvalid),
+    .axi_wready_i(m_axi_wready),
+    .axi_wdata_o(m_axi_wdata),
+    .axi_wstrb_o(m_axi_wstrb),
+    .axi_wlast_o(m_axi_wlast),
+    .axi_bvalid_i(m_axi_bvalid),
+    .axi_bready_o(m_axi_bready),
+    .axi_bresp_i(m_axi_bresp)
   );
 
 endmodule

@@ -2,7 +2,8 @@
 //
 // A ray has ended when it has no node, no leaf and no test left. Its context is free at once: its nearest hit waits
 // in a queue for P, which comes PointDelay clocks later at most, before another ray in the context could have
-// one. A ray's doubts leave before its end.
+// one. A ray's doubts leave before its end. Fields of a result that say nothing are zero: a doubt has its tag and
+// triangle alone, an end without a hit no triangle, t, t_error or P.
 //
 // A ray ends a clock at most, a result leaves a clock.
 module ray_retire #(
@@ -114,8 +115,9 @@ module ray_retire #(
 
   // ---- Results
 
-  logic load;
+  logic load, end_found;
 
+  assign end_found    = ended.hit.found & ~doubt_i.valid;
   assign load         = ~result_valid_o | result_ready_i;
   assign doubt_fire_o = load & doubt_i.valid;
   assign end_fire     = load & end_valid & ~doubt_i.valid;
@@ -126,15 +128,22 @@ module ray_retire #(
   end
   always_ff @(posedge clk_i) begin
     if (load) begin
-      result_o.kind     <= doubt_i.valid ? ray_core_pkg::ResultDoubt : ray_core_pkg::ResultEnd;
-      result_o.tag      <= doubt_i.valid ? doubt_i.tag : ended.tag;
-      result_o.found    <= ended.hit.found & ~doubt_i.valid;
-      result_o.triangle <= doubt_i.valid ? doubt_i.triangle : ended.hit.triangle;
-      result_o.t        <= ended.hit.t;
-      result_o.t_error  <= ended.hit.t_error;
-      result_o.point    <= (ended.hit.t_error == ray_core_pkg::NoT) ? '0 : end_point;
-      result_o.tests    <= ended.hit.tests;
-      result_o.error    <= ended.error;
+      result_o       <= '0;
+      result_o.kind  <= doubt_i.valid ? ray_core_pkg::ResultDoubt : ray_core_pkg::ResultEnd;
+      result_o.tag   <= doubt_i.valid ? doubt_i.tag : ended.tag;
+      result_o.found <= end_found;
+      if (doubt_i.valid) begin
+        result_o.triangle <= doubt_i.triangle;
+      end else begin
+        result_o.tests <= ended.hit.tests;
+        result_o.error <= ended.error;
+      end
+      if (end_found) begin
+        result_o.triangle <= ended.hit.triangle;
+        result_o.t        <= ended.hit.t;
+        result_o.t_error  <= ended.hit.t_error;
+        if (ended.hit.t_error != ray_core_pkg::NoT) result_o.point <= end_point;
+      end
     end
   end
 

@@ -2,7 +2,7 @@
 // Clocks = 1: three dividers, a vector a clock; latency hit_test_pkg::divide_latency. Else a vector in Clocks clocks, and
 // fp_vector_divider, for which word and one take turns; latency at most 5 clocks more.
 module reciprocals #(
-  parameter int unsigned Clocks = 1,  // or at least 7
+  parameter int unsigned Clocks = 1,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded
 ) (
@@ -16,6 +16,10 @@ module reciprocals #(
 );
 
   localparam logic [31:0] One = 32'h3f80_0000;
+
+  if (Clocks != 1 && Clocks < 7) begin : gen_check
+    $error("reciprocals: expected 1 Clocks, or 7 or more");
+  end
 
   if (Clocks == 1) begin : gen_dividers
     localparam int unsigned Latency = hit_test_pkg::divide_latency(23);

@@ -55,7 +55,7 @@ module set_up_unit #(
   localparam int unsigned DotLatency = hit_test_pkg::DotLatency;
 
   if (set_up_pkg::Latency != AdderLatency + CrossLatency + DotLatency) begin : gen_check
-    $error("set_up_unit: set_up_pkg::Latency is not what the cores' latencies make it");
+    $error("set_up_unit: expected set_up_pkg::Latency to be the sum of the cores' latencies");
   end
 
   // ---- Subtract

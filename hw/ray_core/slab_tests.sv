@@ -4,7 +4,7 @@
 //
 // start_i comes with the node, where Clocks is not 1; what else comes, comes as in slab_test.
 module slab_tests #(
-  parameter int unsigned Clocks = 1,  // or at least Children
+  parameter int unsigned Clocks = 1,
   parameter int unsigned Arith = arith_pkg::Structural,
   parameter int unsigned Adder = arith_pkg::AdderGraded,
   localparam int unsigned Children = ray_core_pkg::Children,
@@ -28,6 +28,10 @@ module slab_tests #(
   input  logic                          no_cull_i,
   output logic [Children*KeyWidth-1:0]  keys_o
 );
+
+  if (Clocks != 1 && Clocks < Children) begin : gen_check
+    $error("slab_tests: expected 1 Clocks, or Children or more");
+  end
 
   // What the tests take: as it comes, or kept for all children
   localparam int unsigned Units = (Clocks == 1) ? Children : 1;

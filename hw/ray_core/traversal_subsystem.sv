@@ -37,7 +37,6 @@ module traversal_subsystem #(
   output logic [RayWidth-1:0]     triangle_ctx_o,
   output ray_core_pkg::triangle_request_t triangle_o,
   input  logic                    triangle_ready_i,
-  output logic                    tests_allowed_o,  // triangles may leave memory
   // lines that come: the ray's t_max in the clock after, and whether they are errors
   input  logic [RayWidth-1:0]     node_line_ctx_i,
   input  logic                    node_error_i,
@@ -66,7 +65,7 @@ module traversal_subsystem #(
 
   logic [RayWidth-1:0] traversal_ray, leaf_ray, cycle_ray;
   logic [30:0] traversal_t_max, leaf_t_max;
-  logic traversal_ended, leaf_ended, leaf_counter_full, cycle, overflow;
+  logic traversal_ended, leaf_ended, cycle, overflow;
   logic [Rays-1:0] leaf_pending, testing, traversing, failed;
 
   traversal #(
@@ -102,7 +101,7 @@ module traversal_subsystem #(
 
   logic [RayWidth-1:0] fetch_ray, exact_ray, open_ray;
   logic [Rays-1:0] doubtful, idle;
-  logic tests_allowed, test, over, exact_found, exact_ended, computing, near_tie;
+  logic tests_allowed, test, doubt_taken, exact_found, exact_ended, computing, near_tie;
   logic [2:0] verdict_kind;
   logic [AddressWidth-1:0] exact_found_line;
   logic [30:0] exact_t_max;
@@ -141,7 +140,6 @@ module traversal_subsystem #(
     .t_max_ray_o(leaf_ray),
     .t_max_i(leaf_t_max),
     .ended_i(leaf_ended),
-    .counter_full_i(leaf_counter_full),
     .leaf_pending_o(leaf_pending),
     .triangle_ray_o(fetch_ray),
     .triangle_o(fetch),
@@ -163,7 +161,7 @@ module traversal_subsystem #(
     .test_i(test),
     .test_ray_i(triangle_ctx_o),
     .settle_i(exact.valid),
-    .tests_allowed_o,
+    .tests_allowed_o(tests_allowed),
     .result_ray_i(verdict_ctx_i),
     .result_tag_i(tags[verdict_ctx_i]),
     .result_i(verdict_i),
@@ -174,7 +172,6 @@ module traversal_subsystem #(
     .leaf_ray_i(leaf_ray),
     .leaf_t_max_o(leaf_t_max),
     .leaf_ended_o(leaf_ended),
-    .leaf_counter_full_o(leaf_counter_full),
     .box_ray_i(node_line_ctx_i),
     .box_t_max_o(t_max_o),
     .testing_o(testing),
@@ -184,10 +181,9 @@ module traversal_subsystem #(
     .exact_triangle_o(exact_found_line),
     .exact_t_max_o(exact_t_max),
     .doubt_o,
-    .doubt_fire_i,
+    .doubt_fire_i(doubt_fire_i | doubt_taken),
     .open_ray_o(open_ray),
     .open_o(open),
-    .over_o(over),
     .end_ray_i(end_ctx_i),
     .end_o(end_o.hit),
     .point_ray_i(point_ctx_i),
@@ -208,11 +204,9 @@ module traversal_subsystem #(
       .load_ctx_i(start_ctx_i),
       .load_origin_i(start_i.origin),
       .load_direction_i(start_i.direction),
-      .test_i(test & ~exact.valid),
-      .over_i(over),
-      .tests_allowed_o(tests_allowed),
       .open_ctx_i(open_ray),
       .open_i(open),
+      .taken_o(doubt_taken),
       .idle_i(idle),
       .busy_o(doubtful),
       .ctx_o(exact_ray),
@@ -226,15 +220,15 @@ module traversal_subsystem #(
       .computing_o(computing)
     );
   end else begin : gen_doubts
-    assign tests_allowed = 1'b1;
-    assign doubtful      = '0;
-    assign exact         = '0;
-    assign exact_ray     = '0;
-    assign computing     = 1'b0;
+    assign doubt_taken = 1'b0;
+    assign doubtful    = '0;
+    assign exact       = '0;
+    assign exact_ray   = '0;
+    assign computing   = 1'b0;
 
     logic unused_exact;
     assign unused_exact = ^{
-      over, exact_found, exact_ended, exact_found_line, exact_t_max, open_ray, open
+      exact_found, exact_ended, exact_found_line, exact_t_max, open_ray, open
     };
   end
 

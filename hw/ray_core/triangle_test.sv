@@ -30,7 +30,7 @@ module triangle_test #(
 
   if (ray_core_pkg::VerdictErrorWidth != PlaneErrorWidth
       || ray_core_pkg::VerdictErrorWidth != hit_test_pkg::TErrorWidth) begin : gen_check
-    $error("triangle_test: VerdictErrorWidth is not set_up_pkg's and hit_test_pkg's");
+    $error("triangle_test: expected VerdictErrorWidth to be set_up_pkg's and hit_test_pkg's");
   end
 
   // ---- Set up

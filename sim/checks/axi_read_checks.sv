@@ -19,7 +19,6 @@ module axi_read_checks #(
   input logic [7:0]           arlen,
   input logic [2:0]           arsize,
   input logic [1:0]           arburst,
-  input logic [2:0]           arprot,
   input logic                 rvalid,
   input logic                 rready,
   input logic [IdWidth-1:0]   rid,
@@ -30,13 +29,13 @@ module axi_read_checks #(
 );
 
   stream_checks #(
-    .Width(IdWidth + 80)
+    .Width(IdWidth + 77)
   ) u_ar (
     .clk_i,
     .rst_ni,
     .valid(arvalid),
     .ready(arready),
-    .data ({arid, araddr, arlen, arsize, arburst, arprot})
+    .data ({arid, araddr, arlen, arsize, arburst})
   );
 
   logic [12:0] bytes;

@@ -16,7 +16,6 @@ module axi_write_checks #(
   input logic [7:0]                       awlen,
   input logic [2:0]                       awsize,
   input logic [1:0]                       awburst,
-  input logic [2:0]                       awprot,
   input logic                             wvalid,
   input logic                             wready,
   input logic [DataWidth+DataWidth/8-1:0] w,  // WSTRB, WDATA
@@ -30,13 +29,13 @@ module axi_write_checks #(
 );
 
   stream_checks #(
-    .Width(80)
+    .Width(77)
   ) u_aw (
     .clk_i,
     .rst_ni,
     .valid(awvalid),
     .ready(awready),
-    .data ({awaddr, awlen, awsize, awburst, awprot})
+    .data ({awaddr, awlen, awsize, awburst})
   );
   stream_checks #(
     .Width(DataWidth + DataWidth / 8 + 1)

@@ -27,15 +27,6 @@ bind ram_fifo fifo_checks #(
   .pop_i,
   .valid_o
 );
-bind stream_arbiter stream_checks #(
-  .Width($bits({data_o, source_o}))
-) u_output_checks (
-  .clk_i,
-  .rst_ni,
-  .valid(valid_o & rst_ni),
-  .ready(ready_i),
-  .data ({data_o, source_o})
-);
 bind hit_test_pipeline stream_checks #(
   .Width($bits({first_i, last_i, tag_i, direction_i, record_i}))
 ) u_input_checks (
@@ -93,7 +84,6 @@ bind axi_read_manager axi_read_checks #(
   .arlen(axi_arlen_o),
   .arsize(axi_arsize_o),
   .arburst(axi_arburst_o),
-  .arprot(axi_arprot_o),
   .rvalid(axi_rvalid_i),
   .rready(axi_rready_o),
   .rid(axi_rid_i),
@@ -103,24 +93,23 @@ bind axi_read_manager axi_read_checks #(
   .left_q()
 );
 bind ray_core_axi axi_read_checks #(
-  .IdWidth($bits(mem_arid_o)),
-  .DataWidth($bits(mem_rdata_i))
+  .IdWidth($bits(m_axi_arid)),
+  .DataWidth($bits(m_axi_rdata))
 ) u_read_checks (
   .clk_i,
   .rst_ni,
-  .arvalid(mem_arvalid_o),
-  .arready(mem_arready_i),
-  .arid(mem_arid_o),
-  .araddr(mem_araddr_o),
-  .arlen(mem_arlen_o),
-  .arsize(mem_arsize_o),
-  .arburst(mem_arburst_o),
-  .arprot(mem_arprot_o),
-  .rvalid(mem_rvalid_i),
-  .rready(mem_rready_o),
-  .rid(mem_rid_i),
-  .r({mem_rresp_i, mem_rdata_i}),
-  .rlast(mem_rlast_i),
+  .arvalid(m_axi_arvalid),
+  .arready(m_axi_arready),
+  .arid(m_axi_arid),
+  .araddr(m_axi_araddr),
+  .arlen(m_axi_arlen),
+  .arsize(m_axi_arsize),
+  .arburst(m_axi_arburst),
+  .rvalid(m_axi_rvalid),
+  .rready(m_axi_rready),
+  .rid(m_axi_rid),
+  .r({m_axi_rresp, m_axi_rdata}),
+  .rlast(m_axi_rlast),
   .open_q(),
   .left_q()
 );
@@ -135,7 +124,6 @@ bind axi_write_manager axi_write_checks #(
   .awlen(axi_awlen_o),
   .awsize(axi_awsize_o),
   .awburst(axi_awburst_o),
-  .awprot(axi_awprot_o),
   .wvalid(axi_wvalid_o),
   .wready(axi_wready_i),
   .w({axi_wstrb_o, axi_wdata_o}),
@@ -148,13 +136,13 @@ bind axi_write_manager axi_write_checks #(
   .beat_q()
 );
 bind ray_core_axi stream_checks #(
-  .Width($bits({stream_tdata_o, stream_tlast_o}))
+  .Width($bits({m_axis_tdata, m_axis_tlast}))
 ) u_stream_checks (
   .clk_i,
   .rst_ni,
-  .valid(stream_tvalid_o),
-  .ready(stream_tready_i),
-  .data ({stream_tdata_o, stream_tlast_o})
+  .valid(m_axis_tvalid),
+  .ready(m_axis_tready),
+  .data ({m_axis_tdata, m_axis_tlast})
 );
 bind csr axi_lite_checks #(
   .AddressWidth($bits(axi_awaddr_i))

@@ -67,7 +67,7 @@ module ulx3s (
   // ---- Words by the serial line
 
   // A word is taken at once: the host sends no more rays than the core holds.
-  logic in_valid, out_valid, out_ready, unused_ready;
+  logic in_valid, in_break, out_valid, out_ready, unused_ready;
   logic [31:0] in_word, out_word;
 
   uart_receiver #(
@@ -77,7 +77,8 @@ module ulx3s (
     .rst_ni(rst_n),
     .serial_i(ftdi_txd),
     .valid_o(in_valid),
-    .word_o(in_word)
+    .word_o(in_word),
+    .break_o(in_break)
   );
   uart_transmitter #(
     .ClocksPerBit(ClocksPerBit)
@@ -103,6 +104,7 @@ module ulx3s (
     .word_valid_i(in_valid),
     .word_ready_o(unused_ready),
     .word_i(in_word),
+    .break_i(in_break),
     .word_valid_o(out_valid),
     .word_ready_i(out_ready),
     .word_o(out_word),

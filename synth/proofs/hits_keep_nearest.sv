@@ -1,12 +1,12 @@
 // What tests say of a ray, whatever they say and whenever, from reset and for ever: no sure hit is lost in silence. A hit is
 // kept, or was told as a doubt, once, or it is farther, by both its error and the kept one's, than the t_max, which
 // is the least upper bound of all hits so far and the user's t_max. What has no verdict is told as a doubt, once. P and t
-// are the kept hit's. Tests on their way are counted rightly, and there is room for the doubts of all of them.
+// are the kept hit's. Tests in flight are counted rightly, and there is room for the doubts of all of them.
 // opened_closest_hit is closest_hit of two rays with its registers and memories as outputs; that its queues keep order is fifo_keeps_order's.
 module hits_keep_nearest #(
   localparam int unsigned Rays     = 2,
   localparam int unsigned InFlight = 2,
-  localparam int unsigned Depth    = InFlight + 16,
+  localparam int unsigned Queue    = 18,
   localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth,
   localparam int unsigned TestsWidth  = ray_core_pkg::TestsWidth
 ) (
@@ -17,7 +17,6 @@ module hits_keep_nearest #(
   input logic        load_any_hit,
   input logic        test,
   input logic        test_ray,
-  input logic        enter,  // a test goes into the pipeline, which holds InFlight
   input logic        read,  // a result comes; what the unit is given in this clock it compares in the next one
   input logic        read_ray,
   input logic [31:0] read_triangle,
@@ -48,7 +47,7 @@ module hits_keep_nearest #(
   (* anyseq *) logic [95:0] point;
   (* anyseq *) logic [31:0] load_tag;
 
-  logic tests_allowed, traversal_ended, leaf_ended, counter_full, doubt_valid, end_found, near_tie;
+  logic tests_allowed, traversal_ended, leaf_ended, doubt_valid, end_found, near_tie;
   logic [30:0] traversal_t_max, leaf_t_max, box_t_max;
   logic [Rays-1:0] testing, found_q, any_hit_q;
   logic [31:0] result_tag, end_triangle, end_t;
@@ -59,7 +58,7 @@ module hits_keep_nearest #(
   logic traversal_ray_q, leaf_ray_q, box_ray_q, traversal_before, leaf_before, box_before;
   logic replace, test_q, test_ray_q, push, doubts_space, doubts_valid, points_read, points_write;
   logic [63:0] pushed, doubt_word;
-  logic [4:0] doubts;
+  logic [4:0] doubts, here;
   logic [1:0] points_count;
   logic [Rays*31-1:0] t_max_words;
   logic [Rays*32-1:0] nearest_t, nearest_low, nearest_triangle;
@@ -69,7 +68,7 @@ module hits_keep_nearest #(
   logic [TErrorWidth-1:0] over_t_error;
   logic [Rays*TErrorWidth-1:0] nearest_error;
   logic [Rays*96-1:0] points;
-  logic [Rays*10-1:0] counts;
+  logic [Rays*5-1:0] counts;
   logic [Rays*TestsWidth-1:0] tests;
   logic [InFlight*2-1:0] points_words;
 
@@ -96,7 +95,6 @@ module hits_keep_nearest #(
     .leaf_ray_i(leaf_ray),
     .leaf_t_max_o(leaf_t_max),
     .leaf_ended_o(leaf_ended),
-    .leaf_counter_full_o(counter_full),
     .box_ray_i(box_ray),
     .box_t_max_o(box_t_max),
     .testing_o(testing),
@@ -128,6 +126,7 @@ module hits_keep_nearest #(
     .old_low_q(old_low),
     .old_triangle_q(old_triangle),
     .replace(replace),
+    .here_q(here),
     .test_q(test_q),
     .test_ray_q(test_ray_q),
     .\u_doubts.push_i (push),
@@ -167,17 +166,14 @@ module hits_keep_nearest #(
   logic [TestsWidth-1:0] made_0, made_1;  // its tests
   logic [31:0] tag_0, tag_1;
   logic [30:0] user_0, user_1;  // its t_max at first
-  logic [2:0] flying;  // tests in the pipeline
 
   assign result_tag = result_ray ? tag_1 : tag_0;
   always_ff @(posedge clk) begin
     if (!reset_n) begin
       loaded <= '0;
-      flying <= '0;
       flight_0 <= '0;
       flight_1 <= '0;
     end else begin
-      flying <= flying + 3'(enter) - 3'(result);
       flight_0 <= flight_0 + 12'(test && !test_ray) - 12'(result && !result_ray);
       flight_1 <= flight_1 + 12'(test && test_ray) - 12'(result && result_ray);
       made_0 <= made_0 + TestsWidth'(test && !test_ray);
@@ -202,16 +198,14 @@ module hits_keep_nearest #(
     if (reset_n) begin
       assume (!load || ((load_ray ? flight_1 : flight_0) == '0 && load_t_max <= Infinity[30:0]
                         && !(test && test_ray == load_ray)));
-      assume (!test || (loaded[test_ray] && test_ray == leaf_ray_q && !counter_full));
-      assume (!enter || (tests_allowed && (flying < 3'(InFlight) || result)));
-      assume (!read || ((read_ray ? flight_1 : flight_0) > 12'(result && result_ray == read_ray)
-                        && flying > 3'(result)));
+      assume (!test || (loaded[test_ray] && test_ray == leaf_ray_q && tests_allowed));
+      assume (!read || (read_ray ? flight_1 : flight_0) > 12'(result && result_ray == read_ray));
       assume (!(read_hit && read_doubt) && read_t <= Infinity);
       assume (!(result && result_hit) || points_count < 2'(InFlight) || point_valid);
       assume (!point_valid || points_count != '0);
       assume (!doubt_fire || doubt_valid);
     end else begin
-      assume (!load && !test && !enter && !read && !point_valid && !doubt_fire);
+      assume (!load && !test && !read && !point_valid && !doubt_fire);
     end
   end
 
@@ -324,19 +318,19 @@ module hits_keep_nearest #(
       assert (box_t_max == (box_ray_q ? t_max_words[61:31] : t_max_words[30:0]));
       // Tests
       assert (testing == {flight_1 != '0, flight_0 != '0});
-      if (loaded[0]) assert ({2'b00, counts[9:0]} == flight_0 - 12'(test_q && !test_ray_q));
-      if (loaded[1]) assert ({2'b00, counts[19:10]} == flight_1 - 12'(test_q && test_ray_q));
+      if (loaded[0]) assert ({7'd0, counts[4:0]} == flight_0 - 12'(test_q && !test_ray_q));
+      if (loaded[1]) assert ({7'd0, counts[9:5]} == flight_1 - 12'(test_q && test_ray_q));
       if (test_q) assert (loaded[test_ray_q] && (test_ray_q ? flight_1 : flight_0) != '0);
-      assert (flight_0 < 12'd1024 && flight_1 < 12'd1024);
       assert (end_tests == tests[TestsWidth*end_ray+:TestsWidth]);
       if (loaded[0]) assert (tests[TestsWidth-1:0] == made_0 - TestsWidth'(test_q && !test_ray_q));
       if (loaded[1]) assert (tests[2*TestsWidth-1:TestsWidth] == made_1 - TestsWidth'(test_q && test_ray_q));
       // Room for doubts
-      assert ({1'b0, doubts} + 6'(flying) <= 6'(Depth));
+      assert ({7'd0, here} == flight_0 + flight_1 + {7'd0, doubts} && here <= 5'(Queue));
+      assert (flight_0 <= 12'(Queue) && flight_1 <= 12'(Queue) && doubts <= 5'(Queue));
 
       // Invariants
       if (result) begin
-        assert (loaded[result_ray] && (result_ray ? counts[19:10] : counts[9:0]) != '0 && flying != '0);
+        assert (loaded[result_ray] && (result_ray ? counts[9:5] : counts[4:0]) != '0);
         assert (!(result_hit && result_doubt) && result_t <= Infinity);
         assert (over_ray == result_ray && over_triangle == result_triangle && over_t == result_t);
         assert (over_tag == result_tag && over_t_error == t_error);
@@ -350,8 +344,8 @@ module hits_keep_nearest #(
       end
       assert (over == result && over_sure == sure && over_vague == vague && over_hit == (result && result_hit));
       if (state == Kept) assert ($signed({2'b00, nearest_low[32*w_ray+:32]}) == (w_low > 0 ? w_low : 34'sd0));
-      assert (flying <= 3'(InFlight) && points_count <= 2'(InFlight));
-      assert (tests_allowed == (doubts < 5'(Depth - InFlight)) && (!doubt_valid || doubts != '0));
+      assert (points_count <= 2'(InFlight));
+      assert (tests_allowed == (here < 5'(Queue)) && (!doubt_valid || doubts != '0));
       assert ((points_write == points_read) == (points_count != 2'd1));
       if (!loaded[0]) assert (flight_0 == '0);
       if (!loaded[1]) assert (flight_1 == '0);

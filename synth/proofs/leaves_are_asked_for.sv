@@ -21,7 +21,6 @@ module leaves_are_asked_for #(
   input logic [Children-1:0]   box_leaf,
   input logic [30:0]           t_max,
   input logic                  ended,
-  input logic                  counter_full,
   input logic                  ready,
   input logic                  choose,  // triangle `number` of leaf `which` of the group that comes now is watched
   input logic [2:0]            which,
@@ -54,7 +53,6 @@ module leaves_are_asked_for #(
     .t_max_ray_o(t_max_ray),
     .t_max_i(t_max),
     .ended_i(ended),
-    .counter_full_i(counter_full),
     .leaf_pending_o(leaf_pending),
     .triangle_ray_o(triangle_ray),
     .triangle_o({triangle, line}),
@@ -178,7 +176,6 @@ module leaves_are_asked_for #(
 
   always_comb begin
     if (reset_n) begin
-      if (counter_full) assert (!triangle);
       assert (triangle_ray == ray_q && (!asked_before || t_max_before == ray_q));
       if (triangle) assert (valid_q);
       if (state != Nowhere) assert (leaf_pending[w_ray]);

@@ -23,7 +23,7 @@ module reader_gives_lines (
   logic [511:0] line, parts;
   logic [63:0] araddr;
   logic [7:0] arlen;
-  logic [2:0] arsize, arprot;
+  logic [2:0] arsize;
   logic [27:0] error_number;
   logic [3:0] read_ids;
   logic read_q, write_q;
@@ -50,7 +50,6 @@ module reader_gives_lines (
     .axi_arlen_o(arlen),
     .axi_arsize_o(arsize),
     .axi_arburst_o(arburst),
-    .axi_arprot_o(arprot),
     .axi_rvalid_i(rvalid),
     .axi_rready_o(rready),
     .axi_rid_i(rid),
@@ -88,7 +87,6 @@ module reader_gives_lines (
     .arlen(arlen),
     .arsize(arsize),
     .arburst(arburst),
-    .arprot(arprot),
     .rvalid(rvalid),
     .rready(rready),
     .rid(rid),

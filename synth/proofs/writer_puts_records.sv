@@ -25,7 +25,7 @@ module writer_puts_records #(
   logic [31:0] written, next, addresses, bursts;
   logic [63:0] awaddr;
   logic [7:0] awlen, beat;
-  logic [2:0] awsize, awprot, left;
+  logic [2:0] awsize, left;
   logic [255:0] left_record;
   logic [1:0] awburst;
   logic [DataWidth-1:0] wdata;
@@ -50,7 +50,6 @@ module writer_puts_records #(
     .axi_awlen_o(awlen),
     .axi_awsize_o(awsize),
     .axi_awburst_o(awburst),
-    .axi_awprot_o(awprot),
     .axi_wvalid_o(wvalid),
     .axi_wready_i(wready),
     .axi_wdata_o(wdata),
@@ -76,7 +75,6 @@ module writer_puts_records #(
     .awlen(awlen),
     .awsize(awsize),
     .awburst(awburst),
-    .awprot(awprot),
     .wvalid(wvalid),
     .wready(wready),
     .w({wstrb, wdata}),

@@ -20,7 +20,7 @@ HITS = [("(low_q <= {1'b0, old_t_max_q})", "(low_q < {1'b0, old_t_max_q})"),
         ("forward ? low_q : nearest_low", "is_over_q ? low_q : nearest_low"),
         (".data_i({ray_q, replace})", ".data_i({ray_q, is_sure_q})"),
         ("if (test_q && !same) counts", "if (test_q) counts"),
-        (">= NearlyFull", "> NearlyFull")]
+        ("here_q < CountWidth'(Queue)", "here_q <= CountWidth'(Queue)")]
 
 LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
           ("fire & last & (remaining == '0)", "fire & (remaining == '0)"),

@@ -83,13 +83,6 @@ void LinkedCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRa
   counters_.clocks += link_->clocks() - begin;
 }
 
-namespace {
-
-// This number of zero words completes any truncated message, and has no other effect.
-constexpr std::size_t kLongestMessage = 17;
-
-}  // namespace
-
 SerialLink::SerialLink(std::filesystem::path port)
     : port_(std::move(port)),
       file_(open(port_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
@@ -104,8 +97,6 @@ SerialLink::SerialLink(std::filesystem::path port)
   settings.c_cflag |= CLOCAL | CREAD;
   cfsetspeed(&settings, B2000000);
   tcsetattr(file_, TCSANOW, &settings);
-  tcflush(file_, TCIOFLUSH);
-  out_.assign(4 * kLongestMessage, 0);
 }
 
 SerialLink::~SerialLink() { close(file_); }
@@ -142,6 +133,19 @@ void SerialLink::wait() {
   if ((ready.revents & POLLIN) != 0) read_some();
   if ((ready.revents & POLLOUT) != 0) write_some();
   if ((ready.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) fail("the board is gone");
+}
+
+void SerialLink::restart() {
+  out_.clear();
+  tcflush(file_, TCIOFLUSH);
+  if (tcsendbreak(file_, 0) != 0) fail(std::strerror(errno));
+  pollfd ready{.fd = file_, .events = POLLIN, .revents = 0};
+  for (int reads = 0; poll(&ready, 1, kQuiet) > 0; ++reads) {
+    if (reads == 1'000) fail("found input after a break, expected a board that waits");
+    read_some();
+  }
+  in_.clear();
+  taken_ = 0;
 }
 
 void SerialLink::write_some() {

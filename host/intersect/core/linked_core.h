@@ -101,6 +101,8 @@ class WordLink {
   virtual std::optional<std::uint32_t> receive() = 0;
   /// Waits: one clock in simulation. Throws if the board is silent for too long.
   virtual void wait() = 0;
+  /// Sends a break, which aborts the board's message and rays, and drops input until it is quiet.
+  virtual void restart() = 0;
   /// Returns simulated clocks since construction; 0 without simulation.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
 };
@@ -111,7 +113,9 @@ class WordLink {
 class LinkedCore : public CoreUnit {
  public:
   LinkedCore(std::unique_ptr<WordLink> link, std::size_t rays)
-      : link_(std::move(link)), most_(rays) {}
+      : link_(std::move(link)), most_(rays) {
+    link_->restart();
+  }
 
   void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
              std::vector<CoreResult>& results) override;
@@ -142,9 +146,11 @@ class SerialLink : public WordLink {
   bool send(std::uint32_t word) override;
   std::optional<std::uint32_t> receive() override;
   void wait() override;
+  void restart() override;
 
  private:
   static constexpr int kPatience = 30;
+  static constexpr int kQuiet = 100;            ///< ms without input after a break
   static constexpr std::size_t kBuffer = 4096;  ///< bytes to be written
 
   [[noreturn]] void fail(const std::string& what) const;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <stdlib.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -20,6 +21,20 @@
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "sim/model_loader.h"
 #include "sim/rtl_core.h"
+
+namespace {
+
+std::atomic<bool> is_broken{false};  // a break was sent and not received
+
+}  // namespace
+
+/// A pseudoterminal carries no breaks: in place of the C library's function, this one has
+/// BoardAtAPort receive them.
+extern "C" int tcsendbreak(int /*file*/, int /*duration*/) {
+  is_broken = true;
+  while (is_broken) std::this_thread::yield();
+  return 0;
+}
 
 namespace raygate {
 namespace {
@@ -117,6 +132,10 @@ class BurstLink : public WordLink {
       throw std::runtime_error("the host waits for a board that has nothing to do");
     came_ = std::move(words);
   }
+  void restart() override {
+    board_->restart();
+    came_.clear();
+  }
 
  private:
   std::unique_ptr<WordLink> board_{
@@ -167,6 +186,12 @@ class BoardAtAPort {
     int idle = 0;  // clocks since a byte came or went
     while (!is_over_) {
       unsigned char byte = 0;
+      if (is_broken) {
+        while (read(master_, &byte, 1) == 1) continue;
+        in.clear();
+        link->restart();
+        is_broken = false;
+      }
       // It asks for bytes now and then, and always when it has nothing to do.
       while (in.size() < 4 && read(master_, &byte, 1) == 1) in.push_back(byte);
       if (in.size() >= 4 && link->send(in[0] | in[1] << 8 | in[2] << 16 | unsigned{in[3]} << 24)) {
@@ -194,12 +219,30 @@ class BoardAtAPort {
   std::thread board_;
 };
 
+/// A host that ends in the middle of a message, by bytes or words, and whose rays are in the core:
+/// the next host is none the wiser.
+void leave_a_mess(const std::string& port, std::span<const Ray> rays) {
+  SerialLink link(port);
+  const auto send = [&](const Ray& ray, std::size_t words) {
+    const RayMessage message = ray_message({.ray = ray, .tag = 7});
+    for (const std::uint32_t word : std::span(message).first(words)) EXPECT_TRUE(link.send(word));
+  };
+  for (const Ray& ray : rays.first(kBoardRays - 1)) send(ray, RayMessage{}.size());
+  send(rays.back(), 8);
+  while (!link.receive()) link.wait();
+  const int file = open(port.c_str(), O_RDWR | O_NOCTTY);
+  EXPECT_EQ(write(file, "x", 1), 1);
+  usleep(50'000);  // the board takes the byte
+  close(file);
+}
+
 TEST(SerialLink, HitsAreTheCpuIntersectors) {
   const Bvh bvh{test::scene_of(bodies())};
   Random random;
   const std::vector<Ray> rays = some_rays(bodies(), random, 200);
   const BoardAtAPort board;
   for (int opened = 0; opened < 2; ++opened) {
+    if (opened != 0) leave_a_mess(board.port(), rays);
     CheckIntersector check(
         bvh,
         std::make_unique<CoreIntersector>(

@@ -10,7 +10,8 @@ module uart_pair #(
   input  logic        low_i,  // pulls the line low
   output logic        serial_o,
   output logic        valid_o,
-  output logic [31:0] word_o
+  output logic [31:0] word_o,
+  output logic        break_o
 );
 
   logic serial;
@@ -34,7 +35,8 @@ module uart_pair #(
     .rst_ni,
     .serial_i(serial_o),
     .valid_o,
-    .word_o
+    .word_o,
+    .break_o
   );
 
 endmodule

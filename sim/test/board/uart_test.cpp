@@ -25,6 +25,7 @@ class UartTest : public testing::Test {
   void clock() {
     model_.clock();
     if (model_->valid_o != 0) received_.push_back(model_->word_o);
+    breaks_ += model_->break_o;
   }
   void send(std::uint32_t word) {
     model_->valid_i = 1;
@@ -39,6 +40,7 @@ class UartTest : public testing::Test {
 
   Model<Vuart_pair> model_;
   std::vector<std::uint32_t> received_;
+  int breaks_ = 0;
 };
 
 TEST_F(UartTest, WordsArrive) {
@@ -52,6 +54,7 @@ TEST_F(UartTest, WordsArrive) {
   }
   wait(41 * kClocksPerBit);
   EXPECT_EQ(received_, sent);
+  EXPECT_EQ(breaks_, 0);
   EXPECT_GE(model_.clocks() - begin, 40 * kClocksPerBit * sent.size());
 }
 
@@ -73,7 +76,7 @@ TEST_F(UartTest, BitsAreTheStandards) {
   EXPECT_EQ(got, expected);
 }
 
-/// A line that is held low gives no word, and the next words are whole.
+/// A line that is held low gives no word and one break, and the next words are whole.
 TEST_F(UartTest, ABreakStartsAWordAnew) {
   send(0x12345678);
   wait(15 * kClocksPerBit);  // in its second byte
@@ -82,6 +85,7 @@ TEST_F(UartTest, ABreakStartsAWordAnew) {
   model_->low_i = 0;
   wait(20 * kClocksPerBit);
   EXPECT_TRUE(received_.empty());
+  EXPECT_EQ(breaks_, 1);
   send(0xCAFE0123);
   wait(41 * kClocksPerBit);
   EXPECT_EQ(received_, (std::vector<std::uint32_t>{0xCAFE0123}));

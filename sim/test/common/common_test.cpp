@@ -1,4 +1,4 @@
-// fifo, ram_fifo, ram, stream_arbiter and delay_line against std::deque and an array, with random
+// fifo, ram_fifo, ram and delay_line against std::deque and an array, with random
 // pushes, pops, pauses and resets; and that the checks of sim/checks and random register contents
 // work at all.
 #include <gtest/gtest.h>
@@ -20,7 +20,6 @@ class CommonTest : public testing::Test {
  protected:
   CommonTest() {
     model_->push_i = model_->pop_i = model_->enable_i = model_->write_i = model_->read_i = 0;
-    model_->stream_valid_i = 0;
     model_.reset();
   }
 
@@ -94,45 +93,6 @@ TEST_F(CommonTest, MemoriesGiveTheWordBefore) {
     }
   }
   EXPECT_GT(together, 100u);
-}
-
-/// Words of each stream leave once and in order; one that waits is passed by each other stream once
-/// at most. sim/checks watches that what is offered stays.
-TEST_F(CommonTest, StreamsLeaveInTurn) {
-  SCOPED_TRACE("seed " + std::to_string(kSeed));
-  std::array<std::uint32_t, 3> next{}, passed{};
-  std::uint32_t taken = 0, contended = 0;
-  model_->stream_valid_i = 0;
-  for (int clock = 0; clock < 50'000; ++clock) {
-    for (unsigned n = 0; n < 3; ++n) {
-      if (random_() % 8 < 1u + static_cast<unsigned>(clock) / 5'000 % 7)
-        model_->stream_valid_i |= 1u << n;
-      model_->stream_data_i[n] = n << 24 | next[n];
-    }
-    model_->joined_ready_i = random_() % 2;
-    model_.eval();
-    const unsigned valid = model_->stream_valid_i, source = model_->joined_source_o;
-    ASSERT_EQ(model_->joined_valid_o, valid != 0);
-    const bool fires = model_->joined_valid_o != 0 && model_->joined_ready_i != 0;
-    ASSERT_EQ(valid & model_->stream_ready_o, fires ? 1u << source : 0u);
-    if (fires) {
-      ASSERT_EQ(model_->joined_data_o, source << 24 | next[source]);
-      ++next[source];
-      ++taken;
-      contended += (valid & (valid - 1)) != 0;
-      for (unsigned n = 0; n < 3; ++n) {
-        passed[n] = n == source || (valid >> n & 1) == 0 ? 0 : passed[n] + 1;
-        ASSERT_LE(passed[n], 2u);
-      }
-      model_->stream_valid_i = valid & ~(1u << source);
-    }
-    const unsigned left = model_->stream_valid_i;
-    model_->stream_valid_i = valid;
-    model_.clock();
-    model_->stream_valid_i = left;
-  }
-  EXPECT_GT(taken, 20'000u);
-  EXPECT_GT(contended, 5'000u);
 }
 
 TEST_F(CommonTest, DelayLinesCountOnlyClocksWithEnable) {

@@ -1,4 +1,4 @@
-// FIFOs of 2, 4 and 8 words, the same in memories with a clock, a memory, an arbiter of three streams, and delay lines of 0 to 5 clocks.
+// FIFOs of 2, 4 and 8 words, the same in memories with a clock, a memory, and delay lines of 0 to 5 clocks.
 module common_top (
   input  logic         clk_i,
   input  logic         rst_ni,
@@ -13,13 +13,6 @@ module common_top (
   input  logic         read_i,
   input  logic [3:0]   read_address_i,
   output logic [31:0]  read_o,
-  input  logic [2:0]   stream_valid_i,  // of the streams
-  output logic [2:0]   stream_ready_o,
-  input  logic [95:0]  stream_data_i,
-  output logic         joined_valid_o,
-  input  logic         joined_ready_i,
-  output logic [31:0]  joined_data_o,
-  output logic [1:0]   joined_source_o,
   input  logic         enable_i,  // of the delay lines
   output logic [191:0] delayed_o  // 32 bits for each delay line
 );
@@ -65,21 +58,6 @@ module common_top (
     .read_i,
     .read_address_i,
     .data_o(read_o)
-  );
-
-  stream_arbiter #(
-    .Width(32),
-    .Streams(3)
-  ) u_arbiter (
-    .clk_i,
-    .rst_ni,
-    .valid_i(stream_valid_i),
-    .ready_o(stream_ready_o),
-    .data_i(stream_data_i),
-    .valid_o(joined_valid_o),
-    .ready_i(joined_ready_i),
-    .data_o(joined_data_o),
-    .source_o(joined_source_o)
   );
 
   for (genvar n = 0; n < 6; n++) begin : gen_delay_line

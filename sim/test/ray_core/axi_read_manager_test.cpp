@@ -108,7 +108,6 @@ TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
       ASSERT_EQ(model->axi_arlen_o, beats - 1);
       ASSERT_EQ(1u << model->axi_arsize_o, 4 * beat_words);
       ASSERT_EQ(model->axi_arburst_o, 1);
-      ASSERT_EQ(model->axi_arprot_o, 0);
       ASSERT_EQ(model->axi_araddr_o, address);
       bursts[id] = {true, line, 0};
     }

@@ -26,7 +26,8 @@ namespace {
 
 constexpr std::uint32_t kSeed = 20261123;
 constexpr std::uint64_t kResults = 0xFEDC'BA98'7654'3FC0;
-constexpr std::uint32_t kUsers = 0x8000'0000;  // in the tags of the user's rays
+constexpr std::uint32_t kUsers = 0x8000'0000;       // in the tags of the user's rays
+constexpr std::uint32_t kCapability = 0x7013'0401;  // of 16 rays and 64 bits: registers.md
 constexpr glm::vec3 kEye{0.25f, 0.3f, 2.5f};
 
 class AxiTrafficTest : public testing::Test {
@@ -49,9 +50,9 @@ class AxiTrafficTest : public testing::Test {
 
   /// In mid-run or not: whatever was on its way is gone.
   void reset() {
-    model_->reg_awvalid_i = model_->reg_wvalid_i = model_->reg_arvalid_i = 0;
-    model_->reg_bready_i = model_->reg_rready_i = 0;
-    model_->mem_rvalid_i = model_->mem_bvalid_i = 0;
+    model_->s_axil_awvalid = model_->s_axil_wvalid = model_->s_axil_arvalid = 0;
+    model_->s_axil_bready = model_->s_axil_rready = 0;
+    model_->m_axi_rvalid = model_->m_axi_bvalid = 0;
     model_->ray_valid_i = 0;
     model_.reset();
     bursts_.clear();
@@ -84,14 +85,14 @@ class AxiTrafficTest : public testing::Test {
   }
 
   void clock() {
-    model_->mem_arready_i = !one_in(eager_);
-    model_->stream_tready_i = !one_in(eager_);
-    model_->mem_awready_i = !one_in(eager_);
-    model_->mem_wready_i = !one_in(eager_);
-    if (model_->mem_rvalid_i == 0 && !bursts_.empty() && one_in(pause_)) offer_beat();
-    if (model_->mem_bvalid_i == 0 && unanswered() != 0 && one_in(pause_)) {
-      model_->mem_bvalid_i = 1;
-      model_->mem_bresp_i = one_in(64) ? 2 + random_() % 2 : 0;
+    model_->m_axi_arready = !one_in(eager_);
+    model_->m_axis_tready = !one_in(eager_);
+    model_->m_axi_awready = !one_in(eager_);
+    model_->m_axi_wready = !one_in(eager_);
+    if (model_->m_axi_rvalid == 0 && !bursts_.empty() && one_in(pause_)) offer_beat();
+    if (model_->m_axi_bvalid == 0 && unanswered() != 0 && one_in(pause_)) {
+      model_->m_axi_bvalid = 1;
+      model_->m_axi_bresp = one_in(64) ? 2 + random_() % 2 : 0;
     }
     if (model_->ray_valid_i == 0 && !to_send_.empty() && one_in(pause_)) {
       put_ray(*model_, to_send_.back());
@@ -99,35 +100,35 @@ class AxiTrafficTest : public testing::Test {
       to_send_.pop_back();
     }
     model_.eval();
-    if ((model_->mem_arvalid_o & model_->mem_arready_i) != 0) {
+    if ((model_->m_axi_arvalid & model_->m_axi_arready) != 0) {
       const std::uint64_t base = std::uint64_t{words_[6]} << 32 | words_[5];
-      bursts_.push_back({model_->mem_arid_o, (model_->mem_araddr_o - base) / 64});
+      bursts_.push_back({model_->m_axi_arid, (model_->m_axi_araddr - base) / 64});
     }
-    const bool beat = (model_->mem_rvalid_i & model_->mem_rready_o) != 0;
-    if (beat) bad_beats_ += model_->mem_rresp_i != 0;
+    const bool beat = (model_->m_axi_rvalid & model_->m_axi_rready) != 0;
+    if (beat) bad_beats_ += model_->m_axi_rresp != 0;
     const bool ray = (model_->ray_valid_i & model_->ray_ready_o) != 0;
     in_flight_ += ray;
-    if ((model_->stream_tvalid_o & model_->stream_tready_i) != 0) {
+    if ((model_->m_axis_tvalid & model_->m_axis_tready) != 0) {
       std::array<std::uint32_t, 8> record;
-      std::memcpy(record.data(), &model_->stream_tdata_o, sizeof record);
+      std::memcpy(record.data(), &model_->m_axis_tdata, sizeof record);
       ASSERT_EQ(words_[30], 0u);
       take(result_of(record));
     }
-    if ((model_->mem_awvalid_o & model_->mem_awready_i) != 0) {
+    if ((model_->m_axi_awvalid & model_->m_axi_awready) != 0) {
       ASSERT_LT(addresses_, words_[30]);
-      ASSERT_EQ(model_->mem_awaddr_o, kResults + 32 * addresses_++);
+      ASSERT_EQ(model_->m_axi_awaddr, kResults + 32 * addresses_++);
     }
-    if ((model_->mem_wvalid_o & model_->mem_wready_i) != 0) {
-      written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o));
-      written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o >> 32));
+    if ((model_->m_axi_wvalid & model_->m_axi_wready) != 0) {
+      written_.push_back(static_cast<std::uint32_t>(model_->m_axi_wdata));
+      written_.push_back(static_cast<std::uint32_t>(model_->m_axi_wdata >> 32));
     }
-    const bool answer = model_->mem_bvalid_i != 0;
+    const bool answer = model_->m_axi_bvalid != 0;
     model_.clock();
-    if (beat) model_->mem_rvalid_i = 0;
+    if (beat) model_->m_axi_rvalid = 0;
     if (ray) model_->ray_valid_i = 0;
     if (answer) {
-      bad_answers_ += model_->mem_bresp_i != 0;
-      model_->mem_bvalid_i = 0;
+      bad_answers_ += model_->m_axi_bresp != 0;
+      model_->m_axi_bvalid = 0;
       std::array<std::uint32_t, 8> record;
       std::copy_n(&written_[8 * answered_++], 8, record.begin());
       take(result_of(record));
@@ -148,11 +149,11 @@ class AxiTrafficTest : public testing::Test {
       data = std::uint64_t{words[2 * burst.beat + 1]} << 32 | words[2 * burst.beat];
     }
     EXPECT_TRUE(wild_ || burst.line < lines.size()) << burst.line;
-    model_->mem_rid_i = burst.id;
-    model_->mem_rdata_i = data;
-    model_->mem_rresp_i = fails ? 2 + random_() % 2 : 0;
-    model_->mem_rlast_i = burst.beat == 7;
-    model_->mem_rvalid_i = 1;
+    model_->m_axi_rid = burst.id;
+    model_->m_axi_rdata = data;
+    model_->m_axi_rresp = fails ? 2 + random_() % 2 : 0;
+    model_->m_axi_rlast = burst.beat == 7;
+    model_->m_axi_rvalid = 1;
     if (++burst.beat == 8) bursts_.erase(bursts_.begin() + static_cast<std::ptrdiff_t>(n));
   }
 
@@ -208,46 +209,46 @@ class AxiTrafficTest : public testing::Test {
   // ---- Registers, with pauses; address and data in any order
 
   unsigned write(std::uint32_t address, std::uint32_t data, unsigned strobes = 15) {
-    model_->reg_awaddr_i = address;
-    model_->reg_wdata_i = data;
-    model_->reg_wstrb_i = strobes;
+    model_->s_axil_awaddr = address;
+    model_->s_axil_wdata = data;
+    model_->s_axil_wstrb = strobes;
     look_at_busy(true);
     for (bool address_taken = false, data_taken = false; !address_taken || !data_taken;) {
-      if (!address_taken && one_in(2)) model_->reg_awvalid_i = 1;
-      if (!data_taken && one_in(2)) model_->reg_wvalid_i = 1;
-      const bool takes_address = (model_->reg_awvalid_i & model_->reg_awready_o) != 0;
-      const bool takes_data = (model_->reg_wvalid_i & model_->reg_wready_o) != 0;
+      if (!address_taken && one_in(2)) model_->s_axil_awvalid = 1;
+      if (!data_taken && one_in(2)) model_->s_axil_wvalid = 1;
+      const bool takes_address = (model_->s_axil_awvalid & model_->s_axil_awready) != 0;
+      const bool takes_data = (model_->s_axil_wvalid & model_->s_axil_wready) != 0;
       clock();
-      if (takes_address) model_->reg_awvalid_i = 0;
-      if (takes_data) model_->reg_wvalid_i = 0;
+      if (takes_address) model_->s_axil_awvalid = 0;
+      if (takes_data) model_->s_axil_wvalid = 0;
       address_taken |= takes_address;
       data_taken |= takes_data;
     }
-    model_->reg_bready_i = 0;
-    for (int n = 0; model_->reg_bvalid_o == 0; ++n) {
+    model_->s_axil_bready = 0;
+    for (int n = 0; model_->s_axil_bvalid == 0; ++n) {
       EXPECT_LT(n, 4);
       clock();
     }
-    const unsigned response = model_->reg_bresp_o;
+    const unsigned response = model_->s_axil_bresp;
     while (one_in(2)) clock();
-    model_->reg_bready_i = 1;
+    model_->s_axil_bready = 1;
     clock();
-    model_->reg_bready_i = 0;
+    model_->s_axil_bready = 0;
     return response;
   }
   std::uint32_t read(std::uint32_t address) {
-    model_->reg_araddr_i = address;
+    model_->s_axil_araddr = address;
     while (one_in(2)) clock();
-    model_->reg_arvalid_i = 1;
+    model_->s_axil_arvalid = 1;
     clock();
-    model_->reg_arvalid_i = 0;
+    model_->s_axil_arvalid = 0;
     while (one_in(2)) clock();
-    EXPECT_EQ(model_->reg_rvalid_o, 1);
-    EXPECT_EQ(model_->reg_rresp_o, 0);
-    model_->reg_rready_i = 1;
-    const std::uint32_t data = model_->reg_rdata_o;
+    EXPECT_EQ(model_->s_axil_rvalid, 1);
+    EXPECT_EQ(model_->s_axil_rresp, 0);
+    model_->s_axil_rready = 1;
+    const std::uint32_t data = model_->s_axil_rdata;
     clock();
-    model_->reg_rready_i = 0;
+    model_->s_axil_rready = 0;
     return data;
   }
   /// A plain register, of which `bits` can be written: refused where the core is busy.
@@ -380,7 +381,7 @@ void AxiTrafficTest::disturb() {
       }
       if (word == 1 || word >= 5) {
         if (word != 10 && word != 31) {
-          ASSERT_EQ(read(4 * word), words_[word]) << word;
+          ASSERT_EQ(read(4 * word), word == 11 ? kCapability : words_[word]) << word;
         }
       }
   }

@@ -3,180 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
-#include <deque>
+#include <cstdlib>
 #include <map>
-#include <random>
+#include <string>
 #include <vector>
 
 #include "Vray_core_axi.h"
-#include "host/intersect/core/memory_image.h"
-#include "host/intersect/core/reference_core.h"
-#include "host/intersect/core/test/core_cases.h"
-#include "hw/ray_core/registers.h"
-#include "sim/core_port.h"
-#include "sim/test/ray_core/pixel_grid.h"
+#include "sim/test/ray_core/axi_bench.h"
 
 namespace raygate {
 namespace {
 
-constexpr std::uint32_t kSeed = 20261122;
-constexpr std::uint64_t kBase = 0x9234'5678'8000'0000, kOtherBase = 0x0000'0001'4000'0000,
-                        kResults = 0x0123'4567'89AB'CFC0;
+using test::kBase;
+using test::kOtherBase;
+using test::kSeed;
 
-class RayCoreAxiTest : public testing::Test {
- protected:
-  RayCoreAxiTest() {
-    model_->reg_awvalid_i = model_->reg_wvalid_i = model_->reg_arvalid_i = 0;
-    model_->reg_bready_i = model_->reg_rready_i = 1;
-    model_->reg_wstrb_i = 15;
-    model_->mem_arready_i = model_->mem_rvalid_i = 0;
-    model_->mem_rresp_i = 0;
-    model_->mem_rlast_i = 0;
-    model_->mem_awready_i = model_->mem_wready_i = model_->mem_bvalid_i = 0;
-    model_->mem_bresp_i = 0;
-    model_->ray_valid_i = model_->stream_tready_i = 0;
-    model_.reset();
-  }
-
-  /// A clock of the whole: memory and results too.
-  void clock() {
-    model_->mem_arready_i = random_() % 4 != 0;
-    model_->stream_tready_i = random_() % 4 != 0;
-    model_->mem_awready_i = random_() % 4 != 0;
-    model_->mem_wready_i = random_() % 4 != 0;
-    if (model_->mem_bvalid_i == 0 && unanswered_ != 0 && random_() % 4 == 0) {
-      model_->mem_bvalid_i = 1;
-    }
-    if (model_->mem_rvalid_i == 0 && !beats_.empty() && random_() % 4 != 0) {
-      model_->mem_rid_i = beats_.front().id;
-      model_->mem_rdata_i = beats_.front().data;
-      model_->mem_rlast_i = beats_.front().last;
-      model_->mem_rresp_i = beats_.front().fails ? 3 : 0;
-      model_->mem_rvalid_i = 1;
-      beats_.pop_front();
-    }
-    model_.eval();
-    if ((model_->mem_arvalid_o & model_->mem_arready_i) != 0) {
-      const bool is_other = model_->mem_araddr_o < kBase;
-      const std::uint64_t line = (model_->mem_araddr_o - (is_other ? kOtherBase : kBase)) / 64;
-      const MemoryImage& image = is_other ? other_image_ : image_;
-      ASSERT_LT(line, image.lines().size());
-      ASSERT_EQ(model_->mem_arlen_o, 7);
-      ASSERT_EQ(model_->mem_arsize_o, 3);
-      ASSERT_EQ(model_->mem_arburst_o, 1);
-      ASSERT_EQ(model_->mem_arprot_o, 0);
-      for (unsigned beat = 0; beat < 8; ++beat) {
-        const auto& words = image.lines()[line].words;
-        const std::uint64_t data = std::uint64_t{words[2 * beat + 1]} << 32 | words[2 * beat];
-        const bool fails = line == failing_line_ && beat == 2;
-        beats_.push_back({model_->mem_arid_o, fails ? 0 : data, beat == 7, fails});
-      }
-    }
-    const bool beat_taken = (model_->mem_rvalid_i & model_->mem_rready_o) != 0;
-    const bool ray_taken = (model_->ray_valid_i & model_->ray_ready_o) != 0;
-    if ((model_->stream_tvalid_o & model_->stream_tready_i) != 0) {
-      std::array<std::uint32_t, 8> record;
-      std::memcpy(record.data(), &model_->stream_tdata_o, sizeof record);
-      results_.push_back(result_of(record));
-      ASSERT_EQ(model_->stream_tlast_o, results_.back().kind == CoreResult::Kind::kEnd);
-    }
-    if ((model_->mem_awvalid_o & model_->mem_awready_i) != 0) {
-      ASSERT_EQ(model_->mem_awaddr_o, kResults + 32 * bursts_++);
-      ASSERT_EQ(model_->mem_awlen_o, 3);
-      ASSERT_EQ(model_->mem_awsize_o, 3);
-      ASSERT_EQ(model_->mem_awburst_o, 1);
-      ASSERT_EQ(model_->mem_awprot_o, 0);
-    }
-    if ((model_->mem_wvalid_o & model_->mem_wready_i) != 0) {
-      ASSERT_EQ(model_->mem_wstrb_o, 0xFF);
-      ASSERT_EQ(model_->mem_wlast_o, written_.size() % 8 == 6);
-      written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o));
-      written_.push_back(static_cast<std::uint32_t>(model_->mem_wdata_o >> 32));
-    }
-    unanswered_ = std::min<std::size_t>(bursts_, written_.size() / 8) - answered_;
-    const bool answered = model_->mem_bvalid_i != 0;
-    model_.clock();
-    if (answered) {
-      ++answered_;
-      --unanswered_;
-      model_->mem_bvalid_i = 0;
-    }
-    if (beat_taken) model_->mem_rvalid_i = 0;
-    if (ray_taken) model_->ray_valid_i = 0;
-  }
-
-  /// The answer: 0, or 2 for what is refused.
-  unsigned write(std::uint32_t address, std::uint32_t data) {
-    model_->reg_awaddr_i = address;
-    model_->reg_wdata_i = data;
-    model_->reg_awvalid_i = model_->reg_wvalid_i = 1;
-    EXPECT_EQ(model_->reg_awready_o & model_->reg_wready_o, 1);
-    clock();
-    model_->reg_awvalid_i = model_->reg_wvalid_i = 0;
-    clock();
-    EXPECT_EQ(model_->reg_bvalid_o, 1);
-    return model_->reg_bresp_o;
-  }
-  void write(std::uint32_t address, const glm::vec3& vector) {
-    for (int k = 0; k < 3; ++k) {
-      write(address + 4 * static_cast<unsigned>(k), std::bit_cast<std::uint32_t>(vector[k]));
-    }
-  }
-
-  std::uint32_t read(std::uint32_t address) {
-    model_->reg_araddr_i = address;
-    model_->reg_arvalid_i = 1;
-    clock();
-    model_->reg_arvalid_i = 0;
-    const std::uint32_t data = model_->reg_rdata_o;
-    EXPECT_EQ(model_->reg_rvalid_o, 1);
-    EXPECT_EQ(model_->reg_rresp_o, 0);
-    clock();
-    return data;
-  }
-
-  /// Takes the records in memory for results; those that come later go to the buffer's beginning.
-  void collect() {
-    ASSERT_EQ(read(RAYGATE_WRITTEN), answered_);
-    for (std::size_t at = 0; at < 8 * answered_; at += 8) {
-      std::array<std::uint32_t, 8> record;
-      std::copy_n(written_.begin() + static_cast<std::ptrdiff_t>(at), 8, record.begin());
-      results_.push_back(result_of(record));
-    }
-    bursts_ = answered_ = 0;
-    written_.clear();
-    ASSERT_EQ(write(RAYGATE_COMMAND, RAYGATE_COMMAND_REWIND), 0u);
-  }
-
-  void look();
-  void draw(std::uint32_t side);
-  static CoreResult reference(const MemoryImage& image, std::uint32_t pixel);
-
-  static constexpr glm::vec3 kEye{0.25f, 0.3f, 2.5f};
-  static constexpr PixelGrid kGrid{glm::vec3(-0.6f, 0.5f, -1.0f), glm::vec3(0.05f, 0.001f, 0.0f),
-                                   glm::vec3(0.0f, -0.05f, 0.002f)};
-
-  struct Beat {
-    std::uint32_t id;
-    std::uint64_t data;
-    bool last, fails;
-  };
-
-  Bvh bvh_{test::scene_of(test::bodies())};
-  MemoryImage image_{bvh_};
-  Bvh other_bvh_{test::scene_of(test::box(glm::vec3(-0.7f), glm::vec3(0.6f)))};
-  MemoryImage other_image_{other_bvh_};
-  std::uint64_t failing_line_ = ~std::uint64_t{0};  // answered with DECERR
-  std::mt19937 random_{kSeed};
-  Model<Vray_core_axi> model_;
-  std::deque<Beat> beats_;
-  std::size_t bursts_ = 0, answered_ = 0, unanswered_ = 0;  // records on their way to memory
-  std::vector<std::uint32_t> written_;
-  std::vector<CoreResult> results_;
-  std::map<std::uint32_t, CoreResult> ends_;  // by pixel
-};
+class RayCoreAxiTest : public test::AxiBench<Vray_core_axi> {};
 
 TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
@@ -198,9 +40,7 @@ TEST_F(RayCoreAxiTest, TwoWritesDrawAPicture) {
     write(0x010, 63);
     write(0x024, kHeight << 16 | kWidth);
     // The second one to memory, through a buffer that is read and rewound when it is full.
-    write(RAYGATE_RESULTS, static_cast<std::uint32_t>(kResults) | 31);
-    write(RAYGATE_RESULTS_HIGH, static_cast<std::uint32_t>(kResults >> 32));
-    write(RAYGATE_LENGTH, frame == 0 ? 0 : 100);
+    use_buffer(frame == 0 ? 0 : 100);
     write(0x00C, RAYGATE_FLAGS_DONE | RAYGATE_FLAGS_FULL);
     write(0x004, 1 | 4);
     int rewound = 0;
@@ -336,44 +176,6 @@ TEST_F(RayCoreAxiTest, ACommandWhileRaysAreInTheCoreIsRefused) {
   EXPECT_EQ(write(0x004, 1), 0u);
 }
 
-/// Where a camera stands that looks at the middle of things, through pixels of 0.03.
-void RayCoreAxiTest::look() {
-  write(0x014, static_cast<std::uint32_t>(kBase));
-  write(0x018, static_cast<std::uint32_t>(kBase >> 32));
-  write(0x030, kEye);
-  write(0x040, kGrid.first);
-  write(0x050, kGrid.right);
-  write(0x060, kGrid.down);
-}
-
-/// Draws `side` x `side` pixels; what each pixel's end says.
-void RayCoreAxiTest::draw(std::uint32_t side) {
-  results_.clear();
-  ends_.clear();
-  write(0x00C, 2);
-  write(0x010, 15);
-  write(0x024, side << 16 | side);
-  ASSERT_EQ(write(0x004, 1), 0u);
-  for (int n = 0; model_->interrupt_o == 0; ++n) {
-    ASSERT_LT(n, 100'000);
-    clock();
-  }
-  while ((read(0x008) & 4) != 0) clock();  // lines that were read ahead
-  for (const CoreResult& result : results_) {
-    if (result.kind == CoreResult::Kind::kEnd) ends_[result.tag] = result;
-  }
-  ASSERT_EQ(ends_.size(), side * side);
-}
-
-/// What the reference says of the same pixel.
-CoreResult RayCoreAxiTest::reference(const MemoryImage& image, std::uint32_t pixel) {
-  const CoreRay ray{.ray = {kEye, kGrid.direction(static_cast<std::uint16_t>(pixel),
-                                                  static_cast<std::uint16_t>(pixel >> 16))}};
-  std::vector<CoreResult> results;
-  ReferenceCore().trace(image.lines(), {&ray, 1}, results);
-  return results.back();
-}
-
 /// A line that memory fails to give is told of, by its number and by the ends of the rays that
 /// needed it, and is read again by those that come later.
 TEST_F(RayCoreAxiTest, AnErrorOfMemoryStaysOne) {
@@ -496,6 +298,86 @@ TEST_F(RayCoreAxiTest, NodesAreLimitedByTheLinesOfMemory) {
   write(0x01C, static_cast<std::uint32_t>(image_.lines().size()));
   draw(10);
   for (const auto& [pixel, end] : ends_) ASSERT_EQ(end.error, CoreResult::Error::kNone);
+}
+
+/// Memory is read whether results are taken or not: where the stream's user or the buffer's takes
+/// none, the core asks for no more tests than it can keep.
+TEST_F(RayCoreAxiTest, ReadsDoNotWaitForResults) {
+  look();
+  takes_results_ = false;
+  trace(300, 20'000);
+  EXPECT_TRUE(results_.empty());
+  EXPECT_TRUE(beats_.empty()) << "lines that were asked for and not accepted";
+  takes_results_ = true;
+  trace(300, 50'000);
+  const auto is_doubt = [](const CoreResult& result) {
+    return result.kind == CoreResult::Kind::kDoubt;
+  };
+  EXPECT_GT(std::ranges::count_if(results_, is_doubt), 100);
+}
+
+/// A bridge that does one transaction at a time, as AXI to AHB does.
+TEST_F(RayCoreAxiTest, WritesWaitForReadsAndCome) {
+  look();
+  is_single_ = true;
+  use_buffer(10'000);
+  trace(300, 50'000);
+  for (int n = 0; (read(RAYGATE_STATUS) & RAYGATE_STATUS_TRACING) != 0; ++n) ASSERT_LT(n, 50'000);
+  EXPECT_GT(answered_, 400u) << "300 ends, and doubts";
+}
+
+/// A full buffer that nobody empties: all lines that were asked for are accepted.
+TEST_F(RayCoreAxiTest, AFullBufferStopsNoRead) {
+  look();
+  use_buffer(4);
+  trace(300, 20'000);
+  EXPECT_TRUE(beats_.empty());
+  EXPECT_EQ(answered_, 4u);
+}
+
+/// A frame whose records go to memory, from the random state that a seed gives.
+class Frame : public RayCoreAxiTest {
+ public:
+  std::vector<std::uint32_t> words() {
+    look();
+    use_buffer(10'000);
+    write(RAYGATE_SIZE, 20u << 16 | 20u);
+    write(RAYGATE_COMMAND, RAYGATE_COMMAND_START);
+    for (int n = 0; (read(RAYGATE_FLAGS) & RAYGATE_FLAGS_DONE) == 0; ++n) EXPECT_LT(n, 50'000);
+    trace(400, 50'000);
+    while ((read(RAYGATE_STATUS) & RAYGATE_STATUS_TRACING) != 0) continue;
+    return written_;
+  }
+
+ private:
+  void TestBody() override {}
+};
+
+/// Results are a function of rays and memory: words that say nothing are zero.
+TEST(RayCoreAxi, RecordsAreTheSameFromAnyPowerUpState) {
+  const char* before = std::getenv("RAYGATE_RANDOM_RESET");
+  const std::string seed = before != nullptr ? before : "";
+  std::vector<std::uint32_t> frames[2];
+  for (const char* state : {"1", "2"}) {
+    setenv("RAYGATE_RANDOM_RESET", state, 1);
+    frames[*state - '1'] = Frame().words();
+  }
+  before != nullptr ? setenv("RAYGATE_RANDOM_RESET", seed.c_str(), 1)
+                    : unsetenv("RAYGATE_RANDOM_RESET");
+  ASSERT_EQ(frames[0].size(), frames[1].size());
+  EXPECT_EQ(frames[0], frames[1]);
+  int misses = 0, doubts = 0;
+  for (auto at = frames[0].begin(); at != frames[0].end(); at += 8) {
+    const bool is_doubt = (at[0] & 1) != 0, found = (at[0] & 2) != 0;
+    misses += !is_doubt && !found;
+    doubts += is_doubt;
+    EXPECT_TRUE(found || at[0] >> 5 == 0);
+    EXPECT_TRUE(found || is_doubt || at[2] == 0);
+    EXPECT_TRUE(!is_doubt || (at[0] == 1 && at[7] == 0));
+    EXPECT_TRUE(found || std::all_of(at + 3, at + 7, [](std::uint32_t word) { return word == 0; }));
+  }
+  EXPECT_GT(misses, 50);
+  EXPECT_GT(doubts, 10);
 }
 
 }  // namespace

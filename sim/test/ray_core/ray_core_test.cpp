@@ -13,8 +13,6 @@
 
 #include "Vray_core_shared.h"
 #include "Vray_core_small.h"
-#include "Vray_cores_cached.h"
-#include "Vray_cores_small.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
@@ -102,33 +100,7 @@ TEST_F(RayCoreTest, CoresShareAMemory) {
   EXPECT_GT(clocks({}, {.rays = 1}), 10.0 * one) << "rays wait for each other";
 }
 
-/// Two cores in RTL behind their arbiter: the same hits, in about the clocks of two cores that
-/// CoreModel joins.
-TEST_F(RayCoreTest, CoresInHardwareShareAMemory) {
-  const std::vector<Ray> rays = some_rays(bodies(), random_, 500);
-  const auto clocks = [&](std::unique_ptr<CoreUnit> unit) {
-    check(rays, {}, std::move(unit));
-    EXPECT_GE(counters_.rays, rays.size());
-    return static_cast<double>(counters_.clocks);
-  };
-  for (const MemoryTiming& timing :
-       {MemoryTiming{}, MemoryTiming{.bytes = 2}, MemoryTiming{.disorder = 100, .not_taken = 64}}) {
-    const CoreStalls stalls{.not_taken = timing.not_taken};
-    const auto joined = [&](int cores) {
-      return std::make_unique<CoreModel<Vray_core_small>>(timing, stalls, CoreSet{.cores = cores});
-    };
-    const double one = clocks(joined(1)), two = clocks(joined(2));
-    const double in_hardware =
-        clocks(std::make_unique<CoreModel<Vray_cores_small>>(timing, stalls));
-    EXPECT_NEAR(in_hardware / two, 1.0, 0.1) << one;
-    if (timing.bytes == 64) {
-      EXPECT_LT(in_hardware, 0.6 * one);
-    }
-  }
-}
-
-/// Resets in mid-run, at any clock, of a core and of cores behind their arbiter: then the next rays
-/// hit what they should.
+/// Resets in mid-run, at any clock: then the next rays hit what they should.
 TEST_F(RayCoreTest, ResetsInMidRunLeaveNothing) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 100);
   std::vector<CoreRay> abandoned;
@@ -145,8 +117,6 @@ TEST_F(RayCoreTest, ResetsInMidRunLeaveNothing) {
   for (int round = 0; round < 8; ++round) {
     run(std::make_unique<CoreModel<Vray_core_small>>(timing, stalls));
     run(std::make_unique<CoreModel<Vray_core_shared>>(timing, stalls));
-    run(std::make_unique<CoreModel<Vray_cores_small>>(timing, stalls));
-    run(std::make_unique<CoreModel<Vray_cores_cached>>(timing, stalls));
   }
 }
 
@@ -180,24 +150,6 @@ TEST_F(RayCoreTest, ScenesFollowEachOther) {
   }
   EXPECT_GT(compared, 600u);
   EXPECT_NE(found[0], found[1]);
-}
-
-/// A cache that the cores share: the same hits, some clocks later where memory is near; a narrow
-/// memory is waited for less.
-TEST_F(RayCoreTest, CoresShareACache) {
-  const std::vector<Ray> rays = some_rays(bodies(), random_, 300);
-  const auto clocks = [&](std::unique_ptr<CoreUnit> unit) {
-    check(rays, {}, std::move(unit));
-    return static_cast<double>(counters_.clocks);
-  };
-  for (const MemoryTiming& timing :
-       {MemoryTiming{}, MemoryTiming{.bytes = 2}, MemoryTiming{.disorder = 100, .not_taken = 64}}) {
-    const CoreStalls stalls{.not_taken = timing.not_taken};
-    const double without = clocks(std::make_unique<CoreModel<Vray_cores_small>>(timing, stalls));
-    const double with = clocks(std::make_unique<CoreModel<Vray_cores_cached>>(timing, stalls));
-    std::printf("clocks with a shared cache: %.2f of those without\n", with / without);
-    EXPECT_LT(with, (timing.bytes == 2 ? 0.7 : 1.15) * without);
-  }
 }
 
 TEST_F(RayCoreTest, ArithmeticsGiveTheSame) {

@@ -81,7 +81,7 @@ module ray_contexts #(
   assign result_kind_o  = result.kind;
   assign result_mark_o  = result.tag[31];
   assign result_point_o = result.point[95];
-  assign result_known_o = result.t_error != ray_core_pkg::NoT;
+  assign result_known_o = result.found & result.t_error != ray_core_pkg::NoT;
 
   ray_retire #(
     .Rays(Rays)
