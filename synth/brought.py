@@ -15,7 +15,7 @@ import re
 import subprocess
 from collections.abc import Callable, Iterator
 
-from synth import catalogue, cores, float_proofs, mapping, prove, store, tools
+from synth import catalogue, cores, float_proofs, mapping, prove, store, tools, yosys
 from synth.assertions import Proof, holds
 
 # What they are checked with, so that a width written as a number is found.
@@ -144,11 +144,10 @@ def _lint(name: str, text: str, top: str, folder: pathlib.Path) -> None:
 def _ports(top: str, file: pathlib.Path, folder: pathlib.Path) -> dict[str, tuple[str, int]]:
     """Directions and widths of a module's ports, by Yosys, at the sizes of SAMPLES. Raises ValueError where it cannot read it."""
     files = {each.stem: each for core in ("arith", "fp") for each in cores.files(core)} | {file.stem: file}
-    sizes = " ".join(f"-chparam {key} {value}" for key, value in SAMPLES.items() if key in _parameters(file.read_text()))
+    sizes = [(key, value) for key, value in SAMPLES.items() if key in _parameters(file.read_text())]
     out = folder / f"{top}.json"
     try:
-        tools.run(["yosys", "-p", f"read_verilog -sv -defer -DSYNTHESIS {' '.join(map(str, cores.used(file.stem, [*files.values()])))}; "
-                   f"hierarchy -check -top {top} {sizes}; proc; write_json {out}"], folder / f"{top}.log")
+        yosys.run(f"{yosys.read(cores.used(file.stem, [*files.values()]), top, sizes)}\nwrite_json {out}", folder / f"{top}.log")
     except tools.ToolFailed as error:
         said = re.search(r"^(\S+:\d+): ERROR: (.*)$", str(error), re.M) or re.search(r"^(ERROR): (.*)$", str(error), re.M)
         raise ValueError(f"{said[1]}: {said[2]}" if said else str(error)) from error
@@ -180,11 +179,11 @@ def in_place(folder: pathlib.Path) -> Iterator[None]:
 
 
 def widths(module: str, unit: catalogue.Design) -> list[int]:
-    """The values of Width that a module has within a unit."""
-    overrides = " ".join(f"-chparam {name} {value}" for name, value in unit.parameters)
-    said = tools.run(["yosys", "-p", f"read_verilog -sv -defer -DSYNTHESIS {' '.join(map(str, unit.sources()))}; "
-                      f"hierarchy -check -top {unit.top} {overrides}"], store.OUT / "widths.log")
-    return sorted({int(bits, 2) for bits in re.findall(rf"\\{module}\\Width=32'([01]+)", said)})
+    """The widths of a module's a_i within a unit."""
+    out = store.OUT / "widths.json"
+    yosys.run(f"{yosys.read(unit.sources(), unit.top, unit.parameters)}\nwrite_json {out}", out.with_suffix(".log"))
+    return sorted({len(found["ports"]["a_i"]["bits"]) for name, found in json.loads(out.read_text())["modules"].items()
+                   if name.startswith(f"{module}$")})
 
 
 def in_words(word: str, claim: str, values: dict[str, str]) -> str:

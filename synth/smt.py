@@ -8,8 +8,10 @@ import pathlib
 import re
 import sys
 
-from synth import tools
+from synth import tools, yosys
 
+# One module, its assertions, assumptions and covers as cells that hold in every state, whatever clock they are read by.
+FLAT = "flatten -noscopeinfo\nopt\nsetparam -set TRG_ENABLE 0 t:$check\nchformal -lower"
 FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
 
 
@@ -66,12 +68,13 @@ def ports(model: str, top: str, suffix: str = "", before: str = "",
 
 
 def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: pathlib.Path,
-                keep: str = "") -> str:
-    """A module as SMT-LIB; its netlist goes to `keep`."""
-    smt2 = folder / "model.smt2"
-    tools.run(["yosys", "-c", FLOAT / "model.tcl"], folder / "yosys.log", {
-        "SOURCES": " ".join(map(str, sources)), "TOP": top, "PARAMETERS": parameters,
-        "SMT2": str(smt2), "KEEP": keep})
+                keep: pathlib.Path | None = None) -> str:
+    """A module with parameters ("Name value ...") as functions of SMT-LIB, one of a state for every wire, the state being the
+    inputs and what contracts leave free; its netlist goes to `keep`, for faults to be put into."""
+    smt2, words = folder / "model.smt2", parameters.split()
+    yosys.run("\n".join([yosys.read(sources, top, zip(words[::2], words[1::2])), FLAT,
+                         *([f"write_rtlil {keep}"] if keep else []), f"dffunmap\nwrite_smt2 -stbv -wires {smt2}"]),
+              folder / "yosys.log")
     return smt2.read_text()
 
 
