@@ -6,8 +6,8 @@ import re
 from collections.abc import Callable
 
 from synth import catalogue, cores, induction, smt, store, tools, yosys
+from synth.smt import PROOFS
 
-PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
 # A line of a counterexample of Yosys's: name, decimal, hexadecimal, bits.
 PORT = re.compile(r"^  \\(\S+) +\S+ +\S+ +([01x]+)$", re.M)
 
@@ -48,7 +48,7 @@ def opened(name: str, wires: str, memories: str = "", **parameters: object) -> P
         port = memory.replace(".", "_")
         held = ",".join(f"\\{memory}[{place}]" for place in reversed(range(int(depth))))
         lines += [f"add -output {port} {int(depth) * int(width)}", f"connect -set {port} {held}"]
-    return lambda rtl: "\n".join([yosys.read(rtl, name, parameters.items()), *lines, "cd .."])
+    return lambda rtl: "\n".join([smt.read(rtl, name, parameters.items()), *lines, "cd .."])
 
 
 def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = None,
@@ -68,13 +68,13 @@ def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = No
     hardware = cores.used(top, [*rtl("arith"), own])[:-1] if sources is None else sources
     read = [*(file for file in hardware if not prepare or file.stem in beside or file.stem.endswith("_pkg")), own]
     solver = smt.version() if method == "Bitwuzla" else ""
-    wanted = store.key([*hardware, *read], yosys.version(), solver, method, parameters, steps,
-                       reach, prepare and prepare([]))
+    wanted = store.key([*hardware, *read, smt.FREE], yosys.version(), solver, method, parameters, steps,
+                       reach, prepare and prepare([]).replace(f"{tools.ROOT}/", ""))
 
     def work() -> dict:
         smt2 = folder / "model.smt2"
         said = yosys.run("\n".join([
-            *([prepare(hardware)] if prepare else []), yosys.read(read, top, parameters), smt.FLAT, "select -assert-min 1 t:$assert",
+            *([prepare(hardware)] if prepare else []), smt.read(read, top, parameters), smt.FLAT, "select -assert-min 1 t:$assert",
             *([f"async2sync\ndffunmap\nwrite_smt2 -stbv -wires {smt2}"] if method == "Bitwuzla" else
               ["select -assert-none t:$assume", "sat -prove-asserts -show-ports -set-def-inputs"])]), folder / "yosys.log")
         if method == "Bitwuzla":

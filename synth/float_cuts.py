@@ -74,7 +74,7 @@ def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
     folder = store.OUT / "proofs" / f"float.cuts.{cut.name}.{name}.{arithmetic}"
     uncut = FloatProof(cut.uncut, name, arithmetic)
     parameters = f"ExpWidth {exp} FracWidth {frac} {ARITHMETIC[arithmetic]} {cut.parameters}"
-    wanted = store.key([*uncut.sources(), FLOAT / "solve.py"],
+    wanted = store.key([*uncut.sources(), smt.FREE, FLOAT / "solve.py"],
                        yosys.version(), smt.version(), parameters, cut.latency[name])
 
     def work() -> dict:

@@ -246,7 +246,7 @@ def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
 def proven(one: FloatProof) -> tuple[dict, bool]:
     """Proves a claim; raises ToolFailed, with the operands, where it does not hold."""
     folder = store.OUT / "proofs" / f"float.{one.name}"
-    wanted = store.key([*one.sources(), FLOAT / "solve.py"],
+    wanted = store.key([*one.sources(), smt.FREE, FLOAT / "solve.py"],
                        yosys.version(), smt.version(), one.parameters, one.texts(), *filter(None, [one.case()]))
 
     def work() -> dict:

@@ -67,10 +67,11 @@ def _gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
     if flow == "blocks":  # a read enable becomes the memory's, or its word would wait in a register behind it
         lines += ["opt_dff -nosdff ram$*"]
     if flow in ("parts", "blocks"):
-        lines += [_kept("fp_*_stages", *blocks)]
+        lines += [_kept("fp_*_stages", *(blocks if flow == "blocks" else []))]
     if flow == "modules":
         lines += [_kept(*PICTURED)]
-    lines += ["flatten -noscopeinfo", "opt_expr", "opt_merge", "opt_clean"]
+    # opt_dff: a reset to a constant, which the reader states as an asynchronous load.
+    lines += ["flatten -noscopeinfo", "opt_expr", "opt_merge", "opt_dff -nodffe -nosdff", "opt_clean"]
     if flow == "blocks":
         lines += ["memory -nomap", f"read_verilog -lib {tools.FLOWS}/kept_memory.v", f"techmap -map {tools.FLOWS}/kept_memories.v",
                   f"tee -q -o {out}.memories dump t:kept_memory"]

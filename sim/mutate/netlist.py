@@ -17,9 +17,9 @@ from synth import cores, tools, yosys
 MODES = ("inv", "const0", "const1")
 # Nobody reads such a wire.
 UNUSED = re.compile(r"-wire \S*\bunused_")
-# Memories whose ports have clocks of their own, or asynchronous reads an enable, are not written as Verilog; nor are tables
-# whose words come from elsewhere.
-NOT_WRITTEN = re.compile(r"mem(rd|wr)\S* -port \S*CLK\b|memrd\S* -port \S*EN\b|mem\.cc:\d+:emit")
+# Ports of memories that faults may be at: those whose ports have clocks of their own, or asynchronous reads an enable, are not
+# written as Verilog; nor are tables whose words come from elsewhere.
+MEMORIES = {"memrd": ("ADDR", "DATA"), "memwr": ("ADDR", "DATA", "EN"), "meminit": ()}
 
 
 def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: int,
@@ -27,15 +27,21 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     """Writes OUT.v, OUT.list and OUT.il; returns the number of faults. Raises ToolFailed and MissingTool."""
     files = dict.fromkeys(file for core in cores.names() for file in cores.files(core))
     kept = " ".join(f"--blackboxed-module {module}" for module in around)
+    # Yosys writes what a module derives from its parameters as parameters, too.
+    derived = [f"setparam {' '.join(f'-unset {name}' for name in names)} t:{file.stem}" for file in files if file.stem in around
+               if (names := re.findall(r"^ +localparam [^=;]*?(\w+) *=", file.read_text(), re.M))]
     faults = out.with_suffix(".list")
     # Of the modes that Yosys chooses from three in five are of use here; outside of the cores, one fault in ten.
     chosen_from = (20 if without else 2) * count + 20
     yosys.run(f"{yosys.read(files, top, (text.split('=', 1) for text in parameters), kept)}\n"
-              f"flatten -noscopeinfo\nopt -full\nopt_clean\nwrite_rtlil {out}.il\n"
-              f"mutate -list {chosen_from} -seed {seed} -o {faults}", out.with_suffix(".log"))
+              "flatten -noscopeinfo\nopt -full\nopt_clean\n" + "\n".join(derived) + f"\nwrite_rtlil {out}.il\n"
+              + "\n".join(f"tee -q -o {out}.{kind} select -list t:${kind}*" for kind in MEMORIES) +
+              f"\nmutate -list {chosen_from} -seed {seed} -o {faults}", out.with_suffix(".log"))
+    ports = {cell.partition("/")[2]: ports for kind, ports in MEMORIES.items()
+             for cell in pathlib.Path(f"{out}.{kind}").read_text().splitlines()}
     lines = [line for line in faults.read_text().splitlines()
              if re.search(r"-mode (\w+)", line).group(1) in MODES
-             and not NOT_WRITTEN.search(line) and not UNUSED.search(line)
+             and re.search(r"-port (\w+)", line)[1] in ports.get(re.search(r"-cell (\S+)", line)[1], line) and not UNUSED.search(line)
              and (not without or "hw/" in line and not any(folder in line for folder in without))][:count]
     lines = [line.replace("mutate ", f"mutate -ctrl mutant 16 {number} ", 1)
              for number, line in enumerate(lines, 1)]
