@@ -53,7 +53,7 @@ def modules_json(design: Design, out: pathlib.Path) -> str:
 
 def plain_verilog(design: Design, out: pathlib.Path) -> str:
     """A design and all that it instantiates as one file of plain Verilog."""
-    return f"{elaborated(design)}\nproc\nopt_expr\nopt_clean\nwrite_verilog -noattr {out}"
+    return f"{elaborated(design)}\nproc\nopt_expr\nopt_clean\nbwmuxmap\nwrite_verilog -noattr {out}"
 
 
 def _kept(*modules: str) -> str:
