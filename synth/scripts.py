@@ -48,7 +48,7 @@ def structure_json(design: Design, out: pathlib.Path) -> str:
 
 def modules_json(design: Design, out: pathlib.Path) -> str:
     """A design as JSON, its instances as they are."""
-    return f"{elaborated(design)}\nproc\nopt_expr\nopt_dff\nmemory_collect\nopt_clean\nwrite_json {out}"
+    return f"{elaborated(design)}\nproc\nopt_expr\nopt_clean\nopt_dff\nmemory_collect\nopt_clean\nwrite_json {out}"
 
 
 def plain_verilog(design: Design, out: pathlib.Path) -> str:
@@ -65,7 +65,7 @@ def _gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
     """Of an elaborated design, gates and registers. Nothing here looks across a multiplexer, so carry-select stays that."""
     lines = ["proc"]
     if flow == "blocks":  # a read enable becomes the memory's, or its word would wait in a register behind it
-        lines += ["opt_dff -nosdff ram$*"]
+        lines += ["opt_clean", "opt_dff -nosdff ram$*"]
     if flow in ("parts", "blocks"):
         lines += [_kept("fp_*_stages", *(blocks if flow == "blocks" else []))]
     if flow == "modules":

@@ -19,7 +19,7 @@ def memories(top: str) -> dict:
     with tempfile.TemporaryDirectory() as folder:
         netlist = pathlib.Path(folder) / "netlist.json"
         yosys.run(f"{yosys.read(cores.used(top, cores.files('ray_core')), top)}\n"
-                  f"opt_expr\nopt_dff\nopt_clean\nmemory -nomap\nwrite_json {netlist}", netlist.with_suffix(".log"))
+                  f"opt_expr\nopt_clean\nopt_dff\nopt_clean\nmemory -nomap\nwrite_json {netlist}", netlist.with_suffix(".log"))
         modules = json.loads(netlist.read_text())["modules"]
     found = {}
     for module, content in modules.items():

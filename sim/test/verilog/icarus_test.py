@@ -25,8 +25,8 @@ def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.
     empty = " ".join(f"-unset INITVAL_{row:02X}" for row in range(64))
     # Yosys's models of the cells as Yosys reads them: Icarus Verilog refuses their $error.
     yosys.run(f"read_json {netlist}\nchtype -set block_ram t:DP16KD\nsetparam {empty} t:block_ram\n"
-              f"read_verilog -overwrite +/ecp5/cells_sim.v\nhierarchy -top {top}\nproc\nsetattr -mod -unset lib_whitebox *\nwrite_verilog -noattr {out}",
-              out.with_suffix(".log"))
+              f"delete =$paramod*\nread_verilog -overwrite +/ecp5/cells_sim.v\nhierarchy -top {top}\nproc\n"
+              f"setattr -mod -unset lib_whitebox *\nwrite_verilog -noattr {out}", out.with_suffix(".log"))
     return [out, tools.FLOWS / "ecp5_cells.v"]
 
 
