@@ -102,7 +102,7 @@ def kept_memories(dump: str) -> dict[str, int]:
 
 def statistics(file: pathlib.Path) -> dict[str, dict]:
     """Of each module what Yosys's `stat -json` states: its area (liberty units) and its cells by type, with all that is in it."""
-    return {name.removeprefix("\\"): module for name, module in json.loads(file.read_text())["modules"].items()}
+    return {name.removeprefix("\\"): {"area": 0, **module} for name, module in json.loads(file.read_text())["modules"].items()}
 
 
 def block_costs(modules: dict[str, dict], memories: dict[str, int]) -> dict[str, dict]:
