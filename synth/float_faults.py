@@ -12,7 +12,7 @@ import pathlib
 import subprocess
 import sys
 
-from synth import float_proofs, smt, store, tables, tools
+from synth import float_proofs, smt, store, tables, tools, yosys
 
 CLAIMS = {"add": "add", "multiply": "multiply_whole", "divide": "divide_whole",
           "compare": "compare"}
@@ -105,10 +105,13 @@ def put_faults(core: str, count: int, seed: int) -> Faulty:
     one = float_proofs.FloatProof(CLAIMS[core], "binary16", "structural")
     netlist, smt2 = folder / "netlist.il", folder / "faulty.smt2"
     top = float_proofs.OPERATIONS[CLAIMS[core]].top
-    smt.write_model(one.sources(), top, one.parameters, folder, str(netlist))
-    tools.run(["yosys", "-c", float_proofs.FLOAT / "faults.tcl"], folder / "faults.log", {
-        "NETLIST": str(netlist), "FAULTS": str(count), "SEED": str(seed),
-        "LIST": str(folder / "faults.txt"), "SMT2": str(smt2)})
+    faults = folder / "faults.txt"
+    smt.write_model(one.sources(), top, one.parameters, folder, netlist)
+    yosys.run(f"""read_rtlil {netlist}
+mutate -list {count} -seed {seed} -ctrl fault_i 8 1 -o {faults}
+script {faults}
+opt_clean
+write_smt2 -stbv -wires {smt2}""", folder / "faults.log")
     text, wires = float_proofs.query(one, smt2.read_text())
     return Faulty(core, folder, text + "(assert assumed)\n(assert (not claimed))\n", tuple(wires))
 

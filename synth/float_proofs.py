@@ -12,7 +12,7 @@ import pathlib
 import re
 import string
 
-from synth import cores, smt, store, tools
+from synth import cores, smt, store, tools, yosys
 
 FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
 
@@ -246,8 +246,8 @@ def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
 def proven(one: FloatProof) -> tuple[dict, bool]:
     """Proves a claim; raises ToolFailed, with the operands, where it does not hold."""
     folder = store.OUT / "proofs" / f"float.{one.name}"
-    wanted = store.key([*one.sources(), FLOAT / "model.tcl", FLOAT / "solve.py"],
-                       tools.version("yosys"), smt.version(), one.parameters, one.texts(), *filter(None, [one.case()]))
+    wanted = store.key([*one.sources(), smt.FREE, FLOAT / "solve.py"],
+                       yosys.version(), smt.version(), one.parameters, one.texts(), *filter(None, [one.case()]))
 
     def work() -> dict:
         top = OPERATIONS[one.operation].top

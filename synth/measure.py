@@ -3,7 +3,7 @@
 import dataclasses
 import sys
 
-from synth import fpga, mapping, runner, tools
+from synth import fpga, mapping, runner, tools, yosys
 from synth.catalogue import FPGAS, LIBRARIES, Row
 
 
@@ -22,7 +22,7 @@ def available(names: list[str] | None, whole: bool = True) -> tuple[str, ...]:
     placer is absent is left out of a run of everything. A run that is not `whole` leaves out FPGAs, which
     a large unit may not fit, and cells that would have to be measured first: both take longer than one design.
     """
-    tools.find("yosys")
+    yosys.folder()
     chosen = []
     for library in LIBRARIES:
         if not names and not whole and not library.is_made:

@@ -3,7 +3,7 @@
 import json
 import platform
 
-from synth import store, tables, tools
+from synth import store, tables, tools, yosys
 from synth.catalogue import FLOWS, FPGAS, LIBRARIES
 
 TITLES = {target.name: target.title for target in [*LIBRARIES, *FPGAS]}
@@ -100,9 +100,9 @@ def blocks_table(record: dict) -> str:
 
 def versions() -> str:
     """The tools and their versions, one line."""
-    names = ["yosys", "sta", *dict.fromkeys(device.tool for device in FPGAS)]
+    names = ["sta", *dict.fromkeys(device.tool for device in FPGAS)]
     stated = [f"{name} {tools.version(name)}" for name in names if tools.installed(name)]
-    return ", ".join([*stated, f"Python {platform.python_version()}"])
+    return ", ".join([f"yosys {yosys.version()}", *stated, f"Python {platform.python_version()}"])
 
 
 def write(records: list[dict], sections: list[tuple[str, str]]) -> None:

@@ -8,7 +8,7 @@ so every figure goes with its counting.
 import dataclasses
 import pathlib
 
-from synth import mapping, store, tools
+from synth import mapping, scripts, store, tools, yosys
 from synth.catalogue import Design
 
 
@@ -34,16 +34,14 @@ def netlist(design: Design) -> dict:
     """The module of `design` as Yosys's JSON, flattened to structure.v's cells and gates; `names`: the bits of each word of
     the sources."""
     folder = store.OUT / "structure" / design.name
-    scripts = ("structure_json.tcl", "structure.tcl", "elaborate.tcl", "known_inputs.v")
-    files = [*design.sources(structural=True), *(tools.FLOWS / name for name in scripts)]
-    wanted = store.key(files, tools.version("yosys"), design.facts, "with names")
+    files = [*design.sources(structural=True), tools.FLOWS / "known_inputs.v", *scripts.FILES]
+    wanted = store.key(files, yosys.version(), design.facts, "with names")
     return store.cached(folder, wanted, lambda: _elaborate(design, folder))[0]
 
 
 def _elaborate(design: Design, folder: pathlib.Path) -> dict:
     file = folder / "structure.json"
-    tools.run(["yosys", "-c", tools.FLOWS / "structure_json.tcl"], folder / "yosys.log",
-              {**mapping.elaboration(design, structural=True), "OUT": str(file)})
+    yosys.run(scripts.structure_json(design, file), folder / "yosys.log")
     module = mapping.top_module(file)
     names = {name: net["bits"] for name, net in module["netnames"].items() if not net["hide_name"]}
     return {"ports": module["ports"], "names": names, "cells": [

@@ -20,6 +20,9 @@ import tempfile
 import time
 
 
+YOSYS = (sys.executable, "-m", "synth.yosys")  # takes commands
+
+
 @dataclasses.dataclass
 class Outcome:
     """What became of a core's faults."""
@@ -54,10 +57,10 @@ def equivalent(netlist: pathlib.Path, fault: str) -> bool:
         write = "; ".join(f"design -load both; connect -set mutant 16'd{mutant}; write_aiger {folder}/{name}.aig"
                           for name, mutant in (("sound", 0), ("broken", number)))
         try:
-            run(["yosys", "-q", "-p", f"read_rtlil {netlist}.il; {fault}; {gates}; {write}"], timeout=60)
+            run([*YOSYS, f"read_rtlil {netlist}.il; {fault}; {gates}; {write}"], timeout=60)
         except subprocess.TimeoutExpired:
             return False
-        said = run(["yosys-abc", "-c", f"cec -T 60 {folder}/sound.aig {folder}/broken.aig"])
+        said = run([*YOSYS, "--abc", f"cec -T 60 {folder}/sound.aig {folder}/broken.aig"])
     return "Networks are equivalent" in said
 
 

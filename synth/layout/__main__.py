@@ -4,7 +4,7 @@ import argparse
 import dataclasses
 import sys
 
-from synth import catalogue, chosen, runner, store, tables, tools
+from synth import catalogue, chosen, runner, store, tables, tools, yosys
 from synth.layout import energy, flow, jobs, parts, picture, tests
 
 OUT = store.OUT / "layouts"
@@ -141,7 +141,8 @@ def main() -> int:
     """1 where a layout fails, 2 for what the user can mend."""
     given = arguments()
     try:
-        for tool in ("yosys", "sta", "graywolf", "coloquinte", "qrouter", "magic", "iverilog"):
+        yosys.folder()
+        for tool in ("sta", "graywolf", "coloquinte", "qrouter", "magic", "iverilog"):
             tools.find(tool)
         records, failures = measure(wanted(given), int(given.jobs or 2))
         failures += spend(records, int(given.jobs or 2))

@@ -52,7 +52,7 @@ def is_hit(doubt: list[np.ndarray]) -> bool | None:
 def measure(library: Library) -> tuple[dict, bool]:
     """nJ and clocks of each question, and whether they were kept."""
     folder = store.OUT / "energies" / f"{DESIGN.name}.{library.name}.{FLOW}"
-    files = [*energy.files(library), *DESIGN.sources(), *mapping.scripts(), pathlib.Path(__file__), pathlib.Path(netlist.__file__)]
+    files = [*energy.files(library), *DESIGN.sources(), *mapping.files(), pathlib.Path(__file__), pathlib.Path(netlist.__file__)]
     wanted = store.key(files, mapping.flow_facts(), *energy.versions(), DESIGN.facts, library)
 
     def work() -> dict:

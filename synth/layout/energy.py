@@ -50,7 +50,7 @@ def measure(job: Job) -> tuple[dict, bool]:
 def of_cells(design: Design, library: Library, how: str) -> tuple[dict, bool]:
     """The same of a netlist of make synth by the flow `how`, without wires."""
     folder = store.OUT / "energies" / f"{design.name}.{library.name}.{how}"
-    sources = [*files(library), *design.sources(how == "cells"), *mapping.scripts(), HERE / "netlist.py"]
+    sources = [*files(library), *design.sources(how == "cells"), *mapping.files(), HERE / "netlist.py"]
     wanted = store.key(sources, mapping.flow_facts(), *versions(), design.facts, library, how)
 
     def work() -> dict:

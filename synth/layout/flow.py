@@ -47,7 +47,7 @@ class Layout:
 def key(job: Job) -> str:
     """Of all that a layout depends on."""
     files = [*job.design.sources(job.flow == "cells"), job.library.liberty, job.library.lef,
-             job.library.graywolf, *job.library.magic, *mapping.scripts(),
+             job.library.graywolf, *job.library.magic, *mapping.files(),
              *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "spread.py", "estimate.py", "route.py", "parasitics.py",
                                         "magic.tcl"))]
     return store.key(files, mapping.flow_facts(), *(tools.version(tool) for tool in ("qrouter", "magic")),

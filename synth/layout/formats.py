@@ -8,7 +8,7 @@ one division (synth/layout/tests.py).
 import json
 import sys
 
-from synth import catalogue, runner, store, tables, tools
+from synth import catalogue, runner, store, tables, tools, yosys
 from synth.layout import doubts, energy, tests
 
 FLOW = "small"
@@ -26,7 +26,8 @@ def designs() -> list[tuple[int, catalogue.Design]]:
 def main() -> int:
     """1 where a core fails, 2 for what the user can mend."""
     try:
-        for tool in ("yosys", "sta", "iverilog"):
+        yosys.folder()
+        for tool in ("sta", "iverilog"):
             tools.find(tool)
         _ = LIBRARY.liberty
         results, failures = runner.run_all([runner.Job(

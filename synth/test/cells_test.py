@@ -8,7 +8,7 @@ import tempfile
 import unittest
 from unittest import mock
 
-from synth import mapping, measure, tools
+from synth import mapping, measure, tools, yosys
 from synth.catalogue import Characterised, Design
 from synth.cells import __main__ as program
 from synth.cells import catalogue, delays, extraction, leakage, liberty, models, ngspice, package, published
@@ -151,10 +151,10 @@ class Written(unittest.TestCase):
             folder = pathlib.Path(name)
             (folder / "tt.lib").write_text(liberty.library(TYPICAL, cells))
             (folder / "toggle.v").write_text("module toggle(input clk_i, output reg q); always @(posedge clk_i) q <= !q; endmodule\n")
-            tools.run(["yosys", "-p", f"read_verilog {folder}/toggle.v; synth; dfflibmap -liberty {folder}/tt.lib; "
-                       f"abc -liberty {folder}/tt.lib; opt_clean; stat -liberty {folder}/tt.lib; "
-                       f"write_verilog -noattr -noexpr {folder}/mapped.v"], folder / "yosys.log")
-            area, counted = mapping.cell_counts((folder / "yosys.log").read_text().rpartition("statistics")[2])
+            yosys.run(f"read_verilog {folder}/toggle.v; synth; dfflibmap -liberty {folder}/tt.lib; "
+                      f"abc -liberty {folder}/tt.lib; opt_clean; tee -o {folder}/stat.json stat -json -liberty {folder}/tt.lib; "
+                      f"write_verilog -noattr -noexpr {folder}/mapped.v", folder / "yosys.log")
+            area, counted = mapping.cell_counts(folder / "stat.json")
             self.assertEqual(counted, {f"{prefix}dfxtp_1": 1, f"{prefix}inv_1": 1})
             self.assertEqual(area, round(20.02 + 3.75))
             with mock.patch.object(Characterised, "liberty", folder / "tt.lib"):

@@ -8,7 +8,7 @@ from unittest import mock
 
 import numpy as np
 
-from synth import catalogue, mapping, store, tools
+from synth import catalogue, mapping, store, tools, yosys
 from synth.layout import __main__ as command
 from synth.layout import doubts, energy, estimate, flow, lef, netlist, parasitics, parts, place, route, spread, tests
 from synth.layout.lef import Layer, Rect, Technology
@@ -290,7 +290,7 @@ class Report(unittest.TestCase):
         self.assertEqual(rows[2][-1], "not routed")
 
 
-@unittest.skipUnless(all(map(tools.installed, ("graywolf", "qrouter", "magic", "sta", "yosys"))),
+@unittest.skipUnless(yosys.installed() and all(map(tools.installed, ("graywolf", "qrouter", "magic", "sta"))),
                      ".ci/setup layout installs the tools")
 class Adder(unittest.TestCase):
     """An 8-bit ripple adder, from RTL to its delay with wires."""
@@ -313,7 +313,7 @@ class Adder(unittest.TestCase):
             self.assertTrue((job.folder / "adder.gds").stat().st_size > 10000)
 
 
-@unittest.skipUnless(all(map(tools.installed, ("coloquinte", "sta", "yosys"))), ".ci/setup layout installs the tools")
+@unittest.skipUnless(yosys.installed() and all(map(tools.installed, ("coloquinte", "sta"))), ".ci/setup layout installs the tools")
 class Spread(unittest.TestCase):
     """Coloquinte's placement of a 16-bit adder."""
 

@@ -1,11 +1,11 @@
 """sim.mutate: faults that change nothing are told from those that do, also behind registers."""
 
 import pathlib
-import subprocess
 import tempfile
 import unittest
 
 from sim.mutate.__main__ import equivalent
+from synth import yosys
 
 # Two registers in a row, and a part whose tie is held at 0.
 SOURCE = """
@@ -28,7 +28,7 @@ class Equivalent(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             netlist = pathlib.Path(folder) / "top"
             netlist.with_suffix(".v").write_text(SOURCE)
-            subprocess.run(["yosys", "-q", "-p", f"read_verilog {netlist}.v; hierarchy -top top; proc; write_rtlil {netlist}.il"], check=True)
+            yosys.run(f"read_verilog {netlist}.v\nhierarchy -top top\nproc\nwrite_rtlil {netlist}.il", netlist.with_suffix(".log"))
             faults = {"const0 -module top -cell u_part -port tie_i": True, "const1 -module top -cell u_part -port tie_i": False,
                       "inv -module top -cell u_part -port a_i": False}
             for number, (fault, same) in enumerate(faults.items(), 1):
