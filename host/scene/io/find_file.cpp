@@ -24,11 +24,19 @@ std::string with_slashes(std::string_view name) {
   return slashed;
 }
 
+/// Returns the name without the backslashes that some exporters put before blanks.
+std::string with_plain_blanks(std::string_view name) {
+  std::string plain(name);
+  for (std::size_t at = 0; (at = plain.find("\\ ", at)) != plain.npos;) plain.erase(at, 1);
+  return plain;
+}
+
 }  // namespace
 
 std::optional<std::filesystem::path> find_exact_file(const std::filesystem::path& folder,
                                                      std::string_view name) {
-  for (const std::string& spelling : {std::string(name), with_slashes(name)}) {
+  for (const std::string& spelling :
+       {std::string(name), with_slashes(name), with_plain_blanks(name)}) {
     std::error_code ignored;
     std::filesystem::path file = folder / spelling;
     if (std::filesystem::is_regular_file(file, ignored)) return file;

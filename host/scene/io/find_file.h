@@ -10,7 +10,8 @@
 namespace raygate {
 
 /// Returns the file that a model in `folder` means by `name`: the file of that name or, if there is
-/// none, of the name without quotes and with '/' for '\'. Returns nullopt if there is neither.
+/// none, of the name without quotes and with '/' for '\', or without the '\' before blanks. Returns
+/// nullopt if there is none of these.
 [[nodiscard]] std::optional<std::filesystem::path> find_exact_file(
     const std::filesystem::path& folder, std::string_view name);
 

@@ -283,6 +283,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "'maps\\PIC.tga' is missing, "},
         ForeignFile{"NamesInQuotes", ".obj", textured("\"my colours.mtl\" \"cut.mtl\""), "1 1 1 1",
                     ""},
+        ForeignFile{"NameWithEscapedBlank", ".obj", textured("my\\ colours.mtl"), "1 1 1 1", ""},
         ForeignFile{"LibraryInOtherCase", ".obj", textured("C:\\My Work\\CUT.MTL"), "1 1 1 0",
                     ":8: 'C:\\My Work\\CUT.MTL' is missing, "},
         ForeignFile{"ImageInOtherCase", ".glb",
