@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 from sim.mutate import netlist
-from synth import cores
+from synth import cores, tools
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
@@ -84,6 +84,9 @@ def main() -> int:
         return 2
     except subprocess.CalledProcessError as error:
         print(f"sim.page: {error.cmd[0]} failed with status {error.returncode}", file=sys.stderr)
+        return 2
+    except (tools.MissingTool, tools.ToolFailed) as error:
+        print(f"sim.page: {error}", file=sys.stderr)
         return 2
     page = (HERE / "page.html").read_text()
     for name, content in (("@FAULTS@", json.dumps(faults)), ("@EXAMPLE@", json.dumps(example())), ("@UNIT@", unit)):
