@@ -25,9 +25,9 @@ def described(line: str) -> str:
     """A fault in words, from its line in the netlist's list."""
     mode = MODES[re.search(r"-mode (\w+)", line)[1]]
     wire = re.search(r"-wire (\S+) -wirebit (\d+)", line)
-    where = re.findall(r"-src \S*?(hw/\S+?:\d+)", line)
+    where = netlist.source(line)
     name = re.sub(r"genblk\d+\.", "", wire[1]).removeprefix("u_stages.") + f", bit {wire[2]}" if wire else "a wire without a name"
-    return f"{name}: {mode}" + (f" ({where[-1]})" if where else "")
+    return f"{name}: {mode}" + (f" ({where})" if where else "")
 
 
 def example() -> list[float]:
