@@ -11,7 +11,7 @@ import pathlib
 import sys
 import time
 
-from synth import cores, fpga, store, tools, yosys
+from synth import cores, fpga, scripts, store, tools, yosys
 
 # LUT4s alone: those of five inputs and more are pairs that take each input twice, which the router has no wires for.
 MAP = "synth_ecp5 -nowidelut"
@@ -47,10 +47,11 @@ def mapped(board: Board) -> dict:
     netlist = board.out / "netlist.json"
 
     def work() -> dict:
-        yosys.run(f"{yosys.read(board.sources(), board.name)}\n{MAP} -top {board.name} -json {netlist}", board.out / "yosys.log")
+        yosys.run(f"{yosys.read(board.sources(), board.name)}\n{MAP} -top {board.name}\n{scripts.netlist_json(netlist)}",
+                  board.out / "yosys.log")
         return {"digest": fpga.digest(netlist)}
 
-    wanted = store.key(board.sources(), yosys.version(), MAP)
+    wanted = store.key([*board.sources(), *scripts.FILES], yosys.version(), MAP)
     return store.cached(board.out / "map", wanted, work)[0]
 
 

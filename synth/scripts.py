@@ -117,4 +117,9 @@ def fpga(design: Design, family: str, luts: str, out: pathlib.Path, wrapper: pat
     lines = [elaborated(design)]
     if wrapper:
         lines += ["proc", "flatten -noscopeinfo", f"read_verilog {wrapper}"]
-    return "\n".join([*lines, f"synth_{family} {luts} -top {'registered' if wrapper else design.top} -json {out}"])
+    return "\n".join([*lines, f"synth_{family} {luts} -top {'registered' if wrapper else design.top}", netlist_json(out)])
+
+
+def netlist_json(out: pathlib.Path) -> str:
+    """Writes a mapped design for nextpnr, which does not know Yosys's notes of what was an instance."""
+    return f"delete t:$scopeinfo\nwrite_json {out}"

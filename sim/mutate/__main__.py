@@ -19,6 +19,8 @@ import sys
 import tempfile
 import time
 
+from sim.mutate.netlist import source
+
 
 YOSYS = (sys.executable, "-m", "synth.yosys")  # takes commands
 
@@ -65,12 +67,9 @@ def equivalent(netlist: pathlib.Path, fault: str) -> bool:
 
 
 def place(fault: str) -> str:
-    """mode, port and bit, and the innermost line of hw/."""
+    """The line of hw/, mode, port and bit."""
     words = dict(re.findall(r"-(mode|port|portbit) (\S+)", fault))
-    lines = re.findall(r"-src \S*?(hw/\S+?):(\d+)", fault) or [("?", "0")]
-    named = re.search(r"-cell \S*?(hw/[^\s$]+):([1-9]\d*)\$", fault)  # by the line that the cell is of
-    file, line = named.groups() if named else lines[-1] if "wire" not in fault else lines[0]
-    return f"{file}:{line} {words['mode']} {words['port']}[{words['portbit']}]"
+    return f"{source(fault) or '?'} {words['mode']} {words['port']}[{words['portbit']}]"
 
 
 def test_passes(program: pathlib.Path, fault: int, limit: int) -> bool:

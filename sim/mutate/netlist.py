@@ -22,6 +22,13 @@ UNUSED = re.compile(r"-wire \S*\bunused_")
 MEMORIES = {"memrd": ("ADDR", "DATA"), "memwr": ("ADDR", "DATA", "EN"), "meminit": ()}
 
 
+def source(fault: str) -> str:
+    """FILE:LINE in hw/ of a line of OUT.list: the expression that the fault is in, whose source is a range, or else what the
+    wire or the instance is declared at; "" where there is none."""
+    found = re.search(r"-src \S*?(hw/\S+?:\d+)\.\d+-", fault) or re.search(r"-src \S*?(hw/\S+?:\d+)", fault)
+    return found[1] if found else ""
+
+
 def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: int,
           without: list[str], around: list[str]) -> int:
     """Writes OUT.v, OUT.list and OUT.il; returns the number of faults. Raises ToolFailed and MissingTool."""

@@ -4,7 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
-from sim.mutate.__main__ import equivalent
+from sim.mutate.__main__ import equivalent, place
 from synth import yosys
 
 # Two registers in a row, and a part whose tie is held at 0.
@@ -34,6 +34,15 @@ class Equivalent(unittest.TestCase):
             for number, (fault, same) in enumerate(faults.items(), 1):
                 with self.subTest(fault):
                     self.assertEqual(equivalent(netlist, f"mutate -ctrl mutant 16 {number} -mode {fault} -portbit 0"), same)
+
+
+class Place(unittest.TestCase):
+    """place."""
+
+    def test_is_the_expression_and_not_where_its_instance_is(self):
+        fault = "mutate -mode inv -cell $1 -port A -portbit 2 -src /r/hw/fp/fp_adder.sv:24.5 -src /r/hw/fp/fp_round.sv:112.23-112.38"
+        self.assertEqual(place(fault), "hw/fp/fp_round.sv:112 inv A[2]")
+        self.assertEqual(place(fault.replace("-112.38", "")), "hw/fp/fp_adder.sv:24 inv A[2]")
 
 
 if __name__ == "__main__":
