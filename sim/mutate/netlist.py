@@ -40,9 +40,10 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     faults = out.with_suffix(".list")
     # Of the modes that Yosys chooses from three in five are of use here; outside of the cores, one fault in ten.
     chosen_from = (20 if without else 2) * count + 20
+    # Shifts as such: as parts of a word they begin outside of it, where Verilator reads other bits.
     yosys.run(f"{yosys.read(files, top, (text.split('=', 1) for text in parameters), kept)}\n"
-              "flatten -noscopeinfo\nbwmuxmap\nopt -full\nopt_clean\n" + "\n".join(derived) + f"\nwrite_rtlil {out}.il\n"
-              + "\n".join(f"tee -q -o {out}.{kind} select -list t:${kind}*" for kind in MEMORIES) +
+              "flatten -noscopeinfo\nbwmuxmap\nopt -full\nopt_clean\nchtype -set $shift t:$shiftx\n"
+              + "\n".join(derived) + f"\nwrite_rtlil {out}.il\n" + "\n".join(f"tee -q -o {out}.{kind} select -list t:${kind}*" for kind in MEMORIES) +
               f"\nmutate -list {chosen_from} -seed {seed} -o {faults}", out.with_suffix(".log"))
     ports = {cell.partition("/")[2]: ports for kind, ports in MEMORIES.items()
              for cell in pathlib.Path(f"{out}.{kind}").read_text().splitlines()}
