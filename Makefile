@@ -74,7 +74,7 @@ wave: ## use: the waveform of one pixel's ray through the ray core: make wave PI
 # Long runs of single tests: ten million tests of the pipelined unit; the core's AXI ports by random traffic; renders and
 # ranks that are killed; each allocation, write, sync and rename failing in turn; the intervals of --error; a fault under
 # each guard of .ci/guards.toml, in a clone; every command of the README and the tutorials, in a clone and with nothing built before; the
-# image of Dockerfile, from a base that debootstrap makes.
+# image of Dockerfile, from a base that debootstrap makes; damaged copies of files of every format.
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
 LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test
@@ -84,12 +84,13 @@ LONG_ranks = RAYGATE_KILLS=$(or $(KILLS),20) build/ranks_test --gtest_filter='Ki
 LONG_guards = python3 .ci/guards.py try $(GUARDS)
 LONG_commands = python3 -B host/docs/commands.py
 LONG_image = .ci/image
+LONG_damage = python3 -B host/test/damage_files.py build/render build/trace --count $(or $(COUNT),300) --seed $(or $(SEED),1)
 LONG_page = $(PYTHON) -m unittest sim/page/test/page_test.py
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=page | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
+test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=damage COUNT=300 | LONG=page | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page, error, commands, image or guards))
-	$(if $(filter commands image,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test,$(LONG_$(LONG)))),worked_example)))
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page, error, commands, image, damage or guards))
+	$(if $(filter commands image,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),worked_example)))
 	@$(LONG_$(LONG))
 else
 	$(call build,test,all)

@@ -23,8 +23,8 @@ def arguments() -> argparse.Namespace:
     return chosen.parse(parser)
 
 
-# How long one design takes on two processors the first time, by its folder; what was measured before is kept.
-DURATIONS = {"arith": "about a minute", "fp": "about a minute", "hit_test": "about five minutes"}
+# How long one design takes the first time, by its folder; units and cores take longer.
+DURATIONS = {"arith": "about a minute", "fp": "about a minute"}
 
 
 def announce(what: str, rows: list[catalogue.Row], targets: measure.Targets, duration: str) -> None:
@@ -50,7 +50,7 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
         others = [catalogue.design("adder", adder=kind, look_ahead=False if kind == "uniform" else None, Width=width)
                   for kind in ("ripple", "uniform", "prefix", catalogue.BEHAVIOURAL)]
         rows += [catalogue.Row(design.name, other, plan) for other in others if other.name != design.name]
-    announce(design.name + f", beside {len(rows) - 1} other adders" * cells, rows, targets, DURATIONS.get(design.folder, "about ten minutes"))
+    announce(design.name + f", beside {len(rows) - 1} other adders" * cells, rows, targets, DURATIONS.get(design.folder, "several minutes"))
     records, failures = measure.measure(rows, targets)
     print(report.section_tables(records, design.name))
     print(report.legend(records))

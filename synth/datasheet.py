@@ -117,7 +117,7 @@ def write() -> None:
 
     for file, text in registers.made(registers.PAGE.read_text()).items():
         file.write_text(text)
-    say(f"measuring {len(SHOWN)} designs for {MODULES.relative_to(tools.ROOT)}: about ten minutes the first time on two processors")
+    say(f"measuring {len(SHOWN)} designs for {MODULES.relative_to(tools.ROOT)}: several minutes the first time")
     MODULES.write_text(modules(measured_figures()))
     say("filling the pages of hw, drawing timing and block diagrams: about a minute")
     fpgas = fpga.table()

@@ -39,7 +39,7 @@ endif
 	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
 	@$(call alone,build/variant.lock,another make variant) $(again) --no-print-directory card
 
-# Of `make variant`, one at a time: its table, its build/lab-variant and its card.
+# The rest of `make variant`, one run at a time: writes its table of variants, builds build/lab-variant, prints the card.
 card: VARIANTS = $(CURDIR)/build/results/variant.json
 card: SCENES = $(SCENE)
 card: export RAYGATE_LAB = lab-variant
@@ -49,7 +49,7 @@ card:
 	$(measure) $(if $(ENERGY),--energy) $(if $(WIRES),--wires) --variant $(variant_words)
 
 peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [QUICK=1 SCENES=cornell]
-	$(call build,peers,render compare scenes )
+	$(call build,peers,render compare scenes)
 	$(measure)
 
 speed: ## measure: rays/s next to Embree, exact decisions, skips, where time goes: make speed [QUICK=1 ONLY=rays,phases BEFORE=]
