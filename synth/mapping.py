@@ -37,10 +37,9 @@ def top_module(file: pathlib.Path) -> dict:
 
 def synthesise(design: Design, library: Library, flow: str,
                root: pathlib.Path | None = None) -> tuple[dict, bool]:
-    """Area (liberty units), delay (ns; also at the library's other corners), cells and critical path; and whether it was
-    cached."""
+    """Area (liberty units), delay (ns), cells and critical path; and whether it was cached."""
     folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
-    read = [*design.sources(flow == "cells"), library.liberty, *library.corners.values(), *files()]
+    read = [*design.sources(flow == "cells"), library.liberty, *files()]
     wanted = store.key(read, flow_facts(), design.facts, library, flow)
     return store.cached(folder, wanted, lambda: _map_and_time(design, library, flow, folder))
 
@@ -54,8 +53,6 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
     area, cells = cell_counts(prefix.with_suffix(".stat.json"))
     timing = sta(design, library, prefix.with_suffix(".timed.v"), folder / "timing.txt", bool(design.cut))
     delay, path = critical_path(timing)
-    corners = {name: critical_path(sta(design, library, prefix.with_suffix(".timed.v"), folder / f"timing.{name}.txt",
-                                       liberty=tables))[0] for name, tables in library.corners.items()}
     clocked = registers(prefix.with_suffix(".timed.v").read_text(), path) if design.clock else {}
     parts = {"blocks": block_costs(statistics(prefix.with_suffix(".blocks.json")), kept_memories(
         prefix.with_suffix(".memories").read_text()))} if flow == "blocks" else {}
@@ -65,22 +62,21 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
         **({"ends": ends(timing)} if design.cut else {}),
         "area": area,
         "delay_ns": delay,
-        **({"corners_ns": corners} if corners else {}),
         "cells": cells,
         "path": path,
     }
 
 
 def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Path,
-        ends: bool = False, spef: pathlib.Path | None = None, clock: str = "", liberty: pathlib.Path | None = None) -> str:
+        ends: bool = False, spef: pathlib.Path | None = None, clock: str = "") -> str:
     """OpenSTA's report of the slowest path of `netlist`, and of all its ends if so wished.
 
-    `spef`: its wires; `clock`: the clock's port where `netlist` calls it otherwise than the design does; `liberty`: tables of
-    another corner.
+    `spef`: its wires; `clock`: the clock's port where `netlist` calls it otherwise than the design does.
     """
     return tools.run(["sta", "-exit", tools.FLOWS / "timing.tcl"], log, {
-        "LIBERTY": str(liberty or library.liberty), "NETLIST": str(netlist), "TOP": design.top,
-        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}", "ACCESS": f"{library.access_ns}", "CLOCK": clock or design.clock,
+        "LIBERTY": str(library.liberty), "NETLIST": str(netlist), "TOP": design.top,
+        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}",
+        "ACCESS": f"{library.access_ns}", "CLOCK": clock or design.clock,
         "ENDS": f"{ends:d}", "SPEF": str(spef or "")})
 
 

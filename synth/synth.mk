@@ -2,20 +2,16 @@
 SYNTH_JOBS ?= 2
 SYNTH_BUDGET ?= 16
 
-.PHONY: synth cells prove verilog fpga datasheet lecture layout
+.PHONY: synth prove verilog fpga datasheet lecture layout
 
 # The whole report has tests a second in it, which programs count.
-synth: $(if $(TOP),,verilate) ## hardware: area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
+synth: $(if $(filter-out 0,$(ALL)),verilate) ## hardware: area and time: make synth [ALL=1] [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ...]
 	@$(SETUP) synth
-	$(if $(TOP),,$(call build,build,table_1 worked_example))
+	$(if $(filter-out 0,$(ALL)),$(call build,build,table_1 worked_example))
 	@$(PYTHON) -m synth --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
-	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --budget '$(SYNTH_BUDGET)' \
+	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --liberty '$(LIBERTY)' --budget '$(SYNTH_BUDGET)' --all '$(filter-out 0,$(ALL))' \
 	  --jobs '$(SYNTH_JOBS)'
-
-cells: ## hardware: SkyWater 130 cells measured with ngspice: make cells [CORNERS=tt,ss,ff]
-	@$(SETUP) synth
-	@$(PYTHON) -m synth.cells --corners '$(CORNERS)' --jobs '$(SYNTH_JOBS)'
 
 prove: ## hardware: prove arithmetic, units, netlists: make prove [PROOFS='adder. float.add' LONG=1 KEPT=1 RECORD=1 FAULTS=80]
 	@$(SETUP) prove

@@ -27,7 +27,6 @@ TOOLS = {
     "qrouter": ("sudo apt-get install qrouter", ["-v", "0", "-h"]),
     "iverilog": ("sudo apt-get install iverilog", ["-V"]),
     "vvp": ("sudo apt-get install iverilog", ["-V"]),
-    "ngspice": ("sudo apt-get install ngspice", ["--version"]),
     "magic": ("sudo apt-get install magic", ["--version"]),
 }
 

@@ -2,6 +2,7 @@
 #   LIBERTY, NETLIST, TOP; SDC and the CLOCK, DRIVER and LOAD that it names; SPEF: its wires, or ""
 #   ENDS 1: also when each output is there
 read_liberty $::env(LIBERTY)
+set_cmd_units -time ns -capacitance pF
 read_verilog $::env(NETLIST)
 link_design $::env(TOP)
 read_sdc $::env(SDC)

@@ -5,7 +5,7 @@ import json
 import pathlib
 import re
 
-from synth import mapping, store, tools
+from synth import liberty, mapping, store, tools
 from synth.catalogue import Design, Library
 from synth.layout import estimate, lef, netlist, parasitics, place, route, spread
 
@@ -125,11 +125,8 @@ def slacks(report: str) -> list[float]:
 
 def outputs(library: Library) -> dict[str, set[str]]:
     """The output pins of each type of cell, as Liberty says."""
-    found = {}
-    for name, body in re.findall(r"^\s*cell \((\w+)\) \{(.*?)(?=^\s*cell \(|\Z)",
-                                 library.liberty.read_text(), re.M | re.S):
-        found[name] = set(re.findall(r"pin\s*\((\w+)\)\s*\{[^}]*?direction\s*:\s*output", body))
-    return found
+    return {cell.name: {pin.name for pin in cell.of("pin") if pin.attributes.get("direction") == "output"}
+            for cell in liberty.read(library.liberty).of("cell")}
 
 
 def load(job: Job) -> Layout:

@@ -8,7 +8,7 @@ from unittest import mock
 
 import numpy as np
 
-from synth import catalogue, mapping, store, tools, yosys
+from synth import catalogue, liberty, mapping, store, tools, yosys
 from synth.layout import __main__ as command
 from synth.layout import doubts, energy, estimate, flow, lef, netlist, parasitics, parts, place, route, spread, tests
 from synth.layout.lef import Layer, Rect, Technology
@@ -196,13 +196,14 @@ x"
 
     def test_curve(self):
         """Tables at the slew, between their points, and the mean of two; none for an input."""
-        table = ('rise_power(t) {\n index_1 ("0.1, 0.3");\n index_2 ("0.08, 0.28");\n'
-                 ' values ( \\\n "1, 3", \\\n "2, 4");\n}\n')
-        xs, ys = energy.curve(table + table.replace('"1, 3"', '"3, 5"'), "rise_power")
+        table = ('internal_power() {\n rise_power(t) {\n index_1 ("0.1, 0.3");\n index_2 ("0.08, 0.28");\n'
+                 ' values ( \\\n "1, 3", \\\n "2, 4");\n}\n}\n')
+        pin = liberty.parse(f"library(x) {{\n{table}{table.replace('1, 3', '3, 5')}}}\n", "x")
+        xs, ys = energy.curve(pin, "rise_power")
         self.assertEqual(xs, [0.1, 0.3])
         self.assertAlmostEqual(ys[0], 3)
         self.assertAlmostEqual(energy.at((xs, ys), 0.2), 3)
-        self.assertIsNone(energy.curve("direction : input;", "rise_power"))
+        self.assertIsNone(energy.curve(pin, "fall_power"))
 
     def test_energies(self):
         """Half of C V^2 a toggle, and what the driver takes inside."""

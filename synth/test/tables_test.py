@@ -1,12 +1,9 @@
 """What is written and compared: tables, tests a second, two runs' figures."""
 
 import json
-import pathlib
-import tempfile
 import unittest
-from unittest import mock
 
-from synth import catalogue, compare, tables, throughput
+from synth import compare, tables, throughput
 
 
 class Tables(unittest.TestCase):
@@ -20,19 +17,6 @@ class Tables(unittest.TestCase):
     def test_comma_separated(self):
         """What a row has not is left empty; what is not asked for is left out."""
         self.assertEqual(tables.comma_separated([{"a": 1, "c": 2}], ["a", "b"]), "a,b\n1,\n")
-
-
-class Throughput(unittest.TestCase):
-    """throughput.gate."""
-
-    def test_gate(self):
-        """The gate's area, and not that of a cell before it."""
-        with tempfile.TemporaryDirectory() as name:
-            file = pathlib.Path(name) / "tiny.lib"
-            file.write_text("cell (NAND2X1x) {\n area : 1;\n}\ncell (INVX1) {\n area : 64;\n}\n"
-                            "cell (NAND2X1) {\n cell_footprint : nand2x1;\n area : 96;\n}\n")
-            with mock.patch.object(catalogue.Library, "liberty", file):
-                self.assertEqual(throughput.gate(catalogue.LIBRARIES[0]), 96)
 
 
 class Compare(unittest.TestCase):
