@@ -5,8 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import (adder_study, catalogue, chosen, final_adder, measure, pictures, prove, report,
-                   store, throughput, tools, unit_delay)
+from synth import adder_study, catalogue, chosen, measure, prove, report, store, throughput, tools, unit_delay
 
 
 def arguments() -> argparse.Namespace:
@@ -21,7 +20,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--liberty", help="a Liberty file, measured in place of other targets")
     parser.add_argument("--all", help="1: every design on every target; else the first ones, in osu035")
     parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; of one design its standard cells if not given")
-    parser.add_argument("--budget", type=chosen.whole(1, 10**6), default="16", help="groupings tried in each search (%(default)s)")
     parser.add_argument("--jobs", type=chosen.whole(1, 1024), default="2", help="at once (%(default)s)")
     return chosen.parse(parser)
 
@@ -85,13 +83,11 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     if given.top == "adders" or given.all:
         sections.append(("The paper's delay model", adder_study.model_table()))
     if given.all:
-        sections += [("The multiplier's last adder", final_adder.table(targets.names)),
-                     ("Best groups of 48 bits", adder_study.search_table(targets, int(given.budget))),
-                     ("Tests a second", throughput.table(records))]
+        sections.append(("Tests a second", throughput.table(records)))
     sections = [section for section in sections if section[1]]
     for title, text in sections:
         print(f"{title}\n\n{text}")
-    report.write(records, [*sections, ("Pictures", pictures.draw(records))] if given.all else sections)
+    report.write(records, sections)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"Took {used.ru_utime + used.ru_stime:.0f} s of processor time. Report: "
           f"{(store.OUT / 'report.md').relative_to(tools.ROOT)}" + "; ALL=1 measures everything." * (not given.all and not given.top))

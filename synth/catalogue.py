@@ -19,13 +19,12 @@ class Design:
     folder: str  # of hw/
     parameters: tuple[tuple[str, str], ...] = ()
     clock: str = ""  # "" for combinational designs
-    cut: str = ""  # an instance that is left out; its ports become the design's
     tied: tuple[tuple[str, str], ...] = ()  # ports held at constants, e.g. ("carry_i", "1'b0")
 
     @property
     def facts(self) -> tuple:
         """What elaboration depends on besides the files."""
-        return self.top, self.parameters, self.cut, self.tied
+        return self.top, self.parameters, self.tied
 
     def sources(self, structural: bool = False) -> list[pathlib.Path]:
         """The files that elaboration needs, packages first; all of the folder where there is no top.

@@ -51,7 +51,7 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
     prefix = folder / "netlist"
     yosys.run(scripts.standard_cells(design, library, flow, blocks(design), constraints, prefix), folder / "yosys.log")
     area, cells = cell_counts(prefix.with_suffix(".stat.json"))
-    timing = sta(design, library, prefix.with_suffix(".timed.v"), folder / "timing.txt", bool(design.cut))
+    timing = sta(design, library, prefix.with_suffix(".timed.v"), folder / "timing.txt")
     delay, path = critical_path(timing)
     clocked = registers(prefix.with_suffix(".timed.v").read_text(), path) if design.clock else {}
     parts = {"blocks": block_costs(statistics(prefix.with_suffix(".blocks.json")), kept_memories(
@@ -59,7 +59,6 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
     return {
         **clocked,
         **parts,
-        **({"ends": ends(timing)} if design.cut else {}),
         "area": area,
         "delay_ns": delay,
         "cells": cells,
@@ -68,8 +67,8 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
 
 
 def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Path,
-        ends: bool = False, spef: pathlib.Path | None = None, clock: str = "") -> str:
-    """OpenSTA's report of the slowest path of `netlist`, and of all its ends if so wished.
+        spef: pathlib.Path | None = None, clock: str = "") -> str:
+    """OpenSTA's report of the slowest path of `netlist`.
 
     `spef`: its wires; `clock`: the clock's port where `netlist` calls it otherwise than the design does.
     """
@@ -77,7 +76,7 @@ def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Pa
         "LIBERTY": str(library.liberty), "NETLIST": str(netlist), "TOP": design.top,
         "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}",
         "ACCESS": f"{library.access_ns}", "CLOCK": clock or design.clock,
-        "ENDS": f"{ends:d}", "SPEF": str(spef or "")})
+        "SPEF": str(spef or "")})
 
 
 def blocks(design: Design) -> list[str]:
@@ -128,12 +127,6 @@ def cell_counts(file: pathlib.Path) -> tuple[int, dict[str, int]]:
     """The area (liberty units) and the number of cells of each type in Yosys's statistics of one module."""
     (module,) = statistics(file).values()
     return round(module["area"]), module["num_cells_by_type"]
-
-
-def ends(report: str) -> dict[str, float]:
-    """When each output of an OpenSTA report of end points is there, ns, the slowest first."""
-    found = re.findall(r"^(\S+) \(output\) +[\d.]+ +(-?[\d.]+)", report, re.M)
-    return {name: float(arrival) for name, arrival in found}
 
 
 def registers(netlist: str, path: list[dict]) -> dict[str, str]:

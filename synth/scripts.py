@@ -18,8 +18,6 @@ FILES = [pathlib.Path(__file__), pathlib.Path(yosys.__file__)]  # what results d
 def elaborated(design: Design, structural: bool = False) -> str:
     """Reads and elaborates a design; `structural`: its full adders and multiplexers as cells."""
     lines = [yosys.read(design.sources(structural), design.top, design.parameters)]
-    if design.cut:
-        lines += ["proc", f"expose -evert {design.top}/{design.cut}"]
     if design.tied:
         lines += [f"cd {design.top}"]
         lines += [f"delete -port w:{port}\nconnect -set {port} {value}" for port, value in design.tied]

@@ -1,6 +1,5 @@
 # Area, time, proofs: see synth/README.md.
 SYNTH_JOBS ?= 2
-SYNTH_BUDGET ?= 16
 
 .PHONY: synth prove verilog fpga datasheet lecture layout
 
@@ -10,17 +9,12 @@ synth: $(if $(filter-out 0,$(ALL)),verilate) ## hardware: area and time: make sy
 	$(if $(filter-out 0,$(ALL)),$(call build,build,table_1 worked_example))
 	@$(PYTHON) -m synth --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
-	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --liberty '$(LIBERTY)' --budget '$(SYNTH_BUDGET)' --all '$(filter-out 0,$(ALL))' \
+	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --liberty '$(LIBERTY)' --all '$(filter-out 0,$(ALL))' \
 	  --jobs '$(SYNTH_JOBS)'
 
-prove: ## hardware: prove arithmetic, units, netlists: make prove [PROOFS='adder. float.add' LONG=1 KEPT=1 RECORD=1 FAULTS=80]
+prove: ## hardware: prove arithmetic, units, netlists: make prove [PROOFS='adder. float.add' LONG=1 KEPT=1 RECORD=1]
 	@$(SETUP) prove
-ifdef FAULTS
-	$(call build,test,check_vectors)
-	@$(PYTHON) -m synth.float_faults --count $(FAULTS) $(CORES)
-else
 	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(if $(RECORD),--record) $(if $(KEPT),--kept) $(PROOFS)
-endif
 
 verilog: ## hardware: a module in one file of plain Verilog: make verilog TOP=fp_adder_stages [PARAMS='ExpWidth=5']
 	@$(SETUP) synth

@@ -40,7 +40,7 @@ def _rows(given: argparse.Namespace) -> list[jobs.Row]:
     seeds = int(given.seeds or 3)
     if given.top is None or given.top in jobs.SECTIONS:
         return [row for section in jobs.SECTIONS if given.top in (None, section)
-                for row in jobs.rows(section, seeds, workers=int(given.jobs or 2))]
+                for row in jobs.rows(section, seeds)]
     flow_name, density, aspect = given.flow or "fast", float(given.density or 1), float(given.aspect or 0.75)
     if flow_name not in catalogue.FLOWS:
         raise ValueError(f"no flow {flow_name}, expected one of {', '.join(catalogue.FLOWS)}")
@@ -120,7 +120,7 @@ def spend(records: list[dict], workers: int) -> list[str]:
 
 
 def draw(records: list[dict]) -> list[str]:
-    """The median layout of each row, and its slacks; the pictures' names."""
+    """The median layout of each row; the pictures' names."""
     names = []
     for got in records:
         job = got["job"]
@@ -129,10 +129,6 @@ def draw(records: list[dict]) -> list[str]:
         picture.draw(made, parts.of(job.design, made.netlist, flow.outputs(job.library)),
                      got["path"], f"{got['design']}, flow {got['flow']}, {job.library.title}"
                      + ("" if got["spread"] else ", wires estimated"), OUT / name)
-        names.append(name)
-    for section in dict.fromkeys(got["section"] for got in records):
-        name = f"slacks-{section}-{records[0]['job'].library.name}"
-        picture.slacks([got for got in records if got["section"] == section], OUT / name)
         names.append(name)
     return names
 

@@ -3,7 +3,6 @@
 import dataclasses
 import json
 import pathlib
-import re
 
 from synth import liberty, mapping, store, tools
 from synth.catalogue import Design, Library
@@ -56,8 +55,8 @@ def key(job: Job) -> str:
 
 def make(job: Job) -> tuple[dict, bool]:
     """Delay of the cells alone, with estimated wires and with routed ones (ns), areas (um2), wires (um, pF),
-    slacks, failed nets (None where no routing was tried); and whether it was kept. Where nets failed wires
-    and slacks are the estimate's, and there is no routed delay."""
+    failed nets (None where no routing was tried); and whether it was kept. Where nets failed the wires are the
+    estimate's, and there is no routed delay."""
     return store.cached(job.folder, key(job), tools.measured(lambda: _make(job)))
 
 
@@ -83,13 +82,12 @@ def _make(job: Job) -> dict:
               for net, pieces in routing.wires.items()}
     cells_ns, _ = mapping.critical_path(_time(job, nets, "cells"))
 
-    def with_wires(name: str) -> tuple[float, list[dict], list[float]]:
+    def with_wires(name: str) -> tuple[float, list[dict]]:
         (folder / f"{name}.spef").write_text(parasitics.spef(
             nets, placement, routing, technology, farads, ohms, outputs(job.library)))
-        report = _time(job, nets, name)
-        return *mapping.critical_path(report), slacks(report)
+        return mapping.critical_path(_time(job, nets, name))
 
-    guess_ns, path, ends = with_wires("estimate")
+    guess_ns, path = with_wires("estimate")
     result = {
         "cells": len(nets.cells), "nets": len(nets.nets()), "area": mapped["area"], "cells_ns": cells_ns,
         "guess_ns": guess_ns, "core": round(placement.width * placement.height), "width": placement.width,
@@ -103,9 +101,9 @@ def _make(job: Job) -> dict:
             routing = guessed
         else:
             farads = parasitics.extract(nets, job.library.lef, job.library.magic[0], folder)
-            result["wires_ns"], path, ends = with_wires("wires")
+            result["wires_ns"], path = with_wires("wires")
     wires = [wire for pieces in routing.wires.values() for wire in pieces]
-    return {**result, "path": path, "slacks": ends, "wire_um": round(sum(wire.length for wire in wires)),
+    return {**result, "path": path, "wire_um": round(sum(wire.length for wire in wires)),
             "vias": sum(bool(wire.to) for wire in wires), "wire_pf": round(sum(farads.values()), 3)}
 
 
@@ -113,14 +111,8 @@ def _time(job: Job, nets: netlist.Netlist, name: str) -> str:
     """OpenSTA's report with the wires of NAME.spef; of cells alone where there is none."""
     clock = next((short for short, port in nets.ports.items() if port.name == job.design.clock), "")
     wires = job.folder / f"{name}.spef"
-    return mapping.sta(job.design, job.library, job.folder / "placed.v", job.folder / f"{name}.txt", True,
+    return mapping.sta(job.design, job.library, job.folder / "placed.v", job.folder / f"{name}.txt",
                        wires if wires.exists() else None, clock)
-
-
-def slacks(report: str) -> list[float]:
-    """The slack at each end of a path in an OpenSTA report of end points, ns, the least first."""
-    found = re.findall(r"^\S+ \((?:output|\w+)\) +[\d.]+ +-?[\d.]+ +(-?[\d.]+)", report, re.M)
-    return sorted(map(float, found))
 
 
 def outputs(library: Library) -> dict[str, set[str]]:

@@ -83,12 +83,6 @@ class Parsing(unittest.TestCase):
         with self.assertRaises(tools.ToolFailed):
             mapping.critical_path("Error: netlist.v, line 3 syntax error\nNo paths found.\n")
 
-    def test_ends(self):
-        """When each output is there; registers are no outputs."""
-        report = ("u_adder.a_i[24] (output)   1000.000    4.089  995.911 (MET)\n"
-                  "q[0]/D (DFFPOSX1)           999.900    1.000  998.900 (MET)\n")
-        self.assertEqual(mapping.ends(report), {"u_adder.a_i[24]": 4.089})
-
     def test_cell_counts(self):
         """Area and cells of Yosys's statistics."""
         with tempfile.TemporaryDirectory() as folder:
