@@ -87,11 +87,6 @@ class Library:
         return self._file("lef")
 
     @property
-    def graywolf(self) -> pathlib.Path:
-        """qflow's parameters of the placer."""
-        return self.lef.with_name(f"{self.name}.par")
-
-    @property
     def magic(self) -> tuple[pathlib.Path, pathlib.Path]:
         """magic's start-up file and the technology file that it names."""
         (technology,) = self.lef.parent.glob("*.tech")

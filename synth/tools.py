@@ -23,7 +23,6 @@ TOOLS = {
     "z3": ("sudo apt-get install z3", ["--version"]),
     "dot": ("sudo apt-get install graphviz", ["-V"]),
     "coloquinte": ("pip install -r synth/requirements.txt", None),
-    "graywolf": ("sudo apt-get install graywolf", None),
     "qrouter": ("sudo apt-get install qrouter", ["-v", "0", "-h"]),
     "iverilog": ("sudo apt-get install iverilog", ["-V"]),
     "vvp": ("sudo apt-get install iverilog", ["-V"]),

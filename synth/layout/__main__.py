@@ -138,7 +138,7 @@ def main() -> int:
     given = arguments()
     try:
         yosys.folder()
-        for tool in ("sta", "graywolf", "coloquinte", "qrouter", "magic", "iverilog"):
+        for tool in ("sta", "coloquinte", "qrouter", "magic", "iverilog"):
             tools.find(tool)
         records, failures = measure(wanted(given), int(given.jobs or 2))
         failures += spend(records, int(given.jobs or 2))

@@ -6,10 +6,10 @@ import pathlib
 
 from synth import liberty, mapping, store, tools
 from synth.catalogue import Design, Library
-from synth.layout import estimate, lef, netlist, parasitics, place, route, spread
+from synth.layout import estimate, lef, netlist, parasitics, place, route
 
 HERE = pathlib.Path(__file__).resolve().parent
-ANNEALED = 1000  # cells: so many graywolf places well, and in seconds
+TIDIED = 1000  # cells: so many nets are routed again in seconds
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,8 +46,8 @@ class Layout:
 def key(job: Job) -> str:
     """Of all that a layout depends on."""
     files = [*job.design.sources(job.flow == "cells"), job.library.liberty, job.library.lef,
-             job.library.graywolf, *job.library.magic, *mapping.files(),
-             *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "spread.py", "estimate.py", "route.py", "parasitics.py",
+             *job.library.magic, *mapping.files(),
+             *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "estimate.py", "route.py", "parasitics.py",
                                         "magic.tcl"))]
     return store.key(files, mapping.flow_facts(), *(tools.version(tool) for tool in ("qrouter", "magic")),
                      job.design.facts, job.library, job.flow, job.density, job.aspect, job.seed, job.routed)
@@ -68,10 +68,7 @@ def _make(job: Job) -> dict:
     (folder / "netlist.json").write_text((run / "netlist.json").read_text())
     nets = netlist.parse(mapping.top_module(folder / "netlist.json"), job.design.top)
     technology = lef.read(job.library.lef)
-    if len(nets.cells) > ANNEALED:
-        placement = spread.place(nets, technology, job.seed, job.density, job.aspect, folder)
-    else:
-        placement = place.place(nets, technology, job.library.graywolf, job.seed, job.density, job.aspect, folder)
+    placement = place.place(nets, technology, job.seed, job.density, job.aspect, folder)
     (folder / "placement.json").write_text(json.dumps(dataclasses.asdict(placement)))
     (folder / "placed.v").write_text(nets.verilog())
     ports = route.pins(placement, technology, nets)
@@ -95,7 +92,7 @@ def _make(job: Job) -> dict:
     }
     if job.routed:
         guessed, routing = routing, route.route(nets, placement, technology, job.library.lef, folder,
-                                                tidy=len(nets.cells) <= ANNEALED)
+                                                tidy=len(nets.cells) <= TIDIED)
         result["failed"] = len(routing.failed)
         if routing.failed:
             routing = guessed

@@ -7,7 +7,7 @@ from unittest import mock
 
 from synth import catalogue, liberty, mapping, store, tools, yosys
 from synth.layout import __main__ as command
-from synth.layout import energy, estimate, flow, lef, netlist, parasitics, parts, place, route, spread, tests
+from synth.layout import energy, estimate, flow, lef, netlist, parasitics, parts, place, route, tests
 from synth.layout.lef import Layer, Rect, Technology
 from synth.layout.netlist import Cell, Netlist, Port
 from synth.layout.route import Wire
@@ -90,16 +90,6 @@ class Reading(unittest.TestCase):
         found = parasitics.capacitances(text, {"n1", "n2"})
         self.assertAlmostEqual(found["n1"], 0.0015)
         self.assertAlmostEqual(found["n2"], 0.0005)
-
-    def test_placement(self):
-        """The core's corner is the origin; a turned cell has its gap on the left; a lost cell fails."""
-        nets = Netlist("top", {"c0": Cell("a", "INVX1", {}), "c1": Cell("b", "INVX1", {})}, {})
-        text = "c0 -400 -200  240 1800  0 1\nc1 240 -200  880 1800  2 1\ntwpin_p0 100 1900 260 2100 0 -3\n"
-        found = place.read(text, TECHNOLOGY, nets)
-        self.assertEqual(found.cells, {"c0": place.Site(0, 0, "N"), "c1": place.Site(8, 0, "FN")})
-        self.assertEqual((found.width, found.height), (12.8, 20))
-        with self.assertRaisesRegex(tools.ToolFailed, "1 of 2 cells"):
-            place.read(text.replace("c1", "c7"), TECHNOLOGY, nets)
 
     def test_gaps(self):
         """Room by pins: none in full rows; else what is asked for, most beside the narrow cell of many pins."""
@@ -270,7 +260,7 @@ class Report(unittest.TestCase):
         self.assertEqual(rows[2][-1], "not routed")
 
 
-@unittest.skipUnless(yosys.installed() and all(map(tools.installed, ("graywolf", "qrouter", "magic", "sta"))),
+@unittest.skipUnless(yosys.installed() and all(map(tools.installed, ("coloquinte", "qrouter", "magic", "sta"))),
                      ".ci/setup layout installs the tools")
 class Adder(unittest.TestCase):
     """An 8-bit ripple adder, from RTL to its delay with wires."""
@@ -294,7 +284,7 @@ class Adder(unittest.TestCase):
 
 
 @unittest.skipUnless(yosys.installed() and all(map(tools.installed, ("coloquinte", "sta"))), ".ci/setup layout installs the tools")
-class Spread(unittest.TestCase):
+class Placement(unittest.TestCase):
     """Coloquinte's placement of a 16-bit adder."""
 
     def test_placed(self):
@@ -307,7 +297,7 @@ class Spread(unittest.TestCase):
             (run,) = (store.OUT / "runs").iterdir()
             nets = netlist.parse(mapping.top_module(run / "netlist.json"), "adder")
             technology = lef.read(library.lef)
-            placed, again = (spread.place(nets, technology, 1, 0.6, 1.0, pathlib.Path(name)) for _ in range(2))
+            placed, again = (place.place(nets, technology, 1, 0.6, 1.0, pathlib.Path(name)) for _ in range(2))
         self.assertEqual(placed, again)
         rows = {}
         for cell, site in placed.cells.items():
