@@ -124,23 +124,39 @@ def path_table(record: dict) -> str:
     return tables.markdown(["instance", "cell", "through", "ns", "arrival, ns"], rows)
 
 
+# What every cell of an adder is in.
+PLAIN = re.compile(r"u_cell|u_full_adder|select|restore|gen_bit\[\d+\]|_\d+_")
+
+
 def chain(record: dict) -> str:
-    """A critical path on one line: its cells in order, equal neighbours counted, with the instances that they are, `*` for a
-    number."""
-    steps = record["path"]
-    found: list[list] = []
+    """A critical path on one line: its cells in order, with the instances that they are in, `*` for a number."""
+    steps, words = record["path"], []
     for before, step in zip(steps, steps[1:]):
         cell, _, _ = step["pin"].rpartition("/")
         if cell and cell == before["pin"].rpartition("/")[0]:
-            name = re.sub(r"\d+", "*", cell).strip("_*")
-            what = step["cell"] + (f" ({name})" if name else "")
-            if found and found[-1][0] == what:
-                found[-1][1] += 1
-            else:
-                found.append([what, 1])
-    cells = [f"{count} x {what}" if count > 1 else what for what, count in found]
+            inside = [re.sub(r"\d+", "*", name) for name in cell.split(".") if not PLAIN.fullmatch(name)][-2:]
+            words.append(step["cell"] + f" ({'.'.join(inside)})" * bool(inside))
     return (f"{record['design']}, {record['flow']}, {record['delay_ns']:.2f} ns: "
-            f"{' > '.join([steps[0]['pin'], *cells, steps[-1]['pin']])}")
+            f"{' > '.join([steps[0]['pin'], *counted(words), steps[-1]['pin']])}")
+
+
+def counted(words: list[str]) -> list[str]:
+    """The same with repeated words, and repeated pairs of words, as one and their number."""
+    found, at = [], 0
+    while at < len(words):
+        size, times = 1, 1
+        for size in (1, 2):
+            unit, times = words[at:at + size], 1
+            while words[at + times * size:at + (times + 1) * size] == unit:
+                times += 1
+            if times > 1:
+                break
+        if times == 1:
+            size = 1
+        text = " > ".join(words[at:at + size])
+        found.append(text if times == 1 else f"{times} x {text}" if size == 1 else f"{times} x ({text})")
+        at += size * times
+    return found
 
 
 def blocks_table(record: dict) -> str:

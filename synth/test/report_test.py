@@ -32,10 +32,13 @@ class Legend(unittest.TestCase):
 
 class Chain(unittest.TestCase):
     def test_names_the_cells_in_order_and_counts_neighbours(self) -> None:
-        pins = [("a_i[0]", "in"), ("u_add.bit[0].u_cell/A", "FAX1"), ("u_add.bit[0].u_cell/YC", "FAX1"), ("u_add.bit[1].u_cell/C", "FAX1"),
-                ("u_add.bit[1].u_cell/YS", "FAX1"), ("_7_/A", "INVX1"), ("_7_/Y", "INVX1"), ("sum_o[1]", "out")]
+        pins = [("a_i[0]", "in"), ("u_sum.gen_bit[0].u_cell/A", "FAX1"), ("u_sum.gen_bit[0].u_cell/YC", "FAX1"),
+                ("u_sum.gen_bit[1].u_cell/C", "FAX1"), ("u_sum.gen_bit[1].u_cell/YS", "FAX1"), ("_7_/A", "INVX1"), ("_7_/Y", "INVX1"), ("sum_o[1]", "out")]
         record = {"design": "adder", "flow": "cells", "delay_ns": 1.25, "path": [{"pin": pin, "cell": cell} for pin, cell in pins]}
-        self.assertEqual(report.chain(record), "adder, cells, 1.25 ns: a_i[0] > 2 x FAX1 (u_add.bit[*].u_cell) > INVX1 > sum_o[1]")
+        self.assertEqual(report.chain(record), "adder, cells, 1.25 ns: a_i[0] > 2 x FAX1 (u_sum) > INVX1 > sum_o[1]")
+        self.assertEqual(report.counted(list("aabcbcbcd")), ["2 x a", "3 x (b > c)", "d"])
+        self.assertEqual(report.counted(list("abab")), ["2 x (a > b)"])
+        self.assertEqual(report.counted(list("abc")), ["a", "b", "c"])
 
 
 class Others(unittest.TestCase):
