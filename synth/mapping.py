@@ -23,7 +23,7 @@ def flow_facts() -> tuple[str, ...]:
 
 def files() -> list[pathlib.Path]:
     """The files that say how a netlist is made and timed."""
-    names = ("structure.v", "known_inputs.v", "osu_cells.v", "kept_memory.v", "kept_memories.v", "kept_enables.v", "timing.tcl",
+    names = ("comparisons.v", "structure.v", "known_inputs.v", "osu_cells.v", "kept_memory.v", "kept_memories.v", "kept_enables.v", "timing.tcl",
              "constraints.sdc", *set(scripts.ABC_SCRIPTS.values()))
     return [*scripts.FILES, *sorted(tools.FLOWS / name for name in names)]
 

@@ -59,7 +59,7 @@ def _kept(*modules: str) -> str:
     return "setattr -mod -set keep_hierarchy 1 " + " ".join(f"{module}$*" for module in modules)
 
 
-def _gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
+def gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
     """Of an elaborated design, gates and registers. Nothing here looks across a multiplexer, so carry-select stays that."""
     lines = ["proc"]
     if flow == "blocks":  # a read enable becomes the memory's, or its word would wait in a register behind it
@@ -73,8 +73,8 @@ def _gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
     if flow == "blocks":
         lines += ["memory -nomap", f"read_verilog -lib {tools.FLOWS}/kept_memory.v", f"techmap -map {tools.FLOWS}/kept_memories.v",
                   f"tee -q -o {out}.memories dump t:kept_memory"]
-    return "\n".join([*lines, "memory", "wreduce", "alumacc", "opt_expr", "opt_clean", "techmap", "opt_expr", "opt_merge",
-                      "opt_clean"])
+    return "\n".join([*lines, "memory", "wreduce", f"techmap -map {tools.FLOWS}/comparisons.v", "alumacc", "opt_expr", "opt_clean",
+                      "techmap", "opt_expr", "opt_merge", "opt_clean"])
 
 
 def standard_cells(design: Design, library: Library, flow: str, blocks: list[str], constraints: pathlib.Path,
@@ -86,15 +86,15 @@ def standard_cells(design: Design, library: Library, flow: str, blocks: list[str
     port of its own; and of flow `blocks` OUT.blocks.json, the same statistics module by module, and OUT.memories.
     """
     if flow == "cells":  # full adders and multiplexers become the library's own cells, out of ABC's reach
-        gates = f"{structure(design)}\ntechmap -map {tools.FLOWS}/osu_cells.v\ntechmap\nopt_expr\nopt_clean"
+        mapped = f"{structure(design)}\ntechmap -map {tools.FLOWS}/osu_cells.v\ntechmap\nopt_expr\nopt_clean"
     elif flow in ("default", "area", "small"):
         # Yosys's own recipe. -noshare: its SAT-based resource sharing can run for ever.
-        gates = f"{elaborated(design)}\nsynth -flatten -noshare -noabc -top {design.top}"
+        mapped = f"{elaborated(design)}\nsynth -flatten -noshare -noabc -top {design.top}"
     else:
-        gates = f"{elaborated(design)}\n{_gates(flow, blocks, out)}"
+        mapped = f"{elaborated(design)}\n{gates(flow, blocks, out)}"
     script = f"-script {tools.FLOWS / ABC_SCRIPTS[flow]}" if flow in ABC_SCRIPTS else ""
     stat = f"stat -json -liberty {library.liberty}"
-    lines = [gates, f"dfflibmap -liberty {library.liberty}", f"abc -liberty {library.liberty} -constr {constraints} {script}",
+    lines = [mapped, f"dfflibmap -liberty {library.liberty}", f"abc -liberty {library.liberty} -constr {constraints} {script}",
              "setattr -mod -unset keep_hierarchy *"]
     if flow == "blocks":
         lines += [f"tee -q -o {out}.blocks.json {stat}"]

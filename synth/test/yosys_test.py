@@ -10,7 +10,7 @@ import tempfile
 import unittest
 from unittest import mock
 
-from synth import tools, yosys
+from synth import scripts, tools, yosys
 
 SOURCE = """\
 module part #(parameter int Width = 1) (input logic [Width-1:0] a_i, output logic [Width-1:0] y_o);
@@ -67,6 +67,16 @@ class Yosys(unittest.TestCase):
             self.assertEqual(yosys.main(), 2)
             self.assertEqual((yosys.installed(), yosys.version()), (False, ""))
         self.assertEqual(said.getvalue(), "synth.yosys: Yosys is not installed: pip install -r synth/requirements.txt\n")
+
+    def test_comparisons_take_no_equality(self):
+        """With its operands swapped, one takes as many gates."""
+        counts = []
+        for operator in ("<", ">", ">=", "<="):
+            self.source.write_text(f"module top(input logic [7:0] a_i, b_i, output logic y_o); assign y_o = a_i {operator} b_i; endmodule\n")
+            gates = scripts.gates("fast", [], self.folder / "out")
+            yosys.run(f"{yosys.read([self.source], 'top')}\n{gates}\ntee -q -o {self.folder}/stat.json stat -json", self.log)
+            counts.append(json.loads((self.folder / "stat.json").read_text())["design"]["num_cells"])
+        self.assertEqual((counts[1], counts[3]), (counts[0], counts[2]))
 
 
 if __name__ == "__main__":
