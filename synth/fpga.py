@@ -48,17 +48,6 @@ def placed(design: Design, fpga: Fpga) -> dict | None:
     return {**median(runs), "seeds": len(runs), "least": min(rates), "most": max(rates)} if runs else None
 
 
-def placement(design: Design, fpga: Fpga) -> pathlib.Path:
-    """The folder of the first seed's placement: nextpnr's placed.json and written.json; made if need be."""
-    folder, wanted = _keys(design, fpga)
-    netlist, _ = store.cached(folder, wanted, lambda: _map(design, fpga, folder))
-    there = folder / f"seed-{fpga.seeds[0]}"
-    if not (there / "written.json").exists():
-        (there / "result.json").unlink(missing_ok=True)
-    store.cached(there, _seed_key(fpga, netlist), lambda: _place(fpga, folder, fpga.seeds[0]))
-    return there
-
-
 def median(runs: list[dict]) -> dict:
     """The run of the median clock rate."""
     return sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
@@ -95,10 +84,9 @@ def digest(netlist: pathlib.Path) -> str:
 
 def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
     # Relative names, for the ECP5's nextpnr runs in a sandbox with a /tmp of its own.
-    netlist, report, written = ((folder / name).relative_to(tools.ROOT) for name in (
-        "netlist.json", f"seed-{seed}/placed.json", f"seed-{seed}/written.json"))
+    netlist, report = ((folder / name).relative_to(tools.ROOT) for name in ("netlist.json", f"seed-{seed}/placed.json"))
     tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed, "--freq", fpga.wanted_mhz,
-               "--timing-allow-fail", "--report", report, "--write", written], folder / f"seed-{seed}" / "nextpnr.log")
+               "--timing-allow-fail", "--report", report], folder / f"seed-{seed}" / "nextpnr.log")
     return reported(json.loads((tools.ROOT / report).read_text()), cells=fpga.cells)
 
 

@@ -20,11 +20,9 @@ verilog: ## hardware: a module in one file of plain Verilog: make verilog TOP=fp
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.verilog "$(TOP)" "$(PARAMS)"
 
-fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-binary32 SEEDS=3] [FLOORPLAN=1: draw them] [TOP=small_core BOARD=ulx3s: a bitstream]
+fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-binary32 SEEDS=3] [TOP=small_core BOARD=ulx3s: a bitstream]
 	@$(SETUP) synth
-ifdef FLOORPLAN
-	@$(PYTHON) -m synth.floorplan $(or $(BOARD),$(UNITS))
-else ifdef BOARD
+ifdef BOARD
 	@$(PYTHON) -m synth.board '$(TOP)' '$(BOARD)' $(if $(SEEDS),--seed $(SEEDS))
 else
 	@$(PYTHON) -m synth.fpga $(if $(SEEDS),--seeds $(SEEDS)) $(UNITS)
