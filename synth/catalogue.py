@@ -274,7 +274,7 @@ class Row:
 
     def flows_on(self, library: Library) -> tuple[str, ...]:
         """The flows on a library; a user's takes those of the first one that it has the cells for."""
-        flows = self.flows.get(library.name, self.flows["osu035"] if library.file else ())
+        flows = self.flows.get(library.name, self.flows.get("osu035", ()) if library.file else ())
         return tuple(flow for flow in flows if flow != "cells" or library.structural)
 
 

@@ -8,7 +8,7 @@ import unittest
 from unittest import mock
 
 from synth import __main__ as program
-from synth import catalogue, liberty, mapping, store
+from synth import catalogue, liberty, mapping, measure, report, store
 
 # A library in femtofarads and picoseconds: as many cells as ABC and a register need.
 TABLE = 'values ("10, 100", "20, 110");'
@@ -86,6 +86,20 @@ class OfUser(unittest.TestCase):
                     same, _ = mapping.synthesise(catalogue.design("adder", adder="ripple", Width=4), osu, flow)
                 self.assertEqual((library.driver, got["area"]), ("INVX4", same["area"]))
                 self.assertAlmostEqual(got["delay_ns"] / same["delay_ns"], 1, delta=0.02)
+
+    def test_the_command_line(self):
+        """One design, and of the report's rows the flows of OSU's cells."""
+        said, libraries = io.StringIO(), list(catalogue.LIBRARIES)
+        with (tempfile.TemporaryDirectory() as name, mock.patch.object(store, "OUT", pathlib.Path(name)),
+              mock.patch.object(catalogue, "LIBRARIES", libraries), mock.patch.object(measure, "LIBRARIES", libraries),
+              mock.patch.object(report, "LIBRARIES", libraries), contextlib.redirect_stdout(said)):
+            file = pathlib.Path(name) / "mine.lib"
+            file.write_text(LIBRARY)
+            with mock.patch("sys.argv", ["synth", "--liberty", str(file), "--top", "leading_zero_counter", "--width", "4"]):
+                self.assertEqual(program.main(), 0)
+            (row,) = [row for row in catalogue.report_rows() if row.design.name == "adder-ripple"]
+            self.assertEqual(row.flows_on(libraries[-1]), ("kept", "default", "fast"))
+        self.assertRegex(said.getvalue(), r"mine\.lib: um2 / ns +\| +area \| +small \| +fast \|\n.*\n\| leading_zero_counter-Width4 +(\| +\d+ / 0\.\d\d ){3}\|")
 
     def test_what_is_no_library(self):
         for text, said in (("library (x) {\n}\n", "found 0 inverters and no capacitive_load_unit"), ("library (x) {\n", "x.lib:2: found the end"),
