@@ -109,7 +109,8 @@ def all_proofs() -> list[Proof]:
     # The pipelined unit in binary16: Verilator would take an hour for binary32's hundred thousand
     # cells.
     narrow = catalogue.design("hit_test_pipeline", ExpWidth=5, FracWidth=10)
-    rows = [row for row in catalogue.report_rows() if row.design.top != narrow.top]
+    # Of flow `blocks` memories are ports: its netlists are no circuit of their own.
+    rows = [row for row in catalogue.report_rows() if row.design.top != narrow.top and "blocks" not in row.flows["osu035"]]
     for row in [*rows, catalogue.Row("units", narrow, {"osu035": ("parts",)})]:
         for library in LIBRARIES:
             for flow in row.flows.get(library.name, ()):
