@@ -141,7 +141,7 @@ def group(name: str) -> str:
     """A proof's name without what its siblings differ in: adders, sizes, the netlist's design."""
     if name.startswith("netlist."):
         return "netlist.*"
-    return re.sub(r"^(adder)\..*|(?:\.(?:ripple|uniform|graded|prefix|structural|behavioural|distance_\d+_to_\d+))(?=\.|$)",
+    return re.sub(r"^(adder)\..*|(?:\.(?:ripple|uniform|graded|prefix|structural|behavioural))(?=\.|$)",
                   lambda match: f"{match[1]}.*" if match[1] else "", name)
 
 
