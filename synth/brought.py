@@ -23,7 +23,7 @@ from typing import NoReturn
 
 from pyslang import driver, syntax
 
-from synth import catalogue, cores, float_proofs, prove, store, tools
+from synth import catalogue, cores, float_proofs, prove, store, tools, yosys
 from synth.assertions import Proof, holds
 
 # What they are checked with, so that a width written as a number is found.
@@ -219,11 +219,11 @@ def in_place(folder: pathlib.Path) -> Iterator[None]:
 
 
 def widths(module: str, unit: catalogue.Design) -> list[int]:
-    """The values of Width that a module has within a unit."""
-    overrides = " ".join(f"-chparam {name} {value}" for name, value in unit.parameters)
-    said = tools.run(["yosys", "-p", f"read_verilog -sv -defer -DSYNTHESIS {' '.join(map(str, unit.sources()))}; "
-                      f"hierarchy -check -top {unit.top} {overrides}"], store.OUT / "widths.log")
-    return sorted({int(bits, 2) for bits in re.findall(rf"\\{module}\\Width=32'([01]+)", said)})
+    """The widths of a module's a_i within a unit."""
+    out = store.OUT / "widths.json"
+    yosys.run(f"{yosys.read(unit.sources(), unit.top, unit.parameters)}\nwrite_json {out}", out.with_suffix(".log"))
+    return sorted({len(found["ports"]["a_i"]["bits"]) for name, found in json.loads(out.read_text())["modules"].items()
+                   if name.startswith(f"{module}$")})
 
 
 def in_words(word: str, claim: str, values: dict[str, str]) -> str:

@@ -5,10 +5,7 @@ import os
 import pathlib
 import re
 
-from synth import cores, store, tools
-from synth.cells import catalogue as cells
-from synth.cells import library as measured
-from synth.cells import package
+from synth import cores, liberty, store, tools
 
 HW = cores.HW
 
@@ -22,13 +19,12 @@ class Design:
     folder: str  # of hw/
     parameters: tuple[tuple[str, str], ...] = ()
     clock: str = ""  # "" for combinational designs
-    cut: str = ""  # an instance that is left out; its ports become the design's
     tied: tuple[tuple[str, str], ...] = ()  # ports held at constants, e.g. ("carry_i", "1'b0")
 
     @property
     def facts(self) -> tuple:
         """What elaboration depends on besides the files."""
-        return self.top, self.parameters, self.cut, self.tied
+        return self.top, self.parameters, self.tied
 
     def sources(self, structural: bool = False) -> list[pathlib.Path]:
         """The files that elaboration needs, packages first; all of the folder where there is no top.
@@ -45,71 +41,50 @@ class Design:
         return files
 
 
-def without_pads(liberty: str) -> str:
-    """A Liberty file without its cells named PAD..., each of which begins and ends a line."""
-    return re.sub(r"^cell \(PAD\w+\) \{(?:[^\n]*\}|.*?^\})$\n?", "", liberty, flags=re.M | re.S)
+def without_pads(text: str, name: str) -> str:
+    """The text of a Liberty file without its pads, which ABC would take for strong buffers. Raises ValueError."""
+    for cell in reversed([cell for cell in liberty.parse(text, name).of("cell")
+                          if cell.name.startswith("PAD") or cell.attributes.get("pad_cell") == "true"]):
+        text = text[:cell.begin] + text[cell.end:].lstrip("\n")
+    return text
 
 
 @dataclasses.dataclass(frozen=True)
 class Library:
-    """A standard-cell library of Debian's qflow-tech packages."""
+    """A standard-cell library: one of Debian's qflow-tech packages, or a user's Liberty file."""
 
     name: str
     title: str
-    install: str
     driver: str = "INVX4"  # drives every input
     load_pf: float = 0.1  # hangs on every output
-    # Of a memory of up to 512 words: from the clock edge that takes an address to its word. OpenRAM's macro
-    # sky130_sram_2kbyte_1rw1r_32x512_8 in ngspice, tt, 25 C, 1.8 V: reading begins with the clock's fall, 0.80 ns after its
-    # rise at the soonest, and takes 2.67; a cycle takes 5.62; set-up times are negative (char.json of
-    # github.com/Jordanplus/arvinsa-rtl-gds). The older libraries: by the ratio of the paper's unit in both, 66.75 and 41.71
-    # to 48.29 ns. OpenRAM's own 0.35 um at 5 V, 16 words of 2 bits: 1.77 ns from the fall, a cycle of 6.56
-    # (compiler/tests/21_ngspice_delay_test.py of github.com/VLSIDA/OpenRAM).
+    # Of a memory of up to 512 words: from the clock edge that takes an address to its word. An OpenRAM macro of 130 nm,
+    # simulated at its typical corner, takes 3.47 (char.json of github.com/Jordanplus/arvinsa-rtl-gds); older libraries are
+    # slower by the ratio of the paper's unit in them. It is an estimate; memories of a user's library are taken to need none.
     access_ns: float = 0.0
+    file: pathlib.Path | None = None  # the user's
 
     @property
     def liberty(self) -> pathlib.Path:
-        """The timing tables of all cells but the pads, which ABC would take for strong buffers;
-        raises MissingTool where the package is absent."""
-        text = without_pads(self._file("lib").read_text())
+        """The timing tables of all cells but the pads. Raises MissingTool where the package is absent, ValueError where the
+        file is not Liberty."""
         kept = store.OUT / f"{self.name}.lib"
-        store.replace(kept, text)
+        store.replace(kept, without_pads(self._file("lib").read_text(errors="replace"), str(self._file("lib"))))
         return kept
-
-    @property
-    def corners(self) -> dict[str, pathlib.Path]:
-        """The other corners that it is characterised at, and their tables."""
-        return {}
-
-    @property
-    def is_made(self) -> bool:
-        """Whether its tables are there: a library's own come with it."""
-        return True
-
-    @property
-    def gate(self) -> str:
-        """The cell by which gates are counted."""
-        return "NAND2X1"
 
     @property
     def structural(self) -> bool:
         """Whether flow `cells` knows its full adder and its multiplexer (flows/osu_cells.v)."""
-        return True
+        return {"FAX1", "MUX2X1"} <= {cell.name for cell in liberty.read(self.liberty).of("cell")}
 
     @property
     def volts(self) -> float:
         """The supply that the library is characterised at."""
-        return float(re.search(r"nom_voltage : ([\d.]+)", self._file("lib").read_text()).group(1))
+        return liberty.read(self.liberty).number("nom_voltage")
 
     @property
     def lef(self) -> pathlib.Path:
         """The cells' outlines and pins, and the metals."""
         return self._file("lef")
-
-    @property
-    def graywolf(self) -> pathlib.Path:
-        """qflow's parameters of the placer."""
-        return self.lef.with_name(f"{self.name}.par")
 
     @property
     def magic(self) -> tuple[pathlib.Path, pathlib.Path]:
@@ -123,49 +98,29 @@ class Library:
         return self._file("v")
 
     def _file(self, suffix: str) -> pathlib.Path:
+        if self.file and suffix == "lib":
+            return self.file
         folder = pathlib.Path(os.environ.get("QFLOW_TECH", "/usr/share/qflow/tech"))
         file = folder / self.name / f"{self.name}_stdcells.{suffix}"
         if not file.exists():
-            raise tools.MissingTool(f"{self.title}: no {file}: {self.install}")
+            raise tools.MissingTool(f"{self.title}: no {file}: sudo apt-get install qflow-tech-{self.name}")
         return file
 
 
-@dataclasses.dataclass(frozen=True)
-class Characterised(Library):
-    """SkyWater's cells with the tables that synth/cells measures; the first use takes minutes."""
-
-    @property
-    def liberty(self) -> pathlib.Path:
-        """The tables at the typical corner; raises MissingTool without ngspice or SkyWater's files."""
-        return measured.liberty_file("tt")
-
-    @property
-    def corners(self) -> dict[str, pathlib.Path]:
-        """The slow corner and the fast one."""
-        return {corner.name: measured.liberty_file(corner.name) for corner in cells.CORNERS[1:]}
-
-    @property
-    def is_made(self) -> bool:
-        """Whether all cells are measured."""
-        return all(measured.is_made(corner) for corner in cells.CORNERS)
-
-    @property
-    def gate(self) -> str:
-        """The least NAND of two inputs."""
-        return f"{cells.PREFIX}nand2_1"
-
-    @property
-    def structural(self) -> bool:
-        """It does not."""
-        return False
-
-    @property
-    def volts(self) -> float:
-        """The supply of the typical corner."""
-        return cells.CORNERS[0].volts
-
-    def _file(self, suffix: str) -> pathlib.Path:
-        raise ValueError(f"{self.name} is for synthesis: layouts and simulated netlists take osu035 or osu018")
+def of_user(file: pathlib.Path) -> Library:
+    """The library in a user's Liberty file. Its driver is the inverter with four times the input capacitance of the least one,
+    its load eight inputs of the least one: about those of the other libraries. Raises ValueError."""
+    if not file.is_file():
+        raise ValueError(f"{file}: found no such file, expected a Liberty file")
+    inverters = liberty.inverters(liberty.read(file))
+    unit = re.match(r"([\d.]+)\s*,\s*(pf|ff)$", liberty.read(file).attributes.get("capacitive_load_unit", ""), re.I)
+    if not inverters or not inverters[0][0] or not unit:
+        raise ValueError(f"{file}: found {len(inverters)} inverters and {'a' if unit else 'no'} capacitive_load_unit, expected an inverter, "
+                         "its input capacitance and a unit in pf or ff")
+    least = inverters[0][0]
+    _, driver = min(inverters, key=lambda inverter: abs(inverter[0] - 4 * least))
+    farads = float(unit[1]) * (1 if unit[2].lower() == "pf" else 1e-3)
+    return Library("user-" + re.sub(r"\W", "-", file.stem), file.name, driver, 8 * least * farads, file=file.resolve())
 
 
 @dataclasses.dataclass(frozen=True)
@@ -183,11 +138,8 @@ class Fpga:
 
 
 LIBRARIES = [
-    Library("osu035", "OSU 0.35 um", "sudo apt-get install qflow-tech-osu035", access_ns=4.8),
-    Library("osu018", "OSU 0.18 um", "sudo apt-get install qflow-tech-osu018", access_ns=3.0),
-    # As many gate inputs on an output as in the older two.
-    Characterised("sky130", "SkyWater 130 nm", package.INSTALL, driver=f"{cells.PREFIX}inv_4", load_pf=0.02,
-                  access_ns=3.47),
+    Library("osu035", "OSU 0.35 um", access_ns=4.8),
+    Library("osu018", "OSU 0.18 um", access_ns=3.0),
 ]
 
 
@@ -320,6 +272,11 @@ class Row:
     design: Design
     flows: dict[str, tuple[str, ...]]  # by the target's name; an FPGA's only one is PLACED
 
+    def flows_on(self, library: Library) -> tuple[str, ...]:
+        """The flows on a library; a user's takes those of the first one that it has the cells for."""
+        flows = self.flows.get(library.name, self.flows.get("osu035", ()) if library.file else ())
+        return tuple(flow for flow in flows if flow != "cells" or library.structural)
+
 
 PLACED = ("placed",)
 
@@ -333,10 +290,10 @@ def report_rows() -> list[Row]:
         rows.append(Row("48-bit adders",
                         design("adder", f"adder-{name}", kind, widths, look_ahead, Width=48),
                         {"osu035": (*own, "kept", "default", "fast"),
-                         "osu018": (*own, "fast"), "sky130": ("kept", "default", "fast"), **placed}))
+                         "osu018": (*own, "fast"), **placed}))
     section = "24 x 24 multipliers"
     twice = {"osu035": ("small", "fast")}
-    everywhere = {**twice, "osu018": ("fast",), "sky130": ("fast",), **placed}
+    everywhere = {**twice, "osu018": ("fast",), **placed}
     rows.append(Row(section, design("carry_save_tree", "carry-save-tree-13-rows", Rows=13), twice))
     rows += [Row(section, design("booth_multiplier", f"booth-{kind}", kind, Width=24),
                  everywhere if kind == "graded" else
@@ -350,7 +307,7 @@ def report_rows() -> list[Row]:
     rows.append(Row(section, design("multiplier", "multiplier-behavioural", BEHAVIOURAL, Width=24),
                     {**everywhere, "osu035": ("small", "fast", "faster")}))
     rows += core_rows()
-    parts = {"osu035": ("parts",), "osu018": ("parts",), "sky130": ("parts",)}
+    parts = {"osu035": ("parts",), "osu018": ("parts",)}
     rows += [Row("units", design("hit_test_unit"), {**parts, "osu035": ("small", "parts")}),
              Row("units", design("iterative_hit_test_unit", RowsPerClock=1), {"osu035": ("parts",)}),
              Row("units", design("general_hit_test_unit"), {"osu035": ("parts",)}),
@@ -358,6 +315,21 @@ def report_rows() -> list[Row]:
              Row("exact unit", design("exact_unit"), {"osu035": ("blocks",)}),
              Row("ray core", design("ray_core"), {"osu035": ("blocks",)})]
     return rows
+
+
+# What `make synth` measures before anything else is asked for, in OSU 0.35 um.
+FIRST = {"adder-ripple", "adder-uniform-12x4", "adder-graded", "adder-prefix", "adder-behavioural", "booth-graded",
+         "multiplier-behavioural", "fp-multiplier", "fp-adder", "fp-divider", "hit_test_unit",
+         "iterative_hit_test_unit-RowsPerClock1", "exact_unit", "hit_test_pipeline"}
+# Left out of it: they take longest and say least.
+SLOW = {"faster", "area"}
+
+
+def first_rows() -> list[Row]:
+    """The rows of a first run."""
+    return [dataclasses.replace(row, flows={target: tuple(flow for flow in flows if flow not in SLOW and not (
+        flow == "small" and row.section == "units")) for target, flows in row.flows.items()})
+            for row in report_rows() if row.design.name in FIRST]
 
 
 # Formats by name: exponent and fraction bits.
@@ -405,7 +377,7 @@ def core_rows() -> list[Row]:
     """
     cores = [(top, top.replace("_", "-")) for top in ("fp_multiplier", "fp_adder", "fp_divider")]
     rows = [Row("binary32 cores", design(top, name, "graded"),
-                {"osu035": ("area", "small", "fast"), "osu018": ("fast",), "sky130": ("fast",)}) for top, name in cores]
+                {"osu035": ("area", "small", "fast"), "osu018": ("fast",)}) for top, name in cores]
     for top, name in cores:
         rows += [Row("reduced cores", design(top, f"{name}-{bits}-bits", "graded", FracWidth=bits - 1),
                      {"osu035": ("area", "small")}) for bits in (16, 12)]

@@ -10,7 +10,7 @@ import pathlib
 import re
 import sys
 
-from synth import catalogue, mapping, store, tools
+from synth import catalogue, mapping, scripts, store, tools, yosys
 
 SHAPES = {"register": "box", "multiplexer": "invtrapezium", "core": "box3d", "port": "oval", "memory": "cylinder"}
 # Inputs of cells that say when or which, not what.
@@ -34,7 +34,7 @@ def blocks(module: dict, width: int) -> tuple[dict[str, tuple[str, str]], set[tu
         kind = {"$mux": "multiplexer", "$pmux": "multiplexer"}.get(cell["type"], "")
         if "dff" in cell["type"]:
             kind = "register"
-        elif cell["type"].startswith("$paramod") or not cell["type"].startswith("$"):
+        elif not cell["type"].startswith("$"):
             kind = "core"
         if not kind:
             continue
@@ -66,7 +66,7 @@ def units(module: dict, width: int) -> tuple[dict[str, tuple[str, str]], set[tup
             side = starts if port["direction"] == "input" else ends
             side.setdefault(name, []).append(port["bits"])
     for name, cell in module["cells"].items():
-        is_unit = cell["type"].startswith("$paramod") or not cell["type"].startswith("$")
+        is_unit = not cell["type"].startswith("$")
         is_memory = cell["type"].startswith("$mem")
         words = [(bits, cell["port_directions"][port]) for port, bits in cell["connections"].items()
                  if port not in CONTROLS]
@@ -106,8 +106,7 @@ def draw(top: str, out: pathlib.Path, width: int = 32, seen: object = blocks) ->
     """Writes OUT.dot, OUT.svg and OUT.png; `seen`: blocks, or units."""
     design = catalogue.design(top)
     file = out.with_suffix(".json")
-    tools.run(["yosys", "-c", tools.FLOWS / "blocks.tcl"], out.with_suffix(".log"),
-              {**mapping.elaboration(design), "OUT": str(file)})
+    yosys.run(scripts.modules_json(design, file), out.with_suffix(".log"))
     nodes, arrows = seen(mapping.top_module(file), width)
     names = {name: f"n{place}" for place, name in enumerate(sorted(nodes))}
     lines = [f"digraph {top} {{", "  rankdir=LR; node [fontname=sans]; edge [arrowsize=0.7];"]

@@ -7,7 +7,7 @@ From whatever state, and whatever comes before and after: what goes in with cloc
 import dataclasses
 import re
 
-from synth import smt, store, tools
+from synth import smt, store, tools, yosys
 from synth.float_proofs import ARITHMETIC, FLOAT, FORMATS, OPERATIONS, FloatProof
 
 
@@ -74,8 +74,8 @@ def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
     folder = store.OUT / "proofs" / f"float.cuts.{cut.name}.{name}.{arithmetic}"
     uncut = FloatProof(cut.uncut, name, arithmetic)
     parameters = f"ExpWidth {exp} FracWidth {frac} {ARITHMETIC[arithmetic]} {cut.parameters}"
-    wanted = store.key([*uncut.sources(), FLOAT / "model.tcl", FLOAT / "solve.py"],
-                       tools.version("yosys"), smt.version(), parameters, cut.latency[name])
+    wanted = store.key([*uncut.sources(), smt.FREE, FLOAT / "solve.py"],
+                       yosys.version(), smt.version(), parameters, cut.latency[name])
 
     def work() -> dict:
         stages = smt.write_model(uncut.sources(), cut.top, parameters, folder / "stages")

@@ -12,7 +12,7 @@ import pathlib
 import re
 import string
 
-from synth import cores, smt, store, tools
+from synth import cores, smt, store, tools, yosys
 
 FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
 
@@ -23,8 +23,6 @@ FORMATS = {"binary16": (5, 10, 8, 23), "binary32": (8, 23, 11, 52)}
 NARROW_FORMATS = {"bfloat16": (8, 7, 11, 52)}
 HELD_FRACTION = {"bfloat16": 23}
 NARROW_CLAIMS = ("add", "multiply", "divide")
-# No query holds all of it: one for each difference of exponents.
-SPLIT_FORMATS = {"binary64": (11, 52, 15, 112)}
 
 # What a core is made of, as its parameters.
 ARITHMETIC = {
@@ -87,14 +85,12 @@ class FloatProof:
     arithmetic: str = ""
     quotient_bits: int = 0
     long: bool = False
-    distances: tuple[int, int] | None = None  # the exponents' fields differ by so much
 
     @property
     def name(self) -> str:
         """Unique; of the folder too."""
         bits = self.quotient_bits
-        parts = (self.operation, self.format, self.arithmetic, f"{bits}_bits" if bits else "",
-                 "distance_{}_to_{}".format(*self.distances) if self.distances else "")
+        parts = (self.operation, self.format, self.arithmetic, f"{bits}_bits" if bits else "")
         return ".".join(filter(None, parts))
 
     @property
@@ -110,7 +106,7 @@ class FloatProof:
 
     def numbers(self) -> dict[str, object]:
         """What the specifications' placeholders stand for."""
-        exp, frac, wide_exp, wide_frac = (FORMATS | NARROW_FORMATS | SPLIT_FORMATS)[self.format]
+        exp, frac, wide_exp, wide_frac = (FORMATS | NARROW_FORMATS)[self.format]
         held_frac = HELD_FRACTION.get(self.format, frac)
         width = 1 + exp + frac
         bias, wide_bias = 2 ** (exp - 1) - 1, 2 ** (wide_exp - 1) - 1
@@ -173,19 +169,6 @@ class FloatProof:
             "NEGATIVES": digits("#b00", "negative"),
         }
 
-    def case(self) -> str:
-        """The case that is proven, if not all of them are at once."""
-        if not self.distances:
-            return ""
-        exp, frac, *_ = SPLIT_FORMATS[self.format]
-        field = f"(_ extract {exp + frac - 1} {frac})"
-        a_less_b = f"(bvsub ({field} a_i) ({field} b_i))"
-        b_less_a = f"(bvsub ({field} b_i) ({field} a_i))"
-        distance = f"(ite (bvuge ({field} a_i) ({field} b_i)) {a_less_b} {b_less_a})"
-        least, most = self.distances
-        return (f"(assert (and (bvuge {distance} (_ bv{least} {exp})) "
-                f"(bvule {distance} (_ bv{most} {exp}))))\n")
-
     def files(self) -> list[pathlib.Path]:
         """The specification, and behind it the claim."""
         parts = OPERATIONS[self.operation].specification
@@ -227,9 +210,6 @@ PROOFS = [
     FloatProof("divide_cut", "binary32", "graded", 21),
     *(FloatProof("srt_first_row", name) for name in FORMATS),
     FloatProof("srt_ends", "binary32", "graded", 21),
-    *(FloatProof("add", name, "graded", long=True, distances=(least, most))
-      for name, (exp, frac, *_) in SPLIT_FORMATS.items()
-      for least, most in (*((n, n) for n in range(frac + 8)), (frac + 8, 2 ** exp - 1))),
     *(dataclasses.replace(one, long=True) for one in _CORES
       if (one.operation, one.format) == ("add", "binary32")),
 ]
@@ -240,14 +220,14 @@ def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
     *specification, claim = one.texts()
     top = OPERATIONS[one.operation].top
     named, wires = smt.ports(model, top) if top else ("", [])
-    return "(set-logic QF_BVFP)\n" + "".join([*specification, model, named, claim, one.case()]), wires
+    return "(set-logic QF_BVFP)\n" + "".join([*specification, model, named, claim]), wires
 
 
 def proven(one: FloatProof) -> tuple[dict, bool]:
     """Proves a claim; raises ToolFailed, with the operands, where it does not hold."""
     folder = store.OUT / "proofs" / f"float.{one.name}"
-    wanted = store.key([*one.sources(), FLOAT / "model.tcl", FLOAT / "solve.py"],
-                       tools.version("yosys"), smt.version(), one.parameters, one.texts(), *filter(None, [one.case()]))
+    wanted = store.key([*one.sources(), smt.FREE, FLOAT / "solve.py"],
+                       yosys.version(), smt.version(), one.parameters, one.texts())
 
     def work() -> dict:
         top = OPERATIONS[one.operation].top

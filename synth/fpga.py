@@ -14,7 +14,7 @@ import re
 import sys
 from collections.abc import Callable
 
-from synth import catalogue, mapping, runner, store, tables, tools
+from synth import catalogue, runner, scripts, store, tables, tools, yosys
 from synth.catalogue import Design, Fpga
 
 
@@ -48,17 +48,6 @@ def placed(design: Design, fpga: Fpga) -> dict | None:
     return {**median(runs), "seeds": len(runs), "least": min(rates), "most": max(rates)} if runs else None
 
 
-def placement(design: Design, fpga: Fpga) -> pathlib.Path:
-    """The folder of the first seed's placement: nextpnr's placed.json and written.json; made if need be."""
-    folder, wanted = _keys(design, fpga)
-    netlist, _ = store.cached(folder, wanted, lambda: _map(design, fpga, folder))
-    there = folder / f"seed-{fpga.seeds[0]}"
-    if not (there / "written.json").exists():
-        (there / "result.json").unlink(missing_ok=True)
-    store.cached(there, _seed_key(fpga, netlist), lambda: _place(fpga, folder, fpga.seeds[0]))
-    return there
-
-
 def median(runs: list[dict]) -> dict:
     """The run of the median clock rate."""
     return sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
@@ -67,8 +56,7 @@ def median(runs: list[dict]) -> dict:
 def _keys(design: Design, fpga: Fpga) -> tuple[pathlib.Path, str]:
     """Where results are kept, and under what key the netlist is."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
-    files = [*design.sources(), tools.FLOWS / "fpga.tcl", tools.FLOWS / "elaborate.tcl"]
-    return folder, store.key(files, tools.version("yosys"), design.facts, fpga.name, fpga.luts, inspect.getsource(registered),
+    return folder, store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts, inspect.getsource(registered),
                              inspect.getsource(_map))
 
 
@@ -79,17 +67,13 @@ def _seed_key(fpga: Fpga, netlist: dict) -> str:
 
 
 def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
-    environment = {**mapping.elaboration(design), "FAMILY": fpga.name, "LUTS": fpga.luts,
-                   "OUT": str(folder / "netlist.json"), "WRAPPER": "", "PORTS": ""}
-    ports = folder / "ports.json"
-    tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], folder / "ports.log",
-              {**environment, "PORTS": str(ports)})
+    ports, wrapper = folder / "ports.json", None
+    yosys.run(f"{scripts.elaborated(design)}\nwrite_json {ports}", folder / "ports.log")
     sides = port_widths(design.top, json.loads(ports.read_text()))
     if not design.clock or sum(width for _, _, width in sides) > MOST_PINS:
         wrapper = folder / "registered.v"
         wrapper.write_text(registered(design, sides))
-        environment["WRAPPER"] = str(wrapper)
-    tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], folder / "yosys.log", environment)
+    yosys.run(scripts.fpga(design, fpga.name, fpga.luts, folder / "netlist.json", wrapper), folder / "yosys.log")
     return {"digest": digest(folder / "netlist.json")}
 
 
@@ -100,10 +84,9 @@ def digest(netlist: pathlib.Path) -> str:
 
 def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
     # Relative names, for the ECP5's nextpnr runs in a sandbox with a /tmp of its own.
-    netlist, report, written = ((folder / name).relative_to(tools.ROOT) for name in (
-        "netlist.json", f"seed-{seed}/placed.json", f"seed-{seed}/written.json"))
+    netlist, report = ((folder / name).relative_to(tools.ROOT) for name in ("netlist.json", f"seed-{seed}/placed.json"))
     tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed, "--freq", fpga.wanted_mhz,
-               "--timing-allow-fail", "--report", report, "--write", written], folder / f"seed-{seed}" / "nextpnr.log")
+               "--timing-allow-fail", "--report", report], folder / f"seed-{seed}" / "nextpnr.log")
     return reported(json.loads((tools.ROOT / report).read_text()), cells=fpga.cells)
 
 
@@ -133,9 +116,7 @@ def register(cell: str) -> str:
 
 def port_widths(top: str, netlist: dict) -> list[tuple[str, str, int]]:
     """Direction, name and bits of each port of `top` in Yosys's JSON."""
-    (module,) = [body for name, body in netlist["modules"].items()
-                 if re.search(rf"(^|\\){re.escape(top)}(\\|$)", name)]
-    return [(body["direction"], port, len(body["bits"])) for port, body in module["ports"].items()]
+    return [(body["direction"], port, len(body["bits"])) for port, body in netlist["modules"][top]["ports"].items()]
 
 
 def registered(design: Design, ports: list[tuple[str, str, int]]) -> str:

@@ -6,12 +6,8 @@ import json
 import pathlib
 import re
 
-from synth import store, tools
+from synth import scripts, store, tools, yosys
 from synth.catalogue import Design, Library
-
-ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "area": "area.abc", "small": "small.abc",
-               "fast": "fast.abc", "faster": "faster.abc", "parts": "fast.abc",
-               "modules": "fast.abc", "blocks": "fast.abc"}
 
 # One step of OpenSTA's path: cell or net load, slew, delay, arrival, edge, pin, cell type.
 PATH_STEP = re.compile(
@@ -22,26 +18,14 @@ PATH_STEP = re.compile(
 @functools.cache
 def flow_facts() -> tuple[str, ...]:
     """What every mapping depends on besides the design: the tools' versions."""
-    return tools.version("yosys"), tools.version("sta")
+    return yosys.version(), tools.version("sta")
 
 
-def scripts() -> list[pathlib.Path]:
+def files() -> list[pathlib.Path]:
     """The files that say how a netlist is made and timed."""
-    names = ("standard_cells.tcl", "elaborate.tcl", "structure.tcl", "structure.v",
-             "known_inputs.v", "osu_cells.v", "kept_memory.v", "kept_memories.v", "kept_enables.v", "timing.tcl", "constraints.sdc",
-             *set(ABC_SCRIPTS.values()))
-    return sorted(tools.FLOWS / name for name in names)
-
-
-def elaboration(design: Design, structural: bool = False) -> dict[str, str]:
-    """The environment that flows/elaborate.tcl reads."""
-    return {
-        "SOURCES": " ".join(str(file) for file in design.sources(structural)),
-        "TOP": design.top,
-        "PARAMETERS": " ".join(f"{name} {value}" for name, value in design.parameters),
-        "CUT": design.cut,
-        "TIED": " ".join(f"{name} {value}" for name, value in design.tied),
-    }
+    names = ("comparisons.v", "structure.v", "known_inputs.v", "osu_cells.v", "kept_memory.v", "kept_memories.v", "kept_enables.v", "timing.tcl",
+             "constraints.sdc", *set(scripts.ABC_SCRIPTS.values()))
+    return [*scripts.FILES, *sorted(tools.FLOWS / name for name in names)]
 
 
 def top_module(file: pathlib.Path) -> dict:
@@ -53,11 +37,10 @@ def top_module(file: pathlib.Path) -> dict:
 
 def synthesise(design: Design, library: Library, flow: str,
                root: pathlib.Path | None = None) -> tuple[dict, bool]:
-    """Area (liberty units), delay (ns; also at the library's other corners), cells and critical path; and whether it was
-    cached."""
+    """Area (liberty units), delay (ns), cells and critical path; and whether it was cached."""
     folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
-    files = [*design.sources(flow == "cells"), library.liberty, *library.corners.values(), *scripts()]
-    wanted = store.key(files, flow_facts(), design.facts, library, flow)
+    read = [*design.sources(flow == "cells"), library.liberty, *files()]
+    wanted = store.key(read, flow_facts(), design.facts, library, flow)
     return store.cached(folder, wanted, lambda: _map_and_time(design, library, flow, folder))
 
 
@@ -65,48 +48,35 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
     constraints = folder / "constraints"
     constraints.write_text(  # ABC counts femtofarads
         f"set_driving_cell {library.driver}\nset_load {1000 * library.load_pf:g}\n")
-    script = ABC_SCRIPTS.get(flow)
     prefix = folder / "netlist"
-    tools.run(["yosys", "-c", tools.FLOWS / "standard_cells.tcl"], folder / "yosys.log", {
-        **elaboration(design, flow == "cells"),
-        "FLOW": flow,
-        "BLOCKS": " ".join(blocks(design)) if flow == "blocks" else "",
-        "LIBERTY": str(library.liberty),
-        "CONSTRAINTS": str(constraints),
-        "ABC_SCRIPT": f"-script {tools.FLOWS / script}" if script else "",
-        "OUT": str(prefix),
-    })
-    area, cells = cell_counts(prefix.with_suffix(".stat").read_text())
-    timing = sta(design, library, prefix.with_suffix(".timed.v"), folder / "timing.txt", bool(design.cut))
+    yosys.run(scripts.standard_cells(design, library, flow, blocks(design), constraints, prefix), folder / "yosys.log")
+    area, cells = cell_counts(prefix.with_suffix(".stat.json"))
+    timing = sta(design, library, prefix.with_suffix(".timed.v"), folder / "timing.txt")
     delay, path = critical_path(timing)
-    corners = {name: critical_path(sta(design, library, prefix.with_suffix(".timed.v"), folder / f"timing.{name}.txt",
-                                       liberty=tables))[0] for name, tables in library.corners.items()}
     clocked = registers(prefix.with_suffix(".timed.v").read_text(), path) if design.clock else {}
-    parts = {"blocks": block_costs(prefix.with_suffix(".blocks").read_text(), kept_memories(
+    parts = {"blocks": block_costs(statistics(prefix.with_suffix(".blocks.json")), kept_memories(
         prefix.with_suffix(".memories").read_text()))} if flow == "blocks" else {}
     return {
         **clocked,
         **parts,
-        **({"ends": ends(timing)} if design.cut else {}),
         "area": area,
         "delay_ns": delay,
-        **({"corners_ns": corners} if corners else {}),
         "cells": cells,
         "path": path,
     }
 
 
 def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Path,
-        ends: bool = False, spef: pathlib.Path | None = None, clock: str = "", liberty: pathlib.Path | None = None) -> str:
-    """OpenSTA's report of the slowest path of `netlist`, and of all its ends if so wished.
+        spef: pathlib.Path | None = None, clock: str = "") -> str:
+    """OpenSTA's report of the slowest path of `netlist`.
 
-    `spef`: its wires; `clock`: the clock's port where `netlist` calls it otherwise than the design does; `liberty`: tables of
-    another corner.
+    `spef`: its wires; `clock`: the clock's port where `netlist` calls it otherwise than the design does.
     """
     return tools.run(["sta", "-exit", tools.FLOWS / "timing.tcl"], log, {
-        "LIBERTY": str(liberty or library.liberty), "NETLIST": str(netlist), "TOP": design.top,
-        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}", "ACCESS": f"{library.access_ns}", "CLOCK": clock or design.clock,
-        "ENDS": f"{ends:d}", "SPEF": str(spef or "")})
+        "LIBERTY": str(library.liberty), "NETLIST": str(netlist), "TOP": design.top,
+        "SDC": str(tools.FLOWS / "constraints.sdc"), "DRIVER": library.driver, "LOAD": f"{library.load_pf}",
+        "ACCESS": f"{library.access_ns}", "CLOCK": clock or design.clock,
+        "SPEF": str(spef or "")})
 
 
 def blocks(design: Design) -> list[str]:
@@ -125,54 +95,38 @@ def kept_memories(dump: str) -> dict[str, int]:
     return dict(bits)
 
 
-def base_name(module: str) -> str:
-    """box_unit of $paramod$HASH\\box_unit and $paramod\\box_unit\\Name=Value."""
-    return re.match(r"(?:\$paramod(?:\$\w+)?)?\\?(\w+)", module)[1]
+def statistics(file: pathlib.Path) -> dict[str, dict]:
+    """Of each module what Yosys's `stat -json` states: its area (liberty units) and its cells by type, with all that is in it."""
+    return {name.removeprefix("\\"): {"area": 0, **module} for name, module in json.loads(file.read_text())["modules"].items()}
 
 
-def block_costs(stat: str, memories: dict[str, int]) -> dict[str, dict]:
+def block_costs(modules: dict[str, dict], memories: dict[str, int]) -> dict[str, dict]:
     """Of each kind of block in the top: how many there are, and the area (liberty units) and the bits of memory of
     all of them, with what is in them.
 
-    `stat`: Yosys's statistics of every module, before they are joined; `memories`: of kept_memories.
+    `modules`: of `statistics`, before the modules are joined; `memories`: of kept_memories.
     """
-    area, inside = {}, {}
-    for name, text in re.findall(r"^=== (\S+) ===\n(.*?)(?=^=== |\Z)", stat, re.M | re.S):
-        # A module may have no cells of its own; its name may end in Width=32'...
-        own = re.search(r"Chip area for (?:top )?module '.*': ([\d.]+)$", text, re.M)
-        area[name] = float(own[1]) if own else 0.0
-        inside[name] = [(cell, int(count)) for cell, count in re.findall(r"^ {5}(\S+) +(\d+)$", text, re.M)]
+    inside = {name: {cell: count for cell, count in module["num_cells_by_type"].items() if cell in modules}
+              for name, module in modules.items()}
 
-    def whole(name: str, own: dict) -> float:
-        return own.get(name, 0) + sum(count * whole(cell, own) for cell, count in inside[name] if cell in area)
+    def bits(name: str) -> int:
+        return memories.get(name, 0) + sum(count * bits(cell) for cell, count in inside[name].items())
 
-    (top,) = area.keys() - {cell for cells in inside.values() for cell, _ in cells}
-    bits = {top: memories[""]} if "" in memories else memories
-    found = {"the rest": {"count": 1, "area": round(area[top]), "bits": bits.get(top, 0)}}
-    for cell, count in inside[top]:
-        if cell in area:
-            block = found.setdefault(base_name(cell), {"count": 0, "area": 0, "bits": 0})
-            block["count"] += count
-            block["area"] += round(count * whole(cell, area))
-            block["bits"] += int(count * whole(cell, bits))
+    (top,) = modules.keys() - {cell for cells in inside.values() for cell in cells}
+    rest = modules[top]["area"] - sum(count * modules[cell]["area"] for cell, count in inside[top].items())
+    found = {"the rest": {"count": 1, "area": round(rest), "bits": memories.get("", memories.get(top, 0))}}
+    for cell, count in inside[top].items():
+        block = found.setdefault(cell.partition("$")[0], {"count": 0, "area": 0, "bits": 0})
+        block["count"] += count
+        block["area"] += round(count * modules[cell]["area"])
+        block["bits"] += count * bits(cell)
     return found
 
 
-def cell_counts(stat: str) -> tuple[int, dict[str, int]]:
-    """The area (liberty units) and the number of cells of each type in Yosys's statistics."""
-    area = re.search(r"Chip area for (?:top )?module '[^']*': ([\d.]+)", stat)
-    unknown = re.search(r"Area for cell type (\S+) is unknown", stat)
-    if area is None or unknown:
-        raise tools.ToolFailed("Yosys stated no area: the library has no "
-                               f"{unknown.group(1) if unknown else 'such cell'}")
-    cells = re.findall(r"^ {5}(\w+) +(\d+)$", stat, re.M)
-    return round(float(area.group(1))), {name: int(count) for name, count in cells}
-
-
-def ends(report: str) -> dict[str, float]:
-    """When each output of an OpenSTA report of end points is there, ns, the slowest first."""
-    found = re.findall(r"^(\S+) \(output\) +[\d.]+ +(-?[\d.]+)", report, re.M)
-    return {name: float(arrival) for name, arrival in found}
+def cell_counts(file: pathlib.Path) -> tuple[int, dict[str, int]]:
+    """The area (liberty units) and the number of cells of each type in Yosys's statistics of one module."""
+    (module,) = statistics(file).values()
+    return round(module["area"]), module["num_cells_by_type"]
 
 
 def registers(netlist: str, path: list[dict]) -> dict[str, str]:

@@ -1,9 +1,11 @@
 """Measures designs on all targets: the jobs, and their results as flat records."""
 
+import collections
 import dataclasses
 import sys
+from collections.abc import Callable
 
-from synth import fpga, mapping, runner, tools
+from synth import fpga, mapping, runner, tools, yosys
 from synth.catalogue import FPGAS, LIBRARIES, Row
 
 
@@ -15,60 +17,63 @@ class Targets:
     workers: int = 2
 
 
-def available(names: list[str] | None, whole: bool = True) -> tuple[str, ...]:
-    """The targets asked for, or all whose tools are installed.
+def available(names: list[str] | None, everything: bool = True, one: bool = False) -> tuple[str, ...]:
+    """The targets asked for; else a user's library alone, or of `everything` all libraries and the FPGAs whose placers are
+    installed, of `one` design all libraries, of the main designs the first.
 
-    Raises MissingTool for one that was asked for and for the standard-cell tools; an FPGA whose
-    placer is absent is left out of a run of everything. A run that is not `whole` leaves out FPGAs, which
-    a large unit may not fit, and cells that would have to be measured first: both take longer than one design.
+    Raises MissingTool for a tool of a target that was asked for and for the standard-cell tools.
     """
-    tools.find("yosys")
-    chosen = []
-    for library in LIBRARIES:
-        if not names and not whole and not library.is_made:
-            print(f"no {library.title}: its cells are not measured yet; TARGETS={library.name} does that first (half an "
-                  "hour on one processor), `make cells` too", file=sys.stderr)
-        elif not names or library.name in names:
-            tools.find("sta")
-            _ = library.liberty, library.corners
-            chosen.append(library.name)
-    for device in FPGAS if names or whole else ():
-        if names and device.name in names:
-            tools.find(device.tool)
-        if not names and not tools.installed(device.tool):
-            print(f"no {device.title}: {device.tool} is not installed: {tools.TOOLS[device.tool][0]}",
-                  file=sys.stderr)
-        elif not names or device.name in names:
+    yosys.folder()
+    known = {target.name: target for target in [*LIBRARIES, *FPGAS]}
+    if unknown := set(names or []) - known.keys():
+        raise ValueError(f"no target {', '.join(sorted(unknown))}; there are {', '.join(known)}")
+    if not names and LIBRARIES[-1].file:
+        names = [LIBRARIES[-1].name]
+    chosen = names or [library.name for library in (LIBRARIES if everything or one else LIBRARIES[:1])]
+    for device in FPGAS if everything and not names else ():
+        if tools.installed(device.tool):
             chosen.append(device.name)
-    unknown = set(names or []) - set(chosen)
-    if unknown:
-        known = ", ".join(target.name for target in [*LIBRARIES, *FPGAS])
-        raise ValueError(f"no target {', '.join(sorted(unknown))}; there are {known}")
-    return tuple(chosen)
+        else:
+            print(f"no {device.title}: {device.tool} is not installed: {tools.TOOLS[device.tool][0]}", file=sys.stderr)
+    for target in (known[name] for name in chosen):
+        tools.find("sta" if target in LIBRARIES else target.tool)
+        if target in LIBRARIES:
+            _ = target.liberty
+    return tuple(target for target in known if target in chosen)
 
 
-def measure(rows: list[Row], targets: Targets) -> tuple[list[dict], list[str]]:
-    """One record for each target and flow of each row; and the failures."""
-    jobs, heads = [], []
+def measure(rows: list[Row], targets: Targets, ended: Callable[[Row, list[dict]], None] | None = None,
+            ) -> tuple[list[dict], list[str]]:
+    """One record for each target and flow of each row; and the failures.
+
+    `ended` is called with each row whose jobs have all ended, and its records, in place of lines of progress.
+    """
+    jobs: list[runner.Job] = []
+    heads: list[tuple[Row, dict]] = []
+
+    def add(row: Row, target: str, flow: str, work: Callable[[], tuple[dict, bool]], tell: Callable[[dict], str]) -> None:
+        heads.append((row, {"section": row.section, "design": row.design.name, "top": row.design.top,
+                            "parameters": dict(row.design.parameters), "target": target, "flow": flow}))
+        jobs.append(runner.Job(f"{row.design.name} {target} {flow}", work, None if ended else tell))
+
     for row in rows:
-        design = row.design
-        head = {"section": row.section, "design": design.name, "top": design.top,
-                "parameters": dict(design.parameters)}
         for library in LIBRARIES:
-            if library.name in targets.names:
-                for flow in row.flows.get(library.name, ()):
-                    heads.append({**head, "target": library.name, "flow": flow})
-                    jobs.append(runner.Job(
-                        f"{design.name} {library.name} {flow}",
-                        lambda d=design, t=library, f=flow: mapping.synthesise(d, t, f),
-                        lambda got: f"{got['area']:,} / {got['delay_ns']:.2f} ns"))
+            for flow in row.flows_on(library) if library.name in targets.names else ():
+                add(row, library.name, flow, lambda d=row.design, t=library, f=flow: mapping.synthesise(d, t, f),
+                    lambda got: f"{got['area']:,} / {got['delay_ns']:.2f} ns")
         for device in FPGAS:
             if device.name in targets.names and device.name in row.flows:
-                heads.append({**head, "target": device.name, "flow": "placed"})
-                jobs.append(runner.Job(
-                    f"{design.name} {device.name}",
-                    lambda d=design, t=device: fpga.place(d, t),
-                    lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz"))
-    results, failures = runner.run_all(jobs, targets.workers)
-    return [{**head, **result} for head, result in zip(heads, results, strict=True)
-            if result is not None], failures
+                add(row, device.name, "placed", lambda d=row.design, t=device: fpga.place(d, t),
+                    lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz")
+    found: dict[str, list[dict]] = {row.design.name: [] for row in rows}
+    left = collections.Counter(row.design.name for row, _ in heads)
+
+    def one_ended(place: int, result: dict | None) -> None:
+        row, head = heads[place]
+        found[row.design.name] += [{**head, **result}] if result else []
+        left[row.design.name] -= 1
+        if ended and left[row.design.name] == 0:
+            ended(row, found[row.design.name])
+
+    results, failures = runner.run_all(jobs, targets.workers, one_ended)
+    return [{**head, **result} for (_, head), result in zip(heads, results, strict=True) if result is not None], failures

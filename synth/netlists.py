@@ -5,7 +5,7 @@ import json
 import pathlib
 import re
 
-from synth import mapping, store, tools
+from synth import mapping, scripts, store, tools, yosys
 from synth.catalogue import Design, Library
 
 PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
@@ -15,18 +15,22 @@ SECONDS = 600  # for ABC, on one netlist
 def equal(design: Design, library: Library, flow: str) -> tuple[dict, bool]:
     """Raises ToolFailed unless ABC proves that the netlist computes what its RTL does. No registers."""
     folder = store.OUT / "netlists" / f"{design.name}.{library.name}.{flow}"
-    files = [*design.sources(), library.liberty, PROOFS / "netlist_equals.tcl",
-             pathlib.Path(__file__), *mapping.scripts()]
+    files = [*design.sources(), library.liberty, pathlib.Path(__file__), *mapping.files()]
     wanted = store.key(files, mapping.flow_facts(), design.facts, library, flow)
 
     def work() -> dict:
         mapping.synthesise(design, library, flow)
         run = store.OUT / "runs" / f"{design.name}.{library.name}.{flow}"
-        tools.run(["yosys", "-c", PROOFS / "netlist_equals.tcl"], folder / "yosys.log", {
-            **mapping.elaboration(design), "LIBERTY": str(library.liberty),
-            "NETLIST": str(run / "netlist.v"), "OUT": str(folder)})
-        said = tools.run(["yosys-abc", "-c", f"cec -T {SECONDS} {folder}/rtl.blif {folder}/netlist.blif"],
-                         folder / "abc.log")
+        gates = "flatten -noscopeinfo\nopt_expr\ntechmap\nopt_clean -purge\nselect -assert-none t:$*FF*\nwrite_blif"
+        yosys.run(f"""{scripts.elaborated(design)}
+{gates} {folder}/rtl.blif
+design -reset
+{cells(library)}
+read_verilog {run}/netlist.v
+hierarchy -check -top {design.top}
+proc
+{gates} {folder}/netlist.blif""", folder / "yosys.log")
+        said = yosys.abc(f"cec -T {SECONDS} {folder}/rtl.blif {folder}/netlist.blif", folder / "abc.log")
         if "Networks are equivalent" not in said:
             raise tools.ToolFailed(f"{folder}/abc.log: {said.strip().splitlines()[-1]}")
         return {"holds": True}
@@ -34,11 +38,17 @@ def equal(design: Design, library: Library, flow: str) -> tuple[dict, bool]:
     return store.proven(folder, wanted, work)
 
 
+def cells(library: Library) -> str:
+    """Commands that read the library's combinational cells and flip-flops, from the functions that it states."""
+    return f"""read_liberty -ignore_miss_func -ignore_miss_dir -ignore_miss_data_latch {library.liberty}
+delete LATCH TBUFX1 TBUFX2 PAD*
+proc"""
+
+
 def agree(design: Design, library: Library, flow: str, vectors: int) -> tuple[dict, bool]:
     """Raises ToolFailed where an output bit differs."""
     folder = store.OUT / "netlists" / f"{design.name}.{library.name}.{flow}"
-    files = [*design.sources(), library.liberty, PROOFS / "netlist_agrees.cpp",
-             PROOFS / "netlist_cells.tcl", pathlib.Path(__file__), *mapping.scripts()]
+    files = [*design.sources(), library.liberty, PROOFS / "netlist_agrees.cpp", pathlib.Path(__file__), *mapping.files()]
     wanted = store.key(files, mapping.flow_facts(), tools.version("verilator"), design.facts,
                        library, flow, vectors)
     return store.proven(folder, wanted, lambda: _agree(design, library, flow, vectors, folder))
@@ -49,9 +59,13 @@ def _agree(design: Design, library: Library, flow: str, vectors: int,
     mapping.synthesise(design, library, flow)
     run = store.OUT / "runs" / f"{design.name}.{library.name}.{flow}"
     # The cells as the library's own functions define them; the netlist under a name of its own.
-    tools.run(["yosys", "-c", PROOFS / "netlist_cells.tcl"], folder / "cells.log", {
-        **mapping.elaboration(design), "LIBERTY": str(library.liberty),
-        "NETLIST": str(run / "netlist.v"), "OUT": str(folder)})
+    yosys.run(f"""{cells(library)}
+write_verilog -noattr {folder}/cells.v
+design -reset
+read_verilog {run}/netlist.v
+rename {design.top} netlist
+write_json {folder}/netlist.json
+write_verilog -noattr -noexpr {folder}/netlist.v""", folder / "cells.log")
     ports = json.loads((folder / "netlist.json").read_text())["modules"]["netlist"]["ports"]
     (folder / "twins.sv").write_text(twins(design, ports))
     sources = [*design.sources(), folder / "cells.v", folder / "netlist.v", folder / "twins.sv"]

@@ -1,20 +1,27 @@
 """Writes what was measured: report.md for people, results.json and results.csv for programs."""
 
+import itertools
 import json
 import platform
+import re
+from collections.abc import Callable
 
-from synth import store, tables, tools
-from synth.catalogue import FLOWS, FPGAS, LIBRARIES
+from synth import measure, store, tables, tools, yosys
+from synth.catalogue import FLOWS, FPGAS, LIBRARIES, Row
 
-TITLES = {target.name: target.title for target in [*LIBRARIES, *FPGAS]}
 
 CAVEATS = """\
-Areas are square micrometres of the cells alone (the least NAND of two inputs: 96 in the 0.35 um library, 24 in the
-0.18 um one, 3.75 in SkyWater's 130 nm). Delays are those of the slowest path at typical corner, in at an inverter of four times the
-least, out into 0.1 pF (0.02 in 130 nm), with no layout and no wires: silicon is slower, and the order of two designs that
-are close may change. iCE40 and ECP5 figures are placed and routed, between registers, the median of
-several placements.
+Areas are square micrometres of the cells alone (the smallest NAND of two inputs: 96 in the 0.35 um library, 24 in the
+0.18 um one). Delays are those of the slowest path at the typical corner, before layout and without wires. Inputs come from an
+inverter of four times the least drive, outputs drive 0.1 pF (eight inputs of the least inverter in a user's library).
+Silicon is slower, and the order of two designs that are close may change. iCE40 and ECP5 figures are placed and routed,
+between registers, the median of several placements.
 """
+
+
+def title(target: str) -> str:
+    """What a target is called."""
+    return next(entry.title for entry in [*LIBRARIES, *FPGAS] if entry.name == target)
 
 
 def cost(record: dict | None) -> str:
@@ -26,15 +33,55 @@ def cost(record: dict | None) -> str:
     return f"{record['area']:,} / {record['delay_ns']:.2f}"
 
 
+def groups() -> list[tuple[str, list[tuple[str, str]]]]:
+    """The tables of a section: what each is of, and the target and flow of each column. One for each library, one for the FPGAs."""
+    return [*((f"{library.title}: um2 / ns", [(library.name, flow) for flow in FLOWS]) for library in LIBRARIES),
+            ("LUTs / MHz", [(device.name, "placed") for device in FPGAS])]
+
+
 def section_tables(records: list[dict], section: str) -> str:
-    """A table for each library (a column for each flow), and one for the FPGAs."""
+    """The tables of a section."""
     mine = [record for record in records if record["section"] == section]
-    groups = [(f"{library.title}: um2 / ns", [(library.name, flow) for flow in FLOWS])
-              for library in LIBRARIES]
-    groups.append(("LUTs / MHz", [(device.name, "placed") for device in FPGAS]))
-    return "\n".join(_table(mine, f"{section}, {title}", columns)
-                     for title, columns in groups if any(
-                         (record["target"], record["flow"]) in columns for record in mine))
+    return "\n".join(_table(mine, f"{section}, {title}", columns) for title, columns in groups() if any(
+        (record["target"], record["flow"]) in columns for record in mine))
+
+
+def measured_tables(rows: list[Row], targets: measure.Targets) -> tuple[list[dict], list[str]]:
+    """Measures rows and prints the same tables, each row as soon as it is measured. Returns records and failures."""
+    records, failures = [], []
+    for section, (title, columns) in itertools.product(dict.fromkeys(row.section for row in rows), groups()):
+        names = tuple(name for name in targets.names if any(target == name for target, _ in columns))
+        flows = {row.design.name: [(name, flow) for name in names for flow in _flows(row, name)] for row in rows
+                 if row.section == section}
+        mine = [row for row in rows if flows.get(row.design.name)]
+        columns = [column for column in columns if any(column in found for found in flows.values())]
+        if not mine or not columns:
+            continue
+        width = max(len(f"{section}, {title}"), *(len(row.design.name) for row in mine))
+
+        def line(cells: list[str], width: int = width) -> None:
+            print(f"| {cells[0]:{width}} | " + " | ".join(f"{cell:>20}" for cell in cells[1:]) + " |", flush=True)
+
+        def ended(row: Row, got: list[dict], columns: list = columns, line: Callable = line) -> None:
+            at = {(record["target"], record["flow"]): record for record in got}
+            line([row.design.name, *(cost(at.get(column)) for column in columns)])
+
+        line([f"{section}, {title}", *(_head(column) for column in columns)])
+        print(f"|{'-' * (width + 2)}|" + "|".join(["-" * 21 + ":"] * len(columns)) + "|")
+        got, wrong = measure.measure(mine, measure.Targets(names, targets.workers), ended)
+        records, failures = records + got, failures + wrong
+        print()
+    return records, failures
+
+
+def _flows(row: Row, target: str) -> tuple[str, ...]:
+    """The flows of a row on a target."""
+    return next((row.flows_on(library) for library in LIBRARIES if library.name == target), row.flows.get(target, ()))
+
+
+def _head(column: tuple[str, str]) -> str:
+    """What a column of a table is called."""
+    return column[1] if column[1] != "placed" else title(column[0])
 
 
 def legend(records: list[dict]) -> str:
@@ -46,40 +93,28 @@ def legend(records: list[dict]) -> str:
     return "\n".join([*parts, *(f"{flow}: {FLOWS[flow]}" for flow in flows)]) + "\n"
 
 
-def _table(records: list[dict], title: str, columns: list[tuple[str, str]]) -> str:
+def _table(records: list[dict], head: str, columns: list[tuple[str, str]]) -> str:
     at = {(record["design"], record["target"], record["flow"]): record for record in records}
     columns = [column for column in columns if any(key[1:] == column for key in at)]
     designs = dict.fromkeys(record["design"] for record in records
                             if (record["target"], record["flow"]) in columns)
-    heads = [flow if flow != "placed" else TITLES[target] for target, flow in columns]
-    return tables.markdown([title, *heads], [
+    return tables.markdown([head, *map(_head, columns)], [
         [design, *(cost(at.get((design, *column))) for column in columns)] for design in designs])
 
 
 def clock_table(records: list[dict]) -> str:
     """The clock rates of the designs that have a clock, and where their slowest paths run; without what FPGAs say."""
     return tables.markdown(["unit", "library", "flow", "MHz", "slowest path from", "to"], [
-        [record["design"], TITLES[record["target"]], record["flow"],
+        [record["design"], title(record["target"]), record["flow"],
          f"{1000 / record['delay_ns']:.1f}", record["from"], record["to"]]
         for record in records if "from" in record and "delay_ns" in record])
-
-
-def corner_table(records: list[dict]) -> str:
-    """The slowest path at each corner of the libraries that have several, ns; "" where there are none."""
-    names = list(dict.fromkeys(name for record in records for name in record.get("corners_ns", {})))
-    return tables.markdown(["design", "library", "flow", "typical, ns", *(f"{name}, ns" for name in names),
-                            *(f"{name}, ratio" for name in names)], [
-        [record["design"], TITLES[record["target"]], record["flow"], f"{record['delay_ns']:.2f}",
-         *(f"{record['corners_ns'][name]:.2f}" for name in names),
-         *(f"{record['corners_ns'][name] / record['delay_ns']:.2f}" for name in names)]
-        for record in records if "corners_ns" in record])
 
 
 def path_table(record: dict) -> str:
     """A critical path, cell by cell (output pins alone: what a cell and its load take)."""
     steps = [step for step in record["path"]]
     rows = []
-    for i in range(0, len(steps)):
+    for i in range(len(steps)):
         step = steps[i]
         if i and step["pin"].rpartition("/")[0] == steps[i - 1]["pin"].rpartition("/")[0]:
             came = steps[i - 1]["pin"].rpartition("/")[2]
@@ -87,6 +122,41 @@ def path_table(record: dict) -> str:
             rows.append([cell, step["cell"], f"{came} to {pin}", f"{step['delay']:.3f}",
                          f"{step['arrival']:.3f}"])
     return tables.markdown(["instance", "cell", "through", "ns", "arrival, ns"], rows)
+
+
+# What every cell of an adder is in.
+PLAIN = re.compile(r"u_cell|u_full_adder|select|restore|gen_bit\[\d+\]|_\d+_")
+
+
+def chain(record: dict) -> str:
+    """A critical path on one line: its cells in order, with the instances that they are in, `*` for a number."""
+    steps, words = record["path"], []
+    for before, step in zip(steps, steps[1:]):
+        cell, _, _ = step["pin"].rpartition("/")
+        if cell and cell == before["pin"].rpartition("/")[0]:
+            inside = [re.sub(r"\d+", "*", name) for name in cell.split(".") if not PLAIN.fullmatch(name)][-2:]
+            words.append(step["cell"] + f" ({'.'.join(inside)})" * bool(inside))
+    return (f"{record['design']}, {record['flow']}, {record['delay_ns']:.2f} ns: "
+            f"{' > '.join([steps[0]['pin'], *counted(words), steps[-1]['pin']])}")
+
+
+def counted(words: list[str]) -> list[str]:
+    """The same with repeated words, and repeated pairs of words, as one and their number."""
+    found, at = [], 0
+    while at < len(words):
+        size, times = 1, 1
+        for size in (1, 2):
+            unit, times = words[at:at + size], 1
+            while words[at + times * size:at + (times + 1) * size] == unit:
+                times += 1
+            if times > 1:
+                break
+        if times == 1:
+            size = 1
+        text = " > ".join(words[at:at + size])
+        found.append(text if times == 1 else f"{times} x {text}" if size == 1 else f"{times} x ({text})")
+        at += size * times
+    return found
 
 
 def blocks_table(record: dict) -> str:
@@ -100,9 +170,9 @@ def blocks_table(record: dict) -> str:
 
 def versions() -> str:
     """The tools and their versions, one line."""
-    names = ["yosys", "sta", *dict.fromkeys(device.tool for device in FPGAS)]
+    names = ["sta", *dict.fromkeys(device.tool for device in FPGAS)]
     stated = [f"{name} {tools.version(name)}" for name in names if tools.installed(name)]
-    return ", ".join([*stated, f"Python {platform.python_version()}"])
+    return ", ".join([f"yosys {yosys.version()}", *stated, f"Python {platform.python_version()}"])
 
 
 def write(records: list[dict], sections: list[tuple[str, str]]) -> None:

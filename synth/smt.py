@@ -7,10 +7,24 @@ import json
 import pathlib
 import re
 import sys
+from collections.abc import Iterable
 
-from synth import tools
+from synth import tools, yosys
 
-FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
+# One module, its assertions, assumptions and covers as cells that hold in every state, whatever clock they are read by.
+FLAT = "flatten -noscopeinfo\nopt\nsetparam -set TRG_ENABLE 0 t:$check\nchformal -lower"
+PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
+FLOAT = PROOFS / "float"
+FREE = PROOFS / "free.v"
+
+
+def read(sources: Iterable[pathlib.Path], top: str, parameters: Iterable[tuple[str, object]] = ()) -> str:
+    """The commands that elaborate `top`, and make free what is declared (* anyseq *) or (* anyconst *)."""
+    return f"""{yosys.read(sources, top, parameters)}
+techmap -map {FREE} a:anyseq %ci1 t:$buf %i
+techmap -map {FREE} -D CONSTANT a:anyconst %ci1 t:$buf %i
+select -assert-none w:* a:anyseq %i t:$anyseq %co1 %d w:* a:anyconst %i t:$anyconst %co1 %d %u
+setattr -unset anyseq -unset anyconst w:*"""
 
 
 def state(model: str, top: str, name: str, before: str = "",
@@ -66,12 +80,13 @@ def ports(model: str, top: str, suffix: str = "", before: str = "",
 
 
 def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: pathlib.Path,
-                keep: str = "") -> str:
-    """A module as SMT-LIB; its netlist goes to `keep`."""
-    smt2 = folder / "model.smt2"
-    tools.run(["yosys", "-c", FLOAT / "model.tcl"], folder / "yosys.log", {
-        "SOURCES": " ".join(map(str, sources)), "TOP": top, "PARAMETERS": parameters,
-        "SMT2": str(smt2), "KEEP": keep})
+                keep: pathlib.Path | None = None) -> str:
+    """A module with parameters ("Name value ...") as functions of SMT-LIB, one of a state for every wire, the state being the
+    inputs and what contracts leave free; its netlist goes to `keep`, for faults to be put into."""
+    smt2, words = folder / "model.smt2", parameters.split()
+    yosys.run("\n".join([read(sources, top, zip(words[::2], words[1::2])), FLAT,
+                         *([f"write_rtlil {keep}"] if keep else []), f"dffunmap\nwrite_smt2 -stbv -wires {smt2}"]),
+              folder / "yosys.log")
     return smt2.read_text()
 
 

@@ -14,7 +14,7 @@ from synth import tools
 OUT = tools.ROOT / "build" / "synth"
 # Outcomes of proofs, kept for all checkouts of this user, and the programs that lead to them.
 PROVERS = [tools.ROOT / "synth" / f"{name}.py" for name in (
-    "assertions", "float_cuts", "float_proofs", "float_specifications", "induction", "netlists", "prove", "smt", "unit_proofs")]
+    "assertions", "float_cuts", "float_proofs", "float_specifications", "induction", "netlists", "prove", "smt", "unit_proofs", "yosys")]
 PROVEN = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "raygate" / "proven"
 
 

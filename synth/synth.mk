@@ -1,40 +1,28 @@
 # Area, time, proofs: see synth/README.md.
 SYNTH_JOBS ?= 2
-SYNTH_BUDGET ?= 16
 
-.PHONY: synth cells prove verilog fpga datasheet lecture layout
+.PHONY: synth prove verilog fpga datasheet lecture layout
 
 # The whole report has tests a second in it, which programs count.
-synth: $(if $(TOP),,verilate) ## hardware: area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
+synth: $(if $(filter-out 0,$(ALL)),verilate) ## hardware: area and time: make synth [ALL=1] [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ...]
 	@$(SETUP) synth
-	$(if $(TOP),,$(call build,build,table_1 worked_example))
+	$(if $(filter-out 0,$(ALL)),$(call build,build,table_1 worked_example))
 	@$(PYTHON) -m synth --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
-	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --budget '$(SYNTH_BUDGET)' \
+	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --liberty '$(LIBERTY)' --all '$(filter-out 0,$(ALL))' \
 	  --jobs '$(SYNTH_JOBS)'
 
-cells: ## hardware: SkyWater 130 cells measured with ngspice: make cells [CORNERS=tt,ss,ff]
-	@$(SETUP) synth
-	@$(PYTHON) -m synth.cells --corners '$(CORNERS)' --jobs '$(SYNTH_JOBS)'
-
-prove: ## hardware: prove arithmetic, units, netlists: make prove [PROOFS='adder. float.add' LONG=1 KEPT=1 RECORD=1 FAULTS=80]
+prove: ## hardware: prove arithmetic, units, netlists: make prove [PROOFS='adder. float.add' LONG=1 KEPT=1 RECORD=1]
 	@$(SETUP) prove
-ifdef FAULTS
-	$(call build,test,check_vectors)
-	@$(PYTHON) -m synth.float_faults --count $(FAULTS) $(CORES)
-else
 	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(if $(RECORD),--record) $(if $(KEPT),--kept) $(PROOFS)
-endif
 
 verilog: ## hardware: a module in one file of plain Verilog: make verilog TOP=fp_adder_stages [PARAMS='ExpWidth=5']
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.verilog "$(TOP)" "$(PARAMS)"
 
-fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-binary32 SEEDS=3] [FLOORPLAN=1: draw them] [TOP=small_core BOARD=ulx3s: a bitstream]
+fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-binary32 SEEDS=3] [TOP=small_core BOARD=ulx3s: a bitstream]
 	@$(SETUP) synth
-ifdef FLOORPLAN
-	@$(PYTHON) -m synth.floorplan $(or $(BOARD),$(UNITS))
-else ifdef BOARD
+ifdef BOARD
 	@$(PYTHON) -m synth.board '$(TOP)' '$(BOARD)' $(if $(SEEDS),--seed $(SEEDS))
 else
 	@$(PYTHON) -m synth.fpga $(if $(SEEDS),--seeds $(SEEDS)) $(UNITS)

@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 
 from synth import store, tables, tools
-from synth.catalogue import LIBRARIES, Library
+from synth.catalogue import LIBRARIES
 
 # Unit -> its word in table_1's last line.
 COUNTED = {"hit_test_unit": "proposed", "general_hit_test_unit": "general"}
@@ -32,16 +32,8 @@ def simulated() -> dict[str, float]:
     return clocks
 
 
-def gate(library: Library) -> float:
-    """The area of the cell by which gates are counted."""
-    return float(re.search(rf"cell \({library.gate}\) \{{.*?area : ([\d.]+)", library.liberty.read_text(), re.S).group(1))
-
-
 def table(records: list[dict], clocks: dict[str, float] | None = None) -> str:
-    """Tests a second, and for each gate and square millimetre of cells, of every timed unit.
-
-    The libraries' area is in square micrometres: their NAND2X1 is 4.8 by 20 of them in 0.35 um.
-    """
+    """Tests a second, and for each square millimetre of cells, of every timed unit."""
     clocks = simulated() if clocks is None else clocks
     rows = []
     for library in LIBRARIES:
@@ -49,16 +41,14 @@ def table(records: list[dict], clocks: dict[str, float] | None = None) -> str:
             if record["target"] != library.name or record["top"] not in clocks or "from" not in record:
                 continue
             rate = 1e9 / record["delay_ns"] / clocks[record["top"]]
-            gates = record["area"] / gate(library)
             rows.append([record["design"], library.title, record["flow"],
                          f"{1000 / record['delay_ns']:.1f}", f"{clocks[record['top']]:.2f}",
-                         f"{rate:,.0f}", f"{gates:,.0f}", f"{rate / gates:.1f}",
-                         f"{rate / record['area'] * 1e6:,.0f}"])
+                         f"{rate:,.0f}", f"{rate / record['area'] * 1e6:,.0f}"])
     if not rows:
         return ("No clocks a test: `make test` builds build/sim/table_1, and `make verilate` "
                 "./render, which count them.\n")
     return tables.markdown(["unit", "library", "flow", "MHz", "clocks a test", "tests/s",
-                            "gates (NAND2)", "tests/s and gate", "tests/s and mm2 of cells"], rows)
+                            "tests/s and mm2 of cells"], rows)
 
 
 def ray_table(record: dict, rows: list[dict] | None = None) -> str:

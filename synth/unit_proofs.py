@@ -6,23 +6,21 @@ import pathlib
 import re
 
 from synth import catalogue, cores, float_proofs
-from synth.assertions import PROOFS, Proof, holds
+from synth.assertions import PROOFS, Prepare, Proof, holds, opened
 
 
 def fifo_keeps_order(depth: int, reserve: int) -> tuple[dict, bool]:
     """A FIFO of this size keeps its promises, by induction."""
-    parameters = f"Width 2 Depth {depth} Reserve {reserve}"
-    return holds("fifo_keeps_order", "Bitwuzla", [catalogue.HW / "common" / "fifo.sv"], "open.tcl",
-                 (("Depth", depth), ("Reserve", reserve)), steps=1, reach=depth + 6,
-                 prepared=f"fifo {{{parameters}}} *_q {{words {depth} 2}}", name=f"fifo_{depth}")
+    return holds("fifo_keeps_order", "Bitwuzla", [catalogue.HW / "common" / "fifo.sv"],
+                 opened("fifo", "*_q", f"words {depth} 2", Width=2, Depth=depth, Reserve=reserve),
+                 (("Depth", depth), ("Reserve", reserve)), steps=1, reach=depth + 6, name=f"fifo_{depth}")
 
 
 def ram_fifo_keeps_order(depth: int, reserve: int) -> tuple[dict, bool]:
     """The same of a FIFO in a memory with a clock."""
     return holds("ram_fifo_keeps_order", "Bitwuzla", [catalogue.HW / "common" / f"{name}.sv" for name in ("ram", "ram_fifo")],
-                 "open.tcl", (("Depth", depth), ("Reserve", reserve)), steps=1, reach=depth + 6,
-                 prepared=f"ram_fifo {{Width 2 Depth {depth} Reserve {reserve}}} {{write_q read_q count_q}} "
-                 f"{{u_words.words {depth} 2}}", name=f"ram_fifo_{depth}")
+                 opened("ram_fifo", "write_q read_q count_q", f"u_words.words {depth} 2", Width=2, Depth=depth, Reserve=reserve),
+                 (("Depth", depth), ("Reserve", reserve)), steps=1, reach=depth + 6, name=f"ram_fifo_{depth}")
 
 
 def nearest_is_kept(name: str, exp: int, frac: int) -> tuple[dict, bool]:
@@ -45,9 +43,9 @@ def computes(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     inner = " ".join(f"u_nearest.{port}_i" for port in ("valid", "hit", "doubt", "t", "t_error", "payload"))
     inner += " u_point.valid_i u_point.dividends_i u_point.v_i u_point.valid_o u_point.point_o"
     latency = frac // 2 + 16
-    return holds("pipeline_computes", "Bitwuzla", around("hit_test_pipeline", "functions"), "open.tcl",
+    return holds("pipeline_computes", "Bitwuzla", around("hit_test_pipeline", "functions"), _opened(exp, frac, 1, inner),
                  (("ExpWidth", exp), ("FracWidth", frac)), steps=latency + 1, reach=latency + 3,
-                 prepared=_opened(exp, frac, 1, inner), beside=("functions", "hit_decision", "delay_line"),
+                 beside=("functions", "hit_decision", "delay_line"),
                  name=f"computes.{name}")
 
 
@@ -56,8 +54,7 @@ def keeps_credits(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     inner = ("test_q decided_q dividing_q report closed u_point.valid_q gen_queue.u_results.push_i "
              "gen_queue.u_results.count_q gen_queue.u_results.read_q gen_queue.u_results.write_q")
     return holds("pipeline_keeps_credits", "Bitwuzla", around("hit_test_pipeline", "hit_test_arithmetic"),
-                 "open.tcl", (("ExpWidth", exp), ("FracWidth", frac)), steps=1,
-                 prepared=_opened(exp, frac, 1, inner), name=f"credits.{name}")
+                 _opened(exp, frac, 1, inner), (("ExpWidth", exp), ("FracWidth", frac)), steps=1, name=f"credits.{name}")
 
 
 def keeps_tags(name: str, exp: int, frac: int) -> tuple[dict, bool]:
@@ -65,8 +62,8 @@ def keeps_tags(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     inner = "u_nearest.valid_i u_nearest.first_i u_nearest.last_i u_nearest.tag_i"
     latency = frac // 2 + 16
     return holds("pipeline_keeps_tags", "Bitwuzla", around("hit_test_pipeline", "hit_test_arithmetic"),
-                 "open.tcl", (("ExpWidth", exp), ("FracWidth", frac)), steps=latency + 1, reach=latency + 3,
-                 prepared=_opened(exp, frac, 2, inner), name=f"tags.{name}")
+                 _opened(exp, frac, 2, inner), (("ExpWidth", exp), ("FracWidth", frac)), steps=latency + 1, reach=latency + 3,
+                 name=f"tags.{name}")
 
 
 def queues_results(name: str, exp: int, frac: int) -> tuple[dict, bool]:
@@ -74,27 +71,25 @@ def queues_results(name: str, exp: int, frac: int) -> tuple[dict, bool]:
     inner = " ".join(f"u_nearest.{port}_o" for port in ("report", "report_tag", "closed", "found", "tag", "t",
                                                 "t_error"))
     return holds("pipeline_queues_results", "Bitwuzla",
-                 around("hit_test_pipeline", "hit_test_arithmetic", "queue_as_wire"), "open.tcl",
-                 (("ExpWidth", exp), ("FracWidth", frac)),
-                 prepared=_opened(exp, frac, 2, inner + " u_point.valid_o u_point.point_o"), name=f"queues.{name}")
+                 around("hit_test_pipeline", "hit_test_arithmetic", "queue_as_wire"),
+                 _opened(exp, frac, 2, inner + " u_point.valid_o u_point.point_o"), (("ExpWidth", exp), ("FracWidth", frac)), name=f"queues.{name}")
 
 
 def array() -> tuple[dict, bool]:
     """An array of four lanes is its lanes, by induction."""
-    return holds("array_is_its_lanes", "Bitwuzla", around("hit_test_array", "lane"), "open.tcl", steps=1,
-                 reach=8, prepared="hit_test_array {Lanes 4 ExpWidth 5 FracWidth 10 "
-                 "TagWidth 2 CounterWidth 6} "
-                 "{gen_lane*.given gen_lane*.said gen_lane*.counted counters events_q}")
+    return holds("array_is_its_lanes", "Bitwuzla", around("hit_test_array", "lane"),
+                 opened("hit_test_array", "gen_lane*.given gen_lane*.said gen_lane*.counted counters events_q",
+                        Lanes=4, ExpWidth=5, FracWidth=10, TagWidth=2, CounterWidth=6), steps=1, reach=8)
 
 
 def contexts_answer_once() -> tuple[dict, bool]:
     """A ray that comes into a ray core has a slot of its own and leaves it once, by induction."""
     slots = PROOFS / "contracts" / "ray_contexts.sv"  # and a divider, a queue and a delay line in place of hw/'s
     rtl = [file for file in cores.files("ray_core") if file.stem not in ("fp_divider_stages", "ram_fifo", "delay_line")]
-    return holds("contexts_answer_once", "Bitwuzla", cores.used("ray_contexts", [*rtl, slots]), "open.tcl", steps=1, reach=50,
-                 prepared="ray_contexts {} {point end_ctx *.bits_q *line_q u_alloc.free_q u_retire.active_q *dividing_q *pointing_q *.count_q "
+    return holds("contexts_answer_once", "Bitwuzla", cores.used("ray_contexts", [*rtl, slots]), steps=1, reach=50,
+                 prepare=opened("ray_contexts", "point end_ctx *.bits_q *line_q u_alloc.free_q u_retire.active_q *dividing_q *pointing_q *.count_q "
                  "*u_rays.valid_o *u_rays.space_o *u_inverses.valid_o *u_retire.u_ends.valid_o "
-                 "*u_retire.u_ends.space_o *u_points.valid_o}")
+                 "*u_retire.u_ends.space_o *u_points.valid_o"))
 
 
 def stack_keeps_nodes() -> tuple[dict, bool]:
@@ -105,8 +100,8 @@ def stack_keeps_nodes() -> tuple[dict, bool]:
              "next_level_q next_remaining_q next_enter_q base_q offset_q group *.next_q push left "
              "shared_q shared_ray_q refused_q shared_mask_q")
     memories = "levels 2 3 shared_masks 2 7 u_groups.words 6 224 " + " ".join(f"gen_level[{d}].nexts 2 26" for d in range(2))
-    return holds("stack_keeps_nodes", "Bitwuzla", cores.used("traversal", cores.files("ray_core")), "open.tcl",
-                 steps=1, reach=26, prepared=f"traversal {{Rays 2 Depth 2 Levels 4}} {{{wires}}} {{{memories}}}")
+    return holds("stack_keeps_nodes", "Bitwuzla", cores.used("traversal", cores.files("ray_core")),
+                 steps=1, reach=26, prepare=opened("traversal", wires, memories, Rays=2, Depth=2, Levels=4))
 
 
 def hits_keep_nearest() -> tuple[dict, bool]:
@@ -116,17 +111,17 @@ def hits_keep_nearest() -> tuple[dict, bool]:
              "u_points.read_q u_points.write_q here_q")
     memories = ("t_max 2 31 nearest_t 2 32 nearest_low 2 32 nearest_error 2 5 nearest_triangle 2 32 u_kept.words 2 96 tests 2 28 "
                 "counts 2 5 u_points.words 2 2")
-    return holds("hits_keep_nearest", "Bitwuzla", cores.used("closest_hit", cores.files("ray_core")), "open.tcl",
+    return holds("hits_keep_nearest", "Bitwuzla", cores.used("closest_hit", cores.files("ray_core")),
                  steps=1, reach=8,
-                 prepared=f"closest_hit {{Rays 2 Queue 18 InFlight 2}} {{{wires}}} {{{memories}}}")
+                 prepare=opened("closest_hit", wires, memories, Rays=2, Queue=18, InFlight=2))
 
 
 def leaves_are_asked_for() -> tuple[dict, bool]:
     """primitive_fetch asks for the triangles of each group in order, or they are beyond, by induction: of two rays."""
     wires = "valid_q ray_q group_q mask_q number_q u_groups.count_q u_groups.valid_o u_groups.data_o u_groups.read_q u_groups.write_q"
-    return holds("leaves_are_asked_for", "Bitwuzla", cores.used("primitive_fetch", cores.files("ray_core")), "open.tcl",
+    return holds("leaves_are_asked_for", "Bitwuzla", cores.used("primitive_fetch", cores.files("ray_core")),
                  steps=1, reach=10,
-                 prepared=f"primitive_fetch {{Rays 2}} {{{wires}}} {{u_groups.u_words.words 2 232}}")
+                 prepare=opened("primitive_fetch", wires, "u_groups.u_words.words 2 232", Rays=2))
 
 
 def cache_answers_once() -> tuple[dict, bool]:
@@ -137,9 +132,8 @@ def cache_answers_once() -> tuple[dict, bool]:
              "valid_ways_q pending_ways_q "
              "hit_q hit_ray_q hit_line")
     memories = "u_lines.words 16 2 u_tags.words 2 216 heads 16 2 nexts 2 2 rays 2 1 u_hits.u_words.words 16 3"
-    return holds("cache_answers_once", "Bitwuzla", cores.used("line_cache", cores.files("ray_core")), "open.tcl",
-                 steps=1, reach=10, prepared="line_cache {Lines 16 Targets 2 RayWidth 1 Width 2} "
-                 f"{{{wires}}} {{{memories}}}")
+    return holds("cache_answers_once", "Bitwuzla", cores.used("line_cache", cores.files("ray_core")),
+                 steps=1, reach=10, prepare=opened("line_cache", wires, memories, Lines=16, Targets=2, RayWidth=1, Width=2))
 
 
 def _watched(cell: str, *checks: str) -> dict:
@@ -151,32 +145,30 @@ def _watched(cell: str, *checks: str) -> dict:
 
 def csr_keeps_protocol() -> tuple[dict, bool]:
     """The registers' port keeps AXI4-Lite, and its plain registers are read as written, by induction."""
-    return holds("csr_keeps_protocol", "Bitwuzla", prepare="open.tcl", steps=2, reach=8, **_watched("csr", "axi_lite_checks"),
-                 prepared="csr {} {words address_q data_q write_word_q strobes_q write_data_q}")
+    return holds("csr_keeps_protocol", "Bitwuzla", steps=2, reach=8, **_watched("csr", "axi_lite_checks"),
+                 prepare=opened("csr", "words address_q data_q write_word_q strobes_q write_data_q"))
 
 
 def reader_gives_lines() -> tuple[dict, bool]:
     """axi_read_manager keeps AXI4 and gives each read its line, by induction: of two IDs, two beats a line."""
     wires = "free_q id beat_fire beat_id last errors_q u_beats.count_q u_beats.read_q u_beats.write_q"
     memories = "read_ids 2 2 counts 2 1 u_beats.words 2 259 gen_beat[0].u_part.words 2 256"
-    return holds("reader_gives_lines", "Bitwuzla", prepare="open.tcl", steps=2, reach=12,
-                 **_watched("axi_read_manager", "axi_read_checks"),
-                 prepared=f"axi_read_manager {{DataWidth 256 IdWidth 1 ReadIdWidth 2}} {{{wires}}} {{{memories}}}")
+    return holds("reader_gives_lines", "Bitwuzla", steps=2, reach=12, **_watched("axi_read_manager", "axi_read_checks"),
+                 prepare=opened("axi_read_manager", wires, memories, DataWidth=256, IdWidth=1, ReadIdWidth=2))
 
 
 def writer_puts_records(width: int) -> tuple[dict, bool]:
     """axi_write_manager keeps AXI4 and puts each record in its place, by induction, at this width."""
-    return holds("writer_puts_records", "Bitwuzla", prepare="open.tcl", parameters=(("DataWidth", width),), steps=2, reach=12,
+    return holds("writer_puts_records", "Bitwuzla", parameters=(("DataWidth", width),), steps=2, reach=12,
                  **_watched("axi_write_manager", "axi_write_checks"), name=f"writer_{width}",
-                 prepared=f"axi_write_manager {{DataWidth {width}}} {{next_q left_q record_q}}")
+                 prepare=opened("axi_write_manager", "next_q left_q record_q", DataWidth=width))
 
 
-def of_exact(top: str, cell: str, name: str = "", steps: int = 0, reach: int = 0, prepared: str = "",
+def of_exact(top: str, cell: str, name: str = "", steps: int = 0, reach: int = 0, wires: str = "",
              **parameters: int) -> tuple[dict, bool]:
-    """What is claimed of a cell of hw/exact, with these parameters; `prepared`: wires that are shown."""
-    opened = f"{cell} {{{' '.join(f'{key} {value}' for key, value in parameters.items())}}} {{{prepared}}}" if prepared else ""
-    return holds(top, "Bitwuzla", cores.used(cell, cores.files("exact")), "open.tcl" if prepared else "", tuple(parameters.items()),
-                 steps, reach, opened, name=name or top)
+    """What is claimed of a cell of hw/exact, with these parameters; `wires`: those that are shown."""
+    return holds(top, "Bitwuzla", cores.used(cell, cores.files("exact")), opened(cell, wires, **parameters) if wires else None,
+                 tuple(parameters.items()), steps, reach, name=name or top)
 
 
 def of_ray_core(top: str, cell: str, steps: int = 0) -> tuple[dict, bool]:
@@ -198,9 +190,8 @@ def edge_sign(frac: int) -> tuple[dict, bool]:
                  parameters=(("ExpWidth", 4), ("FracWidth", frac), ("C1024", most)))
 
 
-def _opened(exp: int, frac: int, tag: int, inner: str) -> str:
-    return (f"hit_test_pipeline {{ExpWidth {exp} FracWidth {frac} "
-            f"TagWidth {tag}}} {{{inner}}}")
+def _opened(exp: int, frac: int, tag: int, inner: str) -> Prepare:
+    return opened("hit_test_pipeline", inner, ExpWidth=exp, FracWidth=frac, TagWidth=tag)
 
 
 def timetable() -> tuple[dict, bool]:
@@ -208,8 +199,8 @@ def timetable() -> tuple[dict, bool]:
     sources = [*(file for file in cores.files("hit_test") if file.stem in ("arith_pkg", "fp_pkg")),
                PROOFS / "contracts" / "fp_cores.sv",
                *(catalogue.HW / "hit_test" / f"{name}.sv" for name in ("hit_test_control", "hit_test_unit"))]
-    return holds("timetable", "Bitwuzla", sources, "open.tcl", steps=20,
-                 prepared="hit_test_unit {} {word step clear accumulate load_d divide}")
+    return holds("timetable", "Bitwuzla", sources, steps=20,
+                 prepare=opened("hit_test_unit", "word step clear accumulate load_d divide"))
 
 
 def serial_computes() -> tuple[dict, bool]:
@@ -282,12 +273,12 @@ ALL = [
             functools.partial(of_exact, "exact_product_multiplies", "exact_product", f"exact_product_{width}", DigitWidth=width))
       for width in (6, 8)),
     Proof("unit.exact_product_rows", "at 48 bits the words that are added up are the digits' multiples", "Bitwuzla",
-          functools.partial(of_exact, "exact_product_rows", "exact_product", prepared="gen_booth.rows gen_booth.turned", DigitWidth=48, Width=103)),
+          functools.partial(of_exact, "exact_product_rows", "exact_product", wires="gen_booth.rows gen_booth.turned", DigitWidth=48, Width=103)),
     Proof("unit.exact_slice", "digits of shifted significands, of any binary32 number", "Bitwuzla",
           functools.partial(of_exact, "exact_slice_cuts", "exact_slice")),
     Proof("unit.exact_sequencer", "each product of an instruction goes out once, in its column, columns in order", "Bitwuzla",
           functools.partial(of_exact, "exact_sequencer_steps", "exact_sequencer", steps=1, reach=40,
-                            prepared="*_q terms_last closes ends fire advance", Digits=6)),
+                            wires="*_q terms_last closes ends fire advance", Digits=6)),
     *(Proof(f"unit.exact_exponents_{exp}", f"units and digits of {width} bits hold every number of any request in a format of {exp} bits of "
             f"exponent and {frac} of fraction, and none is needless", "Bitwuzla",
             functools.partial(of_exact, "exact_exponents_fit", "exact_exponents", f"exact_exponents_{exp}", 6, 7,

@@ -7,7 +7,7 @@ such as Icarus Verilog. Exit status 2 for a module or a parameter that there isn
 import pathlib
 import sys
 
-from synth import catalogue, mapping, tools
+from synth import catalogue, scripts, tools, yosys
 
 OUT = tools.ROOT / "build" / "verilog"
 
@@ -16,8 +16,7 @@ def write(design: catalogue.Design, out: pathlib.Path) -> None:
     """Elaborates `design` and writes `out`; raises ToolFailed where Yosys refuses it."""
     out.parent.mkdir(parents=True, exist_ok=True)
     out.unlink(missing_ok=True)  # a run that fails must not leave the file of an earlier one
-    tools.run(["yosys", "-c", tools.FLOWS / "verilog.tcl"], out.with_suffix(".log"),
-              {**mapping.elaboration(design), "OUT": str(out)})
+    yosys.run(scripts.plain_verilog(design, out), out.with_suffix(".log"))
 
 
 def main() -> int:

@@ -98,7 +98,7 @@ class Pages(unittest.TestCase):
         self.assertNotIn("synth.brought", " ".join(lines))
 
     def test_an_empty_variable_of_make_counts_as_not_given(self) -> None:
-        for target, names in (("wave", "SCENE PIXEL ARGS"), ("synth", "TOP JOBS SYNTH_JOBS SYNTH_BUDGET"), ("variant", "ADDER FRAC_WIDTH SCENE"),
+        for target, names in (("wave", "SCENE PIXEL ARGS"), ("synth", "TOP ALL JOBS SYNTH_JOBS"), ("variant", "ADDER FRAC_WIDTH SCENE"),
                               ("verilog TOP=adder", "PARAMS"), ("mutate", "COUNT QUICK"), ("fuzz", "FUZZ_SECONDS"), ("test", "LONG")):
             self.assertEqual(recipe(" ".join([target, *(f"{name}=" for name in names.split())])), recipe(target), target)
 

@@ -6,8 +6,7 @@
 // bits: adder, comparator, incrementer and multiplier alone tell them apart.
 //
 // A list of group widths is one flat vector of MaxGroups bytes: the lowest byte is the least
-// significant group, a byte of 0 ends the list. (A flat vector, because Yosys 0.23 has no array
-// parameters.)
+// significant group, a byte of 0 ends the list.
 package arith_pkg;
 
   typedef enum int unsigned {

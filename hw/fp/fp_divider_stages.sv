@@ -241,7 +241,6 @@ module fp_divider_stages #(
   if (QuotientBits == 0) begin : gen_ieee
     assign significand = {quotient, {(RoundSigWidth - QuotientWidth - 1) {1'b0}}, remainder};
   end else begin : gen_cut_off
-    // Not made from '1, which Yosys 0.23 takes for a single bit here.
     localparam logic [QuotientWidth-1:0] KeepFrom2 = {
       {QuotientBits{1'b1}}, {(QuotientWidth - QuotientBits) {1'b0}}
     };

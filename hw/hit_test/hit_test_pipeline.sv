@@ -80,7 +80,7 @@ module hit_test_pipeline #(
   localparam int unsigned ScaledEdges = 1;
   localparam int unsigned ScaledD = 4;
   localparam int unsigned ScaledWords = 5;
-  logic [3*ScaledWords*Width-1:0] scaled;  // not an array: Yosys 0.23 takes one for a memory here
+  logic [3*ScaledWords*Width-1:0] scaled;
 
   for (genvar k = 0; k < 3; k++) begin : gen_coordinate
     vec_scale #(

@@ -273,7 +273,7 @@ module exact_resolver #(
 
   for (genvar u = 0; u < Units; u++) begin : gen_unit
     logic ask, wins_tie_q, hit;
-    logic negative, nonzero;  // of the order: a struct's fields are not found here by Yosys 0.23
+    logic negative, nonzero;  // of the order
     logic [AboutWidth-1:0] about_q;
 
     assign ask       = (state_q == StateAsk) & free[u];

@@ -9,53 +9,54 @@ modules, cells, wires and lines of source (Yosys's `mutate`, as YosysHQ's mcy us
 import argparse
 import pathlib
 import re
-import subprocess
 import sys
 
-from synth import cores
+from synth import cores, tools, yosys
 
 # Yosys's other modes invert a bit where a neighbour is 0 or 1: two of those in one netlist make a loop.
 MODES = ("inv", "const0", "const1")
 # Nobody reads such a wire.
 UNUSED = re.compile(r"-wire \S*\bunused_")
-# Memories whose ports have clocks of their own, or asynchronous reads an enable, are not written as Verilog; nor are tables
-# whose words come from elsewhere.
-NOT_WRITTEN = re.compile(r"mem(rd|wr)\S* -port \S*CLK\b|memrd\S* -port \S*EN\b|mem\.cc:\d+:emit")
+# Ports of memories that faults may be at: those whose ports have clocks of their own, or asynchronous reads an enable, are not
+# written as Verilog; nor are tables whose words come from elsewhere.
+MEMORIES = {"memrd": ("ADDR", "DATA"), "memwr": ("ADDR", "DATA", "EN"), "meminit": ()}
 
 
-def yosys(script: str) -> None:
-    """Runs a script; raises CalledProcessError with Yosys's own words on stderr."""
-    subprocess.run(["yosys", "-q", "-w", "Replacing memory", "-p", script], check=True,
-                   stdout=sys.stderr)
+def source(fault: str) -> str:
+    """FILE:LINE in hw/ of a line of OUT.list: the expression that the fault is in, whose source is a range, or else what the
+    wire or the instance is declared at; "" where there is none."""
+    found = re.search(r"-src \S*?(hw/\S+?:\d+)\.\d+-", fault) or re.search(r"-src \S*?(hw/\S+?:\d+)", fault)
+    return found[1] if found else ""
 
 
 def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: int,
           without: list[str], around: list[str]) -> int:
-    """Writes OUT.v, OUT.list and OUT.il; returns the number of faults."""
-    out.parent.mkdir(parents=True, exist_ok=True)
+    """Writes OUT.v, OUT.list and OUT.il; returns the number of faults. Raises ToolFailed and MissingTool."""
     files = dict.fromkeys(file for core in cores.names() for file in cores.files(core))
-    sources = " ".join(str(file) for file in files if file.stem not in around)
-    ports = " ".join(str(file) for file in files if file.stem in around)
-    # `hierarchy -chparam` stops at modules with an unsized constant at a cell's port.
-    chosen = "".join(f"chparam -set {name} {value} $abstract\\{top}; " for name, value in
-                     (text.split("=", 1) for text in parameters))
+    kept = " ".join(f"--blackboxed-module {module}" for module in around)
+    # Yosys writes what a module derives from its parameters as parameters, too.
+    derived = [f"setparam {' '.join(f'-unset {name}' for name in names)} t:{file.stem}" for file in files if file.stem in around
+               if (names := re.findall(r"^ +localparam [^=;]*?(\w+) *=", file.read_text(), re.M))]
     faults = out.with_suffix(".list")
     # Of the modes that Yosys chooses from three in five are of use here; outside of the cores, one fault in ten.
     chosen_from = (20 if without else 2) * count + 20
-    yosys(f"read_verilog -sv -D SYNTHESIS -defer {sources}; "
-          f"{f'read_verilog -sv -lib {ports}; ' if ports else ''}{chosen}hierarchy -check -top {top}; "
-          f"proc; flatten; rename -top {top}; opt -full; opt_clean; write_rtlil {out}.il; "
-          f"mutate -list {chosen_from} -seed {seed} -o {faults}")
+    # Shifts as such: as parts of a word they begin outside of it, where Verilator reads other bits.
+    yosys.run(f"{yosys.read(files, top, (text.split('=', 1) for text in parameters), kept)}\n"
+              "flatten -noscopeinfo\nbwmuxmap\nopt -full\nopt_clean\nchtype -set $shift t:$shiftx\n"
+              + "\n".join(derived) + f"\nwrite_rtlil {out}.il\n" + "\n".join(f"tee -q -o {out}.{kind} select -list t:${kind}*" for kind in MEMORIES) +
+              f"\nmutate -list {chosen_from} -seed {seed} -o {faults}", out.with_suffix(".log"))
+    ports = {cell.partition("/")[2]: ports for kind, ports in MEMORIES.items()
+             for cell in pathlib.Path(f"{out}.{kind}").read_text().splitlines()}
     lines = [line for line in faults.read_text().splitlines()
              if re.search(r"-mode (\w+)", line).group(1) in MODES
-             and not NOT_WRITTEN.search(line) and not UNUSED.search(line)
+             and re.search(r"-port (\w+)", line)[1] in ports.get(re.search(r"-cell (\S+)", line)[1], line) and not UNUSED.search(line)
              and (not without or "hw/" in line and not any(folder in line for folder in without))][:count]
     lines = [line.replace("mutate ", f"mutate -ctrl mutant 16 {number} ", 1)
              for number, line in enumerate(lines, 1)]
     faults.write_text("\n".join(lines) + "\n")
     # Wires bit by bit: Verilator takes a word of which one bit depends on another for a loop.
-    yosys(f"read_rtlil {out}.il; script {faults}; splitnets -driver; opt_clean; "
-          f"write_verilog -noattr {out}.v")
+    yosys.run(f"read_rtlil {out}.il\nscript {faults}\nsplitnets -driver\nopt_clean\nwrite_verilog -noattr {out}.v",
+              out.with_suffix(".faults.log"))
     return len(lines)
 
 
@@ -75,7 +76,7 @@ def main() -> int:
     try:
         write(given.out, given.top, given.parameters, given.count, given.seed, given.without,
               given.around)
-    except subprocess.CalledProcessError as error:
+    except (tools.MissingTool, tools.ToolFailed) as error:
         print(f"sim.mutate.netlist: {error}", file=sys.stderr)
         return 2
     return 0

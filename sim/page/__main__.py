@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 from sim.mutate import netlist
-from synth import cores
+from synth import cores, tools
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
@@ -25,9 +25,9 @@ def described(line: str) -> str:
     """A fault in words, from its line in the netlist's list."""
     mode = MODES[re.search(r"-mode (\w+)", line)[1]]
     wire = re.search(r"-wire (\S+) -wirebit (\d+)", line)
-    where = re.findall(r"-src \S*?(hw/\S+?:\d+)", line)
+    where = netlist.source(line)
     name = re.sub(r"genblk\d+\.", "", wire[1]).removeprefix("u_stages.") + f", bit {wire[2]}" if wire else "a wire without a name"
-    return f"{name}: {mode}" + (f" ({where[-1]})" if where else "")
+    return f"{name}: {mode}" + (f" ({where})" if where else "")
 
 
 def example() -> list[float]:
@@ -84,6 +84,9 @@ def main() -> int:
         return 2
     except subprocess.CalledProcessError as error:
         print(f"sim.page: {error.cmd[0]} failed with status {error.returncode}", file=sys.stderr)
+        return 2
+    except (tools.MissingTool, tools.ToolFailed) as error:
+        print(f"sim.page: {error}", file=sys.stderr)
         return 2
     page = (HERE / "page.html").read_text()
     for name, content in (("@FAULTS@", json.dumps(faults)), ("@EXAMPLE@", json.dumps(example())), ("@UNIT@", unit)):

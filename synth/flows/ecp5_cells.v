@@ -1,4 +1,4 @@
-// What Yosys 0.23 has no model of among the cells that it maps to: the ECP5's multiplier, without its registers, and its block RAM.
+// What Yosys has no model of among the cells that it maps to: the ECP5's multiplier, without its registers, and its block RAM.
 // For simulation of a netlist, beside Yosys' own ecp5/cells_sim.v (sim/test/verilog/icarus_test.py).
 module MULT18X18D (
   input A0, A1, A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, A13, A14, A15, A16, A17,

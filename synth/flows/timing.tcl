@@ -1,14 +1,10 @@
 # Times a mapped netlist with OpenSTA: the slowest path, cell by cell.
 #   LIBERTY, NETLIST, TOP; SDC and the CLOCK, DRIVER and LOAD that it names; SPEF: its wires, or ""
-#   ENDS 1: also when each output is there
 read_liberty $::env(LIBERTY)
+set_cmd_units -time ns -capacitance pF
 read_verilog $::env(NETLIST)
 link_design $::env(TOP)
 read_sdc $::env(SDC)
 if {$::env(SPEF) ne "" && ![read_spef $::env(SPEF)]} { error "no wires: $::env(SPEF)" }
 # The clock's paths alone: how long a reset is held is not the clock rate's affair.
 report_checks -path_delay max -path_group clock -digits 3 -fields {capacitance slew input_pins}
-if {$::env(ENDS)} {
-  report_checks -path_delay max -path_group clock -format end -digits 3 \
-    -group_count [expr {[llength [all_outputs]] + [llength [all_registers -data_pins]]}]
-}

@@ -4,7 +4,7 @@ import argparse
 import dataclasses
 import sys
 
-from synth import catalogue, chosen, runner, store, tables, tools
+from synth import catalogue, chosen, runner, store, tables, tools, yosys
 from synth.layout import energy, flow, jobs, parts, picture, tests
 
 OUT = store.OUT / "layouts"
@@ -40,7 +40,7 @@ def _rows(given: argparse.Namespace) -> list[jobs.Row]:
     seeds = int(given.seeds or 3)
     if given.top is None or given.top in jobs.SECTIONS:
         return [row for section in jobs.SECTIONS if given.top in (None, section)
-                for row in jobs.rows(section, seeds, workers=int(given.jobs or 2))]
+                for row in jobs.rows(section, seeds)]
     flow_name, density, aspect = given.flow or "fast", float(given.density or 1), float(given.aspect or 0.75)
     if flow_name not in catalogue.FLOWS:
         raise ValueError(f"no flow {flow_name}, expected one of {', '.join(catalogue.FLOWS)}")
@@ -120,7 +120,7 @@ def spend(records: list[dict], workers: int) -> list[str]:
 
 
 def draw(records: list[dict]) -> list[str]:
-    """The median layout of each row, and its slacks; the pictures' names."""
+    """The median layout of each row; the pictures' names."""
     names = []
     for got in records:
         job = got["job"]
@@ -130,10 +130,6 @@ def draw(records: list[dict]) -> list[str]:
                      got["path"], f"{got['design']}, flow {got['flow']}, {job.library.title}"
                      + ("" if got["spread"] else ", wires estimated"), OUT / name)
         names.append(name)
-    for section in dict.fromkeys(got["section"] for got in records):
-        name = f"slacks-{section}-{records[0]['job'].library.name}"
-        picture.slacks([got for got in records if got["section"] == section], OUT / name)
-        names.append(name)
     return names
 
 
@@ -141,7 +137,8 @@ def main() -> int:
     """1 where a layout fails, 2 for what the user can mend."""
     given = arguments()
     try:
-        for tool in ("yosys", "sta", "graywolf", "coloquinte", "qrouter", "magic", "iverilog"):
+        yosys.folder()
+        for tool in ("sta", "coloquinte", "qrouter", "magic", "iverilog"):
             tools.find(tool)
         records, failures = measure(wanted(given), int(given.jobs or 2))
         failures += spend(records, int(given.jobs or 2))

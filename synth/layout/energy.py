@@ -13,7 +13,7 @@ import dataclasses
 import pathlib
 import re
 
-from synth import mapping, store, tools
+from synth import liberty, mapping, store, tools
 from synth.catalogue import Design, Library
 from synth.layout import flow, netlist, parasitics, tests
 from synth.layout.flow import Job
@@ -50,7 +50,7 @@ def measure(job: Job) -> tuple[dict, bool]:
 def of_cells(design: Design, library: Library, how: str) -> tuple[dict, bool]:
     """The same of a netlist of make synth by the flow `how`, without wires."""
     folder = store.OUT / "energies" / f"{design.name}.{library.name}.{how}"
-    sources = [*files(library), *design.sources(how == "cells"), *mapping.scripts(), HERE / "netlist.py"]
+    sources = [*files(library), *design.sources(how == "cells"), *mapping.files(), HERE / "netlist.py"]
     wanted = store.key(sources, mapping.flow_facts(), *versions(), design.facts, library, how)
 
     def work() -> dict:
@@ -188,24 +188,16 @@ def at(curve: tuple[list[float], list[float]], x: float) -> float:
 
 def pins(library: Library) -> dict[str, dict[str, Pin]]:
     """Every pin of every cell; a curve is the mean over the inputs that it is stated for."""
-    found = {}
-    for cell, body in re.findall(r"^\s*cell \((\w+)\) \{(.*?)(?=^\s*cell \(|\Z)",
-                                 library.liberty.read_text(), re.M | re.S):
-        found[cell] = {}
-        for name, text in re.findall(r"^\s*pin\s*\((\w+)\)\s*\{(.*?)(?=^\s*pin\s*\(|\Z)", body, re.M | re.S):
-            farads = re.search(r"^\s*capacitance : ([\d.]+)", text, re.M)
-            found[cell][name] = Pin(float(farads.group(1)) if farads else 0, curve(text, "rise_power"),
-                                    curve(text, "fall_power"))
-    return found
+    return {cell.name: {pin.name: Pin(pin.number("capacitance"), curve(pin, "rise_power"), curve(pin, "fall_power"))
+                        for pin in cell.of("pin")} for cell in liberty.read(library.liberty).of("cell")}
 
 
-def curve(text: str, word: str) -> tuple[list[float], list[float]] | None:
+def curve(pin: liberty.Group, word: str) -> tuple[list[float], list[float]] | None:
     """The mean of all tables of that name at SLEW, by load; None where there is none or it has no load."""
     curves = []
-    for table in re.findall(rf"{word}\s*\(\w+\)\s*\{{(.*?)\}}", text, re.S):
-        axes = [list(map(float, axis.split(","))) for axis in re.findall(r'index_\d \("([^"]+)"\)', table)]
-        rows = [list(map(float, row.split(","))) for row in
-                re.findall(r'"([-\d., e]+)"', table.partition("values")[2])]
+    for table in (table for power in pin.of("internal_power") for table in power.of(word)):
+        axes = [liberty.numbers(table.attributes[axis]) for axis in ("index_1", "index_2") if axis in table.attributes]
+        rows = [liberty.numbers(row) for row in re.findall(r'"([^"]*)"', table.attributes["values"])]
         if len(axes) == 2:
             curves.append((axes[0], [at((axes[1], row), SLEW) for row in rows]))
     if not curves:

@@ -3,14 +3,13 @@
 import dataclasses
 import json
 import pathlib
-import re
 
-from synth import mapping, store, tools
+from synth import liberty, mapping, store, tools
 from synth.catalogue import Design, Library
-from synth.layout import estimate, lef, netlist, parasitics, place, route, spread
+from synth.layout import estimate, lef, netlist, parasitics, place, route
 
 HERE = pathlib.Path(__file__).resolve().parent
-ANNEALED = 1000  # cells: so many graywolf places well, and in seconds
+TIDIED = 1000  # cells: so many nets are routed again in seconds
 
 
 @dataclasses.dataclass(frozen=True)
@@ -47,8 +46,8 @@ class Layout:
 def key(job: Job) -> str:
     """Of all that a layout depends on."""
     files = [*job.design.sources(job.flow == "cells"), job.library.liberty, job.library.lef,
-             job.library.graywolf, *job.library.magic, *mapping.scripts(),
-             *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "spread.py", "estimate.py", "route.py", "parasitics.py",
+             *job.library.magic, *mapping.files(),
+             *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "estimate.py", "route.py", "parasitics.py",
                                         "magic.tcl"))]
     return store.key(files, mapping.flow_facts(), *(tools.version(tool) for tool in ("qrouter", "magic")),
                      job.design.facts, job.library, job.flow, job.density, job.aspect, job.seed, job.routed)
@@ -56,8 +55,8 @@ def key(job: Job) -> str:
 
 def make(job: Job) -> tuple[dict, bool]:
     """Delay of the cells alone, with estimated wires and with routed ones (ns), areas (um2), wires (um, pF),
-    slacks, failed nets (None where no routing was tried); and whether it was kept. Where nets failed wires
-    and slacks are the estimate's, and there is no routed delay."""
+    failed nets (None where no routing was tried); and whether it was kept. Where nets failed the wires are the
+    estimate's, and there is no routed delay."""
     return store.cached(job.folder, key(job), tools.measured(lambda: _make(job)))
 
 
@@ -69,10 +68,7 @@ def _make(job: Job) -> dict:
     (folder / "netlist.json").write_text((run / "netlist.json").read_text())
     nets = netlist.parse(mapping.top_module(folder / "netlist.json"), job.design.top)
     technology = lef.read(job.library.lef)
-    if len(nets.cells) > ANNEALED:
-        placement = spread.place(nets, technology, job.seed, job.density, job.aspect, folder)
-    else:
-        placement = place.place(nets, technology, job.library.graywolf, job.seed, job.density, job.aspect, folder)
+    placement = place.place(nets, technology, job.seed, job.density, job.aspect, folder)
     (folder / "placement.json").write_text(json.dumps(dataclasses.asdict(placement)))
     (folder / "placed.v").write_text(nets.verilog())
     ports = route.pins(placement, technology, nets)
@@ -83,13 +79,12 @@ def _make(job: Job) -> dict:
               for net, pieces in routing.wires.items()}
     cells_ns, _ = mapping.critical_path(_time(job, nets, "cells"))
 
-    def with_wires(name: str) -> tuple[float, list[dict], list[float]]:
+    def with_wires(name: str) -> tuple[float, list[dict]]:
         (folder / f"{name}.spef").write_text(parasitics.spef(
             nets, placement, routing, technology, farads, ohms, outputs(job.library)))
-        report = _time(job, nets, name)
-        return *mapping.critical_path(report), slacks(report)
+        return mapping.critical_path(_time(job, nets, name))
 
-    guess_ns, path, ends = with_wires("estimate")
+    guess_ns, path = with_wires("estimate")
     result = {
         "cells": len(nets.cells), "nets": len(nets.nets()), "area": mapped["area"], "cells_ns": cells_ns,
         "guess_ns": guess_ns, "core": round(placement.width * placement.height), "width": placement.width,
@@ -97,15 +92,15 @@ def _make(job: Job) -> dict:
     }
     if job.routed:
         guessed, routing = routing, route.route(nets, placement, technology, job.library.lef, folder,
-                                                tidy=len(nets.cells) <= ANNEALED)
+                                                tidy=len(nets.cells) <= TIDIED)
         result["failed"] = len(routing.failed)
         if routing.failed:
             routing = guessed
         else:
             farads = parasitics.extract(nets, job.library.lef, job.library.magic[0], folder)
-            result["wires_ns"], path, ends = with_wires("wires")
+            result["wires_ns"], path = with_wires("wires")
     wires = [wire for pieces in routing.wires.values() for wire in pieces]
-    return {**result, "path": path, "slacks": ends, "wire_um": round(sum(wire.length for wire in wires)),
+    return {**result, "path": path, "wire_um": round(sum(wire.length for wire in wires)),
             "vias": sum(bool(wire.to) for wire in wires), "wire_pf": round(sum(farads.values()), 3)}
 
 
@@ -113,23 +108,14 @@ def _time(job: Job, nets: netlist.Netlist, name: str) -> str:
     """OpenSTA's report with the wires of NAME.spef; of cells alone where there is none."""
     clock = next((short for short, port in nets.ports.items() if port.name == job.design.clock), "")
     wires = job.folder / f"{name}.spef"
-    return mapping.sta(job.design, job.library, job.folder / "placed.v", job.folder / f"{name}.txt", True,
+    return mapping.sta(job.design, job.library, job.folder / "placed.v", job.folder / f"{name}.txt",
                        wires if wires.exists() else None, clock)
-
-
-def slacks(report: str) -> list[float]:
-    """The slack at each end of a path in an OpenSTA report of end points, ns, the least first."""
-    found = re.findall(r"^\S+ \((?:output|\w+)\) +[\d.]+ +-?[\d.]+ +(-?[\d.]+)", report, re.M)
-    return sorted(map(float, found))
 
 
 def outputs(library: Library) -> dict[str, set[str]]:
     """The output pins of each type of cell, as Liberty says."""
-    found = {}
-    for name, body in re.findall(r"^\s*cell \((\w+)\) \{(.*?)(?=^\s*cell \(|\Z)",
-                                 library.liberty.read_text(), re.M | re.S):
-        found[name] = set(re.findall(r"pin\s*\((\w+)\)\s*\{[^}]*?direction\s*:\s*output", body))
-    return found
+    return {cell.name: {pin.name for pin in cell.of("pin") if pin.attributes.get("direction") == "output"}
+            for cell in liberty.read(library.liberty).of("cell")}
 
 
 def load(job: Job) -> Layout:

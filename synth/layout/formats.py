@@ -1,4 +1,4 @@
-"""The energy of a test in each format, and of a doubt: `python3 -m synth.layout.formats` (`make layout TOP=energy`).
+"""The energy of a test in each format: `python3 -m synth.layout.formats` (`make layout TOP=energy`).
 
 Of cells alone, for wires are a few hundredths of it (synth/README.md); kept in build/synth/energies.json,
 which `make bench` takes its energies from. A test of equation 10 is six multiplications, two additions and
@@ -8,8 +8,8 @@ one division (synth/layout/tests.py).
 import json
 import sys
 
-from synth import catalogue, runner, store, tables, tools
-from synth.layout import doubts, energy, tests
+from synth import catalogue, runner, store, tables, tools, yosys
+from synth.layout import energy, tests
 
 FLOW = "small"
 LIBRARY = catalogue.library("osu035")
@@ -26,24 +26,21 @@ def designs() -> list[tuple[int, catalogue.Design]]:
 def main() -> int:
     """1 where a core fails, 2 for what the user can mend."""
     try:
-        for tool in ("yosys", "sta", "iverilog"):
+        yosys.folder()
+        for tool in ("sta", "iverilog"):
             tools.find(tool)
         _ = LIBRARY.liberty
         results, failures = runner.run_all([runner.Job(
             f"{design.name} energy", lambda d=design: energy.of_cells(d, LIBRARY, FLOW),
-            lambda got: f"{got['pj']:.0f} pJ") for _, design in designs()]
-            + [runner.Job("doubts", lambda: doubts.measure(LIBRARY), lambda got: f"{got['does it hit']['nj']:.0f} nJ")], 2)
+            lambda got: f"{got['pj']:.0f} pJ") for _, design in designs()], 2)
     except tools.MissingTool as error:
         print(f"energy: {error}", file=sys.stderr)
         return 2
     records = [{"top": design.top, "significand": bits, "exponent": 8, "target": LIBRARY.name, "flow": FLOW, **got}
-               for (bits, design), got in zip(designs(), results[:-1], strict=True) if got]
+               for (bits, design), got in zip(designs(), results, strict=True) if got]
     (store.OUT / "energies.json").write_text(json.dumps(
         {"operations": tests.OPERATIONS, "results": records}, indent=1) + "\n")
     print(table(records))
-    if settled := results[-1]:
-        print("\n" + tables.markdown(["a doubt: exact_unit's question", "clocks", "nJ"], [
-            [name, f"{settled[name]['clocks']:.1f}", f"{settled[name]['nj']:.0f}"] for name in doubts.QUESTIONS]))
     for failure in failures:
         print("failed:", failure, file=sys.stderr)
     return 1 if failures else 0

@@ -2,7 +2,7 @@
 
 import dataclasses
 
-from synth import adder_study, catalogue, final_adder, grading
+from synth import catalogue
 from synth.catalogue import Design, Library
 from synth.layout.flow import Job
 
@@ -29,20 +29,15 @@ class Row:
                 for seed in range(1, self.seeds + 1)]
 
 
-SECTIONS = ("adders", "grading", "multipliers", "cores", "unit")
-CANDIDATES = 4  # groupings whose cells alone are the fastest: those are laid out
+SECTIONS = ("adders", "multipliers", "cores", "unit")
 
 
-def rows(section: str, seeds: int = 3, budget: int = 16, workers: int = 2) -> list[Row]:
-    """The rows of one of SECTIONS. `seeds`: of each adder; the others are large. `budget`: groupings that
-    each search of "grading" tries on cells alone."""
+def rows(section: str, seeds: int = 3) -> list[Row]:
+    """The rows of one of SECTIONS. `seeds`: of each adder; the others are large."""
     if section == "adders":
         return [Row(section, row.design, flow, 1.0, 0.75, seeds) for row in catalogue.report_rows()
                 if row.section == "48-bit adders"
                 for flow in ("cells", "fast") if flow in row.flows["osu035"]]
-    if section == "grading":
-        return [Row(section, adder_study.graded(groups, False), flow, 1.0, 0.75, seeds)
-                for flow in ("cells", "fast") for groups in candidates(flow, budget, workers)]
     if section == "multipliers":
         graded = catalogue.design("booth_multiplier", "booth-graded-ripple-groups", "graded",
                                   look_ahead=False, Width=24)
@@ -63,12 +58,3 @@ def rows(section: str, seeds: int = 3, budget: int = 16, workers: int = 2) -> li
         return [Row(section, catalogue.design("hit_test_unit"), flow, *SPARSE, routed=False)
                 for flow in ("parts", "small")]
     raise ValueError(f"no section {section}; there are {', '.join(SECTIONS)}")
-
-
-def candidates(flow: str, budget: int, workers: int) -> list[grading.Grouping]:
-    """The best groupings of 48 bits that make synth's search finds on cells alone, and the core's own."""
-    found = adder_study.search(lambda groups: adder_study.graded(groups, False), adder_study.adder_seeds(),
-                               catalogue.library("osu035"), flow, budget, workers)
-    tried = sorted(found["tried"], key=lambda entry: entry[1:])
-    best = [tuple(groups) for groups, *_ in tried[:CANDIDATES]]
-    return list(dict.fromkeys([*best, final_adder.CORES_OWN]))

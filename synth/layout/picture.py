@@ -86,19 +86,3 @@ def _path(axes: plt.Axes, layout: Layout, path: list[dict], width: float) -> Non
                                               zorder=4))
     axes.add_collection(shapes.LineCollection(lines, colors="crimson", linewidths=width, zorder=5))
     axes.plot([], [], color="crimson", linewidth=2, label="the slowest path")
-
-
-def slacks(records: list[dict], out: pathlib.Path) -> None:
-    """Writes OUT.png: how many ends of paths have how much slack at 10 MHz, a panel for each record."""
-    figure, panels = plt.subplots(len(records), 1, figsize=(8, 0.9 + 0.75 * len(records)), sharex=True,
-                                  layout="constrained", squeeze=False)
-    least = min(got["slacks"][0] for got in records)
-    for got, axes in zip(records, panels[:, 0], strict=True):
-        axes.hist(got["slacks"], bins=60, range=(least, 100), color="steelblue")
-        axes.axvline(got["slacks"][0], color="crimson", linewidth=1)
-        axes.set_ylabel(f"{got['design']}\n{got['flow']}", rotation=0, ha="right", va="center", fontsize=7)
-        axes.tick_params(labelsize=6)
-    panels[0, 0].set_title("paths' ends by their slack with wires, clock of 10 MHz", fontsize=9)
-    panels[-1, 0].set_xlabel("slack, ns; red: the least")
-    figure.savefig(out.with_name(out.name + ".png"), dpi=120, bbox_inches="tight")
-    plt.close(figure)

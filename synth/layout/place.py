@@ -1,15 +1,21 @@
-"""Places a netlist in rows with graywolf, which anneals: the seed decides."""
+"""Places a netlist in rows with Coloquinte, in seconds.
+
+Coloquinte reads and writes the files of the placement contests (bookshelf): .nodes, .nets, .pl, .scl. It
+counts in whole numbers: here x in tracks, y in STEPS of a row's height. Those are longer than a track, so
+wires across, which have one metal, cost more than those upwards, which have two.
+"""
 
 import dataclasses
+import math
 import pathlib
-import re
 
 from synth import tools
 from synth.layout.lef import Technology
 from synth.layout.netlist import CONSTANTS, Netlist
 
-UNITS = 100  # to the um, as qflow's parameters for graywolf count
-ORIENTATIONS = ("N", "FS", "FN", "S", "FE", "FW", "W", "E")  # graywolf's numbers
+FULL = 0.97  # of each row, gaps included: cells need some room to be put into rows
+STEPS = 9
+EFFORT = 3  # of 9; more takes longer and shortens no wire
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,16 +37,109 @@ class Placement:
     height: float
 
 
-def place(netlist: Netlist, technology: Technology, parameters: pathlib.Path, seed: int,
-          density: float, aspect: float, folder: pathlib.Path) -> Placement:
-    """`density`: the share of the rows that cells take; `aspect`: the core's height by its width;
-    `parameters`: qflow's .par of the library."""
-    (folder / "placed.cel").write_text(cells_text(netlist, technology, density))
-    text = re.sub(r"(\*random\.seed\s*:\s*)\d+", rf"\g<1>{seed}", parameters.read_text())
-    text = re.sub(r"(chip\.aspect\.ratio\s*:\s*)[\d.]+", rf"\g<1>{aspect}", text)
-    (folder / "placed.par").write_text(text)
-    tools.run(["graywolf", "-n", "placed"], folder / "graywolf.log", folder=folder)
-    return read((folder / "placed.pl1").read_text(), technology, netlist)
+def place(netlist: Netlist, technology: Technology, seed: int, density: float, aspect: float,
+          folder: pathlib.Path) -> Placement:
+    """`density`: the share of the rows that cells take; `aspect`: the core's height by its width.
+
+    Twice: without ports, which are then put around the core where their nets pull them, and with them.
+    """
+    pitch = next(layer.pitch for layer in technology.layers.values() if layer.vertical)
+    macros = {name: technology.macros[cell.kind] for name, cell in netlist.cells.items()}
+    beside = gaps(netlist, technology, min(1.0, density / FULL), pitch)
+    widths = {name: round((macro.width + beside[name]) / pitch) for name, macro in macros.items()}
+    height = next(iter(macros.values())).height
+    area = sum(widths.values()) * pitch * height / FULL
+    rows = max(1, round(math.sqrt(area * aspect) / height))
+    sites = math.ceil(area / (rows * height * pitch))
+    widest = max(widths.values())
+    for wider in range(0, widest + 1, max(1, widest // 4)):  # a few cells of one width may not fit into rows of their area
+        free, _ = _run(netlist, technology, widths, {}, (sites + wider, rows), seed, folder / "free")
+        ports = around(netlist, free, (sites + wider, rows * STEPS))
+        try:
+            found, turned = _run(netlist, technology, widths, ports, (sites + wider, rows), seed, folder / "placed")
+        except tools.ToolFailed:
+            if wider + max(1, widest // 4) > widest:
+                raise
+            continue
+        sites += wider
+        break
+    step = height / STEPS
+    cells = {}
+    for name, (x, y) in found.items():
+        aside = beside[name] if turned[name] in ("FN", "S") else 0  # the gap has been turned to the left side
+        cells[name] = Site(x * pitch + aside, y * step, turned[name])
+    return Placement(cells, {name: (x * pitch, y * step) for name, (x, y) in ports.items()},
+                     sites * pitch, rows * height)
+
+
+def _run(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
+         core: tuple[int, int], seed: int, stem: pathlib.Path) -> tuple[dict, dict[str, str]]:
+    """Where each cell's lower left corner is and how it is turned; without `ports` not yet in rows."""
+    for suffix, text in bookshelf(netlist, technology, widths, ports, core).items():
+        stem.with_suffix(suffix).write_text(text.format(stem=stem.name))
+    solution = stem.with_suffix(".sol")
+    tools.run(["coloquinte", "--effort", str(EFFORT), "--seed", str(seed), "--save-solution", solution,
+               *([] if ports else ["--only-global"]), stem.with_suffix(".aux")], stem.with_suffix(".log"))
+    places, turned = {}, {}
+    for line in solution.read_text().splitlines():
+        name, *words = line.split() or [""]
+        if name in netlist.cells:
+            places[name] = int(words[0]), int(words[1])
+            turned[name] = words[3]
+    return places, turned
+
+
+def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
+              core: tuple[int, int]) -> dict[str, str]:
+    """The files by their suffixes. `widths` of the cells, tracks; `core`: its tracks across, its rows."""
+    sites, rows = core
+    pitch = next(layer.pitch for layer in technology.layers.values() if layer.vertical)
+    nodes = [f"{name} {widths[name]} {STEPS}" for name in netlist.cells] + [f"{name} terminal" for name in ports]
+    at = [f"{name} {sites // 2} {rows * STEPS // 2} : N" for name in netlist.cells]
+    at += [f"{name} {x} {y} : N" for name, (x, y) in ports.items()]
+    nets = []
+    for net, ends in netlist.nets().items():
+        pins = []
+        for cell, pin in ends:
+            if cell == "PIN":
+                pins += [f"{pin} I : 0 0"] if pin in ports else []
+                continue
+            macro = technology.macros[netlist.cells[cell].kind]
+            x, y = macro.pins[pin][0].centre
+            pins.append(f"{cell} I : {x / pitch - widths[cell] / 2:.2f} {(y / macro.height - 0.5) * STEPS:.2f}")
+        if len(pins) > 1 and net not in CONSTANTS.values():
+            nets += [f"NetDegree : {len(pins)} {net}", *pins]
+    lines = [f"NumRows : {rows}"]
+    for row in range(rows):
+        lines += ["CoreRow Horizontal", f"Coordinate : {row * STEPS}", f"Height : {STEPS}", "Sitewidth : 1",
+                  f"Siteorient : {'FS' if row % 2 else 'N'}", f"SubrowOrigin : 0 NumSites : {sites}", "End"]
+    return {".aux": "RowBasedPlacement : {stem}.nodes {stem}.nets {stem}.pl {stem}.scl\n",
+            **{suffix: "\n".join(["UCLA 1.0", *text]) + "\n" for suffix, text in
+               ((".nodes", nodes), (".nets", nets), (".pl", at), (".scl", lines))}}
+
+
+def around(netlist: Netlist, cells: dict[str, tuple[int, int]], core: tuple[int, int]) -> dict[str, tuple[int, int]]:
+    """The ports at equal distances around the core, in the order in which their nets' cells lie around its middle."""
+    width, height = core
+    angles = {}
+    for ends in netlist.nets().values():
+        near = [cells[cell] for cell, _ in ends if cell != "PIN"]
+        x = sum(x for x, _ in near) / len(near) if near else 0
+        y = sum(y for _, y in near) / len(near) if near else 0
+        angles.update({pin: math.atan2(y / height - 0.5, x / width - 0.5) for cell, pin in ends if cell == "PIN"})
+    order = sorted(angles, key=lambda name: (angles[name], name))
+    return {name: _edge((place + 0.5) / len(order) * 2 * (width + height), width, height)
+            for place, name in enumerate(order)}
+
+
+def _edge(far: float, width: int, height: int) -> tuple[int, int]:
+    """The point that far along the core's edge, from the middle of its left side downwards."""
+    for x, y, dx, dy, length in ((0, height / 2, 0, -1, height / 2), (0, 0, 1, 0, width), (width, 0, 0, 1, height),
+                                 (width, height, -1, 0, width), (0, height, 0, -1, height / 2)):
+        if far <= length:
+            return round(x + dx * far), round(y + dy * far)
+        far -= length
+    return 0, round(height / 2)
 
 
 def gaps(netlist: Netlist, technology: Technology, density: float, pitch: float) -> dict[str, float]:
@@ -61,59 +160,3 @@ def gaps(netlist: Netlist, technology: Technology, density: float, pitch: float)
         found[name] = int(credit / pitch) * pitch
         credit -= found[name]
     return found
-
-
-def cells_text(netlist: Netlist, technology: Technology, density: float) -> str:
-    """graywolf's input. Every cell is one piece with the gap that goes with it, to its right."""
-    layers = technology.layers.values()
-    pitch = next(layer.pitch for layer in layers if layer.vertical)
-    x, y = round(pitch * UNITS / 2), round(next(layer.pitch for layer in layers if not layer.vertical) * UNITS / 2)
-    pad = f"corners 4 -{x} -{y} -{x} {y} {x} {y} {x} -{y}"
-    lines, beside = [], gaps(netlist, technology, density, pitch)
-    for place, (name, cell) in enumerate(netlist.cells.items()):
-        macro = technology.macros[cell.kind]
-        gap = beside[name]
-        left, bottom = -round((macro.width + gap) * UNITS / 2), -round(macro.height * UNITS / 2)
-        right, top = left + round((macro.width + gap) * UNITS), bottom + round(macro.height * UNITS)
-        lines += [f"cell {place} {name}", f"left {left} right {right} bottom {bottom} top {top}"]
-        for step in range(round((right - left) / UNITS / pitch)):
-            x = left + round((step + 0.5) * pitch * UNITS)
-            lines += [f"pin name twfeed{step + 1} signal TW_PASS_THRU layer 1 {x} {bottom}",
-                      f"   equiv name twfeed{step + 1} layer 1 {x} {top}"]
-        for pin, net in cell.pins.items():
-            if net not in CONSTANTS.values():
-                x, y = macro.pins[pin][0].centre
-                lines.append(f"pin name {pin} signal {net} layer 1 "
-                             f"{left + round(x * UNITS)} {bottom + round(y * UNITS)}")
-    for place, (name, port) in enumerate(netlist.ports.items(), 1):
-        if port.net == name:
-            lines += [f"pad {place} name twpin_{name}", pad,
-                      f"pin name {name} signal {port.net} layer 1 0 0", ""]
-    return "\n".join(lines) + "\n"
-
-
-def read(text: str, technology: Technology, netlist: Netlist) -> Placement:
-    """graywolf's .pl1: name, box, orientation and row, one a line; the core's corner becomes (0, 0)."""
-    boxes = {}
-    for line in text.splitlines():
-        name, *numbers = line.split()
-        boxes[name] = tuple(map(int, numbers))
-    missing = [name for name in netlist.cells if name not in boxes]
-    if missing:
-        raise tools.ToolFailed(f"graywolf placed {len(netlist.cells) - len(missing)} of "
-                               f"{len(netlist.cells)} cells")
-    left = min(boxes[name][0] for name in netlist.cells)
-    bottom = min(boxes[name][1] for name in netlist.cells)
-    cells = {}
-    for name, cell in netlist.cells.items():
-        x0, y0, x1, _, turned, _ = boxes[name]
-        word = ORIENTATIONS[turned]
-        if word in ("FN", "S"):  # the gap has been turned to the left side
-            x0 = x1 - round(technology.macros[cell.kind].width * UNITS)
-        cells[name] = Site((x0 - left) / UNITS, (y0 - bottom) / UNITS, word)
-    ports = {name.removeprefix("twpin_"): ((box[0] + box[2]) / 2 / UNITS - left / UNITS,
-                                           (box[1] + box[3]) / 2 / UNITS - bottom / UNITS)
-             for name, box in boxes.items() if name.startswith("twpin_")}
-    width = max(boxes[name][2] for name in netlist.cells) - left
-    height = max(boxes[name][3] for name in netlist.cells) - bottom
-    return Placement(cells, ports, width / UNITS, height / UNITS)

@@ -80,7 +80,7 @@ def outline(placement: Placement, technology: Technology) -> tuple[float, float,
 
 def pins(placement: Placement, technology: Technology,
          netlist: Netlist) -> dict[str, tuple[float, float, str]]:
-    """Each port on a track of its own, at the side where graywolf put it: x, y, layer."""
+    """Each port on a track of its own, at the side where its cells are: x, y, layer."""
     across, up = _tracks(technology)
     left, bottom, right, top = outline(placement, technology)
     middles = [name for name in technology.layers]

@@ -29,6 +29,7 @@ module contexts_answer_once #(
   always_ff @(posedge clk) reset_n <= 1'b1;
 
   logic ready, started, ending, valid;
+  logic chosen, left;  // a ray was marked, and left
   logic kind;
   logic [CtxWidth-1:0] started_ctx, ending_ctx;
   logic [Rays-1:0] free_q, active_q;
@@ -95,7 +96,6 @@ module contexts_answer_once #(
     for (int unsigned i = 0; i < 32; i++) ones = ones + TotalWidth'(word[i]);
   endfunction
 
-  logic chosen, left;  // a ray was marked, and left
   initial {chosen, left} = '0;
 
   // ---- What the user sees: rays that came, and ends that left

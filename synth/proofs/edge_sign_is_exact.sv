@@ -86,13 +86,13 @@ module edge_sign_is_exact #(
   // ---- Twice the exact sum, and how much the record's rounding may change it
 
   logic [Wide-1:0] twice_exact, unsure, size, one;
-  logic below_two, large;
+  logic below_two, is_large;
   always_comb begin
     twice_exact = '0;
     unsure = '0;
     size = '0;
     below_two = 1'b1;
-    large = 1'b0;
+    is_large = 1'b0;
     for (int unsigned k = 0; k < 3; k++) begin
       one = whole(direction[Width*k+:Width]) * whole(edge_words[Width*k+:Width]);
       if (direction[Width*k+Width-1] ^ edge_words[Width*k+Width-1]) begin
@@ -104,7 +104,7 @@ module edge_sign_is_exact #(
       size = size + whole(edge_words[Width*k+:Width]);
       below_two = below_two && direction[Width*k+FracWidth+:ExpWidth] <= ExpWidth'(Bias)
                   && edge_words[Width*k+FracWidth+:ExpWidth] <= ExpWidth'(Bias);
-      large = large || edge_words[Width*k+FracWidth+:ExpWidth] == ExpWidth'(Bias);
+      is_large = is_large || edge_words[Width*k+FracWidth+:ExpWidth] == ExpWidth'(Bias);
     end
   end
 
@@ -112,7 +112,7 @@ module edge_sign_is_exact #(
   localparam logic [Width-2:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
 
   always_comb begin
-    assume (below_two && large && !bound[Width-1] && bound[Width-2:0] < Infinity);
+    assume (below_two && is_large && !bound[Width-1] && bound[Width-2:0] < Infinity);
     assume ((BoundWide'(whole(bound)) << (11 + FracWidth)) >= BoundWide'(size) * BoundWide'(C1024));
     if (u[Width-2:0] > bound[Width-2:0]) begin
       assert (u[Width-2:0] < Infinity);

@@ -50,7 +50,7 @@ module hits_keep_nearest #(
   logic tests_allowed, traversal_ended, leaf_ended, doubt_valid, end_found, near_tie;
   logic [30:0] traversal_t_max, leaf_t_max, box_t_max;
   logic [Rays-1:0] testing, found_q, any_hit_q;
-  logic [31:0] result_tag, end_triangle, end_t;
+  logic [31:0] tag_0, tag_1, result_tag, end_triangle, end_t;  // tag_0, tag_1: a ray's
   logic [TErrorWidth-1:0] end_t_error;
   logic [TestsWidth-1:0] end_tests;
   logic [95:0] end_point, read_point;  // read_point: of the ray of the clock before
@@ -164,7 +164,6 @@ module hits_keep_nearest #(
   logic [Rays-1:0] loaded, any_hit;
   logic [11:0] flight_0, flight_1;  // a ray's tests on their way
   logic [TestsWidth-1:0] made_0, made_1;  // its tests
-  logic [31:0] tag_0, tag_1;
   logic [30:0] user_0, user_1;  // its t_max at first
 
   assign result_tag = result_ray ? tag_1 : tag_0;

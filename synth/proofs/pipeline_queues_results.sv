@@ -17,7 +17,7 @@ module pipeline_queues_results #(
   input logic                take
 );
 
-  hit_test_pkg::report_e report_out;
+  logic [$bits(hit_test_pkg::report_e)-1:0] report_out;
   logic [1:0] report;
   logic ready, valid, closed_out, found_out, point_valid_out, closed, found, point_valid;
   logic [TagWidth-1:0] report_tag_out, tag_out, report_tag, nearest_tag;

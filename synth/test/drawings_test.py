@@ -24,11 +24,11 @@ class Units(unittest.TestCase):
     MODULE = {
         "ports": {"in_i": port("input", 2, 3), "out_o": port("output", 8, 9), "clk_i": port("input", 1)},
         "cells": {
-            "u_first": cell("$paramod\\first", {"a_i": [2, 3]}, {"b_o": [4, 5], "c_o": [10]}),
+            "u_first": cell("first$top.u_first", {"a_i": [2, 3]}, {"b_o": [4, 5], "c_o": [10]}),
             "register": cell("$dff", {"CLK": [1], "D": [4, 5]}, {"Q": [6, 7]}),
             "table": cell("$mem_v2", {"RD_ADDR": [10], "WR_DATA": [6, 7]}, {"RD_DATA": [11, 12]}, MEMID="\\table"),
             "select": cell("$mux", {"A": [11, 12], "B": [6, 7], "S": [10]}, {"Y": [13, 14]}),
-            "u_last": cell("$paramod\\last", {"a_i": [13, 14]}, {"b_o": [8, 9]}),
+            "u_last": cell("last$top.u_last", {"a_i": [13, 14]}, {"b_o": [8, 9]}),
         },
     }
 

@@ -2,11 +2,12 @@
 
 import contextlib
 import io
+import time
 import unittest
 from unittest import mock
 
 from synth import __main__ as main
-from synth import catalogue, measure, prove, report
+from synth import catalogue, mapping, measure, prove, report, tools
 
 
 class ClockTable(unittest.TestCase):
@@ -29,15 +30,69 @@ class Legend(unittest.TestCase):
         self.assertEqual([line.split(":")[0] for line in placed], ["LUTs / MHz"])
 
 
+class Chain(unittest.TestCase):
+    def test_names_the_cells_in_order_and_counts_neighbours(self) -> None:
+        pins = [("a_i[0]", "in"), ("u_sum.gen_bit[0].u_cell/A", "FAX1"), ("u_sum.gen_bit[0].u_cell/YC", "FAX1"),
+                ("u_sum.gen_bit[1].u_cell/C", "FAX1"), ("u_sum.gen_bit[1].u_cell/YS", "FAX1"), ("_7_/A", "INVX1"), ("_7_/Y", "INVX1"), ("sum_o[1]", "out")]
+        record = {"design": "adder", "flow": "cells", "delay_ns": 1.25, "path": [{"pin": pin, "cell": cell} for pin, cell in pins]}
+        self.assertEqual(report.chain(record), "adder, cells, 1.25 ns: a_i[0] > 2 x FAX1 (u_sum) > INVX1 > sum_o[1]")
+        self.assertEqual(report.counted(list("aabcbcbcd")), ["2 x a", "3 x (b > c)", "d"])
+        self.assertEqual(report.counted(list("abab")), ["2 x (a > b)"])
+        self.assertEqual(report.counted(list("abc")), ["a", "b", "c"])
+
+
 class Others(unittest.TestCase):
     def test_an_adder_has_rows_to_compare_with_on_every_target(self) -> None:
         measured = []
-        with (mock.patch.object(measure, "measure", side_effect=lambda rows, _: measured.extend(rows) or ([], [])),
+        with (mock.patch.object(measure, "measure", side_effect=lambda rows, *_: measured.append(rows) or ([], [])),
               mock.patch.object(prove, "adds"), mock.patch.object(main, "kept_structure", return_value=False),
-              contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said):
+              contextlib.redirect_stdout(io.StringIO())):
             main.run_one(catalogue.design("adder", adder="graded", widths=[4, 5], Width=9), measure.Targets(("osu035", "ice40")))
-        self.assertEqual([sorted(row.flows) for row in measured], [["ice40", "osu035"]] * 5)
-        self.assertRegex(said.getvalue(), "^adder-graded-4_5-Width9, beside 4 other adders: 25 netlists on osu035, ice40; about a minute")
+        self.assertEqual([[sorted(row.flows) for row in rows] for rows in measured], [[["ice40", "osu035"]] * 5] * 2)
+
+
+class Measured(unittest.TestCase):
+    """measured_tables."""
+
+    def test_a_row_is_printed_when_it_is_measured(self) -> None:
+        rows = [catalogue.Row("adders", catalogue.Design(name, "adder", "arith"), {"osu035": ("cells", "fast"), "ice40": ("placed",)})
+                for name in ("ripple", "prefix")]
+        printed, waited = io.StringIO(), []
+
+        def measured(design: catalogue.Design, library: catalogue.Library, flow: str) -> tuple[dict, bool]:
+            limit = time.monotonic() + 10
+            while design.name == "prefix" and "| ripple " not in printed.getvalue() and time.monotonic() < limit:
+                time.sleep(0.01)  # the first row is printed before the second is measured
+            waited.append(time.monotonic() < limit)
+            if (design.name, flow) == ("prefix", "fast"):
+                raise tools.ToolFailed("no")
+            return {"area": 1000, "delay_ns": 2.5}, False
+
+        with (mock.patch.object(mapping, "synthesise", side_effect=measured), contextlib.redirect_stdout(printed),
+              mock.patch.object(catalogue.Library, "structural", True), contextlib.redirect_stderr(io.StringIO())):
+            records, failures = report.measured_tables(rows, measure.Targets(("osu035",), 1))
+        self.assertEqual((len(records), failures, set(waited)), (3, ["prefix osu035 fast: no"], {True}))
+        cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in printed.getvalue().splitlines()]
+        self.assertEqual(cells, [["adders, OSU 0.35 um: um2 / ns", "cells", "fast"], cells[1], ["ripple", "1,000 / 2.50", "1,000 / 2.50"],
+                                 ["prefix", "1,000 / 2.50", "-"], []])
+
+
+class Targets(unittest.TestCase):
+    """measure.available and catalogue.first_rows."""
+
+    def test_the_main_designs_are_designs_of_the_report(self) -> None:
+        rows = catalogue.first_rows()
+        self.assertEqual({row.design.name for row in rows}, catalogue.FIRST)
+        self.assertTrue(all(row.flows["osu035"] for row in rows))
+
+    def test_what_is_measured_unless_targets_are_given(self) -> None:
+        with mock.patch.object(tools, "find"), mock.patch.object(tools, "installed", return_value=True):
+            self.assertEqual(measure.available(None, everything=False), ("osu035",))
+            self.assertEqual(measure.available(None, everything=False, one=True), ("osu035", "osu018"))
+            self.assertEqual(measure.available(None), ("osu035", "osu018", "ice40", "ecp5"))
+            self.assertEqual(measure.available(["ecp5", "osu018"], everything=False), ("osu018", "ecp5"))
+            with self.assertRaisesRegex(ValueError, "no target x; there are osu035, "):
+                measure.available(["x", "ecp5"])
 
 
 if __name__ == "__main__":

@@ -1,12 +1,8 @@
-"""What is written and compared: tables, tests a second, two runs' figures."""
+"""What is written and compared: tables, tests a second."""
 
-import json
-import pathlib
-import tempfile
 import unittest
-from unittest import mock
 
-from synth import catalogue, compare, tables, throughput
+from synth import tables, throughput
 
 
 class Tables(unittest.TestCase):
@@ -20,37 +16,6 @@ class Tables(unittest.TestCase):
     def test_comma_separated(self):
         """What a row has not is left empty; what is not asked for is left out."""
         self.assertEqual(tables.comma_separated([{"a": 1, "c": 2}], ["a", "b"]), "a,b\n1,\n")
-
-
-class Throughput(unittest.TestCase):
-    """throughput.gate."""
-
-    def test_gate(self):
-        """The gate's area, and not that of a cell before it."""
-        with tempfile.TemporaryDirectory() as name:
-            file = pathlib.Path(name) / "tiny.lib"
-            file.write_text("cell (NAND2X1x) {\n area : 1;\n}\ncell (INVX1) {\n area : 64;\n}\n"
-                            "cell (NAND2X1) {\n cell_footprint : nand2x1;\n area : 96;\n}\n")
-            with mock.patch.object(catalogue.Library, "liberty", file):
-                self.assertEqual(throughput.gate(catalogue.LIBRARIES[0]), 96)
-
-
-class Compare(unittest.TestCase):
-    """Figures of two runs."""
-
-    @staticmethod
-    def results(**figures: float) -> compare.Figures:
-        row = {"design": "d", "target": "t", "flow": "f", "path": [], **figures}
-        return compare.figures(json.dumps({"tools": "", "results": [row]}))
-
-    def test_same(self):
-        """Figures count, other facts do not."""
-        self.assertEqual(compare.differences(self.results(area=1), self.results(area=1)), [])
-
-    def test_differ(self):
-        """Another figure and a missing row are both told."""
-        self.assertEqual(len(compare.differences(self.results(area=1), self.results(area=2))), 1)
-        self.assertEqual(len(compare.differences(self.results(area=1), {})), 1)
 
 
 class Rays(unittest.TestCase):

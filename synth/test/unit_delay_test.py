@@ -31,14 +31,6 @@ class Count(unittest.TestCase):
         self.assertEqual(unit_delay.count(MODULE, every)["delay"], 3)
         self.assertEqual(unit_delay.count(MODULE, carries)["delay"], 2)
 
-    def test_arrivals(self):
-        """Late inputs make late outputs, bit by bit."""
-        counting = unit_delay.COUNTINGS[0]
-        self.assertEqual(unit_delay.count(MODULE, counting)["arrivals"], [1, 3])
-        late = unit_delay.count(MODULE, counting, arrivals={"a_i": [0, 5]})
-        self.assertEqual(late["arrivals"], [1, 7])
-        self.assertEqual(late["full_adders"], 1)
-
     def test_cells(self):
         """Each kind's number."""
         self.assertEqual(unit_delay.cells(MODULE), {"full_adder": 2, "multiplexer": 1})

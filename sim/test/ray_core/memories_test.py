@@ -2,15 +2,13 @@
 hw/common, or a part of one, whose read port is a register."""
 
 import json
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT))
-from synth import cores  # noqa: E402  (the import needs the path above)
+from synth import cores, yosys  # noqa: E402  (the import needs the path above)
 
 LIMIT = 2048
 
@@ -18,11 +16,10 @@ LIMIT = 2048
 def memories(top: str) -> dict:
     """Each memory above LIMIT of a top and of what is in it: by module and name its bits, and whether its read port has a
     clock."""
-    files = " ".join(map(str, cores.used(top, cores.files("ray_core"))))
     with tempfile.TemporaryDirectory() as folder:
         netlist = pathlib.Path(folder) / "netlist.json"
-        subprocess.run([os.environ.get("YOSYS", "yosys"), "-q", "-p", f"read_verilog -sv {files}; hierarchy -top {top}; proc; "
-                        f"opt_expr; opt_dff; opt_clean; memory -nomap; write_json {netlist}"], check=True, cwd=ROOT)
+        yosys.run(f"{yosys.read(cores.used(top, cores.files('ray_core')), top)}\n"
+                  f"opt_expr\nopt_clean\nopt_dff\nopt_clean\nmemory -nomap\nwrite_json {netlist}", netlist.with_suffix(".log"))
         modules = json.loads(netlist.read_text())["modules"]
     found = {}
     for module, content in modules.items():

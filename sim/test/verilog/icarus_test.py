@@ -14,20 +14,20 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent.parent
 sys.path.insert(0, str(ROOT))
 
-from synth import catalogue, mapping, tools  # noqa: E402
+from synth import catalogue, scripts, tools, yosys  # noqa: E402
 
 
 def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.Path]:
     """Writes the ECP5's netlist of `top` as `out`; what Icarus is to read."""
     design = catalogue.design(top, **dict(word.split("=") for word in words))
     netlist = out.with_suffix(".json")
-    tools.run(["yosys", "-c", tools.FLOWS / "fpga.tcl"], out.with_suffix(".log"),
-              {**mapping.elaboration(design), "FAMILY": "ecp5", "LUTS": "", "OUT": str(netlist), "WRAPPER": "", "PORTS": ""})
+    yosys.run(scripts.fpga(design, "ecp5", "", netlist), out.with_suffix(".map.log"))
     empty = " ".join(f"-unset INITVAL_{row:02X}" for row in range(64))
-    tools.run(["yosys", "-p", f"read_json {netlist}; chtype -set block_ram t:DP16KD; setparam {empty} t:block_ram; "
-               f"rename -top {top}; write_verilog -noattr {out}"], out.with_suffix(".log"))
-    cells = pathlib.Path(tools.find("yosys")).resolve().parent.parent / "share" / "yosys" / "ecp5"
-    return [f"-I{cells}", out, cells / "cells_sim.v", tools.FLOWS / "ecp5_cells.v"]
+    # Yosys's models of the cells as Yosys reads them: Icarus Verilog refuses their $error.
+    yosys.run(f"read_json {netlist}\nchtype -set block_ram t:DP16KD\nsetparam {empty} t:block_ram\n"
+              f"delete =$paramod*\nread_verilog -overwrite +/ecp5/cells_sim.v\nhierarchy -top {top}\nproc\n"
+              f"setattr -mod -unset lib_whitebox *\nwrite_verilog -noattr {out}", out.with_suffix(".log"))
+    return [out, tools.FLOWS / "ecp5_cells.v"]
 
 
 def main():

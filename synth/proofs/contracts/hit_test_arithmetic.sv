@@ -51,10 +51,10 @@ module hit_decision #(
   output logic                                 doubt_o,
   output logic [hit_test_pkg::TErrorWidth-1:0] t_error_o
 );
-  (* anyseq *) logic sure, inside;
+  (* anyseq *) logic sure, is_inside;
   (* anyseq *) logic [hit_test_pkg::TErrorWidth-1:0] any;
-  assign miss_o = sure && !inside;
-  assign hit_o = sure && inside;
+  assign miss_o = sure && !is_inside;
+  assign hit_o = sure && is_inside;
   assign doubt_o = !sure;
   assign t_error_o = any;
 endmodule

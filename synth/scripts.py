@@ -1,0 +1,123 @@
+"""The flows as scripts of Yosys: what `make synth`, `make fpga`, `make verilog` and the diagrams run."""
+
+import pathlib
+
+from synth import tools, yosys
+from synth.catalogue import Design, Library
+
+# What ABC does in a flow; `default`: Yosys's own commands for it.
+ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "area": "area.abc", "small": "small.abc",
+               "fast": "fast.abc", "faster": "faster.abc", "parts": "fast.abc",
+               "modules": "fast.abc", "blocks": "fast.abc"}
+# Modules that flow `modules` maps on their own, so that a picture of the layout can tell them apart.
+PICTURED = ("booth_encoder", "booth_row", "carry_save_tree", "adder", "fp_unpack", "fp_round", "fp_normalize", "srt_first_row",
+            "srt_row", "sticky_right_shift", "leading_zero_counter", "comparator")
+FILES = [pathlib.Path(__file__), pathlib.Path(yosys.__file__)]  # what results depend on beside the files that a flow names
+
+
+def elaborated(design: Design, structural: bool = False) -> str:
+    """Reads and elaborates a design; `structural`: its full adders and multiplexers as cells."""
+    lines = [yosys.read(design.sources(structural), design.top, design.parameters)]
+    if design.tied:
+        lines += [f"cd {design.top}"]
+        lines += [f"delete -port w:{port}\nconnect -set {port} {value}" for port, value in design.tied]
+        lines += ["cd"]
+    return "\n".join(lines)
+
+
+def structure(design: Design) -> str:
+    """A design, flat, down to the cells of structure.v and the gates between them."""
+    # structure.v again, for the ports of cells that are not instantiated until now.
+    return f"""{elaborated(design, structural=True)}
+proc
+flatten -noscopeinfo
+opt_expr
+opt_clean
+read_verilog -sv -nooverwrite -lib {tools.FLOWS}/structure.v
+techmap -map {tools.FLOWS}/known_inputs.v
+opt_expr
+opt_clean"""
+
+
+def structure_json(design: Design, out: pathlib.Path) -> str:
+    """`structure` with gates of one bit, as JSON."""
+    return f"{structure(design)}\nsimplemap\nopt_clean\nwrite_json {out}"
+
+
+def modules_json(design: Design, out: pathlib.Path) -> str:
+    """A design as JSON, its instances as they are."""
+    return f"{elaborated(design)}\nproc\nopt_expr\nopt_clean\nopt_dff\nmemory_collect\nopt_clean\nwrite_json {out}"
+
+
+def plain_verilog(design: Design, out: pathlib.Path) -> str:
+    """A design and all that it instantiates as one file of plain Verilog."""
+    return f"{elaborated(design)}\nproc\nopt_expr\nopt_clean\nbwmuxmap\nwrite_verilog -noattr {out}"
+
+
+def _kept(*modules: str) -> str:
+    """ABC maps each of these modules on its own, and once, however often it is instantiated."""
+    return "setattr -mod -set keep_hierarchy 1 " + " ".join(f"{module}$*" for module in modules)
+
+
+def gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
+    """Of an elaborated design, gates and registers. Nothing here looks across a multiplexer, so carry-select stays that."""
+    lines = ["proc"]
+    if flow == "blocks":  # a read enable becomes the memory's, or its word would wait in a register behind it
+        lines += ["opt_clean", "opt_dff -nosdff ram$*"]
+    if flow in ("parts", "blocks"):
+        lines += [_kept("fp_*_stages", *(blocks if flow == "blocks" else []))]
+    if flow == "modules":
+        lines += [_kept(*PICTURED)]
+    # opt_dff: a reset to a constant, which the reader states as an asynchronous load.
+    lines += ["flatten -noscopeinfo", "opt_expr", "opt_merge", "opt_dff -nodffe -nosdff", "opt_clean"]
+    if flow == "blocks":
+        lines += ["memory -nomap", f"read_verilog -lib {tools.FLOWS}/kept_memory.v", f"techmap -map {tools.FLOWS}/kept_memories.v",
+                  f"tee -q -o {out}.memories dump t:kept_memory"]
+    return "\n".join([*lines, "memory", "wreduce", f"techmap -map {tools.FLOWS}/comparisons.v", "alumacc", "opt_expr", "opt_clean",
+                      "techmap", "opt_expr", "opt_merge", "opt_clean"])
+
+
+def standard_cells(design: Design, library: Library, flow: str, blocks: list[str], constraints: pathlib.Path,
+                   out: pathlib.Path) -> str:
+    """Maps a design to a library by a flow of the catalogue.
+
+    `blocks`: modules that flow `blocks` maps on their own, beside the float cores. `constraints`: driver and load, for ABC.
+    Writes OUT.v, OUT.json, OUT.stat.json; OUT.timed.v for OpenSTA, which reads no concatenations in assignments: each bit is a
+    port of its own; and of flow `blocks` OUT.blocks.json, the same statistics module by module, and OUT.memories.
+    """
+    if flow == "cells":  # full adders and multiplexers become the library's own cells, out of ABC's reach
+        mapped = f"{structure(design)}\ntechmap -map {tools.FLOWS}/osu_cells.v\ntechmap\nopt_expr\nopt_clean"
+    elif flow in ("default", "area", "small"):
+        # Yosys's own recipe. -noshare: its SAT-based resource sharing can run for ever.
+        mapped = f"{elaborated(design)}\nsynth -flatten -noshare -noabc -top {design.top}"
+    else:
+        mapped = f"{elaborated(design)}\n{gates(flow, blocks, out)}"
+    script = f"-script {tools.FLOWS / ABC_SCRIPTS[flow]}" if flow in ABC_SCRIPTS else ""
+    stat = f"stat -json -liberty {library.liberty}"
+    lines = [mapped, f"dfflibmap -liberty {library.liberty}", f"abc -liberty {library.liberty} -constr {constraints} {script}",
+             "setattr -mod -unset keep_hierarchy *"]
+    if flow == "blocks":
+        lines += [f"tee -q -o {out}.blocks.json {stat}"]
+    lines += ["flatten -noscopeinfo"]
+    if flow == "blocks":
+        lines += [f"techmap -map {tools.FLOWS}/kept_enables.v",
+                  f"expose -evert {design.top}/t:kept_input {design.top}/t:kept_output", f"delete {design.top}/t:kept_memory"]
+    lines += ["delete t:$scopeinfo", "select -assert-none t:$*", "splitnets", "opt_clean -purge", f"tee -q -o {out}.stat.json {stat}",
+              f"write_verilog -noattr -noexpr -nohex {out}.v",
+              "splitnets -ports", "opt_clean -purge", f"write_verilog -noattr -noexpr -nohex {out}.timed.v",
+              f"write_json {out}.json"]
+    return "\n".join(lines)
+
+
+def fpga(design: Design, family: str, luts: str, out: pathlib.Path, wrapper: pathlib.Path | None = None) -> str:
+    """Maps a design to an FPGA, ice40 or ecp5, as JSON for nextpnr. `luts`: options of which LUTs to take; `wrapper`: a file
+    of the module "registered", which puts registers around it."""
+    lines = [elaborated(design)]
+    if wrapper:
+        lines += ["proc", "flatten -noscopeinfo", f"read_verilog {wrapper}"]
+    return "\n".join([*lines, f"synth_{family} {luts} -top {'registered' if wrapper else design.top}", netlist_json(out)])
+
+
+def netlist_json(out: pathlib.Path) -> str:
+    """Writes a mapped design for nextpnr, which does not know Yosys's notes of what was an instance."""
+    return f"delete t:$scopeinfo\nwrite_json {out}"

@@ -1,0 +1,95 @@
+"""Runs Yosys, the library of Python's package pyosys, in a process of its own: a crash of Yosys ends that process alone.
+
+`python3 -m synth.yosys 'COMMANDS'`: runs commands, one a line or separated by semicolons, and prints Yosys's log. With
+--strict, a warning fails, too. `python3 -m synth.yosys --abc 'COMMANDS'` runs ABC. Exit status 1 where a command fails.
+"""
+
+import argparse
+import importlib.metadata
+import importlib.util
+import os
+import pathlib
+import sys
+from collections.abc import Iterable
+
+from synth import tools
+
+
+def folder() -> pathlib.Path:
+    """The installed package, of this Python or of the one that .ci/setup makes: yosys-abc, and in share/ models and maps of
+    cells. Raises MissingTool."""
+    spec = importlib.util.find_spec("pyosys")
+    found = [pathlib.Path(spec.origin).parent] if spec else [*tools.VENV.glob("lib/*/site-packages/pyosys")]
+    if not found:
+        raise tools.MissingTool("Yosys is not installed: pip install -r synth/requirements.txt")
+    return found[0]
+
+
+def _python() -> str:
+    """The Python that has the package. Raises MissingTool."""
+    return str(tools.VENV / "bin" / "python3") if tools.VENV in folder().parents else sys.executable
+
+
+def installed() -> bool:
+    """Whether `run` would find Yosys."""
+    try:
+        return folder().exists()
+    except tools.MissingTool:
+        return False
+
+
+def version() -> str:
+    """E.g. "0.70"; "" where it is not installed."""
+    if not installed():
+        return ""
+    (found,) = importlib.metadata.distributions(name="pyosys", path=[str(folder().parent)])
+    return found.version
+
+
+def read(sources: Iterable[pathlib.Path], top: str, parameters: Iterable[tuple[str, object]] = (), options: str = "") -> str:
+    """The commands that elaborate `top`. Modules stay modules, named MODULE$PATH of their first instance; instances with the
+    same parameters share one."""
+    overrides = "".join(f"-G {name}={value} " for name, value in parameters)
+    return (f"read_slang -j 1 --keep-hierarchy --disable-instance-caching=false {options} {overrides}--top {top} "
+            f"{' '.join(map(str, sources))}\nhierarchy -check -top {top}")
+
+
+def run(script: str, log: pathlib.Path) -> str:
+    """Runs a script, which is kept beside `log`; returns Yosys's log. Raises ToolFailed and MissingTool."""
+    file = log.with_suffix(".ys")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(script + "\n")
+    return tools.run([_python(), "-m", "synth.yosys", "--file", file], log, name="yosys")
+
+
+def abc(commands: str, log: pathlib.Path) -> str:
+    """Runs ABC; returns what it prints. Raises ToolFailed and MissingTool."""
+    return tools.run([folder() / "yosys-abc", "-c", commands], log)
+
+
+def main() -> int:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="synth.yosys", description="Runs commands of Yosys, or of ABC.")
+    parser.add_argument("commands", nargs="?", help="one a line, or separated by semicolons")
+    parser.add_argument("--file", help="a file of commands in their place")
+    parser.add_argument("--strict", action="store_true", help="fail at a warning, too")
+    parser.add_argument("--abc", action="store_true", help="commands of ABC")
+    given = parser.parse_args()
+    try:
+        if given.abc:
+            os.execv(folder() / "yosys-abc", ["yosys-abc", "-c", given.commands])
+        if not importlib.util.find_spec("pyosys"):  # the system's Python, from CMake or a shell
+            os.execv(_python(), [_python(), "-m", "synth.yosys", *sys.argv[1:]])
+    except tools.MissingTool as error:
+        print(f"synth.yosys: {error}", file=sys.stderr)
+        return 2
+    from pyosys import libyosys  # here alone: it takes a tenth of a second, and Yosys may end the process
+
+    if given.strict:
+        libyosys.run_pass("logger -werror .")
+    libyosys.run_pass(f"script {given.file}" if given.file else given.commands)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
