@@ -4,6 +4,13 @@ SYNTH_BUDGET ?= 16
 
 .PHONY: synth cells prove verilog fpga datasheet lecture layout
 
+# What describes one design says nothing without it.
+ifneq ($(filter synth layout,$(MAKECMDGOALS)),)
+ifeq ($(filter-out adders multipliers cores energy,$(TOP)),)
+$(foreach name,$(filter ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT,$(given)),$(error $(name): expected TOP, too, the module that has it))
+endif
+endif
+
 # The whole report has tests a second in it, which programs count.
 synth: $(if $(TOP),,verilate) ## hardware: area and time: make synth [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 ...]
 	@$(SETUP) synth
