@@ -197,6 +197,25 @@ everything:
 include synth/synth.mk
 include host/lab/lab.mk
 
-# A variable of the command line that no makefile reads is misspelt, unless CMake reads it from the environment.
-known := $(if $(given),$(shell grep -ohE '\b[A-Z][A-Z_0-9]+\b|\([A-Z]\)' $(MAKEFILE_LIST) | tr -d '()' | sort -u))
-$(foreach name,$(filter-out $(known) CC CXX CFLAGS CXXFLAGS LDFLAGS -%,$(given)),$(error $(name): no target reads it; `make` lists what targets read))
+# A variable of the command line that no target to make reads is misspelt or meant for another target. A target reads what its
+# paragraph here and those of its macros name; CMake reads some from the environment.
+define words
+{ text[NR] = $$0 }
+END {
+  for (more = 1; more;) {
+    more = 0;
+    for (i in text) if (!(i in taken) && text[i] ~ "(^|\n)(define )?(" goals ")( |:|\n)") {
+      taken[i] = more = 1;
+      for (rest = text[i]; match(rest, /[$$]\((call )?[a-z_]+/); rest = substr(rest, RSTART + RLENGTH)) {
+        name = substr(rest, RSTART, RLENGTH); sub(/.*[( ]/, "", name); goals = goals "|" name
+      }
+    }
+  }
+  for (i in taken) print text[i]
+}
+endef
+space := $(subst x,,x x)
+goals := $(or $(MAKECMDGOALS),help)
+known := $(if $(given),$(shell awk -v RS= -v goals='$(subst $(space),|,$(goals:variant=variant card))' '$(words)' $(MAKEFILE_LIST) | \
+  grep -ohE '\b[A-Z][A-Z_0-9]+\b|\([A-Z]\)' | tr -d '()' | sort -u))
+$(foreach name,$(filter-out $(known) JOBS SETUP MPI UNITY CC CXX CFLAGS CXXFLAGS LDFLAGS -%,$(given)),$(error $(name): `make $(goals)` does not read it; `make` lists what targets read))

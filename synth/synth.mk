@@ -3,6 +3,13 @@ SYNTH_JOBS ?= 2
 
 .PHONY: synth prove verilog fpga datasheet lecture layout
 
+# What describes one design says nothing without it.
+ifneq ($(filter synth layout,$(MAKECMDGOALS)),)
+ifeq ($(filter-out adders multipliers cores energy,$(TOP)),)
+$(foreach name,$(filter ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT,$(given)),$(error $(name): expected TOP, too, the module that has it))
+endif
+endif
+
 # The whole report has tests a second in it, which programs count.
 synth: $(if $(filter-out 0,$(ALL)),verilate) ## hardware: area and time: make synth [ALL=1] [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ...]
 	@$(SETUP) synth
