@@ -79,6 +79,10 @@ class RaySpawner {
   [[nodiscard]] bool leaves(const Ray& ray, std::uint32_t primitive, SpawnSide side,
                             const glm::vec3& direction) const;
 
+  /// Returns how often find() has compared a triangle with a candidate for O', apart from the fast
+  /// path.
+  [[nodiscard]] std::uint64_t triangle_tests() const { return triangle_tests_; }
+
  private:
   template <Vectors kCode, class T>
   RAYGATE_INLINE void find_some(const SpawnQuery* queries, SpawnOrigin* origins);
@@ -99,6 +103,7 @@ class RaySpawner {
   const NeighborClearances& clearances_;
   const Bvh& bvh_;
   std::vector<NeighborClearances::Found> found_;  // of instances' triangles, by lane
+  std::uint64_t triangle_tests_ = 0;
 };
 
 }  // namespace raygate
