@@ -38,8 +38,6 @@ REFUSED = {
     "ray_alloc": ["Rays=48"],
     "slab_tests": ["Clocks=6"],
     "reciprocals": ["Clocks=2"],
-    "ray_core": ["Rays=48", "Clocks=6", "Depth=0", "NodeLines=8"],
-    "ray_core_axi": ["Rays=48", "Clocks=6", "DataWidth=96", "IdWidth=0"],
     "uart_receiver": ["ClocksPerBit=3"],
     "uart_transmitter": ["ClocksPerBit=1"],
     "srt_divider_iterative": ["RowsPerClock=5"],
