@@ -204,7 +204,7 @@ def check(top: str, source: str, given: dict[str, str]) -> None:
     for name, value in given.items():
         if name not in declared:
             raise ValueError(f"{top}: found parameter {name}, expected one of {', '.join(declared)}")
-        stated = re.search(r"at least (\d+)", declared[name][1])
+        stated = re.search(r"at least (\d+)", declared[name][1]) or re.search(rf"if \({name} < (\d+)(?:\)| \|\|)[^\n]* : gen_check", source)
         least = int(stated[1]) if stated else name.endswith("Width")
         number = re.fullmatch(r"\d+", value)
         if not number and not re.fullmatch(r"\d+'[bdh][\da-fA-F_]+", value):

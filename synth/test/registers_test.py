@@ -13,7 +13,7 @@ class Registers(unittest.TestCase):
 
     def test_a_changed_row_changes_what_is_made(self):
         before = registers.made(self.text)
-        for old, new in (("| 0x028 | 1 | `error_line`", "| 0x02c | 1 | `error_line`"), ("`flags` | 3 |", "`flags` | 9 |"),
+        for old, new in (("| 1 | `error_line`", "| 1 | `wrong_line`"), ("`flags` | 3 |", "`flags` | 9 |"),
                          ("0x0fffffff", "0x0000ffff")):
             self.assertIn(old, self.text)
             after = registers.made(self.text.replace(old, new))

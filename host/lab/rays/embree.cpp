@@ -155,8 +155,7 @@ std::vector<std::pair<std::string, std::vector<std::uint32_t>>> embree_hit_count
   for (const auto& [name, mode] : {std::pair{"Embree", RTC_SCENE_FLAG_NONE},
                                    std::pair{"Embree robust", RTC_SCENE_FLAG_ROBUST}}) {
     const auto loaded =
-        embree_scene({}, embree_device({}), scene,
-                     static_cast<RTCSceneFlags>(mode | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+        embree_scene({}, embree_device({}), scene, mode | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     std::vector<std::uint32_t>& counts =
         found.emplace_back(name, std::vector<std::uint32_t>()).second;
     for (const Ray& ray : rays) {

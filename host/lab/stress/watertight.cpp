@@ -60,9 +60,10 @@ Watertight nomiss(int count, Random& random) {
     test.mesh.triangles.push_back({vertices[a], vertices[b], vertices[c]});
   }
   const int side = std::clamp(static_cast<int>(std::sqrt(count)), 16, 256);
-  for (int i = 0; i < side * side; ++i) {
-    test.rays.push_back(
-        ray_from({(i % side + 0.5) / side, (i / side + 0.5) / side, 0.0}, {0, 0, -1}));
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      test.rays.push_back(ray_from({(x + 0.5) / side, (y + 0.5) / side, 0.0}, {0, 0, -1}));
+    }
   }
   return test;
 }
@@ -112,12 +113,14 @@ struct Contestant {
   std::function<CountHits(const Bvh&)> make;
 };
 
-CountHits count_nearest(std::shared_ptr<Intersector> intersector) {
+CountHits count_nearest(const std::shared_ptr<Intersector>& intersector) {
   return [intersector](std::span<const Ray> rays) {
     std::vector<NearestHit> hits(rays.size());
     intersector->intersect(rays, {}, hits);
-    std::vector<std::uint32_t> counts;
-    for (const NearestHit& hit : hits) counts.push_back(hit.primitive != NearestHit::kNone);
+    std::vector<std::uint32_t> counts(rays.size());
+    std::ranges::transform(hits, counts.begin(), [](const NearestHit& hit) {
+      return hit.primitive == NearestHit::kNone ? 0u : 1u;
+    });
     return counts;
   };
 }
