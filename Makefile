@@ -71,10 +71,20 @@ wave: ## use: the waveform of one pixel's ray through the ray core: make wave PI
 	@$(PYTHON) -m synth.ray_timeline build/pixel.vcd sim/ray_core.gtkw build/pixel.svg
 	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw; drawn: build/pixel.svg'
 
-# Long runs of single tests: ten million tests of the pipelined unit; the core's AXI ports by random traffic, and driven by cocotb; renders and
-# ranks that are killed; each allocation, write, sync and rename failing in turn; the intervals of --error; a fault under
-# each guard of .ci/guards.toml, in a clone; every command of the README and the tutorials, in a clone and with nothing built before; the
-# image of Dockerfile, from a base that debootstrap makes; damaged copies of files of every format.
+# Long runs of single tests.
+#   unit      ten million tests of the pipelined unit
+#   exact     a million tests of the exact unit
+#   page      the web page of sim/page, in a browser
+#   traffic   random traffic on the core's AXI ports
+#   kills     renders that are killed and go on
+#   ranks     ranks that are killed
+#   faults    each allocation, write, sync and rename failing in turn
+#   guards    a fault under each guard of .ci/guards.toml, in a clone
+#   commands  every command of the README and the tutorials, in a clone with nothing built
+#   image     the image of Dockerfile, from a base that debootstrap makes
+#   damage    damaged copies of files of every format
+#   error     the intervals of --error
+#   cocotb    the core's AXI ports, driven by cocotb
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
 LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test

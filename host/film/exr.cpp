@@ -351,7 +351,7 @@ FilmFile read_film(const std::filesystem::path& path) {
 
 namespace {
 
-/// An attribute type with a fixed length in bytes, which the library does not check.
+/// An attribute type whose values all have one length in bytes. The library does not check it.
 struct Fixed {
   std::string_view type;
   std::int32_t length;

@@ -11,7 +11,8 @@
 // Why a group never skips a triangle wrongly
 //
 // Let F be an edge's words, E the exact edge, b its bound, L and u as in quad_test.h, C the
-// group's centre and R its radius, and I one of its rays over its t_scale; components are below 8.
+// group's centre and R its radius, and I the direction of one of its rays, divided by the ray's
+// t_scale; components are below 8.
 // As derived there for components below 2, float32(C . F) differs from C . E by less than 8 (4 +
 // 3.001) u L + 2^-143 < 3.9 b, and b >= kQuadBound u L. And |I . E - C . E| <= R |E|_1 <= R L (1 +
 // 4 u). So if float32(C . F) < -b (4.1 + R / (kQuadBound u)), I . E < 0 for all the group's rays:

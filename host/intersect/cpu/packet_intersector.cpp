@@ -231,8 +231,8 @@ void PacketIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   }
 }
 
-/// Finds the origin's side of each triangle where float32 is not sure. Removes triangles whose
-/// plane contains the origin from `there`, as no ray hits them.
+/// Decides exactly on which side of each triangle the origin lies where float32 is not sure. No ray
+/// hits a triangle whose plane contains the origin: such triangles are removed from `there`.
 void PacketIntersector::resolve_sides(const Bvh::Child& leaf, QuadRecord& record,
                                       LaneMask& there) const {
   for (LaneMask unsure = record.unsure; unsure != 0; unsure &= unsure - 1) {
