@@ -38,8 +38,8 @@ help:
 cpu: ## use: build ./render, ./trace, ./compare, ./merge without Verilator and the simulated hardware
 	$(call build,cpu,render trace compare merge scenes)
 
-verilate: ## use: build ./render, ./trace, ./compare, ./merge and the simulated hardware: make verilate [MPI=1]
-	$(call build,$(if $(filter-out 0,$(MPI)),mpi,build),render trace compare merge scenes)
+verilate: ## use: build ./render, ./trace, ./compare, ./merge and the simulated hardware
+	$(call build,build,render trace compare merge scenes)
 
 example: ## use: the paper's worked example, and its waveform for GTKWave
 	$(call build,build,worked_example)
@@ -77,7 +77,6 @@ wave: ## use: the waveform of one pixel's ray through the ray core: make wave PI
 #   page      the web page of sim/page, in a browser
 #   traffic   random traffic on the core's AXI ports
 #   kills     renders that are killed and go on
-#   ranks     ranks that are killed
 #   faults    each allocation, write, sync and rename failing in turn
 #   guards    a fault under each guard of .ci/guards.toml, in a clone
 #   commands  every command of the README and the tutorials, in a clone with nothing built
@@ -90,7 +89,6 @@ LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
 LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test
 LONG_kills = RAYGATE_KILLS=$(or $(KILLS),100) build/run_test --gtest_filter='*SurviveBeingKilled'
 LONG_faults = RAYGATE_FAULTS=0 build/faults_test
-LONG_ranks = RAYGATE_KILLS=$(or $(KILLS),20) build/ranks_test --gtest_filter='KilledRanks.*'
 LONG_guards = python3 .ci/guards.py try $(GUARDS)
 LONG_commands = python3 -B host/docs/commands.py
 LONG_image = .ci/image
@@ -100,9 +98,9 @@ LONG_cocotb = (test -e build/cocotb/bin/pip || python3 -m venv build/cocotb) && 
   build/cocotb/bin/pip install --quiet --disable-pip-version-check -r sim/cocotb/requirements.txt && \
   build/cocotb/bin/python3 sim/cocotb
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=ranks KILLS=20 | LONG=faults | LONG=damage COUNT=300 | LONG=page | LONG=cocotb | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
+test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=faults | LONG=damage COUNT=300 | LONG=page | LONG=cocotb | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, ranks, faults, page, cocotb, error, commands, image, damage or guards))
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, faults, page, cocotb, error, commands, image, damage or guards))
 	$(if $(filter commands image,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),worked_example)))
 	@$(LONG_$(LONG))
 else
@@ -184,11 +182,6 @@ format: ## develop: lay out all sources as lint expects
 clean: ## develop: remove what was built; scenes and pictures stay
 	rm -rf build build-pip render trace compare merge
 
-# What was chosen once stays, until `make MPI=0 ...` or 1.
-ifdef MPI
-configure += -DRAYGATE_MPI=$(if $(filter 0,$(MPI)),OFF,ON)
-endif
-
 # The first build of a folder is faster with several sources at once; who goes on to change them: `make everything UNITY=0`.
 ifeq ($(wildcard build/CMakeCache.txt),)
 UNITY ?= 1
@@ -228,4 +221,4 @@ space := $(subst x,,x x)
 goals := $(or $(MAKECMDGOALS),help)
 known := $(if $(given),$(shell awk -v RS= -v goals='$(subst $(space),|,$(goals:variant=variant card))' '$(words)' $(MAKEFILE_LIST) | \
   grep -ohE '\b[A-Z][A-Z_0-9]+\b|\([A-Z]\)' | tr -d '()' | sort -u))
-$(foreach name,$(filter-out $(known) JOBS SETUP MPI UNITY CC CXX CFLAGS CXXFLAGS LDFLAGS -%,$(given)),$(error $(name): `make $(goals)` does not read it; `make` lists what targets read))
+$(foreach name,$(filter-out $(known) JOBS SETUP UNITY CC CXX CFLAGS CXXFLAGS LDFLAGS -%,$(given)),$(error $(name): `make $(goals)` does not read it; `make` lists what targets read))

@@ -184,7 +184,7 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
                               {"write", InstanceMode::kFlatten}});
 }
 
-void check_engine_options(const OptionTable& table, EngineOptions& options, unsigned processors) {
+void check_engine_options(const OptionTable& table, EngineOptions& options) {
   for (const char* name : {"memory", "cores"}) {
     const std::string typed = table.typed(name);
     if (!typed.empty() && !(options.unit == "core" && options.simulates())) {
@@ -214,9 +214,10 @@ void check_engine_options(const OptionTable& table, EngineOptions& options, unsi
     throw InputError("--lanes: expected 1 with --unit " + options.unit + ", got " +
                      table.typed("lanes"));
   }
-  if (processors == 0) processors = std::max(1u, std::thread::hardware_concurrency());
-  if (!options.board_port.empty()) processors = 1;  // there is one board
-  if (table.typed("threads").empty()) options.threads = static_cast<int>(processors);
+  if (table.typed("threads").empty()) {
+    const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
+    options.threads = options.board_port.empty() ? static_cast<int>(processors) : 1;  // one board
+  }
   if (!options.board_port.empty() && options.threads != 1) {
     throw InputError("--threads: expected 1 with --board-port, got " + table.typed("threads"));
   }

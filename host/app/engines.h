@@ -53,9 +53,7 @@ struct EngineOptions {
 void add_engine_options(OptionTable& table, EngineOptions& options);
 
 /// Throws InputError for options that exclude each other, and sets defaults that depend on others.
-/// `processors`: the default number of threads; 0: the machine's.
-void check_engine_options(const OptionTable& table, EngineOptions& options,
-                          unsigned processors = 0);
+void check_engine_options(const OptionTable& table, EngineOptions& options);
 
 /// "rtl", "model", "cpu" or "check".
 [[nodiscard]] std::string to_string(Engine engine);

@@ -142,7 +142,7 @@ void check_caustics(const RenderSettings& options) {
 }
 
 /// Checks options against each other and sets defaults that depend on others.
-void check(const OptionTable& table, Options& options, unsigned processors) {
+void check(const OptionTable& table, Options& options) {
   RenderSettings& render = options.render;
   render.choose_integrator(options.environment.has_value(), !table.typed("integrator").empty(),
                            !table.typed("spp").empty());
@@ -151,7 +151,7 @@ void check(const OptionTable& table, Options& options, unsigned processors) {
   if (!table.typed("camera").empty() && !table.typed("view").empty()) {
     throw InputError("--view and --camera exclude each other");
   }
-  check_engine_options(table, options, processors);
+  check_engine_options(table, options);
   check_core_file_options(options.core_files, options, {render.width, render.height});
   check_error(table, render);
   check_caustics(render);
@@ -226,14 +226,13 @@ void check_serve(const OptionTable& table, const Options& options) {
 
 /// Parses the scene file's options and then the command line, which overrides them. If an error
 /// would not occur without an option of the file, the message names its line.
-Options read_options(const Options& begin, const std::vector<std::string>& typed,
-                     unsigned processors) {
+Options read_options(const Options& begin, const std::vector<std::string>& typed) {
   const auto read = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
     words.insert(words.end(), more.begin(), more.end());
     Options options = begin;
     CommandLine line(options);
     (void)line.parse(words);
-    check(line.table, options, processors);
+    check(line.table, options);
     check_serve(line.table, options);
     return options;
   };
@@ -291,7 +290,7 @@ void require_distinct_outputs(const Options& options) {
 
 }  // namespace
 
-Options parse_options(int argc, const char* const* argv, unsigned processors) {
+Options parse_options(int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
   options.words = words;
@@ -313,7 +312,7 @@ Options parse_options(int argc, const char* const* argv, unsigned processors) {
   const SceneFile& file = options.scene_file;
   options.camera = camera_request(file);
   options.environment = file.lights.environment;
-  options = read_options(options, words, processors);
+  options = read_options(options, words);
   require_distinct_outputs(options);
   options.render.threads = options.threads;
   options.render.exposure = options.output.display.exposure;

@@ -39,9 +39,9 @@ struct Options : EngineOptions {
 };
 
 /// Parses the command line of main() after the options of the scene file, which it overrides.
-/// `processors`: the default of --threads; 0: the machine's. Throws InputError, one line that names
-/// the option (or file and line), the value and what was expected.
-[[nodiscard]] Options parse_options(int argc, const char* const* argv, unsigned processors = 0);
+/// Throws InputError, one line that names the option (or file and line), the value and what was
+/// expected.
+[[nodiscard]] Options parse_options(int argc, const char* const* argv);
 
 /// Name/value pairs of the options shown at `place`.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> option_values(Options options,

@@ -30,10 +30,6 @@ std::vector<std::filesystem::path> pictures_of(OutputOptions outputs) {
   return outputs.paths();
 }
 
-std::string going_on(const OutputOptions& outputs) {
-  return "--resume " + outputs.exr->string() + " goes on from there";
-}
-
 }  // namespace
 
 StagedFiles stage_files(const OutputOptions& options, const Film& film, const ExrMetadata& metadata,
@@ -71,34 +67,25 @@ std::string listed(const std::vector<std::filesystem::path>& paths) {
   return listed(names, ", ");
 }
 
-void Checkpointer::save_urgently(const Film* film) {
-  if (!outputs_.exr) return;
-  OutputOptions film_alone = outputs_;
-  film_alone.png.reset();
-  film_alone.false_colors.clear();
-  save(film, film_alone);
-  bar_.erase();
-  print_warning("a rank may have died; " + going_on(outputs_));
-}
-
 void Checkpointer::end_interrupted(const Film& film) const {
   const int signal = interruption();
   if (is_empty(film)) {
     throw Interrupted(signal, "no file was changed");
   }
-  write(film, outputs_);
+  write(film);
   const bool goes_on = film.keeps_sums && outputs_.exr;
-  throw Interrupted(signal, "wrote what there was: " + listed(pictures_of(outputs_)) +
-                                (goes_on ? "; " + going_on(outputs_) : ""));
+  throw Interrupted(
+      signal, "wrote what there was: " + listed(pictures_of(outputs_)) +
+                  (goes_on ? "; --resume " + outputs_.exr->string() + " goes on from there" : ""));
 }
 
-void Checkpointer::save(const Film* film, const OutputOptions& outputs) {
+void Checkpointer::save(const Film* film) {
   std::string trouble;
   try {
     if (film == nullptr) throw std::bad_alloc();
-    write(*film, outputs);
+    write(*film);
   } catch (const std::bad_alloc&) {
-    trouble = listed(pictures_of(outputs)) + ": cannot write: out of memory";
+    trouble = listed(pictures_of(outputs_)) + ": cannot write: out of memory";
   } catch (const std::exception& error) {
     trouble = error.what();
   }
@@ -109,10 +96,10 @@ void Checkpointer::save(const Film* film, const OutputOptions& outputs) {
   last_trouble_ = trouble;
 }
 
-void Checkpointer::write(const Film& film, const OutputOptions& outputs) const {
+void Checkpointer::write(const Film& film) const {
   ExrMetadata metadata = metadata_;
   metadata.partial = true;
-  for (AtomicFile& file : stage_files(outputs, film, metadata, threads_).files) file.commit();
+  for (AtomicFile& file : stage_files(outputs_, film, metadata, threads_).files) file.commit();
 }
 
 namespace {

@@ -40,17 +40,13 @@ class Checkpointer {
 
   /// Writes the unfinished pictures. Failures cost a warning; the next save tries again. `film` is
   /// null if there was no memory for a copy of it.
-  void save(const Film* film) { save(film, outputs_); }
-
-  /// Writes only the EXR, from which a later run can resume, because a rank may have died.
-  void save_urgently(const Film* film);
+  void save(const Film* film);
 
   /// Writes the unfinished pictures, unless nothing was rendered, and throws Interrupted.
   [[noreturn]] void end_interrupted(const Film& film) const;
 
  private:
-  void save(const Film* film, const OutputOptions& outputs);
-  void write(const Film& film, const OutputOptions& outputs) const;
+  void write(const Film& film) const;
 
   const OutputOptions& outputs_;
   const ExrMetadata& metadata_;

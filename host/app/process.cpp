@@ -10,7 +10,6 @@
 
 #include "host/base/input_error.h"
 #include "host/base/vectors.h"
-#include "host/ranks/ranks.h"
 
 namespace raygate {
 namespace {
@@ -22,8 +21,6 @@ constexpr int kSignalBase = 128;  // as shells report a death by signal
 int why_output_failed = 0;  // errno of a failed print; 0: none failed
 std::atomic<int> noted_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
-
-std::atomic<bool> noted_warning = false;
 
 /// Memory that is released when allocation fails for the first time, for the error message and for
 /// destructors that allocate, as those of JSON values do.
@@ -37,7 +34,6 @@ void give_reserve_back() {
 }
 
 void note(int signal) { noted_signal = signal; }
-void note_warning(int /*signal*/) { noted_warning = true; }
 
 /// Returns the length of the UTF-8 character at the start of `text` if it is printable, else 0.
 std::size_t shown_length(std::string_view text) {
@@ -50,6 +46,28 @@ std::size_t shown_length(std::string_view text) {
     if (byte(i) < 0x80 || byte(i) > 0xbf) return 0;
   }
   return first == 0xc2 && byte(1) < 0xa0 ? 0 : length;  // U+0080 to U+009F are controls
+}
+
+/// The exit status and message of a program that failed.
+struct Ending {
+  int status;
+  std::string line;
+};
+
+Ending ending_of(const std::exception_ptr& error, int internal_error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const InputError& unusable) {
+    return {kUserError, unusable.what()};
+  } catch (const Interrupted& interrupted) {
+    return {kSignalBase + interrupted.signal(), interrupted.what()};
+  } catch (const std::bad_alloc&) {
+    return {kUserError, kOutOfMemory};
+  } catch (const std::length_error&) {  // more than any memory has
+    return {kUserError, kOutOfMemory};
+  } catch (const std::exception& fault) {
+    return {internal_error, fault.what()};
+  }
 }
 
 }  // namespace
@@ -104,24 +122,6 @@ void choose_vectors() {
   }
 }
 
-Ending ending_of(const std::exception_ptr& error, int internal_error) {
-  try {
-    std::rethrow_exception(error);
-  } catch (const InputError& unusable) {
-    return {kUserError, unusable.what()};
-  } catch (const Interrupted& interrupted) {
-    return {kSignalBase + interrupted.signal(), interrupted.what()};
-  } catch (const std::bad_alloc&) {
-    return {kUserError, kOutOfMemory};
-  } catch (const std::length_error&) {  // more than any memory has
-    return {kUserError, kOutOfMemory};
-  } catch (const RankFailure& trouble) {
-    return {trouble.status(), trouble.what()};
-  } catch (const std::exception& fault) {
-    return {internal_error, fault.what()};
-  }
-}
-
 int run_guarded(const std::function<int()>& program, int internal_error) {
   // A file beyond the size limit, or a pipe without a reader, is a failed write, not a signal.
   std::signal(SIGXFSZ, SIG_IGN);
@@ -146,14 +146,6 @@ int run_guarded(const std::function<int()>& program, int internal_error) {
   }
 }
 
-void work_as_rank(Ranks& ranks, const std::function<void()>& work) {
-  if (ranks.index() == 0) {
-    work();
-  } else {
-    run_rank(ranks, work, [](const std::exception_ptr& error) { return ending_of(error, 1); });
-  }
-}
-
 void note_interruptions() {
   struct sigaction action {};
   action.sa_handler = note;
@@ -167,14 +159,5 @@ void note_interruptions() {
 }
 
 int interruption() { return noted_signal; }
-
-void note_warnings() {
-  struct sigaction action {};
-  action.sa_handler = note_warning;
-  action.sa_flags = SA_RESTART;
-  ::sigaction(SIGCONT, &action, nullptr);
-}
-
-bool take_warning() { return noted_warning.exchange(false); }
 
 }  // namespace raygate

@@ -7,8 +7,6 @@
 #include <string>
 #include <string_view>
 
-#include "host/ranks/ranks.h"
-
 namespace raygate {
 
 /// Returns text that is safe to print: control characters and bytes that are not UTF-8 become
@@ -25,16 +23,10 @@ void print_warning(std::string_view what);
 /// standard output is a pipe without a reader, raises SIGPIPE.
 void flush_standard_output();
 
-/// Returns the exit status and message for an exception: 2 for InputError and out of memory, 128 +
-/// signal for Interrupted, the rank's status for RankFailure, else `internal_error`.
-[[nodiscard]] Ending ending_of(const std::exception_ptr& error, int internal_error);
-
 /// Body of main(): runs `program` and returns its exit status. Exceptions become one line on
-/// standard error.
+/// standard error, and the status: 2 for InputError and out of memory, 128 + signal for
+/// Interrupted, else `internal_error`.
 int run_guarded(const std::function<int()>& program, int internal_error);
-
-/// Runs `work` on this rank. Exceptions of other ranks are rethrown on rank 0.
-void work_as_rank(Ranks& ranks, const std::function<void()>& work);
 
 /// Chooses the vector code to run (host/base/vectors.h). Throws InputError if RAYGATE_VECTORS names
 /// code that this machine cannot run.
@@ -43,13 +35,6 @@ void choose_vectors();
 /// Installs handlers that note SIGINT, SIGTERM and SIGHUP; a second signal ends the program at
 /// once. Signals that are ignored stay ignored.
 void note_interruptions();
-
-/// Installs a handler that notes SIGCONT. mpirun sends it to all ranks when one has died, a second
-/// before SIGTERM; SIGKILL may follow within milliseconds.
-void note_warnings();
-
-/// Returns whether SIGCONT came since the last call.
-[[nodiscard]] bool take_warning();
 
 /// Returns the noted signal of note_interruptions(), or 0.
 [[nodiscard]] int interruption();

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
 #include "host/app/format.h"
 
@@ -61,9 +60,7 @@ std::string progress_line(double fraction, double elapsed, int columns) {
   return title + "[" + bar + "] " + state;
 }
 
-ProgressBar::ProgressBar(bool enabled, Style style)
-    : enabled_(enabled && (style == Style::kLines || ::isatty(STDERR_FILENO) != 0)),
-      style_(style) {}
+ProgressBar::ProgressBar(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) != 0) {}
 
 void ProgressBar::erase() {
   if (drawn_) show(kEraseLine);
@@ -74,12 +71,6 @@ void ProgressBar::update(double fraction) {
   if (!enabled_) return;
   const Clock::time_point now = Clock::now();
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  if (style_ == Style::kLines) {
-    const int tenths = static_cast<int>(10.0 * fraction);
-    if (tenths > std::exchange(tenths_, tenths))
-      show("rendering: " + state_of(fraction, elapsed) + "\n");
-    return;
-  }
   if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   drawn_ = true;

@@ -11,15 +11,12 @@ namespace raygate {
 /// seconds so far.
 [[nodiscard]] std::string progress_line(double fraction, double elapsed, int columns);
 
-/// A progress bar on standard error that is erased at the end. kBar: redrawn in place; silent if
-/// standard error is not a terminal. kLines, for launchers that forward lines: a line at the start
-/// and one for each tenth of the work.
+/// A progress bar on standard error, redrawn in place and erased at the end. Silent if standard
+/// error is not a terminal.
 class ProgressBar {
  public:
-  enum class Style { kBar, kLines };
-
   /// Starts the clock. Prints nothing unless `enabled`.
-  explicit ProgressBar(bool enabled, Style style = Style::kBar);
+  explicit ProgressBar(bool enabled);
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar() { erase(); }
@@ -34,8 +31,6 @@ class ProgressBar {
   using Clock = std::chrono::steady_clock;
 
   bool enabled_;
-  Style style_;
-  int tenths_ = -1;  // already printed
   bool drawn_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_;

@@ -28,7 +28,6 @@
 #include "host/film/film.h"
 #include "host/film/merge.h"
 #include "host/light/prepared_scene.h"
-#include "host/ranks/ranks.h"
 #include "host/render/renderer.h"
 #include "host/scene/instances.h"
 #include "host/scene/view.h"
@@ -80,17 +79,15 @@ void print_warnings(const Scene& scene, bool all) {
 /// One run of the program.
 class Run {
  public:
-  /// Each of several ranks makes one; they share the picture, and rank 0 writes it.
-  Run(const Options& options, Ranks& ranks) : options_(options), ranks_(ranks) {}
+  explicit Run(const Options& options) : options_(options) {}
 
   /// Renders what the options ask for, or serves it. Prints warnings and progress on standard error
   /// and the summary on standard output. Throws InputError for errors of the user,
   /// IntersectorMismatch, and other exceptions for internal errors; then no output file has
   /// changed. Throws Interrupted after the unfinished pictures were written.
   void operator()() {
-    if (!options_.serve && ranks_.index() == 0) check_outputs();
+    if (!options_.serve) check_outputs();
     report_.options = options_;
-    report_.ranks = ranks_.count();
     scene_ = load(options_.scene_file,
                   {.strict = options_.strict,
                    .keep_instances = true,
@@ -102,7 +99,7 @@ class Run {
     report_.triangles = triangle_count(scene_);
     report_.rounding = scene_.rounding;
     scene_digest_ = digest_of(scene_);
-    if (ranks_.index() == 0) print_warnings(scene_, options_.verbose);
+    print_warnings(scene_, options_.verbose);
     require_inputs_kept();
 
     // The ground is added after framing, so that it is not framed.
@@ -125,13 +122,12 @@ class Run {
     report_.tree_seconds = seconds_since(tree_start);
     const PreparedScene prepared(scene_, bvh);
     if (options_.serve) {
-      if (ranks_.index() == 0) serve_pictures(options_, {unframed, prepared, framing.has_ground});
-      return;
+      return serve_pictures(options_, {unframed, prepared, framing.has_ground});
     }
     image_ = make_memory_image(options_, bvh);
     if (is_rendering) {
       render_picture(prepared, framing);
-    } else if (ranks_.index() == 0) {
+    } else {
       write_core_files(bvh, framing.camera);
     }
   }
@@ -175,18 +171,12 @@ class Run {
     const OutputOptions& outputs = options_.output;
     const ExrMetadata metadata = make_metadata(framing);
     std::optional<Film> unfinished;
-    if (ranks_.index() == 0 && !options_.resume.empty()) {
+    if (!options_.resume.empty()) {
       unfinished = read_unfinished(options_, options_.resume, metadata);
     }
-    const RenderJob job{prepared,
-                        framing.camera,
-                        options_.render,
-                        framing.lights,
-                        unfinished ? &*unfinished : nullptr,
-                        &ranks_};
+    const RenderJob job{prepared, framing.camera, options_.render, framing.lights,
+                        unfinished ? &*unfinished : nullptr};
     const Film film = render_monitored(job, metadata);
-    ranks_.leave();
-    if (ranks_.index() != 0) return;
     const std::string blank = why_blank(film, outputs.display);
     if (!blank.empty()) print_warning(blank);
 
@@ -204,9 +194,7 @@ class Run {
 
   /// Renders with a progress bar and checkpoints. Throws Interrupted when a signal comes.
   Film render_monitored(const RenderJob& job, const ExrMetadata& metadata) {
-    const bool has_ranks = ranks_.count() > 1, is_first = ranks_.index() == 0;
-    ProgressBar bar(!options_.quiet && is_first,
-                    has_ranks ? ProgressBar::Style::kLines : ProgressBar::Style::kBar);
+    ProgressBar bar(!options_.quiet);
     Checkpointer checkpointer(options_.output, metadata, options_.threads, bar);
     RenderMonitor monitor;
     monitor.progress = [&](double fraction) {
@@ -219,11 +207,6 @@ class Run {
       monitor.snapshot = [&](const Film* film) { checkpointer.save(film); };
       monitor.snapshot_seconds = options_.output.save_seconds;
     }
-    if (has_ranks) {
-      note_warnings();
-      monitor.is_urgent = take_warning;
-      monitor.urgent_snapshot = [&](const Film* film) { checkpointer.save_urgently(film); };
-    }
     // The threads may be deep in a search: end without them.
     monitor.abandon = [&](const Film& film) {
       bar.erase();
@@ -234,10 +217,7 @@ class Run {
         job, make_intersector_factory(options_, job.prepared.bvh, options_.render.skips, image_),
         stats, monitor);
     bar.erase();
-    if (stats.cancelled) {
-      if (!is_first) throw Interrupted(interruption(), "rank 0 has the picture");
-      checkpointer.end_interrupted(film);
-    }
+    if (stats.cancelled) checkpointer.end_interrupted(film);
     if (stats.missing_threads > 0) {
       print_warning("only " + std::to_string(options_.threads - stats.missing_threads) + " of " +
                     std::to_string(options_.threads) + " threads could be started");
@@ -272,7 +252,6 @@ class Run {
 
   const Clock::time_point start_ = Clock::now();
   const Options& options_;
-  Ranks& ranks_;
   std::FILE* console_ = stdout;  // where the summary goes
   Scene scene_;
   std::string scene_digest_;                  // of the files, without default lights and ground
@@ -285,24 +264,17 @@ class Run {
 
 int main(int argc, char** argv) {
   using namespace raygate;
-  std::unique_ptr<Ranks> ranks;  // lives until the end: a launcher ends us when one rank is gone
-  const auto work = [&] {
-    const Options options = parse_options(argc, argv, ranks->processors());
-    if (options.information.empty()) {
-      Run(options, *ranks)();
-    } else if (ranks->index() == 0) {
-      print(options.information);
-    }
-  };
-  const auto program = [&] {
-    require_ieee_floats();
-    choose_vectors();
-    ranks = join_ranks();
-    work_as_rank(*ranks, work);
-    return 0;
-  };
-  const int status = run_guarded(program, 1);
-  // Exit without waiting for MPI: other ranks may have crashed.
-  if (ranks && ranks->count() > 1 && interruption() != 0) std::_Exit(status);
-  return status;
+  return run_guarded(
+      [&] {
+        require_ieee_floats();
+        choose_vectors();
+        const Options options = parse_options(argc, argv);
+        if (options.information.empty()) {
+          Run{options}();
+        } else {
+          print(options.information);
+        }
+        return 0;
+      },
+      1);
 }

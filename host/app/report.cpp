@@ -48,11 +48,7 @@ std::string headline(const Report& report) {
     if (options.cores > 1) line += ", " + std::to_string(options.cores) + " cores";
     line += ')';
   }
-  if (report.ranks > 1)
-    line += ", " + format_count(report.ranks, "rank") + " of";
-  else
-    line += ',';
-  return line + " " + format_count(options.threads, "thread") + "\n";
+  return line + ", " + format_count(options.threads, "thread") + "\n";
 }
 
 /// Returns the fractions of the threads' time: "hit tests 80 %, boxes 15 %, ...".
@@ -239,7 +235,6 @@ std::string to_json(const Report& report) {
                        {"width", options.render.width},
                        {"height", options.render.height},
                        {"window", {window.x0, window.y0, window.x1, window.y1}},
-                       {"ranks", report.ranks},
                        {"pictures", pictures},
                        {"variant", options.variant ? options.variant->name : "binary32"}};
   for (const auto& [name, value] : option_values(options, kInStats)) {
@@ -249,8 +244,6 @@ std::string to_json(const Report& report) {
       {"rays", render.rays},
       {"camera_rays", render.camera_rays},
       {"shadow_rays", render.shadow_rays},
-      {"gathered_tiles", render.gathered_tiles},
-      {"gathered_bytes", render.gathered_bytes},
       {"records", render.intersect.own_records + render.intersect.common_records},
       {"common_records", render.intersect.common_records},
       {"tests", hit.tests},
@@ -285,7 +278,6 @@ std::string to_json(const Report& report) {
         {"tree", report.tree_seconds},
         {"render", render.wall_seconds},
         {"processor", render.processor_seconds},
-        {"gather", render.gather_seconds},
         {"write", report.write_seconds},
         {"total", report.total_seconds}}},
       {"thread_seconds",

@@ -16,7 +16,6 @@ namespace raygate {
 /// Statistics of a finished run. Times are elapsed seconds.
 struct Report {
   Options options;
-  int ranks = 1;
   std::size_t triangles = 0;
   CornerRounding rounding;
   RenderStats render;

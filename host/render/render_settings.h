@@ -47,16 +47,12 @@ struct RenderMonitor {
   /// for a copy. The threads continue meanwhile.
   std::function<void(const Film*)> snapshot{};
   double snapshot_seconds = 10.0;
-  /// With other ranks, polled: whether one may have died. Then `urgent_snapshot` receives the film.
-  std::function<bool()> is_urgent{};
-  std::function<void(const Film*)> urgent_snapshot{};
-  /// Receives the film if the threads have not stopped within 0.5 s; with other ranks immediately,
-  /// because mpirun kills this process within a second. Must end the process.
+  /// Receives the film if the threads have not stopped within 0.5 s. Must end the process.
   std::function<void(const Film&)> abandon{};
 };
 
 /// Statistics of a render. Seconds of parts are sums over the threads; `wall_seconds` is elapsed
-/// time, `processor_seconds` the processor time of all threads of all ranks.
+/// time, `processor_seconds` the processor time of all threads.
 struct RenderStats {
   std::uint64_t rays = 0;         ///< number of rays of all kinds
   std::uint64_t camera_rays = 0;  ///< camera rays among `rays`
@@ -67,24 +63,9 @@ struct RenderStats {
   double shade_seconds = 0.0;   ///< generating and shading rays
   double wall_seconds = 0.0;
   double processor_seconds = 0.0;
-  std::uint64_t spare_samples = 0;   ///< samples saved by RenderSettings::error
-  double gather_seconds = 0.0;       ///< processor time of rank 0 for communication
-  std::uint64_t gathered_tiles = 0;  ///< messages with tiles from other ranks
-  std::uint64_t gathered_bytes = 0;  ///< total size of these messages
-  int missing_threads = 0;           ///< threads that could not be started
-  bool cancelled = false;            ///< stopped by the monitor; the film is incomplete
-
-  /// Adds the counts of another rank, except its elapsed time.
-  void add(const RenderStats& worker) {
-    rays += worker.rays;
-    camera_rays += worker.camera_rays;
-    shadow_rays += worker.shadow_rays;
-    point_doubts += worker.point_doubts;
-    skipped += worker.skipped;
-    intersect += worker.intersect;
-    shade_seconds += worker.shade_seconds;
-    processor_seconds += worker.processor_seconds;
-  }
+  std::uint64_t spare_samples = 0;  ///< samples saved by RenderSettings::error
+  int missing_threads = 0;          ///< threads that could not be started
+  bool cancelled = false;           ///< stopped by the monitor; the film is incomplete
 };
 
 }  // namespace raygate

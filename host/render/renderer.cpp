@@ -3,114 +3,166 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
+#include <span>
+#include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "host/base/stopwatch.h"
 #include "host/light/light_paths.h"
 #include "host/light/lights.h"
-#include "host/ranks/ranks.h"
 #include "host/render/adaptive_sampling.h"
 #include "host/render/emitter_supersampler.h"
-#include "host/render/remote_workers.h"
+#include "host/render/render_context.h"
 #include "host/render/splat_layer.h"
-#include "host/render/tile_workers.h"
+#include "host/render/tile_renderer.h"
 #include "host/render/tiles.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
 namespace {
 
-int count_of(const Ranks* ranks) { return ranks == nullptr ? 1 : ranks->count(); }
-
-/// Renders an image on rank 0: threads and other ranks take tiles from one queue. The calling
-/// thread reports progress and saves, so that no worker waits for a terminal or a disk.
-class Coordinator : public TileWorkers {
+/// The threads of a render, which take tiles from one queue. The calling thread reports progress
+/// and saves, so that no worker waits for a terminal or a disk.
+class RenderThreads {
  public:
-  Coordinator(const RenderContext& context, const RenderJob& job, const Tiles& tiles,
-              std::unique_ptr<Intersector> first_intersector,
-              const IntersectorFactory& make_intersector, const RenderMonitor& monitor, Film& film,
-              std::span<HistoryMask> emitter_histories, RenderStats& stats)
-      : TileWorkers(context, std::move(first_intersector), make_intersector, film,
-                    emitter_histories, stats),
+  RenderThreads(const RenderContext& context, const Tiles& tiles,
+                std::unique_ptr<Intersector> first_intersector,
+                const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
+                Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats)
+      : context_(context),
         tiles_(tiles),
+        first_intersector_(std::move(first_intersector)),
+        make_intersector_(make_intersector),
         monitor_(monitor),
-        queue_(tiles.count, tiles.passes(), job.unfinished != nullptr) {
+        emitter_histories_(emitter_histories),
+        film_(film),
+        stats_(stats),
+        queue_(tiles.count, tiles.passes()) {
     if (context.light_paths != nullptr) splats_ = SplatLayer(film.window, context.settings.filter);
-    if (count_of(job.ranks) == 1) return;
-    remote_.emplace(*job.ranks, tiles, context.settings.first_sample, film, splats_);
-    grace_ = {};
   }
-  ~Coordinator() override { join(); }
+  RenderThreads(const RenderThreads&) = delete;
+  RenderThreads& operator=(const RenderThreads&) = delete;
+  ~RenderThreads() {
+    stop();
+    threads_.clear();
+  }
 
   /// Returns when the image is complete or the monitor has stopped the render.
   void run() {
     look();
-    {
-      const int wanted = std::min(context_.settings.threads, tiles_.count);
-      std::jthread server;
-      if (remote_) server = std::jthread([this] { serve(); });
-      start(wanted);
-      const auto threads = static_cast<int>(threads_.size());
-      stats_.missing_threads = wanted - std::max(1, threads);
-      if (threads == 0) {
-        is_alone_ = true;
-        work();
-      }
-      watch(threads);
+    const int wanted = std::min(context_.settings.threads, tiles_.count);
+    start(wanted);
+    const auto threads = static_cast<int>(threads_.size());
+    stats_.missing_threads = wanted - std::max(1, threads);
+    if (threads == 0) {
+      is_alone_ = true;
+      work();
     }
+    watch(threads);
     threads_.clear();
     splats_.add_to(film_);
-    if (error_) {
-      if (remote_ && monitor_.urgent_snapshot) monitor_.urgent_snapshot(&film_);
-      std::rethrow_exception(error_);
-    }
+    if (error_) std::rethrow_exception(error_);
     stats_.cancelled = !queue_.all_ended();
     if (!stats_.cancelled && monitor_.progress) monitor_.progress(1.0);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kLook{50};  // maximum interval between reports
-  static constexpr std::chrono::milliseconds kServe{1};  // polling interval for messages
-  // Interval between estimates of the remaining work.
-  static constexpr std::chrono::milliseconds kShare{500};
+  static constexpr std::chrono::milliseconds kLook{50};    // maximum interval between reports
+  static constexpr std::chrono::milliseconds kShare{500};  // between estimates of remaining work
+  static constexpr std::chrono::milliseconds kGrace{500};  // for threads to stop
 
-  std::optional<TileWork> take() override {
-    const auto step = queue_.begin();
-    if (!step) return std::nullopt;
-    const int end = context_.settings.first_sample + tiles_.samples_after(step->pass);
-    return TileWork{step->tile, tiles_[step->tile], end, 0, end, 0.0};
-  }
-  [[nodiscard]] bool is_over() const override { return queue_.all_begun(); }
-  void done(const TileWork& work) override { queue_.end(work.number); }
-  void add(int /*tile*/, std::span<const Splat> splats) override { splats_.add(splats); }
-  void between_batches() override {
-    if (is_alone_) look();
-  }
-
-  /// Serves the other ranks on a thread of its own, so that saving and reporting do not delay them.
-  void serve() {
+  /// Starts up to `count` threads, or fewer if the system cannot start as many.
+  void start(int count) {
     try {
-      std::unique_lock lock(mutex_);
-      while (!stopped_ && !(queue_.all_ended() && remote_->finish(stats_))) {
-        if (!queue_.all_ended() && remote_->serve(queue_)) changed_.notify_all();
-        changed_.wait_for(lock, kServe);
+      while (static_cast<int>(threads_.size()) < count) threads_.emplace_back([this] { work(); });
+    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): these will do
+    }
+  }
+
+  /// Renders tiles until there are no more. Runs on each thread.
+  void work() {
+    try {
+      const auto intersector = take_intersector();
+      TileRenderer renderer(context_, *intersector, film_, emitter_histories_);
+      while (const auto step = next()) {
+        if (!render(renderer, *step)) break;
       }
+      const std::scoped_lock lock(mutex_);
+      renderer.add_to(stats_);
     } catch (...) {
       fail(std::current_exception());
     }
     const std::scoped_lock lock(mutex_);
-    served_ = true;
+    ++gone_;
     changed_.notify_all();
   }
 
-  /// Waits until `threads` threads have ended, and all other ranks have sent their statistics.
+  [[nodiscard]] std::unique_ptr<Intersector> take_intersector() {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (first_intersector_) return std::move(first_intersector_);
+    }
+    return make_intersector_();
+  }
+
+  /// Returns the next step, or nullopt if there is none left or the threads must stop.
+  [[nodiscard]] std::optional<TileQueue::Step> next() {
+    std::unique_lock lock(mutex_);
+    std::optional<TileQueue::Step> step;
+    changed_.wait(lock, [&] {
+      if (stopped_ || queue_.all_begun()) return true;
+      step = queue_.begin();
+      return step.has_value();
+    });
+    return step;
+  }
+
+  /// Renders a pass over a tile. Returns false if it was stopped. No other thread accesses the
+  /// tile's pixels meanwhile.
+  [[nodiscard]] bool render(TileRenderer& renderer, const TileQueue::Step& step) {
+    const auto keep_going = [this] {
+      if (is_alone_) look();
+      const std::scoped_lock lock(mutex_);
+      return !stopped_;
+    };
+    const int end = context_.settings.first_sample + tiles_.samples_after(step.pass);
+    if (!renderer.trace(tiles_[step.tile], end, keep_going)) return false;
+    const std::scoped_lock lock(mutex_);
+    renderer.write();
+    splats_.add(renderer.splats());
+    queue_.end(step.tile);
+    changed_.notify_all();
+    return true;
+  }
+
+  /// Tells the threads to stop.
+  void stop() {
+    const std::scoped_lock lock(mutex_);
+    stopped_ = true;
+    changed_.notify_all();
+  }
+
+  void fail(std::exception_ptr error) {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (!error_) error_ = std::move(error);
+    }
+    stop();
+  }
+
+  /// Waits until `threads` threads have ended.
   void watch(int threads) {
     std::unique_lock lock(mutex_);
-    while (gone_ < threads || (remote_ && !served_)) {
+    while (gone_ < threads) {
       changed_.wait_for(lock, kLook);
       lock.unlock();
       look();
@@ -124,7 +176,7 @@ class Coordinator : public TileWorkers {
       std::unique_lock lock(mutex_);
       if (stopped_) {
         if (!stopped_at_) stopped_at_ = Clock::now();
-        if (monitor_.abandon && !error_ && Clock::now() - *stopped_at_ > grace_) {
+        if (monitor_.abandon && !error_ && Clock::now() - *stopped_at_ > kGrace) {
           splats_.add_to(film_);
           monitor_.abandon(film_);  // under the lock, so that the film does not change
         }
@@ -137,14 +189,11 @@ class Coordinator : public TileWorkers {
         stopped_at_ = Clock::now();
       }
       lock.lock();
-      if (remote_ && monitor_.is_urgent && monitor_.is_urgent()) {
-        show(lock, monitor_.urgent_snapshot);
-        return;
-      }
       if (stopped_ || queue_.all_ended() || !monitor_.snapshot) return;
       since_snapshot_ += watch_.lap();
       if (since_snapshot_ < monitor_.snapshot_seconds) return;
-      show(lock, monitor_.snapshot);
+      lock.unlock();
+      save();
       since_snapshot_ = 0.0;
       watch_.lap();
     } catch (...) {
@@ -152,15 +201,14 @@ class Coordinator : public TileWorkers {
     }
   }
 
-  /// Passes a copy of the film to `take`, while the threads continue.
-  void show(std::unique_lock<std::mutex>& lock, const std::function<void(const Film*)>& take) {
-    lock.unlock();
+  /// Passes a copy of the film to the monitor, while the threads continue.
+  void save() {
     std::optional<Film> film;
     try {
       film = copy_of_film();
     } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): the render needs none
     }
-    take(film ? &*film : nullptr);
+    monitor_.snapshot(film ? &*film : nullptr);
   }
 
   /// Returns a copy of the film, made tile by tile, so that a thread waits for at most one tile.
@@ -196,20 +244,29 @@ class Coordinator : public TileWorkers {
     return share_;
   }
 
+  const RenderContext& context_;
   const Tiles& tiles_;
+  std::unique_ptr<Intersector> first_intersector_;  // for the first thread
+  const IntersectorFactory& make_intersector_;
   const RenderMonitor& monitor_;
+  std::span<HistoryMask> emitter_histories_;
+  std::mutex mutex_;  // guards the members below, except pixels of a tile that is being rendered
+  std::condition_variable changed_;
+  Film& film_;
+  RenderStats& stats_;
   TileQueue queue_;
   SplatLayer splats_;
-  std::optional<RemoteWorkers> remote_;  // none if there is one rank
-  bool served_ = false;
+  int gone_ = 0;  // number of threads that have ended
+  bool stopped_ = false;
+  std::exception_ptr error_;
   // Members of the watching thread only.
-  std::chrono::milliseconds grace_{500};  // for threads to stop
   std::optional<Clock::time_point> stopped_at_;
   bool is_alone_ = false;
   Stopwatch watch_;
   double since_snapshot_ = 0.0;
   double share_ = 0.0;
   Clock::time_point next_share_;
+  std::vector<std::jthread> threads_;
 };
 
 Film empty_film(const RenderSettings& settings) {
@@ -242,19 +299,17 @@ FrameView frame_view(const RenderJob& job, const Film& film) {
 
 Film render(const RenderJob& job, const IntersectorFactory& make_intersector, RenderStats& stats,
             const RenderMonitor& monitor) {
-  const auto& [prepared, camera, settings, camera_lights, unfinished, ranks] = job;
+  const auto& [prepared, camera, settings, camera_lights, unfinished] = job;
   assert(settings.width > 0 && settings.height > 0 && settings.threads > 0 && settings.samples > 0);
   Stopwatch wall;
   const double busy = processor_seconds();
   stats = {};
   const Bvh& bvh = prepared.bvh;
-  const int rank_count = count_of(ranks);
-  const bool is_shared = rank_count > 1;
   Film film = empty_film(settings);
   auto first_intersector = make_intersector();
   const int end = settings.end_sample > 0 ? settings.end_sample : settings.samples;
   const Tiles tiles(film.window, end - settings.first_sample, first_intersector->preferred_batch(),
-                    settings.threads, rank_count, settings.error > 0.0);
+                    settings.threads);
   const bool is_path = settings.integrator == IntegratorKind::kPath;
   const auto sampling = is_path ? Lights::Sampling::kOne : Lights::Sampling::kAll;
   std::optional<Lights> own_lights;
@@ -268,11 +323,10 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   if (unfinished != nullptr) {
     film = *unfinished;
     assert(film.sums.samples.size() == film.color.size());
-  } else if (tiles.passes() > 1 || film.keeps_sums || settings.error > 0.0 || is_shared ||
-             light_paths) {
+  } else if (tiles.passes() > 1 || film.keeps_sums || settings.error > 0.0 || light_paths) {
     add_sums(film, settings.error > 0.0);
   }
-  film.keeps_sums = settings.channels.sums || is_shared || unfinished != nullptr;
+  film.keeps_sums = settings.channels.sums || unfinished != nullptr;
   // With a single sample through the pixel's centre, emitters have no edges to smooth. Emitters
   // seen through a lens are not supersampled.
   std::vector<HistoryMask> emitter_histories;
@@ -281,19 +335,13 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   }
   const RenderContext context{prepared, camera, settings, lights,
                               light_paths ? &*light_paths : nullptr};
-  if (is_shared && ranks->index() != 0) {
-    run_worker(*ranks, context, std::move(first_intersector), make_intersector, monitor, film,
-               emitter_histories, stats);
-    return film;
-  }
-  Coordinator(context, job, tiles, std::move(first_intersector), make_intersector, monitor, film,
-              emitter_histories, stats)
+  RenderThreads(context, tiles, std::move(first_intersector), make_intersector, monitor, film,
+                emitter_histories, stats)
       .run();
   if (!stats.cancelled) film.keeps_sums = settings.channels.sums;
   if (stats.intersect.common_records != 0) {
     const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
-    const std::uint64_t every_record = bvh.primitive_count() * origins * std::uint64_t(rank_count);
-    stats.skipped.records = every_record - stats.intersect.common_records;
+    stats.skipped.records = bvh.primitive_count() * origins - stats.intersect.common_records;
   }
   const std::uint64_t every_test = stats.rays * bvh.triangle_count();
   stats.skipped.culled_tests = every_test - std::min(every_test, stats.intersect.hit.tests);

@@ -14,8 +14,6 @@
 
 namespace raygate {
 
-class Ranks;
-
 /// An image to render. The references must outlive the call of render().
 struct RenderJob {
   const PreparedScene& prepared;
@@ -25,17 +23,13 @@ struct RenderJob {
   /// An unfinished film to resume, or null. Has sums, and the job's window, settings and first
   /// sample.
   const Film* unfinished = nullptr;
-  /// The processes that share this render, called with the same job; null: only this process. Rank
-  /// 0 returns the film; the others have parts of it and call only RenderMonitor::progress. If a
-  /// rank fails, rank 0 calls `urgent_snapshot` and throws RankFailure.
-  Ranks* ranks = nullptr;
 };
 
 /// Renders an image. Several renders can share a prepared scene, also concurrently. No bit of the
 /// film depends on the intersector, the number of threads or the skips, and the film of a window is
-/// a part of the whole film. Films of several ranks and resumed films keep their sums until they
-/// are complete, so that they can be resumed. Rethrows exceptions of intersectors. A scene without
-/// lights is black except with kPrimary: see default_lights.
+/// a part of the whole film. Resumed films keep their sums until they are complete, so that they
+/// can be resumed again. Rethrows exceptions of intersectors. A scene without lights is black
+/// except with kPrimary: see default_lights.
 [[nodiscard]] Film render(const RenderJob& job, const IntersectorFactory& make_intersector,
                           RenderStats& stats, const RenderMonitor& monitor = {});
 

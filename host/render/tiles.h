@@ -19,25 +19,18 @@ namespace raygate {
 
 /// The window split into tiles, numbered row by row, and each pixel's samples into passes, such
 /// that a pass over a tile has about the number of samples that an intersector prefers in a batch.
-/// Tiles are smaller if otherwise some threads would have none. With several ranks tiles are
-/// smaller and passes longer (unless `short_passes`) while a thread would have fewer than four
-/// tiles.
+/// Tiles are smaller if otherwise some threads would have none.
 struct Tiles {
   PixelRect window;
   int samples, samples_per_pass;
   int width, height;  ///< of a tile
   int columns, count;
 
-  /// `batch` is Intersector::preferred_batch(). `threads` is per rank.
-  Tiles(const PixelRect& rect, int samples_per_pixel, std::size_t batch, int threads, int ranks = 1,
-        bool short_passes = false)
+  /// `batch` is Intersector::preferred_batch().
+  Tiles(const PixelRect& rect, int samples_per_pixel, std::size_t batch, int threads)
       : window(rect), samples(samples_per_pixel), samples_per_pass(std::min(samples_per_pixel, 4)) {
-    int edge = samples_per_pass == 1 ? 128 : samples_per_pass < 4 ? 80 : 64;
-    const std::int64_t share =
-        std::int64_t{window.width()} * window.height() / (std::int64_t{threads} * ranks);
-    for (; ranks > 1 && edge > 16 && share < std::int64_t{4} * edge * edge; edge /= 2) {
-      if (!short_passes) samples_per_pass = std::min(samples, 4 * samples_per_pass);
-    }
+    const int edge = samples_per_pass == 1 ? 128 : samples_per_pass < 4 ? 80 : 64;
+    const std::int64_t share = std::int64_t{window.width()} * window.height() / threads;
     const int square = edge * edge;
     const auto many = static_cast<std::int64_t>(batch) / samples_per_pass;
     const int pixels = static_cast<int>(
@@ -64,72 +57,50 @@ struct Tiles {
   }
 };
 
-/// The steps of a render, each one or more passes over a tile. The passes of a tile are sequential;
-/// tiles are independent. A tile stays with its rank while other tiles are left for other ranks, so
-/// that its pixels need not be sent.
+/// The steps of a render, each a pass over a tile. The passes of a tile are sequential; tiles are
+/// independent.
 class TileQueue {
  public:
   struct Step {
-    int tile, pass, end_pass;  ///< passes [pass, end_pass)
-    bool moves;                ///< another rank rendered the previous pass
+    int tile, pass;
   };
 
-  /// `is_begun`: rank 0 has samples of all tiles from an earlier run.
-  TileQueue(int tiles, int passes, bool is_begun = false)
+  TileQueue(int tiles, int passes)
       : passes_(passes),
         steps_(std::int64_t{tiles} * passes),
         waiting_(static_cast<std::size_t>(tiles)),
-        tiles_(static_cast<std::size_t>(tiles), {.rank = is_begun ? 0 : kNobody}) {
+        begun_passes_(static_cast<std::size_t>(tiles), 0) {
     std::iota(waiting_.begin(), waiting_.end(), 0);
   }
 
-  /// Begins up to `most` passes of a tile. Returns nullopt if all are complete or being rendered.
-  [[nodiscard]] std::optional<Step> begin(int rank = 0, int most = 1) {
+  /// Begins a pass of the tile that has waited longest. Returns nullopt if all are complete or
+  /// being rendered.
+  [[nodiscard]] std::optional<Step> begin() {
     if (waiting_.empty()) return std::nullopt;
-    const auto may_stay = [&](int tile) {
-      const int with = at(tile).rank;
-      return with == rank || with == kNobody;
-    };
-    auto next = std::ranges::find_if(waiting_, may_stay);
-    if (next == waiting_.end()) next = waiting_.begin();
-    Step step{*next, at(*next).begun, 0, !may_stay(*next)};
-    waiting_.erase(next);
-    step.end_pass = std::min(passes_, step.pass + std::max(1, most));
-    begun_ += step.end_pass - step.pass;
-    at(step.tile).begun = step.end_pass;
-    at(step.tile).rank = rank;
-    return step;
+    const int tile = waiting_.front();
+    waiting_.pop_front();
+    ++begun_;
+    return Step{tile, begun_passes_[static_cast<std::size_t>(tile)]++};
   }
 
   /// Ends the current step of `tile`.
   void end(int tile) {
-    Tile& ended = at(tile);
-    ended_ += ended.begun - ended.ended;
+    ++ended_;
     assert(ended_ <= begun_);
-    ended.ended = ended.begun;
-    if (ended.begun < passes_) waiting_.push_back(tile);
+    if (begun_passes_[static_cast<std::size_t>(tile)] < passes_) waiting_.push_back(tile);
   }
 
   [[nodiscard]] bool all_begun() const { return begun_ == steps_; }
   [[nodiscard]] bool all_ended() const { return ended_ == steps_; }
-  /// Returns the number of passes that have not begun.
-  [[nodiscard]] std::int64_t left() const { return steps_ - begun_; }
   [[nodiscard]] double fraction() const {
     return static_cast<double>(ended_) / static_cast<double>(steps_);
   }
 
  private:
-  static constexpr int kNobody = -1;
-  struct Tile {
-    int rank = kNobody;        // the rank that has its samples
-    int begun = 0, ended = 0;  // numbers of passes
-  };
-  [[nodiscard]] Tile& at(int tile) { return tiles_[static_cast<std::size_t>(tile)]; }
-
   int passes_;
   std::int64_t steps_, begun_ = 0, ended_ = 0;
   std::deque<int> waiting_;
-  std::vector<Tile> tiles_;
+  std::vector<int> begun_passes_;  // by tile
 };
 
 /// Returns whether a camera ray through `tile`, or up to `margin` pixels beside it, may enter a

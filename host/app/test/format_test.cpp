@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <exception>
 #include <limits>
 #include <stdexcept>
 
@@ -12,10 +11,10 @@ namespace raygate {
 namespace {
 
 // A file may ask for a list longer than any memory.
-TEST(Ending, OfAListThatIsTooLong) {
-  const Ending ending = ending_of(std::make_exception_ptr(std::length_error("vector")), 1);
-  EXPECT_EQ(ending.status, 2);
-  EXPECT_EQ(ending.line, "out of memory");
+TEST(RunGuarded, AListThatIsTooLong) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run_guarded([]() -> int { throw std::length_error("vector"); }, 1), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "error: out of memory\n");
 }
 
 TEST(Format, Counts) {

@@ -48,43 +48,6 @@ TEST(TileQueue, ATileGoesOnWhileAnotherIsSlow) {
   EXPECT_TRUE(queue.begin());
 }
 
-/// A rank goes on with its own tiles, begins new ones, and takes another's where it must.
-TEST(TileQueue, TilesStayWithTheirRank) {
-  TileQueue queue(3, 4);
-  const auto expect_step = [&](int rank, int most, int tile, int pass, int end, bool moves) {
-    const auto step = queue.begin(rank, most);
-    ASSERT_TRUE(step);
-    EXPECT_EQ(step->tile, tile);
-    EXPECT_EQ(step->pass, pass);
-    EXPECT_EQ(step->end_pass, end);
-    EXPECT_EQ(step->moves, moves);
-  };
-  expect_step(0, 1, 0, 0, 1, false);
-  expect_step(7, 2, 1, 0, 2, false);
-  queue.end(0);
-  queue.end(1);
-  expect_step(7, 9, 2, 0, 4, false);  // before rank 0's tile, though that waits for longer
-  expect_step(7, 1, 1, 2, 3, false);
-  queue.end(1);
-  EXPECT_DOUBLE_EQ(queue.fraction(), 4.0 / 12.0);
-  expect_step(7, 1, 1, 3, 4, false);
-  expect_step(7, 1, 0, 1, 2, true);
-  queue.end(0);
-  expect_step(7, 1, 0, 2, 3, false);
-  queue.end(0);
-  expect_step(0, 9, 0, 3, 4, true);
-  EXPECT_EQ(queue.left(), 0);
-  for (const int tile : {0, 1, 2}) queue.end(tile);
-  EXPECT_TRUE(queue.all_ended());
-}
-
-/// What an earlier run has left is with rank 0.
-TEST(TileQueue, ABegunPictureIsWithRank0) {
-  TileQueue queue(2, 1, true);
-  EXPECT_FALSE(queue.begin(0)->moves);
-  EXPECT_TRUE(queue.begin(1)->moves);
-}
-
 /// 8192 x 8192 pixels and 2^20 samples: 2^32 steps.
 TEST(TileQueue, CountsBeyond32Bits) {
   TileQueue queue(1 << 14, 1 << 18);
