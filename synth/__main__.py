@@ -5,7 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import adder_study, catalogue, chosen, measure, prove, report, store, throughput, tools, unit_delay
+from synth import adder_study, catalogue, chosen, float_peers, measure, prove, report, store, throughput, tools, unit_delay
 
 
 def arguments() -> argparse.Namespace:
@@ -15,7 +15,7 @@ def arguments() -> argparse.Namespace:
         "in build/synth/. With it: one design, its area, delay, critical path and, for an adder, "
         "its unit delays and the proof that it adds."))
     parser.add_argument("--top", help="module of hw/ (adder, booth_multiplier, fp_adder, ...), or "
-                        "adders: the adders' part of the report alone")
+                        "adders: the adders' part of the report alone; float_peers: other people's float cores beside ours")
     chosen.add_arguments(parser)
     parser.add_argument("--liberty", help="a Liberty file, measured in place of other targets")
     parser.add_argument("--all", help="1: every design on every target; else the first ones, in osu035")
@@ -105,7 +105,7 @@ def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
     try:
-        one = chosen.design(given) if given.top and given.top != "adders" else None
+        one = chosen.design(given) if given.top and given.top not in ("adders", "float_peers") else None
         if given.liberty:
             catalogue.LIBRARIES.append(catalogue.of_user(pathlib.Path(given.liberty)))
         targets = measure.Targets(
@@ -113,6 +113,8 @@ def main() -> int:
             int(given.jobs))
         if one:
             return run_one(one, targets)
+        if given.top == "float_peers":
+            return float_peers.run([library for library in catalogue.LIBRARIES if library.name in targets.names])
         return run_all(given, targets)
     except (tools.MissingTool, FileNotFoundError, ValueError) as error:
         print(f"synth: {error}", file=sys.stderr)

@@ -5,7 +5,7 @@ SYNTH_JOBS ?= 2
 
 # What describes one design says nothing without it.
 ifneq ($(filter synth layout,$(MAKECMDGOALS)),)
-ifeq ($(filter-out adders multipliers cores energy,$(TOP)),)
+ifeq ($(filter-out adders float_peers multipliers cores energy,$(TOP)),)
 $(foreach name,$(filter ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT,$(given)),$(error $(name): expected TOP, too, the module that has it))
 endif
 endif
@@ -13,6 +13,7 @@ endif
 # The whole report has tests a second in it, which programs count.
 synth: $(if $(filter-out 0,$(ALL)),verilate) ## hardware: area and time: make synth [ALL=1] [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ...]
 	@$(SETUP) synth
+	@$(if $(filter float_peers,$(TOP)),$(SETUP) lab)
 	$(if $(filter-out 0,$(ALL)),$(call build,build,table_1 worked_example))
 	@$(PYTHON) -m synth --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \

