@@ -290,29 +290,33 @@ void require_distinct_outputs(const Options& options) {
 
 }  // namespace
 
-Options parse_options(int argc, const char* const* argv) {
-  std::vector<std::string> words(argv + 1, argv + argc);
+Options parse_options(const std::vector<std::string>& words) {
   Options options;
-  options.words = words;
-  {
-    Options first;                // to find the scene's name
-    first.environment.emplace();  // the scene file may have one
-    CommandLine line(first);
-    options.information = line.parse(words);
-    if (!options.information.empty()) return options;
-    if (line.scene.empty()) throw InputError("no scene given; try ./render scenes/cornell.obj");
-    options.scene = line.scene;
-    options.scene_file = find_scene_file(line);
-    std::error_code ignored;
-    options.is_bare_model =
-        options.scene_file.file == options.scene_file.obj &&
-        !std::filesystem::exists(std::filesystem::path(line.scene).replace_extension(".json"),
-                                 ignored);
-  }
-  const SceneFile& file = options.scene_file;
-  options.camera = camera_request(file);
-  options.environment = file.lights.environment;
+  Options first;                // to find the scene's name
+  first.environment.emplace();  // the scene file may have one
+  CommandLine line(first);
+  options.information = line.parse(words);
+  if (!options.information.empty()) return options;
+  if (line.scene.empty()) throw InputError("no scene given; try ./render scenes/cornell.obj");
+  options.scene = line.scene;
+  options.scene_file = find_scene_file(line);
+  std::error_code ignored;
+  options.is_bare_model =
+      options.scene_file.file == options.scene_file.obj &&
+      !std::filesystem::exists(std::filesystem::path(line.scene).replace_extension(".json"),
+                               ignored);
+  return with_words(options, words);
+}
+
+Options with_words(const Options& given, const std::vector<std::string>& words) {
+  Options options;
+  options.scene = given.scene;
+  options.scene_file = given.scene_file;
+  options.is_bare_model = given.is_bare_model;
+  options.camera = camera_request(options.scene_file);
+  options.environment = options.scene_file.lights.environment;
   options = read_options(options, words);
+  options.words = words;
   require_distinct_outputs(options);
   options.render.threads = options.threads;
   options.render.exposure = options.output.display.exposure;

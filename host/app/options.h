@@ -38,10 +38,14 @@ struct Options : EngineOptions {
   bool is_bare_model = false;    ///< whether there is no scene file, not even an ignored one
 };
 
-/// Parses the command line of main() after the options of the scene file, which it overrides.
-/// Throws InputError, one line that names the option (or file and line), the value and what was
-/// expected.
-[[nodiscard]] Options parse_options(int argc, const char* const* argv);
+/// Parses a command line, without the program's name, after the options of the scene file, which it
+/// overrides. Throws InputError, one line that names the option (or file and line), the value and
+/// what was expected.
+[[nodiscard]] Options parse_options(const std::vector<std::string>& words);
+
+/// Parses another command line for the scene of `given`, without reading the scene file again.
+/// Throws InputError likewise.
+[[nodiscard]] Options with_words(const Options& given, const std::vector<std::string>& words);
 
 /// Name/value pairs of the options shown at `place`.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> option_values(Options options,

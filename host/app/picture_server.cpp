@@ -87,9 +87,7 @@ class PictureServer {
     // The default depends on the camera, but the scene is built.
     erase_option(command.words, "ground");
     command.words.push_back(std::string("--ground=") + (scene_.has_ground ? "on" : "off"));
-    std::vector<const char*> words{"render"};
-    for (const std::string& word : command.words) words.push_back(word.c_str());
-    command.options = parse_options(static_cast<int>(words.size()), words.data());
+    command.options = with_words(options_, command.words);
     const RenderSettings& render = command.options.render;
     if (std::int64_t{render.width} * render.height > kMostServedPixels) {
       throw InputError("--size: expected at most " + std::to_string(kMostServedPixels) +

@@ -268,7 +268,7 @@ int main(int argc, char** argv) {
       [&] {
         require_ieee_floats();
         choose_vectors();
-        const Options options = parse_options(argc, argv);
+        const Options options = parse_options({argv + 1, argv + argc});
         if (options.information.empty()) {
           Run{options}();
         } else {

@@ -304,9 +304,9 @@ TEST(Options, Views) {
 
 TEST(Options, FilesOfTheRayCore) {
   const auto core = [](std::initializer_list<const char*> more) {
-    std::vector<const char*> words{"render", "a.obj", "--unit", "core", "--size", "64x48"};
-    words.insert(words.end(), more);
-    return parse_options(static_cast<int>(words.size()), words.data());
+    std::vector<std::string> words{"a.obj", "--unit", "core", "--size", "64x48"};
+    words.insert(words.end(), more.begin(), more.end());
+    return parse_options(words);
   };
   EXPECT_EQ(core({"--cores", "4"}).cores, 4);
   EXPECT_TRUE(core({}).core_files.paths().empty());

@@ -13,9 +13,7 @@
 namespace raygate {
 
 inline Options parse(std::initializer_list<const char*> arguments) {
-  std::vector<const char*> argv{"render"};
-  argv.insert(argv.end(), arguments);
-  return parse_options(static_cast<int>(argv.size()), argv.data());
+  return parse_options({arguments.begin(), arguments.end()});
 }
 
 inline std::string error_of(std::initializer_list<const char*> arguments) {
