@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-#include "host/app/format.h"
+#include "host/app/console.h"
 #include "host/app/process.h"
 #include "host/app/render_options.h"
 #include "host/base/input_error.h"

@@ -1,10 +1,16 @@
 #include "host/app/load.h"
 
+#include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 
+#include "host/app/console.h"
+#include "host/app/option_table.h"
 #include "host/base/input_error.h"
+#include "host/exact/exact.h"
 #include "host/film/environment_file.h"
+#include "host/light/default_lights.h"
 #include "host/scene/instances.h"
 #include "host/scene/view.h"
 
@@ -38,6 +44,106 @@ Scene load(const SceneFile& file, const LoadOptions& options,
   const std::optional<glm::dvec3>& known = up ? up : file.up;
   load_environment(*environment, known ? *known : guess_up_axis(scene), scene);
   return scene;
+}
+
+namespace {
+
+View chosen_view(const CameraRequest& request, const Scene& scene) {
+  const glm::dvec3 up = request.up ? *request.up : guess_up_axis(scene);
+  if (!request.angles) return default_view(scene, up);
+  return {request.angles->first, request.angles->second, up};
+}
+
+std::string numbers(std::initializer_list<double> values) {
+  std::string text;
+  for (const double value : values) text.append(text.empty() ? "" : ",").append(number_text(value));
+  return text;
+}
+
+/// "--view 33,24 --up y (a guess); --camera ...".
+std::string view_text(const CameraRequest& request, const Scene& scene, const View& view,
+                      const CameraSetting& camera) {
+  std::string text = "--view " + format_number(view.azimuth) + "," + format_number(view.elevation);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(view.up[axis]) < largest(view.up)) continue;
+    text += std::string(" --up ") + (view.up[axis] < 0.0 ? "-" : "") + "xyz"[axis];
+  }
+  if (!request.up) text += scene.up ? " (of the format)" : " (a guess)";
+  const glm::dvec3 eye = camera.eye + scene.origin, target = camera.target + scene.origin;
+  text += "; --camera ";
+  for (int axis = 0; axis < 3; ++axis) text += format_number(eye[axis]) + ",";
+  for (int axis = 0; axis < 3; ++axis) text += format_number(target[axis]) + ",";
+  return text + format_number(*camera.fov);
+}
+
+}  // namespace
+
+CameraRequest camera_request(const SceneFile& file) {
+  CameraRequest request;
+  request.camera = file.camera;
+  request.lens = file.lens;
+  if (!file.camera) {
+    request.up = file.up;
+    request.fov = file.fov;
+  }
+  return request;
+}
+
+Framing frame_picture(const CameraRequest& request, const Scene& scene, double aspect) {
+  const std::optional<CameraSetting> given = request.camera   ? request.camera
+                                             : request.angles ? std::nullopt
+                                                              : scene.camera;
+  const double fov = request.fov.value_or(Camera::kDefaultFov);
+  const bool is_view = !given && !request.eye;
+  View view;
+  if (!given || request.ground.value_or(false)) view = chosen_view(request, scene);
+  CameraSetting setting;  // in the scene's coordinates
+  if (given) {
+    setting = *given;
+    setting.eye -= scene.origin;
+    setting.target -= scene.origin;
+    setting.lens = given->lens.overridden_by(request.lens);
+  } else {
+    setting = frame_scene(scene, aspect, fov, view);
+    setting.lens = request.lens;
+  }
+  if (request.eye) setting.eye = *request.eye - scene.origin;
+  if (request.target) setting.target = *request.target - scene.origin;
+  if (request.up && !is_view) setting.up = request.up;
+  if (request.fov) setting.fov = request.fov;
+  const Camera camera = Camera::look_at(setting, aspect);
+  const auto lights = is_view ? preview_lights(scene, camera) : default_lights(scene, camera);
+  const bool needs_ground = is_view && lights && view.elevation > 0.0 && !is_interior(scene);
+  Framing framing{camera, lights, request.ground.value_or(needs_ground), view.up, "", {}};
+
+  const auto add = [&](const char* name, const std::string& value) {
+    framing.options.emplace_back(name, value);
+  };
+  std::optional<glm::dvec3> up = request.up;
+  if (is_view) {
+    framing.text = view_text(request, scene, view, setting);
+    add("view", numbers({view.azimuth, view.elevation}));
+    add("fov", numbers({fov}));
+    up = view.up;
+  } else {
+    const glm::dvec3 eye = request.eye ? *request.eye : given->eye;
+    const glm::dvec3 target = request.target ? *request.target
+                              : given        ? given->target
+                                             : setting.target + scene.origin;
+    add("camera", numbers({eye.x, eye.y, eye.z, target.x, target.y, target.z,
+                           setting.fov.value_or(Camera::kDefaultFov)}));
+    if (!up) up = setting.up;
+  }
+  if (up) add("up", numbers({up->x, up->y, up->z}));
+  if (camera.projection() != Projection::kPerspective) {
+    add("projection", std::string(to_string(camera.projection())));
+  }
+  if (camera.aperture() > 0.0) {
+    add("aperture", number_text(camera.aperture()));
+    add("focus", number_text(camera.focus()));
+  }
+  if (framing.has_ground || is_view) add("ground", framing.has_ground ? "on" : "off");
+  return framing;
 }
 
 }  // namespace raygate

@@ -1,9 +1,15 @@
-// Loading the scene of a picture or a table of rays, as all programs and the Python module do.
+// The scene of a picture or of a table of rays, loaded as all programs and the Python module do,
+// and the camera of a picture, with the lights and the ground that go with it.
 #pragma once
 
 #include <glm/glm.hpp>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "host/light/lights.h"
+#include "host/scene/camera.h"
 #include "host/scene/io/scene_file.h"
 #include "host/scene/scene.h"
 
@@ -15,5 +21,38 @@ namespace raygate {
 [[nodiscard]] Scene load(const SceneFile& file, const LoadOptions& options,
                          const std::optional<EnvironmentSetting>& environment = {},
                          const std::optional<glm::dvec3>& up = {});
+
+/// The user's choice of a camera. Empty fields are chosen by frame_picture(). Positions are in
+/// world coordinates.
+struct CameraRequest {
+  std::optional<CameraSetting> camera;  ///< none: the scene's camera, or a view of the whole scene
+  /// Azimuth and elevation in degrees: a view of the whole scene, even if the scene has a camera.
+  std::optional<std::pair<double, double>> angles;
+  std::optional<glm::dvec3> eye, target;  ///< in place of those of the camera or view
+  std::optional<glm::dvec3> up;           ///< of the camera, or of the view
+  std::optional<double> fov;              ///< vertical, in degrees
+  LensSetting lens;
+  std::optional<bool> ground;  ///< none: with default views that need one
+};
+
+/// Returns the camera, or the up direction, field of view and lens for views, of a scene file.
+[[nodiscard]] CameraRequest camera_request(const SceneFile& file);
+
+/// A camera and what goes with it.
+struct Framing {
+  Camera camera;
+  std::optional<CameraLights> lights;  ///< in place of the scene's, which has none
+  bool has_ground;   ///< whether the picture has a ground that catches shadows, see add_ground()
+  glm::dvec3 up;     ///< up direction of the view, for the ground
+  std::string text;  ///< command-line options for the chosen view; "" if a camera was given
+  /// Names and values of the options that give the same framing.
+  std::vector<std::pair<std::string, std::string>> options;
+};
+
+/// Chooses the camera: the requested one, else the scene's, else a view of the whole scene. Scenes
+/// without lights get default lights, previews also a ground if seen from above. `aspect`: width /
+/// height of the picture. Throws InputError as Camera::look_at and frame_scene do.
+[[nodiscard]] Framing frame_picture(const CameraRequest& request, const Scene& scene,
+                                    double aspect);
 
 }  // namespace raygate

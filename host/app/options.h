@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/app/engines.h"
-#include "host/app/framing.h"
+#include "host/app/load.h"
 #include "host/app/output_options.h"
 #include "host/app/render_options.h"
 #include "host/scene/io/scene_file.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "host/app/console.h"
 #include "host/app/options.h"
 #include "host/app/output_options.h"
-#include "host/app/progress_bar.h"
 #include "host/film/atomic_file.h"
 #include "host/film/exr.h"
 #include "host/film/film.h"

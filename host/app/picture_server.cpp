@@ -1,18 +1,32 @@
 #include "host/app/picture_server.h"
 
+#include <civetweb.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <functional>
+#include <future>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
-#include "host/app/framing.h"
-#include "host/app/http_server.h"
+#include "host/app/load.h"
 #include "host/app/picture_page.h"
 #include "host/app/process.h"
 #include "host/base/input_error.h"
@@ -27,6 +41,90 @@ namespace {
 
 constexpr std::int64_t kMostServedPixels = std::int64_t{1} << 24;
 constexpr int kMostServedSamples = 1 << 16;
+
+std::string decoded(const std::string& text) {
+  std::string result(text.size() + 1, '\0');
+  const int size = mg_url_decode(text.data(), static_cast<int>(text.size()), result.data(),
+                                 static_cast<int>(result.size()), 1);
+  result.resize(static_cast<std::size_t>(std::max(0, size)));
+  return result;
+}
+
+/// Returns the descriptor of the socket with this remote port, or -1; CivetWeb does not expose it.
+int socket_from(int port) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    const int socket = std::stoi(entry.path().filename());
+    sockaddr_in peer{};
+    socklen_t size = sizeof peer;
+    if (::getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &size) == 0 &&
+        peer.sin_family == AF_INET && ntohs(peer.sin_port) == port) {
+      return socket;
+    }
+  }
+  return -1;
+}
+
+/// A request with the decoded parameters of its query.
+struct Request {
+  mg_connection* connection;
+  std::string path;
+  std::multimap<std::string, std::string> parameters;
+  int socket;
+
+  explicit Request(mg_connection* from)
+      : connection(from),
+        path(mg_get_request_info(from)->local_uri),
+        socket(socket_from(mg_get_request_info(from)->remote_port)) {
+    const char* query = mg_get_request_info(from)->query_string;
+    std::istringstream words(query == nullptr ? "" : query);
+    for (std::string word; std::getline(words, word, '&');) {
+      const auto [name, text] = split_at_equals(word);
+      parameters.emplace(decoded(name), decoded(text));
+    }
+  }
+  /// Returns the first value of a name, or "".
+  [[nodiscard]] std::string value(const std::string& name) const {
+    const auto at = parameters.find(name);
+    return at == parameters.end() ? "" : at->second;
+  }
+  [[nodiscard]] std::string header(const char* name) const {
+    const char* const text = mg_get_header(connection, name);
+    return text == nullptr ? "" : text;
+  }
+  [[nodiscard]] std::string method() const {
+    return mg_get_request_info(connection)->request_method;
+  }
+  /// Whether the browser has closed the connection.
+  [[nodiscard]] bool is_abandoned() const {
+    pollfd end{.fd = socket, .events = POLLRDHUP, .revents = 0};
+    return ::poll(&end, 1, 0) == 1;
+  }
+};
+
+struct Reply {
+  static constexpr int kNoContent = 204;
+  static constexpr const char *kText = "text/plain; charset=utf-8", *kJson = "application/json";
+
+  int status = 200;
+  const char* type = kText;
+  std::string body;  ///< empty with kNoContent
+  std::vector<std::pair<const char*, std::string>> headers{};
+
+  void send(const Request& request) const {
+    mg_connection* const to = request.connection;
+    mg_response_header_start(to, status);
+    if (status != kNoContent) {
+      mg_response_header_add(to, "Content-Type", type, -1);
+      mg_response_header_add(to, "Content-Length", std::to_string(body.size()).c_str(), -1);
+    }
+    mg_response_header_add(to, "Cache-Control", "no-store", -1);
+    for (const auto& [name, value] : headers) {
+      mg_response_header_add(to, name, value.c_str(), static_cast<int>(value.size()));
+    }
+    mg_response_header_send(to);
+    if (request.method() != "HEAD") mg_write(to, body.data(), body.size());
+  }
+};
 
 /// Returns a word quoted for a shell.
 std::string quoted(const std::string& word) {
@@ -63,16 +161,79 @@ class PictureServer {
   }
 
   void serve() {
-    serve_http(options_.port,
-               {{"/", [](const HttpRequest&) { return page(); }},
-                {"/picture", [this](const HttpRequest& request) { return picture(request); }},
-                {"/camera", [this](const HttpRequest& request) { return camera(request); }},
-                {"/pixel", [this](const HttpRequest& request) { return pixel(request); }}});
+    const std::string wanted = "127.0.0.1:" + std::to_string(options_.port);
+    // Idle connections occupy a thread until the time limit.
+    const char* settings[] = {
+        "listening_ports",    wanted.c_str(), "num_threads", "64", "enable_keep_alive", "yes",
+        "request_timeout_ms", "5000",         nullptr};
+    const mg_callbacks none{};
+    const std::unique_ptr<mg_context, void (*)(mg_context*)> server(
+        mg_start(&none, nullptr, settings), mg_stop);
+    mg_server_port bound{};
+    if (!server || mg_get_server_ports(server.get(), 1, &bound) != 1) {
+      fail_value("--port", std::to_string(options_.port),
+                 "a port that no other program listens at, and room for 66 threads");
+    }
+    const std::string number = std::to_string(bound.port);
+    names_ = {"127.0.0.1:" + number, "localhost:" + number};
+    note_interruptions();
+    mg_set_request_handler(server.get(), "/", handle, this);
+    print("http://127.0.0.1:" + number + "/ shows the scene; Ctrl-C ends it\n");
+    flush_standard_output();
+    while (interruption() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 
  private:
+  static int handle(mg_connection* connection, void* server) {
+    // Another thread, because stacks of CivetWeb's threads (100 kB) are too small.
+    const Request request(connection);
+    Reply reply{.status = 503, .body = "found no thread that is free\n"};
+    try {
+      const auto answer = &PictureServer::answer;
+      auto* const self = static_cast<PictureServer*>(server);
+      reply = std::async(std::launch::async, answer, self, std::cref(request)).get();
+    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): the reply says so
+    }
+    reply.send(request);
+    return reply.status;
+  }
+
+  [[nodiscard]] Reply answer(const Request& request) {
+    try {
+      if (auto refused = refusal(request)) return *std::move(refused);
+      if (request.path == "/") return {.type = "text/html; charset=utf-8", .body = kPicturePage};
+      if (request.path == "/picture") return picture(request);
+      if (request.path == "/camera") return camera(request);
+      if (request.path == "/pixel") return pixel(request);
+      return {.status = 404, .body = "expected /, /picture, /camera or /pixel\n"};
+    } catch (const InputError& error) {
+      return {.status = 400, .body = printable(error.what()) + "\n"};
+    } catch (const std::exception& error) {
+      return {.status = 500, .body = printable(error.what()) + "\n"};
+    }
+  }
+
+  /// Returns the reply to a request that does not come from the server's own page, or none.
+  [[nodiscard]] std::optional<Reply> refusal(const Request& request) const {
+    const std::string site = request.header("Sec-Fetch-Site"), origin = request.header("Origin");
+    const bool is_own_page =
+        (site.empty() || site == "same-origin" || site == "none") &&
+        (origin.empty() || (origin.starts_with("http://") && names_.contains(origin.substr(7))));
+    if (!is_own_page || !names_.contains(request.header("Host"))) {
+      return Reply{.status = 403,
+                   .body =
+                       "expected a request of this server's page, to the host 127.0.0.1 or "
+                       "localhost, and this port\n"};
+    }
+    const std::string method = request.method();
+    if (method == "GET" || method == "HEAD") return std::nullopt;
+    return Reply{.status = 405,
+                 .body = "found " + printable(method) + ", expected GET or HEAD\n",
+                 .headers = {{"Allow", "GET, HEAD"}}};
+  }
+
   /// Returns the server's command line with the options of the request.
-  [[nodiscard]] Command command_of(const HttpRequest& request) const {
+  [[nodiscard]] Command command_of(const Request& request) const {
     Command command{words_, {}};
     if (request.parameters.contains("camera") || request.parameters.contains("view")) {
       erase_option(command.words, "camera");
@@ -130,9 +291,7 @@ class PictureServer {
     return make_intersector_factory(options, scene_.prepared.bvh, options.render.skips, image_);
   }
 
-  static HttpReply page() { return {.type = "text/html; charset=utf-8", .body = kPicturePage}; }
-
-  HttpReply picture(const HttpRequest& request) {
+  Reply picture(const Request& request) {
     const std::string slot = request.value("slot");
     const std::uint64_t turn = slot.empty() ? 0 : take_turn(slot, request.value("turn"));
     const Command command = command_of(request);
@@ -154,7 +313,7 @@ class PictureServer {
                             {"X-Statistics", text_of(stats)}}};
       }
     }
-    return {.status = HttpReply::kNoContent, .body = {}};
+    return {.status = Reply::kNoContent, .body = {}};
   }
 
   /// Returns the picture, or its last false-colour channel if there is one.
@@ -177,7 +336,7 @@ class PictureServer {
         .dump();
   }
 
-  HttpReply camera(const HttpRequest& request) {
+  Reply camera(const Request& request) {
     const Options options = command_of(request).options;
     const Framing framing = framing_of(options);
     const Camera& camera = framing.camera;
@@ -197,10 +356,10 @@ class PictureServer {
     for (const auto& [name, value] : framing.options) {
       if (name == "view") json["view"] = Json::parse("[" + value + "]");
     }
-    return {.type = HttpReply::kJson, .body = json.dump()};
+    return {.type = Reply::kJson, .body = json.dump()};
   }
 
-  HttpReply pixel(const HttpRequest& request) {
+  Reply pixel(const Request& request) {
     const Command command = command_of(request);
     const Options& options = command.options;
     const glm::ivec2 size{options.render.width, options.render.height};
@@ -222,7 +381,7 @@ class PictureServer {
               {"direction", words(ray.direction)},
               {"engine", found(ray, *intersectors_of(options)())},
               {"cpu", found(ray, CpuIntersector(bvh))}};
-    return {.type = HttpReply::kJson, .body = json.dump()};
+    return {.type = Reply::kJson, .body = json.dump()};
   }
 
   /// Returns a vector in decimal and as binary32 words.
@@ -272,6 +431,7 @@ class PictureServer {
 
   const Options& options_;
   const ServedScene scene_;
+  std::set<std::string> names_;     // the server's host names
   std::vector<std::string> words_;  // the command line without --serve and --port
   std::mutex rendering_;            // one picture at a time, with all threads
   std::shared_ptr<const MemoryImage> image_;

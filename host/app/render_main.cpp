@@ -10,15 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "host/app/console.h"
 #include "host/app/engines.h"
-#include "host/app/format.h"
-#include "host/app/framing.h"
 #include "host/app/load.h"
 #include "host/app/options.h"
 #include "host/app/output_files.h"
 #include "host/app/picture_server.h"
 #include "host/app/process.h"
-#include "host/app/progress_bar.h"
 #include "host/app/report.h"
 #include "host/app/version.h"
 #include "host/base/input_error.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "host/app/framing.h"
+#include "host/app/load.h"
 #include "host/app/option_table.h"
 #include "host/render/render_settings.h"
 #include "host/scene/scene.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/app/format.h"
+#include "host/app/console.h"
 #include "host/app/process.h"
 #include "host/app/version.h"
 

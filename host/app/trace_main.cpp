@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "host/app/console.h"
 #include "host/app/engines.h"
-#include "host/app/format.h"
 #include "host/app/load.h"
 #include "host/app/process.h"
 #include "host/base/input_error.h"

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "host/app/format.h"
+#include "host/app/console.h"
 #include "host/base/input_error.h"
 #include "host/base/vectors.h"
 #include "host/film/atomic_file.h"

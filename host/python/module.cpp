@@ -18,7 +18,6 @@
 #include <utility>
 #include <vector>
 
-#include "host/app/framing.h"
 #include "host/app/load.h"
 #include "host/app/render_options.h"
 #include "host/app/version.h"
