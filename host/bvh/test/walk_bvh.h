@@ -8,7 +8,6 @@
 #include <limits>
 #include <vector>
 
-#include "host/bvh/bvh_view.h"
 #include "host/exact/exact.h"
 
 namespace raygate::test {

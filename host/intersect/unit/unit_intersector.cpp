@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/base/stopwatch.h"
+#include "host/bvh/traversal.h"
 #include "host/intersect/polygon_record.h"
 
 namespace raygate {

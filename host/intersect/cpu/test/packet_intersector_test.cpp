@@ -1,6 +1,4 @@
 // Tests in place find what batches find, P's bits included, and in exact arithmetic the nearest.
-#include "host/intersect/cpu/packet_intersector.h"
-
 #include <gtest/gtest.h>
 
 #include "host/exact/test/meshes.h"

@@ -1,6 +1,4 @@
 // Rays one by one find what batches find, P's bits included, and in exact arithmetic the nearest.
-#include "host/intersect/cpu/single_ray_intersector.h"
-
 #include <gtest/gtest.h>
 
 #include "host/exact/test/meshes.h"
