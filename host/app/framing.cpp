@@ -6,7 +6,7 @@
 #include "host/app/format.h"
 #include "host/app/option_table.h"
 #include "host/exact/exact.h"
-#include "host/light/default_lights.h"
+#include "host/light/lights.h"
 #include "host/scene/view.h"
 
 namespace raygate {
