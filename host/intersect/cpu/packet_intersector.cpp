@@ -7,7 +7,6 @@
 
 #include "host/intersect/cpu/packet.h"
 #include "host/intersect/cpu/packet_steps.h"
-#include "host/intersect/point_error.h"
 #include "host/intersect/polygon_record.h"
 
 namespace raygate {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "host/intersect/cpu/ray_traversal.h"
-#include "host/intersect/point_error.h"
 #include "host/intersect/polygon_record.h"
 
 namespace raygate {
