@@ -17,7 +17,6 @@
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/record_cache.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_hit_testers.h"
 #include "host/intersect/unit/unit_intersector.h"

@@ -10,7 +10,7 @@
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
 #include "host/film/environment_file.h"
-#include "host/light/default_lights.h"
+#include "host/light/lights.h"
 #include "host/scene/instances.h"
 #include "host/scene/view.h"
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <queue>
 
-#include "host/bvh/bvh_view.h"
 #include "host/exact/exact.h"
 
 namespace raygate {

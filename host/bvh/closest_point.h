@@ -1,13 +1,12 @@
 // Proximity queries: the closest point on the triangles, and the triangles near a box.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <glm/glm.hpp>
 
 #include "host/base/lanes.h"
 #include "host/bvh/bvh.h"
-#include "host/bvh/bvh_view.h"
+#include "host/bvh/traversal.h"
 #include "host/exact/exact.h"
 
 namespace raygate {
@@ -28,29 +27,16 @@ struct ClosestPoint {
 template <Vectors kCode, class Visit>
 RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
                                   const Visit& visit) {
-  const BvhView tree(bvh);
-  std::uint32_t waiting[Bvh::kStackSize];
-  waiting[0] = 0;
-  for (int depth = 1; depth > 0;) {
-    Bvh::Node room;
-    const Bvh::Node& node = tree.node(waiting[--depth], room);
+  const auto touching = [&](const Bvh::Node& node) RAYGATE_BODY {
     IntLanes touches = IntLanes{} - 1;
     for (int k = 0; k < 3; ++k) {
       const FloatLanes lows = load<FloatLanes>(node.bounds[0][k]),
                        highs = load<FloatLanes>(node.bounds[1][k]);
       touches &= (lows <= high[k]) & (highs >= low[k]);
     }
-    for (LaneMask met = sign_mask<kCode>(touches); met != 0; met &= met - 1) {
-      const Bvh::Child child = node.child[std::countr_zero(met)];
-      tree.prefetch(child);
-      if (child.count == 0) {
-        waiting[depth++] = child.first;
-      } else if (visit(child)) {
-        return true;
-      }
-    }
-  }
-  return false;
+    return sign_mask<kCode>(touches);
+  };
+  return any_leaf(bvh, touching, visit);
 }
 
 /// Returns whether a triangle's axis-aligned box touches the closed box from `low` to `high`.

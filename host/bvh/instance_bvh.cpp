@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "host/base/lanes.h"
-#include "host/bvh/bvh_view.h"
 #include "host/bvh/sah_builder.h"
 #include "host/exact/exact.h"
 

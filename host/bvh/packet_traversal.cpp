@@ -1,11 +1,12 @@
 #include "host/bvh/packet_traversal.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
-#include <cmath>
 #include <limits>
 
 #include "host/bvh/box.h"
+#include "host/bvh/traversal.h"
 
 // Why no true hit is culled
 //
@@ -55,9 +56,9 @@ RAYGATE_INLINE float smallest_of(const FloatLanes& lanes) {
 }  // namespace
 
 PacketTraversal::PacketTraversal(const Bvh& bvh, int octant)
-    : cutoff_(FloatLanes{} - 1.0f),  // below any entry: no ray
-      bvh_(&bvh),
-      octant_(octant) {}
+    : bvh_(&bvh), octant_(octant), cutoff_(FloatLanes{} - 1.0f) {  // below any entry: no ray
+  stack_[0] = {{0, 0}, 0.0f, 0xFF};
+}
 
 void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction) {
   assert(octant_of(direction) == octant_);
@@ -72,13 +73,12 @@ void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3
 
 void PacketTraversal::set_cutoff(int lane, double t) { cutoff_[lane] = cutoff_beyond(t); }
 
-/// A packet's state in registers.
-struct PacketVisitor {
+/// The rays in registers.
+struct PacketTraversal::Rays {
   int octant;
   FloatLanes origin[3], inverse_near[3], inverse_far[3], cutoff;
-  LaneMask lanes[Bvh::kWidth];  ///< rays that meet each child of the last node
 
-  RAYGATE_INLINE explicit PacketVisitor(const PacketTraversal& packet)
+  RAYGATE_INLINE explicit Rays(const PacketTraversal& packet)
       : octant(packet.octant_), cutoff(packet.cutoff_) {
     for (int k = 0; k < 3; ++k) {
       origin[k] = packet.origin_[k];
@@ -88,8 +88,8 @@ struct PacketVisitor {
   }
 
   /// Returns the rays that meet a box, given by its near and far planes, and sets their entries.
-  RAYGATE_INLINE LaneMask lanes_at(const float (&near)[3], const float (&far)[3],
-                                   FloatLanes& enter) const {
+  RAYGATE_INLINE LaneMask meet(const float (&near)[3], const float (&far)[3],
+                               FloatLanes& enter) const {
     FloatLanes leave = cutoff;
     enter = FloatLanes{};
     for (int k = 0; k < 3; ++k) {
@@ -101,35 +101,23 @@ struct PacketVisitor {
     return sign_mask(enter <= leave);
   }
 
-  RAYGATE_INLINE bool should_visit(float entry, LaneMask& rays) const {
-    rays &= sign_mask(cutoff >= entry);
-    return rays != 0;
-  }
-
-  RAYGATE_INLINE LaneMask intersect_boxes(const Bvh::Node& node, LaneMask, FloatLanes& entry) {
-    LaneMask met = 0;
-    entry = FloatLanes{};
-    for (int i = 0; i < Bvh::kWidth && node.bounds[0][0][i] <= node.bounds[1][0][i]; ++i) {
-      float near[3], far[3];
-      for (int k = 0; k < 3; ++k) {
-        const int negative = octant >> k & 1;
-        near[k] = node.bounds[negative][k][i];
-        far[k] = node.bounds[negative ^ 1][k][i];
-      }
-      FloatLanes enter;
-      lanes[i] = lanes_at(near, far, enter);
-      if (lanes[i] == 0) continue;
-      met |= 1u << i;
-      enter = enter <= cutoff ? enter : FloatLanes{} + kFarthest;
-      entry[i] = smallest_of(enter);
+  /// Returns the rays that meet the box of a node's child, and sets the entry of the first.
+  RAYGATE_INLINE LaneMask meet(const Bvh::Node& node, int child, float& entry) const {
+    float near[3], far[3];
+    for (int k = 0; k < 3; ++k) {
+      const int negative = octant >> k & 1;
+      near[k] = node.bounds[negative][k][child];
+      far[k] = node.bounds[negative ^ 1][k][child];
     }
-    return met;
+    FloatLanes enter;
+    const LaneMask lanes = meet(near, far, enter);
+    enter = enter <= cutoff ? enter : FloatLanes{} + kFarthest;
+    entry = smallest_of(enter);
+    return lanes;
   }
-
-  RAYGATE_INLINE LaneMask rays_of_child(int i) const { return lanes[i]; }
 
   /// Returns the rays that meet the box of one triangle of a leaf.
-  RAYGATE_INLINE LaneMask lanes_at(const Bvh::Corners& corners) const {
+  RAYGATE_INLINE LaneMask meet(const Bvh::Corners& corners) const {
     Box box;
     box_around(corners[0], corners[1], corners[2], box);
     float near[3], far[3];
@@ -139,20 +127,21 @@ struct PacketVisitor {
       far[k] = negative ? box[k] : -box[k + 4];
     }
     FloatLanes enter;
-    return lanes_at(near, far, enter);
+    return meet(near, far, enter);
   }
 };
 
-void advance(PacketTraversal& packet, LeafVisits& leaf) {
+LeafVisits PacketTraversal::next_leaf() {
+  LeafVisits leaf;
   in_vectors([&](auto) RAYGATE_BODY {
-    PacketVisitor visitor(packet);
-    StackEntry<LaneMask> waiting;
-    const BvhView tree(*packet.bvh_);
-    leaf.count = 0;
-    while (leaf.count == 0 && next_leaf(tree, visitor, packet.stack_, waiting)) {
-      const std::uint32_t end = waiting.child.first + waiting.child.count;
-      for (std::uint32_t primitive = waiting.child.first; primitive < end; ++primitive) {
-        const LaneMask lanes = visitor.lanes_at(packet.bvh_->corners_of(primitive));
+    const Rays rays(*this);
+    const BvhView tree(*bvh_);
+    while (leaf.count == 0 && depth_ > 0) {
+      const StackEntry at = stack_[--depth_];
+      if ((at.lanes & sign_mask(rays.cutoff >= at.entry)) == 0) continue;
+      const std::uint32_t end = at.child.first + at.child.count;
+      for (std::uint32_t primitive = at.child.first; primitive < end; ++primitive) {
+        const LaneMask lanes = rays.meet(bvh_->corners_of(primitive));
         if (lanes == 0) continue;
         LeafVisit* const last = leaf.count == 0 ? nullptr : &leaf.visits[leaf.count - 1];
         if (last != nullptr && last->lanes == lanes && last->first + last->count == primitive) {
@@ -161,13 +150,25 @@ void advance(PacketTraversal& packet, LeafVisits& leaf) {
           leaf.visits[leaf.count++] = {primitive, 1, lanes};
         }
       }
+      if (at.child.count != 0) continue;
+      Bvh::Node room;
+      const Bvh::Node& node = tree.node(at.child.first, room);
+      const int bottom = depth_;
+      for (int i = 0; i < Bvh::kWidth && node.bounds[0][0][i] <= node.bounds[1][0][i]; ++i) {
+        StackEntry child = {node.child[i], 0.0f, 0};
+        child.lanes = rays.meet(node, i, child.entry);
+        if (child.lanes == 0) continue;
+        tree.prefetch(child.child);
+        // The order of the hardware's batches: entries without their last three bits, then indices.
+        child.entry = std::bit_cast<float>(std::bit_cast<std::int32_t>(child.entry) & ~7);
+        int place = depth_++;
+        for (; place > bottom && stack_[place - 1].entry <= child.entry; --place) {
+          stack_[place] = stack_[place - 1];
+        }
+        stack_[place] = child;
+      }
     }
   });
-}
-
-LeafVisits PacketTraversal::next_leaf() {
-  LeafVisits leaf;
-  advance(*this, leaf);
   return leaf;
 }
 

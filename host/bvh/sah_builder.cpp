@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <bit>
-#include <condition_variable>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <span>
+#include <vector>
 
-#include "host/base/checkpoint.h"
 #include "host/base/threads.h"
 
 namespace raygate {
 namespace {
 
 constexpr std::uint32_t kTaskSize = 4096;  // ranges up to this size are built by one thread
+constexpr int kRunsOfThread = 64;          // ranges for each thread that balance the work
 // Up to this size all splits are tried, otherwise those between bins.
 constexpr std::uint32_t kFew = 4;
 constexpr int kBins = 16;  // maximum number of bins per axis; half as many for small ranges
@@ -23,10 +22,10 @@ constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// A range of primitives that becomes a node, and its parent.
 struct Run {
-  std::uint32_t begin, end;
-  int depth;
-  std::uint32_t parent;
-  int side;
+  std::uint32_t begin = 0, end = 0;
+  int depth = 0;
+  std::uint32_t parent = 0;
+  int side = 0;
   [[nodiscard]] std::uint32_t size() const { return end - begin; }
 };
 
@@ -215,47 +214,29 @@ class SahBuilder {
   SahBuilder(BinaryBvh& tree, int max_depth)
       : tree_(tree),
         max_depth_(max_depth),
-        room_(std::make_unique_for_overwrite<Primitive[]>(tree.size())) {
-    waiting_.push_back({0, tree.size(), 0, 0, 0});
-  }
+        room_(std::make_unique_for_overwrite<Primitive[]>(tree.size())) {}
 
-  /// Does the work of each thread. An exception on one thread ends the others.
-  void work() {
-    try {
-      cut_runs();
-    } catch (...) {
-      const std::scoped_lock lock(mutex_);
-      has_failed_ = true;
-      changed_.notify_all();
-      throw;
+  /// Splits large ranges level by level until there are enough for all threads, then each of the
+  /// rest on one thread, depth first.
+  void build(int threads) {
+    const auto enough = static_cast<std::size_t>(kRunsOfThread * threads);
+    std::vector<Run> large = {{0, tree_.size(), 0, 0, 0}}, small;
+    while (!large.empty() && large.size() < enough) {
+      std::vector<Run> parts(2 * large.size());
+      for_each_on_threads(threads, large.size(),
+                          [&](std::size_t i) { split(large[i], &parts[2 * i]); });
+      large.clear();
+      for (const Run& run : parts) {
+        if (run.size() != 0) (run.size() > kTaskSize ? large : small).push_back(run);
+      }
     }
+    large.insert(large.end(), small.begin(), small.end());
+    for_each_on_threads(threads, large.size(), [&](std::size_t i) { split_all(large[i]); });
   }
 
  private:
-  void cut_runs() {
-    std::unique_lock lock(mutex_);
-    for (;;) {
-      changed_.wait(lock, [&] { return has_failed_ || !waiting_.empty() || busy_ == 0; });
-      if (has_failed_ || waiting_.empty()) return;
-      const Run run = waiting_.back();
-      waiting_.pop_back();
-      ++busy_;
-      lock.unlock();
-      checkpoint();
-      Run sides[2];
-      if (run.size() <= kTaskSize) {
-        split_all(run);
-      } else {
-        split(run, sides);
-      }
-      lock.lock();
-      --busy_;
-      if (run.size() > kTaskSize) waiting_.insert(waiting_.end(), {sides[0], sides[1]});
-      changed_.notify_all();
-    }
-  }
-
-  void split(const Run& run, Run (&sides)[2]) {
+  /// Splits a range in two. One with a single primitive has no parts.
+  void split(const Run& run, Run* parts) {
     if (run.size() == 1) {
       tree_.nodes[run.parent].child[run.side] = tree_.size() + run.begin;
       return;
@@ -270,26 +251,21 @@ class SahBuilder {
     node.first = run.begin;
     node.count = run.size();
     tree_.nodes[run.parent].child[run.side] = middle;
-    sides[0] = {run.begin, middle, run.depth + 1, middle, 0};
-    sides[1] = {middle, run.end, run.depth + 1, middle, 1};
+    parts[0] = {run.begin, middle, run.depth + 1, middle, 0};
+    parts[1] = {middle, run.end, run.depth + 1, middle, 1};
   }
 
   void split_all(const Run& run) {
-    Run sides[2];
-    split(run, sides);
+    Run parts[2];
+    split(run, parts);
     if (run.size() == 1) return;
-    split_all(sides[0]);
-    split_all(sides[1]);
+    split_all(parts[0]);
+    split_all(parts[1]);
   }
 
   BinaryBvh& tree_;
   int max_depth_;
   std::unique_ptr<Primitive[]> room_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<Run> waiting_;
-  int busy_ = 0;
-  bool has_failed_ = false;
 };
 
 }  // namespace
@@ -318,8 +294,7 @@ BinaryBvh::BinaryBvh(const TreeContent& content, int max_depth, int threads)
   std::erase_if(primitives, [](const Primitive& one) { return one.triangle == kLeftOut; });
   nodes.resize(primitives.size());
   if (primitives.empty()) return;
-  SahBuilder builder(*this, max_depth);
-  on_threads(static_cast<int>(std::min<std::size_t>(threads, tasks)), [&] { builder.work(); });
+  SahBuilder(*this, max_depth).build(threads);
 }
 
 }  // namespace raygate

@@ -1,97 +1,155 @@
-// BVH traversal, leaf by leaf and nearest first, for any visitor.
+// BVH traversal: the leaves whose boxes a query meets, and slab tests of rays with one origin.
 #pragma once
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
 
 #include "host/base/lanes.h"
-#include "host/bvh/bvh_view.h"
+#include "host/bvh/bvh.h"
 
 namespace raygate {
 
-/// A node or leaf to visit, with a lower bound of the distance at which the first ray enters its
-/// box, and the rays that may enter it.
-template <class Rays>
-struct StackEntry {
-  Bvh::Child child;
-  float entry;
-  [[no_unique_address]] Rays rays;
-};
-
-/// The nodes and leaves to visit. The nearest child of a node is on top of its siblings.
-template <class Rays>
-struct TraversalStack {
-  int depth;
-  StackEntry<Rays> waiting[Bvh::kStackSize];
-
-  explicit TraversalStack(const Rays& rays) : depth(1) { waiting[0] = {{0, 0}, 0.0f, rays}; }
-};
-
-/// Ray set of a traversal with a single ray.
-struct SingleRay {};
-
-/// Advances to the next leaf; returns false if there is none. The visitor may change its cutoff
-/// between calls. It provides
-///   * should_visit(entry, rays): returns whether a child is still relevant to any of `rays`; may
-///     remove rays;
-///   * intersect_boxes(node, rays, entry): returns a mask of the children that the rays meet, and
-///     sets their entry distances, 0 or more;
-///   * rays_of_child(i): returns the rays that meet child i, after intersect_boxes.
-template <class Visitor, class Rays>
-RAYGATE_INLINE bool next_leaf(const BvhView& tree, Visitor& visitor, TraversalStack<Rays>& stack,
-                              StackEntry<Rays>& leaf) {
-  using Key = std::int32_t;  // entry distance, with the child's index in the last bits
-  constexpr Key kNumber = Bvh::kWidth - 1;
-  constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
-  while (stack.depth > 0) {
-    leaf = stack.waiting[--stack.depth];
-    while (visitor.should_visit(leaf.entry, leaf.rays)) {
-      if (leaf.child.count != 0) return true;
-      Bvh::Node room;
-      const Bvh::Node& node = tree.node(leaf.child.first, room);
-      FloatLanes entry;
-      LaneMask met = visitor.intersect_boxes(node, leaf.rays, entry);
-      if (met == 0) break;
-      IntLanes keys = bits_in(entry);
-      keys = (keys & ~kNumber) | kNumbers;
-      const auto take = [&]() __attribute__((always_inline)) {
-        const Key key = keys[std::countr_zero(met)];
-        met &= met - 1;
-        return key;
-      };
-      const auto child_at = [&](Key key, StackEntry<Rays> & child) __attribute__((always_inline)) {
-        const int i = key & kNumber;
-        child = {node.child[i], std::bit_cast<float>(key & ~kNumber), visitor.rays_of_child(i)};
-        tree.prefetch(child.child);
-      };
-      const auto push = [&](Key key) __attribute__((always_inline)) {
-        StackEntry<Rays>& child = stack.waiting[stack.depth++];
-        child_at(key, child);
-      };
-      Key nearest = take();
-      if (met != 0) {
-        const Key next = take();
-        if (met == 0) {
-          push(std::max(nearest, next));
-          nearest = std::min(nearest, next);
-        } else {
-          Key sorted[Bvh::kWidth] = {std::max(nearest, next), std::min(nearest, next)};
-          int count = 2;
-          while (met != 0) {  // NOLINT(bugprone-infinite-loop): take() takes one of them
-            const Key key = take();
-            int place = count++;
-            for (; place > 0 && sorted[place - 1] < key; --place) sorted[place] = sorted[place - 1];
-            sorted[place] = key;
-          }
-          nearest = sorted[--count];
-          for (int i = 0; i < count; ++i) push(sorted[i]);
-        }
+/// Calls visit(leaf) for leaves, in any order, until a call returns true. Returns whether a call
+/// did. boxes(node) returns a mask of the node's children to visit.
+template <class Boxes, class Visit>
+RAYGATE_INLINE bool any_leaf(const Bvh& bvh, const Boxes& boxes, const Visit& visit) {
+  const BvhView tree(bvh);
+  std::uint32_t waiting[Bvh::kStackSize];
+  waiting[0] = 0;
+  for (int depth = 1; depth > 0;) {
+    Bvh::Node room;
+    const Bvh::Node& node = tree.node(waiting[--depth], room);
+    for (LaneMask met = boxes(node); met != 0; met &= met - 1) {
+      const Bvh::Child child = node.child[std::countr_zero(met)];
+      tree.prefetch(child);
+      if (child.count == 0) {
+        waiting[depth++] = child.first;
+      } else if (visit(child)) {
+        return true;
       }
-      child_at(nearest, leaf);
     }
   }
   return false;
+}
+
+// Why no true hit is culled
+//
+// packet_traversal.cpp proves it for one ray, whose entry into a box is the maximum of 0 and
+// float32((near - O) * inverse_near) of each axis, and whose exit is the minimum of its cutoff and
+// float32((far - O) * inverse_far). Both inverses have the sign of the direction's component, and
+// never grow with its magnitude, as rounding is monotonic. So bounds with inverse_near for a
+// magnitude no smaller than that of any ray, and inverse_far for one no larger, enter
+//   * no later than any ray, if near - O has the sign of I;
+//   * at 0 or before, as the rays do, otherwise;
+// and leave no earlier than any ray, if far - O has the sign of I (otherwise no ray hits anything
+// in the box). Their cutoff is at least that of each ray.
+
+/// Direction components with a smaller magnitude count as 0. Exit distances are multiplied by
+/// kExitGrowth. Both are the same for single rays and packets.
+inline constexpr float kSmallestComponent = 0x1p-100f;
+inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
+
+/// Returns the octant that a direction points into: bit k is set if component k is negative.
+[[nodiscard]] inline int octant_of(const glm::vec3& direction) {
+  return (direction.x < 0.0f ? 1 : 0) | (direction.y < 0.0f ? 2 : 0) | (direction.z < 0.0f ? 4 : 0);
+}
+
+/// Returns the distance beyond which boxes can be skipped for a ray with maximum distance `t`: t (1
+/// + 8 u) rounded up, and finite, so that an entry of +infinity means that a box is not entered.
+/// For negative t returns -1, so that every box is skipped.
+[[nodiscard]] inline float cutoff_beyond(double t) {
+  constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float; larger than any t or entry
+  if (t < 0.0) return -1.0f;
+  const auto nearest = std::bit_cast<std::int32_t>(static_cast<float>(t * kExitGrowth));
+  return std::bit_cast<float>(std::min(nearest + 1, kFarthest));
+}
+
+/// Bounds of rays with one origin and octant.
+struct PacketBounds {
+  float origin[3];
+  float inverse_near[3], inverse_far[3];
+  int octant;  ///< see octant_of
+
+  PacketBounds() = default;
+  /// Bounds of one ray. Its direction must be scaled.
+  PacketBounds(const glm::vec3& from, const glm::vec3& direction) : octant(octant_of(direction)) {
+    for (int k = 0; k < 3; ++k) {
+      const bool small = std::abs(direction[k]) < kSmallestComponent;
+      const float sign = (octant >> k & 1) != 0 ? -1.0f : 1.0f;
+      constexpr float kInfinity = std::numeric_limits<float>::infinity();
+      origin[k] = from[k];
+      inverse_near[k] = small ? sign / kSmallestComponent : 1.0f / direction[k];
+      inverse_far[k] = small ? sign * kInfinity : kExitGrowth * (1.0f / direction[k]);
+    }
+  }
+};
+
+/// Returns a mask of the node's children whose boxes the bounds meet before `cutoff` (see
+/// cutoff_beyond); sets entry[i] to the distance at which they enter child i.
+template <Vectors kCode = Vectors::kBaseline>
+RAYGATE_INLINE LaneMask intersect_children(const PacketBounds& bounds, const Bvh::Node& node,
+                                           float cutoff, FloatLanes& entry) {
+  FloatLanes enter = {}, leave = FloatLanes{} + cutoff;
+  for (int k = 0; k < 3; ++k) {
+    const int negative = bounds.octant >> k & 1;
+    const FloatLanes near = load<FloatLanes>(node.bounds[negative][k]),
+                     far = load<FloatLanes>(node.bounds[negative ^ 1][k]);
+    const FloatLanes t_near = (near - bounds.origin[k]) * bounds.inverse_near[k];
+    const FloatLanes t_far = (far - bounds.origin[k]) * bounds.inverse_far[k];
+    enter = t_near > enter ? t_near : enter;
+    leave = t_far < leave ? t_far : leave;
+  }
+  entry = enter;
+  return sign_mask<kCode>(enter <= leave);
+}
+
+/// Bounds of eight packets with one origin and octant. An absent packet has a negative cutoff.
+struct PacketBounds8 {
+  FloatLanes inverse_near[3], inverse_far[3];
+  FloatLanes cutoff;
+
+  /// Sets one axis from bounds of the magnitudes of the rays' direction components.
+  RAYGATE_INLINE void set(int axis, int octant, const FloatLanes& smallest,
+                          const FloatLanes& largest) {
+    const float sign = (octant >> axis & 1) != 0 ? -1.0f : 1.0f;
+    const FloatLanes least = FloatLanes{} + kSmallestComponent;
+    inverse_near[axis] = sign / (largest > least ? largest : least);
+    inverse_far[axis] = smallest < least
+                            ? FloatLanes{} + sign * std::numeric_limits<float>::infinity()
+                            : kExitGrowth * (sign / smallest);
+  }
+};
+
+/// Returns one of the eight packets as bounds for intersect_children.
+RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
+                                      const PacketBounds& like) {
+  PacketBounds bounds = like;
+  for (int k = 0; k < 3; ++k) {
+    bounds.inverse_near[k] = bounds8.inverse_near[k][which];
+    bounds.inverse_far[k] = bounds8.inverse_far[k][which];
+  }
+  return bounds;
+}
+
+/// Returns a mask of the packets that meet the box of a node's child.
+template <Vectors kCode = Vectors::kBaseline>
+RAYGATE_INLINE LaneMask intersect_packets(const PacketBounds8& bounds8, const glm::vec3& origin,
+                                          int octant, const Bvh::Node& node, int child) {
+  FloatLanes enter = {}, leave = bounds8.cutoff;
+  for (int k = 0; k < 3; ++k) {
+    const int negative = octant >> k & 1;
+    const float near = node.bounds[negative][k][child] - origin[k];
+    const float far = node.bounds[negative ^ 1][k][child] - origin[k];
+    const FloatLanes t_near = near * bounds8.inverse_near[k];
+    const FloatLanes t_far = far * bounds8.inverse_far[k];
+    enter = t_near > enter ? t_near : enter;
+    leave = t_far < leave ? t_far : leave;
+  }
+  return sign_mask<kCode>(enter <= leave);
 }
 
 }  // namespace raygate

@@ -9,8 +9,6 @@
 #include <limits>
 #include <utility>
 
-#include "host/base/lanes.h"
-
 namespace raygate {
 
 // The bound of an edge test

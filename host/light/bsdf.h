@@ -97,15 +97,16 @@ class Bsdf {
       const Triple<T> reflected = above(light, facets_.eval(light));
       return has_rough_glass() ? reflected + facets_.transmitted(light).value : reflected;
     }
-    return above(light, (kind_ & kGlossy) != 0 ? diffuse_ * per_pi() + glossy_ * phong_lobe(light)
-                                               : diffuse_ * per_pi());
+    return above(light, (kind_ & kGlossy) != 0
+                            ? diffuse_ * spread<T>(kPerPi) + glossy_ * phong_lobe(light)
+                            : diffuse_ * spread<T>(kPerPi));
   }
   /// Returns eval(), with the highlight of mirrors in lanes whose light is a point.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light,
                                               const MaskOf<T>& is_from_point) const {
     if (!has_highlight() || !any(is_from_point)) return eval(light);
     const Triple<T> shown = choose(is_from_point, highlight(), zero<T>());
-    return above(light, diffuse_ * per_pi() + (glossy_ + shown) * phong_lobe(light));
+    return above(light, diffuse_ * spread<T>(kPerPi) + (glossy_ + shown) * phong_lobe(light));
   }
 
   /// Samples a direction, approximately in proportion to eval() times the cosine, for a point of
@@ -134,9 +135,6 @@ class Bsdf {
   [[nodiscard]] RAYGATE_INLINE const MetallicRoughnessLobes<T>& facets() const { return facets_; }
 
  private:
-  static constexpr float kPerPi = 0.318309886183790671537767526745f;
-
-  [[nodiscard]] RAYGATE_INLINE static T per_pi() { return spread<T>(kPerPi); }
   [[nodiscard]] RAYGATE_INLINE Triple<T> above(const Triple<T>& light,
                                                const Triple<T>& value) const {
     return choose(dot(normal_, light) > 0.0f, value, zero<T>());

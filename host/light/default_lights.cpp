@@ -1,5 +1,3 @@
-#include "host/light/default_lights.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -170,7 +170,6 @@ struct ShadingScene {
 template <class T>
 RAYGATE_INLINE Triple<T> catcher_colour(const Lights& lights, const glm::vec3& around,
                                         const Surface<T>& surface) {
-  constexpr float kPerPi = 0.318309886183790671537767526745f;
   Triple<T> light = spread<T>(around);
   for (std::uint32_t i = 0; i < lights.points().size(); ++i) {
     const Lights::Light& light_record = lights.light(i);

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "host/intersect/intersect_counters.h"
+
 namespace raygate {
 
 enum class IntegratorKind {
@@ -47,13 +49,7 @@ struct SkipCounters {
   std::uint64_t first_occluders = 0;  ///< shadow rays ended at the first occluder
 
   SkipCounters& operator+=(const SkipCounters& other) {
-    culled_tests += other.culled_tests;
-    records += other.records;
-    lights_behind += other.lights_behind;
-    weightless += other.weightless;
-    dim += other.dim;
-    empty_tile_rays += other.empty_tile_rays;
-    first_occluders += other.first_occluders;
+    add_counters(*this, other);
     return *this;
   }
 };

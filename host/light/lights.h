@@ -18,6 +18,8 @@
 
 namespace raygate {
 
+class Camera;
+
 /// Lights that belong to a camera. They replace the scene's point lights and background.
 struct CameraLights {
   std::vector<PointLight> points;
@@ -28,6 +30,16 @@ struct CameraLights {
   /// Radius of spheres that replace the points, for soft shadows; they are outside the scene.
   double radius = 0.0;
 };
+
+/// Returns lights for a scene without any (no lights, no background, and no emission except
+/// textures that hardly light anything): a light to the upper left of the camera with soft shadows,
+/// or at the camera if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
+[[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera);
+
+/// Returns lights for a preview, whose camera the user did not choose: as above, with a second,
+/// weaker light from the right, and also for scenes lit only by a background or by faces whose
+/// emission lights nothing.
+[[nodiscard]] std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& camera);
 
 /// Returns a float, with the largest float instead of infinity.
 [[nodiscard]] inline float finite_float(double x) {

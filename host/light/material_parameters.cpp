@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "host/light/facet_albedo.h"
 #include "host/light/scattering.h"
 
 namespace raygate {

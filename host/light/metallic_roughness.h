@@ -3,7 +3,6 @@
 #pragma once
 
 #include "host/base/triple.h"
-#include "host/light/facet_albedo.h"
 #include "host/light/material_parameters.h"
 #include "host/light/sampler.h"
 #include "host/light/scattering.h"
@@ -231,7 +230,6 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
 
  private:
-  static constexpr float kPerPi = 0.318309886183790671537767526745f;
   static constexpr float kCoatReflectance = 0.04f;
 
   /// Returns the albedos at a cosine of facets with reflectance 1 and with Schlick's weight.

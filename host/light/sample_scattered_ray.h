@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "host/light/direct_light.h"
 #include "host/light/hits.h"
 #include "host/light/light_paths.h"
+#include "host/light/shade.h"
 
 namespace raygate {
 

@@ -1,13 +1,15 @@
-// The shading functions of the integrators, for hits of one kind.
+// The shading functions of the integrators, for hits of one kind, and the unoccluded contribution
+// of light samples to hits.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
 #include <span>
 #include <type_traits>
 
 #include "host/base/vectors.h"
-#include "host/light/direct_light.h"
 #include "host/light/hits.h"
 
 namespace raygate {
@@ -55,5 +57,143 @@ ShadeFunction shade_light_path;
 /// adds emission, and spawns reflected and refracted rays. A ray's sample is a multiple of
 /// kSpecularHistories plus its history, so that radiance is separated by history.
 ShadeFunction shade_emitters;
+
+/// Returns a finite number: infinity becomes the largest float, NaN becomes 0.
+template <class T>
+RAYGATE_INLINE T bounded(const T& x) {
+  const T most = spread<T>(std::numeric_limits<float>::max());
+  return choose(x < most, x, choose(x == x, most, T{}));
+}
+template <class T>
+RAYGATE_INLINE Triple<T> bounded(const Triple<T>& x) {
+  return {bounded(x.x), bounded(x.y), bounded(x.z)};
+}
+
+/// Unoccluded light that arrives at each hit from a point or a direction.
+template <class T>
+struct IncidentLight {
+  MaskOf<T> is_asked = T{} > 0.0f;       ///< whether the hit samples this light
+  MaskOf<T> is_area = is_asked;          ///< from an area light
+  MaskOf<T> is_point_light = is_asked;   ///< from a point light
+  Triple<T> direction = zero<T>();       ///< unit vector towards the light
+  T distance_squared = spread<T>(1.0f);  ///< in units of Lights; 1: a distant light
+  T cosine = T{};                        ///< Hits::cosine of the direction; 0: no light arrives
+  T light_cosine = T{};                  ///< of an area light
+  Triple<T> emission = zero<T>();        ///< radiance, intensity or irradiance
+  T pdf = spread<T>(
+      1.0f);  ///< probability of the light times the density of its point (per area) or direction
+  Triple<T> target = zero<T>();  ///< target and index as in LightSample
+  WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
+
+  IncidentLight() = default;
+  /// Sets the geometry of light from a point.
+  RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
+      : target(position) {
+    constexpr float kNear = 1e-30f;  // the inverse is within the range of float
+    const Triple<T> way = (position - hits.surface.point) * spread<T>(lights.per_unit());
+    distance_squared = dot(way, way);
+    direction = way * (1.0f / root(distance_squared));
+    cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
+  }
+  /// Sets the geometry of a distant light in the direction of a unit vector.
+  RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
+      : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
+
+  /// Copies the lanes of `other` in which `is_asked` is set.
+  RAYGATE_INLINE void take(const IncidentLight& other) {
+    const auto put = [&](auto& own, const auto& others)
+                         RAYGATE_BODY { own = choose(other.is_asked, others, own); };
+    put(is_area, other.is_area);
+    put(is_point_light, other.is_point_light);
+    put(direction, other.direction);
+    put(distance_squared, other.distance_squared);
+    put(cosine, other.cosine);
+    put(light_cosine, other.light_cosine);
+    put(emission, other.emission);
+    put(pdf, other.pdf);
+    put(target, other.target);
+    put(index, other.index);
+    is_asked = is_asked | other.is_asked;
+  }
+};
+
+/// Returns the light from points of area lights that were sampled uniformly in area.
+template <class T>
+RAYGATE_INLINE IncidentLight<T> area_light(const Lights& lights, const Hits<T>& hits,
+                                           const LightPoint<T>& point, const Triple<T>& radiance) {
+  IncidentLight<T> light(lights, hits, point.position);
+  light.is_area = T{} == 0.0f;
+  light.light_cosine = absolute(dot(point.normal, light.direction));
+  light.emission = radiance;
+  light.index = point.primitive;
+  return light;
+}
+
+/// Returns the radiance that hits scatter back along their rays; `scattered` is the BSDF.
+template <class T>
+RAYGATE_INLINE Triple<T> scattered_light(const Hits<T>& hits, const IncidentLight<T>& light,
+                                         const Triple<T>& scattered, const T& mis_weight) {
+  const Triple<T>& throughput = hits.path.throughput;
+  Triple<T> sent = throughput * (scattered * mis_weight) * light.emission *
+                   (light.cosine / (light.distance_squared * light.pdf));
+  if (any(light.is_area)) {
+    const T cosines = light.cosine * light.light_cosine;
+    sent = choose(light.is_area,
+                  throughput * scattered * (cosines / light.distance_squared) *
+                      (light.emission * (mis_weight / light.pdf)),
+                  sent);
+  }
+  return choose(light.cosine > 0.0f, bounded(sent), zero<T>());
+}
+
+/// Stores a light sample of each hit that contributes `sent` if it is not occluded, as sample
+/// `number` of the hit.
+template <class T>
+RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number,
+                                     const IncidentLight<T>& light, const Triple<T>& sent,
+                                     bool is_to_camera = false) {
+  static_assert(sizeof(LightSample) == 32);
+  const auto none = T{} > 0.0f;
+  const auto is_dark = (sent.x == 0.0f) & (sent.y == 0.0f) & (sent.z == 0.0f);
+  const auto is_behind = hits.bsdf.has_rough_glass()
+                             ? MaskOf<T>(dot(hits.surface.flat_normal, light.direction) < 0.0f)
+                             : none;
+  const T words[] = {sent.x,
+                     sent.y,
+                     sent.z,
+                     light.target.x,
+                     light.target.y,
+                     light.target.z,
+                     float_of(light.index),
+                     flag_words<T>(light.is_asked, is_dark, is_behind & !is_dark,
+                                   light.is_point_light, is_to_camera ? !none : none)};
+  LightSample* samples[Hits<T>::kCount];
+  for (int k = 0; k < hits.count; ++k)
+    samples[k] = &hits.block.light_samples_of(hits.place[k])[number];
+  store_records(words, samples, hits.count);
+}
+
+/// Returns a^2 / (a^2 + b^2); a may be infinite.
+template <class T>
+RAYGATE_INLINE T power_heuristic(const T& a, const T& b) {
+  const T over = b / a;
+  return 1.0f / (1.0f + over * over);
+}
+
+/// Returns the radiance of the environment or background in the direction of a unit vector.
+template <class T>
+RAYGATE_INLINE Triple<T> sky(const Lights& lights, const Triple<T>& direction) {
+  const Environment* const environment = lights.environment();
+  return environment != nullptr ? environment->radiance(direction) : spread<T>(lights.background());
+}
+
+/// Returns the fraction of a spot light's intensity in the direction of the hits.
+template <class T>
+RAYGATE_INLINE T spot_falloff_at(const Hits<T>& hits, const Lights& lights,
+                                 const Triple<T>& position, const Triple<T>& axis, const T& scale,
+                                 const T& offset) {
+  return spot_falloff(-dot(IncidentLight<T>(lights, hits, position).direction, axis), scale,
+                      offset);
+}
 
 }  // namespace raygate

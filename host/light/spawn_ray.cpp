@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <vector>
 
+#include "host/base/triple.h"
 #include "host/bvh/closest_point.h"
-#include "host/light/spawn_ray_lanes.h"
 
 // How far O' is from X
 //
@@ -19,6 +21,34 @@
 // vectors |n|_1 |n|_max <= (1 + sqrt(3)) / 2 < 1.37, so already k = 0, with u against 0.69 u, is on
 // the right side; the difference, 0.3 u, far exceeds the error of X in double. If X + u m crosses
 // into the next binade its step doubles, and k = 1 suffices.
+
+// Side of candidate 0
+//
+// X, u and candidate 0, the float nearest to X + u m, are those of spawn_ray.cpp. The error of X in
+// double is at most u / 16 on each axis; otherwise the lane is rejected. With X and m this
+// accurate, and no coordinate rounded by more than u / 2, candidate 0 is beyond the plane by
+//   u / |n|_max - (u / 2 + u / 16) |n|_1 > u (1 - 1.37 * 9 / 16) / |n|_max > 0.
+//
+// Error of X: a component of NeighborClearance::normal is off by less than 1, so D = (A - O) . N is
+// off by less than |A - O|_max, and I . N by less than 2, as no component of I is larger (rounding
+// of the dot products is part of kNormalError).
+//
+// Why no triangle is near
+//
+// Let w be the least of the three weights of the exact X, and c the triangle's clearance: all other
+// triangles are at least c w - margin away, or farther than spawn_reach, or an overlap of the
+// triangle (see NeighborClearances), or in the triangle's plane. Triangles that could invalidate
+// candidate 0 are within 8 u of the exact X, and within 5 u of the candidate on each axis: in the
+// box around it and X in double, enlarged by 2 u on every side. 16 u are within spawn_reach.
+//
+// c times a weight is computed from the candidate p, in float, as G . (p - A). G is c times the
+// weight's gradient: a vector in the triangle's plane, no longer than 1/8, as c is at most an
+// eighth of the least height. So the offset u of p from the plane does not matter, and rounding p
+// changes c w by less than u. With s = |p - A|_1, rounding G, p - A and the dot product changes it
+// by less than 2^-23 s; the third weight, c minus the two others, by less than 2^-21 (s + c). So no
+// triangle is near if
+//   c w > 16 u + 2^-20 (s + c) + margin
+// (8 of the 16 u suffice) and no overlap is within 16 u of the candidate.
 
 namespace raygate {
 namespace {
@@ -82,6 +112,104 @@ int side_of_ray(const Ray& ray, const Corners& hit, const Corners& other, SpawnS
   return side == SpawnSide::kIncident ? before : -before;
 }
 
+/// Four hits at which rays are spawned.
+struct SpawnHits {
+  Triple<DoubleQuad> normal;  ///< up to `gradient`: in the format of NeighborClearance
+  FloatQuad length;
+  Triple<FloatQuad> corner, gradient[2];
+  Triple<FloatQuad> origin, direction;  ///< of the rays
+
+  RAYGATE_INLINE SpawnHits(const NeighborClearance* const (&triangles)[kQuad],
+                           const Ray* const (&rays)[kQuad]) {
+    static_assert(
+        offsetof(NeighborClearance, normal) == 0 && offsetof(NeighborClearance, length) == 24 &&
+        offsetof(NeighborClearance, corner) == 28 && offsetof(NeighborClearance, gradient) == 40 &&
+        sizeof(NeighborClearance) == 64 && sizeof(Ray) == 24);
+    DoubleQuad reals[kQuad];
+    columns(triangles, 0, reals);
+    normal = {reals[0], reals[1], reals[2]};
+    const auto pairs = reinterpret_cast<FloatLanes>(reals[3]);
+    length = __builtin_shufflevector(pairs, pairs, 0, 2, 4, 6);
+    corner.x = __builtin_shufflevector(pairs, pairs, 1, 3, 5, 7);
+    FloatQuad words[kQuad], more[kQuad];
+    columns(triangles, 32, words);
+    columns(triangles, 48, more);
+    corner.y = words[0];
+    corner.z = words[1];
+    gradient[0] = {words[2], words[3], more[0]};
+    gradient[1] = {more[1], more[2], more[3]};
+    columns(rays, 0, words);
+    origin = {words[0], words[1], words[2]};
+    columns(rays, 8, words);
+    direction = {words[1], words[2], words[3]};
+  }
+
+ private:
+  /// Transposes the numbers at byte `offset` of four objects: row k has the k-th number of each.
+  template <class Row, class Object>
+  RAYGATE_INLINE static void columns(const Object* const (&objects)[kQuad], std::size_t offset,
+                                     Row (&rows)[kQuad]) {
+#pragma GCC unroll 4
+    for (int i = 0; i < kQuad; ++i) {
+      std::memcpy(&rows[i], reinterpret_cast<const char*>(objects[i]) + offset, sizeof(Row));
+    }
+    transpose(rows);
+  }
+};
+
+template <Vectors kCode>
+RAYGATE_INLINE Triple<DoubleQuad> widened(const Triple<FloatQuad>& x) {
+  return {widen<kCode>(x.x), widen<kCode>(x.y), widen<kCode>(x.z)};
+}
+
+/// Returns the distance from non-negative floats to the next ones.
+RAYGATE_INLINE FloatQuad step_of(const FloatQuad& x) { return float_of(bits_in(x) + 1) - x; }
+
+/// Returns the largest magnitudes.
+template <class T>
+RAYGATE_INLINE T largest_size(const Triple<T>& v) {
+  return maximum(absolute(v.z), maximum(absolute(v.y), absolute(v.x)));
+}
+
+/// Sets `point` to candidate 0 of each hit, on the incident side if `way` is -1 and on the
+/// transmitted side if it is 1. Valid if `is_clear` is -1 and no overlap is within `reach`.
+template <Vectors kCode>
+RAYGATE_INLINE void find_candidates(const SpawnHits& hits, const FloatQuad& way, float margin,
+                                    Triple<FloatQuad>& point, FloatQuad& reach, IntQuad& is_clear) {
+  // X = O + t I, and u.
+  const Triple<DoubleQuad> origin = widened<kCode>(hits.origin),
+                           direction = widened<kCode>(hits.direction);
+  const Triple<DoubleQuad> from_origin = widened<kCode>(hits.corner) - origin;
+  const DoubleQuad plane = dot(from_origin, hits.normal), slope = dot(direction, hits.normal);
+  const DoubleQuad below = absolute(slope), inverse = 1.0 / below;
+  const DoubleQuad t = absolute(plane) * inverse;
+  const Triple<DoubleQuad> x = origin + direction * t;
+  const FloatQuad u = step_of(largest_size(narrow(x)));
+  const DoubleQuad step = widen<kCode>(u);
+
+  // Error bound of X, with |I|_max < 2.
+  const DoubleQuad origin_size = widen<kCode>(largest_size(hits.origin)), along_ray = t + t;
+  const DoubleQuad error = 0x1p-50 * (origin_size + along_ray) +
+                           2.01 * inverse * (largest_size(from_origin) + along_ray);
+  const LongQuad is_sure = (below >= 0x1p35) & (16.0 * error <= step);
+
+  // Candidate 0. The normal points to the side where orient3d is -1.
+  const DoubleQuad turn = widen<kCode>(way);
+  const DoubleQuad scale = (plane > 0.0 ? turn : -turn) / largest_size(hits.normal);
+  point = narrow(x + hits.normal * scale * step);
+
+  // c times the least weight of X.
+  const FloatQuad length = absolute(hits.length);
+  const Triple<FloatQuad> p = point - hits.corner;
+  const FloatQuad second = dot(p, hits.gradient[0]), third = dot(p, hits.gradient[1]);
+  const FloatQuad least = minimum(minimum(FloatQuad(length - second - third), second), third);
+  const FloatQuad error_of_least =
+      0x1p-20f * (absolute(p.x) + absolute(p.y) + absolute(p.z) + length) + margin;
+  reach = 16.0f * u;
+  is_clear =
+      (step_of(largest_size(point)) <= u) & (least > reach + error_of_least) & whole(is_sure);
+}
+
 }  // namespace
 
 std::optional<glm::vec3> RaySpawner::find(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
@@ -91,48 +219,48 @@ std::optional<glm::vec3> RaySpawner::find(const Ray& ray, std::uint32_t primitiv
   return origin ? std::optional(*origin) : std::nullopt;
 }
 
-template <Vectors kCode, class T>
-RAYGATE_INLINE void RaySpawner::find_some(const SpawnQuery* queries, SpawnOrigin* origins) {
-  constexpr int kWidth = kLanesOf<T>;
-  const NeighborClearance* triangles[kWidth];
-  const Ray* rays[kWidth];
-  IntOf<T> ways;
-#pragma GCC unroll 8
-  for (int i = 0; i < kWidth; ++i) {
-    triangles[i] = &clearance_of(queries[i].primitive, i);
+template <Vectors kCode>
+RAYGATE_INLINE void RaySpawner::find_four(const SpawnQuery* queries, SpawnOrigin* origins) {
+  const NeighborClearance* triangles[kQuad];
+  const Ray* rays[kQuad];
+  FloatQuad ways;
+#pragma GCC unroll 4
+  for (int i = 0; i < kQuad; ++i) {
+    const std::uint32_t primitive = queries[i].primitive;
+    if (bvh_.is_instanced(primitive)) [[unlikely]] {
+      triangles[i] = &(found_[i] = clearances_.look(primitive)).clearance;
+    } else {
+      triangles[i] = &clearances_.of(primitive);
+    }
     rays[i] = queries[i].ray;
-    ways[i] = queries[i].side == SpawnSide::kIncident ? -1 : 1;
+    ways[i] = queries[i].side == SpawnSide::kIncident ? -1.0f : 1.0f;
   }
-  SpawnHits<T> hits;
-  spawn::load(triangles, rays, hits);
-  Triple<T> point;
-  T reach;
-  MaskOf<T> is_clear;
-  spawn_lanes<kCode>(hits, narrow(ways), clearances_.margin(), point, reach, is_clear);
-  FloatQuad rows[kWidth];
-  spawn::store(point, is_clear, rows);
+  const SpawnHits hits(triangles, rays);
+  Triple<FloatQuad> point;
+  FloatQuad reach;
+  IntQuad is_clear;
+  find_candidates<kCode>(hits, ways, clearances_.margin(), point, reach, is_clear);
+  FloatQuad rows[kQuad] = {point.x, point.y, point.z, float_of(is_clear)};
+  transpose(rows);
   static_assert(sizeof(SpawnOrigin) == sizeof(FloatQuad));
   std::memcpy(static_cast<void*>(origins), rows, sizeof rows);
 
   const LaneMask good = sign_mask(is_clear);
   const LaneMask has_overlaps = sign_mask(bits_in(hits.length));
-  constexpr LaneMask kAll = (LaneMask{1} << kWidth) - 1;
-  LaneMask rest = (~good & kAll) | has_overlaps;
-  if (rest == 0) return;
-  float reaches[kWidth];
-  std::memcpy(reaches, &reach, sizeof reaches);
-  for (; rest != 0; rest &= rest - 1) {
+  constexpr LaneMask kAll = (LaneMask{1} << kQuad) - 1;
+  for (LaneMask rest = (~good & kAll) | has_overlaps; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const SpawnQuery& query = queries[i];
     if ((good >> i & 1) != 0) {
       const glm::vec3 plain = *origins[i];
+      const float distance = reach[i];
       const auto is_there = [&](std::uint32_t primitive) {
-        return !surely_apart(plain - reaches[i], plain + reaches[i], bvh_.corners_of(primitive));
+        return !surely_apart(plain - distance, plain + distance, bvh_.corners_of(primitive));
       };
       const Overlaps& overlaps = bvh_.is_instanced(query.primitive)
-                                     ? found_[static_cast<std::size_t>(i)].overlaps
+                                     ? found_[i].overlaps
                                      : clearances_.overlaps_of(query.primitive);
-      if (!overlaps.any_near<kCode>(plain, reaches[i], is_there)) continue;
+      if (!overlaps.any_near<kCode>(plain, distance, is_there)) continue;
     }
     const auto origin = search(*query.ray, query.primitive, query.side);
     origins[i] = origin ? SpawnOrigin{*origin, 1} : SpawnOrigin{};
@@ -141,32 +269,25 @@ RAYGATE_INLINE void RaySpawner::find_some(const SpawnQuery* queries, SpawnOrigin
 
 void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin> origins) {
   in_vectors([&](auto code) RAYGATE_BODY {
-    using T = std::conditional_t<code() == Vectors::kAvx512, FloatLanes, FloatQuad>;
-    constexpr std::size_t kWidth = kLanesOf<T>;
-    constexpr std::size_t kAhead = 2 * kWidth;  // prefetch distance
+    constexpr std::size_t kAhead = 2 * kQuad;  // prefetch distance
     std::size_t first = 0;
-    for (; first + kWidth <= queries.size(); first += kWidth) {
-      if (first + kAhead + kWidth <= queries.size()) {
+    for (; first + kQuad <= queries.size(); first += kQuad) {
+      if (first + kAhead + kQuad <= queries.size()) {
         const SpawnQuery* const soon = &queries[first + kAhead];
-        for (std::size_t i = 0; i < kWidth; ++i) clearances_.prefetch_again(soon[i].primitive);
+        for (std::size_t i = 0; i < kQuad; ++i) clearances_.prefetch_again(soon[i].primitive);
       }
-      find_some<code(), T>(&queries[first], &origins[first]);
+      find_four<code()>(&queries[first], &origins[first]);
     }
     if (first == queries.size()) return;
     // The remaining queries; the last one fills the unused lanes.
-    SpawnQuery last[kWidth];
-    SpawnOrigin last_origins[kWidth];
-    for (std::size_t i = 0; i < kWidth; ++i) {
+    SpawnQuery last[kQuad];
+    SpawnOrigin last_origins[kQuad];
+    for (std::size_t i = 0; i < kQuad; ++i) {
       last[i] = queries[std::min(first + i, queries.size() - 1)];
     }
-    find_some<code(), T>(last, last_origins);
+    find_four<code()>(last, last_origins);
     std::copy_n(last_origins, queries.size() - first, &origins[first]);
   });
-}
-
-const NeighborClearance& RaySpawner::find_clearance(std::uint32_t primitive, std::size_t lane) {
-  if (found_.size() <= lane) found_.resize(kLanes);
-  return (found_[lane] = clearances_.look(primitive)).clearance;
 }
 
 std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive,

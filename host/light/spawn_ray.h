@@ -5,7 +5,6 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "host/base/vectors.h"
 #include "host/bvh/bvh.h"
@@ -71,7 +70,7 @@ class RaySpawner {
   /// Prefetches the clearance of a primitive of a later query.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const { clearances_.prefetch(primitive); }
 
-  /// Sets origins[i] to O' for queries[i], as find() above does, but several at a time.
+  /// Sets origins[i] to O' for queries[i], as find() above does, but four at a time.
   void find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin> origins);
 
   /// Returns whether `direction` leaves the triangle that `ray` hit on the side of O'. Directions
@@ -84,17 +83,8 @@ class RaySpawner {
   [[nodiscard]] std::uint64_t triangle_tests() const { return triangle_tests_; }
 
  private:
-  template <Vectors kCode, class T>
-  RAYGATE_INLINE void find_some(const SpawnQuery* queries, SpawnOrigin* origins);
-
-  /// Returns the clearance for the query of a lane.
-  [[nodiscard]] RAYGATE_INLINE const NeighborClearance& clearance_of(std::uint32_t primitive,
-                                                                     int lane) {
-    if (bvh_.is_instanced(primitive)) [[unlikely]]
-      return find_clearance(primitive, static_cast<std::size_t>(lane));
-    return clearances_.of(primitive);
-  }
-  [[nodiscard]] const NeighborClearance& find_clearance(std::uint32_t primitive, std::size_t lane);
+  template <Vectors kCode>
+  RAYGATE_INLINE void find_four(const SpawnQuery* queries, SpawnOrigin* origins);
 
   /// Does the work of find() by a search of nearby triangles.
   [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t primitive,
@@ -102,7 +92,7 @@ class RaySpawner {
 
   const NeighborClearances& clearances_;
   const Bvh& bvh_;
-  std::vector<NeighborClearances::Found> found_;  // of instances' triangles, by lane
+  NeighborClearances::Found found_[kQuad];  // of instances' triangles, by lane
   std::uint64_t triangle_tests_ = 0;
 };
 

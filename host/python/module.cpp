@@ -29,7 +29,6 @@
 #include "host/film/display.h"
 #include "host/film/exr.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/record_cache.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_hit_testers.h"
 #include "host/intersect/unit/unit_intersector.h"

@@ -6,7 +6,7 @@
 #include "host/bvh/bvh.h"
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
-#include "host/light/default_lights.h"
+#include "host/light/lights.h"
 #include "host/light/prepared_scene.h"
 #include "host/render/render_settings.h"
 #include "host/scene/camera.h"

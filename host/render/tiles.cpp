@@ -39,34 +39,21 @@ class TileFrustum {
   std::array<glm::dvec3, 4> inwards_;
 };
 
-/// Visits the boxes that are not surely outside the frustum.
-struct FrustumVisitor {
-  const TileFrustum& frustum;
-
-  [[nodiscard]] static bool should_visit(float, SingleRay) { return true; }
-  [[nodiscard]] static SingleRay rays_of_child(int) { return {}; }
-  [[nodiscard]] LaneMask intersect_boxes(const Bvh::Node& node, SingleRay,
-                                         FloatLanes& entry) const {
-    entry = FloatLanes{};
-    LaneMask met = 0;
-    for (int i = 0; i < Bvh::kWidth; ++i) {
-      const auto [low, high] = node.box(i);
-      if (low.x <= high.x && !frustum.is_outside(low, high)) met |= 1u << i;
-    }
-    return met;
-  }
-};
-
 }  // namespace
 
 bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, const PixelRect& tile,
                       double margin) {
   if (!camera.is_pinhole()) return true;
   const TileFrustum frustum(camera, film, tile, margin);
-  FrustumVisitor visitor{frustum};
-  TraversalStack<SingleRay> stack({});
-  StackEntry<SingleRay> leaf;
-  return next_leaf(BvhView(bvh), visitor, stack, leaf);
+  const auto boxes = [&](const Bvh::Node& node) {
+    LaneMask met = 0;
+    for (int i = 0; i < Bvh::kWidth; ++i) {
+      const auto [low, high] = node.box(i);
+      if (low.x <= high.x && !frustum.is_outside(low, high)) met |= 1u << i;
+    }
+    return met;
+  };
+  return any_leaf(bvh, boxes, [](const Bvh::Child&) { return true; });
 }
 
 bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,

@@ -1,4 +1,5 @@
-// The tree holds every triangle once, in boxes that hold it, at a bounded depth.
+// The tree holds every triangle once, in boxes that hold it, at a bounded depth; also below
+// instances.
 #include "host/bvh/bvh.h"
 
 #include <gtest/gtest.h>
@@ -11,18 +12,80 @@
 #include <stdexcept>
 
 #include "host/bvh/sah_builder.h"
-#include "host/bvh/test/walk_bvh.h"
 #include "host/exact/test/meshes.h"
+#include "host/scene/test/instanced_scene.h"
 
 namespace raygate {
 namespace {
 
 using test::Random;
 
+/// Walks a whole tree, what is below instances, too; fails on a corner that is not strictly inside
+/// its boxes.
+struct TreeWalk {
+  const Bvh& bvh;
+  std::vector<int> visits;       // of triangles
+  std::vector<int> node_visits;  // of nodes that are stored
+  int deepest = 0;
+
+  explicit TreeWalk(const Bvh& tree)
+      : bvh(tree), visits(tree.triangle_count()), node_visits(tree.nodes().size()) {
+    const glm::vec3 infinity(std::numeric_limits<float>::infinity());
+    check(0, -infinity, infinity, 1);
+    EXPECT_LE(deepest, Bvh::kMaxDepth);
+    EXPECT_TRUE(std::ranges::all_of(visits, [](int n) { return n == 1; }));
+    EXPECT_TRUE(std::ranges::all_of(node_visits, [](int n) { return n == 1; }));
+  }
+
+  void check_leaf(const Bvh::Child& leaf, const glm::vec3& low, const glm::vec3& high) {
+    ASSERT_LE(leaf.count, Bvh::kMaxLeafSize);
+    Bvh::LeafRoom room;
+    const float* const from = BvhView(bvh).corners_of(leaf, room);
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      const std::uint32_t primitive = leaf.first + i;
+      ++visits[bvh.triangle_of(primitive)];
+      const Corners corners = bvh.corners_of(primitive);
+      for (std::uint32_t v = 0; v < 3; ++v) {
+        ASSERT_TRUE(glm::all(glm::lessThan(low, corners[v])));
+        ASSERT_TRUE(glm::all(glm::lessThan(corners[v], high)));
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          ASSERT_EQ(from[(3 * v + k) * leaf.count + i], corners[v][k]);
+        }
+      }
+    }
+  }
+
+  void check(std::uint32_t index, const glm::vec3& low, const glm::vec3& high, int depth) {
+    deepest = std::max(deepest, depth);
+    if (index < node_visits.size()) ++node_visits[index];
+    Bvh::Node room;
+    const Bvh::Node& node = BvhView(bvh).node(index, room);
+    bool absent = false;
+    for (int i = 0; i < Bvh::kWidth; ++i) {
+      const auto [child_low, child_high] = node.box(i);
+      absent = absent || !(child_low.x <= child_high.x);
+      if (absent) {
+        ASSERT_EQ(child_low, glm::vec3(std::numeric_limits<float>::infinity()));
+        ASSERT_EQ(child_high, -child_low);
+        continue;
+      }
+      ASSERT_TRUE(glm::all(glm::lessThanEqual(low, child_low)));  // false for NaN
+      ASSERT_TRUE(glm::all(glm::lessThan(child_low, child_high)));
+      ASSERT_TRUE(glm::all(glm::lessThanEqual(child_high, high)));
+      const Bvh::Child child = node.child[i];
+      if (child.count == 0) {
+        check(child.first, child_low, child_high, depth + 1);
+      } else {
+        check_leaf(child, child_low, child_high);
+      }
+    }
+  }
+};
+
 void expect_sound(const std::vector<Corners>& triangles) {
   const Bvh bvh(test::scene_of(triangles), 2);
   ASSERT_EQ(bvh.primitive_count(), triangles.size());
-  const test::TreeWalk walk(bvh);
+  const TreeWalk walk(bvh);
   std::vector<bool> seen(triangles.size());
   for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
     seen[bvh.triangle_of(primitive)] = true;
@@ -86,17 +149,23 @@ int depth_below(const BinaryBvh& tree, BinaryBvh::Ref ref) {
   return 1 + std::max(depth_below(tree, left), depth_below(tree, right));
 }
 
-// Each triangle a fraction of the size of the one before: the heuristic splits off one at a time.
-TEST(Bvh, DepthIsBounded) {
-  std::vector<Corners> shrinking;
-  for (int i = 0; i < 240; ++i) {
-    const float s = std::ldexp(1.0f, 120 - i);
+/// Each triangle is a fraction of the size of the one before: the heuristic splits off one at a
+/// time.
+std::vector<Corners> shrinking(int sizes, int exponent) {
+  std::vector<Corners> triangles;
+  for (int i = 0; i < sizes; ++i) {
+    const float s = std::ldexp(1.0f, exponent - i);
     for (int k = 0; k < 4; ++k) {
-      shrinking.push_back({glm::vec3(s), glm::vec3(s, 1.5f * s, s), glm::vec3(s, s, 1.5f * s)});
+      triangles.push_back({glm::vec3(s), glm::vec3(s, 1.5f * s, s), glm::vec3(s, s, 1.5f * s)});
     }
   }
-  expect_sound(shrinking);
-  const Scene scene = test::scene_of(shrinking);
+  return triangles;
+}
+
+TEST(Bvh, DepthIsBounded) {
+  const std::vector<Corners> mesh = shrinking(240, 120);
+  expect_sound(mesh);
+  const Scene scene = test::scene_of(mesh);
   const BinaryBvh tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, 1);
   const int depth = depth_below(tree, tree.root());
   EXPECT_LE(depth, Bvh::kMaxDepth);
@@ -137,6 +206,85 @@ TEST(Bvh, IsTheSameWhateverTheThreadsAndVectors) {
     const Scene other = test::scene_of({mesh.begin() + 1, mesh.end()});
     EXPECT_FALSE(same_bytes(bvh, Bvh(other)));
   }
+}
+
+TEST(RangeMap, FindWhatEachNumberIsIn) {
+  for (const std::vector<std::uint32_t>& lengths :
+       {std::vector<std::uint32_t>{1}, {5, 5, 5}, {1, 1, 1000, 1, 1, 1, 3}, {100000, 1, 2}}) {
+    const RangeMap runs(17, lengths);
+    std::uint32_t number = 17;
+    for (std::uint32_t run = 0; run < lengths.size(); ++run) {
+      EXPECT_EQ(runs.begin(run), number);
+      for (std::uint32_t i = 0; i < lengths[run]; ++i) ASSERT_EQ(runs.find(number++), run);
+    }
+    EXPECT_EQ(runs.end(), number);
+  }
+}
+
+void expect_sound(const Scene& scene) {
+  const Scene flat = test::written_out(scene);
+  for (const Vectors vectors : machine_vectors()) {
+    const UsingVectors using_vectors(vectors);
+    const Bvh bvh(scene, 2);
+    ASSERT_EQ(bvh.triangle_count(), flat.triangles.size());
+    EXPECT_TRUE(bvh.has_instances());
+    const TreeWalk walk(bvh);
+    std::size_t in_leaves = 0;
+    for (const Bvh::Child& leaf : bvh.leaves()) {
+      for (std::uint32_t primitive = leaf.first; primitive < leaf.first + leaf.count;
+           ++primitive, ++in_leaves) {
+        const auto& vertices = flat.triangles[bvh.triangle_of(primitive)].vertices;
+        const Corners corners = bvh.corners_of(primitive);
+        for (std::size_t v = 0; v < 3; ++v) ASSERT_EQ(corners[v], flat.positions[vertices[v]]);
+        const FaceRef face = bvh.face_of(primitive);
+        EXPECT_EQ(bvh.is_instanced(primitive), face.instance != kNoIndex);
+        EXPECT_EQ(object_at(scene, face), flat.triangles[bvh.triangle_of(primitive)].object);
+      }
+    }
+    EXPECT_EQ(in_leaves, flat.triangles.size());
+  }
+}
+
+TEST(InstanceBvh, HoldsEveryTriangleOnce) {
+  Random random;
+  Scene scene = test::instanced_scene(random, 40);
+  expect_sound(scene);
+  scene.triangles.clear();
+  expect_sound(scene);
+  scene.instances.resize(1);
+  expect_sound(scene);
+}
+
+TEST(InstanceBvh, HoldsTrianglesOfAnySize) {
+  Random random;
+  for (const float size : {0x1p-120f, 0x1p-40f, 1.0f, 0x1p60f}) {
+    for (const double scale : {0x1p-160, 0x1p-30, 1.0, 0x1p40}) {
+      Scene scene = test::instanced_scene(random, 30);
+      for (Mesh& mesh : scene.meshes) {
+        for (glm::vec3& position : mesh.positions) position *= size;
+      }
+      for (Instance& instance : scene.instances) {
+        for (auto& row : instance.rows) {
+          for (int axis = 0; axis < 3; ++axis) {
+            row[axis] *= random.below(4) == 0 ? 0.0 : scale;
+          }
+          row[3] *= random.below(3) == 0 ? 0.0 : double(random.uniform()) * size;
+        }
+      }
+      expect_sound(scene);
+    }
+  }
+}
+
+// A mesh's tree alone would be as deep as any may be; and so would the one above.
+TEST(InstanceBvh, DepthIsBounded) {
+  Scene scene = test::scene_of(shrinking(200, 100));
+  (void)add_mesh(scene, test::scene_of(shrinking(200, 100)));
+  for (int i = 0; i < 120; ++i) {
+    Instance& instance = scene.instances.emplace_back();
+    for (int k = 0; k < 3; ++k) instance.rows[k][k] = std::ldexp(1.0, -i);
+  }
+  expect_sound(scene);
 }
 
 }  // namespace

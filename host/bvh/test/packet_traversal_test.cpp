@@ -7,6 +7,7 @@
 #include <bit>
 #include <limits>
 
+#include "host/bvh/traversal.h"
 #include "host/exact/exact.h"
 #include "host/exact/test/meshes.h"
 #include "host/scene/camera.h"

@@ -4,9 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "host/intersect/core/reference_box_unit.h"
-#include "host/intersect/core/reference_exact_unit.h"
-#include "host/intersect/core/set_up.h"
+#include "host/intersect/core/reference_units.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {
@@ -61,49 +59,32 @@ class DoubtResolver {
 
   /// Takes a doubt; `is_hit`: it is known to be a hit.
   void take(std::uint32_t line, bool is_hit) {
-    const bool is_open = candidate_ != CoreRay::kNoTriangle;
-    if ((is_hit && !is_open) ||
-        ask(line, !is_hit, is_open ? Against::kOther : Against::kNothing, candidate_)) {
-      candidate_ = line;
-    }
+    if (!is_hit && !hits_triangle(ray_.ray, TriangleLine(lines_[line]).corners)) return;
+    if (candidate_ == CoreRay::kNoTriangle || is_nearer(line, candidate_)) candidate_ = line;
   }
   /// Returns the candidate if it is nearer than the sure hit or the limit, else kNoTriangle.
-  std::uint32_t settle(const NearestSureHit& nearest) {
+  [[nodiscard]] std::uint32_t settle(const NearestSureHit& nearest) const {
     if (candidate_ == CoreRay::kNoTriangle) return candidate_;
-    limit_ = nearest.limit();
-    const bool has_limit = limit_ != std::numeric_limits<float>::infinity();
-    if (!nearest.found && !has_limit) return candidate_;
     const bool nearer =
-        ask(candidate_, false, nearest.found ? Against::kOther : Against::kLimit, nearest.triangle);
+        nearest.found ? is_nearer(candidate_, nearest.triangle)
+                      : nearest.limit() == std::numeric_limits<float>::infinity() ||
+                            compare_hit_to_limit(ray_.ray, TriangleLine(lines_[candidate_]).corners,
+                                                 nearest.limit()) < 0;
     return nearer ? candidate_ : CoreRay::kNoTriangle;
   }
-  [[nodiscard]] std::uint64_t clocks() const { return clocks_; }
 
  private:
-  using Against = ExactRequest::Against;
-
-  /// Returns whether the triangle at `line` is hit, and nearer than `other` or the limit.
-  bool ask(std::uint32_t line, bool asks_hit, Against against, std::uint32_t other) {
-    const TriangleLine triangle(lines_[line]);
-    ExactRequest request{.ray = ray_.ray,
-                         .triangle = triangle.corners,
-                         .asks_hit = asks_hit,
-                         .against = against,
-                         .limit = limit_};
-    if (against == Against::kOther) request.other = TriangleLine(lines_[other]).corners;
-    const ExactAnswer answer = decide(request);
-    clocks_ += static_cast<std::uint64_t>(answer.clocks);
-    if (!answer.hit || against == Against::kNothing || answer.order != 0) {
-      return answer.hit && answer.order <= 0;
-    }
-    return against == Against::kOther && triangle.rank < TriangleLine(lines_[other]).rank;
+  /// Returns whether one of two triangles that are hit is nearer or, at equal t, has the lower
+  /// rank.
+  [[nodiscard]] bool is_nearer(std::uint32_t line, std::uint32_t other) const {
+    const TriangleLine a(lines_[line]), b(lines_[other]);
+    const int order = compare_hits(ray_.ray, a.corners, b.corners);
+    return order < 0 || (order == 0 && a.rank < b.rank);
   }
 
   std::span<const MemoryLine> lines_;
   const CoreRay& ray_;
-  float limit_ = 1.0f;
   std::uint32_t candidate_ = CoreRay::kNoTriangle;
-  std::uint64_t clocks_ = 0;
 };
 
 /// A group with inner nodes to visit.
@@ -233,7 +214,6 @@ void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
     const std::uint32_t settled = resolver.settle(nearest);
     if (settled != CoreRay::kNoTriangle) test(TriangleLine(lines[settled]), true);
   }
-  counters_.exact_clocks += resolver.clocks();
   ++counters_.rays;
   counters_.triangles += tests;
   counters_.lines = counters_.nodes + counters_.triangles;

@@ -7,9 +7,8 @@
 
 namespace raygate {
 
-/// Traces rays with a common origin in packets of 64 (PacketIntersector), others one by one
-/// (SingleRayIntersector). P has the bits of the hit-test unit and is computed once for each
-/// nearest hit.
+/// Traces rays with a common origin in packets of 64, others one by one. P has the bits of the
+/// hit-test unit and is computed once for each nearest hit.
 class CpuIntersector : public Intersector {
  public:
   /// `bvh` must outlive this object.

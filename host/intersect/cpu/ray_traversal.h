@@ -12,8 +12,7 @@
 #include <limits>
 
 #include "host/base/lanes.h"
-#include "host/bvh/bvh_view.h"
-#include "host/bvh/packet_traversal.h"
+#include "host/bvh/traversal.h"
 #include "host/exact/exact.h"
 #include "host/intersect/cpu/quad_test.h"
 #include "host/intersect/intersector.h"
@@ -275,5 +274,9 @@ RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
   } while (walk.keys[walk.depth] > last_key);
   tree.prefetch(walk.at());
 }
+
+/// Intersects rays of any origins as Intersector::intersect does. `hits` are initialised to misses.
+void trace_single_rays(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
+                       std::span<NearestHit> hits, IntersectCounters& counters);
 
 }  // namespace raygate

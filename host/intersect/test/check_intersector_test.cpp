@@ -8,7 +8,8 @@
 #include <functional>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/cpu/test/compare_in_place.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/unit/test/model_intersector.h"
 
 namespace raygate {
 namespace {
@@ -41,7 +42,7 @@ class CheckIntersectorTest : public testing::Test {
   /// What is thrown; nothing where the intersectors agree.
   std::string complaint(const FaultyIntersector::Fault& fault, const RayQuery& query) {
     CheckIntersector check(bvh_, std::make_unique<FaultyIntersector>(bvh_, fault),
-                           test::reference_intersector(bvh_));
+                           test::model_intersector(bvh_));
     std::vector<NearestHit> hits(rays_.size());
     try {
       check.intersect(rays_, query, hits);
@@ -93,7 +94,7 @@ TEST_F(CheckIntersectorTest, OfRaysThatMayEndAnywhereTheAnswerIsWhetherThereIsAH
 // An unscaled direction lost hits in cones once: every intersector refuses it.
 TEST_F(CheckIntersectorTest, UnscaledDirectionsAreRefused) {
   CpuIntersector cpu(bvh_);
-  const auto unit = test::reference_intersector(bvh_);
+  const auto unit = test::model_intersector(bvh_);
   std::vector<NearestHit> hits(rays_.size());
   for (const float scale : {0x1p20f, 2.0f, 0.5f, 0x1p-20f}) {
     std::vector<Ray> rays = rays_;

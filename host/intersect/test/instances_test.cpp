@@ -6,9 +6,7 @@
 #include <memory>
 
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/unit_hit_testers.h"
-#include "host/intersect/unit/unit_intersector.h"
+#include "host/intersect/unit/test/model_intersector.h"
 #include "host/scene/test/instanced_scene.h"
 
 namespace raygate {
@@ -21,11 +19,6 @@ class InstancesTest : public testing::Test {
   Random random_;
   Scene scene_ = test::instanced_scene(random_, 30), flat_ = test::written_out(scene_);
   Bvh bvh_{scene_}, flat_bvh_{flat_};
-
-  static std::unique_ptr<Intersector> unit_intersector(const Bvh& bvh) {
-    return std::make_unique<UnitIntersector>(
-        bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
-  }
 
   /// Many of them through vertices, from `origin` or from origins of their own.
   std::vector<Ray> rays(int count, const glm::vec3* origin) {
@@ -87,7 +80,7 @@ TEST_F(InstancesTest, RaysTestedInPlace) {
 }
 
 TEST_F(InstancesTest, RaysTestedByTheUnit) {
-  const auto intersector = unit_intersector(bvh_), flat = unit_intersector(flat_bvh_);
+  const auto intersector = test::model_intersector(bvh_), flat = test::model_intersector(flat_bvh_);
   expect_same(*intersector, *flat);
 }
 

@@ -1,7 +1,5 @@
 #include "host/intersect/unit/reference_burst_unit.h"
 
-#include "host/intersect/point_error.h"
-
 namespace raygate {
 
 template class BasicReferenceBurstUnit<Binary32>;

@@ -12,7 +12,7 @@
 #include "host/lab/commands.h"
 #include "host/lab/rays/rays.h"
 #include "host/lab/timing.h"
-#include "host/light/default_lights.h"
+#include "host/light/lights.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/scene_loader.h"

@@ -22,7 +22,7 @@
 #include "host/lab/pictures/decision_audit.h"
 #include "host/lab/timing.h"
 #include "host/lab/variants/rtl_variant_units.h"
-#include "host/light/default_lights.h"
+#include "host/light/lights.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/io/scene_loader.h"

@@ -125,53 +125,44 @@ CountHits count_nearest(const std::shared_ptr<Intersector>& intersector) {
   };
 }
 
-/// Visits the boxes that a ray may enter, including all rounding.
-struct SlabVisitor {
-  const Ray& ray;
-
-  [[nodiscard]] static bool should_visit(float, SingleRay) { return true; }
-  [[nodiscard]] static SingleRay rays_of_child(int) { return {}; }
-  [[nodiscard]] LaneMask intersect_boxes(const Bvh::Node& node, SingleRay,
-                                         FloatLanes& entry) const {
-    constexpr double kWide = 1e-6;
-    entry = FloatLanes{};
-    LaneMask met = 0;
-    for (int i = 0; i < Bvh::kWidth; ++i) {
-      const auto [low, high] = node.box(i);
-      if (low.x > high.x) continue;
-      double first = 0.0, last = std::numeric_limits<double>::infinity();
-      for (int k = 0; k < 3; ++k) {
-        const double origin = ray.origin[k], direction = ray.direction[k];
-        const double margin = kWide * (std::abs(origin) + std::abs(low[k]) + std::abs(high[k]));
-        double near = low[k] - margin - origin, far = high[k] + margin - origin;
-        if (direction == 0.0) {
-          if (near > 0.0 || far < 0.0) last = -1.0;
-          continue;
-        }
-        near /= direction;
-        far /= direction;
-        first = std::max(first, std::min(near, far));
-        last = std::min(last, std::max(near, far));
+/// Returns a mask of the children whose boxes a ray may enter, including all rounding.
+LaneMask boxes_entered(const Ray& ray, const Bvh::Node& node) {
+  constexpr double kWide = 1e-6;
+  LaneMask met = 0;
+  for (int i = 0; i < Bvh::kWidth; ++i) {
+    const auto [low, high] = node.box(i);
+    if (low.x > high.x) continue;
+    double first = 0.0, last = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) {
+      const double origin = ray.origin[k], direction = ray.direction[k];
+      const double margin = kWide * (std::abs(origin) + std::abs(low[k]) + std::abs(high[k]));
+      double near = low[k] - margin - origin, far = high[k] + margin - origin;
+      if (direction == 0.0) {
+        if (near > 0.0 || far < 0.0) last = -1.0;
+        continue;
       }
-      if (first <= last) met |= 1u << i;
+      near /= direction;
+      far /= direction;
+      first = std::max(first, std::min(near, far));
+      last = std::min(last, std::max(near, far));
     }
-    return met;
+    if (first <= last) met |= 1u << i;
   }
-};
+  return met;
+}
 
 CountHits count_by(TriangleTest* test, const Bvh& bvh) {
   return [test, &bvh](std::span<const Ray> rays) {
     std::vector<std::uint32_t> counts;
     for (const Ray& ray : rays) {
-      SlabVisitor visitor{ray};
-      TraversalStack<SingleRay> stack({});
-      StackEntry<SingleRay> leaf;
       std::uint32_t& count = counts.emplace_back(0);
-      while (next_leaf(BvhView(bvh), visitor, stack, leaf)) {
-        for (std::uint32_t i = 0; i < leaf.child.count; ++i) {
-          count += test(ray.origin, ray.direction, bvh.corners_of(leaf.child.first + i)).hit;
+      const auto boxes = [&](const Bvh::Node& node) { return boxes_entered(ray, node); };
+      any_leaf(bvh, boxes, [&](const Bvh::Child& leaf) {
+        for (std::uint32_t i = 0; i < leaf.count; ++i) {
+          count += test(ray.origin, ray.direction, bvh.corners_of(leaf.first + i)).hit;
         }
-      }
+        return false;
+      });
     }
     return counts;
   };

@@ -1,4 +1,5 @@
-// Fresnel, Snell and the lobes of materials against their formulas.
+// Fresnel, Snell and the lobes of materials against their formulas; facets against quadratures and
+// the formulas of the papers.
 #include "host/light/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -6,18 +7,84 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
-#include "host/light/sampler.h"
 #include "host/light/scattering.h"
-#include "host/light/test/seen.h"
+#include "host/light/test/light_scenes.h"
 
 namespace raygate {
 namespace {
 
-using test::seen;
-using test::triple;
-
 using std::numbers::pi;
+using test::seen, test::triple;
+
+const Triple<float> kUp = {0.0f, 0.0f, 1.0f};
+
+glm::dvec3 vector(const Triple<float>& v) { return {v.x, v.y, v.z}; }
+
+Triple<float> at_angles(double angle, double turn) {
+  return {float(std::sin(angle) * std::cos(turn)), float(std::sin(angle) * std::sin(turn)),
+          float(std::cos(angle))};
+}
+
+Material material(int model, float diffuse, float specular, float opacity) {
+  Material m;
+  m.illumination_model = model;
+  m.diffuse = glm::vec3(diffuse, 0.5f * diffuse, 0.0f);
+  m.specular = glm::vec3(specular);
+  m.shininess = 20.0f;
+  m.refraction_index = 1.5f;
+  m.opacity = opacity;
+  m.transmittance = glm::vec3(0.9f, 1.0f, 0.8f);
+  return m;
+}
+
+Material facets(float metallic, float roughness, float transmission = 0.0f) {
+  Material material;
+  material.diffuse = {1.0f, 0.5f, 0.1f};
+  material.metallic_roughness = {metallic, roughness, transmission, {}, {}};
+  return material;
+}
+
+Material coated(Material material, float coat, float roughness) {
+  material.metallic_roughness->coat = coat;
+  material.metallic_roughness->coat_roughness = roughness;
+  return material;
+}
+
+Material white_facets(float metallic, float roughness, float transmission = 0.0f,
+                      float index = 1.0f) {
+  Material material = facets(metallic, roughness, transmission);
+  material.diffuse = glm::vec3(1.0f);
+  material.refraction_index = index;
+  return material;
+}
+
+/// What comes back, or goes through, of white light from all sides: by sample() and pdf(), and in
+/// the mean over fixed directions, which do not know how samples are chosen.
+struct Balance {
+  double sampled = 0.0, integral = 0.0, chosen = 0.0, density = 0.0;
+  float off_unit = 0.0f;  // of the squared length of a sample
+};
+
+Balance balance(const Bsdf<float>& bsdf, int count = 1 << 14) {
+  Balance sum;
+  for (int i = 0; i < count; ++i) {
+    const Sampler sampler(7, 8, 9);
+    const Triple<float> way = bsdf.sample(sampler(i, 1), sampler(i, 2).x);
+    const auto counts = [&](float z) { return z > 0.0f || (bsdf.has_rough_glass() && z < 0.0f); };
+    if (counts(way.z)) {
+      sum.sampled += bsdf.eval(way).x * std::abs(way.z) / bsdf.pdf(way) / count;
+      sum.chosen += 1.0 / count;
+      sum.off_unit = std::max(sum.off_unit, std::abs(dot(way, way) - 1.0f));
+    }
+    const SquarePoint<float> u = sampler(i, 3);
+    const Triple<float> fixed = at_angles(std::acos(2 * u.x - 1), 2 * pi * u.y);
+    sum.integral += bsdf.eval(fixed).x * std::abs(fixed.z) * 4 * pi / count;
+    if (counts(fixed.z)) sum.density += bsdf.pdf(fixed) * 4 * pi / count;
+  }
+  return sum;
+}
 
 // The formulas in angles (Born and Wolf 1.5.2): sines and tangents, not the cosines of the code.
 TEST(Fresnel, IsTheFormulaInAngles) {
@@ -45,8 +112,6 @@ TEST(Fresnel, IsTheFormulaInAngles) {
               0.5 * std::pow(std::sin(brewster - beyond) / std::sin(brewster + beyond), 2), 1e-6);
 }
 
-glm::dvec3 vector(const Triple<float>& v) { return {v.x, v.y, v.z}; }
-
 TEST(Fresnel, RefractionIsSnellsLaw) {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 2, -0.5));
   const glm::dvec3 tangent = glm::normalize(glm::cross(normal, glm::dvec3(0, 0, 1)));
@@ -66,43 +131,31 @@ TEST(Fresnel, RefractionIsSnellsLaw) {
   }
 }
 
-Material material(int model, float diffuse, float specular, float opacity) {
-  Material m;
-  m.illumination_model = model;
-  m.diffuse = glm::vec3(diffuse, 0.5f * diffuse, 0.0f);
-  m.specular = glm::vec3(specular);
-  m.shininess = 20.0f;
-  m.refraction_index = 1.5f;
-  m.opacity = opacity;
-  m.transmittance = glm::vec3(0.9f, 1.0f, 0.8f);
-  return m;
-}
-
-// Sampled by its own pdf, a lobe's mean is what it reflects; and pdfs integrate to what
-// lies above the surface.
+// Samples of all mixes have the density that pdf() says, which integrates to what is not thrown
+// away, and their mean is the integral of eval().
 TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
+  const auto check = [](const Balance& sum, double of_mean, double of_density,
+                        const std::string& which) {
+    EXPECT_NEAR(sum.sampled, sum.integral, of_mean) << which;
+    EXPECT_NEAR(sum.chosen, sum.density, of_density) << which;
+  };
   for (const float specular : {0.0f, 0.3f}) {
     for (const double angle : {0.0, 0.7, 1.3}) {
-      const Bsdf<float> bsdf = seen(material(2, 0.5f, specular, 1.0f), angle);
-      const Sampler sampler(1, 2, 3);
-      // The mean of f cos / p over samples against a plain integral of f cos over the hemisphere.
-      constexpr int kCount = 1 << 16;
-      double sampled = 0.0, integral = 0.0, pdf = 0.0, above = 0.0;
-      for (int i = 0; i < kCount; ++i) {
-        const Triple<float> way = bsdf.sample(sampler(i, 0));
-        EXPECT_NEAR(dot(way, way), 1.0f, 2e-6f);
-        above += way.z > 0.0f;
-        if (way.z > 0.0f) sampled += bsdf.eval(way).x * way.z / bsdf.pdf(way);
-        const SquarePoint<float> u = sampler(i, 1);
-        const double sine = std::sqrt(1.0 - double(u.x) * u.x);
-        const Triple<float> uniform = {float(sine * std::cos(2 * pi * u.y)),
-                                       float(sine * std::sin(2 * pi * u.y)), u.x};
-        integral += bsdf.eval(uniform).x * uniform.z * 2 * pi;
-        pdf += bsdf.pdf(uniform) * 2 * pi;
+      const Balance sum = balance(seen(material(2, 0.5f, specular, 1.0f), angle), 1 << 16);
+      check(sum, 2e-3, 5e-3, std::to_string(angle));
+      EXPECT_LE(sum.off_unit, 2e-6f);
+      EXPECT_TRUE(specular > 0.0f || std::abs(sum.sampled - 0.5) < 1e-6);
+    }
+  }
+  for (const float transmission : {0.0f, 0.5f, 1.0f}) {
+    for (const float coat : {0.0f, 0.8f}) {
+      for (const double angle : {0.2, 1.0}) {
+        for (const bool outside : {true, false}) {
+          const Material mixed = coated(facets(0.3f, 0.7f, transmission), coat, 0.6f);
+          check(balance(seen(mixed, angle, outside)), 0.01, 0.01,
+                std::to_string(transmission) + " " + std::to_string(coat));
+        }
       }
-      EXPECT_NEAR(sampled / kCount, integral / kCount, 2e-3);
-      EXPECT_NEAR(pdf / kCount, above / kCount, 5e-3);
-      EXPECT_TRUE(specular > 0.0f || std::abs(sampled / kCount - 0.5) < 1e-6);
     }
   }
 }
@@ -169,6 +222,251 @@ TEST(Bsdf, EachIllumDoesWhatItsTableSays) {
   EXPECT_FALSE(of(8, 1).mirror_is_traced());
   EXPECT_FALSE(of(9, 1).mirror_is_traced());
   EXPECT_NEAR(of(10, 1).diffuse().x, 0.4, 1e-7);
+}
+
+// Facets cover the surface once, seen from above.
+TEST(Ggx, FacetsAddUpToTheSurface) {
+  for (const float alpha : {0.01f, 0.1f, 0.5f, 1.0f}) {
+    const Ggx<float> ggx(kUp, alpha);
+    double sum = 0.0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+      // By the tangent over alpha, t / (1 - t): lobes of all widths fill it.
+      const double t = (i + 0.5) / kSteps, tangent = alpha * t / (1 - t);
+      const double angle = std::atan(tangent), slope = alpha / ((1 - t) * (1 - t));
+      const Triple<float> normal = at_angles(angle, 1.0);
+      const double height = ggx.pair(normal, normal).d;
+      sum += height * std::cos(angle) * std::sin(angle) * 2 * pi * slope / (1 + tangent * tangent) /
+             kSteps;
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-4) << alpha;
+  }
+}
+
+// The mean over samples against an integral with the pdf that is claimed.
+TEST(Ggx, SamplesHaveTheDensityThatIsClaimed) {
+  for (const float alpha : {0.2f, 0.5f, 1.0f}) {
+    for (const double angle : {0.0, 0.7, 1.4}) {
+      const Ggx<float> ggx(kUp, alpha);
+      const Triple<float> view = at_angles(angle, 0.5);
+      const Sampler sampler(1, 2, 3);
+      constexpr int kCount = 1 << 16;
+      double sampled[3] = {}, integral[3] = {};
+      for (int i = 0; i < kCount; ++i) {
+        const auto add = [](double(&sums)[3], const Triple<float>& way, double weight) {
+          if (way.z <= 0.0f) return;
+          sums[0] += weight;
+          sums[1] += weight * way.z * way.z;
+          sums[2] += weight * (way.x - 0.3) * way.y;
+        };
+        add(sampled, reflect(view, ggx.sample(view, sampler(i, 0))), 1.0);
+        const SquarePoint<float> u = sampler(i, 1);
+        const Triple<float> way = at_angles(std::acos(u.x), 2 * pi * u.y);
+        add(integral, way, 2 * pi * ggx.reflection_pdf(view.z, ggx.pair(view, way).d));
+      }
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(sampled[k] / kCount, integral[k] / kCount, 6e-3) << alpha << " " << angle;
+      }
+    }
+  }
+}
+
+TEST(MetallicRoughnessLobes, AreTheSameThereAndBack) {
+  const Sampler sampler(4, 5, 6);
+  for (const float roughness : {0.1f, 0.4f, 1.0f}) {
+    for (const float metallic : {0.0f, 0.3f, 1.0f}) {
+      for (int i = 0; i < 200; ++i) {
+        const SquarePoint<float> u = sampler(i, 0);
+        const double a = 1.5 * u.x, b = 1.5 * u.y;
+        Material material = facets(metallic, roughness);
+        if (i % 2 != 0) material = coated(material, 0.7f, 0.3f);
+        // Both have their view in the plane of x and z.
+        const Bsdf<float> there = seen(material, a), back = seen(material, b);
+        const Triple<float> f = there.eval(at_angles(b, 2.0)), g = back.eval(at_angles(a, -2.0));
+        ASSERT_NEAR(f.x, g.x, 1e-4f * f.x + 1e-6f) << roughness << " " << metallic;
+        ASSERT_NEAR(f.z, g.z, 1e-4f * f.z + 1e-6f);
+      }
+    }
+  }
+}
+
+// KHR_materials_specular: without weight facets reflect nothing; its colour is that of what they
+// reflect straight on.
+TEST(MetallicRoughnessLobes, ReflectBySpecularWeightAndColor) {
+  Material material = facets(0.0f, 0.3f);
+  const Triple<float> plain = seen(material, 0.0).facets().f0;
+  material.metallic_roughness->specular_color = {1.0f, 0.5f, 0.0f};
+  const Triple<float> colored = seen(material, 0.0).facets().f0;
+  EXPECT_EQ(colored.x, plain.x);
+  EXPECT_EQ(colored.y, 0.5f * plain.x);
+  EXPECT_EQ(colored.z, 0.0f);
+  material.metallic_roughness->specular = 0.0f;
+  for (const double angle : {0.0, 1.4}) {
+    const Triple<float> none = seen(material, angle).glossy();
+    EXPECT_EQ(none.x, 0.0f);
+    EXPECT_EQ(none.z, 0.0f);
+  }
+}
+
+// The white furnace: what absorbs nothing sends back all light from all sides, within 1 %.
+TEST(MetallicRoughnessLobes, KeepAllLight) {
+  double worst = 0.0;
+  for (const float roughness : {0.04f, 0.1f, 0.2f, 0.4f, 0.6f, 0.8f, 1.0f}) {
+    for (const float index : {1.1f, 1.5f, 2.5f}) {
+      for (const float metallic : {0.0f, 0.5f, 1.0f}) {
+        for (double angle = 0.0; angle < 1.5; angle += 0.25) {
+          const Material white = white_facets(metallic, roughness, 0.0f, index);
+          const Bsdf<float> bsdf = seen(white, angle);
+          const double all = balance(bsdf).sampled;
+          ASSERT_NEAR(all, 1.0, 1e-2)
+              << roughness << " " << index << " " << metallic << " " << angle;
+          EXPECT_NEAR(largest(bsdf.diffuse() + bsdf.glossy()), all, 1e-2);
+          worst = std::max(worst, std::abs(all - 1.0));
+        }
+      }
+    }
+  }
+  std::cout << "off by up to " << 100 * worst << " %\n";
+}
+
+// Rough glass, from either side: what it reflects and transmits is all there is.
+TEST(MetallicRoughnessLobes, RoughGlassKeepsAllLight) {
+  double worst = 0.0;
+  for (const float roughness : {0.04f, 0.1f, 0.2f, 0.4f, 0.7f, 1.0f}) {
+    for (const float index : {1.1f, 1.5f, 2.5f}) {
+      for (const bool outside : {true, false}) {
+        for (double angle = 0.0; angle < 1.5; angle += 0.25) {
+          const Material white = white_facets(0.0f, roughness, 1.0f, index);
+          const double all = balance(seen(white, angle, outside)).sampled;
+          EXPECT_NEAR(all, 1.0, 1e-2)
+              << roughness << " " << index << " " << outside << " " << angle;
+          worst = std::max(worst, std::abs(all - 1.0));
+        }
+      }
+    }
+  }
+  std::cout << "off by up to " << 100 * worst << " %\n";
+}
+
+// Over anything, a coat makes no light; over black it is what glass of index 1.5 reflects.
+TEST(MetallicRoughnessLobes, ACoatMakesNoLight) {
+  for (const float coat_roughness : {0.0f, 0.3f, 1.0f}) {
+    for (const auto& [metallic, transmission] :
+         {std::pair(0.0f, 0.0f), {1.0f, 0.0f}, {0.0f, 1.0f}}) {
+      for (double angle = 0.0; angle < 1.5; angle += 0.25) {
+        const Material white = white_facets(metallic, 0.4f, transmission);
+        EXPECT_LE(balance(seen(coated(white, 1.0f, coat_roughness), angle)).sampled, 1.01) << angle;
+      }
+    }
+  }
+  for (const double angle : {0.0, 0.8, 1.3}) {
+    Material black = facets(1.0f, 0.4f);
+    black.diffuse = glm::vec3(0.0f);
+    black.metallic_roughness->metallic = 0.0f;
+    black.metallic_roughness->specular = 0.0f;
+    const double glass = 0.04 + 0.96 * std::pow(1 - std::cos(angle), 5);
+    EXPECT_NEAR(balance(seen(coated(black, 0.5f, 0.0f), angle)).sampled, 0.5 * glass, 4e-3)
+        << angle;
+  }
+}
+
+// Smooth ones reflect all that they do in one direction, and nothing is missing.
+TEST(MetallicRoughnessLobes, SmoothOnesLoseNothing) {
+  for (const float metallic : {0.0f, 0.5f, 1.0f}) {
+    Material white = white_facets(metallic, 0.0f);
+    for (const double angle : {0.0, 0.8, 1.5}) {
+      const Bsdf<float> bsdf = seen(white, angle);
+      EXPECT_NEAR(largest(bsdf.mirror() + bsdf.diffuse()), 1.0, 1e-6);
+      EXPECT_EQ(largest(bsdf.glossy()), 0.0f);
+      double diffuse = 0.0;
+      for (int i = 0; i < 4096; ++i) {
+        const Triple<float> light = bsdf.sample(Sampler(1, 1, 1)(i, 0));
+        diffuse += bsdf.eval(light).x * light.z / bsdf.pdf(light) / 4096;
+      }
+      EXPECT_NEAR(diffuse, bsdf.diffuse().x, 1e-3);
+    }
+    white.metallic_roughness->transmission = 0.7f;
+    const Bsdf<float> clear = seen(white, 0.8);
+    EXPECT_NEAR(largest(clear.mirror() + clear.transmission() + clear.diffuse()), 1.0, 1e-6);
+  }
+}
+
+/// Equation 21 of Walter and others times the cosine: of light along `in` that comes out along
+/// `out`, on the other side of a surface whose normal is +z. Separable masking, equation 34.
+double walter(const glm::dvec3& in, const glm::dvec3& out, double alpha, double eta) {
+  glm::dvec3 half = -glm::normalize(in + eta * out);
+  if (half.z < 0.0) half = -half;
+  const double ih = glm::dot(in, half), oh = glm::dot(out, half);
+  if (ih <= 0.0 || oh >= 0.0) return 0.0;
+  const double squared = (half.z * half.z) * (alpha * alpha - 1.0) + 1.0;
+  const double height = alpha * alpha / (pi * squared * squared);
+  const auto masking = [&](double z) {
+    const double tangent2 = (1.0 - z * z) / (z * z);
+    return 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * tangent2));
+  };
+  const double below = ih + eta * oh;
+  const double fresnel = fresnel_reflectance(float(ih), float(eta));
+  return ih * -oh / in.z * eta * eta * (1.0 - fresnel) * masking(in.z) * masking(out.z) * height /
+         (below * below);
+}
+
+TEST(MetallicRoughnessLobes, RoughGlassIsThatOfWalterAndOthers) {
+  for (const float index : {1.5f, 1.3f}) {
+    for (const bool outside : {true, false}) {
+      for (const double angle : {0.1, 0.9}) {
+        Material glass = facets(0.0f, 0.6f, 1.0f);
+        glass.refraction_index = index;
+        const Bsdf<float> bsdf = seen(glass, angle, outside);
+        const MetallicRoughnessLobes<float>& lobes = bsdf.facets();
+        const glm::dvec3 in(lobes.view.x, lobes.view.y, lobes.view.z);
+        int count = 0;
+        for (int i = 0; i < 400; ++i) {
+          const SquarePoint<float> u = Sampler(1, 2, 4)(i, 0);
+          const Triple<float> way = at_angles(std::acos(-0.01 - 0.99 * u.x), 2 * pi * u.y);
+          const double expected = walter(in, {way.x, way.y, way.z}, 0.36, lobes.eta) / -way.z;
+          const Triple<float> value = bsdf.eval(way);
+          ASSERT_NEAR(value.y, 0.5 * lobes.glass_gain * expected, 2e-4 * expected + 1e-6);
+          ASSERT_NEAR(value.z, 0.2 * value.y, 1e-5 * value.y) << "in the base colour";
+          count += expected > 0.01;
+        }
+        EXPECT_GT(count, 30);
+      }
+    }
+  }
+}
+
+// The table against integrals over directions of light, which the table's are not made of.
+TEST(FacetAlbedo, IsTheIntegralOfTheLobe) {
+  double worst = 0.0;
+  for (const float alpha : {0.05f, 0.2f, 0.5f, 0.9f}) {
+    for (const float cosine : {0.06f, 0.2f, 0.5f, 0.9f, 1.0f}) {
+      const Ggx<float> ggx(kUp, alpha);
+      const double angle = std::acos(cosine);
+      const Triple<float> view = at_angles(angle, 0.0);
+      constexpr int kSteps = 1200;
+      double all = 0.0, fresnel = 0.0;
+      for (int i = 0; i < kSteps; ++i) {
+        for (int k = 0; k < kSteps; ++k) {
+          // Denser around what a mirror shows, at (angle, pi): by cubes.
+          const double t = 2 * (i + 0.5) / kSteps - 1, u = (k + 0.5) / kSteps;
+          const double reach = t < 0 ? angle : pi / 2 - angle;
+          const double theta = angle + reach * t * t * t, turn = pi * (1 - u * u * u);
+          const double area =
+              3 * t * t * reach * 2.0 / kSteps * 3 * u * u * pi * 2.0 / kSteps * std::sin(theta);
+          const Triple<float> light = at_angles(theta, turn);
+          const auto pair = ggx.pair(view, light);
+          const double value = double(pair.d) * ggx.visibility(view.z, light.z) * light.z * area;
+          all += value;
+          fresnel += value * schlick_weight(pair.cos_half);
+        }
+      }
+      const auto shares = FacetAlbedo::of_mirrors().at(cosine, alpha);
+      EXPECT_NEAR(shares.first, all, 1e-2) << alpha << " " << cosine;
+      EXPECT_NEAR(shares.second, fresnel, 1e-2) << alpha << " " << cosine;
+      worst = std::max(worst, std::abs(shares.first - all));
+    }
+  }
+  std::cout << "off by up to " << worst << "\n";
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "host/light/default_lights.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <numbers>
 
 #include "host/light/environment.h"
+#include "host/light/lights.h"
 #include "host/light/test/light_scenes.h"
 #include "host/scene/camera.h"
 

@@ -8,7 +8,6 @@
 #include <random>
 
 #include "host/light/test/light_scenes.h"
-#include "host/light/test/seen.h"
 
 namespace raygate {
 namespace {

@@ -146,18 +146,6 @@ TEST_P(EveryIntegrator, TheUnitsPointsAreGoodEnough) {
   }
 }
 
-TEST_P(EveryIntegrator, WindowsArePartsOfTheWhole) {
-  const Film whole = film(options());
-  RenderSettings cropped = options();
-  cropped.window = {7, 5, 29, 26};
-  const Film part = film(cropped);
-  for (int y = 5; y < 26; ++y) {
-    for (int x = 7; x < 29; ++x) {
-      ASSERT_EQ(part.color[std::size_t(y - 5) * 22 + (x - 7)], whole.color[y * 40u + x]);
-    }
-  }
-}
-
 // More shadow rays than are traced at once.
 TEST(ManyLights, WindowsArePartsOfTheWhole) {
   Scene scene = everything();

@@ -1,14 +1,15 @@
-// Small scenes with materials and lights, and films of them.
+// Small scenes with materials and lights, and films of them; one surface and its BSDF.
 #pragma once
 
+#include <cmath>
 #include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/unit_hit_testers.h"
-#include "host/intersect/unit/unit_intersector.h"
+#include "host/intersect/unit/test/model_intersector.h"
+#include "host/light/bsdf.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 
@@ -70,14 +71,8 @@ inline void add(Scene& scene, const std::vector<Corners>& triangles, const Mater
   scene.positions.insert(scene.positions.end(), more.positions.begin(), more.positions.end());
 }
 
-/// The pipelined unit's reference model, in batches.
-inline std::unique_ptr<Intersector> pipeline_intersector(const Bvh& bvh) {
-  return std::make_unique<UnitIntersector>(
-      bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
-}
-
 inline IntersectorFactory pipeline_model(const Bvh& bvh) {
-  return [&bvh] { return pipeline_intersector(bvh); };
+  return [&bvh] { return model_intersector(bvh); };
 }
 
 inline RenderSettings light(IntegratorKind integrator, int width, int height, int samples) {
@@ -156,6 +151,23 @@ inline float floor_radiance(Scene scene, IntegratorKind integrator, int samples)
   options.max_depth = 0;
   options.ambient = 0.0;
   return film_of(scene, camera, options).color[0].r;
+}
+
+inline Triple<float> triple(const glm::dvec3& v) { return {float(v.x), float(v.y), float(v.z)}; }
+
+/// A triangle of this material seen at an angle to +z, where its outside is, or its inside.
+inline Bsdf<float> seen(const Material& material, double angle, bool outside = true) {
+  Scene scene = scene_of({{glm::vec3(-9, -9, 0), glm::vec3(9, -9, 0), glm::vec3(0, 9, 0)}});
+  if (!outside) std::swap(scene.triangles[0].vertices[0], scene.triangles[0].vertices[1]);
+  scene.materials[0] = material;
+  const Bvh bvh(scene);
+  const glm::vec3 eye(float(2 * std::sin(angle)), 0, float(2 * std::cos(angle)));
+  const Ray ray = {eye, scaled_direction(glm::dvec3(-eye))};
+  const SurfaceHit places[] = {{&ray, 0, scene.triangles.data(), nullptr}};
+  const MaterialParameters parameters(material);
+  const MaterialParameters* const materials[] = {&parameters};
+  const HitKind kind = parameters.kind | weights_needed(scene, places[0]);
+  return {surface_at<float>(scene, bvh, kind, places), kind, materials};
 }
 
 }  // namespace raygate::test

@@ -103,7 +103,7 @@ class ShadowRaysTest : public testing::Test {
   Bvh bvh_{scene_};
   PreparedScene prepared_{scene_, bvh_};
   Lights lights_{scene_, bvh_};
-  std::unique_ptr<Intersector> intersector_ = pipeline_intersector(bvh_);
+  std::unique_ptr<Intersector> intersector_ = model_intersector(bvh_);
   Random random_;
   std::vector<ShadowRay> questions_;
 };
@@ -185,7 +185,7 @@ TEST(ShadowRays, EndAtSureOccludersAmongLeaves) {
   CpuIntersector cpu(bvh), one_by_one(bvh);
   const std::vector<ShadowRay> expected = answers(one_by_one, false);
   const std::vector<ShadowRay> found = answers(cpu, true);
-  const std::vector<ShadowRay> of_unit = answers(*pipeline_intersector(bvh), true);
+  const std::vector<ShadowRay> of_unit = answers(*model_intersector(bvh), true);
   int lit = 0, veiled = 0;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     ASSERT_EQ(found[i].radiance, expected[i].radiance) << i;

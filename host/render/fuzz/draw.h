@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/light/default_lights.h"
+#include "host/light/lights.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
 #include "host/scene/instances.h"

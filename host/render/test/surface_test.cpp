@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "host/light/default_lights.h"
+#include "host/light/lights.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {

@@ -7,7 +7,7 @@
 
 #include "Vset_up_unit_0.h"
 #include "Vset_up_unit_1.h"
-#include "host/intersect/core/set_up.h"
+#include "host/intersect/core/reference_units.h"
 #include "sim/model.h"
 #include "sim/test/hit_test/float_stream.h"
 

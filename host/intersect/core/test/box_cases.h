@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "host/intersect/core/reference_box_unit.h"
+#include "host/intersect/core/reference_units.h"
 
 namespace raygate {
 

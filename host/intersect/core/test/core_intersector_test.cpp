@@ -1,8 +1,13 @@
-// Rays through a core, its reference model, find what CpuIntersector finds, bit for bit.
+// Rays through a core, its reference model, find what CpuIntersector finds, bit for bit; an exact
+// core resolves every doubt, so that the host decides nothing.
 #include "host/intersect/core/core_intersector.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -25,17 +30,22 @@ using test::some_rays;
 
 class CoreIntersectorTest : public testing::Test {
  protected:
+  explicit CoreIntersectorTest(std::vector<Corners> mesh = bodies()) : mesh_(std::move(mesh)) {}
+
   /// Throws where the two differ.
-  void check(const std::vector<Ray>& rays, const RayQuery& query, int stack_depth) {
-    auto core = std::make_unique<ReferenceCore>(stack_depth);
-    core_ = core.get();
-    CheckIntersector intersector(bvh_,
-                                 std::make_unique<CoreIntersector>(bvh_, image_, std::move(core)),
-                                 std::make_unique<CpuIntersector>(bvh_));
+  void check(const std::vector<Ray>& rays, const RayQuery& query, int stack_depth,
+             bool exact = false) {
+    auto unit = std::make_unique<ReferenceCore>(stack_depth, exact);
+    const ReferenceCore& core = *unit;
+    auto tested = std::make_unique<CoreIntersector>(bvh_, image_, std::move(unit));
+    const CoreIntersector& core_intersector = *tested;
+    CheckIntersector intersector(bvh_, std::move(tested), std::make_unique<CpuIntersector>(bvh_));
     std::vector<NearestHit> hits(rays.size());
     intersector.intersect(rays, query, hits);
     for (const NearestHit& hit : hits) found_ += hit.primitive != NearestHit::kNone;
-    counters_ = core_->counters();
+    counters_ = core.counters();
+    const IntersectCounters host = core_intersector.counters();
+    EXPECT_TRUE(!exact || host.exact_inside + host.exact_depth == 0u);
   }
 
   /// Of a triangle of the mesh.
@@ -45,11 +55,10 @@ class CoreIntersectorTest : public testing::Test {
     return primitive;
   }
 
-  std::vector<Corners> mesh_ = bodies();
+  std::vector<Corners> mesh_;
   Bvh bvh_{test::scene_of(mesh_)};
   std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
   Random random_;
-  ReferenceCore* core_ = nullptr;
   CoreCounters counters_;
   int found_ = 0;
 };
@@ -114,6 +123,91 @@ TEST_F(CoreIntersectorTest, WithoutCullingEveryTriangleIsTested) {
   check(rays, {.culling = false, .work = work}, 8);
   EXPECT_EQ(counters_.triangles, rays.size() * mesh_.size());
   for (const RayWork& ray : work) EXPECT_EQ(ray.tests, mesh_.size());
+}
+
+/// Every hit is a tie.
+class ExactCoreTest : public CoreIntersectorTest {
+ protected:
+  ExactCoreTest() : CoreIntersectorTest(doubled()) {}
+
+  /// The bodies, each triangle twice, its corners in another order.
+  static std::vector<Corners> doubled() {
+    std::vector<Corners> mesh = test::bodies();
+    const std::size_t count = mesh.size();
+    for (std::size_t i = 0; i < count; ++i) mesh.push_back({mesh[i][1], mesh[i][2], mesh[i][0]});
+    return mesh;
+  }
+};
+
+TEST_F(ExactCoreTest, NearestHitsAreTheCpuIntersectors) {
+  check(some_rays(mesh_, random_, 10'000), {}, 8, true);
+  EXPECT_GT(found_, 9'500);
+  EXPECT_GT(counters_.doubts, 1'000u);
+  EXPECT_GT(counters_.near_ties, 5'000u);
+}
+
+TEST_F(ExactCoreTest, LimitsSkippedTrianglesFirstHitsAndSourcesCount) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 5'000);
+  std::vector<NearestHit> nearest(rays.size());
+  CpuIntersector(bvh_).intersect(rays, {}, nearest);
+  std::vector<float> limits;
+  std::vector<std::uint32_t> skipped;
+  for (const NearestHit& hit : nearest) {
+    // Mostly at the hit, within a few floats: on this side of it, on that one, or there.
+    float limit = 1.0f;
+    if (hit.primitive != NearestHit::kNone) {
+      limit =
+          static_cast<float>(hit_distance(rays[limits.size()], bvh_.corners_of(hit.primitive)).low);
+    }
+    for (int n = random_.below(3); n > 0; --n) limit = std::nextafter(limit, 0.0f);
+    for (int n = random_.below(3); n > 0; --n) limit = std::nextafter(limit, 2.0f * limit);
+    limits.push_back(random_.below(8) == 0 ? std::numeric_limits<float>::infinity() : limit);
+    skipped.push_back(
+        hit.primitive != NearestHit::kNone && random_.below(2) == 0
+            ? hit.primitive
+            : static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size()))));
+  }
+  check(rays, {.t_max = limits}, 8, true);
+  EXPECT_GT(found_, 1'000);
+  EXPECT_LT(found_, 4'500);
+  check(rays, {.t_max = limits, .skip_ids = skipped}, 8, true);
+  check(rays, {.t_max = limits, .skip_ids = skipped, .any_hit_before = limits}, 8, true);
+  std::vector<std::uint32_t> sources;
+  for (const Ray& ray : rays) {
+    const auto primitive =
+        static_cast<std::uint32_t>(random_.below(static_cast<int>(mesh_.size())));
+    const bool is_hit = hits_triangle(ray, bvh_.corners_of(primitive));
+    sources.push_back(is_hit ? NearestHit::kNone : primitive);
+  }
+  check(rays, {.t_max = limits, .source_ids = sources}, 8, true);
+}
+
+/// A sure hit has t within its bound, whoever settled it; what float32 has no t for says so.
+TEST_F(ExactCoreTest, DistancesHoldTheirBounds) {
+  const std::vector<Ray> rays = some_rays(mesh_, random_, 5'000);
+  ReferenceCore core(ReferenceCore::kStackDepth, true);
+  int without = 0, with = 0;
+  for (const Ray& ray : rays) {
+    const CoreRay sent{.ray = ray};
+    std::vector<CoreResult> results;
+    core.trace(image_->lines(), {&sent, 1}, results);
+    ASSERT_EQ(results.size(), 1u) << "one word a ray";
+    const CoreResult& end = results[0];
+    if (!end.found) continue;
+    if (end.t_error == CoreResult::kNoT) {
+      EXPECT_EQ(end.t, 0.0f);
+      EXPECT_EQ(end.point, glm::vec3(0.0f));
+      ++without;
+      continue;
+    }
+    const auto word = std::bit_cast<std::int32_t>(end.t), error = std::int32_t{1} << end.t_error;
+    const Interval t = hit_distance(ray, bvh_.corners_of(image_->primitive_at(end.triangle)));
+    EXPECT_GT(t.high, std::bit_cast<float>(std::max(word - error, 0)));
+    EXPECT_LT(t.low, std::bit_cast<float>(std::min(word + error, 0x7F800000)));
+    ++with;
+  }
+  EXPECT_GT(without, 50);
+  EXPECT_GT(with, 3'000);
 }
 
 /// A core before a memory that lacks its last line, or whose root is below itself.

@@ -1,9 +1,8 @@
 // The box unit's promise against rationals: no box that a ray exactly enters is left out.
-#include "host/intersect/core/reference_box_unit.h"
-
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include "host/intersect/core/reference_units.h"
 #include "host/intersect/core/test/box_cases.h"
 
 namespace raygate {

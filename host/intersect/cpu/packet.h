@@ -1,15 +1,54 @@
-// Traversal state of a packet of up to 64 rays.
+// Ray packets: up to 64 rays of one origin, bounding cones around groups of eight, and the state of
+// their traversal.
 #pragma once
 
 #include <bit>
 #include <cstdint>
+#include <span>
 
-#include "host/bvh/bvh_view.h"
+#include "host/base/lanes.h"
+#include "host/bvh/traversal.h"
 #include "host/exact/exact.h"
-#include "host/intersect/cpu/cone.h"
 #include "host/intersect/intersector.h"
 
 namespace raygate {
+
+/// The directions of up to 64 rays. Ray k of group g has index 8 g + k.
+struct RayPacket {
+  static constexpr int kGroups = 8, kRays = kGroups * kLanes;
+
+  FloatLanes direction[3][kGroups];
+  LaneMask negative[3][kGroups];  ///< rays with a negative component
+  LaneMask usable[kGroups];       ///< see is_usable; 0 for absent rays
+  std::uint32_t octants;          ///< bit i: some usable ray may be in octant i
+
+  [[nodiscard]] LaneMask into_octant(int octant, int group) const {
+    LaneMask lanes = usable[group];
+    for (int k = 0; k < 3; ++k) {
+      lanes &= (octant >> k & 1) != 0 ? negative[k][group] : ~negative[k][group];
+    }
+    return lanes;
+  }
+};
+
+/// Loads up to 64 rays. Returns a mask of the rays that are usable but not scaled.
+[[nodiscard]] std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block);
+
+/// Bounding cones of rays in one octant, independent of the lengths of directions. Lane g belongs
+/// to group g; absent groups have radius 0. A ray I is represented by I / t_scale, where t_scale is
+/// the magnitude of one component, the same for all rays, or 1 for all; t then becomes t_scale t.
+/// On each axis |I_k / t_scale - center[k][g]| <= radius[k][g].
+struct Cones {
+  LaneMask active[RayPacket::kGroups];     ///< rays of each group
+  LaneMask groups;                         ///< groups with any ray
+  FloatLanes t_scale[RayPacket::kGroups];  ///< of each ray; 1 for absent rays
+  FloatLanes center[3], radius[3];
+  PacketBounds8 bounds8;  ///< the caller sets the cutoffs
+  PacketBounds whole;     ///< bounds of all groups
+};
+
+/// Computes all members for the packet's rays in `cones.active`, which must be in this octant.
+void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones);
 
 // Sets of a packet's 64 rays: byte g holds the rays of group g.
 
@@ -51,7 +90,7 @@ struct ConeTraversal {
   IntLanes primitive[kGroups];           ///< of the nearest hit; -1: none
   IntLanes skip_id[kGroups];             ///< a primitive; -1: none
   IntLanes enough[kGroups];              ///< a hit that is surely nearer than this ends the ray
-  FloatLanes slack;  ///< lane g: the factor of edge bounds for group g (see cone_leaf_test.h)
+  FloatLanes slack;  ///< lane g: the factor of edge bounds for group g (see packet_steps.h)
   // If requested: the work of each ray, and the rays that were started.
   RayWork work[kGroups][kLanes];
   LaneMask started[kGroups];
@@ -87,5 +126,10 @@ RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
   if ((walk.split >> group & 1) != 0) walk.ray_bounds8[group].cutoff = cutoffs;
   walk.going &= ~(std::uint64_t{0xFF & ~cones.active[group]} << (8 * group));
 }
+
+/// Intersects rays of one origin as Intersector::intersect does, in packets, but always culls.
+/// `hits` are initialised to misses.
+void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
+                   std::span<NearestHit> hits, IntersectCounters& counters);
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-#include "host/intersect/cpu/cone.h"
+#include "host/intersect/cpu/packet.h"
 
 #include <algorithm>
 #include <bit>

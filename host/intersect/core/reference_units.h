@@ -1,11 +1,14 @@
-// Bit-exact C++ reference model of the ray core's box unit.
+// Bit-exact C++ reference models of the ray core's box unit and of its set-up unit, which makes
+// polygon records.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "host/exact/exact.h"
 #include "host/intersect/core/memory_image.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 
@@ -38,5 +41,23 @@ struct BoxGroup {
 
 /// Returns whether the entry is surely beyond `limit`, at least 0; +infinity: no limit.
 [[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
+
+/// A record computed in binary32, with larger bounds than those of make_record. d is NaN if its
+/// sign is not sure, or if N or d are too inaccurate for a hit.
+struct SetUpRecord {
+  PolygonRecord record;
+  std::uint32_t normal_error = 0;    ///< number of bits that cancelled in N, unless d is NaN
+  std::uint32_t distance_error = 0;  ///< likewise in d
+};
+
+/// Returns the record of set_up_unit, bit for bit, for any floats including NaN and infinities.
+[[nodiscard]] SetUpRecord set_up(const glm::vec3& origin, const Corners& triangle);
+
+/// Returns whether a hit is sure (set_up_pkg::is_good_hit). `grazing` is HitDistance::error.
+[[nodiscard]] bool is_good_hit(const SetUpRecord& set_up, std::uint32_t grazing);
+
+/// Returns e such that fewer than 2^e floats lie between t of a good hit and the exact t
+/// (set_up_pkg::t_error_exponent).
+[[nodiscard]] std::uint32_t t_error_exponent(const SetUpRecord& set_up, std::uint32_t grazing);
 
 }  // namespace raygate

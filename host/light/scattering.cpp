@@ -1,11 +1,10 @@
-#include "host/light/facet_albedo.h"
+#include "host/light/scattering.h"
 
 #include <algorithm>
 #include <map>
 #include <mutex>
 
 #include "host/base/vectors.h"
-#include "host/light/scattering.h"
 
 namespace raygate {
 namespace {
