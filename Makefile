@@ -83,6 +83,7 @@ wave: ## use: the waveform of one pixel's ray through the ray core: make wave PI
 #   image     the image of Dockerfile, from a base that debootstrap makes
 #   damage    damaged copies of files of every format
 #   error     the intervals of --error
+#   trimesh   tests of trimesh, with our intersector
 #   cocotb    the core's AXI ports, driven by cocotb
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
@@ -93,15 +94,16 @@ LONG_guards = python3 .ci/guards.py try $(GUARDS)
 LONG_commands = python3 -B host/docs/commands.py
 LONG_image = .ci/image
 LONG_damage = python3 -B host/test/damage_files.py build/render build/trace --count $(or $(COUNT),300) --seed $(or $(SEED),1)
+LONG_trimesh = RAYGATE_TRIMESH=1 PYTHONPATH=build/host/python $(PYTHON) -B host/python/test/trimesh_test.py
 LONG_page = $(PYTHON) -m unittest sim/page/test/page_test.py
 LONG_cocotb = (test -e build/cocotb/bin/pip || python3 -m venv build/cocotb) && \
   build/cocotb/bin/pip install --quiet --disable-pip-version-check -r sim/cocotb/requirements.txt && \
   build/cocotb/bin/python3 sim/cocotb
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=faults | LONG=damage COUNT=300 | LONG=page | LONG=cocotb | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
+test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=faults | LONG=damage COUNT=300 | LONG=page | LONG=trimesh | LONG=cocotb | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, faults, page, cocotb, error, commands, image, damage or guards))
-	$(if $(filter commands image,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),worked_example)))
+	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, faults, page, trimesh, cocotb, error, commands, image, damage or guards))
+	$(if $(filter commands image,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),$(if $(filter trimesh,$(LONG)),_raygate,worked_example))))
 	@$(LONG_$(LONG))
 else
 	$(call build,test,all)

@@ -16,9 +16,9 @@ raygate.float is IEEE 754 arithmetic in any small format. raygate.results reads 
 benchmarks and synthesis.
 """
 
-from . import _raygate, float, results  # from here on `float` is the module, not Python's class
+from . import _raygate, float, results, trimesh  # from here on `float` is the module, not Python's class
 from ._raygate import InputError
 from ._scene import Picture, Scene
 
-__all__ = ["InputError", "Picture", "Scene", "float", "results"]
+__all__ = ["InputError", "Picture", "Scene", "float", "results", "trimesh"]
 __version__: str = _raygate.software.split()[-1]

@@ -1,0 +1,76 @@
+"""A ray intersector for trimesh's meshes, with exact answers:
+
+    mesh.ray = raygate.trimesh.RayMeshIntersector(mesh)
+
+It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector, and needs no trimesh to be installed. Where its answers
+differ from theirs: a ray through an edge or a vertex of a closed mesh hits it once, not once for each triangle there; all
+hits of a ray are found, however near each other they are; points on the surface count as outside or inside, but never fail.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._scene import Scene
+
+Array = npt.NDArray[Any]
+
+
+class RayMeshIntersector:
+    """Rays and points against a mesh: anything with `vertices`, shape (n, 3), and `faces`, shape (m, 3). When these have
+    changed, the next query builds the scene again."""
+
+    def __init__(self, geometry: Any, **_: Any) -> None:
+        """Further arguments are those of trimesh's own intersectors; they change no answer here."""
+        self.mesh = geometry
+        self._built: tuple[Any, Scene] | None = None
+
+    @property
+    def scene(self) -> Scene:
+        """The mesh as raygate's scene."""
+        vertices, faces = np.asarray(self.mesh.vertices, np.float64), np.asarray(self.mesh.faces, np.int64)
+        state = hash((vertices.tobytes(), faces.tobytes()))
+        if self._built is None or self._built[0] != state:
+            self._built = state, Scene(vertices, faces)
+        return self._built[1]
+
+    def intersects_id(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True,
+                      max_hits: int | None = None, return_locations: bool = False, **_: Any) -> tuple[Array, ...]:
+        """Returns the triangles that rays hit, shape (k,), the numbers of the rays, shape (k,), and with
+        `return_locations` the points, shape (k, 3): of each ray all hits, near before far, at most `max_hits`, or without
+        `multiple_hits` the nearest."""
+        columns = ["ray", "triangle", "t"]
+        hits = self.scene.trace(ray_origins, ray_directions, hits="all" if multiple_hits else "nearest", columns=columns)
+        hits = hits[hits["triangle"] >= 0]
+        if max_hits is not None and multiple_hits:
+            first = np.searchsorted(hits["ray"], hits["ray"])  # hits are sorted by ray
+            hits = hits[np.arange(len(hits)) - first < max_hits]
+        triangles, rays = hits["triangle"].astype(np.int64), hits["ray"].astype(np.int64)
+        if not return_locations:
+            return triangles, rays
+        shape = (len(np.atleast_2d(np.asarray(ray_origins))), 3)
+        origins = np.broadcast_to(np.asarray(ray_origins, np.float64), shape)
+        directions = np.broadcast_to(np.asarray(ray_directions, np.float64), shape)
+        return triangles, rays, origins[rays] + hits["t"][:, None] * directions[rays]
+
+    def intersects_location(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True,
+                            **keywords: Any) -> tuple[Array, Array, Array]:
+        """Returns the points, shape (k, 3), the numbers of the rays and the triangles of intersects_id()."""
+        triangles, rays, points = self.intersects_id(ray_origins, ray_directions, multiple_hits, return_locations=True, **keywords)
+        return points, rays, triangles
+
+    def intersects_first(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, **_: Any) -> Array:
+        """Returns the first triangle that each ray hits, or -1: shape (n,)."""
+        return self.scene.trace(ray_origins, ray_directions, columns="triangle")["triangle"].astype(np.int64)
+
+    def intersects_any(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, **_: Any) -> Array:
+        """Returns whether each ray hits anything: shape (n,)."""
+        found: Array = self.scene.trace(ray_origins, ray_directions, hits="any", columns="hit")["hit"]
+        return found.astype(bool)
+
+    def contains_points(self, points: npt.ArrayLike) -> Array:
+        """Returns whether points are inside of the mesh, which must be closed: shape (n,)."""
+        return self.scene.inside(points)
