@@ -1,4 +1,4 @@
-// fp_adder_stages in binary16, written by `make verilog`: words that IEEE 754 gives.
+// fp_adder_stages in binary16, written by `make synth VERILOG=1`: words that IEEE 754 gives.
 module bench;
   reg  clk = 0;
   reg  [15:0] a, b;

@@ -1,4 +1,4 @@
-// hit_test_unit, written by `make verilog` with the paper's divider: its worked example, word for word.
+// hit_test_unit, written by `make synth VERILOG=1` with the paper's divider: its worked example, word for word.
 module bench;
   reg  clk = 0, reset_n = 0, valid = 0;
   reg  [31:0] in = 0;

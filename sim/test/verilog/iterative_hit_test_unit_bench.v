@@ -1,4 +1,4 @@
-// iterative_hit_test_unit, written by `make verilog`: the paper's worked example, three tests without a gap, from unknown
+// iterative_hit_test_unit, written by `make synth VERILOG=1`: the paper's worked example, three tests without a gap, from unknown
 // registers.
 module bench;
   reg  clk = 0, reset_n = 0;
