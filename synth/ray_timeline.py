@@ -1,6 +1,6 @@
 """Draws a trace of one ray in the ray core (VCD): when each part has something of it.
 
-`python3 -m synth.ray_timeline TRACE SAVE_FILE OUT.svg`. TRACE is what `make wave` writes. SAVE_FILE is GTKWave's, as for
+`python3 -m synth.ray_timeline TRACE SAVE_FILE OUT.svg`. TRACE is what `make lecture PIXEL=64,64` writes. SAVE_FILE is GTKWave's, as for
 synth.waveform: its first signal is the clock, each other one a row, with a bar where it is not zero.
 """
 

@@ -1,6 +1,6 @@
 """What the tables of hw/ray_core/registers.md make: the package of the RTL and the header of drivers.
 
-`made()` gives the files' texts; `make datasheet` writes them and `synth.datasheet --check` compares.
+`made()` gives the files' texts; `make synth DATASHEET=1` writes them and `synth.datasheet --check` compares.
 """
 
 import dataclasses
@@ -61,7 +61,7 @@ def package(listed: list[Register]) -> str:
         for word in range(register.address // 4, register.address // 4 + register.words):
             if register.access == "idle":
                 masks[word] = register.mask
-    lines = ["// Registers of the ray core by word number, and their bits: made of registers.md by `make datasheet`.",
+    lines = ["// Registers of the ray core by word number, and their bits: made of registers.md by `make synth DATASHEET=1`.",
              "package csr_pkg;", "", "  // verilator lint_off UNUSEDPARAM", "  // No module uses everything.", ""]
     for register in listed:
         lines.append(f"  localparam logic [9:0] {_camel('word', register.name)} = 10'h{register.address // 4:03x};")
@@ -79,7 +79,7 @@ def package(listed: list[Register]) -> str:
 
 def header(listed: list[Register]) -> str:
     """registers.h: addresses, and bits as masks; of the counters, addresses."""
-    lines = ["/* Registers of the ray core: addresses, and bits as masks. Made of registers.md by `make datasheet`. */",
+    lines = ["/* Registers of the ray core: addresses, and bits as masks. Made of registers.md by `make synth DATASHEET=1`. */",
              "#ifndef RAYGATE_REGISTERS_H", "#define RAYGATE_REGISTERS_H", "", "enum {"]
     for register in listed:
         lines.append(f"  RAYGATE_{register.name.upper()} = 0x{register.address:03x},")

@@ -1,4 +1,4 @@
-"""The flows as scripts of Yosys: what `make synth`, `make fpga`, `make verilog` and the diagrams run."""
+"""The flows as scripts of Yosys: what `make synth`, `make fpga`, `make synth VERILOG=1` and the diagrams run."""
 
 import pathlib
 

@@ -1,32 +1,38 @@
 # Area, time, proofs: see synth/README.md.
 SYNTH_JOBS ?= 2
 
-.PHONY: synth prove verilog fpga datasheet lecture layout
+.PHONY: synth prove fpga lecture layout
 
-# What describes one design says nothing without it.
+# What describes one design says nothing without it, nor does a parameter by its name.
+ifneq ($(and $(PARAMS),$(if $(VERILOG),,1)),)
+$(error PARAMS: expected VERILOG=1, too)
+endif
 ifneq ($(filter synth layout,$(MAKECMDGOALS)),)
-ifeq ($(filter-out adders float_peers multipliers cores energy,$(TOP)),)
-$(foreach name,$(filter ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT,$(given)),$(error $(name): expected TOP, too, the module that has it))
+ifeq ($(filter-out adders float_peers multipliers cores unit,$(TOP)),)
+$(foreach name,$(filter ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT VERILOG,$(given)),$(error $(name): expected TOP, too, the module that has it))
 endif
 endif
 
 # The whole report has tests a second in it, which programs count.
-synth: $(if $(filter-out 0,$(ALL)),verilate) ## hardware: area and time: make synth [ALL=1] [TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ...]
+synth: $(if $(filter-out 0,$(ALL)),verilate) ## hardware: area and time: make synth [ALL=1 | TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ... | TOP=fp_adder VERILOG=1: one file of plain Verilog | DATASHEET=1: tables and diagrams of hw]
 	@$(SETUP) synth
 	@$(if $(filter float_peers,$(TOP)),$(SETUP) lab)
+ifdef DATASHEET
+	$(call build,build,worked_example)
+	@$(PYTHON) -m synth.datasheet
+else ifdef VERILOG
+	@$(PYTHON) -m synth.verilog "$(TOP)" "$(PARAMS)"
+else
 	$(if $(filter-out 0,$(ALL)),$(call build,build,table_1 worked_example))
 	@$(PYTHON) -m synth --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
 	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --liberty '$(LIBERTY)' --all '$(filter-out 0,$(ALL))' \
 	  --jobs '$(SYNTH_JOBS)'
+endif
 
 prove: ## hardware: prove arithmetic, units, netlists: make prove [PROOFS='adder. float.add' LONG=1 KEPT=1 RECORD=1]
 	@$(SETUP) prove
 	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(if $(RECORD),--record) $(if $(KEPT),--kept) $(PROOFS)
-
-verilog: ## hardware: a module in one file of plain Verilog: make verilog TOP=fp_adder_stages [PARAMS='ExpWidth=5']
-	@$(SETUP) synth
-	@$(PYTHON) -m synth.verilog "$(TOP)" "$(PARAMS)"
 
 fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-binary32 SEEDS=3] [TOP=small_core BOARD=ulx3s: a bitstream]
 	@$(SETUP) synth
@@ -36,22 +42,27 @@ else
 	@$(PYTHON) -m synth.fpga $(if $(SEEDS),--seeds $(SEEDS)) $(UNITS)
 endif
 
-datasheet: ## hardware: the table of modules and the diagrams of hw
+lecture: ## hardware: numbers in gates, a page: make lecture [WIDTH=12 GROUPS=3,4,5 A=1365 B=2731 X=1.5 Y=-0.3 | EXAMPLE=1: the paper's, clock by clock | PIXEL=64,64 SCENE= ARGS=: its ray in the ray core]
+ifdef EXAMPLE
 	$(call build,build,worked_example)
+	@build/sim/worked_example --trace build/worked_example.vcd
+	@echo "With the paper's divider, whose quotients have 21 bits:"
+	@build/sim/worked_example --paper-divider | tail -n 1
+	@echo 'Waveform: gtkwave build/worked_example.vcd sim/worked_example.gtkw'
+else ifdef PIXEL
+	$(call build,build,render)
+	@./render $(SCENE) --unit core --size 128x128 $(ARGS) --trace-pixel $(PIXEL) --trace build/pixel.vcd
 	@$(SETUP) synth
-	@$(PYTHON) -m synth.datasheet
-
-lecture: ## hardware: a page of adders with numbers in them: make lecture [WIDTH=12 GROUPS=3,4,5 A=1365 B=2731 X=1.5 Y=-0.3]
+	@$(PYTHON) -m synth.ray_timeline build/pixel.vcd sim/ray_core.gtkw build/pixel.svg
+	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw; drawn: build/pixel.svg'
+else
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.lecture --width '$(WIDTH)' --groups '$(GROUPS)' --a '$(A)' --b '$(B)' --carry '$(CARRY)' --x '$(X)' --y '$(Y)'
+endif
 
-layout: ## hardware: place, route, time, draw: make layout [TOP=adders | multipliers | cores | MODULE | energy SEEDS=3]
+layout: ## hardware: place, route, time, draw: make layout [TOP=adders | multipliers | cores | unit | MODULE SEEDS=3]
 	@$(SETUP) layout
-ifeq ($(TOP),energy)
-	@$(PYTHON) -m synth.layout.formats
-else
 	@$(PYTHON) -m synth.layout --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
 	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --flow '$(FLOW)' --density '$(DENSITY)' --aspect '$(ASPECT)' --seeds '$(SEEDS)' \
 	  --jobs '$(SYNTH_JOBS)'
-endif

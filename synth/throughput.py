@@ -52,12 +52,12 @@ def table(records: list[dict], clocks: dict[str, float] | None = None) -> str:
 
 
 def ray_table(record: dict, rows: list[dict] | None = None) -> str:
-    """Rays a second of the ray core at the clock rate of `record`, by scene and kind of ray; `rows`: of `make core`."""
+    """Rays a second of the ray core at the clock rate of `record`, by scene and kind of ray; `rows`: of `make bench ONLY=core`."""
     file = tools.ROOT / "build" / "results" / "core.jsonl"
     if record["top"] != "ray_core":
         return ""
     if rows is None and not file.exists():
-        return "No clocks a ray: `make core` counts them.\n"
+        return "No clocks a ray: `make bench ONLY=core` counts them.\n"
     rows = rows or [json.loads(line) for line in file.read_text().splitlines()]
     clock = 1e9 / record["delay_ns"]
     return tables.markdown(["scene", "rays", "memory, clocks away", "clocks/ray", "million rays/s", "a mm2 of cells"], [

@@ -32,14 +32,11 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="small pictures, few repeats")
     parser.add_argument("--scenes", default="", metavar="'NAME NAME'", help="peers: some of the scenes; variant: one")
     parser.add_argument("--render", default=ROOT / "render", metavar="PROGRAM",
-                        type=lambda name: pathlib.Path(name).resolve(), help="peers, speed: measure another ./render")
-    parser.add_argument("--before", type=pathlib.Path, metavar="PROGRAM",
-                        help="speed: an older ./render, whose phase times are printed in brackets")
+                        type=lambda name: pathlib.Path(name).resolve(), help="peers: measure another ./render")
     parser.add_argument("--tests", type=int, help="stress: tests in each suite")
     parser.add_argument("--seed", type=int, default=1, help="stress (1)")
     parser.add_argument("--jobs", type=int, default=processors(), help="stress: suites at once (all processors)")
     parser.add_argument("--variant", nargs="*", default=[], metavar="FRAC_WIDTH=15", help="variant: what is not as in binary32")
-    parser.add_argument("--energy", action="store_true", help="variant: simulate what an operation of the paper's unit takes")
     parser.add_argument("--wires", action="store_true", help="variant: place the units, and estimate their wires")
     parser.add_argument("--report-only", action="store_true", help="write the report of the last rows again")
     parser.add_argument("--publish", action="store_true", help="write the report into host/lab/results too")
@@ -50,8 +47,9 @@ def make_command(given: argparse.Namespace) -> str:
     """Returns the make command that reproduces the rows."""
     words = {"QUICK": int(given.quick), "ONLY": given.only, "SCENE" if given.target == "variant" else "SCENES": given.scenes, "TESTS": given.tests,
              "SEED": given.seed if given.seed != 1 else 0, "RENDER": given.render if given.render != ROOT / "render" else "",
-             "BEFORE": given.before, "ENERGY": int(given.energy), "WIRES": int(given.wires)}
-    return " ".join(["make", given.target, *given.variant, *(f"{key}={shlex.quote(str(word))}" for key, word in words.items() if word)])
+             "WIRES": int(given.wires)}
+    target = "bench ONLY=core" if given.target == "core" else given.target
+    return " ".join(["make", target, *given.variant, *(f"{key}={shlex.quote(str(word))}" for key, word in words.items() if word)])
 
 
 def publish(name: str, folder: pathlib.Path, text: str) -> None:
@@ -85,12 +83,12 @@ def run(given: argparse.Namespace) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     values = target.values(rows, folder)
     text = document.render(f"{given.target}.md.j2", folder, rows, **values) + document.measured(rows[0])
-    document.write(text, folder)
+    (folder / "report.md").write_text(text)
     if given.publish:
         publish(given.target, folder, text)
     if given.target not in ("bench", "stress"):  # their tables are summarised
         print(text)
-    print(f"Report: {folder.relative_to(ROOT)}/report.md, and report.html beside it; rows: {file.relative_to(ROOT)}")
+    print(f"Report: {folder.relative_to(ROOT)}/report.md; rows: {file.relative_to(ROOT)}")
     wrong = target.failures(rows) if hasattr(target, "failures") else []
     print("".join(f"error: {line}\n" for line in wrong), end="", file=sys.stderr)
     return 1 if wrong else 0

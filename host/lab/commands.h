@@ -19,7 +19,6 @@ using AddCommand = void(CLI::App& lab, Outcome& outcome);
 
 AddCommand add_stress;      ///< correctness of engines and variants in hard cases
 AddCommand add_watertight;  ///< public tests of watertightness
-AddCommand add_predicates;  ///< cost of an exact decision
 AddCommand add_rays;        ///< rays per second, compared with Embree
 AddCommand add_core;        ///< clocks per ray of the ray core
 AddCommand add_variants;    ///< the table of variants

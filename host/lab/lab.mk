@@ -1,13 +1,10 @@
 # Measurements of the lab: see host/lab/README.md. Rows are in build/results/, reports in build/reports/. An interrupted
 # run continues when it is started again.
-.PHONY: stress bench variant card peers speed core
+.PHONY: stress bench variant card peers speed
 
-comma := ,
-# $(call of,PARTS): the parts selected by ONLY; all without ONLY.
-of = $(if $(ONLY),$(filter $(1),$(subst $(comma), ,$(ONLY))),$(1))
 define measure
-@$(PYTHON) -B -m host.lab $(@:card=variant) $(if $(ONLY),--only '$(ONLY)') $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
-  $(if $(SCENES),--scenes '$(SCENES)') $(if $(RENDER),--render '$(RENDER)') $(if $(BEFORE),--before '$(BEFORE)') \
+@$(PYTHON) -B -m host.lab $(or $(lab_target),$(@:card=variant) $(if $(ONLY),--only '$(ONLY)')) $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
+  $(if $(SCENES),--scenes '$(SCENES)') $(if $(RENDER),--render '$(RENDER)') \
   $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS)
 endef
 
@@ -20,8 +17,9 @@ else
 	$(measure)
 endif
 
-bench: ## measure: run time against error, adder to picture: make bench [QUICK=1 ONLY=lanes]
-	$(call build,bench,lab scenes unit_bench)
+bench: lab_target = $(filter core,$(ONLY))
+bench: ## measure: run time against error, by arithmetic, engine, lanes: make bench [QUICK=1 ONLY=lanes | ONLY=core: clocks of the simulated ray core]
+	$(call build,$(if $(filter core,$(ONLY)),lab,bench),lab scenes render)
 	$(measure)
 
 # Quoted, as file names may contain spaces.
@@ -36,7 +34,7 @@ ifneq ($(filter %.sv' %.v',$(variant_words)),)
 endif
 	@echo 'One card: proofs of files of yours, models, tests and pictures by both, synthesis. The first takes 8 to 10 minutes on two processors, others 3 to 5.' >&2
 	@$(SETUP) bench
-	@$(if $(ENERGY)$(WIRES),$(SETUP) layout)
+	@$(if $(WIRES),$(SETUP) layout)
 	@$(call alone,build/variant.lock,another make variant) $(again) --no-print-directory card
 
 # The other steps of `make variant`, one run at a time: write its table of variants, build build/lab-variant, print the card.
@@ -46,17 +44,12 @@ card: export RAYGATE_LAB = lab-variant
 card:
 	@$(PYTHON) -B -m host.lab.targets.variant $(if $(KEEP_GOING),--keep-going) $(variant_words)
 	$(call build,bench,lab)
-	$(measure) $(if $(ENERGY),--energy) $(if $(WIRES),--wires) --variant $(variant_words)
+	$(measure) $(if $(WIRES),--wires) --variant $(variant_words)
 
 peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [QUICK=1 SCENES=cornell]
 	$(call build,peers,render compare scenes)
 	$(measure)
 
-speed: ## measure: rays/s next to Embree, exact decisions, skips, where time goes: make speed [QUICK=1 ONLY=rays,phases BEFORE=]
-	$(call build,lab,scenes $(if $(call of,rays predicates),lab) $(if $(call of,skips profile phases),render compare) $(if $(call of,trace),trace))
-	@$(if $(call of,skips),python3 -B scenes/make_teapot.py build/scenes/teapot_coarse.obj --fineness 3)
-	$(measure)
-
-core: ## measure: clocks of the simulated ray core: make core [QUICK=1 ONLY=scenes,wide,in-flight,exact,cores]
-	$(call build,lab,lab scenes)
+speed: ## measure: rays per second next to Embree: make speed [QUICK=1]
+	$(call build,lab,scenes lab)
 	$(measure)

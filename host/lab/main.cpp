@@ -17,8 +17,8 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   lab::Outcome outcome;
   for (lab::AddCommand* const add :
-       {lab::add_stress, lab::add_watertight, lab::add_predicates, lab::add_rays, lab::add_core,
-        lab::add_variants, lab::add_check, lab::add_pictures}) {
+       {lab::add_stress, lab::add_watertight, lab::add_rays, lab::add_core, lab::add_variants,
+        lab::add_check, lab::add_pictures}) {
     add(app, outcome);
   }
   try {

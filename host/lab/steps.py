@@ -12,7 +12,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable
 
 from host.lab import machine, rows as kept
@@ -45,11 +44,6 @@ def _measure(step: Step, file: pathlib.Path) -> None:
     os.replace(f"{file}.unfinished", file)
 
 
-def _left(seconds: list[float | None]) -> str:
-    """Returns the remaining time, from earlier times of the steps; "" if a step is new."""
-    return "" if None in seconds else f", about {max(1, round(sum(seconds) / 60))} min left"
-
-
 def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> list[dict]:
     """Returns the rows of all steps. Reuses steps of an interrupted run of the same make command `asked` at the same
     commit."""
@@ -64,17 +58,11 @@ def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> li
 
     files = [(step, file_of(step)) for step in steps]
     missing = [(step, file) for step, file in files if not file.exists()]
-    taken = KEPT / "seconds.json"
-    seconds = json.loads(taken.read_text()) if taken.exists() else {}
 
     def measure(i: int) -> None:
         step, file = missing[i]
-        left = _left([seconds.get(f"{asked}: {other.part} {other.name}") for other, _ in missing[i:]])
-        print(f"[{len(files) - len(missing) + i + 1}/{len(files)}] {step.part}: {step.name}{left}", file=sys.stderr)
-        begin = time.monotonic()
+        print(f"[{len(files) - len(missing) + i + 1}/{len(files)}] {step.part}: {step.name}", file=sys.stderr)
         _measure(step, file)
-        seconds[f"{asked}: {step.part} {step.name}"] = round(time.monotonic() - begin, 1)
-        kept.write(taken, [dict(seconds)])
 
     with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
         list(pool.map(measure, range(len(missing))))
@@ -93,9 +81,3 @@ def render(command: list, *words: object, picture: pathlib.Path | None = None, *
         subprocess.run([*command, *engine, "--quiet", *words, "--output", picture or folder / "picture.exr",
                         "--stats", folder / "stats.json"], cwd=ROOT, check=True, **how)
         return json.loads((folder / "stats.json").read_text())
-
-
-def difference(picture: pathlib.Path, reference: pathlib.Path) -> dict:
-    """Returns the output of ./compare for two images."""
-    said = subprocess.run([ROOT / "compare", picture, reference, "--json"], cwd=ROOT, check=True, capture_output=True, text=True)
-    return json.loads(said.stdout)

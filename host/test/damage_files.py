@@ -2,7 +2,7 @@
 
 `python3 -B host/test/damage_files.py RENDER TRACE [--count 300] [--seed 1] [--only obj,png]`: exits 1, and keeps the file, where a
 program crashes, takes over ten seconds, has another status than 0 and 2, tells an error in more than one line, or touches a
-picture that was there before a failed run. Seeds are those of `make fuzz`, and small files made here.
+picture that was there before a failed run. Seeds are those of `make test LONG=fuzz`, and small files made here.
 """
 
 import argparse

@@ -62,9 +62,9 @@ class Pages(unittest.TestCase):
 
     def test_each_target_knows_its_words(self) -> None:
         for words, said in (("variant FRACWIDTH=15", "FRACWIDTH: `make variant` does not read it"), ("variant FRAC_WIDTH=15 WIRES=1 ONLY=proofs", ""),
-                            ("render ARGS=--a=1", ""), ("cpu CXX=clang++", ""), ("lecture A=1365 B=2731 X=1.5 Y=-0.3", ""),
-                            ("lecture Z=1", "Z: `make lecture` does not read it"), ("datasheet TOP=adder", "TOP: `make datasheet` does not read it"),
-                            ("synth TOP=adder PARAMS=Width=0", "PARAMS: `make synth` does not read it"),
+                            ("lecture PIXEL=1,2 ARGS=--a=1", ""), ("cpu CXX=clang++", ""), ("lecture A=1365 B=2731 X=1.5 Y=-0.3", ""),
+                            ("lecture Z=1", "Z: `make lecture` does not read it"), ("page TOP=adder", "TOP: `make page` does not read it"),
+                            ("synth TOP=adder PARAMS=Width=0", "PARAMS: expected VERILOG=1, too"),
                             ("synth FRAC_WIDTH=3", "FRAC_WIDTH: expected TOP, too"), ("synth TOP=adders WIDTH=3", "WIDTH: expected TOP, too"),
                             ("synth TOP=fp_adder FRAC_WIDTH=3 JOBS=2", "")):
             done = subprocess.run(["make", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True, check=False)
@@ -109,8 +109,8 @@ class Pages(unittest.TestCase):
         self.assertNotIn("synth.brought", " ".join(lines))
 
     def test_an_empty_variable_of_make_counts_as_not_given(self) -> None:
-        for target, names in (("wave", "SCENE PIXEL ARGS"), ("synth", "TOP ALL JOBS SYNTH_JOBS"), ("variant", "ADDER FRAC_WIDTH SCENE"),
-                              ("verilog TOP=adder", "PARAMS"), ("mutate", "COUNT QUICK"), ("fuzz", "FUZZ_SECONDS"), ("test", "LONG")):
+        for target, names in (("lecture", "SCENE PIXEL ARGS EXAMPLE"), ("synth", "TOP ALL JOBS SYNTH_JOBS"), ("variant", "ADDER FRAC_WIDTH SCENE"),
+                              ("synth TOP=adder VERILOG=1", "PARAMS"), ("test LONG=mutate", "COUNT"), ("test LONG=fuzz", "FUZZ_SECONDS"), ("test", "LONG")):
             self.assertEqual(recipe(" ".join([target, *(f"{name}=" for name in names.split())])), recipe(target), target)
 
 

@@ -1,4 +1,4 @@
-// Registers of the ray core by word number, and their bits: made of registers.md by `make datasheet`.
+// Registers of the ray core by word number, and their bits: made of registers.md by `make synth DATASHEET=1`.
 package csr_pkg;
 
   // verilator lint_off UNUSEDPARAM

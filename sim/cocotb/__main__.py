@@ -1,4 +1,4 @@
-"""Simulates ray_core_axi, as `make verilog` writes it, in Icarus Verilog with cocotb and cocotbext-axi: `make test LONG=cocotb`.
+"""Simulates ray_core_axi, as `make synth VERILOG=1` writes it, in Icarus Verilog with cocotb and cocotbext-axi: `make test LONG=cocotb`.
 
 Exit status 1 where a test of axi_frames.py fails."""
 

@@ -12,6 +12,7 @@ import dataclasses
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -57,8 +58,10 @@ def equivalent(netlist: pathlib.Path, fault: str) -> bool:
         write = "; ".join(f"design -load both; connect -set mutant 16'd{mutant}; write_aiger {folder}/{name}.aig"
                           for name, mutant in (("sound", 0), ("broken", number)))
         try:
-            run([*YOSYS, f"read_rtlil {netlist}.il; {fault}; {gates}; {write}"], timeout=60)
-        except subprocess.TimeoutExpired:
+            run(["prlimit", "--cpu=60", *YOSYS, f"read_rtlil {netlist}.il; {fault}; {gates}; {write}"])
+        except subprocess.CalledProcessError as error:
+            if error.returncode != -signal.SIGXCPU:
+                raise
             return False
         # The first decides most faults at once, or never; the second takes seconds.
         for seconds, check in ((1, f"&r {folder}/sound.aig; &cec {folder}/broken.aig"), (10, f"cec {folder}/sound.aig {folder}/broken.aig")):

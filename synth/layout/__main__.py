@@ -5,7 +5,7 @@ import dataclasses
 import sys
 
 from synth import catalogue, chosen, runner, store, tables, tools, yosys
-from synth.layout import energy, flow, jobs, parts, picture, tests
+from synth.layout import flow, jobs, parts, picture
 
 OUT = store.OUT / "layouts"
 
@@ -96,29 +96,6 @@ def table(records: list[dict]) -> str:
          "cells alone, ns", "estimated wires, ns", "with wires, least", "median", "most", "median / alone", "nets failed"], rows)
 
 
-def energy_table(records: list[dict]) -> str:
-    """What an operation of the tests takes, of each layout that was routed."""
-    rows = []
-    for got in records:
-        if got["spread"] and (spent := got.get("energy")):
-            rows.append([got["design"], got["flow"], f"{spent['pj']:.1f}", f"{spent['wires_pj']:.1f}",
-                         f"{spent['toggles']:.0f}", f"{spent['settled_ns']:.2f}", f"{got['wires_ns']:.2f}",
-                         f"{spent['pj'] * got['wires_ns']:,.0f}"])
-    return tables.markdown(["design", "flow", "pJ an operation", "in wires, pJ", "toggles", "last toggle, ns",
-                            "slowest path, ns", "pJ ns"], rows)
-
-
-def spend(records: list[dict], workers: int) -> list[str]:
-    """Simulates each layout that was routed and whose operands tests know; what failed."""
-    mine = [got for got in records if got["spread"] and tests.fit(got["job"].design)]
-    results, failures = runner.run_all([runner.Job(
-        f"{got['design']} {got['flow']} energy", lambda j=got["job"]: energy.measure(j),
-        lambda spent: f"{spent['pj']:.1f} pJ") for got in mine], workers)
-    for got, spent in zip(mine, results, strict=True):
-        got["energy"] = spent
-    return failures
-
-
 def draw(records: list[dict]) -> list[str]:
     """The median layout of each row; the pictures' names."""
     names = []
@@ -138,15 +115,14 @@ def main() -> int:
     given = arguments()
     try:
         yosys.folder()
-        for tool in ("sta", "coloquinte", "qrouter", "magic", "iverilog"):
+        for tool in ("sta", "coloquinte", "qrouter", "magic"):
             tools.find(tool)
         records, failures = measure(wanted(given), int(given.jobs or 2))
-        failures += spend(records, int(given.jobs or 2))
     except (tools.MissingTool, FileNotFoundError, ValueError) as error:
         print(f"layout: {error}", file=sys.stderr)
         return 2
     OUT.mkdir(parents=True, exist_ok=True)
-    text = f"{table(records)}\n{energy_table(records)}"
+    text = table(records)
     pictures = draw(records)
     report = OUT / f"report-{given.top or 'all'}-{given.targets or 'osu035'}.md"
     report.write_text("\n".join(

@@ -5,9 +5,9 @@ import tempfile
 import unittest
 from unittest import mock
 
-from synth import catalogue, liberty, mapping, store, tools, yosys
+from synth import catalogue, mapping, store, tools, yosys
 from synth.layout import __main__ as command
-from synth.layout import energy, estimate, flow, lef, netlist, parasitics, parts, place, route, tests
+from synth.layout import estimate, flow, lef, netlist, parasitics, parts, place, route
 from synth.layout.lef import Layer, Rect, Technology
 from synth.layout.netlist import Cell, Netlist, Port
 from synth.layout.route import Wire
@@ -150,67 +150,6 @@ class Estimate(unittest.TestCase):
         for net, ends in (("n1", [("c0", "Y"), ("c1", "A")]), ("p0", [("PIN", "p0"), ("c0", "A")])):
             parasitics.tree(found[net], parasitics.taps(nets, placed, technology, ports, ends), technology,
                             {"metal1": 1.3, "metal2": 1.2})
-
-
-class Energy(unittest.TestCase):
-    """energy's counts and tables."""
-
-    VCD = """$var wire 1 ! n1 $end
-$var wire 1 " p0 $end
-$enddefinitions $end
-#100000
-0!
-x"
-#100300
-1!
-1"
-#101200
-0!
-#201500
-1!
-"""
-
-    def test_toggles(self):
-        """Rises and falls from one known state to another, and the latest within a period."""
-        counts, latest = energy.toggles(self.VCD.splitlines(), 100_000)
-        self.assertEqual(counts, {"n1": (2, 1), "p0": (0, 0)})
-        self.assertEqual(latest, 1500)
-
-    def test_curve(self):
-        """Tables at the slew, between their points, and the mean of two; none for an input."""
-        table = ('internal_power() {\n rise_power(t) {\n index_1 ("0.1, 0.3");\n index_2 ("0.08, 0.28");\n'
-                 ' values ( \\\n "1, 3", \\\n "2, 4");\n}\n}\n')
-        pin = liberty.parse(f"library(x) {{\n{table}{table.replace('1, 3', '3, 5')}}}\n", "x")
-        xs, ys = energy.curve(pin, "rise_power")
-        self.assertEqual(xs, [0.1, 0.3])
-        self.assertAlmostEqual(ys[0], 3)
-        self.assertAlmostEqual(energy.at((xs, ys), 0.2), 3)
-        self.assertIsNone(energy.curve(pin, "fall_power"))
-
-    def test_energies(self):
-        """Half of C V^2 a toggle, and what the driver takes inside."""
-        nets = Netlist("top", {"c0": Cell("a", "INVX1", {"A": "p0", "Y": "n1"}),
-                               "c1": Cell("b", "INVX1", {"A": "n1", "Y": "n2"})},
-                       {"p0": Port("a_i", False, "p0")})
-        curve = ([0.0, 1.0], [0.5, 1.5])
-        kinds = {"INVX1": {"A": energy.Pin(0.02), "Y": energy.Pin(0, curve, ([0.0, 1.0], [0.0, 0.0]))}}
-        found = energy.energies(nets, {"n1": (1, 1)}, {"n1": 0.03}, kinds, catalogue.library("osu035"))
-        self.assertAlmostEqual(found["n1"], 2 * 0.05 * 3.3 ** 2 / 2 + 0.55)
-
-    def test_words(self):
-        """Operands of each core, as many as asked for; their product is what the tests computed."""
-        found = tests.operands()
-        x, y = found["multiply"][1]
-        whole = tests.words(catalogue.design("fp_multiplier"))
-        self.assertEqual(len(whole), 1000)
-        self.assertEqual(whole[1], {"a_i": int(x.view("uint32")), "b_i": int(y.view("uint32"))})
-        short = tests.words(catalogue.design("fp_multiplier", FracWidth=15))
-        self.assertEqual(short[1]["a_i"], whole[1]["a_i"] >> 8)
-        factors = tests.words(catalogue.design("booth_multiplier", Width=24))
-        sums = tests.words(catalogue.design("adder", Width=48))
-        self.assertEqual(sums[0]["b_i"], factors[1]["a_i"] * factors[1]["b_i"])
-        with self.assertRaisesRegex(ValueError, "no tests for adder-Width8"):
-            tests.words(catalogue.design("adder", Width=8))
 
 
 class Parts(unittest.TestCase):

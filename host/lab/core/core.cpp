@@ -11,7 +11,6 @@
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/lab/commands.h"
 #include "host/lab/rays/rays.h"
-#include "host/lab/timing.h"
 #include "host/light/lights.h"
 #include "host/render/renderer.h"
 #include "host/scene/camera.h"
@@ -24,10 +23,9 @@ namespace {
 
 struct Options {
   std::vector<std::string> scenes;
-  std::vector<int> latencies = {1, 50, 200}, in_flight = {0}, cores = {1};
+  std::vector<int> latencies = {1, 50, 200}, cores = {1};
   std::vector<std::string> kinds = {"camera", "light", "scattered"};
   int size = 128, every = 1;
-  bool structural = false;
   bool exact = false;
 };
 
@@ -87,34 +85,24 @@ class CoreBench {
     return some;
   }
 
-  [[nodiscard]] std::unique_ptr<CoreUnit> make_core(const MemoryTiming& timing,
-                                                    const CoreSet& cores) const {
-    return make_rtl_core(options_.structural ? Arith::kStructural : Arith::kBehavioural, timing, {},
-                         cores);
-  }
-
   void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const std::string& kind,
            const Trace& trace) {
     for (const int latency : options_.latencies) {
       for (const int cores : options_.cores) {
-        for (const int rays : options_.in_flight) {
-          run(bvh, image, kind, trace, {.latency = latency},
-              {.cores = cores, .rays = rays, .exact = options_.exact});
-        }
+        run(bvh, image, kind, trace, {.latency = latency},
+            {.cores = cores, .exact = options_.exact});
       }
     }
   }
 
   void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const std::string& kind,
            const Trace& trace, const MemoryTiming& timing, const CoreSet& cores) {
-    const std::shared_ptr<CoreUnit> core = make_core(timing, cores);
-    const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    const std::shared_ptr<CoreUnit> core = make_rtl_core(Arith::kBehavioural, timing, {}, cores);
     const auto count = static_cast<double>(trace([&] {
       return std::make_unique<CheckIntersector>(bvh,
                                                 std::make_unique<CoreIntersector>(bvh, image, core),
                                                 std::make_unique<CpuIntersector>(bvh));
     }));
-    const double seconds = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     const CoreCounters counters = core->counters();
     const auto a_ray = [&](std::uint64_t of) { return static_cast<double>(of) / count; };
     const auto percent = [&](std::uint64_t clocks) {  // of the clocks of all cores
@@ -126,21 +114,15 @@ class CoreBench {
                   {"exact", options_.exact},
                   {"latency", timing.latency},
                   {"cores", cores.cores},
-                  {"in_flight", cores.rays == 0 ? Row("all") : Row(cores.rays)},
                   {"clocks_per_ray", a_ray(counters.clocks)},
                   {"lines_per_ray", a_ray(counters.lines)},
                   {"bytes_per_ray", 64.0 * a_ray(counters.lines)},
                   {"nodes_percent", percent(counters.nodes)},
                   {"triangles_percent", percent(counters.triangles)},
-                  {"busier_percent", percent(counters.busier)},
-                  {"busier_per_ray", a_ray(counters.busier)},
-                  {"two_boxes_per_ray", a_ray(counters.busier_two_boxes)},
-                  {"half_triangles_per_ray", a_ray(counters.busier_half_triangles)},
                   {"waits_percent", percent(counters.waits)},
                   {"exact_percent", percent(counters.exact_clocks)},
                   {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
-                  {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)},
-                  {"rays_per_second", count / seconds}});
+                  {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)}});
   }
 
   const Options& options_;
@@ -158,9 +140,6 @@ void add_core(CLI::App& lab, Outcome& outcome) {
       ->check(CLI::Range(128, 8192));
   app->add_option("--latency", options->latencies, "of memory, in clocks; several may be given")
       ->check(CLI::Range(1, 10'000));
-  app->add_option("--in-flight", options->in_flight,
-                  "rays in each core at most; several; 0: 64, its table; more: a table of 256")
-      ->check(CLI::Range(0, kWideRays));
   app->add_option("--cores", options->cores, "behind one port to memory; several may be given")
       ->check(CLI::Range(1, 64));
   app->add_option("--kinds", options->kinds,
@@ -169,13 +148,8 @@ void add_core(CLI::App& lab, Outcome& outcome) {
   app->add_option("--every", options->every,
                   "of the rays only each so-manieth; of a picture's rows and columns")
       ->check(CLI::Range(1, 1024));
-  app->add_flag("--structural", options->structural, "arithmetic; else behavioural");
   app->add_flag("--exact", options->exact, "cores settle doubts; else the host does");
   app->callback([options, &outcome] {
-    if ((options->structural || options->exact) &&
-        std::ranges::max(options->in_flight) > kTableRays) {
-      throw CLI::ValidationError("--in-flight", "expected at most 64 with --structural or --exact");
-    }
     CoreBench bench(*options, outcome.results);
     for (const std::string& scene : options->scenes) bench.scene(scene);
   });

@@ -1,15 +1,11 @@
-"""Generates reports from rows and a Jinja2 template: a Markdown page with plots and long tables, and an HTML page."""
+"""Generates reports from rows and a Jinja2 template: a Markdown page with plots and long tables."""
 
-import base64
-import html
 import pathlib
 import re
 
 import jinja2
-import markdown
 import pandas
 
-from host.lab.report.statistics import median_seconds, spread, times
 from host.lab.rows import of, scene_name
 
 # A table column, "HEAD = EXPRESSION :FORMAT". The default expression is the row's value named by HEAD; without a
@@ -73,8 +69,7 @@ def rate(count: int, of_all: int) -> str:
 
 
 ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": False}  # keeps the order of variants and figures
-ENVIRONMENT.globals |= {"table": table, "each": each, "rate": rate, "scene_name": scene_name, "median_seconds": median_seconds,
-                        "spread_percent": lambda row: 100 * spread(times(row))}
+ENVIRONMENT.globals |= {"table": table, "each": each, "rate": rate, "scene_name": scene_name}
 
 
 def render(template: str, folder: pathlib.Path, rows: list[dict], **values: object) -> str:
@@ -93,28 +88,3 @@ def measured(about: dict) -> str:
     """Returns the last line of a report: date, commit and machine."""
     return (f"\nMeasured by `{about['command']}` at commit {about['commit']} ({about['changed_files']} files changed), "
             f"{about['date']}, on {about['processor']}, {about['processors']} processors.\n")
-
-
-def inlined(picture: pathlib.Path) -> str:
-    """Returns a PNG file as a data URL."""
-    return f"data:image/png;base64,{base64.b64encode(picture.read_bytes()).decode()}"
-
-
-def page(text: str, folder: pathlib.Path) -> str:
-    """Returns the report as a self-contained HTML page with embedded images."""
-    body = markdown.markdown(text, extensions=["tables"])
-    body = re.sub(r'src="([^":]+\.png)"', lambda match: f'src="{inlined(folder / match[1])}"', body)
-    title = re.search(r"^# (.*)", text, re.MULTILINE)
-    return f"""<!doctype html>
-<meta charset="utf-8">
-<title>{html.escape(title[1]) if title else ""}</title>
-<style>body {{ font: 15px/1.5 system-ui, sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; }} img {{ max-width: 100%; }}
-table {{ border-collapse: collapse; }} td, th {{ padding: 2px 10px; border-bottom: 1px solid #ddd; }}</style>
-{body}
-"""
-
-
-def write(text: str, folder: pathlib.Path) -> None:
-    """Writes report.md and report.html."""
-    (folder / "report.md").write_text(text)
-    (folder / "report.html").write_text(page(text, folder))

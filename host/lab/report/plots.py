@@ -8,7 +8,6 @@ import numpy
 from matplotlib import colors
 from PIL import Image
 
-from host.lab.report import statistics
 from synth.drawing import plt
 
 # Label, colour and marker of a variant, by its unit and whether doubts are resolved.
@@ -87,23 +86,17 @@ def heat_map(values: list[list[float]], rows: list[str], columns: list[str], tit
     return save(figure, file)
 
 
-def error_by_angle(curves: dict[str, list[tuple[float, float]]], unit: list[tuple[float, float]],
-                   largest: list[tuple[float, float]], bound: list[tuple[float, float]],
-                   file: pathlib.Path) -> pathlib.Path:
-    """Plots the 99th percentile of each subject's error of t, and the unit's largest error with its bound."""
-    figure, axes = plt.subplots(figsize=(10, 5.5), layout="constrained")
-    axes.set_prop_cycle(color=plt.get_cmap("tab20").colors)
-    for name, points in curves.items():
-        axes.loglog(*zip(*points, strict=True), marker=".", linewidth=1, label=name)
-    axes.loglog(*zip(*unit, strict=True), "k.-", linewidth=2, label="the unit")
-    axes.loglog(*zip(*largest, strict=True), "k^", label="the unit, largest")
-    axes.loglog(*zip(*bound, strict=True), "k--", label="the unit, proven bound")
-    axes.set_xlabel("sine of the angle between ray and plane (a decade each)")
-    axes.set_ylabel("error of t, ulp: 99th percentile")
-    axes.set_ylim(top=1e9)  # only overflows of narrow formats are above
-    figure.legend(loc="outside right upper", fontsize="small")
-    axes.grid(True, alpha=0.3)
-    return save(figure, file)
+def front(points: list[tuple[float, float]]) -> list[int]:
+    """Returns the Pareto-optimal points: no other point is at most as large in both coordinates and smaller in one.
+
+    Returns indices, sorted by the first coordinate.
+    """
+    best, kept = math.inf, []
+    for i in sorted(range(len(points)), key=lambda i: points[i]):
+        if points[i][1] < best:
+            kept.append(i)
+            best = points[i][1]
+    return kept
 
 
 def pareto(frames: list[dict], costs: dict[str, str], error: str, label: str, title: str, file: pathlib.Path) -> pathlib.Path:
@@ -114,7 +107,7 @@ def pareto(frames: list[dict], costs: dict[str, str], error: str, label: str, ti
     for axes, (cost, text) in zip(grid, costs.items(), strict=True):
         known = [frame for frame in frames if frame.get(cost)]
         drawn = [(frame[cost], max(frame[error], floor)) for frame in known]
-        best = statistics.front(drawn)
+        best = front(drawn)
         axes.step(*zip(*(drawn[i] for i in best), strict=True), where="post", color="0.6", linewidth=1, zorder=0)
         for kind, (name, colour, marker) in KINDS.items():
             mine = [point for frame, point in zip(known, drawn, strict=True) if (frame["unit"], frame["doubts"]) == kind]

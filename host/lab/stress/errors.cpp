@@ -52,8 +52,6 @@ double bound(double sine, int roundings) {
 double bound_of_t(double sine) { return bound(sine, 1); }
 double bound_of_point(double sine) { return bound(sine, 2); }
 
-double in_ulp(double relative) { return relative * 0x1p24; }
-
 void Errors::add(double error) {
   bins_.resize(kBins);
   ++bins_[bin_of(error)];

@@ -32,9 +32,6 @@ class Errors {
 [[nodiscard]] double bound_of_t(double sine);
 [[nodiscard]] double bound_of_point(double sine);
 
-/// Converts a relative error to ulps (float steps near the exact value).
-[[nodiscard]] double in_ulp(double relative);
-
 /// Largest error in ulps of the hits that the host delivers, which are computed from the corners
 /// (precise_hit in host/exact/exact.h), at any angle.
 inline constexpr double kDeliveredUlp = 0.5 + 0x1p-10;

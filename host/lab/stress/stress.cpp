@@ -3,14 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <iterator>
-#include <set>
 
 #include "host/lab/commands.h"
-#include "host/lab/stress/errors.h"
-#include "host/lab/stress/minimise.h"
 #include "host/lab/stress/runner.h"
 #include "host/lab/stress/watertight.h"
 
@@ -20,7 +16,7 @@ namespace {
 struct Asked {
   StressOptions options{.tests = 10'000'000};
   std::vector<std::string> suites, subjects;
-  bool minimised = false, listed = false;
+  bool listed = false;
 };
 
 template <class List>
@@ -31,26 +27,13 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-/// Prints the failures of exact subjects, or of all, as lines of test/regressions.txt.
-void print_failures(std::span<const Row> rows, const std::vector<SubjectKind>& subjects, bool all) {
-  for (const SubjectKind& kind : subjects) {
-    if (!kind.exact && !all) continue;
-    std::set<std::string> seen;
-    const auto subject = kind.make();
-    const auto fails = [&](const Case& failure) {
-      return decides_wrongly(kind, *subject, failure);
-    };
-    for (const Row& row : rows) {
-      if (row["subject"] != kind.name) continue;
-      for (const std::string text : row["failures"]) {
-        // The decision may differ for the case alone.
-        const Case failure = case_from(text);
-        const bool alone = fails(failure);
-        const std::string line = alone ? to_text(minimise(failure, fails)) : text;
-        if (!seen.insert(line).second) continue;
-        std::printf("# %s, %s%s\n%s\n", kind.name.c_str(), row["suite"].get<std::string>().c_str(),
-                    alone ? "" : ": only among other rays", line.c_str());
-      }
+/// Prints the first wrong decisions of exact subjects as lines of test/regressions.txt.
+void print_failures(std::span<const Row> rows) {
+  for (const Row& row : rows) {
+    if (!row["exact"]) continue;
+    for (const std::string line : row["failures"]) {
+      std::printf("# %s, %s\n%s\n", row["subject"].get<std::string>().c_str(),
+                  row["suite"].get<std::string>().c_str(), line.c_str());
     }
   }
 }
@@ -60,16 +43,6 @@ void print_failures(std::span<const Row> rows, const std::vector<SubjectKind>& s
 void keep_memory() {
   mallopt(M_MMAP_THRESHOLD, 1 << 24);
   mallopt(M_TRIM_THRESHOLD, 1 << 25);
-}
-
-/// Returns the bounds of the unit's error of t, for sines from 1 to 1e-8, ten steps per decade.
-Row bounds() {
-  Row sines = Row::array(), ulps = Row::array();
-  for (int tenths = 0; tenths <= 80; ++tenths) {
-    sines.push_back(std::pow(10.0, -0.1 * tenths));
-    ulps.push_back(in_ulp(bound_of_t(sines.back())));
-  }
-  return {{"table", "bounds"}, {"sine", sines}, {"t_ulp", ulps}};
 }
 
 int run_stress(const Asked& asked, Results& results) {
@@ -88,9 +61,8 @@ int run_stress(const Asked& asked, Results& results) {
     if (wanted(asked.suites, suite.name)) suites.push_back(&suite);
   }
   const std::vector<Row> rows = run(suites, subjects, asked.options);
-  results.keep(bounds());
   for (const Row& row : rows) results.keep(row);
-  print_failures(rows, subjects, asked.minimised);
+  print_failures(rows);
   const Verdicts verdicts = sum_up(rows, asked.options.seed);
   std::printf("%s\n", verdicts.summary.c_str());
   return verdicts.passed || !verdicts.judged ? 0 : 1;
@@ -111,8 +83,6 @@ void add_stress(CLI::App& lab, Outcome& outcome) {
       ->check(CLI::IsMember(names_of(all_suites())));
   app->add_option("--subject", asked->subjects, "only these engines and variants")
       ->check(CLI::IsMember(names_of(all_subjects())));
-  app->add_flag("--minimise", asked->minimised,
-                "print some wrong decisions of all subjects, made as simple as they can be");
   app->add_flag("--list", asked->listed, "the suites' names, and no more");
   app->callback([asked, &outcome] { outcome.status = run_stress(*asked, outcome.results); });
 }

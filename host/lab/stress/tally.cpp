@@ -52,13 +52,8 @@ void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& dir
   if (const auto error = off(answer.t, truth.t)) {
     tally.t_ulp.add(error->ulps);
     tally.t_relative.add(error->relative);
-    if (!answer.doubt) {
-      const int decade =
-          std::clamp(static_cast<int>(-std::log10(truth.sine)), 0, Tally::kDecades - 1);
-      tally.t_ulp_by_angle[decade].add(error->ulps);
-      if (bounded) {
-        tally.t_of_bound = std::max(tally.t_of_bound, error->relative / bound_of_t(truth.sine));
-      }
+    if (bounded && !answer.doubt) {
+      tally.t_of_bound = std::max(tally.t_of_bound, error->relative / bound_of_t(truth.sine));
     }
   }
   if (const auto error = off(answer.point, direction, truth.t)) {
@@ -87,8 +82,7 @@ Row Tally::row() const {
   const auto binned = [](const Errors& errors) -> Row {
     return {{"max", errors.max()}, {"bins", errors.bins()}};
   };
-  Row angles = Row::array(), cases = Row::array();
-  for (const Errors& errors : t_ulp_by_angle) angles.push_back(binned(errors));
+  Row cases = Row::array();
   for (const Case& failure : failures) cases.push_back(to_text(failure));
   return {{"tests", tests},
           {"rays", rays},
@@ -112,7 +106,6 @@ Row Tally::row() const {
           {"point_ulp", binned(point_ulp)},
           {"delivered_t_ulp", binned(delivered_t_ulp)},
           {"delivered_point_ulp", binned(delivered_point_ulp)},
-          {"t_ulp_by_angle", angles},
           {"failures", cases}};
 }
 

@@ -1,7 +1,6 @@
 // Tally: counts of a subject's wrong decisions, and its errors in ulps.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -33,9 +32,6 @@ struct Tally {
   Errors t_ulp, point_ulp, t_relative;
   /// Errors of the hits that the host delivers.
   Errors delivered_t_ulp, delivered_point_ulp;
-  /// t_ulp of sure hits by angle: decade k has sines of ray and plane from 10^-k-1 to 10^-k.
-  static constexpr int kDecades = 8;
-  std::array<Errors, kDecades> t_ulp_by_angle;
   /// Largest errors of sure hits, relative to the bounds of errors.h for binary32.
   double t_of_bound = 0.0, point_of_bound = 0.0;
   /// Largest error of P, relative to the reported bound (NearestHit::point_error).

@@ -1,24 +1,27 @@
-"""`make bench`: run time against error, from the adder to the image."""
+"""`make bench`: run time against error, by variant of arithmetic, engine and number of lanes."""
 
 import argparse
 import functools
-import json
 import pathlib
-import re
+import statistics
 import subprocess
 import sys
-from collections.abc import Callable
 
-from host.lab.bench import costs, runs
+from host.lab.bench import costs
 from host.lab.machine import processors
 from host.lab.report import plots
 from host.lab.rows import KEPT, ROOT, of, read, scene_name
-from host.lab.steps import LAB, Step
+from host.lab.steps import LAB, Step, render
 
+PICTURES = "build/bench/pictures"
+# Scenes of the variants' pictures: integrator, and samples per pixel.
+SCENES = {"cornell": ("path", 4), "paper": ("whitted", 1), "teapot": ("primary", 1)}
+ENGINES = ("scenes/cornell.obj", "scenes/paper.obj", "scenes/teapot.obj", "build/scenes/sphere.obj", "build/scenes/sphereflake.obj")
+# Units and the engines that compute them.
+WAYS = (("pipeline", "cpu"), ("pipeline", "rtl"), ("serial", "model"), ("serial", "rtl"))
 # Costs on the axes of the Pareto plots: key of a frame, label.
 COSTS = {"clocks": "clocks per frame", "frame_ms": "ms per frame at the clock of synthesis",
-         "area": "area, um2 in OSU 0.35 um", "area_time": "area x ms per frame",
-         "energy_uj": "uJ per frame in the cores, OSU 0.35 um"}
+         "area": "area, um2 in OSU 0.35 um", "area_time": "area x ms per frame"}
 ERRORS = {"point": "error of P, 99th percentile, ulp of binary32",
           "wrong": "wrong hit decisions per million tests",
           "rmse": "RMSE of the picture, scene-linear"}
@@ -33,31 +36,45 @@ def variants() -> list[dict]:
     return read(KEPT / "variants.jsonl")
 
 
-def section(name: str) -> Callable[[argparse.Namespace], list[Step]]:
-    """Returns a function that makes the steps of a section: its images, with interleaved repeats."""
-    def steps(given: argparse.Namespace) -> list[Step]:
-        (ROOT / runs.PICTURES).mkdir(parents=True, exist_ok=True)
-        file = KEPT / f"runs-{name}.json"
-        file.write_text(json.dumps([{"section": name, **run} for run in runs.SECTIONS[name](variants(), given.quick)]))
-        return [Step(name, "pictures", ("pictures", "--runs", file))]
-    return steps
+def variants_steps(given: argparse.Namespace) -> list[Step]:
+    """Returns steps that render each scene in all variants; the first one also by the hardware, for its clocks."""
+    size = ("--width", 160, "--height", 120) if given.quick else ()
+    return [Step("variants", scene, ("pictures", f"scenes/{scene}.obj", f"{PICTURES}/{scene}", *size, "--integrator", integrator,
+                                     "--samples", 1 if given.quick else samples, *(("--clocks",) if scene == "cornell" else ())))
+            for scene, (integrator, samples) in SCENES.items()]
 
 
-def simulation() -> list[dict]:
-    """Returns the simulated units' tests per second, and their instructions if valgrind can count them."""
-    done = subprocess.run([ROOT / "build/sim/unit_bench"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
-    row = (r"(?P<unit>.+?) +(?P<arithmetic>\S+) +(?P<lanes>\S+) +(?P<hits_percent>[\d.]+) +"
-           r"(?P<tests_per_second>\d+)(?: +(?P<instructions>\d+))?$")
-    return [{"table": "simulation", **match.groupdict(), "command": "build/sim/unit_bench"}
-            for match in re.finditer(row, done.stdout, re.MULTILINE)]
+def timed(table: str, scene: str, ways: list[dict], repeats: int, *words: str) -> list[dict]:
+    """Returns a row for each way of rendering, options by name: medians of the processor seconds of interleaved repeats."""
+    runs = [[render([ROOT / "render", scene], "--threads", "1", *words, *(word for name, value in way.items() for word in (f"--{name}", str(value))))
+             for way in ways] for _ in range(repeats)]
+    found = []
+    for way, mine in zip(ways, zip(*runs), strict=True):
+        seconds = [run["seconds"]["processor"] for run in mine]
+        middle = statistics.median(seconds)
+        found.append({"table": table, "scene": scene, "lanes": 1, **{key: mine[0][key] for key in ("triangles", "rays", "tests", "unit_tests", "clocks")},
+                      "seconds": middle, "spread_percent": 100 * statistics.median(abs(one - middle) for one in seconds) / middle, **way})
+    return found
 
 
-PARTS = {
-    **{name: section(name) for name in runs.SECTIONS},
-    "simulation": lambda given: [] if given.quick else [Step("simulation", "units", measure=simulation)],
-    "synthesis": lambda given: [Step("synthesis", "area and clock", measure=lambda: costs.synthesis(
-        variants(), processors(), measure=not given.quick))],
-    "energy": lambda given: [Step("energy", "of operations", measure=costs.energies)]}
+def engines_steps(given: argparse.Namespace) -> list[Step]:
+    """Returns steps that time the renderer's engines and units."""
+    size, scenes, repeats = ("96x72", ENGINES[:3], 3) if given.quick else ("320x200", ENGINES, 9)
+    ways = [{"unit": unit, "engine": engine} for unit, engine in WAYS]
+    return [Step("engines", scene, measure=lambda scene=scene: timed(
+        "engines", scene, ways, repeats, "--integrator", "primary", "--spp", "1", "--size", size)) for scene in scenes]
+
+
+def lanes_steps(given: argparse.Namespace) -> list[Step]:
+    """Returns the step that renders the paper's scene, with shadows and reflections, on 1 to 8 lanes and on its unit."""
+    ways = [*({"engine": "rtl", "unit": "pipeline", "lanes": count} for count in (1, 2, 4, 8)), {"engine": "rtl", "unit": "serial"}]
+    return [Step("lanes", "the paper's scene", measure=lambda: timed(
+        "lanes", "scenes/paper.obj", ways, 1 if given.quick else 3, "--integrator", "whitted", "--spp", "1", "--size", "320x200"))]
+
+
+PARTS = {"variants": variants_steps, "engines": engines_steps, "lanes": lanes_steps,
+         "synthesis": lambda given: [Step("synthesis", "area and clock", measure=lambda: costs.synthesis(
+             variants(), processors(), measure=not given.quick))]}
 
 
 def judge_pictures(rows: list[dict]) -> list[dict]:
@@ -78,22 +95,21 @@ def finish(rows: list[dict]) -> list[dict]:
 
 
 def frames(rows: list[dict]) -> list[dict]:
-    """Returns a copy of each image's row of the section `variants`, with its variant's columns, and
+    """Returns a copy of each picture's row, with its variant's columns, and
 
       clocks      per frame: the tests through the unit times the clocks per test of the variant's
                   simulation (of binary32's if it has no hardware: then `clocks_modelled`)
       wrong, doubtful          tests per million
       area, period_ns, frame_ms, area_time    if synthesis has measured the unit
-      energy_uj   of the cores, if simulated
     """
-    pictures = of(rows, "pictures", section="variants")
+    pictures = of(rows, "pictures")
     clocks_a_test = {row["variant"]: row["clocks"] / row["unit_tests"] for row in pictures
                      if row["engine"] == "unit" and row["unit_tests"]}
     known = {row["variant"]: row for row in of(rows, "variants")}
-    synthesis, energies = of(rows, "synthesis"), of(rows, "energy")
+    synthesis = of(rows, "synthesis")
     found = []
     for row in pictures:
-        if row["engine"] == "unit" and not row.get("audit"):  # runs of the unit alone, for its clocks
+        if "decisions" not in row:  # by the unit, for its clocks
             continue
         variant, judged = known[row["variant"]], row["decisions"]
         usual = "serial" if variant["unit"] == "serial" else "binary32"
@@ -104,18 +120,16 @@ def frames(rows: list[dict]) -> list[dict]:
                  "doubtful": 1e6 * judged["doubts"] / tests, "point": judged["point_ulp"]["p99"],
                  "clocks": row["unit_tests"] * (clocks_a_test.get(row["variant"]) or clocks_a_test[usual]),
                  "clocks_modelled": row["variant"] not in clocks_a_test}
-        cost = costs.cost(synthesis, variant)
-        if cost:
-            frame |= {"area": cost.area, "period_ns": cost.period_ns, "frame_ms": frame["clocks"] * cost.period_ns * 1e-6}
-            frame["area_time"] = cost.area * frame["frame_ms"]
-        spent = costs.energy(energies, variant)
-        if spent is not None:
-            frame["energy_uj"] = spent * row["unit_tests"] / 1000
+        record = costs.unit(synthesis, variant)
+        if record:
+            frame |= {"area": record["area"], "period_ns": record["delay_ns"], "wired_ns": record.get("wired_ns"),
+                      "frame_ms": frame["clocks"] * record["delay_ns"] * 1e-6}
+            frame["area_time"] = frame["area"] * frame["frame_ms"]
         found.append(frame)
     return found
 
 
-def by_scene(rows: list[dict], folder: pathlib.Path) -> dict:
+def values(rows: list[dict], folder: pathlib.Path) -> dict:
     """Returns frames by scene, Pareto plots of the first scene, and images that differ."""
     scenes: dict[str, list] = {}
     for frame in frames(rows):
@@ -132,17 +146,3 @@ def by_scene(rows: list[dict], folder: pathlib.Path) -> dict:
         if shown:
             differences.append((plots.gallery(shown, folder / f"differences-{scene}.png"), scene))
     return {"scenes": scenes, "pareto": pareto, "differences": differences}
-
-
-def lanes(rows: list[dict], folder: pathlib.Path) -> dict | None:
-    """Returns the clocks by number of lanes."""
-    mine = of(rows, "pictures", section="lanes", variant="binary32")
-    if not mine:
-        return None
-    serial = of(rows, "pictures", section="lanes", variant="serial")
-    return {"row": mine[0], "rows": [*({**row, "unit": "pipelined"} for row in mine), *({**row, "unit": "the paper's"} for row in serial)]}
-
-
-def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Returns the report's tables and plots."""
-    return {**by_scene(rows, folder), "lanes": lanes(rows, folder)}

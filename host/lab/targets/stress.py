@@ -16,7 +16,6 @@ COUNTS = ("tests", "rays", "refused", "wrong", "wrong_ties", "escapes", "double_
           "wrong_nearest", "wrong_tied_nearest", "orders", "wrong_order", "doubts")
 ERRORS = ("t_ulp", "t_relative", "point_ulp", "delivered_t_ulp", "delivered_point_ulp")
 LARGEST = ("t_of_bound", "point_of_bound", "point_of_said")
-DECADES = 8
 # Kinds of wrong results per ray, reported separately.
 KINDS = ("escapes", "double_hits", "wrong_nearest")
 
@@ -74,8 +73,7 @@ def total(rows: list[dict]) -> dict:
     """Returns the sum of a subject's rows over all suites."""
     return {**rows[0], **{key: sum(row[key] for row in rows) for key in COUNTS},
             **{key: max(row[key] for row in rows) for key in LARGEST},
-            **{key: summary([row[key] for row in rows]) for key in ERRORS},
-            "t_ulp_by_angle": [summary([row["t_ulp_by_angle"][decade] for row in rows]) for decade in range(DECADES)]}
+            **{key: summary([row[key] for row in rows]) for key in ERRORS}}
 
 
 def cases(rows: list[dict], key: str) -> int:
@@ -91,47 +89,28 @@ def with_errors(totals: list[dict]) -> list[dict]:
     return [found for found in totals if any(found[key]["count"] for key in ERRORS)]
 
 
-def curve(subject: dict, key: str) -> list[tuple[float, float]]:
-    """Returns errors of t by the sine of the angle between ray and plane."""
-    return [(10 ** -(decade + 0.5), errors[key]) for decade, errors in enumerate(subject["t_ulp_by_angle"])
-            if errors["count"] > 100 and errors[key]]
-
-
-def plot(suites: list[dict], totals: list[dict], unit: dict | None, bounds: dict, folder: pathlib.Path) -> dict:
-    """Draws the heat map of wrong decisions and the errors by angle; None without such data."""
-    others = [t for t in totals if not t["exact"]]
-    found = {"wrong_plot": None, "angle_plot": None}
-    if others:
-        shares = [[suite["at"][t["subject"]]["wrong"] / max(suite["at"][t["subject"]]["tests"], 1) for suite in suites]
-                  for t in others]
-        found["wrong_plot"] = plots.heat_map(shares, [t["subject"] for t in others], [suite["suite"] for suite in suites],
-                                             "Wrong decisions, % of tests (the exact ones: 0 everywhere)",
-                                             folder / "stress-wrong.png")
-    if unit and curve(unit, "p99"):
-        found["angle_plot"] = plots.error_by_angle(
-            {t["subject"]: curve(t, "p99") for t in others if len(curve(t, "p99")) > 1}, curve(unit, "p99"),
-            curve(unit, "max"), [(sine, ulp) for sine, ulp in zip(bounds["sine"], bounds["t_ulp"], strict=True)
-                                 if ulp is not None], folder / "stress-angles.png")
-    return found
+def heat_map(suites: list[dict], totals: list[dict], folder: pathlib.Path) -> pathlib.Path | None:
+    """Draws the heat map of wrong decisions of subjects that are not exact; None without any."""
+    others = [subject["subject"] for subject in totals if not subject["exact"]]
+    shares = [[suite["at"][name]["wrong"] / max(suite["at"][name]["tests"], 1) for suite in suites] for name in others]
+    return plots.heat_map(shares, others, [suite["suite"] for suite in suites],
+                          "Wrong decisions, % of tests (the exact ones: 0 everywhere)", folder / "stress-wrong.png") if others else None
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Returns sums over the suites, and suites side by side."""
+    """Returns the sums by subject and by suite, and the heat map."""
     # Exact subjects must also decide ties correctly.
     mine = [row | {"wrong": row["wrong"] + row["exact"] * row["wrong_ties"]} for row in of(rows, "stress")]
-    suites, bounds = grouped(mine, ("suite",), "subject"), of(rows, "bounds")[0]
+    suites = grouped(mine, ("suite",), "subject")
     totals = [total([suite["at"][name] for suite in suites]) for name in suites[0]["at"]]
-    unit = next((t for t in totals if t["exact"] and t["t_ulp"]["count"]), None)
-    angles = [{"low": 10 ** -(decade + 1), "high": 10 ** -decade, "bound": bounds["t_ulp"][10 * (decade + 1)],
-               **unit["t_ulp_by_angle"][decade]} for decade in range(DECADES)] if unit else []
-    return {"suites": suites, "totals": totals, "names": list(suites[0]["at"]), "unit": unit, "angles": angles,
+    return {"suites": suites, "totals": totals, "names": list(suites[0]["at"]),
             "passed": not failures(rows), "watertight": of(rows, "watertight"),
             "all_errors": with_errors(totals),
             "random_errors": with_errors([total([row]) for row in mine if row["suite"] == "random"]),
             "cases": cases(mine, "exact"), "simulated_cases": cases(mine, "simulated"),
             "kinds": [{**suite, "key": key} for suite in suites for key in KINDS
                       if any(row[key] for row in suite["at"].values())],
-            **plot(suites, totals, unit, bounds, folder)}
+            "wrong_plot": heat_map(suites, totals, folder)}
 
 
 def failures(rows: list[dict]) -> list[str]:

@@ -10,30 +10,23 @@ from host.lab.bench import costs
 from host.lab.machine import processors
 from host.lab.report import plots
 from host.lab.report.document import number
-from host.lab.rows import KEPT, ROOT, of, read, scene_name, write
+from host.lab.rows import KEPT, ROOT, of, scene_name, write
 from host.lab.steps import Step
 from host.lab.targets import bench
 from synth import brought, catalogue, report, store, tools
 
 # The variants that the program `lab` is built with: host/lab/variants/CMakeLists.txt.
 TABLE = KEPT / "variant.json"
-# All cards so far, by name and scene.
-CARDS = KEPT / "cards.jsonl"
 # Options of make's command line: the column of variants.json, and its valid values.
 WORDS = {"EXP_WIDTH": ("exponent_bits", range(3, 9)), "FRAC_WIDTH": ("digits", range(2, 24)),
          "QUOTIENT_BITS": ("quotient_digits", range(1, 25)), "ROUNDING": ("rounding", costs.ROUNDINGS),
          "UNIT": ("unit", tuple(costs.UNITS)), "ADDER": ("adder", None), **dict.fromkeys(("MULTIPLIER", "DIVIDER_ROW", "ROUNDER"), ("", ()))}
 # Instead of a value, a file with a module that replaces that of hw/.
 FILES = (".sv", ".v")
-# Costs in the Pareto plots.
-COSTS = {"area": "area, um2 in OSU 0.35 um", "frame_ms": "ms per frame at the clock of synthesis"}
-ERRORS = {"wrong": "wrong hit decisions per million tests", "point": "error of P, 99th percentile, ulp of binary32"}
-
-
 # Rows of a card: name, value of a frame (targets/bench.py), format.
 FIGURES = (("area, um2 in OSU 0.35 um", "area", ",.0f"), ("period, ns", "period_ns", ".2f"),
            ("period with estimated wires, ns", "wired_ns", ".2f"),
-           ("clocks a frame", "clocks", ",.0f"), ("ms a frame", "frame_ms", ".3f"), ("uJ a frame, cores", "energy_uj", ".3g"),
+           ("clocks a frame", "clocks", ",.0f"), ("ms a frame", "frame_ms", ".3f"),
            ("wrong tests a million", "wrong", ".1f"), ("doubts a million", "doubtful", ".1f"),
            ("wrong rays", "decisions.wrong_rays", ",d"), ("P, ulp: median", "decisions.point_ulp.p50", ".3g"),
            ("P, ulp: 99 %", "decisions.point_ulp.p99", ".3g"), ("P, ulp: largest", "decisions.point_ulp.max", ".3g"),
@@ -108,20 +101,9 @@ def variants(given: argparse.Namespace) -> list[dict]:
 
 
 def pictures(given: argparse.Namespace) -> list[Step]:
-    """Returns steps that render the scene with each reference model, audited, and small with hardware for clocks. With
-    user-supplied modules, both are rendered by the hardware."""
-    (ROOT / "build/bench/pictures").mkdir(parents=True, exist_ok=True)
-    scene = str(pathlib.Path(given.scenes or "scenes/cornell.obj"))
-    rows = bench.variants()
-    stem = f"build/bench/pictures/card-{pathlib.Path(scene).stem}"
-    file = KEPT / "runs-card.json"
-    file.write_text(json.dumps(
-        [{"section": "variants", "scene": scene, "width": 320, "height": 240, "integrator": "whitted", "audit": True,
-          "variant": row["variant"], "engine": "unit" if row["brought"] else "model",  # such modules have no model
-         "picture": f"{stem}-{row['variant']}", "against": f"{stem}-binary32"} for row in rows]
-        + [{"section": "variants", "scene": scene, "width": 80, "height": 60, "variant": row["variant"], "engine": "unit"}
-           for row in rows]))
-    return [Step("pictures", scene, ("pictures", "--runs", file))]
+    """Returns the step that renders the scene in each variant, audited, and small by the hardware for clocks."""
+    scene = pathlib.Path(given.scenes or "scenes/cornell.obj")
+    return [Step("pictures", str(scene), ("pictures", scene, f"{bench.PICTURES}/card-{scene.stem}", "--integrator", "whitted", "--clocks"))]
 
 
 PARTS = {
@@ -130,8 +112,7 @@ PARTS = {
     "checks": lambda given: [Step("checks", "models against hardware", ("check", "--tests", 100_000))],
     "pictures": pictures,
     "synthesis": lambda given: [Step("synthesis", "area and clock", measure=lambda: costs.synthesis(
-        variants(given)[-2:], processors(), measure=True, wires=given.wires))],  # the two on the card
-    "energy": lambda given: [Step("energy", "of operations", measure=lambda: costs.energies(variants(given) if given.energy else ()))]}
+        variants(given)[-2:], processors(), measure=True, wires=given.wires))]}  # the two on the card
 finish = bench.judge_pictures
 
 
@@ -154,39 +135,13 @@ def figures(usual: dict, mine: dict, made: dict[str, str] = {}) -> list[dict]:
     return found
 
 
-def kept_cards(mine: dict) -> list[dict]:
-    """Returns all cards of the same scene, with this one added or replaced."""
-    others = [card for card in (read(CARDS) if CARDS.exists() else [])
-              if (card["variant"], card["scene"]) != (mine["variant"], mine["scene"])]
-    write(CARDS, [*others, mine])
-    return [*(card for card in others if card["scene"] == mine["scene"]), mine]
-
-
-def standing(cards: list[dict]) -> list[dict]:
-    """Returns whether the last card is Pareto-optimal by cost and error, or else the better cards."""
-    found = []
-    for cost, error in ((cost, error) for cost in COSTS for error in ERRORS):
-        known = [card for card in cards if card.get(cost)]
-        better = [card["variant"] for card in known if card is not cards[-1] and card[cost] <= cards[-1].get(cost, 0)
-                  and card[error] <= cards[-1][error] and (card[cost], card[error]) != (cards[-1][cost], cards[-1][error])]
-        if cards[-1] in known:
-            found.append({"cost": COSTS[cost], "error": ERRORS[error], "better": ", ".join(better) or "none"})
-    return found
-
-
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
     """Returns frames of binary32 and the variant, the critical path with its files, images and plots."""
     frames = bench.frames(rows)
     usual, mine = frames[max(len(frames) - 2, 0)], frames[-1]
-    known = {row["variant"]: row for row in of(rows, "variants")}
-    for frame in (usual, mine):
-        frame["wired_ns"] = (costs.unit(of(rows, "synthesis"), known[frame["variant"]]) or {}).get("wired_ns")
-    record = costs.unit(of(rows, "synthesis"), known[mine["variant"]])
+    record = costs.unit(of(rows, "synthesis"), of(rows, "variants")[-1])
     shown = [(usual["variant"], ROOT / f"{usual['picture']}.png"), (mine["variant"], ROOT / f"{mine['picture']}.png"),
              (f"FLIP {mine['flip']:.5f}", ROOT / mine["map"])]
-    made_so_far = [usual, *kept_cards(mine)]
-    pareto = [(plots.pareto(made_so_far, COSTS, error, label, f"{mine['scene']}: {label}", folder / f"pareto-{error}.png"), label)
-              for error, label in ERRORS.items() if all(card.get("area") for card in made_so_far)]
 
     def link(name: str, file: pathlib.Path) -> str:
         return f"[{name}]({os.path.relpath(file, folder)})"
@@ -198,7 +153,7 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
             f"{record['design']}.{record['target']}.{record['flow']}")
         made |= {"area": link("netlist", run / "netlist.v"), "period_ns": link("timing", run / "timing.txt")}
         made |= {"frame_ms": f"{made['period_ns']}, {made['']}", "log": link("log of synthesis", run / "yosys.log")}
-    return {"usual": usual, "mine": mine, "figures": figures(usual, mine, made), "pareto": pareto, "standing": standing(made_so_far),
+    return {"usual": usual, "mine": mine, "figures": figures(usual, mine, made),
             "pictures": plots.gallery(shown, folder / "pictures.png", 3), "path": report.path_table(record) if record else "",
             "made": made}
 

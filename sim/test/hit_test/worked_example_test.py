@@ -1,4 +1,4 @@
-"""What `make example` shows: the worked example's words, and a waveform that GTKWave's save file fits.
+"""What `make lecture EXAMPLE=1` shows: the worked example's words, and a waveform that GTKWave's save file fits.
 
 usage: worked_example_test.py WORKED_EXAMPLE SAVE_FILE
 """

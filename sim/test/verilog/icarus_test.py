@@ -1,4 +1,4 @@
-"""`make verilog` writes what Icarus Verilog compiles and runs, with the right words.
+"""`make synth VERILOG=1` writes what Icarus Verilog compiles and runs, with the right words.
 
 usage: icarus_test.py TOP CASES [ecp5] [bench.Name=value ...] [Name=value ...]
 beside it: TOP_bench.v, with parameters of its own, whose last line counts CASES

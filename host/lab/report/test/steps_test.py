@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-import json
 import pathlib
 import sys
 import tempfile
@@ -49,15 +48,6 @@ class Steps(unittest.TestCase):
         self.assertEqual(self.measured, ["a", "b, c"])
         self.run_steps()  # which was whole: anew
         self.assertEqual(self.measured, ["a", "b, c"] * 2)
-
-    def test_says_what_is_left(self) -> None:
-        said = io.StringIO()
-        with contextlib.redirect_stderr(said):
-            self.run_steps("QUICK=1")
-            (self.kept / "seconds.json").write_text(json.dumps({"QUICK=1: part a": 200, "QUICK=1: part b, c": 400}))
-            self.run_steps("QUICK=1")
-        self.assertEqual(said.getvalue().splitlines(), [
-            "[1/2] part: a", "[2/2] part: b, c", "[1/2] part: a, about 10 min left", "[2/2] part: b, c, about 7 min left"])
 
     def test_ctrl_c_prints_one_line(self) -> None:
         said = io.StringIO()

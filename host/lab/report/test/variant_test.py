@@ -3,7 +3,6 @@
 import pathlib
 import tempfile
 import unittest
-from unittest import mock
 
 import numpy
 
@@ -57,22 +56,21 @@ class Card(unittest.TestCase):
         format_of = {"unit": "pipeline", "exponent_bits": 8, "doubts": True, "flush": False, "fused": False, "rounding": "nearest-even",
                      "quotient_digits": 0}
         decisions = {"tests": 1000, "wrong_hits": 1, "wrong_misses": 2, "doubts": 4, "point_ulp": {"p99": 2.5}}
-        with tempfile.TemporaryDirectory() as name, mock.patch.object(variant, "CARDS", pathlib.Path(name) / "cards.jsonl"):
+        with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             plots.save_pixels(numpy.zeros((2, 3, 3)), folder / "seen.png")
             rows = [{"table": "machine"}]
             for line, digits in (("binary32", 24), ("e8p16", 16)):
-                frame = {"table": "pictures", "section": "variants", "variant": line, "scene": "scenes/cornell.obj", "unit_tests": 50,
+                frame = {"table": "pictures", "variant": line, "scene": "scenes/cornell.obj", "unit_tests": 50,
                          "clocks": 60}
                 rows += [{"table": "variants", "variant": line, "digits": digits, **format_of}, {**frame, "engine": "unit"},
-                         {**frame, "engine": "model", "audit": True, "decisions": decisions, "flip": 0.5, "picture": str(folder / "seen"),
+                         {**frame, "engine": "model", "decisions": decisions, "flip": 0.5, "picture": str(folder / "seen"),
                           "map": str(folder / "seen.png")}]
             values = variant.values(rows, folder)
             self.assertTrue(values["pictures"].with_suffix(".png").exists())
             self.assertEqual((values["mine"]["variant"], values["mine"]["wrong"], values["mine"]["clocks"]), ("e8p16", 3000.0, 60.0))
             self.assertEqual([line["figure"] for line in values["figures"]],
                              ["clocks a frame", "wrong tests a million", "doubts a million", "P, ulp: 99 %", "FLIP"])
-            self.assertTrue((folder / "cards.jsonl").exists())
 
 
 class Figures(unittest.TestCase):
@@ -82,17 +80,6 @@ class Figures(unittest.TestCase):
         lines = {line["figure"]: (line["usual"], line["mine"], line["ratio"]) for line in variant.figures(usual, mine)}
         self.assertEqual(lines, {"area, um2 in OSU 0.35 um": ("2,000", "500", 0.25), "wrong tests a million": ("0.0", "12.0", None),
                                  "wrong rays": ("0", "7", None), "P, ulp: median": ("0.5", "64", 128.0)})
-
-
-class Standing(unittest.TestCase):
-    def test_who_is_better(self) -> None:
-        cards = [{"variant": name, "area": area, "frame_ms": 1.0, "wrong": wrong, "point": 1.0}
-                 for name, area, wrong in (("a", 5.0, 0.0), ("b", 3.0, 2.0), ("mine", 4.0, 2.0))]
-        found = {(line["cost"], line["error"]): line["better"] for line in variant.standing(cards)}
-        self.assertEqual(found[variant.COSTS["area"], variant.ERRORS["wrong"]], "b")
-        self.assertEqual(found[variant.COSTS["frame_ms"], variant.ERRORS["wrong"]], "a")
-        self.assertEqual(found[variant.COSTS["frame_ms"], variant.ERRORS["point"]], "none")
-        self.assertEqual(variant.standing([{"variant": "mine", "wrong": 1.0, "point": 1.0}]), [])
 
 
 if __name__ == "__main__":
