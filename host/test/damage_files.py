@@ -41,7 +41,7 @@ def seeds() -> dict[str, list[tuple[str, bytes]]]:
         "obj": [("b.obj", obj)], "mtl": [("a.mtl", MATERIAL), ("a.mtl", mtl.replace(b"newmtl a", b"newmtl m"))], "ply": stored(scenes, "ascii.ply", "binary.ply"),
         "stl": stored(scenes, "ascii.stl", "binary.stl"), "gltf": stored(scenes, "square.gltf"), "glb": stored(scenes, "square.glb"),
         "json": [("a.json", lights)], "exr": stored(films, "sums.exr", "error.exr"), "hdr": stored(films, "flat.hdr", "runs.hdr"),
-        "png": [("pic.png", png())], "csv": stored(rays, "rays.csv"), "npy": stored(rays, "rays.npy")}
+        "png": [("pic.png", png())], "csv": stored(rays, "rays.csv")}
 
 
 def damaged(data: bytes, chance: random.Random) -> bytes:

@@ -126,15 +126,17 @@ def trace_rates(program: pathlib.Path, scene: str, count: int) -> list[dict]:
     """Returns a row for each kind of query: rates from the summary of ./trace, including reading and writing tables."""
     found = []
     with tempfile.TemporaryDirectory() as folder:
-        rays, hits = pathlib.Path(folder) / "rays.npy", pathlib.Path(folder) / "hits.npy"
-        numpy.save(rays, rays_around(ROOT / scene, count))
+        rays, hits = pathlib.Path(folder) / "rays.csv", pathlib.Path(folder) / "hits.csv"
+        numpy.savetxt(rays, rays_around(ROOT / scene, count), fmt="%.9g", delimiter=",")
         for kind, columns in HITS.items():
             command = [program, scene, rays, "-o", hits, "--hits", kind.split(",")[0], *columns]
             said = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stderr
             rate = re.search(r"([\d,]+) rays/s", said)
-            answers = numpy.load(hits, mmap_mode="r")
-            number = numpy.count_nonzero(answers["hit"] == 1 if kind == "any" else answers["triangle"] >= 0)
-            found.append({"table": "trace", "scene": scene, "kind": kind, "rays": count, "hits": int(number),
+            column = "hit" if kind == "any" else "triangle"
+            with hits.open() as file:
+                at = file.readline().strip().split(",").index(column)
+                number = sum(int(line.split(",")[at]) > (0 if kind == "any" else -1) for line in file)
+            found.append({"table": "trace", "scene": scene, "kind": kind, "rays": count, "hits": number,
                           "rays_per_second": int(rate[1].replace(",", "")) if rate else 0})
     return found
 
