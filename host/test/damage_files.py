@@ -68,7 +68,7 @@ def damaged(data: bytes, chance: random.Random) -> bytes:
 
 def command(form: str, name: str, render: str, trace: str) -> list[str]:
     picture = ["--size", "12x9", "--engine", "cpu", "--spp", "1", "-q", "--threads", "1", "-o", "out.exr"]
-    if form in ("csv", "npy"):
+    if form == "csv":
         return [trace, "a.obj", name, "-q", "-o", "out.csv"]
     if form in ("exr", "hdr"):
         return [render, "a.obj", "--environment", name, *picture]
