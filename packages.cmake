@@ -21,7 +21,7 @@ set(pairs libglm-dev:glm/glm.hpp)
 if(NOT RAYGATE_LIBRARY)
   list(APPEND pairs
     libopenexr-dev:OpenEXR/OpenEXRConfig.h libimath-dev:Imath/ImathConfig.h libpng-dev:png.h libcli11-dev:CLI/CLI.hpp
-    libstb-dev:stb/stb_image.h nlohmann-json3-dev:nlohmann/json.hpp libtinygltf-dev:tiny_gltf.h libcivetweb-dev:civetweb.h)
+    libstb-dev:stb/stb_image.h nlohmann-json3-dev:nlohmann/json.hpp libcivetweb-dev:civetweb.h)
 endif()
 if(RAYGATE_PYTHON)
   list(APPEND pairs libmpfr-dev:mpfr.h)

@@ -31,15 +31,14 @@ namespace {
 constexpr const char* kAbout = R"(Usage: ./trace SCENE RAYS [options]
 
 Says what rays hit in a scene (OBJ, glTF, PLY, STL), exactly: which triangle,
-where, and whether binary32 had left it open. RAYS is a CSV table or a NumPy
-array (float32 or float64), or - for standard input, of any length. Its columns,
-between commas, semicolons or spaces, are the origin, the direction and, where
-wanted, a limit:
+where, and whether binary32 had left it open. RAYS is a CSV table of any length,
+or - for standard input. Its columns, between commas, semicolons or spaces, are
+the origin, the direction and, where wanted, a limit:
 
   OX,OY,OZ,DX,DY,DZ[,LIMIT]        hits P = O + t D have 0 < t < LIMIT
 
   ./trace scenes/cornell.obj rays.csv
-  ./trace scenes/teapot.obj rays.npy -o hits.npy --hits all
+  ./trace scenes/teapot.obj rays.csv -o hits.csv --hits all
   echo 0,1,5,0,0,-1 | ./trace scenes/cornell.obj - --columns triangle,t
 )";
 
@@ -60,9 +59,6 @@ struct TraceOptions {
   bool strict = false, quiet = false;
 
   [[nodiscard]] bool is_to_standard_output() const { return output == "-"; }
-  [[nodiscard]] TableFormat format() const {
-    return output.extension() == ".npy" ? TableFormat::kNpy : TableFormat::kCsv;
-  }
 };
 
 TraceOptions parse(const std::vector<std::string>& words) {
@@ -72,8 +68,7 @@ TraceOptions parse(const std::vector<std::string>& words) {
   table.positional(scene);
   table.positional(rays);
   table.group("Options");
-  table.text("-o,--output", "FILE", ".csv or .npy; - is standard output, as CSV (default)",
-             options.output);
+  table.text("-o,--output", "FILE", "CSV; - is standard output (default)", options.output);
   table.choice<Hits>("--hits", "nearest|any|all",
                      "nearest: a row for each ray; any: whether there is a hit, sooner; all: a row "
                      "for each hit of each ray, near before far ({})",
@@ -92,9 +87,8 @@ TraceOptions parse(const std::vector<std::string>& words) {
   if (rays.empty()) throw InputError("expected SCENE and RAYS (see --help)");
   options.scene = scene;
   options.rays = rays;
-  const auto extension = options.output.extension();
-  if (!options.is_to_standard_output() && extension != ".csv" && extension != ".npy") {
-    fail_value("--output", options.output.string(), "FILE.csv, FILE.npy or -");
+  if (!options.is_to_standard_output() && options.output.extension() != ".csv") {
+    fail_value("--output", options.output.string(), "FILE.csv or -");
   }
   check_engine_options(table, options.engine);
   for (const char* name : {"unit", "arith", "lanes"}) {
@@ -111,16 +105,13 @@ TraceOptions parse(const std::vector<std::string>& words) {
 /// The output file or standard output.
 class Table {
  public:
-  Table(const TraceOptions& options, const HitTable& answers) : answers_(answers) {
+  Table(const TraceOptions& options, const HitTable& answers) {
     if (options.is_to_standard_output()) {
       std::signal(SIGPIPE, SIG_DFL);  // `| head` ends it without a word
     } else {
       file_.emplace(options.output);
     }
-    if (file_ && file_->is_stream() && options.format() == TableFormat::kNpy) {
-      throw InputError(options.output.string() + ": found a stream, expected a file for NPY");
-    }
-    write(answers.header(0));
+    write(answers.header());
   }
   void write(std::string_view bytes) {
     const std::lock_guard lock(mutex_);
@@ -131,11 +122,8 @@ class Table {
       flush_standard_output();
     }
   }
-  /// Completes the file, given the number of rows.
-  void finish(std::uint64_t rows, TableFormat format) {
-    if (!file_) return;
-    if (format == TableFormat::kNpy) file_->replace_start(answers_.header(rows));
-    file_->commit();
+  void finish() {
+    if (file_) file_->commit();
   }
   /// Removes the unfinished file before the program ends; later writes block. Streams are left
   /// alone, because a write to them may never end.
@@ -146,7 +134,6 @@ class Table {
   }
 
  private:
-  const HitTable& answers_;
   std::mutex mutex_;
   std::optional<AtomicFile> file_;
 };
@@ -211,7 +198,7 @@ int run(const TraceOptions& options) {
     require_distinct(outputs, inputs);
   }
   RayTableReader rays(options.rays, scene.origin);
-  const HitTable answers(scene, bvh, options.columns, options.format());
+  const HitTable answers(scene, bvh, options.columns, TableFormat::kCsv);
   Table table(options, answers);
   note_interruptions();
   std::jthread watcher;
@@ -227,7 +214,7 @@ int run(const TraceOptions& options) {
             [&](std::string_view rows) { table.write(rows); }, [] { return interruption() == 0; });
   watcher = {};
   if (interruption() != 0) end_interrupted(options);
-  table.finish(counts.rows, options.format());
+  table.finish();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   if (!options.quiet) print(summary(options, scene.rounding, counts, took.count()), stderr);
   return 0;

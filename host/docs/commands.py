@@ -11,7 +11,6 @@ import pathlib
 import re
 import shlex
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
@@ -61,8 +60,6 @@ def prepare(folder: pathlib.Path) -> None:
     shutil.copy(ROOT / "host/film/fuzz/seeds/sums.exr", folder / "good.exr")
     shutil.copy(ROOT / "host/film/fuzz/seeds/sums.exr", folder / "fast.exr")
     (folder / "rays.csv").write_text("0,1,5,0,0,-1\n")
-    header = b"{'descr': '<f4', 'fortran_order': False, 'shape': (1, 6)}".ljust(117) + b"\n"
-    (folder / "rays.npy").write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + struct.pack("<6f", 0, 1, 5, 0, 0, -1))
 
 
 def run(name: str, page: list[str], folder: pathlib.Path, environment: dict[str, str]) -> list[str]:

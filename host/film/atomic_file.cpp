@@ -130,12 +130,6 @@ void AtomicFile::fail_if(int error) {
 
 void AtomicFile::append(std::string_view bytes) { fail_if(write_all(descriptor_, bytes)); }
 
-void AtomicFile::replace_start(std::string_view bytes) {
-  if (::lseek(descriptor_, 0, SEEK_SET) < 0) fail(name_, errno);
-  append(bytes);
-  if (::lseek(descriptor_, 0, SEEK_END) < 0) fail(name_, errno);
-}
-
 void AtomicFile::finish() {
   if (descriptor_ < 0) return;
   int error = 0;

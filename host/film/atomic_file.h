@@ -32,8 +32,6 @@ class AtomicFile {
   ~AtomicFile();  ///< removes the temporary file unless it was committed
 
   void append(std::string_view bytes);
-  /// Overwrites the start of the file, such as a header with a count. Not for streams.
-  void replace_start(std::string_view bytes);
   /// Syncs the file to disk; nothing can be appended after that.
   void finish();
   /// Finishes the file, renames it to the target and syncs the folder. At most once.

@@ -218,7 +218,7 @@ class PythonScene {
     std::optional<Elements> limit;
     if (limits) limit.emplace("limits", *limits);
     const HitTable answers(scene_, *bvh_, columns_of(columns, asked, !keywords.uses_model, ""),
-                           TableFormat::kNpy);
+                           TableFormat::kBinary);
     BlockSize size;
     const auto read = [&, next = std::size_t{0}](std::size_t most, RayTable& block) mutable {
       block.clear(next);

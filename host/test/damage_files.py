@@ -41,7 +41,7 @@ def seeds() -> dict[str, list[tuple[str, bytes]]]:
         "obj": [("b.obj", obj)], "mtl": [("a.mtl", MATERIAL), ("a.mtl", mtl.replace(b"newmtl a", b"newmtl m"))], "ply": stored(scenes, "ascii.ply", "binary.ply"),
         "stl": stored(scenes, "ascii.stl", "binary.stl"), "gltf": stored(scenes, "square.gltf"), "glb": stored(scenes, "square.glb"),
         "json": [("a.json", lights)], "exr": stored(films, "sums.exr", "error.exr"), "hdr": stored(films, "flat.hdr", "runs.hdr"),
-        "png": [("pic.png", png())], "csv": stored(rays, "rays.csv"), "npy": stored(rays, "rays.npy")}
+        "png": [("pic.png", png())], "csv": stored(rays, "rays.csv")}
 
 
 def damaged(data: bytes, chance: random.Random) -> bytes:
@@ -68,7 +68,7 @@ def damaged(data: bytes, chance: random.Random) -> bytes:
 
 def command(form: str, name: str, render: str, trace: str) -> list[str]:
     picture = ["--size", "12x9", "--engine", "cpu", "--spp", "1", "-q", "--threads", "1", "-o", "out.exr"]
-    if form in ("csv", "npy"):
+    if form == "csv":
         return [trace, "a.obj", name, "-q", "-o", "out.csv"]
     if form in ("exr", "hdr"):
         return [render, "a.obj", "--environment", name, *picture]

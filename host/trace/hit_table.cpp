@@ -34,7 +34,7 @@ constexpr Column kColumns[] = {{"ray", true, {"ray"}},
                                {"unit-point", false, {"unit_x", "unit_y", "unit_z"}},
                                {"unit-error", false, {"unit_error"}}};
 
-/// Appends a decimal number and a comma (CSV), or a little-endian 64-bit word (NPY).
+/// Appends a decimal number and a comma (CSV), or a little-endian 64-bit word.
 template <class T>
 void put(TableFormat format, T value, std::string& bytes) {
   if (format == TableFormat::kCsv) {
@@ -103,30 +103,10 @@ std::vector<std::pair<std::string, std::string>> HitTable::fields() const {
   return fields;
 }
 
-/// Returns the NPY header, version 1.0, padded to a multiple of 64 bytes for any number of rows.
-std::string HitTable::header(std::uint64_t rows) const {
+std::string HitTable::header() const {
   std::string text;
-  for (const auto& [name, type] : fields()) {
-    if (format_ == TableFormat::kCsv) {
-      text.append(text.empty() ? "" : ",").append(name);
-    } else {
-      text.append(text.empty() ? "('" : ", ('")
-          .append(name)
-          .append("', '")
-          .append(type)
-          .append("')");
-    }
-  }
-  if (format_ == TableFormat::kCsv) return text + "\n";
-  text = "{'descr': [" + text + "], 'fortran_order': False, 'shape': (";
-  constexpr std::size_t kLongestNumber = 20, kStart = 10;
-  const std::size_t longest = kStart + text.size() + kLongestNumber + sizeof ",), }";
-  const std::size_t length = (longest + 63) / 64 * 64 - kStart;
-  text += std::to_string(rows) + ",), }";
-  text.resize(length - 1, ' ');
-  text += '\n';
-  return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(length & 0xFF) +
-         static_cast<char>(length >> 8) + text;
+  for (const auto& [name, type] : fields()) text.append(text.empty() ? "" : ",").append(name);
+  return text + "\n";
 }
 
 void HitTable::append(const RayTable& rays, const RayHit& found, std::string& bytes) const {

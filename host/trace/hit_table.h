@@ -1,4 +1,4 @@
-// Hit table: rows with the triangle and position that each ray hits, as CSV or NPY.
+// Hit table: rows with the triangle and position that each ray hits, as CSV or binary numbers.
 #pragma once
 
 #include <cstddef>
@@ -61,18 +61,18 @@ struct RayHit {
   std::uint32_t doubts = 0;
 };
 
-enum class TableFormat { kCsv, kNpy };
+/// Decimal numbers, or little-endian 64-bit words as in a structured NumPy array.
+enum class TableFormat { kCsv, kBinary };
 
-/// Formats hits as rows of a table. CSV numbers are the shortest decimals that round-trip; a NumPy
-/// array is structured with one field per column.
+/// Formats hits as rows of a table. CSV numbers are the shortest decimals that round-trip.
 class HitTable {
  public:
   /// The references must outlive this object.
   HitTable(const Scene& scene, const Bvh& bvh, std::vector<HitColumn> columns, TableFormat format)
       : scene_(scene), bvh_(bvh), columns_(std::move(columns)), format_(format) {}
 
-  /// Returns the header of the file, for `rows` rows (NPY). Its length does not depend on `rows`.
-  [[nodiscard]] std::string header(std::uint64_t rows) const;
+  /// Returns the first line of a CSV file.
+  [[nodiscard]] std::string header() const;
 
   /// Returns the names and NumPy types of the fields of a row: {"t", "<f8"}.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> fields() const;

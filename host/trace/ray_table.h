@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <limits>
-#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/exact/exact.h"
@@ -33,13 +33,11 @@ struct RayTable {
                   const glm::dvec3& scene_origin);
 };
 
-/// Reads rays block by block; a file can be larger than memory.
-///
-/// CSV: OX,OY,OZ,DX,DY,DZ or, with the limit, OX,OY,OZ,DX,DY,DZ,LIMIT on each line, between commas,
-/// or else semicolons, or else spaces and tabs; spaces and quotes around numbers, a byte order
-/// mark, empty lines, lines that begin with # and one header line, without a number, are allowed.
-/// NPY: an array of shape (N, 6) or (N, 7), float32 or float64, little-endian, C order (NumPy's NEP
-/// 1). The first bytes decide between the two. See RayTable::add for the meaning of the columns.
+/// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or,
+/// with the limit, OX,OY,OZ,DX,DY,DZ,LIMIT, between commas, or else semicolons, or else spaces and
+/// tabs. Spaces and quotes around numbers, a byte order mark, empty lines, lines that begin with #
+/// and one header line, without a number, are allowed. See RayTable::add for the meaning of the
+/// columns.
 class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".
@@ -49,18 +47,29 @@ class RayTableReader {
   RayTableReader& operator=(const RayTableReader&) = delete;
 
   /// Replaces `block` by the next rays, at most `most`; returns false at the end. Throws InputError
-  /// with the line (CSV) or row (NPY), what was found and what was expected.
+  /// with the line, what was found and what was expected.
   bool read(std::size_t most, RayTable& block);
 
  private:
-  class Source;
-  class CsvSource;
-  class NpySource;
+  static constexpr int kMostNumbers = 7;
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // of a line
+
+  /// Returns at least `count` unread bytes, or all that remain. Valid until the next call.
+  std::string_view fill(std::size_t count);
+  /// Reads the next row of 6 or 7 numbers. Returns their count, or 0 at the end.
+  int next(double (&numbers)[kMostNumbers]);
+  /// Reads the numbers of a line. Returns their count, or 0 for a header.
+  int split(std::string_view line, double (&numbers)[kMostNumbers]);
+  [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void fail_reading() const;
 
   std::string name_;
   glm::dvec3 scene_origin_;
-  std::unique_ptr<Source> source_;
-  std::uint64_t number_ = 0;
+  std::FILE* file_;
+  std::string text_;  // read from the file, from the line before begin_ on
+  std::size_t begin_ = 0, line_ = 0;
+  bool at_end_ = false, past_header_ = false;
+  std::uint64_t number_ = 0;  // of rays that were read
 };
 
 }  // namespace raygate

@@ -105,21 +105,6 @@ TEST_F(TraceRays, SaysAllAndWhetherAny) {
   EXPECT_EQ(trace({"sheets.obj", "rays.csv", "--hits", "any"}).out, "ray,hit\n0,1\n1,0\n2,0\n");
 }
 
-TEST_F(TraceRays, WritesArrays) {
-  EXPECT_EQ(trace({"sheets.obj", "rays.csv", "-o", "hits.npy", "--columns", "ray,t"}).status, 0);
-  const std::string bytes = folder_.read("hits.npy");
-  ASSERT_EQ(bytes.size() % 64, 3u * 16);
-  const std::size_t start = bytes.size() - 48;
-  EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
-  EXPECT_NE(bytes.find("'descr': [('ray', '<i8'), ('t', '<f8')], 'fortran_order': False, "
-                       "'shape': (3,), }"),
-            std::string::npos);
-  EXPECT_EQ(bytes[start - 1], '\n');
-  double t = 0.0;
-  std::memcpy(&t, bytes.data() + start + 8, 8);
-  EXPECT_EQ(t, 0.5);
-}
-
 /// Nobody asks it for colours.
 TEST_F(TraceRays, LeavesTexturesAlone) {
   folder_.write("a.mtl", "newmtl a\nmap_Kd damaged.png\nnewmtl b\nmap_Kd missing.png\n");
@@ -235,7 +220,7 @@ TEST_F(TraceRays, RefusesWhatItCannotDo) {
   expect_refused({"sheets.obj", "none.csv"}, "none.csv: cannot read: No such file");
   expect_refused({"none.obj", "rays.csv"}, "none.obj: cannot read");
   expect_refused({"sheets.obj", "rays.csv", "-o", "hits.txt"},
-                 "--output: expected FILE.csv, FILE.npy or -, got 'hits.txt'");
+                 "--output: expected FILE.csv or -, got 'hits.txt'");
   expect_refused({"sheets.obj", "rays.csv", "--hits", "nearst"},
                  "--hits: expected nearest, any or all, got 'nearst'; did you mean nearest?");
   expect_refused({"sheets.obj", "rays.csv", "--colums", "t"},
@@ -253,8 +238,6 @@ TEST_F(TraceRays, RefusesWhatItCannotDo) {
   expect_refused({"sheets.obj", "rays.csv", "more"}, "more: a third file");
   expect_refused({"sheets.obj", "rays.csv", "--unit", "core"},
                  "--unit: expected --engine rtl, model or check beside it, got 'core'");
-  folder_.write("empty.npy", "");
-  expect_refused({"sheets.obj", "empty.npy"}, "empty.npy: not a NumPy array");
 }
 
 }  // namespace

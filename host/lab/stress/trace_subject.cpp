@@ -40,7 +40,7 @@ class TraceSubject : public Subject {
           table(scene, bvh,
                 {raygate::HitColumn::kRay, raygate::HitColumn::kTriangle, raygate::HitColumn::kT,
                  raygate::HitColumn::kDoubts},
-                TableFormat::kNpy) {}
+                TableFormat::kBinary) {}
     Target(const Target&) = delete;
     Target& operator=(const Target&) = delete;
 

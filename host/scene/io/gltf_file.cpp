@@ -1,20 +1,16 @@
-// GltfFile: parsing and checks. Texture decodes the images.
-#define TINYGLTF_IMPLEMENTATION
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
 #include "host/scene/io/gltf_file.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
-#include <optional>
-#include <utility>
+#include <span>
 
 #include "host/base/file_bytes.h"
 #include "host/scene/io/find_file.h"
-#include "host/scene/io/gltf_mending.h"
 #include "host/scene/io/tokens.h"
 
 namespace raygate {
@@ -35,211 +31,231 @@ constexpr std::string_view kDispensable[] = {"KHR_materials_sheen", "KHR_materia
 constexpr std::string_view kCompressions[] = {"KHR_draco_mesh_compression",
                                               "EXT_meshopt_compression", "KHR_meshopt_compression"};
 
-/// State of the callbacks that read buffers and images.
-struct Reading {
-  std::string folder, place;
-  std::vector<std::filesystem::path>* files;
-  std::size_t* bytes;
-  std::vector<std::string>* warnings;
+bool is_in(std::span<const std::string_view> list, std::string_view extension) {
+  return std::ranges::find(list, extension) != list.end();
+}
 
-  /// Returns the file for a path, which tinygltf has composed of the folder and a name.
-  [[nodiscard]] std::optional<std::filesystem::path> find(
-      const std::string& path, std::vector<std::string>& found_warnings) const {
-    const std::string prefix = folder.empty() ? "" : folder + "/";
-    if (!path.starts_with(prefix)) return find_exact_file("", path);
-    return find_file(folder, path.substr(prefix.size()), place, found_warnings);
+std::vector<std::string> texts_in(const Json& object, const char* key) {
+  std::vector<std::string> texts;
+  for (const Json& text : member(object, key)) {
+    if (text.is_string()) texts.push_back(text);
   }
-};
-
-tinygltf::FsCallbacks callbacks(Reading& reading) {
-  tinygltf::FsCallbacks calls{};
-  calls.FileExists = [](const std::string& path, void* user) {
-    std::vector<std::string> ignored;
-    return static_cast<const Reading*>(user)->find(path, ignored).has_value();
-  };
-  // Paths are not expanded: tinygltf's default passes them to a shell.
-  calls.ExpandFilePath = [](const std::string& path, void*) { return path; };
-  calls.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error,
-                           const std::string& path, void* user) {
-    const auto& read = *static_cast<Reading*>(user);
-    try {
-      const std::filesystem::path file = read.find(path, *read.warnings).value_or(path);
-      const std::string bytes = read_file(file);
-      out->assign(bytes.begin(), bytes.end());
-      read.files->emplace_back(file);
-      *read.bytes += bytes.size();
-      return true;
-    } catch (const InputError& reason) {
-      if (error != nullptr) *error += reason.what();
-      return false;
-    }
-  };
-  calls.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
-                            void*) { return false; };
-  calls.user_data = &reading;
-  return calls;
+  return texts;
 }
 
-/// Keeps an image's file undecoded. An image in a buffer view stays there, as tinygltf does not
-/// check the view.
-bool keep_picture(tinygltf::Image* image, int, std::string*, std::string*, int, int,
-                  const unsigned char* bytes, int size, void*) {
-  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
-  return true;
+/// Returns a size or an offset; 0 if it is missing.
+std::size_t size_in(const Json& object, const char* key) {
+  const Json& value = member(object, key);
+  return value.is_number_unsigned() ? value.get<std::size_t>() : 0;
 }
 
-constexpr std::size_t kJsonLength = 12, kJson = 20;  // offsets in a GLB file
-
-/// Returns a GLB file with other JSON in place of the first `old_size` bytes of its own.
-std::string glb_with(std::string_view glb, std::size_t old_size, std::string json) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string result(glb.substr(0, kJson));
-  result.append(json).append(glb.substr(kJson + old_size));
-  const std::uint32_t size[] = {static_cast<std::uint32_t>(result.size())},
-                      json_size[] = {static_cast<std::uint32_t>(json.size())};
-  std::memcpy(result.data() + kJsonLength - sizeof size, size, sizeof size);
-  std::memcpy(result.data() + kJsonLength, json_size, sizeof json_size);
-  return result;
-}
-
-/// Returns whether JSON is nested so deeply that tinygltf's recursion could exhaust the stack.
-bool is_deep(std::string_view json) {
-  constexpr int kMost = 64;
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (in_string && c == '\\') {
-      ++i;
-    } else if (c == '"') {
-      in_string = !in_string;
-    } else if (!in_string && (c == '{' || c == '[')) {
-      if (++depth > kMost) return true;
-    } else if (!in_string && (c == '}' || c == ']')) {
-      --depth;
+/// Decodes the escapes %XX of a URI.
+std::string decode_uri(std::string_view uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned code = 0;
+    const char* const digits = uri.data() + i + 1;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2) {
+      text += static_cast<char>(code);
+      i += 2;
+    } else {
+      text += uri[i];
     }
   }
-  return false;
+  return text;
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+/// Decodes base64 (RFC 4648) up to the first other character.
+std::string decode_base64(std::string_view text) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::array<std::int8_t, 256> values;
+  values.fill(-1);
+  for (std::size_t i = 0; i < kDigits.size(); ++i) {
+    values[static_cast<unsigned char>(kDigits[i])] = static_cast<std::int8_t>(i);
+  }
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char digit : text) {
+    const int value = values[static_cast<unsigned char>(digit)];
+    if (value < 0) break;
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>(bits >> count & 0xFF);
+  }
+  return bytes;
+}
+
+/// Returns a transform of a translation, a rotation (a quaternion x, y, z, w) and a scale, each of
+/// which may be empty.
+glm::dmat4 matrix_of(std::span<const double> t, std::span<const double> r,
+                     std::span<const double> s) {
+  glm::dmat4 matrix(1.0);
+  if (t.size() == 3) matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
+  if (r.size() == 4) {
+    const glm::dquat turn(r[3], r[0], r[1], r[2]);
+    const double length = glm::length(turn);
+    if (length > 0.0) matrix = matrix * glm::mat4_cast(turn / length);
+  }
+  if (s.size() == 3) {
+    for (int axis = 0; axis < 3; ++axis) matrix[axis] *= s[static_cast<std::size_t>(axis)];
+  }
+  return matrix;
+}
 
 }  // namespace
 
-GltfFile::GltfFile(const std::filesystem::path& file) : name_(file.string()), files_{file} {
-  const std::string bytes = read_file(file);
-  bytes_ = bytes.size();
-  const bool is_binary = bytes.starts_with("glTF");
-  if (bytes_ > std::numeric_limits<unsigned>::max()) fail("more than 4 GB, expected less");
-  std::string_view json = bytes;
-  if (is_binary) {
-    if (bytes_ < kJson) fail("a GLB file that ends too soon");
-    json = json.substr(kJson, number_at<std::uint32_t>(bytes.data() + kJsonLength));
+const Json& member(const Json& object, const char* key) {
+  static const Json kMissing;
+  if (!object.is_object()) return kMissing;
+  const auto found = object.find(key);
+  return found == object.end() ? kMissing : *found;
+}
+
+const Json& extension(const Json& part, const char* name) {
+  return member(member(part, "extensions"), name);
+}
+
+double number_in(const Json& object, const char* key, double otherwise) {
+  const Json& value = member(object, key);
+  return value.is_number() ? value.get<double>() : otherwise;
+}
+
+static int index_of(const Json& value) {
+  const double index = value.is_number_integer() ? value.get<double>() : -1.0;
+  return std::abs(index) <= std::numeric_limits<int>::max() ? static_cast<int>(index) : -1;
+}
+
+int index_in(const Json& object, const char* key) { return index_of(member(object, key)); }
+
+std::string text_in(const Json& object, const char* key) {
+  const Json& value = member(object, key);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+std::vector<double> numbers_in(const Json& object, const char* key) {
+  std::vector<double> numbers;
+  const Json& list = member(object, key);
+  if (!list.is_array()) return numbers;
+  for (const Json& number : list) {
+    if (!number.is_number()) return {};
+    numbers.push_back(number);
   }
-  if (is_deep(json)) fail("JSON of more than 64 levels, expected fewer");
-  const std::string folder = file.parent_path().string();
-  std::string error;
-  const auto load = [&](const std::string& from) {
-    model_ = {};
-    files_ = {file};
-    bytes_ = bytes.size();
-    warnings_.clear();
-    error.clear();
-    Reading reading{folder, name_ + ": ", &files_, &bytes_, &warnings_};
-    tinygltf::TinyGLTF loader;
-    loader.SetFsCallbacks(callbacks(reading));
-    loader.SetImageLoader(keep_picture, nullptr);
-    std::string ignored;
-    const auto size = static_cast<unsigned>(from.size());
-    try {
-      return is_binary
-                 ? loader.LoadBinaryFromMemory(&model_, &error, &ignored,
-                                               reinterpret_cast<const unsigned char*>(from.data()),
-                                               size, folder)
-                 : loader.LoadASCIIFromString(&model_, &error, &ignored, from.data(), size, folder);
-    } catch (const std::exception& thrown) {
-      error = thrown.what();
-      return false;
+  return numbers;
+}
+
+std::vector<int> indices_in(const Json& object, const char* key) {
+  std::vector<int> indices;
+  const Json& list = member(object, key);
+  if (!list.is_array()) return indices;
+  for (const Json& index : list) indices.push_back(index_of(index));
+  return indices;
+}
+
+GltfFile::GltfFile(const std::filesystem::path& file, std::vector<std::string>& warnings)
+    : name_(file.string()), folder_(file.parent_path()), warnings_(warnings) {
+  std::string_view text = read(file), binary;
+  if (text.starts_with("glTF")) {
+    std::string_view rest = text.substr(std::min<std::size_t>(text.size(), 12));
+    const auto take_chunk = [&](std::string_view type) {
+      if (rest.size() < 8 || rest.substr(4, 4) != type) return std::string_view();
+      const std::size_t size =
+          std::min<std::size_t>(number_at<std::uint32_t>(rest.data()), rest.size() - 8);
+      const std::string_view chunk = rest.substr(8, size);
+      rest.remove_prefix(std::min(8 + (size + 3) / 4 * 4, rest.size()));
+      return chunk;
+    };
+    text = take_chunk("JSON");
+    binary = take_chunk({"BIN\0", 4});
+    if (text.empty()) fail("a GLB file that ends too soon");
+  }
+  json_ = parse_json(text, name_);
+  const std::string version = text_in(list("asset"), "version");
+  if (version.empty()) fail("not a glTF 2.0 file that can be read: no asset with a version");
+  if (!version.starts_with("2.")) fail("glTF version " + in_quotes(version) + ", expected 2.0");
+  for (const std::string& name : texts_in(json_, "extensionsRequired")) {
+    if (!is_in(kRead, name) && !is_in(kDispensable, name)) fail_extension(name);
+  }
+  for (const std::string& name : texts_in(json_, "extensionsUsed")) {
+    if (!is_in(kRead, name)) {
+      warn_once("the extension " + in_quotes(name) + " is not read");
     }
-  };
-  bool is_read = load(bytes);
-  if (!is_read) {
-    std::vector<std::string> mended;
-    std::string text = mend_gltf(json, mended);
-    if (is_binary) text = glb_with(bytes, json.size(), text);
-    const std::string first_error = std::exchange(error, "");
-    is_read = load(text);
-    if (!is_read) error = first_error;
-    for (const std::string& what : mended) warn_once(what, warnings_);
   }
-  if (!is_read) {
-    // The file may be compressed; then the extension's message is more helpful.
-    for (const std::string_view extension : kCompressions) {
-      if (json.find(extension) != std::string_view::npos) fail_extension(std::string(extension));
+  if (binary.empty()) contents_.clear();
+  for (const Json& buffer : list("buffers")) {
+    const std::string uri = text_in(buffer, "uri");
+    if (uri.empty()) {
+      buffers_.push_back(buffers_.empty() ? binary : std::string_view());
+    } else if (const auto bytes = load(uri)) {
+      buffers_.push_back(*bytes);
+    } else {
+      fail("the buffer " + in_quotes(uri) + " is missing");
     }
-    fail("not a glTF 2.0 file that can be read: " + first_line(error));
   }
-  if (!model_.asset.version.starts_with("2.")) {
-    fail("glTF version " + in_quotes(model_.asset.version) + ", expected 2.0");
+}
+
+std::string_view GltfFile::read(const std::filesystem::path& file) {
+  const std::string& bytes = contents_.emplace_back(read_file(file));
+  files_.push_back(file);
+  bytes_ += bytes.size();
+  return bytes;
+}
+
+std::optional<std::string_view> GltfFile::load(const std::string& uri) {
+  constexpr std::string_view kBase64 = ";base64,";
+  if (uri.starts_with("data:")) {
+    const std::size_t at = uri.find(kBase64);
+    if (at == std::string::npos) return std::nullopt;
+    return contents_.emplace_back(decode_base64(std::string_view(uri).substr(at + kBase64.size())));
   }
-  const auto is_in = [](const auto& list, const std::string& extension) {
-    return std::ranges::find(list, extension) != std::end(list);
-  };
-  for (const std::string& extension : model_.extensionsRequired) {
-    if (!is_in(kRead, extension) && !is_in(kDispensable, extension)) fail_extension(extension);
-  }
-  for (const std::string& extension : model_.extensionsUsed) {
-    if (is_in(kRead, extension)) continue;
-    warn_once("the extension " + in_quotes(extension) + " is not read", warnings_);
-  }
+  const auto file = find_file(folder_, decode_uri(uri), name_ + ": ", warnings_);
+  if (!file) return std::nullopt;
+  return read(*file);
+}
+
+void GltfFile::add_warning(const std::string& warning) {
+  if (std::ranges::find(warnings_, warning) == warnings_.end()) warnings_.push_back(warning);
 }
 
 void GltfFile::fail_extension(const std::string& extension) const {
-  const bool is_compressed = std::ranges::find(kCompressions, extension) != std::end(kCompressions);
   fail("found the extension " + in_quotes(extension) + ", which is not read; expected " +
-       (is_compressed ? "a file without compression: exported with Compression off, or as "
-                        "`npx @gltf-transform/cli copy in.glb out.glb` writes it"
-                      : "an export without it"));
+       (is_in(kCompressions, extension)
+            ? "a file without compression: exported with Compression off, or as "
+              "`npx @gltf-transform/cli copy in.glb out.glb` writes it"
+            : "an export without it"));
 }
 
-void GltfFile::warn_once(const std::string& what, std::vector<std::string>& warnings) const {
-  warn_once(InputError(name_ + ": " + what), "", warnings);
-}
+void GltfFile::fail(const std::string& what) const { throw InputError(name_ + ": " + what); }
 
-void GltfFile::warn_once(const InputError& error, const char* instead,
-                         std::vector<std::string>& warnings) {
-  const std::string warning = error.what() + std::string(*instead == 0 ? "" : ", ") + instead;
-  if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
-}
-
-void GltfFile::fail(const std::string& what) const {
-  std::string line = what;
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+const Json& GltfFile::at(const Json& list, int index, const char* what) const {
+  const std::size_t size = list.is_array() ? list.size() : 0;
+  if (index >= 0 && static_cast<std::size_t>(index) < size) {
+    return list[static_cast<std::size_t>(index)];
   }
-  throw InputError(name_ + ": " + line);
-}
-
-void GltfFile::fail_index(const char* what, int index, std::size_t count) const {
   fail(std::string(what) + " " + std::to_string(index) + ", but the file has " +
-       std::to_string(count));
+       std::to_string(size));
 }
 
-std::string GltfFile::picture_bytes(int number) const {
-  constexpr std::string_view kBase64 = ";base64,";
-  const tinygltf::Image& image = at(model_.images, number, "image");
-  if (image.bufferView >= 0) {
-    return std::string(stored(image.bufferView, "image " + std::to_string(number) + ": "));
+std::string_view GltfFile::picture_bytes(int number) {
+  const Json& image = at(list("images"), number, "image");
+  const std::string place = "image " + std::to_string(number);
+  if (!member(image, "bufferView").is_null()) {
+    return stored(index_in(image, "bufferView"), place + ": ");
   }
-  const std::size_t at = image.uri.find(kBase64);
-  if (image.image.empty() && image.uri.starts_with("data:") && at != std::string::npos) {
-    return tinygltf::base64_decode(image.uri.substr(at + kBase64.size()));
-  }
-  return {image.image.begin(), image.image.end()};
+  const std::string uri = text_in(image, "uri");
+  const auto bytes = uri.empty() ? std::nullopt : load(uri);
+  if (!bytes && !uri.empty()) fail("the texture " + in_quotes(uri) + " is missing");
+  if (!bytes || bytes->empty()) fail(place + " has no picture");
+  return *bytes;
 }
 
 std::size_t GltfFile::count(int accessor) const {
-  return at(model_.accessors, accessor, "accessor").count;
+  return size_in(this->accessor(accessor), "count");
 }
 
 /// A component type, with the code that stands for 1 in normalized accessors.
@@ -255,8 +271,7 @@ struct GltfFile::Elements {
   std::size_t stride, count;
   const Component* component;
   int components;
-  bool normalized;
-  std::vector<char> own;  // the elements, if they are sparse or have no buffer
+  std::vector<char> own = {};  // the elements, if they are sparse or have no buffer
 
   [[nodiscard]] std::size_t size() const {
     return bytes_of(component->type) * static_cast<std::size_t>(components);
@@ -265,19 +280,30 @@ struct GltfFile::Elements {
 
 std::string_view GltfFile::stored(int buffer_view, const std::string& place) const {
   if (buffer_view < 0) fail(place + "found no buffer view, expected its number");
-  const tinygltf::BufferView& view = at(model_.bufferViews, buffer_view, "buffer view");
-  const std::vector<unsigned char>& data = at(model_.buffers, view.buffer, "buffer").data;
-  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
+  const Json& view = at(list("bufferViews"), buffer_view, "buffer view");
+  const int buffer = index_in(view, "buffer");
+  if (buffer < 0 || static_cast<std::size_t>(buffer) >= buffers_.size()) {
+    // The data may be compressed; then the extension's message is more helpful.
+    for (const std::string& name : texts_in(json_, "extensionsUsed")) {
+      if (is_in(kCompressions, name)) fail_extension(name);
+    }
+    fail(place + "buffer " + std::to_string(buffer) + ", but the file has " +
+         std::to_string(buffers_.size()));
+  }
+  const std::string_view data = buffers_[static_cast<std::size_t>(buffer)];
+  const std::size_t offset = size_in(view, "byteOffset"), length = size_in(view, "byteLength");
+  if (offset > data.size() || length > data.size() - offset) {
     fail(place + "beyond its buffer, which ends too soon");
   }
-  return {reinterpret_cast<const char*>(data.data()) + view.byteOffset, view.byteLength};
+  return data.substr(offset, length);
 }
 
-void GltfFile::find_stored(int buffer_view, std::size_t offset, const std::string& number,
-                           Elements& elements) const {
+void GltfFile::find_stored(const Json& part, const std::string& number, Elements& elements) const {
+  const int buffer_view = index_in(part, "bufferView");
   const std::string_view bytes = stored(buffer_view, number);
-  const std::size_t element = elements.size(),
-                    stride = at(model_.bufferViews, buffer_view, "buffer view").byteStride;
+  const std::size_t element = elements.size(), offset = size_in(part, "byteOffset"),
+                    stride = size_in(list("bufferViews").at(static_cast<std::size_t>(buffer_view)),
+                                     "byteStride");
   elements.stride = stride == 0 ? element : stride;
   const bool is_within = offset <= bytes.size() && elements.count > 0 &&
                          element <= bytes.size() - offset &&
@@ -288,43 +314,43 @@ void GltfFile::find_stored(int buffer_view, std::size_t offset, const std::strin
 
 GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
   static constexpr Component kComponents[] = {
-      {TINYGLTF_COMPONENT_TYPE_BYTE, NumberType::kInt8, 127.0},
-      {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, NumberType::kUint8, 255.0},
-      {TINYGLTF_COMPONENT_TYPE_SHORT, NumberType::kInt16, 32767.0},
-      {TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, NumberType::kUint16, 65535.0},
-      {TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, NumberType::kUint32, 4294967295.0},
-      {TINYGLTF_COMPONENT_TYPE_FLOAT, NumberType::kFloat, 1.0}};
+      {5120, NumberType::kInt8, 127.0},          {5121, NumberType::kUint8, 255.0},
+      {5122, NumberType::kInt16, 32767.0},       {5123, NumberType::kUint16, 65535.0},
+      {5125, NumberType::kUint32, 4294967295.0}, {5126, NumberType::kFloat, 1.0}};
+  static constexpr std::pair<std::string_view, int> kTypes[] = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
   const std::string number = "accessor " + std::to_string(accessor) + " (" + what + "): ";
-  const tinygltf::Accessor& a = at(model_.accessors, accessor, "accessor");
-  const auto typed = [&](int component_type, int components, std::size_t count) {
-    const auto* const component = std::ranges::find(kComponents, component_type, &Component::code);
-    if (component == std::end(kComponents) || components <= 0) fail(number + "of an unknown type");
-    return Elements{nullptr, 0, count, component, components, a.normalized, {}};
+  const Json& a = this->accessor(accessor);
+  const auto* const type =
+      std::ranges::find(kTypes, text_in(a, "type"), &std::pair<std::string_view, int>::first);
+  const auto typed = [&](const Json& part, int components, std::size_t count) {
+    const auto* const component =
+        std::ranges::find(kComponents, index_in(part, "componentType"), &Component::code);
+    if (component == std::end(kComponents) || components == 0) fail(number + "of an unknown type");
+    return Elements{nullptr, 0, count, component, components};
   };
-  Elements result =
-      typed(a.componentType, tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type)),
-            a.count);
-  if (a.bufferView >= 0) find_stored(a.bufferView, a.byteOffset, number, result);
-  if (a.bufferView >= 0 && !a.sparse.isSparse) return result;
+  Elements result = typed(a, type == std::end(kTypes) ? 0 : type->second, count(accessor));
+  const bool has_view = !member(a, "bufferView").is_null();
+  const Json& sparse = member(a, "sparse");
+  if (has_view) find_stored(a, number, result);
+  if (has_view && !sparse.is_object()) return result;
   // Elements without a buffer are 0; then the sparse ones are replaced.
   constexpr std::size_t kMost = 1'000'000;
-  if (a.count > kMost + bytes_) fail(number + "too many elements without a buffer");
+  if (result.count > kMost + bytes_) fail(number + "too many elements without a buffer");
   const std::size_t size = result.size();
-  std::vector<char> own(size * a.count);
-  for (std::size_t i = 0; result.first != nullptr && i < a.count; ++i) {
+  std::vector<char> own(size * result.count);
+  for (std::size_t i = 0; result.first != nullptr && i < result.count; ++i) {
     std::copy_n(result.first + i * result.stride, size, own.data() + i * size);
   }
-  if (a.sparse.isSparse && a.sparse.count > 0) {
-    const auto count = static_cast<std::size_t>(a.sparse.count);
-    Elements places = typed(a.sparse.indices.componentType, 1, count);
-    Elements values = typed(a.componentType, result.components, count);
-    find_stored(a.sparse.indices.bufferView, static_cast<std::size_t>(a.sparse.indices.byteOffset),
-                number, places);
-    find_stored(a.sparse.values.bufferView, static_cast<std::size_t>(a.sparse.values.byteOffset),
-                number, values);
+  if (sparse.is_object()) {
+    const std::size_t count = size_in(sparse, "count");
+    Elements places = typed(member(sparse, "indices"), 1, count);
+    Elements values = typed(a, result.components, count);
+    find_stored(member(sparse, "indices"), number, places);
+    find_stored(member(sparse, "values"), number, values);
     for (std::size_t i = 0; i < count; ++i) {
       const double place = number_at(places.first + i * places.stride, places.component->type);
-      if (!(place >= 0.0 && place < static_cast<double>(a.count))) {
+      if (!(place >= 0.0 && place < static_cast<double>(result.count))) {
         fail(number + "a sparse element beyond its end");
       }
       std::copy_n(values.first + i * values.stride, size,
@@ -346,18 +372,17 @@ std::vector<double> GltfFile::vectors(int accessor, int width, const char* what)
 }
 
 std::vector<double> GltfFile::optional_vectors(int accessor, int width, const char* what,
-                                               std::size_t vertices,
-                                               std::vector<std::string>& warnings) const {
-  if (accessor < 0) return {};
-  try {
-    if (count(accessor) == vertices) return numbers(accessor, width, what);
-    warn_once(std::string(what) + ": found " + std::to_string(count(accessor)) + ", expected " +
-                  std::to_string(vertices) + ", left out",
-              warnings);
-  } catch (const InputError& error) {
-    warn_once(error, "left out", warnings);
-  }
-  return {};
+                                               std::size_t vertices) {
+  std::vector<double> all;
+  if (accessor < 0) return all;
+  optionally("left out", [&] {
+    if (count(accessor) != vertices) {
+      fail(std::string(what) + ": found " + std::to_string(count(accessor)) + ", expected " +
+           std::to_string(vertices));
+    }
+    all = numbers(accessor, width, what);
+  });
+  return all;
 }
 
 std::vector<double> GltfFile::numbers(int accessor, int width, const char* what) const {
@@ -370,13 +395,15 @@ std::vector<double> GltfFile::numbers(int accessor, int width, const char* what)
     fail_here("numbers of a type that is not expected there");
   }
   const auto [ignored, type, one] = *from.component;
+  const Json& normalized = member(this->accessor(accessor), "normalized");
+  const bool is_normalized = normalized.is_boolean() && normalized.get<bool>();
   std::vector<double> numbers;
   numbers.reserve(from.count * static_cast<std::size_t>(width));
   for (std::size_t i = 0; i < from.count; ++i) {
     const char* at = from.first + i * from.stride;
     for (int k = 0; k < width; ++k, at += bytes_of(type)) {
       double number = number_at(at, type);
-      if (from.normalized) number = std::max(number / one, -1.0);
+      if (is_normalized) number = std::max(number / one, -1.0);
       numbers.push_back(number);
     }
   }
@@ -397,55 +424,37 @@ std::vector<std::uint32_t> GltfFile::indices(int accessor) const {
   return numbers;
 }
 
-glm::dmat4 local_matrix(const tinygltf::Node& node) {
-  glm::dmat4 matrix(1.0);
-  if (node.matrix.size() == 16) {
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-    return matrix;
-  }
-  if (const auto& t = node.translation; t.size() == 3) {
-    matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
-  }
-  if (const auto& r = node.rotation; r.size() == 4) {
-    const glm::dquat turn(r[3], r[0], r[1], r[2]);
-    const double length = glm::length(turn);
-    if (length > 0.0) matrix = matrix * glm::mat4_cast(turn / length);
-  }
-  if (const auto& s = node.scale; s.size() == 3) {
-    for (int axis = 0; axis < 3; ++axis) matrix[axis] *= s[static_cast<std::size_t>(axis)];
-  }
-  return matrix;
+glm::dmat4 local_matrix(const Json& node) {
+  const std::vector<double> numbers = numbers_in(node, "matrix");
+  if (numbers.size() == 16) return glm::make_mat4(numbers.data());
+  return matrix_of(numbers_in(node, "translation"), numbers_in(node, "rotation"),
+                   numbers_in(node, "scale"));
 }
 
-std::vector<glm::dmat4> GltfFile::instance_transforms(const tinygltf::Node& node) const {
-  const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
-  if (extension == node.extensions.end() || !extension->second.Has("attributes")) {
-    return {glm::dmat4(1.0)};
-  }
-  const tinygltf::Value& attributes = extension->second.Get("attributes");
-  std::vector<tinygltf::Node> nodes;
-  const auto read = [&](const char* name, std::size_t width,
-                        std::vector<double>(tinygltf::Node::*to)) {
-    if (!attributes.Has(name) || !attributes.Get(name).IsInt()) return;
-    const std::vector<double> all =
-        vectors(attributes.Get(name).GetNumberAsInt(), static_cast<int>(width), name);
-    const std::size_t count = all.size() / width;
-    if (!nodes.empty() && count != nodes.size()) {
-      fail("instances: not as many of each attribute");
-    }
-    nodes.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double* const first = all.data() + width * i;
-      (nodes[i].*to).assign(first, first + width);
-    }
+std::vector<glm::dmat4> GltfFile::instance_transforms(const Json& node) const {
+  const Json& attributes =
+      member(raygate::extension(node, "EXT_mesh_gpu_instancing"), "attributes");
+  if (!attributes.is_object()) return {glm::dmat4(1.0)};
+  std::optional<std::size_t> count;
+  const auto read = [&](const char* name, int width) {
+    const int accessor = index_in(attributes, name);
+    if (accessor < 0) return std::vector<double>();
+    std::vector<double> all = vectors(accessor, width, name);
+    const std::size_t found = all.size() / static_cast<std::size_t>(width);
+    if (count.value_or(found) != found) fail("instances: not as many of each attribute");
+    count = found;
+    return all;
   };
-  read("TRANSLATION", 3, &tinygltf::Node::translation);
-  read("ROTATION", 4, &tinygltf::Node::rotation);
-  read("SCALE", 3, &tinygltf::Node::scale);
-  std::vector<glm::dmat4> all;
-  all.reserve(nodes.size());
-  for (const tinygltf::Node& one : nodes) all.push_back(local_matrix(one));
-  return all;
+  const std::vector<double> places = read("TRANSLATION", 3), turns = read("ROTATION", 4),
+                            scales = read("SCALE", 3);
+  const auto part = [](const std::vector<double>& all, std::size_t i, std::size_t width) {
+    return std::span(all).subspan(all.empty() ? 0 : i * width, all.empty() ? 0 : width);
+  };
+  std::vector<glm::dmat4> transforms;
+  for (std::size_t i = 0; i < count.value_or(0); ++i) {
+    transforms.push_back(matrix_of(part(places, i, 3), part(turns, i, 4), part(scales, i, 3)));
+  }
+  return transforms;
 }
 
 }  // namespace raygate

@@ -1,54 +1,77 @@
-// GltfFile: a glTF 2.0 file as tinygltf parses it, with checked access to its accessors.
+// GltfFile: the JSON, the buffers and the images of a glTF 2.0 file, with checked access to them.
 #pragma once
 
-#include <tiny_gltf.h>
-
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "host/base/input_error.h"
+#include "host/scene/io/json_reader.h"
 
 namespace raygate {
 
-/// A .gltf or .glb file with its buffers and the bytes of its images. tinygltf is used because
-/// Debian 12 has it, under the MIT licence, as one header that is compiled with the sanitizers. It
-/// does not check indices and lengths; this class does.
+// Members of JSON objects. Many programs write glTF with small errors, so a member of a wrong type
+// counts as missing, and so do all members of a value that is not an object.
+
+/// Returns the member at a key; null if it is missing.
+[[nodiscard]] const Json& member(const Json& object, const char* key);
+/// Returns an extension of a part of the file; null if it is missing.
+[[nodiscard]] const Json& extension(const Json& part, const char* name);
+[[nodiscard]] double number_in(const Json& object, const char* key, double otherwise);
+/// Returns an integer; -1, which is no valid index, if it is missing or beyond the range of int.
+[[nodiscard]] int index_in(const Json& object, const char* key);
+[[nodiscard]] std::string text_in(const Json& object, const char* key);
+/// Returns an array of numbers; an empty list unless all elements are numbers.
+[[nodiscard]] std::vector<double> numbers_in(const Json& object, const char* key);
+/// Returns an array of indices, with -1 for elements that are not integers.
+[[nodiscard]] std::vector<int> indices_in(const Json& object, const char* key);
+
+/// A .gltf or .glb file with its buffers.
 class GltfFile {
  public:
-  /// Throws InputError if the file cannot be read, is not glTF 2.0 or requires an extension that is
-  /// not read.
-  explicit GltfFile(const std::filesystem::path& file);
+  /// Warnings are appended to `warnings`, which must outlive this object. Throws InputError if a
+  /// file cannot be read, is not glTF 2.0 or requires an extension that is not read.
+  GltfFile(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
-  [[nodiscard]] const tinygltf::Model& model() const { return model_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Returns the paths of all files that were read.
+  /// Returns the paths of all files that were read so far.
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
-  /// Returns the warnings from reading them.
-  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   /// Returns the total size of these files in bytes.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   /// Throws InputError, "file: what".
   [[noreturn]] void fail(const std::string& what) const;
-  /// Appends "file: what" to the warnings unless they contain it.
-  void warn_once(const std::string& what, std::vector<std::string>& warnings) const;
-
-  /// Appends the error and, after a comma, what is done instead, unless the warnings contain it.
-  static void warn_once(const InputError& error, const char* instead,
-                        std::vector<std::string>& warnings);
-
-  /// Returns element `index` of `list`. Throws InputError, which calls it `what`, if there is none.
-  template <class T>
-  [[nodiscard]] const T& at(const std::vector<T>& list, int index, const char* what) const {
-    if (index >= 0 && static_cast<std::size_t>(index) < list.size()) {
-      return list[static_cast<std::size_t>(index)];
+  /// Adds the warning "file: what" unless there is one.
+  void warn_once(const std::string& what) { add_warning(name_ + ": " + what); }
+  /// Calls `read`. An InputError becomes a warning that ends in `instead`.
+  template <class Read>
+  void optionally(const char* instead, const Read& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      add_warning(error.what() + std::string(", ") + instead);
     }
-    fail_index(what, index, list.size());
   }
+
+  [[nodiscard]] const Json& json() const { return json_; }
+  /// Returns a list of the file, such as "nodes"; null if it has none.
+  [[nodiscard]] const Json& list(const char* name) const { return member(json_, name); }
+  /// Returns an extension of the whole file; null if it has none.
+  [[nodiscard]] const Json& extension(const char* name) const {
+    return raygate::extension(json_, name);
+  }
+  /// Returns element `index` of a list. Throws InputError, which calls it `what`, if there is none.
+  [[nodiscard]] const Json& at(const Json& list, int index, const char* what) const;
+  [[nodiscard]] const Json& accessor(int index) const {
+    return at(list("accessors"), index, "accessor");
+  }
+  /// Returns the number of elements of an accessor.
+  [[nodiscard]] std::size_t count(int accessor) const;
 
   /// Returns the first `width` components of each element of an accessor. Throws InputError if they
   /// cannot be read or are not finite.
@@ -57,42 +80,43 @@ class GltfFile {
   /// which may be infinite or NaN. Returns an empty list for accessor -1 and, with a warning, for
   /// an accessor that cannot be read.
   [[nodiscard]] std::vector<double> optional_vectors(int accessor, int width, const char* what,
-                                                     std::size_t vertices,
-                                                     std::vector<std::string>& warnings) const;
+                                                     std::size_t vertices);
   /// Returns the numbers of an accessor of indices.
   [[nodiscard]] std::vector<std::uint32_t> indices(int accessor) const;
-  /// Returns the bytes of an image file, or an empty string if it is missing. Decodes data URIs of
-  /// types that tinygltf does not know. Throws InputError for an image beyond its buffer.
-  [[nodiscard]] std::string picture_bytes(int image) const;
-  /// Returns the number of elements of an accessor.
-  [[nodiscard]] std::size_t count(int accessor) const;
+  /// Returns the bytes of an image file. Throws InputError if it has none.
+  [[nodiscard]] std::string_view picture_bytes(int image);
 
   /// Returns the transforms of a node's mesh to the node's coordinates: those of
   /// EXT_mesh_gpu_instancing or, without it, the identity alone.
-  [[nodiscard]] std::vector<glm::dmat4> instance_transforms(const tinygltf::Node& node) const;
+  [[nodiscard]] std::vector<glm::dmat4> instance_transforms(const Json& node) const;
 
  private:
   struct Component;
   struct Elements;
+  std::string_view read(const std::filesystem::path& file);
+  /// Returns the bytes of a data URI or of a file beside this one; nullopt if there are none.
+  std::optional<std::string_view> load(const std::string& uri);
+  void add_warning(const std::string& warning);
   [[nodiscard]] Elements elements(int accessor, const char* what) const;
   /// Returns the bytes of a buffer view. Throws InputError, which names `place`, if it has none or
   /// is not within its buffer.
   [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;
   /// Locates elements of this type and count. Throws InputError if they exceed their buffer view.
-  void find_stored(int buffer_view, std::size_t offset, const std::string& number,
-                   Elements& elements) const;
+  void find_stored(const Json& part, const std::string& number, Elements& elements) const;
   [[nodiscard]] std::vector<double> numbers(int accessor, int width, const char* what) const;
   [[noreturn]] void fail_extension(const std::string& extension) const;
-  [[noreturn]] void fail_index(const char* what, int index, std::size_t count) const;
 
   std::string name_;
+  std::filesystem::path folder_;
+  std::vector<std::string>& warnings_;
   std::vector<std::filesystem::path> files_;
   std::size_t bytes_ = 0;
-  std::vector<std::string> warnings_;
-  tinygltf::Model model_;
+  Json json_;
+  std::deque<std::string> contents_;  // of files and data URIs
+  std::vector<std::string_view> buffers_;
 };
 
 /// Returns the transform from a node's coordinates to its parent's.
-[[nodiscard]] glm::dmat4 local_matrix(const tinygltf::Node& node);
+[[nodiscard]] glm::dmat4 local_matrix(const Json& node);
 
 }  // namespace raygate

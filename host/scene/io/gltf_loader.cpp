@@ -50,6 +50,9 @@ struct MeshInstance {
   std::uint32_t object;
 };
 
+/// A node, and its transform to the world.
+using PlacedNode = std::pair<const Json*, glm::dmat4>;
+
 /// A point or spot light in world coordinates.
 struct PlacedLight {
   glm::dvec3 position;
@@ -66,13 +69,12 @@ LoadOptions as_specified(LoadOptions options) {
 class GltfReader {
  public:
   GltfReader(const std::filesystem::path& path, const LoadOptions& options)
-      : file_(path),
+      : file_(path, scene_.warnings),
         options_(as_specified(options)),
         builder_(file_.name()),
         meshes_(file_, scene_, options.textures) {}
 
   Scene read() {
-    scene_.warnings = file_.warnings();
     walk(roots());
     for (const auto& [node, world] : nodes_) count_uses(*node);
     for (const auto& [node, world] : nodes_) read_node(*node, world);
@@ -86,27 +88,30 @@ class GltfReader {
     if (!options_.keep_instances) resolve_instances(scene_, InstanceMode::kFlatten, file_.name());
     scene_.up = glm::dvec3(0.0, 1.0, 0.0);
     scene_.files = file_.files();
-    if (!file_.model().animations.empty()) warn_once("animations are not read");
+    if (!file_.list("animations").empty()) file_.warn_once("animations are not read");
     return std::move(scene_);
   }
 
  private:
-  void warn_once(const std::string& what) { file_.warn_once(what, scene_.warnings); }
+  [[nodiscard]] const Json& node(int index) const {
+    return file_.at(file_.list("nodes"), index, "node");
+  }
 
   [[nodiscard]] std::vector<int> roots() const {
-    const tinygltf::Model& model = file_.model();
-    if (!model.scenes.empty()) {
-      return file_.at(model.scenes, std::max(model.defaultScene, 0), "scene").nodes;
+    if (!file_.list("scenes").empty()) {
+      const int scene = std::max(index_in(file_.json(), "scene"), 0);
+      return indices_in(file_.at(file_.list("scenes"), scene, "scene"), "nodes");
     }
-    std::vector<bool> is_child(model.nodes.size());
-    for (const tinygltf::Node& node : model.nodes) {
-      for (const int child : node.children) {
-        (void)file_.at(model.nodes, child, "node");
+    const Json& nodes = file_.list("nodes");
+    std::vector<bool> is_child(nodes.size());
+    for (const Json& parent : nodes) {
+      for (const int child : indices_in(parent, "children")) {
+        (void)node(child);
         is_child[static_cast<std::size_t>(child)] = true;
       }
     }
     std::vector<int> found;
-    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (!is_child[i]) found.push_back(static_cast<int>(i));
     }
     return found;
@@ -123,12 +128,12 @@ class GltfReader {
       for (auto node = nodes.rbegin(); node != nodes.rend(); ++node)
         steps.push_back({*node, parent});
     };
-    std::vector<bool> seen(file_.model().nodes.size());
+    std::vector<bool> seen(file_.list("nodes").size());
     add(roots, glm::dmat4(1.0));
     while (!steps.empty()) {
       const Step step = steps.back();
       steps.pop_back();
-      const tinygltf::Node& node = file_.at(file_.model().nodes, step.node, "node");
+      const Json& node = this->node(step.node);
       if (seen[static_cast<std::size_t>(step.node)]) {
         file_.fail("node " + std::to_string(step.node) + " has two parents, expected one");
       }
@@ -138,81 +143,74 @@ class GltfReader {
         file_.fail("node " + std::to_string(step.node) + ": its place is not finite");
       }
       nodes_.emplace_back(&node, world);
-      add(node.children, world);
+      add(indices_in(node, "children"), world);
     }
   }
 
-  [[nodiscard]] Shape shape_of(const tinygltf::Node& node) const {
-    const tinygltf::Mesh& mesh = file_.at(file_.model().meshes, node.mesh, "mesh");
-    return {node.mesh, node.weights.empty() ? mesh.weights : node.weights};
+  [[nodiscard]] const Json& mesh(int index) const {
+    return file_.at(file_.list("meshes"), index, "mesh");
   }
 
-  void count_uses(const tinygltf::Node& node) {
-    if (node.mesh < 0 || node.skin >= 0) return;
-    const bool many = node.extensions.contains("EXT_mesh_gpu_instancing");
-    uses_[shape_of(node)] += many ? 2 : 1;
+  [[nodiscard]] Shape shape_of(const Json& node) const {
+    const int number = index_in(node, "mesh");
+    const std::vector<double> weights = numbers_in(node, "weights");
+    return {number, weights.empty() ? numbers_in(mesh(number), "weights") : weights};
+  }
+
+  void count_uses(const Json& node) {
+    if (index_in(node, "mesh") < 0 || index_in(node, "skin") >= 0) return;
+    uses_[shape_of(node)] += extension(node, "EXT_mesh_gpu_instancing").is_null() ? 1 : 2;
   }
 
   /// Returns the transforms of a skin's joints, from the mesh's coordinates to the world's.
   [[nodiscard]] std::vector<glm::dmat4> joints_of(int number) {
-    const tinygltf::Model& model = file_.model();
-    const tinygltf::Skin& skin = file_.at(model.skins, number, "skin");
+    const Json& skin = file_.at(file_.list("skins"), number, "skin");
     std::vector<glm::dmat4> joints;
-    for (const int joint : skin.joints) {
-      const tinygltf::Node* const node = &file_.at(model.nodes, joint, "node");
-      const auto placed =
-          std::ranges::find(nodes_, node, &std::pair<const tinygltf::Node*, glm::dmat4>::first);
+    for (const int joint : indices_in(skin, "joints")) {
+      const auto placed = std::ranges::find(nodes_, &node(joint), &PlacedNode::first);
       joints.push_back(placed == nodes_.end() ? glm::dmat4(1.0) : placed->second);
     }
+    if (joints.empty()) file_.warn_once("a skin without joints is left out");
     const std::vector<double> inverse = file_.optional_vectors(
-        skin.inverseBindMatrices, 16, "inverseBindMatrices", joints.size(), scene_.warnings);
+        index_in(skin, "inverseBindMatrices"), 16, "inverseBindMatrices", joints.size());
     for (std::size_t i = 0; i < inverse.size() / 16; ++i)
       joints[i] *= glm::make_mat4(&inverse[16 * i]);
     return joints;
   }
 
-  void read_node(const tinygltf::Node& node, const glm::dmat4& world) {
-    const tinygltf::Model& model = file_.model();
-    if (node.mesh >= 0) {
-      const tinygltf::Mesh& mesh = file_.at(model.meshes, node.mesh, "mesh");
+  void read_node(const Json& node, const glm::dmat4& world) {
+    if (const int number = index_in(node, "mesh"); number >= 0) {
       const auto object = static_cast<std::uint32_t>(scene_.objects.size());
-      scene_.objects.push_back(!node.name.empty()   ? node.name
-                               : !mesh.name.empty() ? mesh.name
-                                                    : "object " + std::to_string(object));
+      const std::string name = text_in(node, "name"), other = text_in(mesh(number), "name");
+      scene_.objects.push_back(!name.empty()    ? name
+                               : !other.empty() ? other
+                                                : "object " + std::to_string(object));
       const Shape shape = shape_of(node);
-      if (node.skin >= 0) {
-        GltfPlacement placement{world, &shape.second, {}};
-        optionally([&] { placement.joints = joints_of(node.skin); });
-        meshes_.read(mesh, placement, object, builder_);
-      } else if (uses_[shape] > 1) {
+      const int skin = index_in(node, "skin");
+      if (skin < 0 && uses_[shape] > 1) {
         for (const glm::dmat4& own : file_.instance_transforms(node)) {
           instances_.push_back({shape, world * own, object});
         }
       } else {
-        meshes_.read(mesh, {world, &shape.second, {}}, object, builder_);
+        GltfPlacement placement{world, &shape.second, {}};
+        if (skin >= 0) optionally([&] { placement.joints = joints_of(skin); });
+        meshes_.read(mesh(number), placement, object, builder_);
       }
     }
-    optionally([&] {
-      if (node.camera >= 0) read_camera(file_.at(model.cameras, node.camera, "camera"), world);
-    });
-    const auto light = node.extensions.find("KHR_lights_punctual");
-    if (light != node.extensions.end() && light->second.Has("light") &&
-        light->second.Get("light").IsInt()) {
+    if (const int camera = index_in(node, "camera"); camera >= 0) {
+      optionally([&] { read_camera(file_.at(file_.list("cameras"), camera, "camera"), world); });
+    }
+    constexpr const char* kLights = "KHR_lights_punctual";
+    if (const int light = index_in(extension(node, kLights), "light"); light >= 0) {
       optionally([&] {
-        read_light(file_.at(model.lights, light->second.Get("light").GetNumberAsInt(), "light"),
-                   world);
+        read_light(file_.at(member(file_.extension(kLights), "lights"), light, "light"), world);
       });
     }
   }
 
-  /// Calls `read` and turns an InputError into a warning.
   template <class Read>
   void optionally(const Read& read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      GltfFile::warn_once(error, "left out", scene_.warnings);
-    }
+    file_.optionally("left out", read);
   }
 
   /// Returns the mesh of an instance, in its own coordinates, which is read at the first call.
@@ -221,8 +219,7 @@ class GltfReader {
     if (!is_new) return at->second;
     MeshBuilder builder(file_.name());
     builder.allow_empty();
-    meshes_.read(file_.model().meshes[static_cast<std::size_t>(shape.first)],
-                 {glm::dmat4(1.0), &shape.second, {}}, 0, builder);
+    meshes_.read(mesh(shape.first), {glm::dmat4(1.0), &shape.second, {}}, 0, builder);
     Scene& part = at->second.part;
     builder.build(options_, part);
     at->second.box = bounds_of(part.positions);
@@ -258,21 +255,23 @@ class GltfReader {
   }
 
   /// Sets the scene's camera, with a target ahead of it, unless there is one.
-  void read_camera(const tinygltf::Camera& camera, const glm::dmat4& world) {
-    const bool is_orthographic = camera.type == "orthographic";
+  void read_camera(const Json& camera, const glm::dmat4& world) {
+    const bool is_orthographic = text_in(camera, "type") == "orthographic";
     // An orthographic picture has the size of a perspective one at the target.
-    const double fov = is_orthographic ? 90.0 : camera.perspective.yfov * kDegrees;
-    const double distance = is_orthographic ? camera.orthographic.ymag : 1.0;
+    const double fov =
+        is_orthographic ? 90.0 : number_in(member(camera, "perspective"), "yfov", 0.0) * kDegrees;
+    const double distance =
+        is_orthographic ? number_in(member(camera, "orthographic"), "ymag", 0.0) : 1.0;
     if (!(fov > 0.0 && fov < 180.0)) {
       file_.fail("a camera's yfov: expected more than 0 and less than pi");
     }
     if (!(distance > 0.0 && distance <= kMostFloat)) {
       file_.fail("a camera's ymag: expected a positive number within the range of float");
     }
-    if (scene_.camera) return warn_once("of several cameras the first one is taken");
+    if (scene_.camera) return file_.warn_once("of several cameras the first one is taken");
     const glm::dvec3 eye(world[3]), back(world[2]), up(world[1]);
     if (glm::length(back) == 0.0 || glm::length(glm::cross(back, up)) == 0.0) {
-      return warn_once("a camera without a direction is left out");
+      return file_.warn_once("a camera without a direction is left out");
     }
     scene_.camera = {eye, eye - distance * glm::normalize(back), up, fov};
     if (is_orthographic) scene_.camera->lens.projection = Projection::kOrthographic;
@@ -296,25 +295,27 @@ class GltfReader {
     camera.fov = fov;
   }
 
-  void read_light(const tinygltf::Light& light, const glm::dmat4& world) {
-    glm::dvec3 intensity(light.intensity / kLumensPerWatt);
+  void read_light(const Json& light, const glm::dmat4& world) {
+    glm::dvec3 intensity(number_in(light, "intensity", 1.0) / kLumensPerWatt);
+    const std::vector<double> color = numbers_in(light, "color");
+    const std::string type = text_in(light, "type");
     for (int k = 0; k < 3; ++k) {
-      if (light.color.size() == 3) intensity[k] *= light.color[static_cast<std::size_t>(k)];
+      if (color.size() == 3) intensity[k] *= color[static_cast<std::size_t>(k)];
       if (!(intensity[k] >= 0.0 && intensity[k] <= kMostFloat)) {
         file_.fail("a light's intensity: expected no negative number within the range of float");
       }
     }
-    if (light.range > 0.0) {
-      warn_once("a light's range is not read: light goes on by the square of the distance");
+    if (number_in(light, "range", 0.0) > 0.0) {
+      file_.warn_once("a light's range is not read: light goes on by the square of the distance");
     }
     const double length = glm::length(glm::dvec3(world[2]));
-    const bool is_directional = light.type == "directional", is_spot = light.type == "spot";
-    if (!is_directional && !is_spot && light.type != "point") {
-      file_.fail("found a light of the type " + in_quotes(light.type) +
+    const bool is_directional = type == "directional", is_spot = type == "spot";
+    if (!is_directional && !is_spot && type != "point") {
+      file_.fail("found a light of the type " + in_quotes(type) +
                  ", expected directional, point or spot");
     }
     if ((is_directional || is_spot) && !(length > 0.0 && std::isfinite(length))) {
-      return warn_once("a light without a direction is left out");
+      return file_.warn_once("a light without a direction is left out");
     }
     const glm::dvec3 direction = -glm::dvec3(world[2]) / length;
     if (is_directional) {
@@ -323,11 +324,13 @@ class GltfReader {
     }
     PlacedLight& placed = lights_.emplace_back(PlacedLight{glm::dvec3(world[3]), intensity, {}});
     if (!is_spot) return;
-    const double inner = light.spot.innerConeAngle * kDegrees,
-                 outer = light.spot.outerConeAngle * kDegrees;
+    const Json& spot = member(light, "spot");
+    if (!spot.is_object()) file_.warn_once("a spot light without 'spot' has the usual cone");
+    const double inner = number_in(spot, "innerConeAngle", 0.0) * kDegrees,
+                 outer = number_in(spot, "outerConeAngle", std::numbers::pi / 4.0) * kDegrees;
     // pi / 2 may be rounded to more than 90 degrees.
     if (!(inner >= 0.0 && inner <= outer && outer <= 90.0 + 1e-9)) {
-      warn_once("a spot light's angles are limited to 0 <= inner <= outer <= pi / 2");
+      file_.warn_once("a spot light's angles are limited to 0 <= inner <= outer <= pi / 2");
     }
     SpotCone& cone = placed.spot.emplace(SpotCone{direction});
     cone.outer = outer >= 0.0 ? std::min(outer, 90.0) : 0.0;
@@ -345,12 +348,12 @@ class GltfReader {
     }
   }
 
-  const GltfFile file_;
-  const LoadOptions options_;
   Scene scene_;
+  GltfFile file_;
+  const LoadOptions options_;
   MeshBuilder builder_;  // of meshes with one instance
   GltfMeshes meshes_;
-  std::vector<std::pair<const tinygltf::Node*, glm::dmat4>> nodes_;  // depth first
+  std::vector<PlacedNode> nodes_;  // depth first
   std::map<Shape, int> uses_;
   std::map<Shape, SharedMesh> shared_;
   std::vector<MeshInstance> instances_;

@@ -26,68 +26,59 @@ glm::vec3 colour_of(const std::vector<double>& numbers, double most = 1.0) {
   return colour;
 }
 
-double number_in(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key,
-                 double otherwise) {
-  const auto found = extensions.find(extension);
-  if (found == extensions.end() || !found->second.Has(key)) return otherwise;
-  const tinygltf::Value& value = found->second.Get(key);
-  const double number = value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
-  return std::isfinite(number) ? number : otherwise;
+float finite_in(const Json& object, const char* key, double otherwise) {
+  const double number = number_in(object, key, otherwise);
+  return static_cast<float>(std::isfinite(number) ? number : otherwise);
 }
 
-glm::vec2 pair_in(const tinygltf::Value& value, const char* key, const glm::vec2& otherwise) {
-  if (!value.Has(key) || !value.Get(key).IsArray() || value.Get(key).ArrayLen() != 2) {
-    return otherwise;
-  }
-  glm::vec2 pair;
-  for (int k = 0; k < 2; ++k) {
-    const tinygltf::Value& number = value.Get(key).Get(k);
-    pair[k] = number.IsNumber() ? static_cast<float>(number.GetNumberAsDouble()) : otherwise[k];
-  }
-  return pair;
-}
-
-/// Returns the three numbers at a key, with negative ones as 0; 1 for missing ones.
-glm::vec3 three_in(const tinygltf::Value& value, const char* key) {
-  std::vector<double> numbers;
-  if (!value.Has(key) || !value.Get(key).IsArray()) return glm::vec3(1.0f);
-  for (int k = 0; k < 3; ++k) {
-    const tinygltf::Value& number = value.Get(key).Get(k);
-    numbers.push_back(number.IsNumber() ? number.GetNumberAsDouble() : 1.0);
-  }
-  return colour_of(numbers, std::numeric_limits<float>::max());
-}
-
-/// Returns the texture at a key of an extension, with index -1 if there is none.
-tinygltf::TextureInfo texture_in(const tinygltf::Material& material, const char* extension,
-                                 const char* key) {
-  tinygltf::TextureInfo info;
-  const auto found = material.extensions.find(extension);
-  if (found == material.extensions.end() || !found->second.Has(key)) return info;
-  const tinygltf::Value& texture = found->second.Get(key);
-  const auto number = [&](const char* name, int otherwise) {
-    const bool is_given = texture.Has(name) && texture.Get(name).IsInt();
-    return is_given ? texture.Get(name).Get<int>() : otherwise;
-  };
-  info.index = number("index", -1);
-  info.texCoord = number("texCoord", 0);
-  if (texture.Has("extensions") && texture.Get("extensions").IsObject()) {
-    info.extensions = texture.Get("extensions").Get<tinygltf::Value::Object>();
-  }
-  return info;
-}
-
-/// Returns the number of the set of coordinates that a texture uses.
-template <class TextureInfo>
-int set_of(const TextureInfo& info) {
-  const double set = number_in(info.extensions, "KHR_texture_transform", "texCoord", info.texCoord);
-  return static_cast<int>(std::clamp(set, -1.0, 1e6));
+glm::vec2 pair_in(const Json& object, const char* key, const glm::vec2& otherwise) {
+  const std::vector<double> numbers = numbers_in(object, key);
+  return numbers.size() == 2 ? glm::vec2(numbers[0], numbers[1]) : otherwise;
 }
 
 constexpr const char *kCoat = "KHR_materials_clearcoat", *kSpecular = "KHR_materials_specular",
-                     *kTransmission = "KHR_materials_transmission";
+                     *kTransmission = "KHR_materials_transmission",
+                     *kTransform = "KHR_texture_transform";
+
+/// Returns the number of the set of coordinates that a texture uses.
+int set_of(const Json& info) {
+  const double set =
+      number_in(extension(info, kTransform), "texCoord", number_in(info, "texCoord", 0.0));
+  return static_cast<int>(std::clamp(set, -1.0, 1e6));
+}
+
+/// Calls visit(texture) for the textures of a material that are read; null for missing ones.
+template <class Visit>
+void for_each_texture(const Json& from, const Visit& visit) {
+  const Json &pbr = member(from, "pbrMetallicRoughness"), &coat = extension(from, kCoat),
+             &specular = extension(from, kSpecular);
+  visit(member(pbr, "baseColorTexture"));
+  visit(member(pbr, "metallicRoughnessTexture"));
+  visit(member(from, "normalTexture"));
+  visit(member(from, "emissiveTexture"));
+  visit(member(coat, "clearcoatTexture"));
+  visit(member(coat, "clearcoatRoughnessTexture"));
+  visit(member(extension(from, kTransmission), "transmissionTexture"));
+  visit(member(specular, "specularTexture"));
+  visit(member(specular, "specularColorTexture"));
+}
+
+/// Returns the opacity of a base colour.
+double base_opacity(const std::vector<double>& base_color) {
+  return base_color.size() == 4 ? in_unit(base_color[3]) : 1.0;
+}
+
+/// Returns the cutoff of a mask; above 1 nothing is visible.
+double cutoff_of(const Json& material) {
+  return std::max(number_in(material, "alphaCutoff", 0.5), 0.0);
+}
 
 }  // namespace
+
+const Json& GltfMaterials::material(int index) const {
+  static const Json kDefault;
+  return index == -1 ? kDefault : file_.at(file_.list("materials"), index, "material");
+}
 
 std::uint32_t GltfMaterials::number_of(int material) {
   const auto [entry, is_new] =
@@ -95,23 +86,25 @@ std::uint32_t GltfMaterials::number_of(int material) {
   if (is_new) {
     Material result;
     result.name = "default";
-    if (material != -1)
-      result = translated(file_.at(file_.model().materials, material, "material"));
+    if (material != -1) result = translated(this->material(material));
     scene_.materials.push_back(std::move(result));
   }
   return entry->second;
 }
 
-GltfMaterials::Sets GltfMaterials::texcoord_sets(int material) {
-  if (material < 0) return {-1, -1};
-  return sets_of(file_.at(file_.model().materials, material, "material"));
+std::vector<double> GltfMaterials::numbers(const Json& object, const char* key, std::size_t size) {
+  std::vector<double> numbers = numbers_in(object, key);
+  if (numbers.size() == size) return numbers;
+  if (!member(object, key).is_null()) {
+    file_.warn_once(in_quotes(key) + " of a material is not as glTF has it, left out");
+  }
+  return {};
 }
 
-GltfMaterials::Sets GltfMaterials::sets_of(const tinygltf::Material& from) {
-  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+GltfMaterials::Sets GltfMaterials::sets_of(const Json& from) {
   Sets sets{-1, -1};
-  const auto look = [&](const auto& info) {
-    if (info.index < 0) return;
+  for_each_texture(from, [&](const Json& info) {
+    if (index_in(info, "index") < 0) return;
     const int set = set_of(info);
     auto at = std::ranges::find(sets, set);
     if (at == sets.end()) at = std::ranges::find(sets, -1);
@@ -119,38 +112,21 @@ GltfMaterials::Sets GltfMaterials::sets_of(const tinygltf::Material& from) {
       *at = set;
     } else {
       file_.warn_once(
-          "of textures of one material with three sets of coordinates the third is not read",
-          scene_.warnings);
+          "of textures of one material with three sets of coordinates the third is not read");
     }
-  };
-  look(pbr.baseColorTexture);
-  look(pbr.metallicRoughnessTexture);
-  look(from.normalTexture);
-  look(from.emissiveTexture);
-  look(texture_in(from, kCoat, "clearcoatTexture"));
-  look(texture_in(from, kCoat, "clearcoatRoughnessTexture"));
-  look(texture_in(from, kTransmission, "transmissionTexture"));
-  look(texture_in(from, kSpecular, "specularTexture"));
-  look(texture_in(from, kSpecular, "specularColorTexture"));
+  });
   return sets;
 }
 
-std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content content) {
+std::optional<Texture> GltfMaterials::picture(const Json& texture, Texture::Content content) {
   if (!textures_) return std::nullopt;
-  const tinygltf::Model& model = file_.model();
-  const int source = file_.at(model.textures, texture, "texture").source;
+  const int source = index_in(texture, "source");
   if (source < 0) {
-    file_.warn_once("a texture without a PNG or JPEG picture is left out", scene_.warnings);
+    file_.warn_once("a texture without a PNG or JPEG picture is left out");
     return std::nullopt;
   }
-  const std::string bytes = file_.picture_bytes(source);
-  if (bytes.empty()) {
-    const std::string& uri = model.images[static_cast<std::size_t>(source)].uri;
-    file_.fail(uri.empty() ? "image " + std::to_string(source) + " has no picture"
-                           : "the texture " + in_quotes(uri) + " is missing");
-  }
-  Texture result =
-      Texture::decode(bytes, file_.name() + ": image " + std::to_string(source), content);
+  Texture result = Texture::decode(file_.picture_bytes(source),
+                                   file_.name() + ": image " + std::to_string(source), content);
   texels_ += std::int64_t{result.width()} * result.height();
   if (texels_ > kMostTexels) {
     file_.fail("textures of more than " + std::to_string(kMostTexels) + " pixels in all");
@@ -158,26 +134,25 @@ std::optional<Texture> GltfMaterials::picture(int texture, Texture::Content cont
   return result;
 }
 
-template <class TextureInfo>
-MaterialMap GltfMaterials::map_of(const TextureInfo& info, Texture::Content content) {
-  try {
-    return read_map(info, content);
-  } catch (const InputError& error) {
-    file_.warn_once(error, "its material is plain instead", scene_.warnings);
-    return {};
+MaterialMap GltfMaterials::map_of(const Json& parent, const char* key, Texture::Content content) {
+  MaterialMap map;
+  const Json& info = member(parent, key);
+  if (!member(info, "index").is_number_integer()) {
+    if (!info.is_null()) {
+      file_.warn_once(in_quotes(key) + " of a material is not as glTF has it, left out");
+    }
+    return map;
   }
+  file_.optionally("its material is plain instead", [&] { map = read_map(info, content); });
+  return map;
 }
 
-template <class TextureInfo>
-MaterialMap GltfMaterials::read_map(const TextureInfo& info, Texture::Content content) {
+MaterialMap GltfMaterials::read_map(const Json& info, Texture::Content content) {
   MaterialMap map;
-  const int texture = info.index;
-  if (texture < 0) return map;
   map.mapping.is_second = set_of(info) == sets_[1];
-  const tinygltf::Model& model = file_.model();
-  const tinygltf::Texture& from = file_.at(model.textures, texture, "texture");
+  const Json& texture = file_.at(file_.list("textures"), index_in(info, "index"), "texture");
   const auto [entry, is_new] =
-      texture_of_image_.try_emplace(std::pair(from.source, content), kNoIndex);
+      texture_of_image_.try_emplace(std::pair(index_in(texture, "source"), content), kNoIndex);
   if (is_new) {
     if (std::optional<Texture> decoded = picture(texture, content)) {
       entry->second = static_cast<std::uint32_t>(scene_.textures.size());
@@ -185,28 +160,30 @@ MaterialMap GltfMaterials::read_map(const TextureInfo& info, Texture::Content co
     }
   }
   map.texture = entry->second;
-  if (from.sampler >= 0) {
-    const tinygltf::Sampler& sampler = file_.at(model.samplers, from.sampler, "sampler");
-    const auto wrap_of = [&](int mode) {
-      if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::kClamp;
-      if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::kMirror;
-      if (mode != TINYGLTF_TEXTURE_WRAP_REPEAT) {
-        file_.warn_once("sampler " + std::to_string(from.sampler) + ": found the wrap mode " +
-                            std::to_string(mode) + ", expected 10497, 33071 or 33648; repeated",
-                        scene_.warnings);
+  if (const int number = index_in(texture, "sampler"); number >= 0) {
+    const Json& sampler = file_.at(file_.list("samplers"), number, "sampler");
+    const auto wrap_of = [&](const char* key) {
+      constexpr int kClamp = 33071, kMirror = 33648, kRepeat = 10497;
+      const auto mode = static_cast<int>(number_in(sampler, key, kRepeat));
+      if (mode == kClamp) return Wrap::kClamp;
+      if (mode == kMirror) return Wrap::kMirror;
+      if (mode != kRepeat) {
+        file_.warn_once("sampler " + std::to_string(number) + ": found the wrap mode " +
+                        std::to_string(mode) + ", expected 10497, 33071 or 33648; repeated");
       }
       return Wrap::kRepeat;
     };
-    map.mapping.sampling.u = wrap_of(sampler.wrapS);
-    map.mapping.sampling.v = wrap_of(sampler.wrapT);
-    map.mapping.sampling.is_nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    constexpr int kNearest = 9728;
+    map.mapping.sampling.u = wrap_of("wrapS");
+    map.mapping.sampling.v = wrap_of("wrapT");
+    map.mapping.sampling.is_nearest = index_in(sampler, "magFilter") == kNearest;
   }
-  const auto transform = info.extensions.find("KHR_texture_transform");
-  if (transform == info.extensions.end()) return map;
-  map.mapping.scale = pair_in(transform->second, "scale", glm::vec2(1.0f));
+  const Json& transform = extension(info, kTransform);
+  if (transform.is_null()) return map;
+  map.mapping.scale = pair_in(transform, "scale", glm::vec2(1.0f));
   // The file's v points down: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o.
-  const glm::vec2 offset = pair_in(transform->second, "offset", glm::vec2(0.0f));
-  const double angle = number_in(info.extensions, "KHR_texture_transform", "rotation", 0.0);
+  const glm::vec2 offset = pair_in(transform, "offset", glm::vec2(0.0f));
+  const double angle = number_in(transform, "rotation", 0.0);
   map.mapping.turn = {std::cos(angle), std::sin(angle)};
   const glm::vec2 up = map.mapping.scale.y * map.mapping.turn;
   map.mapping.offset = {offset.x + up.y, 1.0f - up.x - offset.y};
@@ -214,37 +191,33 @@ MaterialMap GltfMaterials::read_map(const TextureInfo& info, Texture::Content co
 }
 
 bool GltfMaterials::has_opacity(int material) const {
-  if (material < 0) return false;
-  const std::string& mode = file_.at(file_.model().materials, material, "material").alphaMode;
+  const std::string mode = text_in(this->material(material), "alphaMode");
   return mode == "MASK" || mode == "BLEND";
 }
 
 void GltfMaterials::use_vertex_opacity(int material) {
-  const tinygltf::Material& from = file_.at(file_.model().materials, material, "material");
-  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
-  const tinygltf::TextureInfo& base = pbr.baseColorTexture;
+  const Json &from = this->material(material), &pbr = member(from, "pbrMetallicRoughness");
   Material& to = scene_.materials[number_of(material)];
   sets_ = sets_of(from);
   to.has_vertex_opacity = true;
-  to.opacity_blends = from.alphaMode == "BLEND";
-  to.opacity_map = map_of(base, Texture::Content::kAlpha);
-  const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
-  if (!to.opacity_blends)
-    to.opacity_cutoff = static_cast<float>(std::max(from.alphaCutoff, 0.0) / factor);
+  to.opacity_blends = text_in(from, "alphaMode") == "BLEND";
+  to.opacity_map = map_of(pbr, "baseColorTexture", Texture::Content::kAlpha);
+  if (to.opacity_blends) return;
+  to.opacity_cutoff =
+      static_cast<float>(cutoff_of(from) / base_opacity(numbers(pbr, "baseColorFactor", 4)));
 }
 
 /// Sets the opacity from the base colour's factor and texture, which blend or are a mask.
-void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& material) {
-  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
-  if (from.alphaMode != "MASK" && from.alphaMode != "BLEND") return;
-  const bool is_mask = from.alphaMode == "MASK";
-  const double factor = pbr.baseColorFactor.size() == 4 ? in_unit(pbr.baseColorFactor[3]) : 1.0;
-  const double cutoff = std::max(from.alphaCutoff, 0.0);  // above 1 nothing is visible
+void GltfMaterials::set_opacity(const Json& from, Material& material) {
+  const std::string mode = text_in(from, "alphaMode");
+  if (mode != "MASK" && mode != "BLEND") return;
+  const Json& pbr = member(from, "pbrMetallicRoughness");
+  const bool is_mask = mode == "MASK";
+  const double factor = base_opacity(numbers(pbr, "baseColorFactor", 4)), cutoff = cutoff_of(from);
   if (!is_mask) material.opacity = static_cast<float>(factor);
   if (is_mask && factor < cutoff) material.opacity = 0.0f;
-  const tinygltf::TextureInfo& base = pbr.baseColorTexture;
-  if (base.index < 0 || material.opacity == 0.0f) return;
-  MaterialMap map = map_of(base, Texture::Content::kAlpha);
+  if (material.opacity == 0.0f) return;
+  MaterialMap map = map_of(pbr, "baseColorTexture", Texture::Content::kAlpha);
   const double least = is_mask ? cutoff / factor : 1.0;
   if (map.texture == kNoIndex || scene_.textures[map.texture].min_code() >= least) return;
   material.opacity_map = std::move(map);
@@ -252,66 +225,59 @@ void GltfMaterials::set_opacity(const tinygltf::Material& from, Material& materi
   if (is_mask) material.opacity_cutoff = static_cast<float>(least);
 }
 
-Material GltfMaterials::translated(const tinygltf::Material& from) {
-  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+Material GltfMaterials::translated(const Json& from) {
+  const Json &pbr = member(from, "pbrMetallicRoughness"), &coat = extension(from, kCoat),
+             &specular = extension(from, kSpecular), &transmission = extension(from, kTransmission),
+             &normal = member(from, "normalTexture");
+  const auto fraction = [](const Json& object, const char* key, double otherwise) {
+    return static_cast<float>(in_unit(number_in(object, key, otherwise)));
+  };
   Material material;
   sets_ = sets_of(from);
-  material.name = from.name;
-  const glm::vec3 base = colour_of(pbr.baseColorFactor);
-  material.diffuse = base;
+  material.name = text_in(from, "name");
+  if (!pbr.is_object()) (void)numbers(from, "pbrMetallicRoughness", 0);
+  material.diffuse = colour_of(numbers(pbr, "baseColorFactor", 4));
   MetallicRoughness& shares = material.metallic_roughness.emplace();
-  shares.metallic = static_cast<float>(in_unit(pbr.metallicFactor));
-  shares.roughness = static_cast<float>(in_unit(pbr.roughnessFactor));
-  const auto colour = Texture::Content::kColour;
-  shares.map = map_of(pbr.metallicRoughnessTexture, colour);
-  const MaterialMap diffuse = map_of(pbr.baseColorTexture, colour);
+  shares.metallic = fraction(pbr, "metallicFactor", 1.0);
+  shares.roughness = fraction(pbr, "roughnessFactor", 1.0);
+  shares.map = map_of(pbr, "metallicRoughnessTexture");
+  const MaterialMap diffuse = map_of(pbr, "baseColorTexture");
   material.diffuse_texture = diffuse.texture;
   material.diffuse_mapping = diffuse.mapping;
-  material.normal_map = map_of(from.normalTexture, colour);
-  material.normal_scale =
-      static_cast<float>(std::isfinite(from.normalTexture.scale) ? from.normalTexture.scale : 1.0);
+  material.normal_map = map_of(from, "normalTexture");
+  material.normal_scale = finite_in(normal, "scale", 1.0);
   set_opacity(from, material);
-  if (from.occlusionTexture.index >= 0) {
-    file_.warn_once("occlusionTexture is not read: the rays of the scene find what is in shade",
-                    scene_.warnings);
+  if (!member(from, "occlusionTexture").is_null()) {
+    file_.warn_once("occlusionTexture is not read: the rays of the scene find what is in shade");
   }
 
   const double strength = std::clamp(
-      number_in(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0), 0.0,
+      number_in(extension(from, "KHR_materials_emissive_strength"), "emissiveStrength", 1.0), 0.0,
       1e6);
-  material.emission = from.emissiveFactor.size() == 3
-                          ? colour_of(from.emissiveFactor) * static_cast<float>(strength)
-                          : glm::vec3(0.0f);
+  const std::vector<double> emission = numbers(from, "emissiveFactor", 3);
+  material.emission =
+      emission.empty() ? glm::vec3(0.0f) : colour_of(emission) * static_cast<float>(strength);
   if (material.emission != glm::vec3(0.0f)) {
-    material.emission_map = map_of(from.emissiveTexture, colour);
+    material.emission_map = map_of(from, "emissiveTexture");
   }
-  const auto share = [&](const char* extension, const char* key, double otherwise) {
-    return static_cast<float>(in_unit(number_in(from.extensions, extension, key, otherwise)));
-  };
-  const auto map = [&](const char* extension, const char* key, Texture::Content content) {
-    const tinygltf::TextureInfo info = texture_in(from, extension, key);
-    return map_of(info, content);
-  };
-  shares.specular = share(kSpecular, "specularFactor", 1.0);
-  shares.specular_map = map(kSpecular, "specularTexture", Texture::Content::kAlpha);
-  if (const auto found = from.extensions.find(kSpecular); found != from.extensions.end()) {
-    shares.specular_color = three_in(found->second, "specularColorFactor");
-  }
-  shares.specular_color_map = map(kSpecular, "specularColorTexture", colour);
-  shares.transmission = share(kTransmission, "transmissionFactor", 0.0);
-  shares.transmission_map = map(kTransmission, "transmissionTexture", colour);
-  shares.coat = share(kCoat, "clearcoatFactor", 0.0);
-  shares.coat_roughness = share(kCoat, "clearcoatRoughnessFactor", 0.0);
-  shares.coat_map = map(kCoat, "clearcoatTexture", colour);
-  shares.coat_roughness_map = map(kCoat, "clearcoatRoughnessTexture", colour);
-  if (texture_in(from, kCoat, "clearcoatNormalTexture").index >= 0) {
+  shares.specular = fraction(specular, "specularFactor", 1.0);
+  shares.specular_map = map_of(specular, "specularTexture", Texture::Content::kAlpha);
+  shares.specular_color =
+      colour_of(numbers_in(specular, "specularColorFactor"), std::numeric_limits<float>::max());
+  shares.specular_color_map = map_of(specular, "specularColorTexture");
+  shares.transmission = fraction(transmission, "transmissionFactor", 0.0);
+  shares.transmission_map = map_of(transmission, "transmissionTexture");
+  shares.coat = fraction(coat, "clearcoatFactor", 0.0);
+  shares.coat_roughness = fraction(coat, "clearcoatRoughnessFactor", 0.0);
+  shares.coat_map = map_of(coat, "clearcoatTexture");
+  shares.coat_roughness_map = map_of(coat, "clearcoatRoughnessTexture");
+  if (!member(coat, "clearcoatNormalTexture").is_null()) {
     file_.warn_once(
-        "clearcoatNormalTexture is not read: a coat has the normals of what is under it",
-        scene_.warnings);
+        "clearcoatNormalTexture is not read: a coat has the normals of what is under it");
   }
   material.refraction_index = static_cast<float>(
-      std::clamp(number_in(from.extensions, "KHR_materials_ior", "ior", 1.5), 1.0, 4.0));
-  if (from.extensions.contains("KHR_materials_unlit")) {
+      std::clamp(number_in(extension(from, "KHR_materials_ior"), "ior", 1.5), 1.0, 4.0));
+  if (!extension(from, "KHR_materials_unlit").is_null()) {
     material.illumination_model = 0;
     material.metallic_roughness.reset();
   }

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "host/scene/io/gltf_file.h"
 #include "host/scene/scene.h"
@@ -17,7 +18,7 @@ namespace raygate {
 class GltfMaterials {
  public:
   /// `file` and `scene` must outlive this object. If `textures` is false, no image is decoded.
-  GltfMaterials(const GltfFile& file, Scene& scene, bool textures)
+  GltfMaterials(GltfFile& file, Scene& scene, bool textures)
       : file_(file), scene_(scene), textures_(textures) {}
 
   /// Returns the index in the scene of a material of the file, which is converted at its first use;
@@ -26,27 +27,31 @@ class GltfMaterials {
   /// Returns the numbers of the sets of texture coordinates that a material uses; -1: none. Warns
   /// about a third set.
   using Sets = std::array<int, 2>;
-  [[nodiscard]] Sets texcoord_sets(int material);
+  [[nodiscard]] Sets texcoord_sets(int material) { return sets_of(this->material(material)); }
   /// Returns whether a material uses the opacity of its vertices.
   [[nodiscard]] bool has_opacity(int material) const;
   /// Makes a material of the scene use the opacity of its vertices.
   void use_vertex_opacity(int material);
 
  private:
-  Material translated(const tinygltf::Material& from);
-  void set_opacity(const tinygltf::Material& from, Material& material);
-  [[nodiscard]] Sets sets_of(const tinygltf::Material& from);
-  /// Returns the texture's index in the scene and its mapping; no texture for index -1.
-  template <class TextureInfo>
-  MaterialMap read_map(const TextureInfo& info, Texture::Content content);
-  /// Returns read_map() or, with a warning, no texture if the map cannot be read.
-  template <class TextureInfo>
-  MaterialMap map_of(const TextureInfo& info, Texture::Content content);
+  /// Returns a member of a list of a material; an empty list, with a warning if the member is not
+  /// `size` numbers.
+  std::vector<double> numbers(const Json& object, const char* key, std::size_t size);
+  Material translated(const Json& from);
+  void set_opacity(const Json& from, Material& material);
+  [[nodiscard]] Sets sets_of(const Json& from);
+  /// Returns the material with this index, or null for index -1.
+  [[nodiscard]] const Json& material(int index) const;
+  /// Returns the texture at a key with its mapping; no texture if there is none or, with a warning,
+  /// if it cannot be read.
+  MaterialMap map_of(const Json& parent, const char* key,
+                     Texture::Content content = Texture::Content::kColour);
+  MaterialMap read_map(const Json& info, Texture::Content content);
   /// Returns a decoded image; nullopt, with a warning, if the texture has none. Throws InputError
   /// if it cannot be decoded or the images have too many pixels.
-  std::optional<Texture> picture(int texture, Texture::Content content);
+  std::optional<Texture> picture(const Json& texture, Texture::Content content);
 
-  const GltfFile& file_;
+  GltfFile& file_;
   Scene& scene_;
   const bool textures_;
   std::map<int, std::uint32_t> numbers_;  // from materials of the file to those of the scene

@@ -12,14 +12,15 @@
 namespace raygate {
 namespace {
 
+constexpr int kTriangles = 4, kTriangleFan = 6;    // modes of primitives
 constexpr std::size_t kMostVertices = 12'000'000;  // plus the number of bytes of the file
 
 }  // namespace
 
-void GltfMeshes::read(const tinygltf::Mesh& mesh, const GltfPlacement& placement,
-                      std::uint32_t object, MeshBuilder& to) {
-  for (const tinygltf::Primitive& primitive : mesh.primitives) {
-    read(primitive, placement, object, to);
+void GltfMeshes::read(const Json& mesh, const GltfPlacement& placement, std::uint32_t object,
+                      MeshBuilder& to) {
+  for (const Json& primitive : member(mesh, "primitives")) {
+    read_primitive(primitive, placement, object, to);
   }
 }
 
@@ -31,19 +32,19 @@ void GltfMeshes::count(std::size_t more) {
   }
 }
 
-std::vector<std::uint32_t> GltfMeshes::corners_of(const tinygltf::Primitive& primitive,
-                                                  std::size_t vertices) {
+std::vector<std::uint32_t> GltfMeshes::corners_of(const Json& primitive, std::size_t vertices) {
   std::vector<std::uint32_t> order;
-  if (primitive.indices >= 0) {
-    count(file_.count(primitive.indices));
-    order = file_.indices(primitive.indices);
+  if (const int indices = index_in(primitive, "indices"); indices >= 0) {
+    count(file_.count(indices));
+    order = file_.indices(indices);
   } else {
     for (std::size_t i = 0; i < vertices; ++i) order.push_back(static_cast<std::uint32_t>(i));
   }
-  if (primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode == -1) return order;
+  const int mode = index_in(primitive, "mode");
+  if (mode == kTriangles || mode == -1) return order;
   std::vector<std::uint32_t> corners;
   for (std::size_t i = 2; i < order.size(); ++i) {
-    const bool is_fan = primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
+    const bool is_fan = mode == kTriangleFan;
     const std::size_t first = is_fan ? 0 : i - 2, second = i - 1;
     const bool is_turned = !is_fan && i % 2 == 1;
     corners.insert(corners.end(), {order[is_turned ? second : first],
@@ -52,36 +53,33 @@ std::vector<std::uint32_t> GltfMeshes::corners_of(const tinygltf::Primitive& pri
   return corners;
 }
 
-void GltfMeshes::warn_of_attributes(const tinygltf::Primitive& primitive) {
+void GltfMeshes::warn_of_attributes(const Json& primitive) {
   constexpr std::string_view kRead[] = {"POSITION", "NORMAL", "TANGENT", "COLOR_0"};
   // Texture coordinates that no texture uses, and joints without a skin, change no picture.
   constexpr std::string_view kNumbered[] = {"TEXCOORD_", "JOINTS_", "WEIGHTS_"};
-  for (const auto& [name, accessor] : primitive.attributes) {
+  for (const auto& [name, accessor] : member(primitive, "attributes").items()) {
     const auto begins_name = [&](std::string_view start) { return name.starts_with(start); };
     if (std::ranges::find(kRead, name) != std::end(kRead)) continue;
     if (std::ranges::any_of(kNumbered, begins_name)) continue;
-    file_.warn_once("the attribute " + in_quotes(name) + " is not read", scene_.warnings);
+    file_.warn_once("the attribute " + in_quotes(name) + " is not read");
   }
 }
 
-std::vector<double> GltfMeshes::attribute(const tinygltf::Primitive& primitive,
-                                          const std::string& name, int width, std::size_t vertices,
+std::vector<double> GltfMeshes::attribute(const Json& primitive, const std::string& name, int width,
+                                          std::size_t vertices,
                                           const std::vector<double>& weights) {
-  const auto accessor = [&](const std::map<std::string, int>& attributes) {
-    const auto found = attributes.find(name);
-    return found == attributes.end() ? -1 : found->second;
-  };
+  const Json &attributes = member(primitive, "attributes"), &targets = member(primitive, "targets");
+  const int accessor = index_in(attributes, name.c_str());
   const auto optional = [&](int number, int components) {
-    return file_.optional_vectors(number, components, name.c_str(), vertices, scene_.warnings);
+    return file_.optional_vectors(number, components, name.c_str(), vertices);
   };
-  std::vector<double> all = name == "POSITION"
-                                ? file_.vectors(accessor(primitive.attributes), width, "POSITION")
-                                : optional(accessor(primitive.attributes), width);
+  std::vector<double> all =
+      name == "POSITION" ? file_.vectors(accessor, width, "POSITION") : optional(accessor, width);
   const int moved = std::min(width, 3);  // targets move a tangent's direction, not its sign
-  for (std::size_t target = 0; target < std::min(weights.size(), primitive.targets.size());
-       ++target) {
+  const std::size_t count = targets.is_array() ? targets.size() : 0;
+  for (std::size_t target = 0; target < std::min(weights.size(), count); ++target) {
     if (weights[target] == 0.0 || all.empty()) continue;
-    const std::vector<double> by = optional(accessor(primitive.targets[target]), moved);
+    const std::vector<double> by = optional(index_in(targets.at(target), name.c_str()), moved);
     for (std::size_t i = 0; i < by.size(); ++i) {
       const std::size_t vertex = i / static_cast<std::size_t>(moved),
                         k = i % static_cast<std::size_t>(moved);
@@ -91,13 +89,13 @@ std::vector<double> GltfMeshes::attribute(const tinygltf::Primitive& primitive,
   return all;
 }
 
-std::vector<glm::dmat4> GltfMeshes::skinned(const tinygltf::Primitive& primitive,
-                                            const GltfPlacement& placement, std::size_t vertices) {
+std::vector<glm::dmat4> GltfMeshes::skinned(const Json& primitive, const GltfPlacement& placement,
+                                            std::size_t vertices) {
   std::vector<glm::dmat4> all(vertices, glm::dmat4(0.0));
   std::vector<double> sums(vertices);
   for (int set = 0;; ++set) {
     const std::string number = std::to_string(set);
-    if (!primitive.attributes.contains("JOINTS_" + number)) break;
+    if (!member(primitive, "attributes").contains("JOINTS_" + number)) break;
     const std::vector<double> joints = attribute(primitive, "JOINTS_" + number, 4, vertices, {}),
                               weights = attribute(primitive, "WEIGHTS_" + number, 4, vertices, {});
     for (std::size_t i = 0; i < std::min(joints.size(), weights.size()); ++i) {
@@ -114,18 +112,18 @@ std::vector<glm::dmat4> GltfMeshes::skinned(const tinygltf::Primitive& primitive
   return all;
 }
 
-void GltfMeshes::read(const tinygltf::Primitive& primitive, const GltfPlacement& placement,
-                      std::uint32_t object, MeshBuilder& to) {
-  if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) {
-    return file_.warn_once("points and lines are ignored: only polygons are rendered",
-                           scene_.warnings);
+void GltfMeshes::read_primitive(const Json& primitive, const GltfPlacement& placement,
+                                std::uint32_t object, MeshBuilder& to) {
+  const int mode = index_in(primitive, "mode"), number = index_in(primitive, "material");
+  if (mode >= 0 && mode < kTriangles) {
+    return file_.warn_once("points and lines are ignored: only polygons are rendered");
   }
-  const auto position = primitive.attributes.find("POSITION");
-  if (position == primitive.attributes.end()) {
-    return file_.warn_once("a primitive without positions is left out", scene_.warnings);
+  const Json& attributes = member(primitive, "attributes");
+  if (!attributes.contains("POSITION")) {
+    return file_.warn_once("a primitive without positions is left out");
   }
   warn_of_attributes(primitive);
-  const std::size_t vertices = file_.count(position->second);
+  const std::size_t vertices = file_.count(index_in(attributes, "POSITION"));
   count(vertices);
   const auto read = [&](const std::string& name, int width) {
     return attribute(primitive, name, width, vertices, *placement.weights);
@@ -133,20 +131,18 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const GltfPlacement&
   const std::vector<double> positions = read("POSITION", 3), normals = read("NORMAL", 3);
   std::vector<double> tangents;
   if (!normals.empty()) tangents = read("TANGENT", 4);
-  const auto color = primitive.attributes.find("COLOR_0");
-  const bool has_alpha =
-      color != primitive.attributes.end() &&
-      file_.at(file_.model().accessors, color->second, "accessor").type == TINYGLTF_TYPE_VEC4;
+  const int color = index_in(attributes, "COLOR_0");
+  const bool has_alpha = color >= 0 && text_in(file_.accessor(color), "type") == "VEC4";
   const std::size_t channels = has_alpha ? 4 : 3;
   const std::vector<double> colors = read("COLOR_0", static_cast<int>(channels));
   if (!colors.empty()) to.colors_are_linear();
-  const auto [set, second_set] = materials_.texcoord_sets(primitive.material);
+  const auto [set, second_set] = materials_.texcoord_sets(number);
   const auto read_set = [&](int number) {
     return number < 0 ? std::vector<double>() : read("TEXCOORD_" + std::to_string(number), 2);
   };
   std::vector<double> texcoords = read_set(set);
   const std::vector<double> seconds = read_set(second_set);
-  const bool is_clear = has_alpha && !colors.empty() && materials_.has_opacity(primitive.material);
+  const bool is_clear = has_alpha && !colors.empty() && materials_.has_opacity(number);
   if (is_clear && set < 0) texcoords.resize(2 * vertices);  // opacities need them
   const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
   count(corners.size());
@@ -214,10 +210,9 @@ void GltfMeshes::read(const tinygltf::Primitive& primitive, const GltfPlacement&
     }
     to.add_face(face, 0);
   }
-  const std::uint32_t material = materials_.number_of(primitive.material);
-  if (primitive.material < 0 && !colors.empty())
-    scene_.materials[material].diffuse = glm::vec3(1.0f);
-  if (is_clear) materials_.use_vertex_opacity(primitive.material);
+  const std::uint32_t material = materials_.number_of(number);
+  if (number < 0 && !colors.empty()) scene_.materials[material].diffuse = glm::vec3(1.0f);
+  if (is_clear) materials_.use_vertex_opacity(number);
   to.assign_faces(first_face, to.face_count(), material, object);
 }
 

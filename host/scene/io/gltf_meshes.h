@@ -25,13 +25,13 @@ struct GltfPlacement {
 class GltfMeshes {
  public:
   /// `file` and `scene` must outlive this object.
-  GltfMeshes(const GltfFile& file, Scene& scene, bool textures)
+  GltfMeshes(GltfFile& file, Scene& scene, bool textures)
       : file_(file), scene_(scene), materials_(file, scene, textures) {}
 
   /// Appends the faces of a mesh, which belong to object number `object`. Leaves out points, lines
   /// and primitives without positions, with a warning. Throws InputError for invalid geometry and
   /// as count() does.
-  void read(const tinygltf::Mesh& mesh, const GltfPlacement& placement, std::uint32_t object,
+  void read(const Json& mesh, const GltfPlacement& placement, std::uint32_t object,
             MeshBuilder& to);
 
   /// Adds `more` vertices and corners to the count. Throws InputError if there are too many for a
@@ -39,24 +39,22 @@ class GltfMeshes {
   void count(std::size_t more);
 
  private:
-  void read(const tinygltf::Primitive& primitive, const GltfPlacement& placement,
-            std::uint32_t object, MeshBuilder& to);
+  void read_primitive(const Json& primitive, const GltfPlacement& placement, std::uint32_t object,
+                      MeshBuilder& to);
   /// Warns about attributes that are not read.
-  void warn_of_attributes(const tinygltf::Primitive& primitive);
+  void warn_of_attributes(const Json& primitive);
   /// Returns the numbers of an attribute plus the weighted sum of its morph targets.
-  [[nodiscard]] std::vector<double> attribute(const tinygltf::Primitive& primitive,
-                                              const std::string& name, int width,
-                                              std::size_t vertices,
+  [[nodiscard]] std::vector<double> attribute(const Json& primitive, const std::string& name,
+                                              int width, std::size_t vertices,
                                               const std::vector<double>& weights);
   /// Returns the transform of each vertex to the world: the weighted mean of its joints.
-  [[nodiscard]] std::vector<glm::dmat4> skinned(const tinygltf::Primitive& primitive,
+  [[nodiscard]] std::vector<glm::dmat4> skinned(const Json& primitive,
                                                 const GltfPlacement& placement,
                                                 std::size_t vertices);
   /// Returns the corners of the triangles as indices into the primitive's vertices.
-  [[nodiscard]] std::vector<std::uint32_t> corners_of(const tinygltf::Primitive& primitive,
-                                                      std::size_t vertices);
+  [[nodiscard]] std::vector<std::uint32_t> corners_of(const Json& primitive, std::size_t vertices);
 
-  const GltfFile& file_;
+  GltfFile& file_;
   Scene& scene_;
   GltfMaterials materials_;
   std::size_t vertices_ = 0;  // vertices and corners counted so far

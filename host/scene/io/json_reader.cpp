@@ -1,11 +1,9 @@
 #include "host/scene/io/json_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <string>
 #include <unordered_set>
 
 #include "host/base/file_bytes.h"
@@ -15,8 +13,6 @@
 
 namespace raygate {
 namespace {
-
-using Kind = JsonNode::Kind;
 
 /// Passes characters to the parser and counts lines.
 class LineCounter {
@@ -51,137 +47,134 @@ class LineCounter {
   bool was_line_feed_ = false;
 };
 
-/// Handler of the parser's events, which builds the tree of values.
-class TreeBuilder {
- public:
-  TreeBuilder(const std::string& file, const std::size_t& line, JsonNode& root)
-      : file_(file), line_(line), root_(root) {}
+std::string member_path(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
+std::string element_path(const std::string& path, std::size_t index) {
+  return path + "[" + std::to_string(index) + "]";
+}
 
-  bool null() { return add(Kind::kNull), true; }
-  bool boolean(bool value) { return add(Kind::kBool).number = value, true; }
-  bool number_integer(std::int64_t value) {
-    return number_float(static_cast<double>(value), std::to_string(value));
-  }
-  bool number_unsigned(std::uint64_t value) {
-    return number_float(static_cast<double>(value), std::to_string(value));
-  }
-  bool number_float(double value, const std::string& text) {
-    JsonNode& node = add(Kind::kNumber);
-    node.number = value;
-    node.text = text;
-    return true;
-  }
-  bool string(std::string& value) { return add(Kind::kString).text = value, true; }
-  bool binary(nlohmann::json::binary_t&) { return false; }
-  bool start_object(std::size_t) { return open(Kind::kObject); }
-  bool start_array(std::size_t) { return open(Kind::kArray); }
-  bool end_object() { return open_.pop_back(), true; }
-  bool end_array() { return open_.pop_back(), true; }
-  bool key(std::string& name) {
-    if (!seen_[open_.size()].insert(name).second) {
-      throw InputError(file_, line_, "key " + in_quotes(name) + " is there twice");
-    }
-    open_.back()->keys.push_back(name);
-    return true;
-  }
-  bool parse_error(std::size_t, const std::string& last_token,
-                   const nlohmann::json::exception& error) {
+/// Returns a value for a message: "[1, 2]", "'text'", "an object".
+std::string shown(const Json& value) {
+  if (value.is_string()) return in_quotes(value.get_ref<const std::string&>());
+  if (value.is_array()) return "an array of " + std::to_string(value.size());
+  return value.is_object() ? "an object" : value.dump();
+}
+
+/// Parses JSON. `line` is that of the last character that was read.
+Json parse(std::string_view text, const std::string& file, std::size_t& line,
+           const Json::parser_callback_t& follow) {
+  try {
+    return Json::parse(LineCounter(text.data(), &line),
+                       LineCounter(text.data() + text.size(), &line), follow);
+  } catch (const Json::exception& error) {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while
     // parsing value - invalid literal; last read: 'x'; expected ..."
     std::string what = error.what();
-    const std::size_t detail = what.find(": ");
-    what = detail == std::string::npos ? what : what.substr(detail + 2);
-    what = what.substr(0, what.find("; last read"));
-    throw InputError(file_, line_, "not JSON: " + what + " near " + in_quotes(last_token));
+    for (const char* const end : {"] ", "parse error at ", ": "}) {
+      if (const std::size_t at = what.find(end); at <= 40) what.erase(0, at + std::strlen(end));
+    }
+    what = what.substr(0, std::min<std::size_t>(what.find("; expected"), 120));
+    throw InputError(file, line, "not JSON: " + what);
   }
-
- private:
-  JsonNode& add(Kind kind) {
-    JsonNode& node = open_.empty() ? root_ : open_.back()->elements.emplace_back();
-    node.kind = kind;
-    node.line = line_;
-    return node;
-  }
-  bool open(Kind kind) {
-    if (open_.size() == kLevels)
-      throw InputError(file_, line_, "more than 64 levels, expected fewer");
-    open_.push_back(&add(kind));
-    seen_[open_.size()].clear();
-    return true;
-  }
-
-  const std::string& file_;
-  const std::size_t& line_;
-  JsonNode& root_;
-  static constexpr std::size_t kLevels = 64;
-  std::vector<JsonNode*> open_;  // from the root down to the node to which values are added
-  std::array<std::unordered_set<std::string>, kLevels + 1> seen_;  // keys of the open objects
-};
-
-/// Returns a value for a message: "[1, 2]", "'text'", "an object".
-std::string shown(const JsonNode& node) {
-  switch (node.kind) {
-    case Kind::kNull:
-      return "null";
-    case Kind::kBool:
-      return node.number != 0.0 ? "true" : "false";
-    case Kind::kNumber:
-      return node.text;
-    case Kind::kString:
-      return in_quotes(node.text);
-    case Kind::kArray:
-      return "an array of " + std::to_string(node.elements.size());
-    case Kind::kObject:
-      break;
-  }
-  return "an object";
 }
 
 }  // namespace
 
-JsonFile::JsonFile(const std::filesystem::path& file) : file_(file.string()) {
-  const std::string text = read_file(file);
+Json parse_json(std::string_view text, const std::string& file) {
   std::size_t line = 1;
-  TreeBuilder builder(file_, line, root_);
-  nlohmann::json::sax_parse(LineCounter(text.data(), &line),
-                            LineCounter(text.data() + text.size(), &line), &builder);
+  return parse(text, file, line, nullptr);
+}
+
+JsonFile::JsonFile(const std::filesystem::path& file) : file_(file.string()) {
+  constexpr std::size_t kLevels = 3;  // of lines_
+  struct Level {
+    bool is_array;
+    std::string path;
+    std::size_t count = 0;                      // of the array's elements so far
+    std::string key = {};                       // the object's last one
+    std::unordered_set<std::string> keys = {};  // all of them
+  };
+  std::vector<Level> levels;
+  std::size_t line = 1;
+  const auto follow = [&](int, Json::parse_event_t event, const Json& parsed) {
+    using Event = Json::parse_event_t;
+    if (event == Event::object_end || event == Event::array_end) {
+      levels.pop_back();
+      return true;
+    }
+    if (event == Event::key) {
+      levels.back().key = parsed.get<std::string>();
+      if (!levels.back().keys.insert(levels.back().key).second) {
+        throw InputError(file_, line, "key " + in_quotes(levels.back().key) + " is there twice");
+      }
+      return true;
+    }
+    std::string path;
+    if (!levels.empty() && levels.size() <= kLevels) {
+      Level& level = levels.back();
+      path = level.is_array ? element_path(level.path, level.count++)
+                            : member_path(level.path, level.key);
+    }
+    lines_.emplace(path, line);
+    if (event != Event::value) levels.push_back({event == Event::array_start, path});
+    return true;
+  };
+  root_ = parse(read_file(file), file_, line, follow);
+}
+
+std::size_t JsonFile::line_of(std::string path) const {
+  for (auto found = lines_.find(path);; found = lines_.find(path)) {
+    if (found != lines_.end()) return found->second;
+    const std::size_t end = path.find_last_of(".[");
+    path.resize(end == std::string::npos ? 0 : end);
+  }
 }
 
 void JsonValue::fail(const std::string& expected) const {
-  throw InputError(*file_, line(), name() + ": " + shown(*node_) + ", expected " + expected);
+  throw InputError(file_->name(), line(),
+                   name() + ": " + shown(*value_) + ", expected " + expected);
 }
 
 void JsonValue::require_keys(std::span<const char* const> known) const {
   std::string names;
   for (const char* key : known) names.append(names.empty() ? "" : ", ").append(key);
-  if (node_->kind != Kind::kObject) fail("an object with " + names);
-  for (std::size_t i = 0; i < keys().size(); ++i) {
-    if (std::ranges::find(known, keys()[i]) != known.end()) continue;
-    throw InputError(
-        *file_, node_->elements[i].line,
-        name() + ": unknown key " + in_quotes(keys()[i]) + ", expected some of " + names);
+  if (!value_->is_object()) fail("an object with " + names);
+  for (const auto& [key, value] : value_->items()) {
+    if (std::ranges::find(known, key) != known.end()) continue;
+    throw InputError(file_->name(), JsonValue(value, *file_, member_path(path_, key)).line(),
+                     name() + ": unknown key " + in_quotes(key) + ", expected some of " + names);
   }
 }
 
+std::size_t JsonValue::line() const { return file_->line_of(path_); }
+
+std::map<std::string, JsonValue> JsonValue::members() const {
+  if (!value_->is_object()) fail("an object");
+  std::map<std::string, JsonValue> all;
+  for (const auto& [key, value] : value_->items()) {
+    all.emplace(key, JsonValue(value, *file_, member_path(path_, key)));
+  }
+  return all;
+}
+
 std::optional<JsonValue> JsonValue::find(const std::string& key) const {
-  const auto found = std::ranges::find(keys(), key);
-  if (found == keys().end()) return std::nullopt;
-  return JsonValue(node_->elements[static_cast<std::size_t>(found - keys().begin())], *file_,
-                   path_.empty() ? key : path_ + "." + key);
+  if (!value_->contains(key)) return std::nullopt;
+  return JsonValue((*value_)[key], *file_, member_path(path_, key));
 }
 
 JsonValue JsonValue::at(const std::string& key) const {
   const auto found = find(key);
-  if (!found) throw InputError(*file_, line(), name() + ": '" + key + "' is missing");
+  if (!found) throw InputError(file_->name(), line(), name() + ": '" + key + "' is missing");
   return *found;
 }
 
 std::vector<JsonValue> JsonValue::elements() const {
-  if (node_->kind != Kind::kArray) fail("an array");
+  if (!value_->is_array()) fail("an array");
   std::vector<JsonValue> all;
-  all.reserve(node_->elements.size());
-  for (const JsonNode& element : node_->elements) {
-    all.push_back({element, *file_, path_ + "[" + std::to_string(all.size()) + "]"});
+  all.reserve(value_->size());
+  for (const Json& element : *value_) {
+    all.push_back({element, *file_, element_path(path_, all.size())});
   }
   return all;
 }
@@ -193,10 +186,9 @@ std::vector<JsonValue> JsonValue::elements(const std::string& key) const {
 
 double JsonValue::number() const {
   constexpr double kLargest = std::numeric_limits<float>::max();
-  if (node_->kind != Kind::kNumber || !(std::abs(node_->number) <= kLargest)) {
-    fail("a number within the range of float");
-  }
-  return node_->number;
+  const double number = value_->is_number() ? value_->get<double>() : 2.0 * kLargest;
+  if (!(std::abs(number) <= kLargest)) fail("a number within the range of float");
+  return number;
 }
 
 double JsonValue::number_in(const std::string& key, double low, double high,
@@ -208,18 +200,18 @@ double JsonValue::number_in(const std::string& key, double low, double high,
   return found;
 }
 
-const std::string& JsonValue::string(const std::string& expected) const {
-  if (node_->kind != Kind::kString || node_->text.empty()) fail(expected);
-  return node_->text;
+std::string JsonValue::string(const std::string& expected) const {
+  if (!value_->is_string() || value_->get_ref<const std::string&>().empty()) fail(expected);
+  return *value_;
 }
 
-const std::string& JsonValue::word(const std::string& expected) const {
-  if (node_->kind != Kind::kString && node_->kind != Kind::kNumber) fail(expected);
-  return node_->text;
+std::string JsonValue::word(const std::string& expected) const {
+  if (!value_->is_string() && !value_->is_number()) fail(expected);
+  return value_->is_string() ? value_->get<std::string>() : value_->dump();
 }
 
 glm::dvec3 JsonValue::vector() const {
-  if (node_->kind != Kind::kArray || node_->elements.size() != 3) fail("[x, y, z]");
+  if (!value_->is_array() || value_->size() != 3) fail("[x, y, z]");
   const std::vector<JsonValue> xyz = elements();
   return {xyz[0].number(), xyz[1].number(), xyz[2].number()};
 }
@@ -231,8 +223,8 @@ glm::dvec3 JsonValue::direction() const {
 }
 
 glm::vec3 JsonValue::light() const {
-  const bool is_grey = node_->kind == Kind::kNumber;
-  if (!is_grey && (node_->kind != Kind::kArray || node_->elements.size() != 3)) {
+  const bool is_grey = value_->is_number();
+  if (!is_grey && (!value_->is_array() || value_->size() != 3)) {
     fail("[red, green, blue] or one number for all three");
   }
   const glm::dvec3 rgb = is_grey ? glm::dvec3(number()) : vector();

@@ -5,40 +5,38 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <initializer_list>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace raygate {
 
-/// A value of a JSON file.
-struct JsonNode {
-  enum class Kind { kNull, kBool, kNumber, kString, kArray, kObject };
+using Json = nlohmann::json;
 
-  Kind kind = Kind::kNull;
-  /// From 1; arrays and objects: line of their start; other values: line of their end.
-  std::size_t line = 0;
-  double number = 0.0;  ///< a bool is 0 or 1; 1e999 is infinite
-  std::string text;     ///< of a string, or a number as written in the file
-  std::vector<JsonNode> elements;
-  std::vector<std::string> keys;  ///< keys of an object's `elements`, in the file's order
-};
+/// Parses JSON (RFC 8259). Throws InputError, "file:line: not JSON: ...".
+[[nodiscard]] Json parse_json(std::string_view text, const std::string& file);
+
+class JsonFile;
 
 /// A value of a JsonFile, which must outlive this object. Functions throw InputError for a value of
 /// another type: "a.json:7: camera.eye[1]: 'up', expected a number within the range of float".
 class JsonValue {
  public:
   [[noreturn]] void fail(const std::string& expected) const;
-  [[nodiscard]] std::size_t line() const { return node_->line; }
+  [[nodiscard]] std::size_t line() const;
 
   /// Requires an object without other keys than these.
   void require_keys(std::span<const char* const> known) const;
   void require_keys(std::initializer_list<const char*> known) const {
     require_keys(std::span(known.begin(), known.size()));
   }
-  [[nodiscard]] const std::vector<std::string>& keys() const { return node_->keys; }
+  /// Returns the values of an object and their keys, sorted by key.
+  [[nodiscard]] std::map<std::string, JsonValue> members() const;
   /// Returns the value of a key of an object, or nullopt if the key is missing.
   [[nodiscard]] std::optional<JsonValue> find(const std::string& key) const;
   /// Returns the value of a required key.
@@ -56,9 +54,9 @@ class JsonValue {
   [[nodiscard]] double number_in(const std::string& key, double low, double high,
                                  const std::string& expected, double missing) const;
   /// Returns a string that is not empty; `expected` describes it in messages.
-  [[nodiscard]] const std::string& string(const std::string& expected) const;
-  /// Returns a string, or a number as written in the file.
-  [[nodiscard]] const std::string& word(const std::string& expected) const;
+  [[nodiscard]] std::string string(const std::string& expected) const;
+  /// Returns a string, or a number as text.
+  [[nodiscard]] std::string word(const std::string& expected) const;
   /// Returns the vector of an array [x, y, z].
   [[nodiscard]] glm::dvec3 vector() const;
   /// Returns the unit vector in the direction of an array [x, y, z] that is not zero.
@@ -68,27 +66,32 @@ class JsonValue {
 
  private:
   friend class JsonFile;
-  JsonValue(const JsonNode& node, const std::string& file, std::string path)
-      : node_(&node), file_(&file), path_(std::move(path)) {}
+  JsonValue(const Json& value, const JsonFile& file, std::string path)
+      : value_(&value), file_(&file), path_(std::move(path)) {}
 
   [[nodiscard]] std::string name() const { return path_.empty() ? "scene" : path_; }
 
-  const JsonNode* node_;
-  const std::string* file_;
+  const Json* value_;
+  const JsonFile* file_;
   std::string path_;  // from the root, as in "lights[2].edges"
 };
 
 class JsonFile {
  public:
-  /// Parses `file`. Throws InputError, "file:line: what", if it cannot be read or is not JSON (RFC
-  /// 8259), for an object with a key twice, and for more than 64 levels.
+  /// Parses `file`. Throws InputError, "file:line: what", if it cannot be read or is not JSON, and
+  /// for an object with a key twice.
   explicit JsonFile(const std::filesystem::path& file);
 
-  [[nodiscard]] JsonValue root() const { return {root_, file_, ""}; }
+  [[nodiscard]] JsonValue root() const { return {root_, *this, ""}; }
+  [[nodiscard]] const std::string& name() const { return file_; }
+  /// Returns the line on which an array or an object starts or another value ends, or, below three
+  /// levels, that of the value around it.
+  [[nodiscard]] std::size_t line_of(std::string path) const;
 
  private:
   std::string file_;
-  JsonNode root_;
+  Json root_;
+  std::map<std::string, std::size_t> lines_;  // by path
 };
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// MaterialLibrary: the materials of an OBJ file, from its MTL files; and loading of textures.
+// MaterialLibrary: the materials of an OBJ file, from its MTL files.
 #pragma once
 
 #include <cstdint>
@@ -44,10 +44,5 @@ class MaterialLibrary {
   std::map<std::string, std::uint32_t> index_of_name_;
   std::vector<Material> materials_;
 };
-
-/// Loads the texture files of all materials that triangles use, once for each kind of content, into
-/// Scene::textures, and sets the materials' indices. Combines textures of roughness and metalness.
-/// Drops fully opaque opacity maps. Warns about a file that is missing or cannot be read.
-void load_textures(Scene& scene);
 
 }  // namespace raygate

@@ -96,24 +96,31 @@ void MeshBuilder::add_opacity(float opacity) {
   opacities_.push_back(opacity);
 }
 
-std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count) {
+std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count, std::size_t field) {
   if (index == 0) return kNoIndex;
   if (index > 0) return static_cast<std::uint32_t>(index - 1);
-  const auto back = static_cast<std::size_t>(-static_cast<std::int64_t>(index));
-  return back > count ? kBadIndex : static_cast<std::uint32_t>(count - back);
+  const std::ptrdiff_t from_start = static_cast<std::ptrdiff_t>(count) + index;
+  if (is_relative_) {
+    relative_.push_back(3 * corners_.size() + field);
+    if (field == 0) first_position_ = std::min(first_position_, from_start);
+  } else if (from_start < 0) {
+    return kBadIndex;
+  }
+  return static_cast<std::uint32_t>(from_start);
 }
 
 void MeshBuilder::add_face(std::span<const FileCorner> corners, std::size_t line) {
   if (faces_.size() % kCheckpointFaces == 0) checkpoint();
   for (const FileCorner& corner : corners) {
     const std::size_t vertices = earlier_.positions + positions_.size();
-    const std::uint32_t position = resolve(corner.position, vertices);
+    const std::uint32_t position = resolve(corner.position, vertices, 0);
     if (position == kBadIndex) {
       fail(line, "vertex index " + std::to_string(corner.position) +
                      " in a face, but the file has " + std::to_string(vertices) + " so far");
     }
-    corners_.push_back({position, resolve(corner.texcoord, earlier_.texcoords + texcoords_.size()),
-                        resolve(corner.normal, earlier_.normals + normals_.size())});
+    corners_.push_back({position,
+                        resolve(corner.texcoord, earlier_.texcoords + texcoords_.size(), 1),
+                        resolve(corner.normal, earlier_.normals + normals_.size(), 2)});
   }
   faces_.push_back({corners_.size(), line});
 }
@@ -127,7 +134,14 @@ void MeshBuilder::assign_faces(std::size_t begin, std::size_t end, std::uint32_t
   }
 }
 
-void MeshBuilder::append(MeshBuilder&& part) {
+void MeshBuilder::append(MeshBuilder&& part, std::size_t line) {
+  const std::size_t earlier[] = {positions_.size(), texcoords_.size(), normals_.size()};
+  for (const std::size_t slot : part.relative_) {
+    std::uint32_t& index = part.corners_[slot / 3].*kFields[slot % 3];
+    const std::ptrdiff_t in_file =
+        static_cast<std::int32_t>(index) + static_cast<std::ptrdiff_t>(earlier[slot % 3]);
+    index = in_file < 0 ? kBadIndex : static_cast<std::uint32_t>(in_file);
+  }
   const auto add = [](auto& all, auto& more) {
     if (all.empty()) {
       all = std::move(more);
@@ -137,7 +151,10 @@ void MeshBuilder::append(MeshBuilder&& part) {
   };
   const std::size_t corners = corners_.size();
   bad_colors_ += part.bad_colors_;
-  for (Face& face : part.faces_) face.end += corners;
+  for (Face& face : part.faces_) {
+    face.end += corners;
+    face.line += line;
+  }
   if (!part.colors_.empty()) colors_.resize(positions_.size(), kNoColor);
   add(colors_, part.colors_);
   add(positions_, part.positions_);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,22 +57,23 @@ class MeshBuilder {
   /// Numbers of positions, texture coordinates and normals.
   struct Counts {
     std::size_t positions = 0, texcoords = 0, normals = 0;
-
-    Counts& operator+=(const Counts& other) {
-      positions += other.positions;
-      texcoords += other.texcoords;
-      normals += other.normals;
-      return *this;
-    }
   };
   [[nodiscard]] Counts counts() const {
     return {positions_.size(), texcoords_.size(), normals_.size()};
   }
-  /// Makes indices relative to a file whose earlier part has `earlier` elements, held by other
-  /// builders. Must be called first.
-  void begin_after(const Counts& earlier) { earlier_ = earlier; }
-  /// Appends the next part of the file, whose builder was given the counts of this builder.
-  void append(MeshBuilder&& part);
+  /// Makes this the builder of a part of a file, after a part of `earlier` elements held by other
+  /// builders. If that is unknown, negative indices are resolved by append(). Must be called first.
+  void begin_after(const std::optional<Counts>& earlier) {
+    earlier_ = earlier.value_or(Counts{});
+    is_relative_ = !earlier;
+  }
+  /// Returns whether no vertex index of this part would be before the beginning of `earlier`.
+  [[nodiscard]] bool can_follow(const MeshBuilder& earlier) const {
+    return first_position_ + static_cast<std::ptrdiff_t>(earlier.positions_.size()) >= 0;
+  }
+  /// Appends the next part of the file, which can follow this one. `line` is added to the lines of
+  /// its faces.
+  void append(MeshBuilder&& part, std::size_t line);
 
   /// Includes this box in the bounds by which the scene is recentred.
   void expand_extent(const Bounds3& box) {
@@ -94,6 +96,8 @@ class MeshBuilder {
   struct Corner {
     std::uint32_t position, texcoord, normal;  // from 0, or kNoIndex
   };
+  static constexpr std::uint32_t Corner::*kFields[] = {&Corner::position, &Corner::texcoord,
+                                                       &Corner::normal};
   struct Face {
     std::size_t end;  // end of its corners; they start at the previous face's end
     std::size_t line;
@@ -101,7 +105,8 @@ class MeshBuilder {
   };
   class WarningCount;
 
-  [[nodiscard]] static std::uint32_t resolve(std::int32_t index, std::size_t count);
+  /// Returns the index from 0 of an element, of `count` so far, for a field of the next corner.
+  std::uint32_t resolve(std::int32_t index, std::size_t count, std::size_t field);
   /// Throws the InputError of a face; fail_strictly() adds that --strict caused it.
   [[noreturn]] void fail(std::size_t line, const std::string& what) const;
   [[noreturn]] void fail_strictly(std::size_t line, const std::string& what) const;
@@ -121,6 +126,11 @@ class MeshBuilder {
   Bounds3 others_;
   bool may_be_empty_ = false, is_smoothing_said_ = false;
   Counts earlier_;
+  /// Whether negative indices are relative to this part, and those that are: 3 times the corner's
+  /// index plus the field's. The corners hold them as std::int32_t.
+  bool is_relative_ = false;
+  std::vector<std::size_t> relative_;
+  std::ptrdiff_t first_position_ = 0;  // the least vertex index of them
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> colors_;  // of the first positions; kNoColor: white
   std::size_t bad_colors_ = 0;     // number of colours that are not finite

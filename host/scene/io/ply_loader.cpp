@@ -8,7 +8,6 @@
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
 #include "host/scene/io/find_file.h"
-#include "host/scene/io/material_library.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/tokens.h"

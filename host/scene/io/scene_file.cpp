@@ -82,7 +82,6 @@ std::vector<InstanceSetting> read_instances(const JsonValue& scene,
     value.require_keys({"model", "places"});
     InstanceSetting& setting = settings.emplace_back();
     setting.model = folder / value.at("model").string("the name of a model");
-    setting.line = value.line();
     for (const JsonValue& place : value.at("places").elements()) {
       const std::vector<JsonValue> numbers = place.elements();
       glm::dmat4& transform = setting.transforms.emplace_back(1.0);
@@ -156,8 +155,7 @@ LightSettings read_lights(const JsonValue& scene, const std::filesystem::path& f
 
 std::vector<OptionSetting> read_options(const JsonValue& render) {
   std::vector<OptionSetting> options;
-  for (const std::string& key : render.keys()) {
-    const JsonValue value = render.at(key);
+  for (const auto& [key, value] : render.members()) {
     options.push_back(
         {key, value.word("a number or a string, as on the command line"), value.line()});
   }
@@ -240,9 +238,8 @@ Scene load_scene(const SceneFile& file, const LoadOptions& options) {
     scene.objects.append(objects, setting.transforms.size());
     for (const glm::dmat4& transform : setting.transforms) {
       if (!instancer.add(transform, static_cast<std::uint32_t>(object))) {
-        throw InputError(
-            file.file.string(), setting.line,
-            "an instance of " + setting.model.string() + " is beyond the range of float");
+        throw InputError(file.file.string() + ": an instance of " + setting.model.string() +
+                         " is beyond the range of float");
       }
       object += objects.size();
     }

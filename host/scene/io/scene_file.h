@@ -41,7 +41,6 @@ struct LightSettings {
 struct InstanceSetting {
   std::filesystem::path model;
   std::vector<glm::dmat4> transforms;  ///< from the model's coordinates to the world's
-  std::size_t line = 0;
 };
 
 /// A default for a command-line option.

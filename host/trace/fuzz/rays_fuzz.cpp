@@ -1,4 +1,4 @@
-// libFuzzer target: arbitrary bytes as a table of rays, CSV or NPY.
+// libFuzzer target: arbitrary bytes as a table of rays.
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -17,7 +17,7 @@ namespace {
 TEST(HitTable, SharesOfCornersAreNeverNegative) {
   const Scene scene = test::scene_of(test::sphere(2));
   const Bvh bvh(scene);
-  const HitTable answers(scene, bvh, {HitColumn::kUv}, TableFormat::kNpy);
+  const HitTable answers(scene, bvh, {HitColumn::kUv}, TableFormat::kBinary);
   test::Random random;
   RayTable block;
   std::vector<RayHit> found;

@@ -1,7 +1,6 @@
 // Tables of rays: what is read, and what is said of those that cannot be.
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -52,26 +51,6 @@ class Table : public testing::Test {
     return "nothing refused";
   }
 
-  static std::string npy(const std::string& type, const std::string& shape,
-                         const std::string& elements, char version = 1) {
-    std::string header =
-        "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }";
-    header += std::string(54, ' ') + "\n";
-    std::string bytes = std::string("\x93NUMPY") + version + '\0';
-    for (int i = 0; i < (version == 1 ? 2 : 4); ++i) {
-      bytes += static_cast<char>(header.size() >> (8 * i));
-    }
-    return bytes + header + elements;
-  }
-  template <class T>
-  static std::string raw(std::initializer_list<T> values) {
-    std::string bytes;
-    for (const T value : values) {
-      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-    }
-    return bytes;
-  }
-
   std::filesystem::path path_;
   std::uint64_t rounded_ = 0;
 };
@@ -112,7 +91,6 @@ TEST_F(Table, OfTextWithOtherSeparators) {
 TEST_F(Table, OfNoRays) {
   EXPECT_EQ(read_all("").rays.size(), 0u);
   EXPECT_EQ(read_all("ox,oy,oz,dx,dy,dz").rays.size(), 0u);
-  EXPECT_EQ(read_all(npy("<f4", "(0, 6)", "")).rays.size(), 0u);
 }
 
 TEST_F(Table, SaysWhichLineIsWrong) {
@@ -129,7 +107,8 @@ TEST_F(Table, SaysWhichLineIsWrong) {
   EXPECT_EQ(refusal(",,,,,\n"), ":1: found '', expected a number");
   EXPECT_EQ(refusal("1 2 3 4 5\n"), ":1: found 5 numbers" + wanted);
   EXPECT_EQ(refusal("1,2,3,4,5,6,\n"), ":1: found '', expected a number");
-  EXPECT_EQ(refusal("1,2,3,4,5,1e999\n"), ":1: found '1e999', expected a number");
+  EXPECT_EQ(refusal("1,2,3,4,5,1e999\n"),
+            ":1: found inf or nan in origin or direction, expected finite numbers");
   EXPECT_EQ(refusal("1,2,nan,4,5,6\n"),
             ":1: found inf or nan in origin or direction, expected finite numbers");
   EXPECT_EQ(refusal("1,2,3,4,5,6,0\n"),
@@ -144,40 +123,6 @@ TEST(RayTable, CountsOriginsThatRecentringRounds) {
   RayTable table;
   for (const double x : {1.0, 0x1p60, 0.0}) table.add({x, 0, 0}, {1, 0, 0}, 1.0, {0x1p60, 0, 0});
   EXPECT_EQ(table.rounded, 1u);  // 1 - 2^60
-}
-
-TEST_F(Table, OfNumbersOfEitherWidth) {
-  const RayTable narrow =
-      read_all(npy("<f4", "(2, 6)", raw<float>({1, 2, 3, 0, 0, 2, 4, 5, 6, 0, 1, 0})));
-  ASSERT_EQ(narrow.rays.size(), 2u);
-  EXPECT_EQ(narrow.rays[1].origin, glm::vec3(4.0f, 5.0f, 6.0f));
-  EXPECT_EQ(narrow.exponents[0], -1);
-  EXPECT_EQ(rounded_, 0u);
-  for (const char version : {1, 2, 3}) {
-    const RayTable wide =
-        read_all(npy("<f8", "(1, 7)", raw<double>({0.1, 2, 3, 0, 0, 1, 5}), version));
-    ASSERT_EQ(wide.rays.size(), 1u);
-    EXPECT_EQ(wide.rays[0].origin.x, 0.1f);
-    EXPECT_EQ(wide.limits[0], 5.0f);
-    EXPECT_EQ(rounded_, 1u);
-  }
-}
-
-TEST_F(Table, SaysWhatIsWrongWithAnArray) {
-  const std::string row = raw<float>({1, 2, 3, 4, 5, 6});
-  EXPECT_EQ(refusal(npy("<f4", "(2, 6)", row)), ": found the end in row 1, expected 2 rows");
-  EXPECT_EQ(refusal(npy("<f4", "(1, 6)", row + "x")),
-            ": found more bytes after its 1 rows, expected the end");
-  EXPECT_EQ(refusal(npy("<i8", "(1, 6)", row)),
-            ": found elements of type '<i8', expected '<f4' or '<f8' (float32 or float64)");
-  EXPECT_EQ(refusal(npy("<f4", "(6,)", row)).substr(0, 33), ": found an array of shape '(6,)',");
-  EXPECT_EQ(refusal(npy("<f4", "(1, 2, 3)", row)).substr(0, 38),
-            ": found an array of shape '(1, 2, 3)',");
-  EXPECT_EQ(refusal("\x93NUMPY\x01"), ": found a damaged header, expected one of a NumPy array");
-  EXPECT_EQ(refusal(npy("<f4", "(1, 6)", row).substr(0, 40)),
-            ": found a damaged header, expected one of a NumPy array");
-  EXPECT_EQ(refusal(npy("<f4", "(1, 6)", raw<float>({1, 2, kInfinity, 4, 5, 6}))),
-            ": row 0: found inf or nan in origin or direction, expected finite numbers");
 }
 
 TEST_F(Table, IsSeenFromTheScenesOrigin) {

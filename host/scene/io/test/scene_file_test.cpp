@@ -52,11 +52,11 @@ TEST_F(ReadSceneFile, EveryKey) {
   EXPECT_EQ(scene.lights.areas[0].radiance, glm::vec3(5)) << "one number is grey";
   EXPECT_EQ(scene.lights.background, glm::vec3(0.1f, 0.2f, 0.3f));
   ASSERT_EQ(scene.options.size(), 4u);
-  EXPECT_EQ(scene.options[0].name, "size");
-  EXPECT_EQ(scene.options[0].value, "320x200");
-  EXPECT_EQ(scene.options[1].value, "16");
-  EXPECT_EQ(scene.options[2].value, "-0.5");
-  EXPECT_EQ(scene.options[3].line, 9u);
+  EXPECT_EQ(scene.options[0].name, "exposure") << "sorted by name";
+  EXPECT_EQ(scene.options[0].value, "-0.5");
+  EXPECT_EQ(scene.options[1].line, 9u);
+  EXPECT_EQ(scene.options[2].value, "320x200");
+  EXPECT_EQ(scene.options[3].value, "16");
 }
 
 TEST_F(ReadSceneFile, NothingIsNeeded) {
@@ -86,7 +86,7 @@ TEST_F(ReadSceneFile, WhatIsNoJson) {
   EXPECT_TRUE(error("v 0 0 0\n").starts_with("s.json:1: not JSON: "));
   EXPECT_TRUE(error("{} {}").starts_with("s.json:1: not JSON: "));
   EXPECT_TRUE(error("{\"obj\": \"\xFF\"}").starts_with("s.json:1: not JSON: "));
-  EXPECT_TRUE(error(std::string(100, '[')).starts_with("s.json:1: more than 64 levels"));
+  EXPECT_TRUE(error(std::string(100'000, '[')).starts_with("s.json:1: not JSON: "));
   EXPECT_EQ(error("{\n\"obj\": \"a\",\n\"obj\": \"b\"}"), "s.json:3: key 'obj' is there twice");
   // In no time that grows with the square of their number.
   std::string many;
@@ -140,7 +140,7 @@ TEST_F(ReadSceneFile, ValuesOutOfRange) {
   EXPECT_EQ(error(R"({"background": -1})"),
             "s.json:1: background: -1, expected no negative number");
   EXPECT_EQ(error(R"({"background": [0, 1e39, 0]})"),
-            "s.json:1: background[1]: 1e39, expected a number within the range of float");
+            "s.json:1: background[1]: 1e+39, expected a number within the range of float");
   EXPECT_EQ(error(R"({"area_lights": [{"corner": [0, 0, 0], "edges": [[1, 0, 0], [2, 0, 0]],
                       "radiance": 1}]})"),
             "s.json:1: area_lights[0].edges: an array of 2, expected two that are not parallel");
