@@ -14,6 +14,7 @@ import pathlib
 import re
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -459,10 +460,11 @@ class Reports(unittest.TestCase):
     def test_tables_of_rays(self):  # byte order marks, line ends, comments, quoted rows
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "a.obj"
+            program = os.environ.get("RAYGATE_TRACE") or pathlib.Path(sys.executable).with_name("raygate-trace")
             path.write_text(SQUARE + "f 1 2 3 4\n")
             for table in ("\ufeffox,oy,oz,dx,dy,dz\n.5,-.5,5,0,0,-1\n", "# rays\r\n.5,-.5,5,0,0,-1\r\n",
                 "\ufeff.5,-.5,5,0,0,-1\n", '".5","-.5","5","0","0","-1"\n'):
-                run = subprocess.run([os.environ["RAYGATE_TRACE"], path, "-", "--columns", "triangle,t", "-q"],
+                run = subprocess.run([program, path, "-", "--columns", "triangle,t", "-q"],
                     input=table.encode(), capture_output=True, check=False)
                 self.assertEqual((run.returncode, run.stdout, run.stderr), (0, b"triangle,t\n0,5\n", b""), table)
 
