@@ -1,9 +1,6 @@
 #include "host/bvh/bvh.h"
 
-#include <algorithm>
 #include <limits>
-#include <span>
-#include <utility>
 
 #include "host/base/threads.h"
 #include "host/bvh/sah_builder.h"
@@ -186,7 +183,7 @@ class BvhWriter {
   }
 
   /// Stores a leaf or an inner node, whose index the caller sets, in a node.
-  void put_child(Bvh::Node& node, int i, Ref ref) {
+  RAYGATE_INLINE void put_child(Bvh::Node& node, int i, Ref ref) {
     Box box;
     tree_.get_box(ref, box);
     for (int k = 0; k < 3; ++k) {

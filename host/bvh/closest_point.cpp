@@ -5,8 +5,6 @@
 #include <limits>
 #include <queue>
 
-#include "host/exact/exact.h"
-
 namespace raygate {
 namespace {
 

@@ -1,11 +1,10 @@
 #include "host/bvh/packet_traversal.h"
 
-#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <limits>
 
-#include "host/bvh/box.h"
+#include "host/bvh/sah_builder.h"
 #include "host/bvh/traversal.h"
 
 // Why no true hit is culled

@@ -1,11 +1,7 @@
 #include "host/bvh/sah_builder.h"
 
-#include <algorithm>
 #include <bit>
-#include <limits>
 #include <memory>
-#include <span>
-#include <vector>
 
 #include "host/base/threads.h"
 
@@ -22,10 +18,10 @@ constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// A range of primitives that becomes a node, and its parent.
 struct Run {
-  std::uint32_t begin = 0, end = 0;
-  int depth = 0;
-  std::uint32_t parent = 0;
-  int side = 0;
+  std::uint32_t begin, end;
+  int depth;
+  std::uint32_t parent;
+  int side;
   [[nodiscard]] std::uint32_t size() const { return end - begin; }
 };
 

@@ -1,9 +1,6 @@
 #include "host/intersect/check_intersector.h"
 
 #include <array>
-#include <bit>
-#include <cstdio>
-#include <string>
 #include <utility>
 
 namespace raygate {

@@ -1,10 +1,7 @@
 #include "host/intersect/polygon_record.h"
 
-#include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <utility>

@@ -34,10 +34,6 @@ struct alignas(16) LightSample {
   std::uint32_t is_asked : 1 = 0, is_dark : 1 = 0;  ///< dark: the contribution is 0
   std::uint32_t is_transmitted : 1 = 0;             ///< through rough glass
   std::uint32_t is_point_light : 1 = 0, is_to_camera : 1 = 0;
-
-  [[nodiscard]] SpawnSide side() const {
-    return is_transmitted != 0 ? SpawnSide::kTransmitted : SpawnSide::kIncident;
-  }
 };
 
 /// A ray spawned at a hit: reflected, refracted or scattered.

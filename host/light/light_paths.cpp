@@ -178,42 +178,36 @@ float LightPaths::environment_density(const glm::vec3& point, const glm::vec3& t
                       discs_);
 }
 
+/// Chooses a sphere for u in [0, 1) with a probability proportional to its size.
+template <class Size>
+const LightPaths::Ball& LightPaths::choose_ball(double u, const Size& size) const {
+  double left = 0.0;
+  for (const Ball& ball : balls_) left += size(ball);
+  left *= u;
+  for (const Ball& ball : balls_) {
+    if (left < size(ball)) return ball;
+    left -= size(ball);
+  }
+  return balls_.back();
+}
+
 /// Samples a direction, uniformly in the solid angles of all spheres.
 glm::dvec3 LightPaths::direction_from(const glm::dvec3& point, const SquarePoint<float>& choice,
                                       const SquarePoint<float>& u) const {
-  double left = solid_angle(point) * double{choice.x};
-  const Ball* chosen = &balls_.back();
-  for (const Ball& ball : balls_) {
-    const double own = ball.solid_angle(point);
-    if (left < own) {
-      chosen = &ball;
-      break;
-    }
-    left -= own;
-  }
-  const double height = chosen->solid_angle(point) / (2.0 * kPi);  // of the cap of the unit sphere
+  const Ball& ball =
+      choose_ball(choice.x, [&](const Ball& each) { return each.solid_angle(point); });
+  const double height = ball.solid_angle(point) / (2.0 * kPi);  // of the cap of the unit sphere
   const double cosine = 1.0 - double{u.x} * height;
-  const glm::dvec3 axis =
-      height < 2.0 ? glm::normalize(chosen->middle - point) : glm::dvec3(0, 0, 1);
+  const glm::dvec3 axis = height < 2.0 ? glm::normalize(ball.middle - point) : glm::dvec3(0, 0, 1);
   return around(axis, cosine, std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), u.y);
 }
 
 /// Samples a point, uniformly on the discs of all spheres.
 glm::dvec3 LightPaths::point_across(const glm::dvec3& towards, const SquarePoint<float>& choice,
                                     const SquarePoint<float>& u) const {
-  const auto area = [](const Ball& ball) { return ball.radius * ball.radius; };
-  double left = 0.0;
-  for (const Ball& ball : balls_) left += area(ball);
-  left *= double{choice.x};
-  const Ball* chosen = &balls_.back();
-  for (const Ball& ball : balls_) {
-    if (left < area(ball)) {
-      chosen = &ball;
-      break;
-    }
-    left -= area(ball);
-  }
-  return chosen->middle + around(towards, 0.0, chosen->radius * std::sqrt(double{u.x}), u.y);
+  const Ball& ball =
+      choose_ball(choice.x, [](const Ball& each) { return each.radius * each.radius; });
+  return ball.middle + around(towards, 0.0, ball.radius * std::sqrt(double{u.x}), u.y);
 }
 
 std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::uint64_t seed) const {

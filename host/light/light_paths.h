@@ -112,6 +112,8 @@ class LightPaths {
   [[nodiscard]] double nearest_middle(const glm::dvec3& point) const;
   [[nodiscard]] double meetings(const glm::dvec3& point, const glm::dvec3& direction,
                                 bool both_ways) const;
+  template <class Size>
+  [[nodiscard]] const Ball& choose_ball(double u, const Size& size) const;
   [[nodiscard]] glm::dvec3 direction_from(const glm::dvec3& point, const SquarePoint<float>& choice,
                                           const SquarePoint<float>& u) const;
   [[nodiscard]] glm::dvec3 point_across(const glm::dvec3& towards, const SquarePoint<float>& choice,

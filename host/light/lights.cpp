@@ -1,15 +1,11 @@
 #include "host/light/lights.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <glm/glm.hpp>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 

@@ -124,9 +124,6 @@ class Lights {
 
   [[nodiscard]] std::span<const PointLight> points() const { return own_.points; }
   [[nodiscard]] std::span<const AreaLight> areas() const { return areas_; }
-  [[nodiscard]] std::span<const DirectionalLight> directions() const {
-    return scene_.directional_lights;
-  }
   /// Returns null if there is only a background.
   [[nodiscard]] const Environment* environment() const {
     return environment_ ? &*environment_ : nullptr;

@@ -1,10 +1,7 @@
 #include "host/light/neighbor_clearance.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <utility>
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <limits>
 #include <span>
 #include <type_traits>

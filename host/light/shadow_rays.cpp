@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "host/light/bsdf.h"
-#include "host/light/surface.h"
 #include "host/scene/material_lookup.h"
 
 namespace raygate {
@@ -50,6 +48,57 @@ struct Aim {
     whole_way = static_cast<float>(std::bit_cast<double>(exponent));
   }
 };
+
+// Why a sure occluder blocks all light
+//
+// A shadow ray that meets holes of masks or transmitting surfaces continues behind each as a new
+// ray, from an origin O' moved by rounding and RaySpawner. Let S be the largest coordinate of the
+// first origin O and of the hit X. ShadowRays lets no O' be farther than 2^-16 S from the line of
+// the first ray (strays_from); directions have a relative rounding error of 2^-24, which moves them
+// by less than 2^-22 S at X. So, seen along the first ray, all rays pass within kRoom S = 2^-15 S
+// of X. If no edge of X's triangle is that near, each ray that gets so far hits the triangle,
+// because RaySpawner puts no origin on its wrong side. The triangle is opaque within this distance,
+// so the last ray ends there if none has ended before.
+
+constexpr double kMostStray = 0x1p-16, kRoom = 0x1p-15;
+constexpr double kBeforeLimit = 1.0 - 0x1p-10;
+
+/// Returns whether a hit blocks all light, by the argument above. `place` is a sure hit with t
+/// below t_max (+infinity: no limit) on a triangle that is opaque except for its mask.
+bool is_sure_occluder(const Scene& scene, const Bvh& bvh, const SurfaceHit& place, float t_max) {
+  const Corners corners = bvh.corners_of(place.primitive);
+  const glm::dvec3 origin(place.ray->origin), direction(place.ray->direction);
+  const double length = glm::length(direction);
+  const glm::dvec3 along = direction / length;
+  glm::dvec3 from_origin[3], area, edge;  // area[k]: projected along the ray, opposite corner k
+  for (int k = 0; k < 3; ++k) from_origin[k] = glm::dvec3(corners[k]) - origin;
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3 side = from_origin[(k + 2) % 3] - from_origin[(k + 1) % 3];
+    area[k] = glm::dot(along, glm::cross(from_origin[(k + 1) % 3], side));
+    edge[k] = glm::length(glm::cross(along, side));
+  }
+  const double whole = area[0] + area[1] + area[2];
+  const glm::dvec3 weights = area / whole;
+  glm::dvec3 depth;
+  for (int k = 0; k < 3; ++k) depth[k] = glm::dot(along, from_origin[k]);
+  const double way = glm::dot(weights, depth);
+  const double size = std::max(largest(origin), largest(origin + way * along));
+  // The largest change of the weights within kRoom.
+  const glm::dvec3 change = edge * (kRoom * size / std::abs(whole));
+  if (!(weights.x > change.x && weights.y > change.y && weights.z > change.z)) return false;
+  const double slope =
+      change.y * std::abs(depth.y - depth.x) + change.z * std::abs(depth.z - depth.x);
+  if (!(way + slope < kBeforeLimit * (static_cast<double>(t_max) * length))) return false;
+  return is_nowhere_masked(scene, *place.face, weights, change);
+}
+
+/// Returns whether a point is too far from the line through `from` along `way` for that argument.
+bool strays_from(const glm::vec3& from, const glm::dvec3& way, const glm::vec3& point) {
+  const double size = std::max(largest(from), largest(point));
+  const double distance =
+      glm::length(glm::cross(glm::dvec3(point) - glm::dvec3(from), way)) / glm::length(way);
+  return !(distance <= kMostStray * size);
+}
 
 }  // namespace
 
@@ -225,47 +274,6 @@ glm::vec3 ShadowRays::transmittance(std::size_t number) const {
   if (material.has_mask && is_masked_out(scene_, bvh_, place)) return glm::vec3(1.0f);
   if ((material.kind & kTransmits) == 0) return glm::vec3(0.0f);
   return shadow_transmittance(scene_, bvh_, place, material, through_refraction_);
-}
-
-namespace {
-
-constexpr double kMostStray = 0x1p-16, kRoom = 0x1p-15;
-constexpr double kBeforeLimit = 1.0 - 0x1p-10;
-
-}  // namespace
-
-bool is_sure_occluder(const Scene& scene, const Bvh& bvh, const SurfaceHit& place, float t_max) {
-  const Corners corners = bvh.corners_of(place.primitive);
-  const glm::dvec3 origin(place.ray->origin), direction(place.ray->direction);
-  const double length = glm::length(direction);
-  const glm::dvec3 along = direction / length;
-  glm::dvec3 from_origin[3], area, edge;  // area[k]: projected along the ray, opposite corner k
-  for (int k = 0; k < 3; ++k) from_origin[k] = glm::dvec3(corners[k]) - origin;
-  for (int k = 0; k < 3; ++k) {
-    const glm::dvec3 side = from_origin[(k + 2) % 3] - from_origin[(k + 1) % 3];
-    area[k] = glm::dot(along, glm::cross(from_origin[(k + 1) % 3], side));
-    edge[k] = glm::length(glm::cross(along, side));
-  }
-  const double whole = area[0] + area[1] + area[2];
-  const glm::dvec3 weights = area / whole;
-  glm::dvec3 depth;
-  for (int k = 0; k < 3; ++k) depth[k] = glm::dot(along, from_origin[k]);
-  const double way = glm::dot(weights, depth);
-  const double size = std::max(largest(origin), largest(origin + way * along));
-  // The largest change of the weights within kRoom.
-  const glm::dvec3 change = edge * (kRoom * size / std::abs(whole));
-  if (!(weights.x > change.x && weights.y > change.y && weights.z > change.z)) return false;
-  const double slope =
-      change.y * std::abs(depth.y - depth.x) + change.z * std::abs(depth.z - depth.x);
-  if (!(way + slope < kBeforeLimit * (static_cast<double>(t_max) * length))) return false;
-  return is_nowhere_masked(scene, *place.face, weights, change);
-}
-
-bool strays_from(const glm::vec3& from, const glm::dvec3& way, const glm::vec3& point) {
-  const double size = std::max(largest(from), largest(point));
-  const double distance =
-      glm::length(glm::cross(glm::dvec3(point) - glm::dvec3(from), way)) / glm::length(way);
-  return !(distance <= kMostStray * size);
 }
 
 }  // namespace raygate

@@ -98,24 +98,4 @@ class ShadowRays {
   const TracedFunction* traced_ = nullptr;
 };
 
-// Why a sure occluder blocks all light
-//
-// A shadow ray that meets holes of masks or transmitting surfaces continues behind each as a new
-// ray, from an origin O' moved by rounding and RaySpawner. Let S be the largest coordinate of the
-// first origin O and of the hit X. ShadowRays lets no O' be farther than 2^-16 S from the line of
-// the first ray (strays_from); directions have a relative rounding error of 2^-24, which moves them
-// by less than 2^-22 S at X. So, seen along the first ray, all rays pass within kRoom S = 2^-15 S
-// of X. If no edge of X's triangle is that near, each ray that gets so far hits the triangle,
-// because RaySpawner puts no origin on its wrong side. The triangle is opaque within this distance,
-// so the last ray ends there if none has ended before.
-
-/// Returns whether a hit blocks all light, by the argument above. `place` is a sure hit with t
-/// below t_max (+infinity: no limit) on a triangle that is opaque except for its mask.
-[[nodiscard]] bool is_sure_occluder(const Scene& scene, const Bvh& bvh, const SurfaceHit& place,
-                                    float t_max);
-
-/// Returns whether a point is too far from the line through `from` along `way` for that argument.
-[[nodiscard]] bool strays_from(const glm::vec3& from, const glm::dvec3& way,
-                               const glm::vec3& point);
-
 }  // namespace raygate

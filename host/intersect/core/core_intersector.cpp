@@ -1,6 +1,5 @@
 #include "host/intersect/core/core_intersector.h"
 
-#include <algorithm>
 #include <cassert>
 #include <stdexcept>
 #include <string>

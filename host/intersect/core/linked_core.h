@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <glm/glm.hpp>
 #include <span>
 #include <string_view>

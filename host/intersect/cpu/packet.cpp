@@ -1,10 +1,7 @@
 #include "host/intersect/cpu/packet.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
-
-#include "host/exact/exact.h"
 
 namespace raygate {
 namespace {

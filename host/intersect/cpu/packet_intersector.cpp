@@ -434,7 +434,7 @@ class PacketIntersector {
   IntersectCounters& counters_;
   const glm::vec3 origin_;
   const std::span<const Ray> rays_;
-  const RayQuery& query_;
+  const RayQuery query_;
   const std::span<NearestHit> hits_;
 };
 

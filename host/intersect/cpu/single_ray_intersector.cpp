@@ -280,7 +280,7 @@ class SingleRayIntersector {
   const Bvh& bvh_;
   IntersectCounters& counters_;
   const std::span<const Ray> rays_;
-  const RayQuery& query_;
+  const RayQuery query_;
   const std::span<NearestHit> hits_;
   std::size_t next_ = 0;                                    // the next ray to start
   std::array<std::uint32_t, kAtOnce + kPlanes> pointless_;  // hits whose P is not computed yet

@@ -1,7 +1,6 @@
 // Interfaces of the pipelined hit-test unit (bursts in, nearest hits out) and of the paper's unit.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>

@@ -8,8 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "host/intersect/unit/reference_burst_unit.h"
-
 namespace raygate {
 namespace {
 

@@ -80,15 +80,6 @@ TEST(DefaultLights, LeaveWhiteBelowOne) {
   }
 }
 
-TEST(DefaultLights, AreNoneWhereItIsNotDark) {
-  const Scene lit = square(emitter(glm::vec3(1.0f)));
-  EXPECT_FALSE(default_lights(lit, camera_from({0, 0, 5})));
-  EXPECT_FALSE(preview_lights(lit, camera_from({0, 0, 5})));
-  Scene outdoors = square(matte(glm::vec3(0.5f)));
-  outdoors.background = kBlue;
-  EXPECT_FALSE(default_lights(outdoors, camera_from({0, 0, 5})));
-}
-
 TEST(PreviewLights, AreTwoLightsAndTheBackground) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   scene.background = kBlue;
@@ -130,27 +121,31 @@ TEST(DefaultLights, CastSoftShadows) {
   }
 }
 
-TEST(PreviewLights, TakeALabelThatGlowsForNoLight) {
+// Who gives a camera gives the light of what glows; a picture that glows faintly is no light, one
+// that is bright is.
+TEST(DefaultLights, AreThoseOfScenesThatNothingLights) {
+  const auto expect = [](const Scene& scene, bool by_default, bool in_preview, const char* what) {
+    EXPECT_EQ(default_lights(scene, camera_from({0, 0, 5})).has_value(), by_default) << what;
+    const auto lights = preview_lights(scene, camera_from({0, 0, 5}));
+    EXPECT_EQ(lights.has_value(), in_preview) << what;
+    EXPECT_TRUE(!lights || lights->points.size() == 2) << what;
+  };
+  expect(square(emitter(glm::vec3(1.0f))), false, false, "a light");
   Scene scene = square(matte(glm::vec3(0.5f)));
+  expect(scene, true, true, "dark");
+  scene.background = kBlue;
+  expect(scene, false, true, "outdoors");
+  scene = square(matte(glm::vec3(0.5f)));
   add(scene, rectangle({0, 0, 0.1f}, {0.1f, 0, 0}, {0, 0.1f, 0}), emitter(glm::vec3(1.0f)));
-  EXPECT_FALSE(default_lights(scene, camera_from({0, 0, 5})))
-      << "who gives a camera gives the light";
-  const auto lights = preview_lights(scene, camera_from({0, 0, 5}));
-  EXPECT_TRUE(lights && lights->points.size() == 2);
-}
-
-// A picture that glows faintly is no light; one that is bright is.
-TEST(DefaultLights, StayWherePicturesGlow) {
-  Scene scene = square(matte(glm::vec3(0.5f)));
+  expect(scene, false, true, "a label that glows");
+  scene = square(matte(glm::vec3(0.5f)));
   Material screen = emitter(glm::vec3(1.0f));
   screen.emission_map.texture = 0;
   scene.textures.emplace_back(1, 1, std::vector<Texture::Texel>{{10, 10, 10}});
   add(scene, rectangle({-1, -1, 0.1f}, {2, 0, 0}, {0, 2, 0}), screen);
-  EXPECT_TRUE(default_lights(scene, camera_from({0, 0, 5})));
-  EXPECT_TRUE(preview_lights(scene, camera_from({0, 0, 5})));
+  expect(scene, true, true, "a faint picture");
   scene.textures[0] = Texture(1, 1, {{255, 255, 255}});
-  EXPECT_FALSE(default_lights(scene, camera_from({0, 0, 5})));
-  EXPECT_FALSE(preview_lights(scene, camera_from({0, 0, 5})));
+  expect(scene, false, false, "a bright picture");
 }
 
 TEST(PreviewLights, StandAtACameraWithinTheScene) {

@@ -4,7 +4,6 @@
 #include <cstring>
 #include <limits>
 #include <random>
-#include <vector>
 
 #include "host/base/elementary.h"
 #include "host/base/triple.h"

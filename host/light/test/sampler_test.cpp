@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <set>
-#include <vector>
 
 #include "host/film/reconstruction_filter.h"
 

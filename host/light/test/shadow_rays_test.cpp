@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <optional>
 
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/light/test/light_scenes.h"

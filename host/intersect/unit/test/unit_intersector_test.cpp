@@ -5,14 +5,14 @@
 
 #include <memory>
 
-#include "host/exact/test/meshes.h"
-#include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/unit_hit_testers.h"
+#include "host/intersect/core/test/core_cases.h"
+#include "host/intersect/unit/test/model_intersector.h"
 
 namespace raygate {
 namespace {
 
 using test::Random;
+using test::some_rays;
 
 std::uint32_t exact_nearest(const Bvh& bvh, const Ray& ray, float limit,
                             std::uint32_t ignored = NearestHit::kNone) {
@@ -28,40 +28,16 @@ std::uint32_t exact_nearest(const Bvh& bvh, const Ray& ray, float limit,
   return best;
 }
 
-std::vector<Corners> sphere_in_box() {
-  std::vector<Corners> mesh = test::sphere(2);
-  const auto walls = test::box(glm::vec3(-3), glm::vec3(3));
-  mesh.insert(mesh.end(), walls.begin(), walls.end());
-  return mesh;
-}
-
-/// Some from one origin, some from origins of their own; some aimed at vertices.
-std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& random, int count) {
-  std::vector<Ray> rays;
-  const glm::vec3 shared = random.point(2.5f);
-  while (static_cast<int>(rays.size()) < count) {
-    const glm::vec3 origin = random.below(3) == 0 ? shared : random.point(2.5f);
-    const glm::dvec3 aim =
-        random.below(2) == 0
-            ? glm::dvec3(mesh[random.below(static_cast<int>(mesh.size()))][random.below(3)])
-            : glm::dvec3(random.point(3.0f));
-    if (aim != glm::dvec3(origin))
-      rays.push_back({origin, scaled_direction(aim - glm::dvec3(origin))});
-  }
-  return rays;
-}
-
 class UnitIntersectorTest : public testing::Test {
  protected:
-  std::vector<Corners> mesh_ = sphere_in_box();
+  std::vector<Corners> mesh_ = test::bodies();
   Bvh bvh_{test::scene_of(mesh_)};
-  UnitIntersector intersector_{
-      bvh_, std::make_shared<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>())};
+  std::unique_ptr<Intersector> intersector_ = test::model_intersector(bvh_);
   Random random_;
 
   std::vector<NearestHit> find(const std::vector<Ray>& rays, const RayQuery& query = {}) {
     std::vector<NearestHit> hits(rays.size());
-    intersector_.intersect(rays, query, hits);
+    intersector_->intersect(rays, query, hits);
     return hits;
   }
 };
@@ -82,23 +58,23 @@ TEST_F(UnitIntersectorTest, OwnOriginsFindTheExactNearest) {
   }
   EXPECT_GT(hits, 1000);
   EXPECT_GT(misses, 100);
-  EXPECT_GT(intersector_.counters().exact_inside, 0u);
-  EXPECT_GT(intersector_.counters().own_records, 0u);
+  EXPECT_GT(intersector_->counters().exact_inside, 0u);
+  EXPECT_GT(intersector_->counters().own_records, 0u);
 }
 
 TEST_F(UnitIntersectorTest, CachedRecordsChangeNothing) {
   std::vector<Ray> rays = some_rays(mesh_, random_, 2000);
   for (Ray& ray : rays) ray.origin = rays[0].origin;
   const auto cached = find(rays, {.common_origin = true});
-  EXPECT_EQ(intersector_.counters().own_records, 0u);
-  EXPECT_GT(intersector_.counters().common_records, 0u);
-  EXPECT_LE(intersector_.counters().common_records, mesh_.size());
+  EXPECT_EQ(intersector_->counters().own_records, 0u);
+  EXPECT_GT(intersector_->counters().common_records, 0u);
+  EXPECT_LE(intersector_->counters().common_records, mesh_.size());
   const auto own = find(rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(own[i].primitive, cached[i].primitive);
     ASSERT_EQ(own[i].point, cached[i].point);
   }
-  EXPECT_GT(intersector_.counters().own_records, mesh_.size())
+  EXPECT_GT(intersector_->counters().own_records, mesh_.size())
       << "made once for each packet and leaf";
 }
 
@@ -111,7 +87,7 @@ TEST_F(UnitIntersectorTest, WithoutCullingEveryPolygonIsTestedForTheSame) {
     EXPECT_LT(ray.tests, mesh_.size() / 2);
     tests += ray.tests;
   }
-  EXPECT_EQ(tests, intersector_.counters().hit.tests);
+  EXPECT_EQ(tests, intersector_->counters().hit.tests);
   const auto all = find(rays, {.culling = false, .work = work});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(all[i].primitive, culled[i].primitive);
@@ -143,7 +119,7 @@ TEST_F(UnitIntersectorTest, RaysEndAtAnyHitThatWillDo) {
   }
   EXPECT_GT(ended, 100);
   EXPECT_GT(farther, 100);
-  EXPECT_EQ(intersector_.counters().ended_early, static_cast<std::uint64_t>(ended));
+  EXPECT_EQ(intersector_->counters().ended_early, static_cast<std::uint64_t>(ended));
 }
 
 // Also where an ignored hit hides a farther one of its leaf from the reports.
@@ -172,27 +148,15 @@ TEST(UnitIntersector, IgnoredHitsHideNothing) {
     sheets.push_back({glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)});
   }
   const Bvh bvh(test::scene_of(sheets));
-  UnitIntersector intersector(
-      bvh, std::make_shared<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
+  const auto intersector = test::model_intersector(bvh);
   const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0, 0, 1)}};
   std::vector<NearestHit> hits(1);
-  intersector.intersect(rays, {}, hits);
+  intersector->intersect(rays, {}, hits);
   const std::uint32_t first = hits[0].primitive;
   ASSERT_EQ(bvh.triangle_of(first), 0u);
-  intersector.intersect(rays, {.skip_ids = std::span(&first, 1)}, hits);
+  intersector->intersect(rays, {.skip_ids = std::span(&first, 1)}, hits);
   ASSERT_NE(hits[0].primitive, NearestHit::kNone);
   EXPECT_EQ(bvh.triangle_of(hits[0].primitive), 1u);
-}
-
-TEST_F(UnitIntersectorTest, DirectionsThatLeadNowhereHitNothing) {
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0)},
-                                 {glm::vec3(0), glm::vec3(nan, 1, 0)},
-                                 {glm::vec3(0), glm::vec3(0, 0, 1)}};
-  const auto hits = find(rays);
-  EXPECT_EQ(hits[0].primitive, NearestHit::kNone);
-  EXPECT_EQ(hits[1].primitive, NearestHit::kNone);
-  EXPECT_NE(hits[2].primitive, NearestHit::kNone);
 }
 
 }  // namespace

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "host/intersect/core/reference_exact_unit.h"
 #include "host/lab/stress/oracle.h"
 #include "host/lab/stress/suites.h"
+#include "sim/test/exact/reference_exact_unit.h"
 
 namespace raygate::lab {
 

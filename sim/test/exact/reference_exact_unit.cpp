@@ -1,10 +1,9 @@
-#include "host/intersect/core/reference_exact_unit.h"
+#include "sim/test/exact/reference_exact_unit.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
 #include <initializer_list>
 #include <vector>
 
