@@ -1,10 +1,8 @@
-"""`python3 -m sim.mutate BUILD`: how many single faults of the hardware the vectors of `make test` catch.
+"""`python3 -m sim.mutate BUILD`: how many single faults of the hardware its tests catch.
 
-For each core and the pipeline around them: a netlist with faults (netlist.py) runs the vectors with one
-fault after the other. The ray core and its units run their own tests, built with the netlist. A fault that
+For each unit: a netlist with faults (netlist.py) runs the unit's own tests with one fault after the other. A fault that
 survives is held against the sound netlist by ABC's equivalence check: one that changes no output for any
-input is no fault. What is left is listed, with its lines in hw/. `--one-in N`: only every N-th vector, but
-every test, which `make test` can spare the time for. `--at-most PERCENT`: survivors are held against the sound
+input is no fault. What is left is listed, with its lines in hw/. `--at-most PERCENT`: survivors are held against the sound
 netlist only until no more than so many are left, and the check is that no more are."""
 
 import argparse
@@ -36,7 +34,7 @@ class Outcome:
 
     @property
     def caught(self) -> int:
-        """By the vectors."""
+        """By the tests."""
         return self.faults - self.equivalent - len(self.survivors)
 
 
@@ -93,15 +91,11 @@ def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
     return [fault for fault in range(1, faults + 1) if test_passes(program, fault, limit)]
 
 
-def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, one_in: int, at_most: float) -> Outcome:
+def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, at_most: float) -> Outcome:
     """Runs a core's faults. Those that survive are proven until no more than `at_most` percent are left, or none."""
     netlist = netlists / core
     faults = (netlists / f"{core}.list").read_text().splitlines()
-    program, test = programs / "core_mutants", programs / f"{core}_mutants"
-    if test.exists():
-        survived, one_in = test_survivors(test, len(faults)), 1
-    else:
-        survived = [int(line) for line in run([program, core, f"{netlist}.list", one_in]).split()]
+    survived = test_survivors(programs / f"{core}_mutants", len(faults))
     outcome = Outcome(core, len(faults))
     for number in list(survived):
         if 100 * len(survived) <= at_most * len(faults):
@@ -109,9 +103,6 @@ def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, one_in: int
         if equivalent(netlist, faults[number - 1]):
             survived.remove(number)
             outcome.equivalent += 1
-    if one_in > 1 and survived and not at_most:  # the others see every vector
-        survived = [int(line) for line in run([program, core, "-", 1],
-                                              input="\n".join(map(str, survived))).split()]
     outcome.survivors = [faults[number - 1] for number in survived]
     return outcome
 
@@ -121,7 +112,6 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="sim.mutate", description=__doc__)
     parser.add_argument("build", type=pathlib.Path, help="CMake's build folder")
     parser.add_argument("cores", nargs="*", help="all if none")
-    parser.add_argument("--one-in", type=int, default=0, metavar="N", help="see above")
     parser.add_argument("--at-most", type=float, default=0.0, metavar="PERCENT", help="see above")
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
     given = parser.parse_args()
@@ -137,7 +127,7 @@ def main() -> int:
     try:
         with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
             outcomes = list(pool.map(
-                lambda core: judge(core, given.build / "sim", netlists, given.one_in or 100, given.at_most), cores))
+                lambda core: judge(core, given.build / "sim", netlists, given.at_most), cores))
     except (subprocess.CalledProcessError, FileNotFoundError, ValueError) as error:
         print(f"sim.mutate: {error}", file=sys.stderr)
         return 1

@@ -30,7 +30,7 @@ def source(fault: str) -> str:
 
 
 def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: int,
-          without: list[str], around: list[str]) -> int:
+          around: list[str]) -> int:
     """Writes OUT.v, OUT.list and OUT.il; returns the number of faults. Raises ToolFailed and MissingTool."""
     files = dict.fromkeys(file for core in cores.names() for file in cores.files(core))
     kept = " ".join(f"--blackboxed-module {module}" for module in around)
@@ -38,8 +38,7 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     derived = [f"setparam {' '.join(f'-unset {name}' for name in names)} t:{file.stem}" for file in files if file.stem in around
                if (names := re.findall(r"^ +localparam [^=;]*?(\w+) *=", file.read_text(), re.M))]
     faults = out.with_suffix(".list")
-    # Of the modes that Yosys chooses from three in five are of use here; outside of the cores, one fault in ten.
-    chosen_from = (20 if without else 2) * count + 20
+    chosen_from = 2 * count + 20  # of the modes that Yosys chooses from three in five are of use here
     # Shifts as such: as parts of a word they begin outside of it, where Verilator reads other bits.
     yosys.run(f"{yosys.read(files, top, (text.split('=', 1) for text in parameters), kept)}\n"
               "flatten -noscopeinfo\nbwmuxmap\nopt -full\nopt_clean\nchtype -set $shift t:$shiftx\n"
@@ -49,8 +48,7 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
              for cell in pathlib.Path(f"{out}.{kind}").read_text().splitlines()}
     lines = [line for line in faults.read_text().splitlines()
              if re.search(r"-mode (\w+)", line).group(1) in MODES
-             and re.search(r"-port (\w+)", line)[1] in ports.get(re.search(r"-cell (\S+)", line)[1], line) and not UNUSED.search(line)
-             and (not without or "hw/" in line and not any(folder in line for folder in without))][:count]
+             and re.search(r"-port (\w+)", line)[1] in ports.get(re.search(r"-cell (\S+)", line)[1], line) and not UNUSED.search(line)][:count]
     lines = [line.replace("mutate ", f"mutate -ctrl mutant 16 {number} ", 1)
              for number, line in enumerate(lines, 1)]
     faults.write_text("\n".join(lines) + "\n")
@@ -66,16 +64,13 @@ def main() -> int:
     parser.add_argument("out", type=pathlib.Path, help="path and NAME of the files to write")
     parser.add_argument("top", help="the module")
     parser.add_argument("parameters", nargs="*", help="Name=value")
-    parser.add_argument("--without", nargs="+", default=[], metavar="FOLDER",
-                        help="no faults in these folders' lines, wherever they are instantiated")
     parser.add_argument("--around", nargs="*", default=[], metavar="MODULE",
                         help="modules that stay as they are in hw/: instances of them in OUT.v")
     parser.add_argument("--count", type=int, default=1000, help="faults (%(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="(%(default)s)")
     given = parser.parse_args()
     try:
-        write(given.out, given.top, given.parameters, given.count, given.seed, given.without,
-              given.around)
+        write(given.out, given.top, given.parameters, given.count, given.seed, given.around)
     except (tools.MissingTool, tools.ToolFailed) as error:
         print(f"sim.mutate.netlist: {error}", file=sys.stderr)
         return 2

@@ -1,5 +1,4 @@
 // A board's small core finds, behind its link and its SDRAM, what CpuIntersector finds.
-// Tests: board_core, core_link
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>

@@ -1,5 +1,4 @@
 // Words go through a serial line of 8N1 as they are, at its rate.
-// Tests: uart_transmitter, uart_receiver
 #include <gtest/gtest.h>
 
 #include <deque>

@@ -1,5 +1,4 @@
 // The exact unit against its reference model, answers and clocks, and both against exact numbers.
-// Tests: exact_accumulator, exact_exponents, exact_product, exact_sequencer, exact_slice
 #include <gtest/gtest.h>
 
 #include <cstdlib>

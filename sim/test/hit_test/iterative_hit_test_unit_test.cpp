@@ -1,5 +1,4 @@
 // The iterative unit: the timetable, and random streams against C++ floats and the paper's unit.
-// Tests: fp_vector_divider srt_divider_iterative srt_quotient
 #include <gtest/gtest.h>
 
 #include "Viterative_hit_test_unit_behavioural.h"

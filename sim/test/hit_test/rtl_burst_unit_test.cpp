@@ -1,4 +1,3 @@
-// Tests: hit_test_pipeline, each lane of hit_test_array.
 #include "sim/rtl_burst_unit.h"
 
 #include <gtest/gtest.h>

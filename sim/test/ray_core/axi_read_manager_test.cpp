@@ -9,7 +9,6 @@
 #include <set>
 #include <vector>
 
-#include "Vaxi_read_manager_128.h"
 #include "Vaxi_read_manager_32.h"
 #include "Vaxi_read_manager_512.h"
 #include "sim/model.h"
@@ -34,7 +33,7 @@ void set_words(Port& port, const std::vector<std::uint32_t>& words) {
 
 template <class Top>
 class AxiReadManagerTest : public testing::Test {};
-using Tops = testing::Types<Vaxi_read_manager_32, Vaxi_read_manager_128, Vaxi_read_manager_512>;
+using Tops = testing::Types<Vaxi_read_manager_32, Vaxi_read_manager_512>;
 TYPED_TEST_SUITE(AxiReadManagerTest, Tops);
 
 TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {

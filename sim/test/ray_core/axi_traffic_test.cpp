@@ -11,6 +11,7 @@
 #include <cstring>
 #include <map>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "Vray_core_axi.h"
@@ -62,6 +63,7 @@ class AxiTrafficTest : public testing::Test {
     in_flight_ = pixels_left_ = 0;
     forget_records();
     doubts_ = ray_errors_ = bad_beats_ = bad_answers_ = ends_ = 0;
+    failed_lines_.clear();
     aborted_ = drawn_ = false;
     ++resets_;
   }
@@ -105,7 +107,10 @@ class AxiTrafficTest : public testing::Test {
       bursts_.push_back({model_->m_axi_arid, (model_->m_axi_araddr - base) / 64});
     }
     const bool beat = (model_->m_axi_rvalid & model_->m_axi_rready) != 0;
-    if (beat) bad_beats_ += model_->m_axi_rresp != 0;
+    if (beat && model_->m_axi_rresp != 0) {
+      ++bad_beats_;
+      failed_lines_.insert(answering_);
+    }
     const bool ray = (model_->ray_valid_i & model_->ray_ready_o) != 0;
     in_flight_ += ray;
     if ((model_->m_axis_tvalid & model_->m_axis_tready) != 0) {
@@ -149,6 +154,7 @@ class AxiTrafficTest : public testing::Test {
       data = std::uint64_t{words[2 * burst.beat + 1]} << 32 | words[2 * burst.beat];
     }
     EXPECT_TRUE(wild_ || burst.line < lines.size()) << burst.line;
+    answering_ = static_cast<std::uint32_t>(burst.line);
     model_->m_axi_rid = burst.id;
     model_->m_axi_rdata = data;
     model_->m_axi_rresp = fails ? 2 + random_() % 2 : 0;
@@ -197,12 +203,16 @@ class AxiTrafficTest : public testing::Test {
     if (wild_ || end.error != CoreResult::Error::kNone) return;
     std::vector<CoreResult> expected;
     ReferenceCore().trace(image_->lines(), {&sent.ray, 1}, expected);
-    if (expected.size() != 1 || sent.words.size() != 1) return;
+    if (sent.ray.no_cull && !sent.ray.any_hit) {
+      ASSERT_EQ(end.tests, expected.back().tests);
+    }
+    if (sent.ray.any_hit || expected.size() != 1 || sent.words.size() != 1) return;
     ++compared_;
     ASSERT_EQ(end.found, expected[0].found) << end.tag;
     if (!end.found) return;
     ASSERT_EQ(end.triangle, expected[0].triangle);
     ASSERT_EQ(end.t, expected[0].t);
+    ASSERT_EQ(end.t_error, expected[0].t_error);
     ASSERT_EQ(end.point, expected[0].point);
   }
 
@@ -284,6 +294,8 @@ class AxiTrafficTest : public testing::Test {
   std::vector<std::uint32_t> written_;
   long in_flight_ = 0, pixels_left_ = 0;
   bool any_busy_ = false, all_busy_ = false, aborted_ = false, drawn_ = false;
+  std::set<std::uint32_t> failed_lines_;
+  std::uint32_t answering_ = 0;  // the line of the beat that is offered
   unsigned doubts_ = 0, ray_errors_ = 0, bad_beats_ = 0, bad_answers_ = 0;
   unsigned ends_ = 0;  // since the counters were cleared
   unsigned compared_ = 0, refused_ = 0, resets_ = 0, aborts_ = 0, wild_ends_ = 0, failures_ = 0;
@@ -299,6 +311,7 @@ void AxiTrafficTest::configure() {
   pause_ = 1 + random_() % 4;
   rays_.clear();
   doubts_ = ray_errors_ = bad_beats_ = bad_answers_ = 0;
+  failed_lines_.clear();
   aborted_ = drawn_ = false;
   ASSERT_TRUE(set(RAYGATE_BASE, random_(), ~63u));
   ASSERT_TRUE(set(RAYGATE_BASE_HIGH, random_()));
@@ -414,6 +427,9 @@ void AxiTrafficTest::settle() {
     wild_ends_ += wild_;
   }
   ASSERT_EQ(read(RAYGATE_COUNTERS_RAY), ends_);
+  if (bad_beats_ != 0) {
+    ASSERT_TRUE(failed_lines_.contains(read(RAYGATE_ERROR_LINE)));
+  }
   ASSERT_EQ(read(RAYGATE_FLAGS) & ~RAYGATE_FLAGS_FULL,
             (doubts_ != 0 ? RAYGATE_FLAGS_DOUBT : 0) | (drawn_ ? RAYGATE_FLAGS_DONE : 0) |
                 (bad_beats_ != 0 ? RAYGATE_FLAGS_BUS_ERROR : 0) |
@@ -434,7 +450,11 @@ TEST_F(AxiTrafficTest, IsAsItsModel) {
     for (int part = 0; part < 2; ++part) {
       if (one_in(2)) start();
       for (const Ray& ray : test::some_rays(test::bodies(), rays_random_, random_() % 60)) {
-        to_send_.push_back({.ray = ray, .tag = kUsers | next_tag_++});
+        CoreRay& sent = to_send_.emplace_back(CoreRay{.ray = ray, .tag = kUsers | next_tag_++});
+        if (one_in(4)) sent.t_max = rays_random_.uniform(0.01f, 3.0f);
+        if (one_in(4)) sent.skip_id = random_() % bodies_.primitive_count();
+        sent.any_hit = one_in(8);
+        sent.no_cull = one_in(16);
       }
       for (unsigned n = random_() % 60; n != 0 && !HasFatalFailure(); --n) disturb();
       if (one_in(5)) {
@@ -452,6 +472,7 @@ TEST_F(AxiTrafficTest, IsAsItsModel) {
       rays_.clear();
       ASSERT_EQ(write(RAYGATE_FLAGS, 63), 0u);
       doubts_ = ray_errors_ = bad_beats_ = bad_answers_ = 0;
+      failed_lines_.clear();
       aborted_ = false;
     }
   }

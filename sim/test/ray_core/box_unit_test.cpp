@@ -1,22 +1,15 @@
 // box_unit against its reference, bit for bit, a node in every clock.
-// Tests: slab_setup, slab_test, child_sort, ray_scale, plane_offset, add_subtract, max4, sort7
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <deque>
 
-#include "Vbox_unit_behavioural.h"
-#include "Vbox_unit_structural.h"
+#include "Vbox_unit.h"
 #include "host/intersect/core/test/box_cases.h"
 #include "sim/model.h"
 
 namespace raygate {
 namespace {
-
-template <class Top>
-class BoxUnitTest : public testing::Test {};
-using Tops = testing::Types<Vbox_unit_behavioural, Vbox_unit_structural>;
-TYPED_TEST_SUITE(BoxUnitTest, Tops);
 
 constexpr std::size_t kLatency = 21;  // ray_core_pkg::BoxLatency
 
@@ -37,10 +30,10 @@ std::uint32_t ordered_word(std::uint32_t enter, std::uint32_t exponent) {
   return field > 255 ? 0x7FFFF : field << 11 | fraction;
 }
 
-TYPED_TEST(BoxUnitTest, EqualsItsReference) {
+TEST(BoxUnitTest, EqualsItsReference) {
   constexpr std::uint32_t kSeed = 20261123;
   BoxCases cases(kSeed);
-  Model<TypeParam> model;
+  Model<Vbox_unit> model;
   std::deque<BoxCase> taken;  // the latest first
   int entered = 0;
   BoxRay before;  // of the node before: its origin comes a clock later

@@ -1,8 +1,4 @@
 // The ray core in simulation finds what CpuIntersector finds, whatever makes it wait.
-// Tests: ray_core, ray_alloc, ray_errors, traversal, primitive_fetch, memory_subsystem
-// Tests: triangle_test, closest_hit, ray_context, ray_retire, rr_arbiter
-// Tests: traversal_subsystem, intersection_subsystem, shared_triangle_test, slab_tests, reciprocals
-// Tests: fp_vector_adder, fp_vector_multiplier
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -9,8 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "Vray_generator_behavioural.h"
-#include "Vray_generator_structural.h"
+#include "Vray_generator.h"
 #include "sim/model.h"
 #include "sim/test/ray_core/pixel_grid.h"
 
@@ -19,14 +18,9 @@ namespace {
 
 constexpr std::uint32_t kSeed = 20261122;
 
-template <class Top>
-class RayGeneratorTest : public testing::Test {};
-using Tops = testing::Types<Vray_generator_behavioural, Vray_generator_structural>;
-TYPED_TEST_SUITE(RayGeneratorTest, Tops);
-
-TYPED_TEST(RayGeneratorTest, EqualsItsReference) {
+TEST(RayGeneratorTest, EqualsItsReference) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
-  Model<TypeParam> model;
+  Model<Vray_generator> model;
   std::mt19937 random(kSeed);
   model->start_i = model->stop_i = 0;
   model->ready_i = 0;
@@ -106,8 +100,8 @@ TYPED_TEST(RayGeneratorTest, EqualsItsReference) {
 }
 
 /// Resets in mid-run: nothing of the frame is left, and the next one is whole.
-TYPED_TEST(RayGeneratorTest, ResetsInMidRunLeaveNothing) {
-  Model<TypeParam> model;
+TEST(RayGeneratorTest, ResetsInMidRunLeaveNothing) {
+  Model<Vray_generator> model;
   std::mt19937 random(kSeed);
   model->start_i = model->stop_i = model->x_i = model->y_i = 0;
   const PixelGrid grid{{-1.0f, 1.0f, -2.0f}, {0.01f, 0.0f, 0.0f}, {0.0f, -0.01f, 0.0f}};
@@ -149,8 +143,8 @@ TYPED_TEST(RayGeneratorTest, ResetsInMidRunLeaveNothing) {
 }
 
 /// A ray in every clock, where it is taken.
-TYPED_TEST(RayGeneratorTest, GivesARayAClock) {
-  Model<TypeParam> model;
+TEST(RayGeneratorTest, GivesARayAClock) {
+  Model<Vray_generator> model;
   model->start_i = model->stop_i = 0;
   model->ready_i = 1;
   model.reset();

@@ -1,12 +1,10 @@
 // set_up_unit against its reference model, bit for bit.
-// Tests: cross_product, vec_add, vec_mul
 #include <gtest/gtest.h>
 
 #include <array>
 #include <deque>
 
-#include "Vset_up_unit_0.h"
-#include "Vset_up_unit_1.h"
+#include "Vset_up_unit.h"
 #include "host/intersect/core/set_up.h"
 #include "sim/model.h"
 #include "sim/test/hit_test/float_stream.h"
@@ -68,13 +66,8 @@ class Triangles {
   std::mt19937 random_{kSeed};
 };
 
-template <class Top>
-class SetUpUnit : public testing::Test {};
-using Tops = testing::Types<Vset_up_unit_1, Vset_up_unit_0>;
-TYPED_TEST_SUITE(SetUpUnit, Tops, );
-
-TYPED_TEST(SetUpUnit, EqualsItsReference) {
-  Model<TypeParam> model;
+TEST(SetUpUnit, EqualsItsReference) {
+  Model<Vset_up_unit> model;
   Triangles triangles;
   std::deque<Triangle> taken;  // the latest first
   long planes = 0, bounds = 0;
