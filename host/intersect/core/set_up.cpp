@@ -11,7 +11,7 @@
 namespace raygate {
 namespace {
 
-// Constants of set_up_unit.sv, where they are explained.
+// Constants of set_up_pkg.sv; triangle_test.sv explains them.
 constexpr int kLeastField = 27;
 constexpr int kBoundShift = 20;
 constexpr int kBias = 127;

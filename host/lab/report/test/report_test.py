@@ -103,7 +103,7 @@ class Statistics(unittest.TestCase):
 
 
 class Costs(unittest.TestCase):
-    CORES = [core("fp_multiplier", 10, 5.0), core("fp_adder", 4, 3.0, Adder="2"),
+    CORES = [core("fp_multiplier", 10, 5.0), core("fp_adder", 4, 3.0, Arith="0"),
              core("fp_divider", 20, 9.0), core("fp_divider", 7, 6.0, FracWidth="15")]
 
     def test_cores_add_up(self):
@@ -116,7 +116,7 @@ class Costs(unittest.TestCase):
     def test_unknown_formats_cost_nothing_known(self):
         self.assertIsNone(costs.cost(self.CORES, {**VARIANT, "digits": 16}))
         self.assertIsNone(costs.cost(self.CORES, {**VARIANT, "fused": True}))
-        self.assertIsNone(costs.cost([core("fp_multiplier", 1, 1.0, Adder="0")], VARIANT))
+        self.assertIsNone(costs.cost([core("fp_multiplier", 1, 1.0, Arith="2")], VARIANT))
 
 
 ENERGIES = [{"table": "energy", "top": top, "exponent": 8, "significand": 24, "pj": pj, "a_test": count}
