@@ -178,12 +178,9 @@ BEHAVIOURAL = "behavioural"  # in place of a kind of adder: the language's own o
 def adder_kinds() -> dict[str, int]:
     """The adder kinds by name ("ripple", "graded", ...), as hw/arith/arith_pkg.sv numbers them."""
     text = (HW / "arith" / "arith_pkg.sv").read_text()
-    body = re.search(r"enum[^{]*{([^}]*)}\s*adder_e", text)
-    kinds = {}
-    for item in re.sub(r"//[^\n]*", "", body.group(1)).split(","):
-        name, _, value = item.partition("=")
-        kinds[name.strip().removeprefix("Adder").lower()] = (
-            int(re.sub(r"\D*'d|\s", "", value)) if value else len(kinds))
+    body = re.search(r"enum[^{]*{([^}]*)}\s*arith_e", text)[1]
+    kinds = {name.lower(): int(value) for name, value in re.findall(r"^ *(\w+) *= (\d+)", body, re.M)}
+    del kinds[BEHAVIOURAL]
     return kinds
 
 
@@ -199,12 +196,11 @@ MOST_BITS = 4080  # of an operand: 16 groups of 255
 
 def check(top: str, source: str, given: dict[str, str]) -> None:
     """Raises ValueError for a parameter that module `top` does not have, and for a value that it cannot have."""
-    declared = {name: (default, note) for name, default, note in re.findall(
-        r"^ +parameter [^=\n]*?(\w+) *= *([^,/\n]+),?[^/\n]*(.*)$", source, re.M)}
+    declared = dict(re.findall(r"^ +parameter [^=\n]*?(\w+) *= *([^,/\n]+)", source, re.M))
     for name, value in given.items():
         if name not in declared:
             raise ValueError(f"{top}: found parameter {name}, expected one of {', '.join(declared)}")
-        stated = re.search(r"at least (\d+)", declared[name][1]) or re.search(rf"if \({name} < (\d+)(?:\)| \|\|)[^\n]* : gen_check", source)
+        stated = re.search(rf"^ *if \((?:[^()&]* )?{name} < (\d+)(?: \|\|[^;]*)?\) begin : gen_check", source, re.M)
         least = int(stated[1]) if stated else name.endswith("Width")
         number = re.fullmatch(r"\d+", value)
         if not number and not re.fullmatch(r"\d+'[bdh][\da-fA-F_]+", value):
@@ -212,7 +208,7 @@ def check(top: str, source: str, given: dict[str, str]) -> None:
         if number and not (least <= int(value) <= (MOST_BITS if name.endswith("Width") else 2**31 - 1)):
             raise ValueError(f"{top}: found {name}={value}, expected at least {least:d}"
                              + f" and at most {MOST_BITS}" * name.endswith("Width"))
-    exponent, fraction = (given.get(name, declared.get(name, ("",))[0].strip()) for name in ("ExpWidth", "FracWidth"))
+    exponent, fraction = (given.get(name, declared.get(name, "").strip()) for name in ("ExpWidth", "FracWidth"))
     if exponent.isdigit() and fraction.isdigit() and not 2 <= int(fraction) <= 2 ** min(int(exponent) - 1, 12):
         raise ValueError(f"{top}: found ExpWidth={exponent} and FracWidth={fraction}, expected 2 <= FracWidth <= 2^(ExpWidth-1)")
 
@@ -232,7 +228,7 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
     if adder == BEHAVIOURAL:
         text["Arith"] = "1"
     elif adder:
-        text["Adder"] = str(adder_kinds()[adder])
+        text["Arith"] = str(adder_kinds()[adder])
     if widths:
         text["GroupWidths"] = group_widths(widths)
     if look_ahead is None and top == "adder" and adder in ("uniform", "graded"):

@@ -8,39 +8,36 @@ import dataclasses
 import re
 
 from synth import smt, store, tools, yosys
-from synth.float_proofs import ARITHMETIC, FLOAT, FORMATS, OPERATIONS, FloatProof
+from synth.float_proofs import ARITHMETIC, FLOAT, FORMATS, FloatProof
 
 
 @dataclasses.dataclass(frozen=True)
 class Cut:
-    """A core's module with registers, its parameters, and what it is compared with."""
+    """A core's module with registers, and what it is compared with."""
 
     name: str
     top: str
-    parameters: str
-    uncut: str  # of OPERATIONS, for its module and its contracts
+    uncut: str  # of OPERATIONS, for its contracts
     latency: dict[str, int]  # by format
     product: int = 0  # the clock in which the multiplier's contract gives the product
 
 
-ALL = 2 ** 32 - 1
 CUTS = [
-    Cut("add", "fp_adder_stages", "PipeRegs 7", "add", {"binary16": 3, "binary32": 3}),
-    Cut("multiply", "fp_multiplier_stages", "PipeRegs 7", "multiply", {"binary16": 3, "binary32": 3}, 1),
-    Cut("divide", "fp_divider_stages", f"PipeRegs {ALL}", "divide_whole",
-        {"binary16": 11, "binary32": 17}),
+    Cut("add", "fp_adder", "add", {"binary16": 3, "binary32": 3}),
+    Cut("multiply", "fp_multiplier", "multiply", {"binary16": 3, "binary32": 3}, 1),
+    Cut("divide", "fp_divider", "divide_whole", {"binary16": 11, "binary32": 17}),
 ]
 
 
 def question(cut: Cut, latency: int, stages: str, uncut: str) -> str:
     """What can be, and the claim about it: ports of state k have _k behind their names, those of the
     module without registers nothing."""
-    named, wires = smt.ports(uncut, OPERATIONS[cut.uncut].top)
+    named, wires = smt.ports(uncut, "uncut")
     modes = [wire for wire in wires if wire in ("rounding_mode_i", "tininess_after_i")]
     enters = {wire: word(uncut, wire) for wire in wires if wire.endswith("_i")}
     product = {wire: word(uncut, wire) for wire in wires if wire == "free_product"}
     stays = {wire: enters[wire] for wire in modes}
-    if "|fp_divider_stages_n valid_i|" in stages:
+    if "|fp_divider_n valid_i|" in stages:
         enters["valid_i"] = "#b1"
     text = ["(set-logic QF_BV)\n", uncut, named, stages]
     text += [smt.ports(stages, cut.top, f"_{k}", f"state_{k - 1}" if k else "",
@@ -61,7 +58,7 @@ def joints(cut: Cut, stages: str, uncut: str) -> list[str]:
     the divider's. A solver that is asked for the result alone does not end."""
     found: dict[int, list[str]] = {}
     for wire, row in re.findall(rf"\(define-fun \|{cut.top}_n (\S+gen_row\[(\d+)\]\.\w+_q)\|", stages):
-        inside = f"{OPERATIONS[cut.uncut].top}_n u_stages.{wire}|"
+        inside = f"uncut_n {wire}|"
         if f"(define-fun |{inside}" in uncut and "valid" not in wire:
             found.setdefault(int(row), []).append(
                 f"(= (|{inside} state) (|{cut.top}_n {wire}| state_{int(row) + 2}))")
@@ -73,14 +70,13 @@ def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
     exp, frac, *_ = FORMATS[name]
     folder = store.OUT / "proofs" / f"float.cuts.{cut.name}.{name}.{arithmetic}"
     uncut = FloatProof(cut.uncut, name, arithmetic)
-    parameters = f"ExpWidth {exp} FracWidth {frac} {ARITHMETIC[arithmetic]} {cut.parameters}"
+    parameters = f"ExpWidth {exp} FracWidth {frac} {ARITHMETIC[arithmetic]} Pipelined 1"
     wanted = store.key([*uncut.sources(), smt.FREE, FLOAT / "solve.py"],
                        yosys.version(), smt.version(), parameters, cut.latency[name])
 
     def work() -> dict:
         stages = smt.write_model(uncut.sources(), cut.top, parameters, folder / "stages")
-        plain = smt.write_model(uncut.sources(), OPERATIONS[cut.uncut].top,
-                                         uncut.parameters, folder / "uncut")
+        plain = smt.write_model(uncut.sources(), cut.top, uncut.parameters, folder / "uncut").replace(cut.top, "uncut")
         text = question(cut, cut.latency[name], stages, plain)
         if smt.solve(folder / "assumption.smt2", text)["answer"] != "sat":
             raise tools.ToolFailed(f"{folder.name}: what it assumes cannot be")

@@ -26,8 +26,8 @@ NARROW_CLAIMS = ("add", "multiply", "divide")
 
 # What a core is made of, as its parameters.
 ARITHMETIC = {
-    "ripple": "Arith 0 Adder 0", "uniform": "Arith 0 Adder 1", "graded": "Arith 0 Adder 2",
-    "prefix": "Arith 0 Adder 3", "structural": "Arith 0", "behavioural": "Arith 1", "": ""}
+    "ripple": "Arith 2", "uniform": "Arith 3", "graded": "Arith 0", "prefix": "Arith 4", "structural": "Arith 0",
+    "behavioural": "Arith 1", "": ""}
 ADDERS = ["ripple", "uniform", "graded", "prefix"]  # the structural kinds
 
 
@@ -53,11 +53,11 @@ OPERATIONS = {
     "multiply_whole": Operation("fp_multiplier", "the product", ("format", "multiply")),
     "divide": Operation(
         "fp_divider", "the quotient, all modes and flags, around any quotient of significands",
-        ("format", "multiply", "divide"), ("srt_divider_stages",)),
+        ("format", "multiply", "divide"), ("srt_divider",)),
     "divide_whole": Operation("fp_divider", "the quotient", ("format", "multiply", "divide")),
     "divide_cut": Operation(
         "fp_divider", "the quotient cut off after 21 bits, around any of significands",
-        ("format", "multiply", "divide"), ("srt_divider_stages",),
+        ("format", "multiply", "divide"), ("srt_divider",),
         "ExpWidth $E FracWidth $F QuotientBits 21"),
     "srt_row": Operation(
         "srt_row", "a row of the divider: w' = 4 w - digit d, and |w'| <= 2/3 d again",
@@ -66,7 +66,7 @@ OPERATIONS = {
         "srt_first_row", "the first row: w = 2 x - digit d, and |w| <= 2/3 d",
         ("srt",), (), "Width $N"),
     "srt_ends": Operation(
-        "srt_divider_stages", "what enters the rows, remainder and quotient, around any rows",
+        "srt_divider", "what enters the rows, remainder and quotient, around any rows",
         ("srt",), ("srt_row", "srt_first_row"), "Width $S Rows $ROWS"),
     "decode": Operation("", "a number is its significand by a power of two",
                         ("format", "multiply")),

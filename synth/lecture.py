@@ -200,15 +200,15 @@ def float_section(given: argparse.Namespace) -> str:
     names = module["names"]
 
     def row(step: str, name: str, meaning: str) -> list[str]:
-        bits = names[f"u_stages.{name}"]
+        bits = names[name]
         return [step, f"<code>{name}</code>", f"<code>{binary(word(bits, values), len(bits))}</code>", str(word(bits, values)), meaning]
 
-    near = values[names["u_stages.near"][0]]
+    near = values[names["near"][0]]
     way = ([row("near path", "near_difference", "difference of neighbours, exact"), row("", "near_count", "zeros before the leading one"),
             row("", "near_normal", "shifted left by as many places")] if near else
            [row("far path", "far_aligned", "the smaller one, shifted right by the distance"),
             row("", "far_sticky", "1 where a bit was lost on the way"),
-            row("", "far_sum", "the difference: one integer bit, ten fraction bits, two guard bits" if values[names["u_stages.subtract"][0]]
+            row("", "far_sum", "the difference: one integer bit, ten fraction bits, two guard bits" if values[names["subtract"][0]]
                 else "the sum: two integer bits, ten fraction bits, one guard bit"),
             row("round", "u_round.increment", "1 where the result is rounded up")])
     result = word(module["ports"]["result_o"]["bits"], values)

@@ -80,10 +80,10 @@ def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Pa
 
 
 def blocks(design: Design) -> list[str]:
-    """The modules that flow `blocks` maps on their own: those of the design's folder, and the units below it. What only
-    joins them, a subsystem, is the top's."""
+    """The modules that flow `blocks` maps on their own: those of the design's folder. What only joins them, a subsystem, is
+    the top's."""
     return [file.stem for file in design.sources() if file.stem != design.top and not file.stem.endswith(("_pkg", "_subsystem"))
-            and (file.parent.name == design.folder or file.stem == "hit_test_pipeline")]
+            and file.parent.name == design.folder]
 
 
 def kept_memories(dump: str) -> dict[str, int]:

@@ -10,7 +10,7 @@ ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "area": "area.abc", "sma
                "fast": "fast.abc", "faster": "faster.abc", "parts": "fast.abc",
                "modules": "fast.abc", "blocks": "fast.abc"}
 # Modules that flow `modules` maps on their own, so that a picture of the layout can tell them apart.
-PICTURED = ("booth_encoder", "booth_row", "carry_save_tree", "adder", "fp_unpack", "fp_round", "fp_normalize", "srt_first_row",
+PICTURED = ("booth_encoder", "booth_row", "carry_save_tree", "adder", "fp_unpack", "fp_round", "srt_first_row",
             "srt_row", "sticky_right_shift", "leading_zero_counter", "comparator")
 FILES = [pathlib.Path(__file__), pathlib.Path(yosys.__file__)]  # what results depend on beside the files that a flow names
 
@@ -65,7 +65,7 @@ def gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
     if flow == "blocks":  # a read enable becomes the memory's, or its word would wait in a register behind it
         lines += ["opt_clean", "opt_dff -nosdff ram$*"]
     if flow in ("parts", "blocks"):
-        lines += [_kept("fp_*_stages", *(blocks if flow == "blocks" else []))]
+        lines += [_kept("fp_adder", "fp_multiplier", "fp_divider", *(blocks if flow == "blocks" else []))]
     if flow == "modules":
         lines += [_kept(*PICTURED)]
     # opt_dff: a reset to a constant, which the reader states as an asynchronous load.

@@ -23,7 +23,7 @@ def main() -> int:
     """Runs the command line."""
     try:
         if len(sys.argv) < 2 or not sys.argv[1]:
-            raise ValueError("expected TOP, a module of hw/: make synth VERILOG=1 TOP=fp_adder_stages "
+            raise ValueError("expected TOP, a module of hw/: make synth VERILOG=1 TOP=fp_adder "
                              "[PARAMS='ExpWidth=5 FracWidth=10']")
         words = [word.partition("=") for word in " ".join(sys.argv[2:]).split()]
         out = OUT / f"{sys.argv[1]}.v"

@@ -1,15 +1,13 @@
 // Adder of a chosen kind: {carry_o, sum_o} = a_i + b_i + carry_i. Combinational.
 //
 // Every addition of the cores goes through here, so that one parameter changes them all.
-// Arith: see arith_pkg; the other parameters are of Structural alone.
-// Adder: one of arith_pkg::adder_e (a number, for tools can only override those from outside).
+// Arith: see arith_pkg.
 // GroupWidths: the groups of a carry-select adder (see arith_pkg), or 0 for those of its kind: up
 // to 12 bits, as in exponents, one look-ahead group is not worth cutting.
 // LookAhead: how the groups of a carry-select adder add, see there.
 module adder #(
   parameter int unsigned Width = 48,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = '0,
   parameter bit LookAhead = 1'b1
 ) (
@@ -20,13 +18,13 @@ module adder #(
   output logic             carry_o
 );
 
-  if (Arith > arith_pkg::Behavioural || Adder > arith_pkg::AdderPrefix) begin : gen_check
-    $error("adder: expected an Arith of arith_pkg::arith_e and an Adder of adder_e");
+  if (Arith > arith_pkg::Prefix) begin : gen_check
+    $error("adder: expected an Arith of arith_pkg::arith_e");
   end
 
   if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     assign {carry_o, sum_o} = (Width + 1)'(a_i) + (Width + 1)'(b_i) + (Width + 1)'(carry_i);
-  end else if (Adder == arith_pkg::AdderRipple) begin : gen_ripple
+  end else if (Arith == arith_pkg::Ripple) begin : gen_ripple
     ripple_carry_adder #(
       .Width(Width)
     ) u_adder (
@@ -36,19 +34,9 @@ module adder #(
       .sum_o,
       .carry_o
     );
-  end else if (Adder == arith_pkg::AdderUniform || Adder == arith_pkg::AdderGraded)
-  begin : gen_select
-    localparam int unsigned ListWidth = 8 * arith_pkg::MaxGroups;
-    localparam bit [ListWidth-1:0] Uniform = arith_pkg::uniform_groups(Width);
-    localparam bit [ListWidth-1:0] Graded = arith_pkg::graded_groups(Width);
-    localparam bit [ListWidth-1:0] Groups =
-        (GroupWidths != '0) ? GroupWidths : (LookAhead && Width <= 12) ? ListWidth'(Width) :
-        (Adder == arith_pkg::AdderUniform) ? Uniform : Graded;
-
-    carry_select_adder #(
-      .Width      (Width),
-      .GroupWidths(Groups),
-      .LookAhead  (LookAhead)
+  end else if (Arith == arith_pkg::Prefix) begin : gen_prefix
+    prefix_adder #(
+      .Width(Width)
     ) u_adder (
       .a_i,
       .b_i,
@@ -56,9 +44,18 @@ module adder #(
       .sum_o,
       .carry_o
     );
-  end else begin : gen_prefix
-    prefix_adder #(
-      .Width(Width)
+  end else begin : gen_select
+    localparam int unsigned ListWidth = 8 * arith_pkg::MaxGroups;
+    localparam bit [ListWidth-1:0] Uniform = arith_pkg::uniform_groups(Width);
+    localparam bit [ListWidth-1:0] Graded = arith_pkg::graded_groups(Width);
+    localparam bit [ListWidth-1:0] Groups =
+        (GroupWidths != '0) ? GroupWidths : (LookAhead && Width <= 12) ? ListWidth'(Width) :
+        (Arith == arith_pkg::Uniform) ? Uniform : Graded;
+
+    carry_select_adder #(
+      .Width      (Width),
+      .GroupWidths(Groups),
+      .LookAhead  (LookAhead)
     ) u_adder (
       .a_i,
       .b_i,

@@ -1,25 +1,21 @@
-// The two kinds of arithmetic, the kinds of adder, and the group widths of carry-select adders.
+// The kinds of arithmetic, and the group widths of carry-select adders.
 //
-// Arith, a parameter of all that calculates, says how: Structural is Booth recoding, a carry-save tree
-// and adders of the kind Adder; Behavioural is the language's own +, * and <, for tools that know how to
-// build those (DSP blocks, carry chains). Both are the same modules with the same stages and the same
-// bits: adder, comparator, incrementer and multiplier alone tell them apart.
+// Arith, a parameter of all that calculates, is one of arith_e (a number, as tools can only override those from outside).
+// Behavioural is the language's own +, * and <, for tools that know how to build those (DSP blocks, carry chains). The
+// others are structural: Booth recoding, carry-save trees and adders of that kind. All are the same modules with the same
+// stages and the same bits.
 //
 // A list of group widths is one flat vector of MaxGroups bytes: the lowest byte is the least
 // significant group, a byte of 0 ends the list.
 package arith_pkg;
 
   typedef enum int unsigned {
-    Structural  = 0,
-    Behavioural = 1
+    Graded      = 0,  // carry-select adders, groups that grow towards the top
+    Behavioural = 1,
+    Ripple      = 2,  // chains of full adders
+    Uniform     = 3,  // carry-select adders, groups of one width
+    Prefix      = 4   // Sklansky's parallel-prefix adders, a yardstick
   } arith_e;
-
-  typedef enum int unsigned {
-    AdderRipple  = 0,  // a chain of full adders
-    AdderUniform = 1,  // carry-select, groups of one width
-    AdderGraded  = 2,  // carry-select, groups that grow towards the top
-    AdderPrefix  = 3   // Sklansky parallel prefix, a yardstick
-  } adder_e;
 
   localparam int unsigned MaxGroups = 16;
 

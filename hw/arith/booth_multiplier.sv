@@ -7,10 +7,10 @@
 // ConstantRow: 1 for the paper's tree, with the constants in a row of their own (14 rows, 12 adders
 // in 6 levels); 0 puts them into free places of the other rows (13 rows, 11 adders in 5 levels),
 // which saves a level.
-// Adder, GroupWidths, LookAhead: the last adder, see there. Combinational.
+// Arith (a structural kind), GroupWidths, LookAhead: the last adder, see there. Combinational.
 module booth_multiplier #(
   parameter int unsigned Width = 24,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = '0,
   parameter bit LookAhead = 1'b1,
   parameter bit ConstantRow = 1'b0
@@ -108,7 +108,7 @@ module booth_multiplier #(
 
   adder #(
     .Width      (2 * Width),
-    .Adder      (Adder),
+    .Arith      (Arith),
     .GroupWidths(GroupWidths),
     .LookAhead  (LookAhead)
   ) u_adder (

@@ -6,8 +6,9 @@
 // one (section 3.4).
 //
 // GroupWidths: see arith_pkg; the widths must add up to Width.
-// LookAhead: the groups add by carry look-ahead (1, as the paper's do) or by ripple carry (0).
-// Combinational: the delay of the groups, NumGroups - 2 carry multiplexers, one sum multiplexer.
+// LookAhead: the groups add by carry look-ahead (1, as the paper's do) or by two ripple-carry adders each (0).
+// Combinational: the delay of the groups, NumGroups - 2 carry multiplexers, one sum multiplexer. That of the groups is
+// ceil(log2(widest group)) steps, or as many full adders as the widest group has bits.
 module carry_select_adder #(
   parameter int unsigned Width = 48,
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = arith_pkg::graded_groups(Width),
@@ -32,37 +33,74 @@ module carry_select_adder #(
     );
   end
 
-  // Both sums of each group
+  // Both sums of each group, without a carry into it and with one. The lowest knows its carry: carry_i
 
   logic [Width-1:0] sum_0, sum_1;
   logic [NumGroups-1:0] carry_0, carry_1;
 
   if (LookAhead) begin : gen_look_ahead
-    conditional_sums_look_ahead #(
-      .Width      (Width),
-      .GroupWidths(GroupWidths)
-    ) u_sums (
-      .a_i,
-      .b_i,
-      .carry_i,
-      .sum_0_o  (sum_0),
-      .sum_1_o  (sum_1),
-      .carry_0_o(carry_0),
-      .carry_1_o(carry_1)
-    );
+    // All groups are worked on at once, as words: a prefix scan of (generate, propagate) pairs that doubles its reach with
+    // every step and never looks past the start of a group. A group's carries are then "generate" if no carry enters it
+    // and "generate or propagate" if one does, so that one scan serves both sums. carry_i counts as generated.
+    localparam int unsigned Widest = arith_pkg::widest_group(GroupWidths);
+    localparam logic [Width-1:0] Starts = Width'(arith_pkg::group_starts(GroupWidths));
+
+    logic [Width-1:0] half_sum;   // a bit's sum before its carry: it propagates
+    logic [Width-1:0] generated;  // over all bits from the start of the group to this one
+    logic [Width-1:0] propagated;
+
+    assign half_sum = a_i ^ b_i;
+
+    always_comb begin : scan
+      logic [Width-1:0] near;  // bits from which a step would reach past the start of their group
+      generated    = a_i & b_i;
+      generated[0] = generated[0] | (half_sum[0] & carry_i);
+      propagated   = half_sum;
+      near         = Starts;
+      for (int unsigned step = 1; step < Widest; step = step * 2) begin
+        generated  = generated | (propagated & (generated << step) & ~near);
+        propagated = propagated & ((propagated << step) | near);
+        near       = near | (near << step);
+      end
+    end
+
+    assign sum_0 = half_sum ^ (((generated << 1) & ~Starts) | Width'(carry_i));
+    assign sum_1 = half_sum ^ (((generated | propagated) << 1) | Starts);
+
+    for (genvar k = 0; k < NumGroups; k++) begin : gen_carries
+      localparam int unsigned High = arith_pkg::group_low(GroupWidths, k + 1) - 1;
+      assign carry_0[k] = generated[High];
+      assign carry_1[k] = generated[High] | propagated[High];
+    end
   end else begin : gen_ripple
-    conditional_sums_ripple #(
-      .Width      (Width),
-      .GroupWidths(GroupWidths)
-    ) u_sums (
-      .a_i,
-      .b_i,
-      .carry_i,
-      .sum_0_o  (sum_0),
-      .sum_1_o  (sum_1),
-      .carry_0_o(carry_0),
-      .carry_1_o(carry_1)
-    );
+    for (genvar k = 0; k < NumGroups; k++) begin : gen_sums
+      localparam int unsigned Low = arith_pkg::group_low(GroupWidths, k);
+      localparam int unsigned Size = 32'(GroupWidths[8*k+:8]);
+
+      ripple_carry_adder #(
+        .Width(Size)
+      ) u_sum_0 (
+        .a_i    (a_i[Low +: Size]),
+        .b_i    (b_i[Low +: Size]),
+        .carry_i((k == 0) ? carry_i : 1'b0),
+        .sum_o  (sum_0[Low +: Size]),
+        .carry_o(carry_0[k])
+      );
+      if (k == 0) begin : gen_known
+        assign sum_1[Low +: Size] = sum_0[Low +: Size];
+        assign carry_1[k]         = carry_0[k];
+      end else begin : gen_unknown
+        ripple_carry_adder #(
+          .Width(Size)
+        ) u_sum_1 (
+          .a_i    (a_i[Low +: Size]),
+          .b_i    (b_i[Low +: Size]),
+          .carry_i(1'b1),
+          .sum_o  (sum_1[Low +: Size]),
+          .carry_o(carry_1[k])
+        );
+      end
+    end
   end
 
   // The chain of carries, and the selection of the sums

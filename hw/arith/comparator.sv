@@ -7,7 +7,7 @@
 // Combinational, $clog2(Width) levels. Any input.
 module comparator #(
   parameter int unsigned Width = 31,
-  parameter int unsigned Arith = arith_pkg::Structural
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic [Width-1:0] a_i,
   input  logic [Width-1:0] b_i,
@@ -15,7 +15,7 @@ module comparator #(
   output logic             equal_o
 );
 
-  if (Arith > arith_pkg::Behavioural) begin : gen_check
+  if (Arith > arith_pkg::Prefix) begin : gen_check
     $error("comparator: expected an Arith of arith_pkg::arith_e");
   end
 

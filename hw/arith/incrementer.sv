@@ -8,14 +8,14 @@
 // Combinational. Any input; all ones wrap to zero.
 module incrementer #(
   parameter int unsigned Width = 8,
-  parameter int unsigned Arith = arith_pkg::Structural
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic [Width-1:0] a_i,
   input  logic             carry_i,
   output logic [Width-1:0] sum_o
 );
 
-  if (Width < 2 || Arith > arith_pkg::Behavioural) begin : gen_check
+  if (Width < 2 || Arith > arith_pkg::Prefix) begin : gen_check
     $error("incrementer: expected a Width of 2 or more and an Arith of arith_pkg::arith_e");
   end
 

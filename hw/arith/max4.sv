@@ -1,7 +1,7 @@
 // The largest of four unsigned words. Combinational, two comparators deep.
 module max4 #(
   parameter int unsigned Width = 36,
-  parameter int unsigned Arith = arith_pkg::Structural
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic [4*Width-1:0] words_i,
   output logic [Width-1:0]   max_o

@@ -4,7 +4,7 @@
 // Source: Batcher's network for eight, less one input.
 module sort7 #(
   parameter int unsigned Width = 27,
-  parameter int unsigned Arith = arith_pkg::Structural
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic               clk_i,
   input  logic [7*Width-1:0] words_i,

@@ -1,18 +1,17 @@
-// Divides significands like srt_divider_stages, in a few rows that are used again in each clock.
+// Divides significands like srt_divider, in a few rows that are used again in each clock.
 //
 // A division begins with start_i: what srt_first_row made of it, its divisor, and side_i, which comes out with it. Its other
 // Rows digits are found RowsPerClock at a time. Latency: Rows / RowsPerClock + 1 clocks, until done_o; for that clock the
 // outputs are what srt_quotient takes. Throughput: one division in Period clocks; what takes more than Period - 1 clocks
 // goes through several stages of RowsPerClock rows, of which each makes Period steps.
-// Source: as srt_divider_stages.
+// Source: as srt_divider.
 module srt_divider_iterative #(
   parameter int unsigned Width = 25,  // of the residual, see srt_row
   parameter int unsigned Rows = 12,
   parameter int unsigned RowsPerClock = 2,
   parameter int unsigned Period = 7,
   parameter int unsigned SideWidth = 1,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic                 clk_i,
   input  logic                 rst_ni,
@@ -83,8 +82,7 @@ module srt_divider_iterative #(
       end else begin : gen_srt
         srt_row #(
           .Width(Width),
-          .Arith(Arith),
-          .Adder(Adder)
+          .Arith(Arith)
         ) u_row (
           .sum_i(gen_row[r-1].sum),
           .carry_i(gen_row[r-1].carry),

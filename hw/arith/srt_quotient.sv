@@ -4,16 +4,14 @@
 // one at the top. quotient_o: positive less negative digits, less a unit of the last place where the residual is
 // negative, so that it is cut off and not rounded.
 //
-// PipeRegs: registers behind the remainder (bit 0) and the quotient (bit 1). As many clocks of latency as registers, a
-// quotient a clock; none: combinational. Registers load only what is valid: valid_o is valid_i, as much later, and side_i
-// goes along. Nothing is reset.
+// Pipelined: registers behind the remainder and the quotient. Latency: 2 clocks, a quotient a clock; else combinational.
+// Registers load only what is valid: valid_o is valid_i, as much later, and side_i goes along. Nothing is reset.
 module srt_quotient #(
   parameter int unsigned Width = 25,  // of the residual
   parameter int unsigned Digits = 13,
   parameter int unsigned SideWidth = 1,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
-  parameter bit [1:0]    PipeRegs = 2'b00
+  parameter int unsigned Arith = arith_pkg::Graded,
+  parameter bit          Pipelined = 1'b0
 ) (
   input  logic                 clk_i,
   input  logic                 valid_i,
@@ -35,8 +33,7 @@ module srt_quotient #(
 
   adder #(
     .Width(Width),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_remainder (
     .a_i(sum_i),
     .b_i(carry_i),
@@ -51,7 +48,7 @@ module srt_quotient #(
 
   delay_line #(
     .Width(1),
-    .Depth(32'(PipeRegs[0]))
+    .Depth(32'(Pipelined))
   ) u_valid_remainder (
     .clk_i,
     .enable_i(1'b1),
@@ -60,7 +57,7 @@ module srt_quotient #(
   );
   delay_line #(
     .Width(4 * Digits + SideWidth + 2),
-    .Depth(32'(PipeRegs[0]))
+    .Depth(32'(Pipelined))
   ) u_cut_remainder (
     .clk_i,
     .enable_i(valid_i),
@@ -75,8 +72,7 @@ module srt_quotient #(
 
   adder #(
     .Width(2 * Digits),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_quotient (
     .a_i(plus),
     .b_i(~minus),
@@ -87,7 +83,7 @@ module srt_quotient #(
 
   delay_line #(
     .Width(1),
-    .Depth(32'(PipeRegs[1]))
+    .Depth(32'(Pipelined))
   ) u_valid_quotient (
     .clk_i,
     .enable_i(1'b1),
@@ -96,7 +92,7 @@ module srt_quotient #(
   );
   delay_line #(
     .Width(2 * Digits + SideWidth + 1),
-    .Depth(32'(PipeRegs[1]))
+    .Depth(32'(Pipelined))
   ) u_cut_quotient (
     .clk_i,
     .enable_i(remainder_valid),

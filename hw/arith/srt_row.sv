@@ -5,8 +5,7 @@
 // and comes out. The digit is positive_o - negative_o, one of which is 0.
 module srt_row #(
   parameter int unsigned Width = 25,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic [Width-1:0] sum_i,
   input  logic [Width-1:0] carry_i,
@@ -26,8 +25,7 @@ module srt_row #(
 
   adder #(
     .Width(EstimateWidth),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_estimate (
     .a_i(sum_i[Width-1-:EstimateWidth]),
     .b_i(carry_i[Width-1-:EstimateWidth]),

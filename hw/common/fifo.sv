@@ -7,7 +7,7 @@
 // valid_o, which are registers.
 module fifo #(
   parameter int unsigned Width   = 32,
-  parameter int unsigned Depth   = 2,  // at least 2
+  parameter int unsigned Depth   = 2,
   parameter int unsigned Reserve = 0   // below Depth
 ) (
   input  logic             clk_i,

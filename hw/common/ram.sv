@@ -5,7 +5,7 @@
 // with its own write_i.
 module ram #(
   parameter int unsigned Width = 32,  // a multiple of Parts
-  parameter int unsigned Depth = 64,  // at least 2
+  parameter int unsigned Depth = 64,
   parameter int unsigned Parts = 1,
   localparam int unsigned AddressWidth = (Depth < 2) ? 1 : $clog2(Depth)
 ) (
@@ -21,7 +21,7 @@ module ram #(
   localparam int unsigned PartWidth = Width / Parts;
 
   if (Depth < 2 || Width % Parts != 0) begin : gen_check
-    $error("ram: expected a Depth of 2 or more, and a Width of whole Parts");
+    $error("ram: expected a Depth of 2 or more and a Width of whole Parts");
   end
 
   logic [Width-1:0] words[Depth];

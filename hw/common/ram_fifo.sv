@@ -5,7 +5,7 @@
 // valid_o.
 module ram_fifo #(
   parameter int unsigned Width   = 32,
-  parameter int unsigned Depth   = 64,  // at least 2
+  parameter int unsigned Depth   = 64,
   parameter int unsigned Reserve = 0    // below Depth
 ) (
   input  logic             clk_i,

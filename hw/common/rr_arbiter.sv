@@ -1,6 +1,6 @@
 // Picks one of Width requests: the first at or above start_i, or else the first of all.
 //
-// Combinational. Width is at least 2.
+// Combinational.
 module rr_arbiter #(
   parameter int unsigned Width = 64,
   localparam int unsigned IndexWidth = $clog2(Width)

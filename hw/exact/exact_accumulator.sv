@@ -15,8 +15,7 @@
 module exact_accumulator #(
   parameter int unsigned DigitWidth = 48,
   parameter int unsigned Products = 36,  // in a column, at most
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned Width = exact_pkg::sum_width(DigitWidth, Products)
 ) (
   input  logic                  clk_i,
@@ -53,8 +52,7 @@ module exact_accumulator #(
 
   adder #(
     .Width(Width),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_adder (
     .a_i    (partial),
     .b_i    (carries),

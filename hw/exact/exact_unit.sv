@@ -20,8 +20,7 @@ module exact_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned DigitWidth = 48,  // see exact_product and exact_slice
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
   input  logic                               clk_i,
@@ -287,8 +286,7 @@ module exact_unit #(
   exact_accumulator #(
     .DigitWidth(DigitWidth),
     .Products  (Products),
-    .Arith     (Arith),
-    .Adder     (Adder)
+    .Arith     (Arith)
   ) u_accumulator (
     .clk_i,
     .opens_i   (step_3_q.opens),

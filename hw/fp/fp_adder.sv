@@ -1,12 +1,24 @@
 // Floating-point add and subtract: a_i + b_i, or a_i - b_i with subtract_i.
 //
-// Combinational: fp_adder_stages without registers; see there.
+// Two paths, of which the second needs no rounding and the first no long normalising shift:
+//   far   the smaller operand shifted right, one addition, the shared rounder
+//   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least
+//         the leading bit: exact, so only a leading-zero count and a left shift
+//
+// Pipelined: registers between ordering and adding, between adding and rounding, and behind the result. Latency: 3
+// clocks, one operation a clock; else combinational. The rounding mode is used in several stages and should stay the same.
+//
+// Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when
+// rounding down, unless both addends are zeros of one sign. Infinity minus infinity is invalid. A
+// subnormal sum is exact, so underflow is never raised and tininess_after_i changes nothing.
+// Source: IEEE 754-2019, clauses 5.4.1 and 6.3; the two paths: Farmwald, Stanford 1981.
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith     = arith_pkg::Structural,
-  parameter int unsigned Adder     = arith_pkg::AdderGraded
+  parameter int unsigned Arith     = arith_pkg::Graded,
+  parameter bit          Pipelined = 1'b0
 ) (
+  input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  logic                        subtract_i,
@@ -16,20 +28,308 @@ module fp_adder #(
   output fp_pkg::flags_t              flags_o
 );
 
-  fp_adder_stages #(
+  localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
+  localparam int unsigned NearWidth = FracWidth + 2;  // one place more, for a neighbour exponent
+  localparam int unsigned FarWidth = FracWidth + 3;  // two integer bits, fraction, guard
+  localparam int unsigned CountWidth = $clog2(NearWidth);
+
+  // ---- Unpack; subtracting is adding with the other sign
+
+  logic a_sign, b_sign_packed, b_sign, subtract;
+  logic [ExpWidth-1:0] a_exp, b_exp;
+  logic [SigWidth-1:0] a_sig, b_sig;
+  fp_pkg::class_t a_class, b_class;
+
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_a (
+    .packed_i(a_i),
+    .sign_o(a_sign),
+    .exponent_o(a_exp),
+    .significand_o(a_sig),
+    .class_o(a_class)
+  );
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_b (
+    .packed_i(b_i),
+    .sign_o(b_sign_packed),
+    .exponent_o(b_exp),
+    .significand_o(b_sig),
+    .class_o(b_class)
+  );
+  assign b_sign = b_sign_packed ^ subtract_i;
+  assign subtract = a_sign ^ b_sign;  // of the magnitudes
+
+  // ---- Order by magnitude, so that no difference is negative
+
+  logic swap, equal, sign;
+  logic [ExpWidth-1:0] big_exp;
+  logic [SigWidth-1:0] big_sig, small_sig;
+
+  comparator #(
+    .Width(ExpWidth + FracWidth),
+    .Arith(Arith)
+  ) u_order (
+    .a_i(a_i[ExpWidth+FracWidth-1:0]),
+    .b_i(b_i[ExpWidth+FracWidth-1:0]),
+    .less_o(swap),
+    .equal_o(equal)
+  );
+  assign big_exp = swap ? b_exp : a_exp;
+  assign big_sig = swap ? b_sig : a_sig;
+  assign small_sig = swap ? a_sig : b_sig;
+  assign sign = (equal & subtract) ? rounding_mode_i == fp_pkg::RoundDown : swap ? b_sign : a_sign;
+
+  // ---- Distance of the exponents, both ways at once beside the ordering
+
+  logic [ExpWidth-1:0] a_minus_b, b_minus_a, distance;
+  logic [1:0] unused_distance_carry;
+
+  adder #(
+    .Width(ExpWidth),
+    .Arith(Arith)
+  ) u_a_minus_b (
+    .a_i(a_exp),
+    .b_i(~b_exp),
+    .carry_i(1'b1),
+    .sum_o(a_minus_b),
+    .carry_o(unused_distance_carry[0])
+  );
+  adder #(
+    .Width(ExpWidth),
+    .Arith(Arith)
+  ) u_b_minus_a (
+    .a_i(b_exp),
+    .b_i(~a_exp),
+    .carry_i(1'b1),
+    .sum_o(b_minus_a),
+    .carry_o(unused_distance_carry[1])
+  );
+  assign distance = swap ? b_minus_a : a_minus_b;
+
+  // ---- First cut
+
+  logic sign_1, subtract_1, odd_1, near_0_1, near_1_1, odd, near_0, near_1, ordinary;
+  logic [ExpWidth-1:0] big_exp_1, distance_1;
+  logic [SigWidth-1:0] big_sig_1, small_sig_1;
+  fp_pkg::special_t special, special_1;
+
+  assign odd = a_exp[0] ^ b_exp[0];
+
+  always_comb begin
+    special = '0;
+    if (a_class.special | b_class.special) begin
+      special.invalid = a_class.signaling_nan | b_class.signaling_nan
+                      | (a_class.infinity & b_class.infinity & subtract);
+      special.nan = a_class.nan | b_class.nan | special.invalid;
+      special.infinity = a_class.infinity | b_class.infinity;
+    end
+  end
+  assign ordinary = ~special.nan & ~special.infinity;
+  assign near_0 = subtract & ordinary & (distance == '0);
+  assign near_1 = subtract & ordinary & (distance == ExpWidth'(1));
+
+  delay_line #(
+    .Width(2 * ExpWidth + 5 + $bits(special)),
+    .Depth(32'(Pipelined))
+  ) u_ordered (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({sign, subtract, odd, near_0, near_1, special, big_exp, distance}),
+    .data_o({sign_1, subtract_1, odd_1, near_0_1, near_1_1, special_1, big_exp_1, distance_1})
+  );
+  delay_line #(
+    .Width(2 * SigWidth),
+    .Depth(32'(Pipelined))
+  ) u_significands (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({big_sig, small_sig}),
+    .data_o({big_sig_1, small_sig_1})
+  );
+
+  // ---- Far path: align. A difference is taken one place further left: its value, doubled, is in
+  // [1, 4) like that of a sum (but for those that the near path gives), and its exponent one less.
+
+  logic [FarWidth-1:0] far_big, far_small, far_aligned;
+  logic far_sticky;
+
+  assign far_big = subtract_1 ? {big_sig_1, 2'b00} : {1'b0, big_sig_1, 1'b0};
+  assign far_small = subtract_1 ? {small_sig_1, 2'b00} : {1'b0, small_sig_1, 1'b0};
+  sticky_right_shift #(
+    .Width(FarWidth),
+    .AmountWidth(ExpWidth)
+  ) u_align (
+    .a_i(far_small),
+    .amount_i(distance_1),
+    .shifted_o(far_aligned),
+    .lost_o(far_sticky)
+  );
+
+  // ---- Far path: add. A lost part of the subtrahend takes the place of the one that completes its
+  // complement: the difference is then too low by less than a place, which the sticky bit tells.
+
+  logic [FarWidth-1:0] far_sum;
+  logic unused_far_carry;
+
+  adder #(
+    .Width(FarWidth),
+    .Arith(Arith)
+  ) u_far_sum (
+    .a_i(far_big),
+    .b_i(far_aligned ^ {FarWidth{subtract_1}}),
+    .carry_i(subtract_1 & ~far_sticky),
+    .sum_o(far_sum),
+    .carry_o(unused_far_carry)
+  );
+
+  // ---- Far path: exponent for the rounder, less one for a sum and less two for a difference
+
+  logic [ExpWidth-1:0] far_exp;
+  logic [ExpWidth-2:0] far_exp_high_n;  // complements count downwards
+
+  incrementer #(
+    .Width(ExpWidth - 1),
+    .Arith(Arith)
+  ) u_far_exp (
+    .a_i(~big_exp_1[ExpWidth-1:1]),
+    .carry_i(subtract_1 | ~big_exp_1[0]),
+    .sum_o(far_exp_high_n)
+  );
+  assign far_exp = {~far_exp_high_n, big_exp_1[0] ~^ subtract_1};
+
+  // ---- Near path: subtract, the distance known from the exponents' lowest bits
+
+  logic [NearWidth-1:0] near_small, near_difference;
+  logic unused_near_carry;
+
+  assign near_small = odd_1 ? {1'b0, small_sig_1} : {small_sig_1, 1'b0};
+
+  adder #(
+    .Width(NearWidth),
+    .Arith(Arith)
+  ) u_near_difference (
+    .a_i({big_sig_1, 1'b0}),
+    .b_i(~near_small),
+    .carry_i(1'b1),
+    .sum_o(near_difference),
+    .carry_o(unused_near_carry)
+  );
+
+  // A mark at the place where the exponent becomes the smallest one, for normalising.
+  logic [NearWidth-1:0] near_mark;
+  logic near;
+
+  assign near_mark = NearWidth'({1'b1, {NearWidth{1'b0}}} >> big_exp_1);
+  assign near = near_0_1 | (near_1_1 & ~near_difference[NearWidth-1]);
+
+  // ---- Second cut
+
+  logic sign_2, near_2, far_sticky_2;
+  logic [ExpWidth-1:0] big_exp_2, far_exp_2;
+  logic [FarWidth-1:0] far_sum_2;
+  logic [NearWidth-1:0] near_difference_2, near_mark_2;
+  fp_pkg::special_t special_2;
+
+  delay_line #(
+    .Width(2 * ExpWidth + FarWidth + 3 + $bits(special)),
+    .Depth(32'(Pipelined))
+  ) u_far (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({sign_1, near, special_1, far_sticky, big_exp_1, far_exp, far_sum}),
+    .data_o({sign_2, near_2, special_2, far_sticky_2, big_exp_2, far_exp_2, far_sum_2})
+  );
+  delay_line #(
+    .Width(2 * NearWidth),
+    .Depth(32'(Pipelined))
+  ) u_near (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({near_difference, near_mark}),
+    .data_o({near_difference_2, near_mark_2})
+  );
+
+  // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one:
+  // what is left is subnormal, or zero, and has the exponent field 0. Nothing is counted where this path
+  // isn't taken.
+
+  logic [NearWidth-1:0] near_normal;
+  logic [CountWidth-1:0] near_count;
+  logic [ExpWidth-1:0] near_shift, near_exp;
+  logic [ExpWidth+FracWidth-1:0] near_magnitude;
+  logic unused_near_exp_carry, unused_near_bit, unused_near_zero;
+
+  leading_zero_counter #(
+    .Width(NearWidth)
+  ) u_near_count (
+    .a_i(near_difference_2 | near_mark_2 | {~near_2, {(NearWidth - 1) {1'b0}}}),
+    .count_o(near_count),
+    .zero_o(unused_near_zero)
+  );
+  assign near_shift = ExpWidth'(near_count);
+  adder #(
+    .Width(ExpWidth),
+    .Arith(Arith)
+  ) u_near_exp (
+    .a_i(big_exp_2),
+    .b_i(~near_shift),
+    .carry_i(1'b1),
+    .sum_o(near_exp),
+    .carry_o(unused_near_exp_carry)
+  );
+  assign near_normal = near_difference_2 << near_count;
+  assign unused_near_bit = near_normal[0];  // 0 whenever this path is taken
+  assign near_magnitude = {near_exp & {ExpWidth{near_normal[NearWidth-1]}},
+                           near_normal[NearWidth-2:1]};
+
+  // ---- Rounding of the far path, choice of the path
+
+  logic [ExpWidth+FracWidth:0] far_result, result;
+  fp_pkg::flags_t far_flags, flags;
+  logic unused_zero;
+
+  fp_round #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
-    .Arith(Arith),
-    .Adder(Adder)
-  ) u_stages (
-    .clk_i(1'b0),
-    .a_i,
-    .b_i,
-    .subtract_i,
+    .SubnormalShift(1'b0),
+    .Arith(Arith)
+  ) u_round (
+    .sign_i(sign_2),
+    .exponent_i({2'b00, far_exp_2}),
+    .significand_i({far_sum_2, 1'b0, far_sticky_2}),
+    .special_i(special_2),
     .rounding_mode_i,
     .tininess_after_i,
-    .result_o,
-    .flags_o
+    .result_o(far_result),
+    .flags_o(far_flags)
+  );
+  assign result = near_2 ? {sign_2, near_magnitude} : far_result;
+  assign flags = near_2 ? 5'b00000 : far_flags;
+  assign unused_zero = a_class.zero ^ b_class.zero;  // zeros need no special care
+
+  // ---- Last cut
+
+  delay_line #(
+    .Width(ExpWidth + FracWidth + 1),
+    .Depth(32'(Pipelined))
+  ) u_result (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(result),
+    .data_o(result_o)
+  );
+  delay_line #(
+    .Width($bits(flags)),
+    .Depth(32'(Pipelined))
+  ) u_flags (  // by themselves: where they are unused, Verilator leaves them out
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(flags),
+    .data_o(flags_o)
   );
 
 endmodule

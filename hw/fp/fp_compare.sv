@@ -8,7 +8,7 @@
 module fp_compare #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith     = arith_pkg::Structural
+  parameter int unsigned Arith     = arith_pkg::Graded
 ) (
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,

@@ -1,13 +1,28 @@
 // Floating-point divide: a_i / b_i.
 //
-// Combinational: fp_divider_stages without registers; see there.
+// Unpack, normalise subnormals, divide the significands digit by digit (srt_divider), round.
+//
+// QuotientBits = 0 is IEEE 754: correctly rounded. Other values reproduce a divider whose significand
+// is cut off, not rounded, after that many bits, counting the leading one (21 gives the quotients
+// printed in the paper's worked example, up to 5 ulp low in binary32). Only a subnormal result is
+// then still rounded, from what the cut has left; what was cut off raises no flag.
+//
+// Pipelined: registers behind normalising, each stage of the significands' division (Rows + 3, see srt_divider; Rows: two
+// bits of the quotient each, 12 in binary32) and the result. Latency: Rows + 5 clocks, a division a clock; else
+// combinational. Registers load only what came with valid_i; in other clocks the outputs of a pipelined divider mean
+// nothing. The rounding mode is the last stage's.
+//
+// A finite number by zero is infinity and raises divide_by_zero; 0/0 and inf/inf are invalid.
+// Source: IEEE 754-2019, clauses 5.4.1 and 7; Choi and Chung, Trans. KIEE 48A-5-21, section 4.2.
 module fp_divider #(
-  parameter int unsigned ExpWidth  = 8,
-  parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith     = arith_pkg::Structural,
-  parameter int unsigned Adder     = arith_pkg::AdderGraded,
-  parameter int unsigned QuotientBits = 0
+  parameter int unsigned ExpWidth     = 8,
+  parameter int unsigned FracWidth    = 23,
+  parameter int unsigned Arith        = arith_pkg::Graded,
+  parameter int unsigned QuotientBits = 0,
+  parameter bit          Pipelined    = 1'b0
 ) (
+  input  logic                        clk_i,
+  input  logic                        valid_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  logic [2:0]                  rounding_mode_i,
@@ -16,21 +31,246 @@ module fp_divider #(
   output fp_pkg::flags_t              flags_o
 );
 
-  fp_divider_stages #(
+  localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
+  localparam int unsigned CountWidth = $clog2(FracWidth + 1);
+  localparam int unsigned RoundExpWidth = ExpWidth + 2;  // the rounder's exponent
+  // Fraction bits of a quotient in [1, 4): where it is below 2, all of the significand's and the
+  // guard bit, or as many as are not cut off. Two a row.
+  localparam int unsigned QuotientFrac = (QuotientBits == 0) ? FracWidth + 1 : QuotientBits - 1;
+  localparam int unsigned Rows = (QuotientFrac + 1) / 2;
+  localparam int unsigned QuotientWidth = 2 * Rows + 2;
+  localparam int unsigned RoundSigWidth = FracWidth + 5;  // of the rounder: to its sticky bit
+
+  if (QuotientBits > FracWidth + 1 || Rows > 27) begin : gen_check
+    $error("fp_divider: expected at most FracWidth + 1 QuotientBits and 27 rows");
+  end
+
+  // ---- Unpack
+
+  logic a_sign, b_sign;
+  logic [ExpWidth-1:0] a_exp, b_exp;
+  logic [SigWidth-1:0] a_sig, b_sig;
+  fp_pkg::class_t a_class, b_class;
+
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_a (
+    .packed_i(a_i),
+    .sign_o(a_sign),
+    .exponent_o(a_exp),
+    .significand_o(a_sig),
+    .class_o(a_class)
+  );
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_b (
+    .packed_i(b_i),
+    .sign_o(b_sign),
+    .exponent_o(b_exp),
+    .significand_o(b_sig),
+    .class_o(b_class)
+  );
+
+  // ---- Normalise
+
+  logic [SigWidth-1:0] a_norm, b_norm;
+  logic [CountWidth-1:0] a_count, b_count;
+  logic [1:0] unused_zero;
+
+  leading_zero_counter #(
+    .Width(SigWidth)
+  ) u_count_a (
+    .a_i(a_sig),
+    .count_o(a_count),
+    .zero_o(unused_zero[0])
+  );
+  leading_zero_counter #(
+    .Width(SigWidth)
+  ) u_count_b (
+    .a_i(b_sig),
+    .count_o(b_count),
+    .zero_o(unused_zero[1])
+  );
+  assign a_norm = a_sig << a_count;
+  assign b_norm = b_sig << b_count;
+
+  // ---- Exponent for the rounder: that of a/b, less one because the quotient comes doubled, less one
+  // because the rounder wants it so: (a_exp - a_count) - (b_exp - b_count) + bias - 2
+
+  localparam logic [RoundExpWidth-1:0] Offset = RoundExpWidth'(2 ** (ExpWidth - 1) - 3);
+  logic [RoundExpWidth-1:0] a_exp_offset, exp_difference, count_difference;
+  logic [RoundExpWidth-1:0] a_count_wide, b_count_wide;
+  logic [3:0] unused_carry;
+
+  assign a_count_wide = RoundExpWidth'(a_count);
+  assign b_count_wide = RoundExpWidth'(b_count);
+  adder #(
+    .Width(RoundExpWidth),
+    .Arith(Arith)
+  ) u_offset (
+    .a_i({2'b00, a_exp}),
+    .b_i(Offset),
+    .carry_i(1'b0),
+    .sum_o(a_exp_offset),
+    .carry_o(unused_carry[0])
+  );
+  adder #(
+    .Width(RoundExpWidth),
+    .Arith(Arith)
+  ) u_exp_difference (
+    .a_i(a_exp_offset),
+    .b_i(~{2'b00, b_exp}),
+    .carry_i(1'b1),
+    .sum_o(exp_difference),
+    .carry_o(unused_carry[1])
+  );
+  adder #(
+    .Width(RoundExpWidth),
+    .Arith(Arith)
+  ) u_count_difference (
+    .a_i(b_count_wide),
+    .b_i(~a_count_wide),
+    .carry_i(1'b1),
+    .sum_o(count_difference),
+    .carry_o(unused_carry[2])
+  );
+
+  // ---- Specials
+
+  fp_pkg::special_t special;
+
+  always_comb begin
+    special = '0;
+    if (a_class.special | b_class.special) begin
+      special.invalid = a_class.signaling_nan | b_class.signaling_nan
+                      | (a_class.zero & b_class.zero) | (a_class.infinity & b_class.infinity);
+      special.nan = a_class.nan | b_class.nan | special.invalid;
+      special.infinity = a_class.infinity | b_class.zero;
+      special.zero = a_class.zero | b_class.infinity;
+      special.divide_by_zero = b_class.zero & ~a_class.zero & ~a_class.infinity & ~a_class.nan;
+    end
+  end
+
+  // ---- First cut, and what goes beside the division
+
+  logic [SigWidth-1:0] a_norm_1, b_norm_1;
+  logic [RoundExpWidth-1:0] exp_difference_1, count_difference_1, exponent, exponent_2;
+  logic sign_1, sign_2, valid_1, divided;
+  fp_pkg::special_t special_1, special_2;
+
+  delay_line #(
+    .Width(1),
+    .Depth(32'(Pipelined))
+  ) u_valid (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(valid_i),
+    .data_o(valid_1)
+  );
+  delay_line #(
+    .Width(2 * SigWidth),
+    .Depth(32'(Pipelined))
+  ) u_significands (
+    .clk_i,
+    .enable_i(valid_i),
+    .data_i({a_norm, b_norm}),
+    .data_o({a_norm_1, b_norm_1})
+  );
+  delay_line #(
+    .Width(2 * RoundExpWidth + 1 + $bits(special)),
+    .Depth(32'(Pipelined))
+  ) u_exponents (
+    .clk_i,
+    .enable_i(valid_i),
+    .data_i({exp_difference, count_difference, a_sign ^ b_sign, special}),
+    .data_o({exp_difference_1, count_difference_1, sign_1, special_1})
+  );
+
+  adder #(
+    .Width(RoundExpWidth),
+    .Arith(Arith)
+  ) u_exponent (
+    .a_i(exp_difference_1),
+    .b_i(count_difference_1),
+    .carry_i(1'b0),
+    .sum_o(exponent),
+    .carry_o(unused_carry[3])
+  );
+
+  // ---- Divide: the doubled quotient, in (1, 4)
+
+  logic [QuotientWidth-1:0] quotient;
+  logic remainder;
+
+  srt_divider #(
+    .Width(SigWidth),
+    .Rows(Rows),
+    .SideWidth(RoundExpWidth + 1 + $bits(special)),
+    .Arith(Arith),
+    .Pipelined(Pipelined)
+  ) u_divide (
+    .clk_i,
+    .valid_i(valid_1),
+    .dividend_i(a_norm_1),
+    .divisor_i(b_norm_1),
+    .side_i({exponent, sign_1, special_1}),
+    .quotient_o(quotient),
+    .remainder_o(remainder),
+    .side_o({exponent_2, sign_2, special_2}),
+    .valid_o(divided)
+  );
+
+  // ---- Place it for the rounder; or cut it off, one place further down where it is below 2
+
+  logic [RoundSigWidth-1:0] significand;
+
+  if (QuotientBits == 0) begin : gen_ieee
+    assign significand = {quotient, {(RoundSigWidth - QuotientWidth - 1) {1'b0}}, remainder};
+  end else begin : gen_cut_off
+    localparam logic [QuotientWidth-1:0] KeepFrom2 = {
+      {QuotientBits{1'b1}}, {(QuotientWidth - QuotientBits) {1'b0}}
+    };
+    localparam logic [QuotientWidth-1:0] KeepFrom1 = {
+      {(QuotientBits + 1) {1'b1}}, {(QuotientWidth - 1 - QuotientBits) {1'b0}}
+    };
+    logic unused_remainder;
+    assign unused_remainder = remainder;
+    assign significand = {quotient & (quotient[QuotientWidth-1] ? KeepFrom2 : KeepFrom1),
+                          {(RoundSigWidth - QuotientWidth) {1'b0}}};
+  end
+
+  // ---- Rounding
+
+  logic [ExpWidth+FracWidth:0] result;
+  fp_pkg::flags_t flags;
+
+  fp_round #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
-    .Arith(Arith),
-    .Adder(Adder),
-    .QuotientBits(QuotientBits)
-  ) u_stages (
-    .clk_i(1'b0),
-    .valid_i(1'b1),
-    .a_i,
-    .b_i,
+    .Arith(Arith)
+  ) u_round (
+    .sign_i(sign_2),
+    .exponent_i(exponent_2),
+    .significand_i(significand),
+    .special_i(special_2),
     .rounding_mode_i,
     .tininess_after_i,
-    .result_o,
-    .flags_o
+    .result_o(result),
+    .flags_o(flags)
+  );
+
+  // ---- Last cut
+
+  delay_line #(
+    .Width(ExpWidth + FracWidth + 6),
+    .Depth(32'(Pipelined))
+  ) u_result (
+    .clk_i,
+    .enable_i(divided),
+    .data_i({result, flags}),
+    .data_o({result_o, flags_o})
   );
 
 endmodule

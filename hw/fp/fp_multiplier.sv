@@ -1,13 +1,25 @@
 // Floating-point multiply: a_i * b_i.
 //
-// Combinational: fp_multiplier_stages without registers; see there.
+// The significands go into the multiplier as they are, a subnormal one with its leading zeros; how
+// far the product must move is found from the operands alone, beside the multiplication: to the
+// left by the leading zeros, but not beyond the smallest exponent, or to the right for a subnormal
+// result. Behind the multiplier are left one shift and the shared rounder.
+//
+// Arith: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
+// Pipelined: registers before the product, behind it, and behind the result. Latency: 3 clocks, one operation a clock;
+// else combinational. The rounding mode is the last stage's.
+//
+// Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the
+// operands' signs, also that of zeros and infinities. Zero times infinity is invalid.
+// Source: IEEE 754-2019, clause 5.4.1; the paper's multiplier, section 3.4.
 module fp_multiplier #(
   parameter int unsigned ExpWidth    = 8,
   parameter int unsigned FracWidth   = 23,
-  parameter int unsigned Arith       = arith_pkg::Structural,
-  parameter int unsigned Adder       = arith_pkg::AdderGraded,
-  parameter bit          ConstantRow = 1'b0
+  parameter int unsigned Arith       = arith_pkg::Graded,
+  parameter bit          ConstantRow = 1'b0,
+  parameter bit          Pipelined   = 1'b0
 ) (
+  input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  logic [2:0]                  rounding_mode_i,
@@ -16,20 +28,224 @@ module fp_multiplier #(
   output fp_pkg::flags_t              flags_o
 );
 
-  fp_multiplier_stages #(
+  localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
+  localparam int unsigned ProdWidth = 2 * SigWidth;  // two integer bits
+  localparam int unsigned LeftWidth = $clog2(SigWidth);
+
+  // ---- Unpack
+
+  logic a_sign, b_sign;
+  logic [ExpWidth-1:0] a_exp, b_exp;
+  logic [SigWidth-1:0] a_sig, b_sig;
+  fp_pkg::class_t a_class, b_class;
+
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_a (
+    .packed_i(a_i),
+    .sign_o(a_sign),
+    .exponent_o(a_exp),
+    .significand_o(a_sig),
+    .class_o(a_class)
+  );
+  fp_unpack #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth)
+  ) u_unpack_b (
+    .packed_i(b_i),
+    .sign_o(b_sign),
+    .exponent_o(b_exp),
+    .significand_o(b_sig),
+    .class_o(b_class)
+  );
+
+  // ---- Add the exponents: the biased exponent of the product less one, as the rounder wants it, is
+  // a_exp + b_exp - bias - 1 = a_exp + b_exp - 2**(ExpWidth-1), which leaves the low bits alone.
+
+  logic [ExpWidth:0] exp_sum, exp;
+  logic exp_negative, unused_exp_carry;
+
+  adder #(
+    .Width(ExpWidth + 1),
+    .Arith(Arith)
+  ) u_exp_sum (
+    .a_i({1'b0, a_exp}),
+    .b_i({1'b0, b_exp}),
+    .carry_i(1'b0),
+    .sum_o(exp_sum),
+    .carry_o(unused_exp_carry)
+  );
+  assign exp_negative = exp_sum[ExpWidth:ExpWidth-1] == 2'b00;
+  assign exp = exp_sum ^ {~exp_sum[ExpWidth-1], 1'b1, {(ExpWidth - 1) {1'b0}}};
+
+  // ---- Specials
+
+  fp_pkg::special_t special;
+
+  always_comb begin
+    special = '0;
+    if (a_class.special | b_class.special) begin
+      special.invalid = a_class.signaling_nan | b_class.signaling_nan
+                      | (a_class.infinity & b_class.zero) | (a_class.zero & b_class.infinity);
+      special.nan = a_class.nan | b_class.nan | special.invalid;
+      special.infinity = a_class.infinity | b_class.infinity;
+      special.zero = a_class.zero | b_class.zero;
+    end
+  end
+
+  // ---- Cut before the product
+
+  logic [SigWidth-1:0] a_sig_0, b_sig_0;
+  logic [ExpWidth:0] exp_0;
+  logic exp_negative_0, sign_0;
+  fp_pkg::special_t special_0;
+
+  delay_line #(
+    .Width(2 * SigWidth + ExpWidth + 3 + $bits(special)),
+    .Depth(32'(Pipelined))
+  ) u_operands (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({a_sig, b_sig, exp, exp_negative, a_sign ^ b_sign, special}),
+    .data_o({a_sig_0, b_sig_0, exp_0, exp_negative_0, sign_0, special_0})
+  );
+
+  // ---- Multiply the significands: in [1, 4) if both are normal
+
+  logic [ProdWidth-1:0] product;
+
+  multiplier #(
+    .Width(SigWidth),
+    .Arith(Arith),
+    .ConstantRow(ConstantRow)
+  ) u_multiplier (
+    .a_i(a_sig_0),
+    .b_i(b_sig_0),
+    .product_o(product)
+  );
+
+  // ---- Left shift: the leading zeros of the subnormal operand, if there is one (the product of two
+  // is far below the smallest subnormal). A mark stops the count where the exponent is the smallest.
+
+  logic [SigWidth-1:0] may_be_subnormal, mark;
+  logic [LeftWidth-1:0] left;
+  logic unused_zero;
+
+  assign may_be_subnormal = a_sig_0[SigWidth-1] ? b_sig_0 : a_sig_0;
+  assign mark = {1'b1, {FracWidth{1'b0}}} >> exp_0;
+
+  leading_zero_counter #(
+    .Width(SigWidth)
+  ) u_left (
+    .a_i(may_be_subnormal | mark),
+    .count_o(left),
+    .zero_o(unused_zero)
+  );
+
+  // ---- Cut behind the product
+
+  logic [ProdWidth-1:0] product_1;
+  logic [ExpWidth:0] exp_1;
+  logic [LeftWidth-1:0] left_1;
+  logic sign_1, exp_negative_1;
+  fp_pkg::special_t special_1;
+
+  delay_line #(
+    .Width(ProdWidth),
+    .Depth(32'(Pipelined))
+  ) u_product (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(product),
+    .data_o(product_1)
+  );
+  delay_line #(
+    .Width(ExpWidth + LeftWidth + 3 + $bits(special)),
+    .Depth(32'(Pipelined))
+  ) u_sideband_product (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i({exp_0, left, exp_negative_0, sign_0, special_0}),
+    .data_o({exp_1, left_1, exp_negative_1, sign_1, special_1})
+  );
+
+  // ---- Shift: to the left, or by -exp = ~exp + 1 to the right, where exp is negative
+
+  logic [ProdWidth-2:0] shifted;
+  logic lost;
+  logic [ProdWidth:0] placed;  // with a place for all that is lost to the right
+
+  sticky_right_shift #(
+    .Width(ProdWidth - 1),
+    .AmountWidth(ExpWidth)
+  ) u_right (
+    .a_i(product_1[ProdWidth-1:1]),
+    .amount_i(~exp_1[ExpWidth-1:0]),
+    .shifted_o(shifted),
+    .lost_o(lost)
+  );
+  assign placed = exp_negative_1 ? {1'b0, shifted, lost | product_1[0]}
+                                 : {product_1 << left_1, 1'b0};
+
+  // ---- Exponent after the shift to the left, beside it
+
+  logic [ExpWidth:0] exp_less_left, left_extended;
+  logic unused_carry;
+
+  assign left_extended = (ExpWidth + 1)'(left_1);
+
+  adder #(
+    .Width(ExpWidth + 1),
+    .Arith(Arith)
+  ) u_exp_less_left (
+    .a_i(exp_1),
+    .b_i(~left_extended),
+    .carry_i(1'b1),
+    .sum_o(exp_less_left),
+    .carry_o(unused_carry)
+  );
+
+  // ---- Round
+
+  logic [ExpWidth+FracWidth:0] result;
+  fp_pkg::flags_t flags;
+
+  fp_round #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
-    .Arith(Arith),
-    .Adder(Adder),
-    .ConstantRow(ConstantRow)
-  ) u_stages (
-    .clk_i(1'b0),
-    .a_i,
-    .b_i,
+    .SubnormalShift(1'b0),
+    .Arith(Arith)
+  ) u_round (
+    .sign_i(sign_1),
+    .exponent_i({1'b0, exp_less_left & {(ExpWidth + 1){~exp_negative_1}}}),
+    .significand_i({placed[ProdWidth-:FracWidth+4], |placed[ProdWidth-FracWidth-4:0]}),
+    .special_i(special_1),
     .rounding_mode_i,
     .tininess_after_i,
-    .result_o,
-    .flags_o
+    .result_o(result),
+    .flags_o(flags)
+  );
+
+  // ---- Last cut
+
+  delay_line #(
+    .Width(ExpWidth + FracWidth + 1),
+    .Depth(32'(Pipelined))
+  ) u_result (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(result),
+    .data_o(result_o)
+  );
+  delay_line #(
+    .Width($bits(flags)),
+    .Depth(32'(Pipelined))
+  ) u_flags (  // by themselves: where they are unused, Verilator leaves them out
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(flags),
+    .data_o(flags_o)
   );
 
 endmodule

@@ -8,7 +8,7 @@
 // the multiplier, with arith_pkg's groups, FracWidth <= 75.
 //
 // What the cores are made of: sums and differences of significands and exponents are instances of
-// hw/arith's adder (its kind is their parameter Adder), steps by one of its incrementer, products
+// hw/arith's adder (its kind is their parameter Arith), steps by one of its incrementer, products
 // and quotients of its multiplier and divider. The operators + - * / stand in constants alone.
 //
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
@@ -22,6 +22,24 @@ package fp_pkg;
     RoundUp                  = 3'd3,
     RoundNearestMaxMagnitude = 3'd4
   } rounding_mode_e;
+
+  // What an operand is, see fp_unpack
+  typedef struct packed {
+    logic special;  // one of the next three
+    logic zero;
+    logic infinity;
+    logic nan;      // quiet or signalling
+    logic signaling_nan;
+  } class_t;
+
+  // What stands in place of a rounded value, and flags that no rounding raises: see fp_round
+  typedef struct packed {
+    logic nan;
+    logic infinity;
+    logic zero;
+    logic invalid;
+    logic divide_by_zero;
+  } special_t;
 
   // Inexact is bit 0: the order in which RISC-V and TestFloat write them.
   typedef struct packed {

@@ -12,9 +12,9 @@
 // already: exponent_i is then never negative, and where it is 0 significand_i may be anything in
 // [0, 4), zero included. (A sum's subnormal results are exact and come out in place.)
 //
-// What overrides what, first to last: nan_i (the canonical NaN), infinity_i, zero_i, overflow, the
-// rounded value. Any of the three inputs silences overflow, underflow and inexact; invalid_i and
-// divide_by_zero_i go straight to the flags. sign_i is the sign of every result but NaN.
+// What overrides what, first to last: special_i's nan (the canonical NaN), infinity, zero, overflow, the
+// rounded value. Any of the three silences overflow, underflow and inexact; invalid and divide_by_zero go
+// straight to the flags. sign_i is the sign of every result but NaN.
 //
 // rounding_mode_i: fp_pkg::rounding_mode_e; the reserved values 5, 6 and 7 round towards zero.
 //
@@ -27,16 +27,12 @@ module fp_round #(
   parameter int unsigned ExpWidth       = 8,
   parameter int unsigned FracWidth      = 23,
   parameter bit          SubnormalShift = 1'b1,
-  parameter int unsigned Arith          = arith_pkg::Structural
+  parameter int unsigned Arith          = arith_pkg::Graded
 ) (
   input  logic                          sign_i,
   input  logic signed [ExpWidth+1:0]    exponent_i,
   input  logic        [FracWidth+4:0]   significand_i,
-  input  logic                          nan_i,
-  input  logic                          infinity_i,
-  input  logic                          zero_i,
-  input  logic                          invalid_i,
-  input  logic                          divide_by_zero_i,
+  input  fp_pkg::special_t              special_i,
   input  logic [2:0]                    rounding_mode_i,
   input  logic                          tininess_after_i,
   output logic [ExpWidth+FracWidth:0]   result_o,
@@ -68,7 +64,7 @@ module fp_round #(
   assign negative = exponent_i[ExpWidth+1];
   assign base = exponent_i[FieldWidth-1:0] & {FieldWidth{~negative}};
 
-  if (SubnormalShift) begin : g_shift
+  if (SubnormalShift) begin : gen_shift
     // By -exponent_i = ~exponent_i + 1
     logic [SigWidth-2:0] shifted;
     logic lost;
@@ -84,7 +80,7 @@ module fp_round #(
     );
     assign placed = negative ? {1'b0, shifted[SigWidth-2:1], shifted[0] | lost | significand_i[0]}
                              : significand_i;
-  end else begin : g_in_place
+  end else begin : gen_in_place
     assign placed = significand_i;
   end
 
@@ -151,7 +147,7 @@ module fp_round #(
               & ~(tininess_after_i & (&fraction) & guard & increment_below);
 
   logic special, to_infinity;
-  assign special = nan_i | infinity_i | zero_i;
+  assign special = special_i.nan | special_i.infinity | special_i.zero;
   assign to_infinity = nearest | away;
 
   // ---- Result
@@ -164,17 +160,17 @@ module fp_round #(
   always_comb begin
     magnitude = rounded;
     if (special | overflow) begin
-      if (nan_i) magnitude = NotANumber;
-      else if (infinity_i) magnitude = Infinity;
-      else if (zero_i) magnitude = '0;
+      if (special_i.nan) magnitude = NotANumber;
+      else if (special_i.infinity) magnitude = Infinity;
+      else if (special_i.zero) magnitude = '0;
       else magnitude = to_infinity ? Infinity : Largest;
     end
   end
 
-  assign result_o = {sign_i & ~nan_i, magnitude};
+  assign result_o = {sign_i & ~special_i.nan, magnitude};
   assign flags_o = {
-    invalid_i,
-    divide_by_zero_i,
+    special_i.invalid,
+    special_i.divide_by_zero,
     overflow & ~special,
     tiny & inexact & ~special,
     (inexact | overflow) & ~special

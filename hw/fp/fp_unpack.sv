@@ -14,16 +14,12 @@ module fp_unpack #(
   output logic                        sign_o,
   output logic [ExpWidth-1:0]         exponent_o,      // biased, 1 or more
   output logic [FracWidth:0]          significand_o,   // one integer bit
-  output logic                        special_o,       // one of the next three
-  output logic                        zero_o,
-  output logic                        infinity_o,
-  output logic                        nan_o,           // quiet or signalling
-  output logic                        signaling_nan_o
+  output fp_pkg::class_t              class_o
 );
 
   logic [ExpWidth-1:0] field;
   logic [FracWidth-1:0] fraction;
-  logic field_zero, field_ones, fraction_zero;
+  logic field_zero, field_ones, fraction_zero, special;
 
   assign {sign_o, field, fraction} = packed_i;
   assign field_zero = field == '0;
@@ -32,15 +28,16 @@ module fp_unpack #(
 
   assign exponent_o = {field[ExpWidth-1:1], field[0] | field_zero};
   assign significand_o = {~field_zero, fraction};
-  assign special_o = field_ones | (packed_i[ExpWidth+FracWidth-1:0] == '0);
+  assign special = field_ones | (packed_i[ExpWidth+FracWidth-1:0] == '0);
 
   always_comb begin
-    {zero_o, infinity_o, nan_o, signaling_nan_o} = 4'b0000;
-    if (special_o) begin
-      zero_o = field_zero;
-      infinity_o = field_ones & fraction_zero;
-      nan_o = field_ones & ~fraction_zero;
-      signaling_nan_o = field_ones & ~fraction_zero & ~fraction[FracWidth-1];
+    class_o = '0;
+    if (special) begin
+      class_o.special = 1'b1;
+      class_o.zero = field_zero;
+      class_o.infinity = field_ones & fraction_zero;
+      class_o.nan = field_ones & ~fraction_zero;
+      class_o.signaling_nan = field_ones & ~fraction_zero & ~fraction[FracWidth-1];
     end
   end
 

@@ -7,12 +7,11 @@
 // before and behind them is there once: unpacking, normalising, first digit, remainder, rounding.
 //
 // Correctly rounded in rounding_mode_i, which is the last stage's; all of IEEE 754 holds, as in
-// fp_divider_stages, but that no flags are raised. RowsPerClock: digits that a divider finds in a clock.
+// fp_divider, but that no flags are raised. RowsPerClock: digits that a divider finds in a clock.
 module fp_vector_divider #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   parameter int unsigned Components = 3,
   parameter int unsigned Period = 7,
   parameter int unsigned RowsPerClock = 2
@@ -28,21 +27,25 @@ module fp_vector_divider #(
 );
 
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
-  localparam int unsigned PadWidth = (FracWidth < 5) ? 5 - FracWidth : 0;  // see srt_divider_stages
+  localparam int unsigned PadWidth = (FracWidth < 5) ? 5 - FracWidth : 0;  // see srt_divider
   localparam int unsigned ResWidth = 2 + FracWidth + PadWidth;  // a divider's residual
   localparam int unsigned CountWidth = $clog2(SigWidth);
   localparam int unsigned RoundExpWidth = ExpWidth + 2;  // the rounder's exponent
-  localparam int unsigned Rows = (FracWidth + 2) / 2;  // see fp_divider_stages
+  localparam int unsigned Rows = (FracWidth + 2) / 2;  // see fp_divider
   localparam int unsigned QuotientWidth = 2 * Rows + 2;
   localparam int unsigned RoundSigWidth = FracWidth + 5;  // of the rounder: to its sticky bit
   localparam int unsigned SideWidth = RoundExpWidth + 4;
 
   // ---- Unpack, normalise
 
-  logic sign, zero, infinity, nan, unused_special, unused_signaling;
+  logic sign, unused_zero;
   logic [ExpWidth-1:0] exp;
   logic [SigWidth-1:0] sig, norm;
   logic [CountWidth-1:0] count;
+  // verilator lint_off UNUSEDSIGNAL
+  // No flags are raised.
+  fp_pkg::class_t is, is_q, by_is_q;
+  // verilator lint_on UNUSEDSIGNAL
 
   fp_unpack #(
     .ExpWidth(ExpWidth),
@@ -52,21 +55,18 @@ module fp_vector_divider #(
     .sign_o(sign),
     .exponent_o(exp),
     .significand_o(sig),
-    .special_o(unused_special),
-    .zero_o(zero),
-    .infinity_o(infinity),
-    .nan_o(nan),
-    .signaling_nan_o(unused_signaling)
+    .class_o(is)
   );
-  fp_normalize #(
+  leading_zero_counter #(
     .Width(SigWidth)
-  ) u_normalize (
-    .significand_i(sig),
-    .significand_o(norm),
-    .count_o(count)
+  ) u_count (
+    .a_i(sig),
+    .count_o(count),
+    .zero_o(unused_zero)
   );
+  assign norm = sig << count;
 
-  logic divisor_q, dividend_q, sign_q, zero_q, infinity_q, nan_q;
+  logic divisor_q, dividend_q, sign_q;
   logic [ExpWidth-1:0] exp_q;
   logic [SigWidth-1:0] norm_q;
   logic [CountWidth-1:0] count_q;
@@ -76,9 +76,7 @@ module fp_vector_divider #(
     else {divisor_q, dividend_q} <= {divisor_i, dividend_i};
   end
   always_ff @(posedge clk_i) begin
-    {sign_q, zero_q, infinity_q, nan_q, exp_q, norm_q, count_q} <= {
-      sign, zero, infinity, nan, exp, norm, count
-    };
+    {sign_q, is_q, exp_q, norm_q, count_q} <= {sign, is, exp, norm, count};
   end
 
   // ---- The divisor is kept, with what its exponent adds to a quotient's: the bias less that exponent, less one because
@@ -91,8 +89,7 @@ module fp_vector_divider #(
   assign count_wide = RoundExpWidth'(count_q);
   adder #(
     .Width(RoundExpWidth),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_exp_less_count (
     .a_i({2'b00, exp_q}),
     .b_i(~count_wide),
@@ -102,8 +99,7 @@ module fp_vector_divider #(
   );
   adder #(
     .Width(RoundExpWidth),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_offset_less_exp (
     .a_i(Offset),
     .b_i(~exp_less_count),
@@ -112,14 +108,13 @@ module fp_vector_divider #(
     .carry_o(unused_carry[1])
   );
 
-  logic by_sign_q, by_zero_q, by_infinity_q, by_nan_q;
+  logic by_sign_q;
   logic [SigWidth-1:0] by_norm_q;
   logic [RoundExpWidth-1:0] by_exponent_q;
 
   always_ff @(posedge clk_i) begin
     if (divisor_q) begin
-      {by_sign_q, by_zero_q, by_infinity_q, by_nan_q} <= {sign_q, zero_q, infinity_q, nan_q};
-      {by_norm_q, by_exponent_q} <= {norm_q, offset_less_exp};
+      {by_sign_q, by_is_q, by_norm_q, by_exponent_q} <= {sign_q, is_q, norm_q, offset_less_exp};
     end
   end
 
@@ -141,8 +136,7 @@ module fp_vector_divider #(
   );
   adder #(
     .Width(RoundExpWidth),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_exponent (
     .a_i(exp_less_count),
     .b_i(by_exponent_q),
@@ -153,9 +147,9 @@ module fp_vector_divider #(
   assign side = {
     exponent,
     sign_q ^ by_sign_q,
-    nan_q | by_nan_q | (zero_q & by_zero_q) | (infinity_q & by_infinity_q),
-    infinity_q | by_zero_q,
-    zero_q | by_infinity_q
+    is_q.nan | by_is_q.nan | (is_q.zero & by_is_q.zero) | (is_q.infinity & by_is_q.infinity),
+    is_q.infinity | by_is_q.zero,
+    is_q.zero | by_is_q.infinity
   };
 
   // ---- Dividers in turn
@@ -180,8 +174,7 @@ module fp_vector_divider #(
       .RowsPerClock(RowsPerClock),
       .Period(Period),
       .SideWidth(SideWidth),
-      .Arith(Arith),
-      .Adder(Adder)
+      .Arith(Arith)
     ) u_divider (
       .clk_i,
       .rst_ni,
@@ -217,8 +210,7 @@ module fp_vector_divider #(
     .Digits(Rows + 1),
     .SideWidth(SideWidth),
     .Arith(Arith),
-    .Adder(Adder),
-    .PipeRegs(2'b11)
+    .Pipelined(1'b1)
   ) u_quotient (
     .clk_i,
     .valid_i(|done),
@@ -247,11 +239,7 @@ module fp_vector_divider #(
     .sign_i(result_sign),
     .exponent_i(result_exponent),
     .significand_i({quotient, {(RoundSigWidth - QuotientWidth - 1) {1'b0}}, remainder}),
-    .nan_i(result_nan),
-    .infinity_i(result_infinity),
-    .zero_i(result_zero),
-    .invalid_i(1'b0),
-    .divide_by_zero_i(1'b0),
+    .special_i({result_nan, result_infinity, result_zero, 2'b00}),
     .rounding_mode_i,
     .tininess_after_i(1'b0),
     .result_o(result),

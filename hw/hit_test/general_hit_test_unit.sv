@@ -27,8 +27,7 @@
 module general_hit_test_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   parameter int unsigned QuotientBits = 0,
   parameter bit [2:0] RoundingMode = fp_pkg::RoundNearestEven,
   localparam int unsigned Width = ExpWidth + FracWidth + 1
@@ -93,9 +92,9 @@ module general_hit_test_unit #(
     .ExpWidth   (ExpWidth),
     .FracWidth  (FracWidth),
     .Arith      (Arith),
-    .Adder      (Adder),
     .ConstantRow(1'b1)  // the paper's carry-save tree
   ) u_multiplier (
+    .clk_i,
     .a_i             (factor),
     .b_i             (coordinate),
     .rounding_mode_i (RoundingMode),
@@ -107,9 +106,9 @@ module general_hit_test_unit #(
   fp_adder #(
     .ExpWidth (ExpWidth),
     .FracWidth(FracWidth),
-    .Arith    (Arith),
-    .Adder    (Adder)
+    .Arith    (Arith)
   ) u_adder (
+    .clk_i,
     .a_i             (addend),
     .b_i             (product),
     .subtract_i      (1'b0),
@@ -123,9 +122,10 @@ module general_hit_test_unit #(
     .ExpWidth    (ExpWidth),
     .FracWidth   (FracWidth),
     .Arith       (Arith),
-    .Adder       (Adder),
     .QuotientBits(QuotientBits)
   ) u_divider (
+    .clk_i,
+    .valid_i         (1'b1),
     .a_i             ({~numerator_q[Width-1], numerator_q[Width-2:0]}),
     .b_i             (divisor_q),
     .rounding_mode_i (RoundingMode),

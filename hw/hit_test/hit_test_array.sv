@@ -12,8 +12,7 @@ module hit_test_array #(
   parameter int unsigned Lanes     = 1,
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith     = arith_pkg::Structural,
-  parameter int unsigned Adder     = arith_pkg::AdderGraded,
+  parameter int unsigned Arith     = arith_pkg::Graded,
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
   parameter int unsigned CounterWidth = 48,
@@ -58,7 +57,6 @@ module hit_test_array #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
       .Arith(Arith),
-      .Adder(Adder),
       .RoundingMode(RoundingMode),
       .TagWidth(TagWidth)
     ) u_pipeline (

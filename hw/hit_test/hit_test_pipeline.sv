@@ -1,8 +1,8 @@
 // The pipelined hit-test unit: a ray direction and a polygon record in each clock; hit, miss or doubt
 // of each test, and the nearest hit of each burst of tests with its t and P.
 //
-//   scale    each coordinate of I times five  15 multipliers, see vec_scale; their first registers take the test
-//   add      V = N . I, U_k = E_k . I         8 adders, see fp_add3
+//   scale    each coordinate of I times five  15 multipliers, see hit_dots; their first registers take the test
+//   add      V = N . I, U_k = E_k . I         8 adders
 //   decide   hit, miss or doubt               see hit_decision
 //   divide   t = d / V                        a divider
 //   nearest  the nearest hit of the burst     see nearest_hit
@@ -30,11 +30,9 @@
 module hit_test_pipeline #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith     = arith_pkg::Structural,
-  parameter int unsigned Adder     = arith_pkg::AdderGraded,
+  parameter int unsigned Arith     = arith_pkg::Graded,
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
-  parameter bit          Single = 1'b0,  // each test is a burst, and ready_i always high: no queue
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,
   localparam int unsigned TErrorWidth = hit_test_pkg::TErrorWidth
 ) (
@@ -73,59 +71,27 @@ module hit_test_pipeline #(
     else test_q <= {test_q[DotLatency-2:0], valid_i & ready_o};
   end
 
-  // ---- Scale: all that a coordinate of I is multiplied by, and d for the point
-
-  // The words of `scaled` for coordinate k: products of a component each of N, E0, E1, E2; of d
-  localparam int unsigned ScaledNormal = 0;
-  localparam int unsigned ScaledEdges = 1;
-  localparam int unsigned ScaledD = 4;
-  localparam int unsigned ScaledWords = 5;
-  logic [3*ScaledWords*Width-1:0] scaled;
-
-  for (genvar k = 0; k < 3; k++) begin : gen_coordinate
-    vec_scale #(
-      .ExpWidth(ExpWidth),
-      .FracWidth(FracWidth),
-      .Arith(Arith),
-      .Adder(Adder),
-      .RoundingMode(RoundingMode),
-      .Words(ScaledWords)
-    ) u_scale (
-      .clk_i,
-      .words_i({record_i[Width*hit_test_pkg::RecordD +: Width],
-                record_i[Width*(hit_test_pkg::RecordEdges+6+k) +: Width],
-                record_i[Width*(hit_test_pkg::RecordEdges+3+k) +: Width],
-                record_i[Width*(hit_test_pkg::RecordEdges+k) +: Width],
-                record_i[Width*(hit_test_pkg::RecordNormal+k) +: Width]}),
-      .factor_i(direction_i[Width*k +: Width]),
-      .products_o(scaled[ScaledWords*Width*k +: ScaledWords*Width])
-    );
-  end
-
-  // ---- Add: V and U_k
+  // ---- Scale and add: V and U_k
 
   logic [Width-1:0] v;
-  logic [3*Width-1:0] u;
-  logic [4*Width-1:0] dots;  // in the order of the first four words of `scaled`
+  logic [3*Width-1:0] u, dot_dividends;
 
-  assign v = dots[Width*ScaledNormal+:Width];
-  assign u = dots[Width*ScaledEdges+:3*Width];
-
-  for (genvar n = 0; n < 4; n++) begin : gen_dot
-    fp_add3 #(
-      .ExpWidth(ExpWidth),
-      .FracWidth(FracWidth),
-      .Arith(Arith),
-      .Adder(Adder),
-      .RoundingMode(RoundingMode)
-    ) u_sum (
-      .clk_i,
-      .x_i(scaled[Width*n +: Width]),
-      .y_i(scaled[Width*(ScaledWords+n) +: Width]),
-      .z_i(scaled[Width*(2*ScaledWords+n) +: Width]),
-      .sum_o(dots[Width*n +: Width])
-    );
-  end
+  hit_dots #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .Arith(Arith),
+    .RoundingMode(RoundingMode)
+  ) u_dots (
+    .clk_i,
+    .step_i(1'b1),
+    .normal_i(record_i[Width*hit_test_pkg::RecordNormal +: 3*Width]),
+    .edges_i(record_i[Width*hit_test_pkg::RecordEdges +: 9*Width]),
+    .d_i(record_i[Width*hit_test_pkg::RecordD +: Width]),
+    .direction_i,
+    .v_o(v),
+    .u_o(u),
+    .dividends_o(dot_dividends)
+  );
 
   // What goes beside: the largest exponent of N instead of N itself.
   logic [ExpWidth-1:0] nx_exponent, ny_exponent, nz_exponent, nxy_exponent, normal_exponent;
@@ -136,7 +102,7 @@ module hit_test_pipeline #(
   assign nxy_exponent    = (nx_exponent > ny_exponent) ? nx_exponent : ny_exponent;
   assign normal_exponent = (nz_exponent > nxy_exponent) ? nz_exponent : nxy_exponent;
 
-  logic [3*Width-1:0] dot_bounds, dot_dividends;
+  logic [3*Width-1:0] dot_bounds;
   logic [Width-1:0] dot_d;
   logic [TagWidth-1:0] dot_tag;
   logic [ExpWidth-1:0] dot_exponent;
@@ -152,16 +118,6 @@ module hit_test_pipeline #(
              record_i[Width*hit_test_pkg::RecordBounds +: 3*Width],
              record_i[Width*hit_test_pkg::RecordD +: Width]}),
     .data_o({dot_exponent, dot_first, dot_last, dot_tag, dot_bounds, dot_d})
-  );
-  delay_line #(
-    .Width(3 * Width),
-    .Depth(DotLatency - hit_test_pkg::MultiplierLatency)
-  ) u_dividends (
-    .clk_i,
-    .enable_i(1'b1),
-    .data_i({scaled[Width*(2*ScaledWords+ScaledD) +: Width],
-             scaled[Width*(ScaledWords+ScaledD) +: Width], scaled[Width*ScaledD +: Width]}),
-    .data_o(dot_dividends)
   );
 
   // ---- Decide
@@ -196,16 +152,9 @@ module hit_test_pipeline #(
   end
 
   always_ff @(posedge clk_i) begin
-    miss_q              <= miss;
-    hit_q               <= hit;
-    doubt_q             <= doubt;
-    t_error_q           <= t_error;
-    decided_first_q     <= dot_first;
-    decided_last_q      <= dot_last;
-    decided_tag_q       <= dot_tag;
-    decided_dividends_q <= dot_dividends;
-    decided_d_q         <= dot_d;
-    decided_v_q         <= v;
+    {miss_q, hit_q, doubt_q, t_error_q} <= {miss, hit, doubt, t_error};
+    {decided_first_q, decided_last_q, decided_tag_q} <= {dot_first, dot_last, dot_tag};
+    {decided_dividends_q, decided_d_q, decided_v_q} <= {dot_dividends, dot_d, v};
   end
 
   // ---- Divide: t, of which a sure hit makes use
@@ -213,12 +162,11 @@ module hit_test_pipeline #(
   logic [Width-1:0] quotient;
   fp_pkg::flags_t unused_flags;
 
-  fp_divider_stages #(
+  fp_divider #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
     .Arith(Arith),
-    .Adder(Adder),
-    .PipeRegs(hit_test_pkg::DividerPipeRegs)
+    .Pipelined(1'b1)
   ) u_divider (
     .clk_i,
     .valid_i(decided_q & hit_q),
@@ -273,8 +221,8 @@ module hit_test_pipeline #(
     .clk_i,
     .rst_ni,
     .valid_i(dividing_q[DivideLatency-1]),
-    .first_i(divided_first | Single),
-    .last_i(divided_last | Single),
+    .first_i(divided_first),
+    .last_i(divided_last),
     .hit_i(divided_hit),
     .doubt_i(divided_doubt),
     .tag_i(divided_tag),
@@ -301,7 +249,6 @@ module hit_test_pipeline #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
     .Arith(Arith),
-    .Adder(Adder),
     .RoundingMode(RoundingMode)
   ) u_point (
     .clk_i,
@@ -325,34 +272,22 @@ module hit_test_pipeline #(
   assign {report_o, closed_o, found_o, t_error_o, point_valid_o, report_tag_o, tag_o, t_o,
           point_o} = word;
 
-  if (Single) begin : gen_register
-    logic unused_ready;
-    assign unused_ready = ready_i;
-    assign ready_o      = 1'b1;
+  localparam int unsigned Reserve = hit_test_pkg::point_latency(FracWidth) - 1;
 
-    always_ff @(posedge clk_i or negedge rst_ni) begin
-      if (!rst_ni) valid_o <= 1'b0;
-      else valid_o <= push;
-    end
-    always_ff @(posedge clk_i) word <= pushed;
-  end else begin : gen_queue
-    localparam int unsigned Reserve = hit_test_pkg::point_latency(FracWidth) - 1;
-
-    fifo #(
-      .Width(ResultWidth),
-      .Depth(Reserve + 3),
-      .Reserve(Reserve)
-    ) u_results (
-      .clk_i,
-      .rst_ni,
-      .push_i(push),
-      .data_i(pushed),
-      .space_o(ready_o),
-      .pop_i(valid_o & ready_i),
-      .valid_o,
-      .data_o(word)
-    );
-  end
+  fifo #(
+    .Width(ResultWidth),
+    .Depth(Reserve + 3),
+    .Reserve(Reserve)
+  ) u_results (
+    .clk_i,
+    .rst_ni,
+    .push_i(push),
+    .data_i(pushed),
+    .space_o(ready_o),
+    .pop_i(valid_o & ready_i),
+    .valid_o,
+    .data_o(word)
+  );
 
   // ---- Events
 

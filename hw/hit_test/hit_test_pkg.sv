@@ -38,16 +38,13 @@ package hit_test_pkg;
     max_grazing = (frac_width > 11) ? frac_width - 11 : 0;
   endfunction
 
-  // ---- Pipeline stages: where the cores are cut (see them), and how many clocks that makes
+  // ---- Clocks of the pipelined cores
 
-  localparam bit [2:0] MultiplierPipeRegs = 3'b111;
-  localparam bit [2:0] AdderPipeRegs = 3'b111;
-  localparam bit [31:0] DividerPipeRegs = 32'hffff_ffff;
   localparam int unsigned MultiplierLatency = 3;
   localparam int unsigned AdderLatency = 3;
   localparam int unsigned DotLatency = MultiplierLatency + 2 * AdderLatency;
 
-  // fp_divider_stages: a row for each two bits of the quotient, and five stages around them.
+  // fp_divider: a row for each two bits of the quotient, and five stages around them.
   function automatic int unsigned divide_latency(int unsigned frac_width);
     divide_latency = (frac_width + 2) / 2 + 5;
   endfunction

@@ -30,8 +30,7 @@
 module hit_test_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   parameter int unsigned QuotientBits = 0,
   parameter bit [2:0] RoundingMode = fp_pkg::RoundNearestEven,
   localparam int unsigned Width = ExpWidth + FracWidth + 1
@@ -88,9 +87,9 @@ module hit_test_unit #(
     .ExpWidth   (ExpWidth),
     .FracWidth  (FracWidth),
     .Arith      (Arith),
-    .Adder      (Adder),
     .ConstantRow(1'b1)  // the paper's carry-save tree
   ) u_multiplier (
+    .clk_i,
     .a_i             (factor),
     .b_i             (direction_1_q),
     .rounding_mode_i (RoundingMode),
@@ -102,9 +101,9 @@ module hit_test_unit #(
   fp_adder #(
     .ExpWidth (ExpWidth),
     .FracWidth(FracWidth),
-    .Arith    (Arith),
-    .Adder    (Adder)
+    .Arith    (Arith)
   ) u_adder (
+    .clk_i,
     .a_i             (accumulator_q),
     .b_i             (product),
     .subtract_i      (1'b0),
@@ -118,9 +117,10 @@ module hit_test_unit #(
     .ExpWidth    (ExpWidth),
     .FracWidth   (FracWidth),
     .Arith       (Arith),
-    .Adder       (Adder),
     .QuotientBits(QuotientBits)
   ) u_divider (
+    .clk_i,
+    .valid_i         (1'b1),
     .a_i             (product),
     .b_i             (divisor_q),
     .rounding_mode_i (RoundingMode),

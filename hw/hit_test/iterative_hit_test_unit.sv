@@ -23,8 +23,7 @@
 module iterative_hit_test_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   parameter int unsigned RowsPerClock = 1,  // of (FracWidth + 2) / 2
   parameter bit [2:0] RoundingMode = fp_pkg::RoundNearestEven,
   localparam int unsigned Width = ExpWidth + FracWidth + 1
@@ -39,7 +38,6 @@ module iterative_hit_test_unit #(
 );
 
   localparam int unsigned NumWords = 7;
-  localparam bit [2:0] MultiplierPipeRegs = 3'b111;
   localparam int unsigned MultiplierLatency = 3;
   localparam int unsigned AdderLatency = hit_test_pkg::AdderLatency;
 
@@ -96,12 +94,11 @@ module iterative_hit_test_unit #(
   logic [Width-1:0] product;
   fp_pkg::flags_t unused_multiplier_flags;
 
-  fp_multiplier_stages #(
+  fp_multiplier #(
     .ExpWidth (ExpWidth),
     .FracWidth(FracWidth),
     .Arith    (Arith),
-    .Adder    (Adder),
-    .PipeRegs (MultiplierPipeRegs)
+    .Pipelined(1'b1)
   ) u_multiplier (
     .clk_i,
     .a_i             (factor_q),
@@ -140,12 +137,11 @@ module iterative_hit_test_unit #(
   logic [Width-1:0] sum;
   fp_pkg::flags_t unused_adder_flags;
 
-  fp_adder_stages #(
+  fp_adder #(
     .ExpWidth (ExpWidth),
     .FracWidth(FracWidth),
     .Arith    (Arith),
-    .Adder    (Adder),
-    .PipeRegs (hit_test_pkg::AdderPipeRegs)
+    .Pipelined(1'b1)
   ) u_adder (
     .clk_i,
     .a_i             (since[FirstSum] ? sum : first_q),
@@ -163,7 +159,6 @@ module iterative_hit_test_unit #(
     .ExpWidth    (ExpWidth),
     .FracWidth   (FracWidth),
     .Arith       (Arith),
-    .Adder       (Adder),
     .Components  (3),
     .Period      (NumWords),
     .RowsPerClock(RowsPerClock)

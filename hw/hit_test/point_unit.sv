@@ -6,8 +6,7 @@
 module point_unit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   parameter bit [2:0] RoundingMode = 3'd0,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
@@ -33,12 +32,11 @@ module point_unit #(
   for (genvar k = 0; k < 3; k++) begin : gen_coordinate
     fp_pkg::flags_t unused_flags;
 
-    fp_divider_stages #(
+    fp_divider #(
       .ExpWidth(ExpWidth),
       .FracWidth(FracWidth),
       .Arith(Arith),
-      .Adder(Adder),
-      .PipeRegs(hit_test_pkg::DividerPipeRegs)
+      .Pipelined(1'b1)
     ) u_divider (
       .clk_i,
       .valid_i,

@@ -11,17 +11,16 @@
 //   enter       largest near plane, smallest far plane                      49 comparators, see slab_test
 //   sort        near first; the group                                       see child_sort, sort7
 //
-// With Clocks a child is stepped and entered in each clock, and the latency is Children clocks more; start_i is then high
-// with a node. No valid: what belongs to a node is the user's to carry along. Its ray comes a clock later, out of a memory.
+// With Clocks a child is stepped and entered in each clock, and the latency is Children clocks more. The ray comes a clock
+// after its node, out of a memory.
 //
-// In:  node_i       a node line, see ray_core_pkg
+// In:  ctx_i        the ray's context; node_i: its node, see ray_core_pkg; one with an error has no children
 //      origin_i     O, binary32; word x lowest, here and below
 //      inverse_i    1 / I_k, rounded to nearest (infinite where I_k is zero); the largest I_k is in [1, 2)
 //      t_max_i      a positive binary32 number without its sign, or infinity: a hit farther than it is
 //                   not wanted
 //      no_cull_i    all children are entered
-// Out: group_o      ray_core_pkg's group; entries that are in neither mask mean nothing
-//      inner_o, leaf_o  which entries there are, of which kind
+// Out: ctx_o, boxes_o  the group; entries that are in neither mask mean nothing
 //
 // No box is left out in which the ray has a point O + t I with 0 < t <= t_max, in exact arithmetic:
 //
@@ -44,23 +43,25 @@
 // Source: quantised boxes: Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through
 // compressed wide BVHs", 2017.
 module box_unit #(
-  parameter int unsigned Clocks = 1,  // of a node, see slab_tests; at least 7 if not 1
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded
+  parameter int unsigned Rays = 64,
+  parameter int unsigned Clocks = 1,  // of a node, see slab_tests
+  parameter int unsigned Arith = arith_pkg::Graded,
+  localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                                clk_i,
-  input  logic                                start_i,
-  input  logic [ray_core_pkg::LineWidth-1:0]  node_i,
-  input  logic [95:0]                         origin_i,
-  input  logic [95:0]                         inverse_i,
-  input  logic [30:0]                         t_max_i,
-  input  logic                                no_cull_i,
-  output ray_core_pkg::group_t                group_o,
-  output logic [ray_core_pkg::Children-1:0]   inner_o,
-  output logic [ray_core_pkg::Children-1:0]   leaf_o
+  input  logic                     clk_i,
+  input  logic                     rst_ni,
+  input  logic [RayWidth-1:0]      ctx_i,
+  input  ray_core_pkg::node_line_t node_i,
+  input  logic [95:0]              origin_i,
+  input  logic [95:0]              inverse_i,
+  input  logic [30:0]              t_max_i,
+  input  logic                     no_cull_i,
+  output logic [RayWidth-1:0]      ctx_o,
+  output ray_core_pkg::boxes_t     boxes_o
 );
 
   localparam int unsigned Children = ray_core_pkg::Children;
+  localparam int unsigned KindWidth = ray_core_pkg::KindWidth;
   localparam int unsigned UnitBits = ray_core_pkg::UnitBits;
   localparam int unsigned StepWidth = ray_core_pkg::StepWidth;
   localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth;
@@ -74,6 +75,7 @@ module box_unit #(
   localparam int unsigned Align = 2;
   localparam int unsigned Slab = 4;
   localparam int unsigned Sort = 4;
+  localparam int unsigned Latency = ray_core_pkg::BoxLatency + ((Clocks == 1) ? 0 : Children);
 
   if (ray_core_pkg::BoxLatency != Take + Subtract + Scale + Multiply + Align + Slab + Sort)
   begin : gen_check
@@ -87,8 +89,26 @@ module box_unit #(
   logic [30:0] t_max_q;
   logic no_cull_q;
 
+  logic [Latency:1] valid_q;  // so many clocks ago it came
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) valid_q <= '0;
+    else valid_q <= {valid_q[Latency-1:1], node_i.valid};
+  end
+  delay_line #(
+    .Width(RayWidth),
+    .Depth(Latency)
+  ) u_ctx (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(ctx_i),
+    .data_o(ctx_o)
+  );
+  assign boxes_o.valid = valid_q[Latency];
+
   always_ff @(posedge clk_i) begin
-    first_q <= node_i;
+    first_q <= node_i.line;
+    if (node_i.error) first_q[ray_core_pkg::NodeKinds+:Children*KindWidth] <= '0;  // all absent
     node_q  <= first_q;
     {origin_q, inverse_q, t_max_q, no_cull_q} <= {origin_i, inverse_i, t_max_i, no_cull_i};
   end
@@ -121,15 +141,15 @@ module box_unit #(
   logic [95:0] distance, inverse;
   logic [23:0] cells;
 
-  vec_add #(
-    .Subtract(1'b1),
-    .Arith(Arith),
-    .Adder(Adder)
+  fp_vector #(
+    .Subtract(3'b111),
+    .Arith(Arith)
   ) u_subtract (
     .clk_i,
+    .step_i(1'b1),
     .a_i(node_q[ray_core_pkg::NodeOrigin +: 96]),
     .b_i(origin_q),
-    .sum_o(distance)
+    .result_o(distance)
   );
   delay_line #(
     .Width($bits(taken) + 96 + 24),
@@ -173,14 +193,15 @@ module box_unit #(
 
   logic [95:0] product;
 
-  vec_mul #(
-    .Arith(Arith),
-    .Adder(Adder)
+  fp_vector #(
+    .Multiply(1'b1),
+    .Arith(Arith)
   ) u_multiply (
     .clk_i,
+    .step_i(1'b1),
     .a_i(scaled_distance),
     .b_i(scale_q.inverse),
-    .product_o(product)
+    .result_o(product)
   );
   delay_line #(
     .Width($bits(taken) + $bits(scale)),
@@ -206,8 +227,7 @@ module box_unit #(
     logic [StepWidth-1:0] step;
 
     slab_setup #(
-      .Arith(Arith),
-      .Adder(Adder)
+      .Arith(Arith)
     ) u_axis (
       .clk_i,
       .product_i(product[32*k +: 32]),
@@ -262,13 +282,12 @@ module box_unit #(
 
   // ---- Step and enter: a key for each child, {left out, enter}
 
-  localparam int unsigned KindWidth = ray_core_pkg::KindWidth;
   localparam int unsigned KeyWidth = UnitBits + 2;
 
   logic [Children*KeyWidth-1:0] keys;
   logic [NodeBoxes-1:0] stepped_node, sorted_node;  // base and kinds
   logic [8:0] stepped_exponent;
-  logic stepped_no_cull, start;
+  logic stepped_no_cull;
 
   delay_line #(
     .Width(UnitBits + 1),
@@ -297,29 +316,12 @@ module box_unit #(
     .data_i({stepped_node, stepped_exponent}),
     .data_o({sorted_node, sorted_exponent})
   );
-  if (Clocks == 1) begin : gen_node_a_clock
-    logic unused_start;
-    assign unused_start = start_i;
-    assign start        = 1'b0;
-  end else begin : gen_node_a_step
-    delay_line #(
-      .Width(1),
-      .Depth(Take + Subtract + Scale + Multiply + Align)
-    ) u_start (
-      .clk_i,
-      .enable_i(1'b1),
-      .data_i(start_i),
-      .data_o(start)
-    );
-  end
-
   slab_tests #(
     .Clocks(Clocks),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_children (
     .clk_i,
-    .start_i(start),
+    .start_i(valid_q[Take+Subtract+Scale+Multiply+Align]),
     .boxes_i(children[NodeBoxes +: Children*ray_core_pkg::BoxWidth]),
     .back_i(aligned_back),
     .step_i(step_q),
@@ -342,9 +344,9 @@ module box_unit #(
     .kinds_i(sorted_node[Kinds +: Children*KindWidth]),
     .base_i(sorted_node[0 +: ray_core_pkg::AddressWidth]),
     .exponent_i(sorted_exponent),
-    .group_o,
-    .inner_o,
-    .leaf_o
+    .group_o(boxes_o.group),
+    .inner_o(boxes_o.inner),
+    .leaf_o(boxes_o.leaf)
   );
 
 endmodule

@@ -1,7 +1,7 @@
 // Sort of a node's children: the group of those that the ray enters, near first.
 // Latency: 4 clocks: two registers in the sort, one behind it and one behind the group. keys_i are slab_test's.
 module child_sort #(
-  parameter int unsigned Arith = arith_pkg::Structural,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned Children = ray_core_pkg::Children,
   localparam int unsigned KindWidth = ray_core_pkg::KindWidth,
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,

@@ -14,14 +14,11 @@
 // is a sure hit, else with NoT. It is the ray's last test.
 //
 // A result is taken in each clock, and compared in the next one; a ray's tests are over when as many results have been
-// compared as test_i was high. P comes later, in the order of the results that were hits, PointDelay clocks at most.
+// compared as test_i was high.
 module closest_hit #(
   parameter int unsigned Rays = 64,
   parameter bit Exact = 1'b0,
   parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be in flight
-  // Tests from the clock in which a triangle line leaves memory to that in which the test's P has come, and one more
-  parameter int unsigned InFlight = set_up_pkg::Latency + hit_test_pkg::DotLatency
-                                  + hit_test_pkg::divide_latency(23) + 8,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth,
   localparam int unsigned TestsWidth = ray_core_pkg::TestsWidth
@@ -38,7 +35,7 @@ module closest_hit #(
   input  logic [RayWidth-1:0]        test_ray_i,
   input  logic                       settle_i,  // with test_i
   output logic                       tests_allowed_o,
-  // a test is over, or P of an earlier one is there
+  // a test is over
   input  logic [RayWidth-1:0]        result_ray_i,
   input  logic [31:0]                result_tag_i,  // the ray's, for doubts
   input  ray_core_pkg::verdict_t     result_i,
@@ -108,11 +105,12 @@ module closest_hit #(
 
   // ---- Read: the result, and the nearest so far
 
-  logic good, is_over_q, is_hit_q, is_sure_q, is_vague_q, replace, forward, old_found_q, settled_q;
+  logic good, is_over_q, is_sure_q, is_vague_q, replace, forward, old_found_q, settled_q;
   logic [RayWidth-1:0] ray_q;
   logic [TErrorWidth-1:0] t_error, t_error_q;
   logic [31:0] margin, sum, t_q, low_q, high_q, tag_q, triangle_q, old_low_q, old_triangle_q;
   logic [30:0] old_t_max_q;
+  logic [95:0] point_q;
 
   if (Exact) begin : gen_settle
     logic [Rays-1:0] settling_q;
@@ -142,10 +140,9 @@ module closest_hit #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      {is_over_q, is_hit_q, is_sure_q, is_vague_q} <= '0;
+      {is_over_q, is_sure_q, is_vague_q} <= '0;
     end else begin
       is_over_q  <= result_i.valid;
-      is_hit_q   <= result_i.valid & result_i.found;
       is_sure_q  <= result_i.valid & ~result_i.is_skipped & result_i.found & good;
       is_vague_q <= result_i.valid & ~result_i.is_skipped
                   & (result_i.doubt | (result_i.found & ~good));
@@ -157,6 +154,7 @@ module closest_hit #(
     triangle_q     <= result_i.triangle;
     t_q            <= result_i.t;
     t_error_q      <= t_error;
+    point_q        <= result_i.point;
     low_q          <= (result_i.t > margin) ? result_i.t - margin : '0;
     high_q         <= (sum < Infinity) ? sum : Infinity;
     old_found_q    <= forward | found_q[result_ray_i];
@@ -235,33 +233,14 @@ module closest_hit #(
   assign open_o.is_hit = near_tie_o;
   assign open_o.line   = ray_core_pkg::AddressWidth'(doubt_triangle);
 
-  // ---- P: of every hit in turn, kept if the hit was
-
-  logic point_kept, unused_point, unused_space;
-  logic [RayWidth-1:0] point_ray;
-
-  fifo #(
-    .Width(RayWidth + 1),
-    .Depth(InFlight)
-  ) u_points (
-    .clk_i,
-    .rst_ni,
-    .push_i(is_hit_q),
-    .data_i({ray_q, replace}),
-    .space_o(unused_space),
-    .pop_i(result_i.point_valid),
-    .valid_o(unused_point),
-    .data_o({point_ray, point_kept})
-  );
-
   ram #(
     .Width(96),
     .Depth(Rays)
   ) u_kept (
     .clk_i,
-    .write_i(result_i.point_valid & point_kept),
-    .write_address_i(point_ray),
-    .data_i(result_i.point),
+    .write_i(replace),
+    .write_address_i(ray_q),
+    .data_i(point_q),
     .read_i(1'b1),
     .read_address_i(point_ray_i),
     .data_o(point_o)

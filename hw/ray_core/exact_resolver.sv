@@ -16,8 +16,7 @@ module exact_resolver #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Units = 1,
   parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be on its way
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth
 ) (
@@ -54,7 +53,7 @@ module exact_resolver #(
   localparam logic [30:0] Infinity = 31'h7f80_0000;
 
   if (Units < 1) begin : gen_check
-    $error("exact_resolver: expected Units to be 1 or more");
+    $error("exact_resolver: expected Units of 1 or more");
   end
 
   typedef enum logic [2:0] {
@@ -289,8 +288,7 @@ module exact_resolver #(
     end
 
     exact_unit #(
-      .Arith(Arith),
-      .Adder(Adder)
+      .Arith(Arith)
     ) u_unit (
       .clk_i,
       .rst_ni,

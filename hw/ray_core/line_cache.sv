@@ -21,8 +21,8 @@
 //
 // invalidate_i, while no request and no line is on its way, empties the cache.
 module line_cache #(
-  parameter int unsigned Lines    = 256,  // a power of two, at least 16
-  parameter int unsigned Targets  = 64,   // requests that may wait for lines, at least 2
+  parameter int unsigned Lines    = 256,
+  parameter int unsigned Targets  = 64,   // requests that may wait for lines
   parameter int unsigned RayWidth = 6,
   parameter int unsigned Width    = ray_core_pkg::LineWidth,  // of what is kept of a line
   localparam int unsigned EntryWidth = $clog2(Lines),
@@ -64,8 +64,8 @@ module line_cache #(
   localparam int unsigned SetWidth = EntryWidth - WayWidth;
   localparam int unsigned TagWidth = AddressWidth - SetWidth;
 
-  if (Lines < 2 * Ways || 2 ** EntryWidth != Lines) begin : gen_check
-    $error("line_cache: expected Lines to be a power of two, at least 16");
+  if (Lines < 16 || 2 ** EntryWidth != Lines || Targets < 2) begin : gen_check
+    $error("line_cache: expected Lines of 16 or more, a power of two, and Targets of 2 or more");
   end
 
   logic [Lines-1:0] valid_q, pending_q;  // the line is here, or on its way

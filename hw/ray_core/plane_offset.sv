@@ -2,13 +2,12 @@
 // Latency: 1 clock from q_i and step_i, a register behind the product; from_i and back_i come a clock later, and plane_o
 // with them.
 //
-// Structural is a carry-save tree of s shifted, a row for each bit of q, a register for its two words, and one adder for
+// Structural arithmetic is a carry-save tree of s shifted, a row for each bit of q, a register for its two words, and one adder for
 // all: the difference is floor((256 from + 255 - q s) / 256). Behavioural is `*`.
 module plane_offset #(
   parameter int unsigned Width = 33,  // of s
   parameter int unsigned PlaneWidth = 36,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic                  clk_i,
   input  logic [7:0]            q_i,
@@ -60,7 +59,7 @@ module plane_offset #(
     );
     adder #(
       .Width(SumWidth),
-      .Adder(Adder)
+      .Arith(Arith)
     ) u_adder (
       .a_i(sum),
       .b_i(carry | SumWidth'(back_i)),

@@ -1,13 +1,14 @@
 // Entry of rays: computes the reciprocals of a ray's direction and gives the ray a context.
 //
 // A ray waits in a queue until its reciprocals have come, a division's latency later, and a context is free: the
-// lowest free one is start_ctx_o. So no context is held by a division. Throughput a ray in Clocks clocks.
+// lowest free one is start_ctx_o. So no context is held by a division. Reciprocals are rounded to nearest.
+// Clocks = 1: three dividers, a ray a clock. Else (7 or more) a ray in Clocks clocks, and fp_vector_divider, for which each
+// word and one take turns.
 module ray_alloc #(
   parameter int unsigned Rays  = 64,  // contexts
   parameter int unsigned Width = 32,  // of what else there is of a ray
-  parameter int unsigned Clocks = 1,  // of a ray, see reciprocals
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Clocks = 1,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                clk_i,
@@ -27,8 +28,8 @@ module ray_alloc #(
 
   localparam int unsigned Depth = hit_test_pkg::divide_latency(23) + 3;  // for a ray a clock
 
-  if (Rays < 2 || 2 ** RayWidth != Rays) begin : gen_check
-    $error("ray_alloc: expected Rays to be a power of two, at least 2");
+  if (Rays < 2 || 2 ** RayWidth != Rays || (Clocks != 1 && Clocks < 7)) begin : gen_check
+    $error("ray_alloc: expected Rays of 2 or more, a power of two, and Clocks of 1, or 7 or more");
   end
 
   // ---- Contexts
@@ -57,24 +58,85 @@ module ray_alloc #(
   // ---- Divide
 
   logic fire, space, divider_ready, divided;
+  localparam logic [31:0] One = 32'h3f80_0000;
   logic [95:0] inverse;
 
   assign ready_o = rst_ni & space & divider_ready;
   assign fire    = valid_i & ready_o;
 
-  reciprocals #(
-    .Clocks(Clocks),
-    .Arith(Arith),
-    .Adder(Adder)
-  ) u_reciprocals (
-    .clk_i,
-    .rst_ni,
-    .valid_i(fire),
-    .ready_o(divider_ready),
-    .vector_i(direction_i),
-    .valid_o(divided),
-    .inverse_o(inverse)
-  );
+  if (Clocks == 1) begin : gen_dividers
+    localparam int unsigned Latency = hit_test_pkg::divide_latency(23);
+    logic [Latency-1:0] dividing_q;
+
+    assign divider_ready = 1'b1;
+    assign divided       = dividing_q[Latency-1];
+
+    for (genvar k = 0; k < 3; k++) begin : gen_word
+      fp_pkg::flags_t unused_flags;
+
+      fp_divider #(
+        .Arith(Arith),
+        .Pipelined(1'b1)
+      ) u_divider (
+        .clk_i,
+        .valid_i(fire),
+        .a_i(One),
+        .b_i(direction_i[32*k +: 32]),
+        .rounding_mode_i(fp_pkg::RoundNearestEven),
+        .tininess_after_i(1'b0),
+        .result_o(inverse[32*k +: 32]),
+        .flags_o(unused_flags)
+      );
+    end
+
+    always_ff @(posedge clk_i or negedge rst_ni) begin
+      if (!rst_ni) dividing_q <= '0;
+      else dividing_q <= {dividing_q[Latency-2:0], fire};
+    end
+  end else begin : gen_turns
+    logic [Clocks-2:0] since_q;  // clocks since a vector was taken
+    logic [6*32-1:0] words_q;
+    logic [31:0] quotient;
+    logic [2:0] turn_q;  // whose quotient comes next
+    logic is_divided;
+
+    assign divider_ready = since_q == '0;
+
+    fp_vector_divider #(
+      .Arith(Arith),
+      .Components(3),
+      .Period(Clocks),
+      .RowsPerClock(1)
+    ) u_divider (
+      .clk_i,
+      .rst_ni,
+      .divisor_i(since_q[0] | since_q[2] | since_q[4]),
+      .dividend_i(since_q[1] | since_q[3] | since_q[5]),
+      .word_i(words_q[31:0]),
+      .rounding_mode_i(fp_pkg::RoundNearestEven),
+      .valid_o(is_divided),
+      .result_o(quotient)
+    );
+
+    always_ff @(posedge clk_i or negedge rst_ni) begin
+      if (!rst_ni) begin
+        since_q <= '0;
+        turn_q  <= 3'd1;
+        divided <= 1'b0;
+      end else begin
+        since_q <= {since_q[Clocks-3:0], fire};
+        divided <= is_divided & turn_q[2];
+        if (is_divided) turn_q <= {turn_q[1:0], turn_q[2]};
+      end
+    end
+    always_ff @(posedge clk_i) begin
+      words_q <= words_q >> 32;
+      if (fire) begin
+        words_q <= {One, direction_i[95:64], One, direction_i[63:32], One, direction_i[31:0]};
+      end
+      if (is_divided) inverse <= {quotient, inverse[95:32]};
+    end
+  end
 
   // ---- Wait: as many inverses at most as there are rays
 

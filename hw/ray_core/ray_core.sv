@@ -1,5 +1,11 @@
 // Ray core: rays in, nearest hits out, or, without Exact, nearest sure hits and doubts; it traverses a tree in memory.
 //
+//   ray_alloc         gives a ray a context, once its reciprocals are there     ray_retire       notices that it has ended
+//   traversal         its stack, and which ray goes to its next node            box_unit         the children that it enters
+//   primitive_fetch   the triangles of the leaves that it enters                triangle_test    hit, miss or doubt
+//   closest_hit       its nearest hit and t_max, its doubts                     exact_resolver   what doubts mean for it
+//   memory_subsystem  the lines of nodes and triangles                          ray_errors       why not to believe its hits
+//
 // Rays and results: valid/ready. A ray's direction is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact arithmetic, and on triangles `skip_id`
 // and `source_id`, the one that it leaves, do not count. With `any_hit` it ends at its first sure hit, with `no_cull` it enters all boxes. Words about rays come
 // mixed, by tag, and rays end in any order: see ray_core_pkg::result_e. With an error they say nothing, see error_e.
@@ -15,8 +21,7 @@ module ray_core #(
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
   parameter int unsigned Clocks = 1,  // of a node and a triangle: pipelines; or 7 or more, in turns
   parameter int unsigned Exact = 0,  // exact_units, for which triangles have ranks; 0: doubts leave
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned ReadIdWidth = 1 + $clog2(
       NodeLines > TriangleLines ? NodeLines : TriangleLines)
@@ -44,63 +49,316 @@ module ray_core #(
   input  logic                    line_error_i,
   output logic [ray_core_pkg::NumEvents-1:0] events_o  // of the clock before, see event_e
 );
-  logic start_fire, triangle_ready, step, ending, doubt_fire;
-  logic [RayWidth-1:0] start_ctx, node_ctx, triangle_ctx, node_line_ctx, triangle_line_ctx;
-  logic [RayWidth-1:0] box_ctx, verdict_ctx, ending_ctx, end_ctx, point_ctx;
-  logic [Rays-1:0] busy;
-  logic [30:0] t_max;
-  logic [95:0] end_point;
-  logic [1:0] reads;
-  logic [6:0] events;
-  ray_core_pkg::start_t start;
-  ray_core_pkg::request_t node, prefetch;
-  ray_core_pkg::triangle_request_t triangle;
-  ray_core_pkg::node_line_t node_line;
-  ray_core_pkg::triangle_line_t triangle_line;
-  ray_core_pkg::boxes_t boxes;
-  ray_core_pkg::verdict_t verdict;
-  ray_core_pkg::doubt_t doubt;
-  ray_core_pkg::end_t ended;
+  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth;
 
-  traversal_subsystem #(
+  // ---- Rays that begin, and their contexts: what a node, a triangle or a test needs is there in the clock after it was
+  // asked for
+
+  logic start_valid, start_fire, ending, step;
+  logic [RayWidth-1:0]
+    start_ctx, ending_ctx, end_ctx, node_line_ctx, triangle_line_ctx, direction_ctx;
+  logic [95:0] start_inverse, node_origin, node_inverse, triangle_origin, direction;
+  logic [31:0] skip_id, source_id;
+  logic no_cull;
+  logic [31:0] tags[Rays];
+  ray_core_pkg::ray_t start;
+
+  ray_alloc #(
+    .Rays(Rays),
+    .Width($bits(ray_i)),
+    .Clocks(Clocks),
+    .Arith(Arith)
+  ) u_alloc (
+    .clk_i,
+    .rst_ni,
+    .valid_i(ray_valid_i),
+    .ready_o(ray_ready_o),
+    .direction_i(ray_i.direction),
+    .ray_i,
+    .free_valid_i(ending),
+    .free_ctx_i(ending_ctx),
+    .start_valid_o(start_valid),
+    .start_ctx_o(start_ctx),
+    .start_inverse_o(start_inverse),
+    .start_ray_o(start),
+    .start_fire_i(start_fire)
+  );
+  ram #(
+    .Width(96 + 96 + 1),
+    .Depth(Rays)
+  ) u_node_contexts (
+    .clk_i,
+    .write_i(start_fire),
+    .write_address_i(start_ctx),
+    .data_i({start.origin, start_inverse, start.no_cull}),
+    .read_i(1'b1),
+    .read_address_i(node_line_ctx),
+    .data_o({node_origin, node_inverse, no_cull})
+  );
+  ram #(
+    .Width(96 + 2 * 32),
+    .Depth(Rays)
+  ) u_triangle_contexts (
+    .clk_i,
+    .write_i(start_fire),
+    .write_address_i(start_ctx),
+    .data_i({start.origin, start.skip_id, start.source_id}),
+    .read_i(step),
+    .read_address_i(triangle_line_ctx),
+    .data_o({triangle_origin, skip_id, source_id})
+  );
+  ram #(
+    .Width(96),
+    .Depth(Rays)
+  ) u_directions (
+    .clk_i,
+    .write_i(start_fire),
+    .write_address_i(start_ctx),
+    .data_i(start.direction),
+    .read_i(step),
+    .read_address_i(direction_ctx),
+    .data_o(direction)
+  );
+  always_ff @(posedge clk_i) if (start_fire) tags[start_ctx] <= start.tag;
+
+  // ---- Nodes
+
+  logic [RayWidth-1:0] node_ctx, box_ctx, traversal_ctx, cycle_ctx;
+  logic [30:0] traversal_t_max, box_t_max;
+  logic [Rays-1:0] leaf_pending, testing, traversing, failed;
+  logic traversal_ended, cycle, overflow;
+  ray_core_pkg::request_t node, prefetch;
+  ray_core_pkg::node_line_t node_line;
+  ray_core_pkg::boxes_t boxes;
+
+  traversal #(
     .Rays(Rays),
     .Depth(Depth),
-    .Levels(Levels),
-    .Exact(Exact),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Levels(Levels)
   ) u_traversal (
     .clk_i,
     .rst_ni,
-    .abort_i,
-    .lines_i,
-    .start_ctx_i(start_ctx),
-    .start_i(start),
+    .start_valid_i(start_valid),
+    .start_ray_i(start_ctx),
     .start_fire_o(start_fire),
-    .box_ctx_i(box_ctx),
-    .boxes_i(boxes),
-    .verdict_ctx_i(verdict_ctx),
-    .verdict_i(verdict),
-    .node_ctx_o(node_ctx),
+    .box_valid_i(boxes.valid),
+    .box_ray_i(box_ctx),
+    .box_group_i(boxes.group),
+    .box_inner_i(boxes.inner),
+    .leaf_pending_i(leaf_pending),
+    .testing_i(testing),
+    .t_max_ray_o(traversal_ctx),
+    .t_max_i(traversal_t_max),
+    .ended_i(traversal_ended),
+    .cycle_o(cycle),
+    .cycle_ray_o(cycle_ctx),
+    .lines_i,
+    .traversing_o(traversing),
+    .node_ray_o(node_ctx),
     .node_o(node),
     .prefetch_o(prefetch),
-    .triangle_ctx_o(triangle_ctx),
-    .triangle_o(triangle),
-    .triangle_ready_i(triangle_ready),
-    .node_line_ctx_i(node_line_ctx),
-    .node_error_i(node_line.valid & node_line.error),
-    .t_max_o(t_max),
-    .triangle_line_ctx_i(triangle_line_ctx),
-    .triangle_line_i(triangle_line),
-    .busy_o(busy),
-    .doubt_o(doubt),
-    .doubt_fire_i(doubt_fire),
-    .events_o(events),
-    .end_ctx_i(end_ctx),
-    .end_o(ended),
-    .point_ctx_i(point_ctx),
-    .point_o(end_point)
+    .overflow_o(overflow)
   );
+  box_unit #(
+    .Rays(Rays),
+    .Clocks(Clocks),
+    .Arith(Arith)
+  ) u_boxes (
+    .clk_i,
+    .rst_ni,
+    .ctx_i(node_line_ctx),
+    .node_i(node_line),
+    .origin_i(node_origin),
+    .inverse_i(node_inverse),
+    .t_max_i(box_t_max),
+    .no_cull_i(no_cull),
+    .ctx_o(box_ctx),
+    .boxes_o(boxes)
+  );
+
+  // ---- Triangles asked for, for doubts first; tests of those that come
+
+  logic [RayWidth-1:0] fetch_ctx, leaf_ctx, exact_ctx, triangle_ctx, verdict_ctx;
+  logic [30:0] leaf_t_max;
+  logic leaf_ended, tests_allowed, triangle_ready, test;
+  ray_core_pkg::request_t fetch;
+  ray_core_pkg::triangle_request_t exact, triangle;
+  ray_core_pkg::triangle_line_t triangle_line;
+  ray_core_pkg::verdict_t verdict;
+
+  assign triangle     = exact.valid ? exact : {fetch.valid & tests_allowed, 1'b0, fetch.line};
+  assign triangle_ctx = exact.valid ? exact_ctx : fetch_ctx;
+  assign test         = triangle.valid & triangle_ready & ~triangle.exact;
+
+  primitive_fetch #(
+    .Rays(Rays)
+  ) u_primitives (
+    .clk_i,
+    .rst_ni,
+    .box_valid_i(boxes.valid),
+    .box_ray_i(box_ctx),
+    .box_group_i(boxes.group),
+    .box_leaf_i(boxes.leaf),
+    .t_max_ray_o(leaf_ctx),
+    .t_max_i(leaf_t_max),
+    .ended_i(leaf_ended),
+    .leaf_pending_o(leaf_pending),
+    .triangle_ray_o(fetch_ctx),
+    .triangle_o(fetch),
+    .triangle_ready_i(triangle_ready & tests_allowed & ~exact.valid)
+  );
+  triangle_test #(
+    .Rays(Rays),
+    .Clocks(Clocks),
+    .Arith(Arith)
+  ) u_tests (
+    .clk_i,
+    .rst_ni,
+    .step_i(step),
+    .ctx_i(triangle_line_ctx),
+    .triangle_i(triangle_line),
+    .origin_i(triangle_origin),
+    .skip_id_i(skip_id),
+    .source_id_i(source_id),
+    .direction_ctx_o(direction_ctx),
+    .direction_i(direction),
+    .ctx_o(verdict_ctx),
+    .verdict_o(verdict)
+  );
+
+  // ---- Hits, doubts and errors
+
+  logic [RayWidth-1:0] open_ctx;
+  logic [Rays-1:0] doubtful, idle;
+  logic doubt_fire, doubt_taken, exact_found, exact_ended, computing, near_tie;
+  logic [AddressWidth-1:0] exact_found_line;
+  logic [30:0] exact_t_max;
+  logic [95:0] end_point;
+  ray_core_pkg::open_t open;
+  ray_core_pkg::doubt_t doubt;
+  ray_core_pkg::end_t ended;
+
+  assign idle      = ~(traversing | leaf_pending | testing);
+  assign ended.tag = tags[end_ctx];
+
+  closest_hit #(
+    .Rays(Rays),
+    .Exact(Exact != 0)
+  ) u_closest_hit (
+    .clk_i,
+    .rst_ni,
+    .load_i(start_fire),
+    .load_ray_i(start_ctx),
+    .load_t_max_i(start.t_max),
+    .load_any_hit_i(start.any_hit),
+    .test_i(test),
+    .test_ray_i(triangle_ctx),
+    .settle_i(exact.valid),
+    .tests_allowed_o(tests_allowed),
+    .result_ray_i(verdict_ctx),
+    .result_tag_i(tags[verdict_ctx]),
+    .result_i(verdict),
+    .failed_i(failed),
+    .traversal_ray_i(traversal_ctx),
+    .traversal_t_max_o(traversal_t_max),
+    .traversal_ended_o(traversal_ended),
+    .leaf_ray_i(leaf_ctx),
+    .leaf_t_max_o(leaf_t_max),
+    .leaf_ended_o(leaf_ended),
+    .box_ray_i(node_line_ctx),
+    .box_t_max_o(box_t_max),
+    .testing_o(testing),
+    .exact_ray_i(exact_ctx),
+    .exact_found_o(exact_found),
+    .exact_ended_o(exact_ended),
+    .exact_triangle_o(exact_found_line),
+    .exact_t_max_o(exact_t_max),
+    .doubt_o(doubt),
+    .doubt_fire_i(doubt_fire | doubt_taken),
+    .open_ray_o(open_ctx),
+    .open_o(open),
+    .end_ray_i(end_ctx),
+    .end_o(ended.hit),
+    .point_ray_i(ending_ctx),
+    .point_o(end_point),
+    .near_tie_o(near_tie)
+  );
+
+  if (Exact != 0) begin : gen_exact
+    exact_resolver #(
+      .Rays(Rays),
+      .Units(Exact),
+      .Arith(Arith)
+    ) u_resolver (
+      .clk_i,
+      .rst_ni,
+      .load_i(start_fire),
+      .load_ctx_i(start_ctx),
+      .load_origin_i(start.origin),
+      .load_direction_i(start.direction),
+      .open_ctx_i(open_ctx),
+      .open_i(open),
+      .taken_o(doubt_taken),
+      .idle_i(idle),
+      .busy_o(doubtful),
+      .ctx_o(exact_ctx),
+      .ended_i(exact_ended),
+      .found_i(exact_found),
+      .found_line_i(exact_found_line),
+      .t_max_i(exact_t_max),
+      .request_o(exact),
+      .request_ready_i(triangle_ready),
+      .line_i(triangle_line),
+      .computing_o(computing)
+    );
+  end else begin : gen_doubts
+    logic unused_exact;
+    assign {doubt_taken, doubtful, exact, exact_ctx, computing} = '0;
+    assign unused_exact = ^{
+      exact_found, exact_ended, exact_found_line, exact_t_max, open_ctx, open, triangle_line.rank
+    };
+  end
+
+  ray_errors #(
+    .Rays(Rays)
+  ) u_errors (
+    .clk_i,
+    .rst_ni,
+    .abort_i,
+    .start_i(start_fire),
+    .start_ctx_i(start_ctx),
+    .start_scaled_i(ray_core_pkg::is_scaled(start.direction)),
+    .node_i(node_line.valid & node_line.error),
+    .node_ctx_i(node_line_ctx),
+    .triangle_i(triangle_line.valid & triangle_line.error),
+    .triangle_ctx_i(triangle_line_ctx),
+    .cycle_i(cycle),
+    .cycle_ctx_i(cycle_ctx),
+    .failed_o(failed),
+    .end_ctx_i(end_ctx),
+    .end_error_o(ended.error)
+  );
+  ray_retire #(
+    .Rays(Rays)
+  ) u_retire (
+    .clk_i,
+    .rst_ni,
+    .start_i(start_fire),
+    .start_ctx_i(start_ctx),
+    .busy_i(~idle | doubtful),
+    .ending_o(ending),
+    .ending_ctx_o(ending_ctx),
+    .end_ctx_o(end_ctx),
+    .end_i(ended),
+    .point_i(end_point),
+    .doubt_i(doubt),
+    .doubt_fire_o(doubt_fire),
+    .result_valid_o,
+    .result_ready_i,
+    .result_o
+  );
+
+  // ---- Memory
 
   memory_subsystem #(
     .Rays(Rays),
@@ -135,60 +393,24 @@ module ray_core #(
     .triangle_o(triangle_line)
   );
 
-  intersection_subsystem #(
-    .Rays(Rays),
-    .Clocks(Clocks),
-    .Arith(Arith),
-    .Adder(Adder)
-  ) u_intersection (
-    .clk_i,
-    .rst_ni,
-    .ray_valid_i,
-    .ray_ready_o,
-    .ray_i,
-    .start_ctx_o(start_ctx),
-    .start_o(start),
-    .start_fire_i(start_fire),
-    .ending_i(ending),
-    .ending_ctx_i(ending_ctx),
-    .step_i(step),
-    .node_ctx_i(node_line_ctx),
-    .node_i(node_line),
-    .t_max_i(t_max),
-    .triangle_ctx_i(triangle_line_ctx),
-    .triangle_i(triangle_line),
-    .box_ctx_o(box_ctx),
-    .boxes_o(boxes),
-    .verdict_ctx_o(verdict_ctx),
-    .verdict_o(verdict)
-  );
-
-  ray_retire #(
-    .Rays(Rays)
-  ) u_retire (
-    .clk_i,
-    .rst_ni,
-    .start_i(start_fire),
-    .start_ctx_i(start_ctx),
-    .busy_i(busy),
-    .ending_o(ending),
-    .ending_ctx_o(ending_ctx),
-    .end_ctx_o(end_ctx),
-    .end_i(ended),
-    .point_ctx_o(point_ctx),
-    .point_i(end_point),
-    .doubt_i(doubt),
-    .doubt_fire_o(doubt_fire),
-    .result_valid_o,
-    .result_ready_i,
-    .result_o
-  );
-
-  assign reads = {2{read_valid_o}} & {~read_ready_i, read_ready_i};
+  // ---- Events
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) events_o <= '0;
-    else events_o <= {events[6], reads, events[5:0], node_line.valid, ending};
+    else begin
+      events_o[ray_core_pkg::EventRay]      <= ending;
+      events_o[ray_core_pkg::EventNode]     <= node_line.valid;
+      events_o[ray_core_pkg::EventTriangle] <= triangle_line.valid & ~triangle_line.exact;
+      events_o[ray_core_pkg::EventHit]      <= verdict.valid & verdict.found & ~verdict.is_skipped;
+      events_o[ray_core_pkg::EventMiss]     <= verdict.valid
+          & (verdict.is_skipped | (~verdict.found & ~verdict.doubt));
+      events_o[ray_core_pkg::EventDoubt]    <= verdict.valid & verdict.doubt & ~verdict.is_skipped;
+      events_o[ray_core_pkg::EventNearTie]  <= near_tie;
+      events_o[ray_core_pkg::EventOverflow] <= overflow;
+      events_o[ray_core_pkg::EventRead]     <= read_valid_o & read_ready_i;
+      events_o[ray_core_pkg::EventWait]     <= read_valid_o & ~read_ready_i;
+      events_o[ray_core_pkg::EventExact]    <= computing;
+    end
   end
 
 endmodule

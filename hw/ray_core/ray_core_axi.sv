@@ -21,8 +21,7 @@ module ray_core_axi #(
   parameter int unsigned IdWidth   = 6,
   parameter bit [2:0] AxProt  = 3'b010,
   parameter bit [3:0] AxCache = 4'b0011,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RegisterAddressWidth = 12,
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth
 ) (
@@ -183,8 +182,7 @@ module ray_core_axi #(
   logic [31:0] pixel;
 
   ray_generator #(
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_generator (
     .clk_i,
     .rst_ni,
@@ -241,8 +239,7 @@ module ray_core_axi #(
     .TriangleLines(TriangleLines),
     .Clocks(Clocks),
     .Exact(Exact),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_core (
     .clk_i,
     .rst_ni,

@@ -129,16 +129,6 @@ package ray_core_pkg;
 
   // ---- Links between the parts of the core; beside each goes the number of a ray's context
 
-  typedef struct packed {  // a ray begins
-    logic                    valid;
-    logic [31:0]             tag;
-    logic [95:0]             origin;
-    logic [95:0]             direction;
-    logic [30:0]             t_max;
-    logic                    any_hit;
-    logic                    is_scaled;
-  } start_t;
-
   typedef struct packed {  // a line is asked for
     logic                    valid;
     logic [AddressWidth-1:0] line;
@@ -171,7 +161,7 @@ package ray_core_pkg;
     logic [Children-1:0] leaf;   // and leaves
   } boxes_t;
 
-  // A test is over: a doubt, a sure hit (found) or a miss; and the P of an earlier hit, in their order
+  // A test is over: a doubt, a sure hit (found) or a miss
   typedef struct packed {
     logic                         valid;
     logic                         is_skipped;  // it counts for nothing
@@ -182,7 +172,6 @@ package ray_core_pkg;
     logic [VerdictErrorWidth-1:0] t_error;  // beside the plane's, see set_up_pkg
     logic [VerdictErrorWidth-1:0] normal_error;
     logic [VerdictErrorWidth-1:0] distance_error;
-    logic                         point_valid;
     logic [95:0]                  point;
   } verdict_t;
 
@@ -217,7 +206,7 @@ package ray_core_pkg;
   typedef enum logic [3:0] {
     EventRay      = 4'd0,  // a ray has ended
     EventNode     = 4'd1,  // box_unit takes a node
-    EventTriangle = 4'd2,  // set_up_unit takes a triangle
+    EventTriangle = 4'd2,  // triangle_test takes a triangle
     EventHit      = 4'd3,  // a test is over: surely hit,
     EventMiss     = 4'd4,  // surely missed, or the triangle that the ray ignores,
     EventDoubt    = 4'd5,  // or neither

@@ -9,8 +9,7 @@
 // start_i, while not busy_o, takes the rectangle; a width or height of zero gives nothing. stop_i: no pixel is begun
 // any more. Throughput a ray a clock.
 module ray_generator #(
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
@@ -100,25 +99,25 @@ module ray_generator #(
   logic [95:0] right_product, row_first, direction;
 
   for (genvar n = 0; n < 2; n++) begin : gen_product
-    vec_scale #(
-      .Arith(Arith),
-      .Adder(Adder),
-      .Words(3)
+    fp_vector #(
+      .Multiply(1'b1),
+      .Arith(Arith)
     ) u_scale (
       .clk_i,
-      .words_i((n == 0) ? right_i : down_i),
-      .factor_i(number_q[n]),
-      .products_o(products[96*n +: 96])
+      .step_i(1'b1),
+      .a_i((n == 0) ? right_i : down_i),
+      .b_i({3{number_q[n]}}),
+      .result_o(products[96*n +: 96])
     );
   end
-  vec_add #(
-    .Arith(Arith),
-    .Adder(Adder)
+  fp_vector #(
+    .Arith(Arith)
   ) u_row (
     .clk_i,
+    .step_i(1'b1),
     .a_i(first_i),
     .b_i(products[96 +: 96]),
-    .sum_o(row_first)
+    .result_o(row_first)
   );
   delay_line #(
     .Width(96),
@@ -129,14 +128,14 @@ module ray_generator #(
     .data_i(products[0 +: 96]),
     .data_o(right_product)
   );
-  vec_add #(
-    .Arith(Arith),
-    .Adder(Adder)
+  fp_vector #(
+    .Arith(Arith)
   ) u_direction (
     .clk_i,
+    .step_i(1'b1),
     .a_i(row_first),
     .b_i(right_product),
-    .sum_o(direction)
+    .result_o(direction)
   );
 
   // ---- Scale: exponents alone

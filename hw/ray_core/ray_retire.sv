@@ -1,13 +1,12 @@
 // Exit of rays: detects that a ray has ended, and queues results.
 //
 // A ray has ended when it has no node, no leaf and no test left. Its context is free at once: its nearest hit waits
-// in a queue for P, which comes PointDelay clocks later at most, before another ray in the context could have
-// one. A ray's doubts leave before its end. Fields of a result that say nothing are zero: a doubt has its tag and
+// in a queue. A ray's doubts leave before its end. Fields of a result that say nothing are zero: a doubt has its tag and
 // triangle alone, an end without a hit no triangle, t, t_error or P.
 //
 // A ray ends a clock at most, a result leaves a clock.
 module ray_retire #(
-  parameter int unsigned Rays = 64,  // a power of two
+  parameter int unsigned Rays = 64,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                   clk_i,
@@ -20,8 +19,6 @@ module ray_retire #(
   output logic [RayWidth-1:0]    ending_ctx_o,
   output logic [RayWidth-1:0]    end_ctx_o,
   input  ray_core_pkg::end_t     end_i,
-  // the P of a context's last ray, in the clock after
-  output logic [RayWidth-1:0]    point_ctx_o,
   input  logic [95:0]            point_i,
   // doubts
   input  ray_core_pkg::doubt_t   doubt_i,
@@ -32,11 +29,10 @@ module ray_retire #(
   output ray_core_pkg::result_t  result_o
 );
 
-  localparam int unsigned PointDelay = hit_test_pkg::divide_latency(23) + 4;
-  localparam int unsigned Depth = PointDelay + 5;  // for an end a clock
+  localparam int unsigned Depth = 8;  // for an end a clock
 
   if (Rays < 2 || 2 ** RayWidth != Rays) begin : gen_check
-    $error("ray_retire: expected Rays to be a power of two, at least 2");
+    $error("ray_retire: expected Rays of 2 or more, a power of two");
   end
 
   // ---- The end of a ray
@@ -63,54 +59,30 @@ module ray_retire #(
     end
   end
 
-  // ---- What is known of it, and P: as many points at most as there are ends
+  // ---- What is known of it waits
 
-  logic [PointDelay:0] pointing_q;
-  logic end_valid, end_fire, unused_valid, unused_space;
+  logic known_q, end_valid, end_fire;
   ray_core_pkg::end_t ended;
   logic [95:0] end_point;
 
+  always_ff @(posedge clk_i) end_ctx_o <= ending_ctx_o;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) known_q <= 1'b0;
+    else known_q <= ending_o;
+  end
   ram_fifo #(
-    .Width($bits(end_i)),
+    .Width($bits(end_i) + 96),
     .Depth(Depth),
     .Reserve(1)
   ) u_ends (
     .clk_i,
     .rst_ni,
-    .push_i(pointing_q[0]),
-    .data_i(end_i),
+    .push_i(known_q),
+    .data_i({end_i, point_i}),
     .space_o(space),
     .pop_i(end_fire),
-    .valid_o(unused_valid),
-    .data_o(ended)
-  );
-
-  delay_line #(
-    .Width(RayWidth),
-    .Depth(PointDelay - 1)
-  ) u_pointing (
-    .clk_i,
-    .enable_i(1'b1),
-    .data_i(end_ctx_o),
-    .data_o(point_ctx_o)
-  );
-  always_ff @(posedge clk_i) end_ctx_o <= ending_ctx_o;
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) pointing_q <= '0;
-    else pointing_q <= {pointing_q[PointDelay-1:0], ending_o};
-  end
-  ram_fifo #(
-    .Width(96),
-    .Depth(Depth)
-  ) u_points (
-    .clk_i,
-    .rst_ni,
-    .push_i(pointing_q[PointDelay]),
-    .data_i(point_i),
-    .space_o(unused_space),
-    .pop_i(end_fire),
     .valid_o(end_valid),
-    .data_o(end_point)
+    .data_o({ended, end_point})
   );
 
   // ---- Results

@@ -1,4 +1,4 @@
-// What set_up_unit and those who use its records share: format, latency, and how far off its planes are.
+// What triangle_test and those who use its records share: format, latency, and how far off its planes are.
 package set_up_pkg;
 
   // verilator lint_off UNUSEDPARAM
@@ -12,7 +12,7 @@ package set_up_pkg;
   // a product between them, and a dot product.
   localparam int unsigned Latency = 18;
 
-  // ---- How far off N and d are: see set_up_unit
+  // ---- How far off N and d are: see triangle_test
 
   localparam int unsigned PlaneErrorWidth = 4;
 
@@ -20,7 +20,7 @@ package set_up_pkg;
   localparam int unsigned MostPlaneError = 14;
 
   // Between a hit's t and the exact one lie fewer than 2**t_error_exponent numbers, where
-  // is_good_hit: t_error is hit_test_pipeline's, the others are set_up_unit's.
+  // is_good_hit: t_error is hit_test_pipeline's, the others are those of its planes.
   localparam int unsigned TErrorUnit = 8;
   localparam int unsigned TErrorExponentWidth = 5;
 
@@ -38,7 +38,7 @@ package set_up_pkg;
     t_error_exponent = TErrorExponentWidth'(TErrorUnit) + ((plane > distance) ? plane : distance);
   endfunction
 
-  // ---- What set_up_unit's header derives, from its sums and exponents
+  // ---- What the header of triangle_test derives, from its sums and exponents
 
   localparam int unsigned LeastField = 27;  // of an exponent that counts: 2**-100
   localparam int unsigned BoundShift = 20;  // 16 u = 2**-20

@@ -6,8 +6,7 @@
 //      is_capped_i  the inverse was above the cap; is_open_i: and the cap is no binary32 number
 // Out: near_o, far_o  a - r and a + r, two's complement; step_o: s in 256ths of a unit
 module slab_setup #(
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned StepWidth = ray_core_pkg::StepWidth,
   localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth
 ) (
@@ -55,35 +54,37 @@ module slab_setup #(
 
   // ---- a -+ r
 
-  add_subtract #(
+  logic [2:0] unused_carry;
+
+  adder #(
     .Width(PlaneWidth),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_sign (
     .a_i('0),
-    .b_i(PlaneWidth'(size_q)),
-    .subtract_i(is_negative_q),
-    .sum_o(a)
+    .b_i(PlaneWidth'(size_q) ^ {PlaneWidth{is_negative_q}}),
+    .carry_i(is_negative_q),
+    .sum_o(a),
+    .carry_o(unused_carry[0])
   );
-  add_subtract #(
+  adder #(
     .Width(PlaneWidth),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_near (
     .a_i(a),
-    .b_i(room),
-    .subtract_i(1'b1),
-    .sum_o(near)
+    .b_i(~room),
+    .carry_i(1'b1),
+    .sum_o(near),
+    .carry_o(unused_carry[1])
   );
-  add_subtract #(
+  adder #(
     .Width(PlaneWidth),
-    .Arith(Arith),
-    .Adder(Adder)
+    .Arith(Arith)
   ) u_far (
     .a_i(a),
     .b_i(room),
-    .subtract_i(1'b0),
-    .sum_o(far)
+    .carry_i(1'b0),
+    .sum_o(far),
+    .carry_o(unused_carry[2])
   );
 
   assign near_o = says_nothing_q ? -Far : near;

@@ -8,8 +8,7 @@
 //      kind_i       ray_core_pkg's, three clocks later; no_cull_i, too
 // Out: key_o        {culled, enter}: enter in units, up to 2**22; 0 where no_cull_i
 module slab_test #(
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned StepWidth = ray_core_pkg::StepWidth,
   localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth,
   localparam int unsigned UnitBits = ray_core_pkg::UnitBits
@@ -38,8 +37,7 @@ module slab_test #(
     plane_offset #(
       .Width(StepWidth),
       .PlaneWidth(PlaneWidth),
-      .Arith(Arith),
-      .Adder(Adder)
+      .Arith(Arith)
     ) u_near (
       .clk_i,
       .q_i(back_i[k] ? box_i[24+8*k +: 8] : box_i[8*k +: 8]),
@@ -51,8 +49,7 @@ module slab_test #(
     plane_offset #(
       .Width(StepWidth),
       .PlaneWidth(PlaneWidth),
-      .Arith(Arith),
-      .Adder(Adder)
+      .Arith(Arith)
     ) u_far (
       .clk_i,
       .q_i(back_i[k] ? box_i[8*k +: 8] : box_i[24+8*k +: 8]),

@@ -5,8 +5,7 @@
 // start_i comes with the node, where Clocks is not 1; what else comes, comes as in slab_test.
 module slab_tests #(
   parameter int unsigned Clocks = 1,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned Children = ray_core_pkg::Children,
   localparam int unsigned BoxWidth = ray_core_pkg::BoxWidth,
   localparam int unsigned KindWidth = ray_core_pkg::KindWidth,
@@ -46,8 +45,7 @@ module slab_tests #(
 
   for (genvar i = 0; i < Units; i++) begin : gen_child
     slab_test #(
-      .Arith(Arith),
-      .Adder(Adder)
+      .Arith(Arith)
     ) u_child (
       .clk_i,
       .box_i(boxes[BoxWidth*i +: BoxWidth]),

@@ -23,8 +23,8 @@
 // A ray that starts goes before those that have tests in flight.
 module traversal #(
   parameter int unsigned Rays  = 64,
-  parameter int unsigned Depth = 8,  // groups on a ray's own stack, at least 1
-  parameter int unsigned Levels = ray_core_pkg::Levels,  // with the shared ones, at least Depth + 2
+  parameter int unsigned Depth = 8,  // groups on a ray's own stack
+  parameter int unsigned Levels = ray_core_pkg::Levels,  // with the shared ones
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth,

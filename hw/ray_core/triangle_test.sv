@@ -1,26 +1,63 @@
-// Triangle pipeline: set_up_unit's record of a triangle, then hit_test_pipeline's verdict on it; one a clock.
+// Triangle test: the polygon record of a triangle, seen from a ray's origin, and the ray's hit, miss or doubt; in binary32.
 //
-// Nothing that comes in is stalled; an output is there for the clock that says so. The ray is given by its context:
-// origin_i and both ids in the clock after the triangle came, its direction in that after direction_ctx_o asked for it.
+// Clocks = 1: a triangle a clock, in pipelined cores. Else (7 or more) a triangle in Clocks clocks, in few cores that take
+// turns: a step is from one step_i to the next, and all registers go on with it. The words are the same. Nothing is stalled.
 //
-// Every test is a burst of its own. A hit's P is there later than its verdict, in the order of the hits: up to
-// divide_latency + 4 clocks after it.
+//   operation   cores                                                     sums and products
+//   1           vertices A, B, C less O; the edges B-A, C-B, A-C          18
+//   2, 3        N = (A-C) x (B-A); A x (B-A), B x (C-B), C x (A-C);       24, 24
+//               the size of each one's terms
+//   4-6         d = N . A; the sums of the edges' terms, for bounds       3, 8
+//   7-9         V = N . I, U_k = E_k . I, d I_k                           see hit_dots
+//   then        the decision, and t = d / V, P_k = (d I_k) / V            see hit_decision; 4 dividers, or one
+//
+// An operation takes 3 clocks, or a step. A triangle comes with step_i. The ray is given by its context: origin_i and both
+// ids in the clock after, until the next step_i; its direction likewise after the step_i with direction_ctx_o. A verdict
+// is there for a clock, with its P.
+//
+// The record is hit_test_pkg's, with two differences from one that a host makes in double:
+//   * bounds are those of words computed here, below, about twice as large;
+//   * d is NaN where its sign is not sure, or where N or d are too far off: the plane then gives no hit,
+//     only misses that the edges decide, and doubts (see hit_decision).
+// The verdict's normal_error and distance_error say how far off N and d are, where d is a number. For a hit,
+// set_up_pkg makes of them and of t_error how far off t is.
+//
+// Why sure answers are sure. Let u = 2**-24, primes mark computed words, e(x) be exponents.
+//   Subtracting rounds once: A' = A (1 + u), D' = D (1 + u), with |u| standing for any error up to it.
+//   An edge E = A x D.  Its terms p = A'_i D'_j are off by three roundings, their difference by one more:
+//     |E'_k - E_k| <= 3.02 u T_k + 1.01 u |E'_k|, where T_k = |p| + |p'| >= |E'_k| are its terms.
+//     I has components below 2, so |I . E' - I . E| <= (6.04 + 2.02) u T for T = T_x + T_y + T_z, and the
+//     dot product's three roundings add 6.001 u T. The sum, 14.07 u T, and what T' is off by, are below
+//     bound = 16 u T', a change of the exponent alone.
+//   The plane.  With M_k = N's terms as T_k are E's:  |N'_k - N_k| <= 3.02 u M_k + 1.01 u |N'_k|, and V = I . N'
+//     is off by at most 14.07 u (M_x + M_y + M_z) < 84.5 u 2**e(M), the largest of the M_k meant.
+//     d = N . A:  |d' - d| <= u sum |A_k| (5.04 |N_k| + 3.02 M_k) <= 8.06 u sum |A_k| M_k < 96.8 u 2**(e(A) + e(M)).
+//     With normal_error = m = e(M) - e(N'), distance_error = q = max(e(A) + e(M) - e(d), 0), and the decision's
+//     g = max(e(N') - e(V), 0), that is at most 84.5 u 2**(m + g) of V and 96.8 u 2**q of d. So d has the right
+//     sign while q <= 14; and while m + g <= 14, V is off by at most 0.083 of itself, and t by
+//     (181.3 + 1) u 2**x / (1 - 0.083) < 199 u 2**x of itself, with x = max(m + g, q). Numbers are no closer
+//     than u of their size, so fewer than 2**(8 + x) of them lie between t' and t.
+//   Underflow adds at most 2**-150 to each product. Bounds are infinite, or d NaN, where a size that counts is
+//   below 2**-100: else that is far below the room that the constants leave.
+//   Overflow gives an infinity or NaN, which is never sure.
+//
+// Source: the paper's section 2.2 (what is computed once for an origin); the bounds are this project's.
 module triangle_test #(
-  parameter int unsigned Rays  = 64,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
-  localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned PlaneErrorWidth = set_up_pkg::PlaneErrorWidth
+  parameter int unsigned Rays   = 64,
+  parameter int unsigned Clocks = 1,
+  parameter int unsigned Arith  = arith_pkg::Graded,
+  localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                       clk_i,
   input  logic                       rst_ni,
+  input  logic                       step_i,
   input  logic [RayWidth-1:0]        ctx_i,
   // verilator lint_off UNUSEDSIGNAL
   // Ranks are exact_resolver's, and so are lines that are `exact`.
   input  ray_core_pkg::triangle_line_t triangle_i,  // with an error it counts for nothing
   // verilator lint_on UNUSEDSIGNAL
   input  logic [95:0]                origin_i,
-  input  logic [31:0]                skip_id_i,   // triangles that count for nothing
+  input  logic [31:0]                skip_id_i,  // triangles that count for nothing
   input  logic [31:0]                source_id_i,
   output logic [RayWidth-1:0]        direction_ctx_o,
   input  logic [95:0]                direction_i,
@@ -28,102 +65,333 @@ module triangle_test #(
   output ray_core_pkg::verdict_t     verdict_o
 );
 
-  if (ray_core_pkg::VerdictErrorWidth != PlaneErrorWidth
+  localparam int unsigned ErrorWidth = set_up_pkg::PlaneErrorWidth;
+
+  if ((Clocks != 1 && Clocks < 7) || ray_core_pkg::VerdictErrorWidth != ErrorWidth
       || ray_core_pkg::VerdictErrorWidth != hit_test_pkg::TErrorWidth) begin : gen_check
-    $error("triangle_test: expected VerdictErrorWidth to be set_up_pkg's and hit_test_pkg's");
+    $error("triangle_test: expected Clocks of 1, or 7 or more, and one width of errors");
   end
 
-  // ---- Set up
+  // Steps, which are clocks where Clocks is 1
+  localparam int unsigned Operation = (Clocks == 1) ? hit_test_pkg::AdderLatency : 1;
+  localparam int unsigned Take = (Clocks == 1) ? 2 : 1;  // a memory's word gets a register
+  localparam int unsigned Decide = Take + 9 * Operation;
+  // fp_vector_divider's clocks from V to t; P's words follow t
+  localparam int unsigned Divide = (set_up_pkg::FracWidth + 2) / 2 + 6;
+  localparam int unsigned DivideSteps = (Clocks == 1) ? hit_test_pkg::divide_latency(
+    set_up_pkg::FracWidth
+  ) + 1 : (Divide + 3) / Clocks + 1;
+  localparam int unsigned Last = Decide + 1 + DivideSteps;
 
-  logic [hit_test_pkg::RecordWords*32-1:0] set_record;
-  logic [PlaneErrorWidth-1:0] set_normal_error, set_distance_error;
-  logic [set_up_pkg::Latency+1:0] setting_q;
-  logic [ray_core_pkg::TriangleWidth-1:0] first_q, triangle_q;
-  logic [95:0] origin_q;
-  logic [RayWidth-1:0] first_ctx_q, ctx_q, set_ctx_q;
-  logic [31:0] index, early_triangle, set_triangle_q;
-  logic error_q, skipped_q, early_skipped, set_skipped_q;
+  // ---- Take; which test is where
 
-  assign index = first_q[ray_core_pkg::TriangleIndex+:32];
+  logic [ray_core_pkg::TriangleWidth-1:0] line_q;
+  logic [RayWidth-1:0] ctx_q, ctx;
+  logic [9*32-1:0] corners;
+  logic [95:0] origin;
+  logic [31:0] index, taken_index, early_index;
+  logic [Last:1] valid_q;  // so many steps ago it came
+  logic error_q, skipped, taken_skipped, early_skipped;
 
+  assign index   = line_q[ray_core_pkg::TriangleIndex+:32];
+  assign skipped = error_q | (index == skip_id_i) | (index == source_id_i);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) valid_q <= '0;
+    else if (step_i) valid_q <= {valid_q[Last-1:1], triangle_i.valid & ~triangle_i.exact};
+  end
   always_ff @(posedge clk_i) begin
-    {first_q, first_ctx_q, error_q} <= {triangle_i.line, ctx_i, triangle_i.error};
-    {triangle_q, ctx_q, origin_q}   <= {first_q, first_ctx_q, origin_i};
-    skipped_q <= error_q | (index == skip_id_i) | (index == source_id_i);
+    if (step_i) {line_q, ctx_q, error_q} <= {triangle_i.line, ctx_i, triangle_i.error};
   end
-
-  set_up_unit #(
-    .Arith(Arith),
-    .Adder(Adder)
-  ) u_set_up (
+  delay_line #(
+    .Width(9 * 32 + 96 + RayWidth + 32 + 1),
+    .Depth(Take - 1)
+  ) u_take (
     .clk_i,
-    .origin_i(origin_q),
-    .corners_i(triangle_q[ray_core_pkg::TriangleCorners +: 9*32]),
-    .record_o(set_record),
-    .normal_error_o(set_normal_error),
-    .distance_error_o(set_distance_error)
+    .enable_i(1'b1),
+    .data_i({line_q[ray_core_pkg::TriangleCorners +: 9*32], origin_i, ctx_q, index, skipped}),
+    .data_o({corners, origin, ctx, taken_index, taken_skipped})
   );
   delay_line #(
     .Width(RayWidth + 32 + 1),
-    .Depth(set_up_pkg::Latency - 1)
-  ) u_sideband_set_up (
+    .Depth(6 * Operation - 1)
+  ) u_early (
     .clk_i,
-    .enable_i(1'b1),
-    .data_i({ctx_q, triangle_q[ray_core_pkg::TriangleIndex+:32], skipped_q}),
-    .data_o({direction_ctx_o, early_triangle, early_skipped})
+    .enable_i(step_i),
+    .data_i({ctx, taken_index, taken_skipped}),
+    .data_o({direction_ctx_o, early_index, early_skipped})
+  );
+  delay_line #(
+    .Width(RayWidth + 32 + 1),
+    .Depth(Last - Take - 6 * Operation + 1)
+  ) u_late (
+    .clk_i,
+    .enable_i(step_i),
+    .data_i({direction_ctx_o, early_index, early_skipped}),
+    .data_o({ctx_o, verdict_o.triangle, verdict_o.is_skipped})
   );
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) setting_q <= '0;
-    else setting_q <= {setting_q[set_up_pkg::Latency:0], triangle_i.valid & ~triangle_i.exact};
-  end
-  always_ff @(posedge clk_i) begin
-    {set_ctx_q, set_triangle_q, set_skipped_q} <= {direction_ctx_o, early_triangle, early_skipped};
-  end
+  // ---- Subtract
 
-  // ---- Test
+  logic [9*32-1:0] corner, edge_vector;  // A, B, C; B-A, C-B, A-C
 
-  localparam int unsigned TagWidth = 2 * PlaneErrorWidth + 1 + RayWidth + 32;
-
-  logic unused_ready, word_valid, closed, found, point_valid;
-  hit_test_pkg::report_e report;
-  logic [TagWidth-1:0] tag, unused_tag;
-  logic [hit_test_pkg::NumCounts-1:0] unused_events;
-
-  hit_test_pipeline #(
-    .Arith(Arith),
-    .Adder(Adder),
-    .TagWidth(TagWidth),
-    .Single(1'b1)
-  ) u_tests (
+  fp_vector #(
+    .Words(18),
+    .Subtract(18'h3ffff),
+    .Clocks(Clocks),
+    .Arith(Arith)
+  ) u_differences (
     .clk_i,
-    .rst_ni,
-    .valid_i(setting_q[set_up_pkg::Latency+1]),
-    .ready_o(unused_ready),  // always, as results are always taken
-    .first_i(1'b1),
-    .last_i(1'b1),
-    .tag_i({set_normal_error, set_distance_error, set_skipped_q, set_ctx_q, set_triangle_q}),
+    .step_i,
+    .a_i({corners[0 +: 3*32], corners[3*32 +: 6*32], corners}),
+    .b_i({corners, {3{origin}}}),
+    .result_o({edge_vector, corner})
+  );
+
+  // ---- Cross: the edges' planes, then N. A product's word k is a_i b_j - a_j b_i for (i, j, k) = (1, 2, 0) and so on, the
+  // size of its terms |a_i b_j| + |a_j b_i|: what cancels in a word shows in how much larger its terms are
+
+  logic [4*192-1:0] lefts, rights, cross_terms, minuends, others, differences;
+  logic [12*32-1:0] product, terms;
+
+  for (genvar n = 0; n < 4; n++) begin : gen_cross
+    localparam logic [95:0] Magnitudes = {3{32'h7fff_ffff}};
+    logic [95:0] a, b, left, right;
+    assign a = (n < 3) ? corner[96*(n%3)+:96] : edge_vector[96*2+:96];
+    assign b = edge_vector[96*(n%3)+:96];
+    assign lefts[192*n+:192]  = {a[63:0], a[95:64], a[31:0], a[95:32]};
+    assign rights[192*n+:192] = {b[31:0], b[95:32], b[63:0], b[95:64]};
+    assign {right, left} = cross_terms[192*n+:192];
+    assign minuends[192*n+:192] = {left & Magnitudes, left};
+    assign others[192*n+:192]   = {right & Magnitudes, right};
+    assign {terms[96*n+:96], product[96*n+:96]} = differences[192*n+:192];
+  end
+
+  fp_vector #(
+    .Words(24),
+    .Multiply(1'b1),
+    .Clocks(Clocks),
+    .Arith(Arith)
+  ) u_terms (
+    .clk_i,
+    .step_i,
+    .a_i(lefts),
+    .b_i(rights),
+    .result_o(cross_terms)
+  );
+  fp_vector #(
+    .Words(24),
+    .Subtract({4{6'b000111}}),
+    .Clocks(Clocks),
+    .Arith(Arith)
+  ) u_cross (
+    .clk_i,
+    .step_i,
+    .a_i(minuends),
+    .b_i(others),
+    .result_o(differences)
+  );
+
+  // ---- Sum: x + y of the edges' terms, then + z; x + y of d, then + z. Bounds come an operation before d
+
+  logic [95:0] vertex, shares, last_terms, early_bounds, bounds;  // shares: N_k A_k
+  logic [31:0] last_share, d, good_d;
+  logic [8*32-1:0] sums;
+  logic [12*32-1:0] planes;
+  logic [23:0] fields;
+  set_up_pkg::plane_t plane;
+
+  delay_line #(
+    .Width(96),
+    .Depth(2 * Operation)
+  ) u_vertex (
+    .clk_i,
+    .enable_i(step_i),
+    .data_i(corner[95:0]),
+    .data_o(vertex)
+  );
+  fp_vector #(
+    .Multiply(1'b1),
+    .Clocks(Clocks),
+    .Arith(Arith)
+  ) u_shares (
+    .clk_i,
+    .step_i,
+    .a_i(product[9*32 +: 96]),
+    .b_i(vertex),
+    .result_o(shares)
+  );
+  for (genvar k = 0; k < 3; k++) begin : gen_bound
+    assign early_bounds[32*k+:32] = set_up_pkg::bound(sums[32*(3+k)+:32]);
+  end
+  delay_line #(
+    .Width(2 * 96 + 32),
+    .Depth(Operation)
+  ) u_thirds (
+    .clk_i,
+    .enable_i(step_i),
+    .data_i({terms[32*8 +: 32], terms[32*5 +: 32], terms[32*2 +: 32], shares[95:64], early_bounds}),
+    .data_o({last_terms, last_share, bounds})
+  );
+  fp_vector #(
+    .Words(8),
+    .Clocks(Clocks),
+    .Arith(Arith)
+  ) u_sums (
+    .clk_i,
+    .step_i,
+    .a_i({sums[32*6 +: 32], shares[31:0], sums[95:0],
+          terms[32*6 +: 32], terms[32*3 +: 32], terms[0 +: 32]}),
+    .b_i({last_share, shares[63:32], last_terms,
+          terms[32*7 +: 32], terms[32*4 +: 32], terms[32*1 +: 32]}),
+    .result_o(sums)
+  );
+  assign d = sums[32*7+:32];
+
+  // The plane's errors, from exponents: those of A, N and N's terms go beside d
+  delay_line #(
+    .Width(12 * 32 + 24),
+    .Depth(3 * Operation)
+  ) u_planes (
+    .clk_i,
+    .enable_i(step_i),
+    .data_i({set_up_pkg::largest(vertex), set_up_pkg::largest(product[9*32 +: 96]),
+             set_up_pkg::largest(terms[9*32 +: 96]), product}),
+    .data_o({fields, planes})
+  );
+  assign plane  = set_up_pkg::plane_of(fields[23:16], fields[15:8], fields[7:0], d[30:23]);
+  assign good_d = plane.good ? d : set_up_pkg::NaN;
+
+  // ---- V, U_k and the decision
+
+  logic [31:0] v, decided_d;
+  logic [95:0] u, dividends, decided_bounds;
+  logic [7:0] decided_exponent;
+  logic [2*ErrorWidth-1:0] decided_errors;
+  logic unused_miss, hit, doubt, late_hit, late_doubt;
+  logic [hit_test_pkg::TErrorWidth-1:0] t_error;
+
+  hit_dots #(
+    .Clocks(Clocks),
+    .Arith(Arith)
+  ) u_dots (
+    .clk_i,
+    .step_i,
+    .normal_i(planes[9*32 +: 96]),
+    .edges_i(planes[0 +: 9*32]),
+    .d_i(good_d),
     .direction_i,
-    .record_i(set_record),
-    .valid_o(word_valid),
-    .ready_i(1'b1),
-    .report_o(report),
-    .report_tag_o(tag),
-    .closed_o(closed),
-    .found_o(found),
-    .tag_o(unused_tag),
-    .t_o(verdict_o.t),
-    .t_error_o(verdict_o.t_error),
-    .point_valid_o(point_valid),
-    .point_o(verdict_o.point),
-    .events_o(unused_events)
+    .v_o(v),
+    .u_o(u),
+    .dividends_o(dividends)
+  );
+  delay_line #(
+    .Width(32 + 96 + 8 + 2 * ErrorWidth),
+    .Depth(3 * Operation)
+  ) u_decided (
+    .clk_i,
+    .enable_i(step_i),
+    .data_i({good_d, bounds, fields[15:8], plane.normal_error, plane.distance_error}),
+    .data_o({decided_d, decided_bounds, decided_exponent, decided_errors})
+  );
+  hit_decision u_decision (
+    .d_i(decided_d),
+    .normal_exponent_i(decided_exponent),
+    .v_i(v),
+    .u_i(u),
+    .bounds_i(decided_bounds),
+    .miss_o(unused_miss),
+    .hit_o(hit),
+    .doubt_o(doubt),
+    .t_error_o(t_error)
+  );
+  delay_line #(
+    .Width(2 + hit_test_pkg::TErrorWidth + 2 * ErrorWidth),
+    .Depth(Last - Decide)
+  ) u_verdict (
+    .clk_i,
+    .enable_i(step_i),
+    .data_i({hit, doubt, t_error, decided_errors}),
+    .data_o({late_hit, late_doubt, verdict_o.t_error, verdict_o.normal_error,
+             verdict_o.distance_error})
   );
 
-  assign verdict_o.valid       = word_valid & closed;
-  assign verdict_o.found       = found;
-  assign verdict_o.doubt       = report == hit_test_pkg::ReportDoubt;
-  assign verdict_o.point_valid = word_valid & point_valid;
-  assign {verdict_o.normal_error, verdict_o.distance_error, verdict_o.is_skipped, ctx_o,
-          verdict_o.triangle} = tag;
+  // ---- Divide: t, then P
+
+  logic [4*32-1:0] dividends_q, quotients_q;
+  logic [31:0] divisor_q;
+
+  if (Clocks == 1) begin : gen_dividers
+    logic [4*32-1:0] quotients;
+    logic hit_q;
+
+    always_ff @(posedge clk_i) begin
+      {dividends_q, divisor_q, hit_q} <= {dividends, decided_d, v, hit};
+      quotients_q <= quotients;
+    end
+    assign verdict_o.valid = valid_q[Last];
+
+    for (genvar k = 0; k < 4; k++) begin : gen_divider
+      fp_pkg::flags_t unused_flags;
+
+      fp_divider #(
+        .Arith(Arith),
+        .Pipelined(1'b1)
+      ) u_divider (
+        .clk_i,
+        .valid_i(valid_q[Decide+1] & hit_q),
+        .a_i(dividends_q[32*k +: 32]),
+        .b_i(divisor_q),
+        .rounding_mode_i(fp_pkg::RoundNearestEven),
+        .tininess_after_i(1'b0),
+        .result_o(quotients[32*k +: 32]),
+        .flags_o(unused_flags)
+      );
+    end
+  end else begin : gen_turns
+    localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // from t to the step
+    logic [4:0] since_q;  // the clock after the step, and those after it
+    logic [31:0] quotient;
+    logic [Wait*32-1:0] waiting_q;
+    logic [(Wait+1)*32-1:0] waiting;  // the latest highest
+    logic unused_valid;
+
+    fp_vector_divider #(
+      .Arith(Arith),
+      .Components(4),
+      .Period(Clocks),
+      .RowsPerClock(1)
+    ) u_divider (
+      .clk_i,
+      .rst_ni,
+      .divisor_i(since_q[0]),
+      .dividend_i(|since_q[4:1]),
+      .word_i(divisor_q),
+      .rounding_mode_i(fp_pkg::RoundNearestEven),
+      .valid_o(unused_valid),
+      .result_o(quotient)
+    );
+    assign waiting = {quotient, waiting_q};
+
+    always_ff @(posedge clk_i or negedge rst_ni) begin
+      if (!rst_ni) since_q <= '0;
+      else since_q <= {since_q[3:0], step_i};
+    end
+    always_ff @(posedge clk_i) begin
+      {dividends_q, divisor_q} <=
+          step_i ? {dividends, decided_d, v} : {32'd0, dividends_q};
+      waiting_q <= waiting[(Wait+1)*32-1:32];
+      if (step_i) quotients_q <= waiting[4*32-1:0];
+    end
+    assign verdict_o.valid = valid_q[Last] & since_q[0];
+  end
+
+  // ---- The verdict: a t that is no positive normal number is none
+
+  logic is_normal;
+  assign {verdict_o.point, verdict_o.t} = quotients_q;
+  assign is_normal = ~quotients_q[31] & (quotients_q[30:23] != '0) & ~(&quotients_q[30:23]);
+  assign verdict_o.found = late_hit & is_normal;
+  assign verdict_o.doubt = late_doubt | (late_hit & ~is_normal);
 
 endmodule

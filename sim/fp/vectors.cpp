@@ -121,6 +121,13 @@ OperandPair PairSource::near_range_end() {
   return {number(a), number(b)};
 }
 
+namespace {
+
+/// A division whose quotient lies as close to a rounding boundary as one can: significands
+/// a, b in [2^F, 2^(F+1)), F = frac_bits, with a * 2^k = m * b + r, |r| small, where m is odd with
+/// F+2 bits (a midpoint) or even. Given b odd and r, m is r / -b modulo a power of two (after
+/// Matula and McFearin, 2001). `k` is F+1, or F+2 for quotients below 1. Returns {0, 0} where there
+/// is no such a.
 OperandPair hard_division(FloatFormat format, std::uint32_t b, int r, int k, bool midpoint) {
   const int f = format.frac_bits;
   std::uint64_t inverse = b;  // of odd b, modulo 2^64: each step doubles the bits that are right
@@ -138,6 +145,8 @@ OperandPair hard_division(FloatFormat format, std::uint32_t b, int r, int k, boo
   }
   return {};
 }
+
+}  // namespace
 
 OperandPair PairSource::hard_quotient() {
   const int f = format_.frac_bits;

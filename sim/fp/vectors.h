@@ -43,12 +43,4 @@ class PairSource {
   std::mt19937_64 engine_;
 };
 
-/// A division whose quotient lies as close to a rounding boundary as one can: significands
-/// a, b in [2^F, 2^(F+1)), F = frac_bits, with a * 2^k = m * b + r, |r| small, where m has
-/// F+2 bits if it is odd (a midpoint: F+1 fraction bits) or is an even one (a representable
-/// number). Given b odd and r, m is r / -b modulo a power of two (after Matula and McFearin,
-/// "Generation and analysis of hard to round cases for binary floating point division", 2001). `k`
-/// is F+1, or F+2 for quotients below 1. Returns {0, 0} where there is no such a.
-OperandPair hard_division(FloatFormat format, std::uint32_t b, int r, int k, bool midpoint);
-
 }  // namespace raygate

@@ -1,9 +1,8 @@
 """`python3 -m sim.mutate BUILD`: how many single faults of the hardware its tests catch.
 
 For each unit: a netlist with faults (netlist.py) runs the unit's own tests with one fault after the other. A fault that
-survives is held against the sound netlist by ABC's equivalence check: one that changes no output for any
-input is no fault. What is left is listed, with its lines in hw/. `--at-most PERCENT`: survivors are held against the sound
-netlist only until no more than so many are left, and the check is that no more are."""
+survives is no fault if ABC's equivalence check shows that it changes no output for any input. What is left is listed, with
+its lines in hw/. `--at-most PERCENT`: the check is that no more survive, and stops where that is known."""
 
 import argparse
 import collections

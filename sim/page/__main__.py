@@ -26,7 +26,7 @@ def described(line: str) -> str:
     mode = MODES[re.search(r"-mode (\w+)", line)[1]]
     wire = re.search(r"-wire (\S+) -wirebit (\d+)", line)
     where = netlist.source(line)
-    name = re.sub(r"genblk\d+\.", "", wire[1]).removeprefix("u_stages.") + f", bit {wire[2]}" if wire else "a wire without a name"
+    name = re.sub(r"genblk\d+\.", "", wire[1]) + f", bit {wire[2]}" if wire else "a wire without a name"
     return f"{name}: {mode}" + (f" ({where})" if where else "")
 
 
@@ -38,7 +38,7 @@ def example() -> list[float]:
 
 def verilate(folder: pathlib.Path) -> list[str]:
     """Writes the unit in C++ into `folder`; returns the lines of the adder's faults."""
-    netlist.write(folder / "fp_adder", "fp_adder", [], FAULTS, 1, [], [])
+    netlist.write(folder / "fp_adder", "fp_adder", [], FAULTS, 1, [])
     gates = (folder / "fp_adder.v").read_text().replace("module fp_adder(", "module fp_adder_gates(", 1)
     (folder / "fp_adder_gates.v").write_text(gates)
     files = list(dict.fromkeys(file for core in cores.names() for file in cores.files(core)))

@@ -5,9 +5,10 @@
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith     = arith_pkg::Structural,
-  parameter int unsigned Adder     = arith_pkg::AdderGraded
+  parameter int unsigned Arith     = arith_pkg::Graded,
+  parameter bit          Pipelined = 1'b0
 ) (
+  input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  logic                        subtract_i,
@@ -20,6 +21,7 @@ module fp_adder #(
   logic [15:0] mutant  /*verilator public_flat_rw*/;
 
   fp_adder_gates u_gates (
+    .clk_i,
     .a_i,
     .b_i,
     .subtract_i,

@@ -75,7 +75,7 @@ def groups(design: Design) -> list[int]:
         value = int(packed.split("'h")[1], 16)
         return [value >> 8 * place & 255 for place in range(16) if value >> 8 * place & 255]
     width = int(parameters.get("Width", 48))  # the module's own
-    if parameters.get("Adder") == str(catalogue.adder_kinds()["graded"]) and width == 48:
+    if parameters.get("Arith") == str(catalogue.adder_kinds()["graded"]) and width == 48:
         return [3, 5, 6, 7, 8, 9, 10]  # arith_pkg's
     return [min(BAND, width - low) for low in range(0, width, BAND)]
 

@@ -1,7 +1,7 @@
 // {carry_o, sum_o} = a_i + b_i + carry_i, for all operands.
 module adder_adds #(
   parameter int unsigned Width = 48,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
+  parameter int unsigned Arith = arith_pkg::Graded,
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = '0,
   parameter bit LookAhead = 1'b1
 ) (
@@ -14,7 +14,7 @@ module adder_adds #(
 
   adder #(
     .Width      (Width),
-    .Adder      (Adder),
+    .Arith      (Arith),
     .GroupWidths(GroupWidths),
     .LookAhead  (LookAhead)
   ) dut (

@@ -1,7 +1,7 @@
 // Rays that come into a ray core and leave it, whatever is done for them and however long it takes, from reset
 // and for ever: a context of the table is given to one ray at a time; what ends is a ray that began and had not ended;
-// every ray that came in is in one place, and leaves as one end. No queue overflows, and no end leaves
-// before its P is there: a ray that was marked, any one, leaves with its mark, once, and with P of its own.
+// every ray that came in is in one place, and leaves as one end. No queue overflows: a ray that was marked, any one, leaves
+// with its mark, once, and with the P that was there when it ended, for that is in the same word of the queue.
 // opened_ray_contexts is contracts/ray_contexts.sv with its registers as outputs.
 module contexts_answer_once #(
   parameter int unsigned Rays = 4,
@@ -17,9 +17,8 @@ module contexts_answer_once #(
 );
 
   localparam int unsigned Divide = hit_test_pkg::divide_latency(23);
-  localparam int unsigned Delay = Divide + 5;
   localparam int unsigned InDepth = Divide + 3;
-  localparam int unsigned EndDepth = Delay + 4;
+  localparam int unsigned EndDepth = 8;
   localparam int unsigned InCountWidth = $clog2(InDepth + 1);
   localparam int unsigned EndCountWidth = $clog2(EndDepth + 1);
   localparam int unsigned TotalWidth = 8;
@@ -34,17 +33,14 @@ module contexts_answer_once #(
   logic [CtxWidth-1:0] started_ctx, ending_ctx;
   logic [Rays-1:0] free_q, active_q;
   logic [Divide-1:0] dividing_q;
-  logic [Delay-1:0] pointing_q;
+  logic known_q;
   logic [InCountWidth-1:0] rays_count, inverses_count;
-  logic [EndCountWidth-1:0] ends_count, points_count;
+  logic [EndCountWidth-1:0] ends_count;
   logic [InDepth-1:0] ray_marks;
-  logic [EndDepth-1:0] end_marks, points;
+  logic [EndDepth-1:0] end_marks;
   logic [Rays-1:0] marks;
-  logic marked, point, answer_mark, answer_point, answer_known;
-  logic [5:0] age;
-  logic [CtxWidth-1:0] marked_ctx, end_ctx;
-  logic [CtxWidth*(Delay-2)-1:0] pointing_ctx;
-  logic rays_valid, inverses_valid, ends_valid, points_valid, rays_space, ends_space;
+  logic entering, answer_mark;
+  logic rays_valid, inverses_valid, ends_valid, rays_space, ends_space;
 
   opened_ray_contexts dut (
     .clk_i(clk),
@@ -59,36 +55,26 @@ module contexts_answer_once #(
     .ending_o(ending),
     .ending_ctx_o(ending_ctx),
     .marks_o(marks),
-    .marked_o(marked),
-    .age_o(age),
-    .ctx_o(marked_ctx),
+    .entering_o(entering),
     .doubt_valid_i(doubt),
     .result_valid_o(valid),
     .result_ready_i(take),
     .result_kind_o(kind),
     .result_mark_o(answer_mark),
-    .result_point_o(answer_point),
-    .result_known_o(answer_known),
-    .point(point),
-    .end_ctx(end_ctx),
     .\u_alloc.u_rays.bits_q (ray_marks),
     .\u_retire.u_ends.bits_q (end_marks),
-    .\u_retire.u_points.bits_q (points),
-    .\u_retire.u_pointing.line_q (pointing_ctx),
     .\u_alloc.free_q (free_q),
-    .\u_alloc.u_reciprocals.gen_dividers.dividing_q (dividing_q),
+    .\u_alloc.gen_dividers.dividing_q (dividing_q),
     .\u_alloc.u_rays.count_q (rays_count),
     .\u_alloc.u_rays.valid_o (rays_valid),
     .\u_alloc.u_rays.space_o (rays_space),
     .\u_alloc.u_inverses.count_q (inverses_count),
     .\u_alloc.u_inverses.valid_o (inverses_valid),
     .\u_retire.active_q (active_q),
-    .\u_retire.pointing_q (pointing_q),
+    .\u_retire.known_q (known_q),
     .\u_retire.u_ends.count_q (ends_count),
     .\u_retire.u_ends.valid_o (ends_valid),
-    .\u_retire.u_ends.space_o (ends_space),
-    .\u_retire.u_points.count_q (points_count),
-    .\u_retire.u_points.valid_o (points_valid)
+    .\u_retire.u_ends.space_o (ends_space)
   );
 
   function automatic logic [TotalWidth-1:0] ones(logic [31:0] word);
@@ -100,9 +86,8 @@ module contexts_answer_once #(
 
   // ---- What the user sees: rays that came, and ends that left
 
-  logic ended, end_offered, offered, entering;  // the last two: the marked one's end is, or comes into the queue
+  logic ended, end_offered, offered;  // the last: the marked one's end
   assign offered  = end_offered && answer_mark;
-  assign entering = marked && age == 6'd1;
   logic [TotalWidth-1:0] in_flight;  // rays that came and have not left
   logic [Rays-1:0] used;          // contexts whose ray began and has not ended
   assign ended       = valid && take && kind == ray_core_pkg::ResultEnd;
@@ -127,49 +112,33 @@ module contexts_answer_once #(
       if (started) assert (!used[started_ctx]);
       if (ending) assert (used[ending_ctx] && !busy[ending_ctx]);
       if (ended) assert (in_flight != '0);
-      assert (in_flight == TotalWidth'(rays_count) + ones(32'(used)) + TotalWidth'(pointing_q[0])
+      assert (in_flight == TotalWidth'(rays_count) + ones(32'(used)) + TotalWidth'(known_q)
                         + TotalWidth'(ends_count) + TotalWidth'(end_offered));
       assert (rays_count <= InCountWidth'(InDepth));
-      assert (TotalWidth'(ends_count) + TotalWidth'(pointing_q[0]) <= TotalWidth'(EndDepth));
+      assert (TotalWidth'(ends_count) + TotalWidth'(known_q) <= TotalWidth'(EndDepth));
 
-      if (ended && answer_mark) assert (chosen && !left && (answer_point || !answer_known));
+      if (ended && answer_mark) assert (chosen && !left);
 
       // Invariants of the marked ray: it is in one place
       assert (TotalWidth'(chosen) == ones(32'(ray_marks)) + ones(32'(marks)) + TotalWidth'(entering)
                                      + ones(32'(end_marks)) + TotalWidth'(offered) + TotalWidth'(left));
-      assert (ray_marks >> rays_count == '0 && end_marks >> ends_count == '0 && points >> points_count == '0);
+      assert (ray_marks >> rays_count == '0 && end_marks >> ends_count == '0);
       assert ((marks & ~used) == '0);
-      assert (marked == (entering || end_marks != '0 || offered || left));
-      if (offered) assert (answer_point || !answer_known);
-      if (marked) begin
-        assert (age != '0);
-        if (age <= 6'(Delay)) assert (pointing_q[age-1] && !offered && !left);
-        if (entering) assert (end_ctx == marked_ctx);
-        else if (age < 6'(Delay)) assert (pointing_ctx[CtxWidth*(age-2)+:CtxWidth] == marked_ctx);
-        if (age == 6'(Delay)) assert (point);
-        // Its P comes into its queue where its end is in the other
-        if (end_marks != '0) begin
-          if (age <= 6'(Delay)) begin
-            assert (end_marks == EndDepth'(1) << (TotalWidth'(points_count) + ones(32'(pointing_q >> age))));
-          end else assert ((end_marks & points) != '0);
-        end
-      end
+      if (entering) assert (known_q);
 
       // Invariants
       assert (free_q == ~used && active_q == used);
       assert (TotalWidth'(rays_count) == TotalWidth'(inverses_count) + ones(32'(dividing_q)));
-      assert (TotalWidth'(ends_count) + TotalWidth'(pointing_q[0]) == TotalWidth'(points_count) + ones(32'(pointing_q)));
       assert (inverses_valid == (inverses_count != '0));
       // In memories a word is there a clock later; one alone may be that of the clock before
       if (rays_count != InCountWidth'(dividing_q[0])) assert (rays_valid);
-      if (ends_count != EndCountWidth'(pointing_q[1])) assert (ends_valid);
+      if (ends_count > EndCountWidth'(1)) assert (ends_valid);
       if (rays_valid) assert (rays_count != '0);
       if (ends_valid) assert (ends_count != '0);
-      if (points_valid) assert (points_count != '0);
       assert (rays_space == (rays_count < InCountWidth'(InDepth)));
       assert (ends_space == (ends_count < EndCountWidth'(EndDepth - 1)));
 
-      cover (ended && answer_mark && answer_known);
+      cover (ended && answer_mark);
     end
   end
 

@@ -40,31 +40,31 @@ module general_unit_computes #(
   assign divisors[0+:Width] = '0;  // not added
   for (genvar k = 0; k < 3; k++) begin : gen_product
     logic [Width-1:0] of_origin, of_direction;
-    fp_multiplier_stages #(.ConstantRow(1'b1)) u_multiply_origin (
+    fp_multiplier #(.ConstantRow(1'b1)) u_multiply_origin (
       .clk_i(clk), .a_i(words[Width*(1+k)+:Width]), .b_i(words[Width*(4+k)+:Width]),
       .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(of_origin));
-    fp_adder_stages u_add_origin (
+    fp_adder u_add_origin (
       .clk_i(clk), .a_i(numerators[Width*k+:Width]), .b_i(of_origin), .subtract_i(1'b0),
       .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(numerators[Width*(k+1)+:Width]));
-    fp_multiplier_stages #(.ConstantRow(1'b1)) u_multiply_direction (
+    fp_multiplier #(.ConstantRow(1'b1)) u_multiply_direction (
       .clk_i(clk), .a_i(words[Width*(1+k)+:Width]), .b_i(words[Width*(7+k)+:Width]),
       .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(of_direction));
     if (k == 0) begin : gen_first
       assign divisors[Width+:Width] = of_direction;
     end else begin : gen_next
-      fp_adder_stages u_add_direction (
+      fp_adder u_add_direction (
         .clk_i(clk), .a_i(divisors[Width*k+:Width]), .b_i(of_direction), .subtract_i(1'b0),
         .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(divisors[Width*(k+1)+:Width]));
     end
   end
-  fp_divider_stages u_divide (
+  fp_divider u_divide (
     .clk_i(clk), .valid_i(1'b1),
     .a_i({~numerators[4*Width-1], numerators[3*Width+:Width-1]}), .b_i(divisors[3*Width+:Width]),
     .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(t));
-  fp_multiplier_stages #(.ConstantRow(1'b1)) u_move (
+  fp_multiplier #(.ConstantRow(1'b1)) u_move (
     .clk_i(clk), .a_i(t), .b_i(words[Width*(age-6)+:Width]), .rounding_mode_i(3'd0),
     .tininess_after_i(1'b1), .result_o(moved));
-  fp_adder_stages u_component (
+  fp_adder u_component (
     .clk_i(clk), .a_i(words[Width*(age-9)+:Width]), .b_i(moved), .subtract_i(1'b0),
     .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(component));
 

@@ -5,7 +5,6 @@
 // opened_closest_hit is closest_hit of two rays with its registers and memories as outputs; that its queues keep order is fifo_keeps_order's.
 module hits_keep_nearest #(
   localparam int unsigned Rays     = 2,
-  localparam int unsigned InFlight = 2,
   localparam int unsigned Queue    = 18,
   localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth,
   localparam int unsigned TestsWidth  = ray_core_pkg::TestsWidth
@@ -27,7 +26,6 @@ module hits_keep_nearest #(
   input logic [3:0]  read_t_error,
   input logic [3:0]  read_normal_error,
   input logic [3:0]  read_distance_error,
-  input logic        point_valid,
   input logic [Rays-1:0] failed,
   input logic        traversal_ray,
   input logic        leaf_ray,
@@ -53,16 +51,16 @@ module hits_keep_nearest #(
   logic [31:0] tag_0, tag_1, result_tag, end_triangle, end_t;  // tag_0, tag_1: a ray's
   logic [TErrorWidth-1:0] end_t_error;
   logic [TestsWidth-1:0] end_tests;
+  logic [95:0] over_point, result_point;
   logic [95:0] end_point, read_point;  // read_point: of the ray of the clock before
   logic read_before;
   logic traversal_ray_q, leaf_ray_q, box_ray_q, traversal_before, leaf_before, box_before;
-  logic replace, test_q, test_ray_q, push, doubts_space, doubts_valid, points_read, points_write;
+  logic replace, test_q, test_ray_q, push, doubts_space, doubts_valid;
   logic [63:0] pushed, doubt_word;
   logic [4:0] doubts, here;
-  logic [1:0] points_count;
   logic [Rays*31-1:0] t_max_words;
   logic [Rays*32-1:0] nearest_t, nearest_low, nearest_triangle;
-  logic over, over_hit, over_sure, over_vague, over_ray, old_found;
+  logic over, over_sure, over_vague, over_ray, old_found;
   logic [31:0] over_tag, over_triangle, over_t, over_low, over_high, old_low, old_triangle;
   logic [30:0] old_t_max;
   logic [TErrorWidth-1:0] over_t_error;
@@ -70,7 +68,6 @@ module hits_keep_nearest #(
   logic [Rays*96-1:0] points;
   logic [Rays*5-1:0] counts;
   logic [Rays*TestsWidth-1:0] tests;
-  logic [InFlight*2-1:0] points_words;
 
   opened_closest_hit dut (
     .clk_i(clk),
@@ -87,7 +84,7 @@ module hits_keep_nearest #(
     .result_ray_i(read_ray),
     .result_tag_i(read_ray ? tag_1 : tag_0),
     .result_i({read, read_skipped, read_doubt, read_hit, read_triangle, read_t, read_t_error,
-               read_normal_error, read_distance_error, point_valid, point}),
+               read_normal_error, read_distance_error, point}),
     .failed_i(failed),
     .traversal_ray_i(traversal_ray),
     .traversal_t_max_o(traversal_t_max),
@@ -111,7 +108,6 @@ module hits_keep_nearest #(
     .leaf_ray_q(leaf_ray_q),
     .box_ray_q(box_ray_q),
     .is_over_q(over),
-    .is_hit_q(over_hit),
     .is_sure_q(over_sure),
     .is_vague_q(over_vague),
     .ray_q(over_ray),
@@ -132,9 +128,7 @@ module hits_keep_nearest #(
     .\u_doubts.push_i (push),
     .\u_doubts.data_i (pushed),
     .\u_doubts.count_q (doubts),
-    .\u_points.read_q (points_read),
-    .\u_points.write_q (points_write),
-    .\u_points.count_q (points_count),
+    .point_q(over_point),
     .t_max(t_max_words),
     .nearest_t(nearest_t),
     .nearest_low(nearest_low),
@@ -142,8 +136,7 @@ module hits_keep_nearest #(
     .nearest_triangle(nearest_triangle),
     .u_kept_words(points),
     .tests(tests),
-    .counts(counts),
-    .u_points_words(points_words)
+    .counts(counts)
   );
 
   // ---- The result that is compared: as it came
@@ -153,7 +146,7 @@ module hits_keep_nearest #(
   always_ff @(posedge clk) begin
     result <= reset_n && read;
     {result_ray, result_skipped, result_doubt, result_hit} <= {read_ray, read_skipped, read_doubt, read_hit};
-    {result_triangle, result_t} <= {read_triangle, read_t};
+    {result_triangle, result_t, result_point} <= {read_triangle, read_t, point};
     {result_t_error, result_normal_error, result_distance_error}
         <= {read_t_error, read_normal_error, read_distance_error};
   end
@@ -200,11 +193,9 @@ module hits_keep_nearest #(
       assume (!test || (loaded[test_ray] && test_ray == leaf_ray_q && tests_allowed));
       assume (!read || (read_ray ? flight_1 : flight_0) > 12'(result && result_ray == read_ray));
       assume (!(read_hit && read_doubt) && read_t <= Infinity);
-      assume (!(result && result_hit) || points_count < 2'(InFlight) || point_valid);
-      assume (!point_valid || points_count != '0);
       assume (!doubt_fire || doubt_valid);
     end else begin
-      assume (!load && !test && !read && !point_valid && !doubt_fire);
+      assume (!load && !test && !read && !doubt_fire);
     end
   end
 
@@ -227,7 +218,7 @@ module hits_keep_nearest #(
 
   localparam logic [1:0] Nowhere = 2'd0, Kept = 2'd1, Told = 2'd2, Beyond = 2'd3;
   logic [1:0] state;
-  logic w_ray, has_point, w_place;
+  logic w_ray;
   logic [31:0] w_t, w_triangle;
   logic [TErrorWidth-1:0] w_error;
   logic [95:0] w_point;
@@ -251,16 +242,11 @@ module hits_keep_nearest #(
         w_triangle <= result_triangle;
         w_low <= low;
         w_high <= high > $signed({2'b00, Infinity}) ? $signed({2'b00, Infinity}) : high;
-        has_point <= 1'b0;
-        w_place <= points_write;
+        w_point <= result_point;
       end
     end else begin
       if (load && load_ray == w_ray) state <= Nowhere;
       else if (ousted) state <= push ? Told : Beyond;
-      if (point_valid && !has_point && points_read == w_place) begin
-        has_point <= 1'b1;
-        w_point <= point;
-      end
     end
   end
 
@@ -273,8 +259,6 @@ module hits_keep_nearest #(
 
   // ---- Claims
 
-  logic [1:0] behind;  // the word of the queue of hits that is behind the watched one's, or in front of it
-  assign behind = w_place ? points_words[1:0] : points_words[3:2];
   logic [30:0] result_t_max;
   assign result_t_max = result_ray ? t_max_words[61:31] : t_max_words[30:0];
 
@@ -293,7 +277,7 @@ module hits_keep_nearest #(
         assert (found_q[w_ray] && $signed({3'b000, w_t_max}) == w_high);
         assert (nearest_t[32*w_ray+:32] == w_t && nearest_triangle[32*w_ray+:32] == w_triangle
                 && nearest_error[TErrorWidth*w_ray+:TErrorWidth] == w_error);
-        if (has_point) assert (points[96*w_ray+:96] == w_point);
+        assert (points[96*w_ray+:96] == w_point);
       end
       assert (end_found == found_q[end_ray] && end_t == nearest_t[32*end_ray+:32]
               && end_triangle == nearest_triangle[32*end_ray+:32]
@@ -331,7 +315,8 @@ module hits_keep_nearest #(
       if (result) begin
         assert (loaded[result_ray] && (result_ray ? counts[9:5] : counts[4:0]) != '0);
         assert (!(result_hit && result_doubt) && result_t <= Infinity);
-        assert (over_ray == result_ray && over_triangle == result_triangle && over_t == result_t);
+        assert (over_ray == result_ray && over_triangle == result_triangle && over_t == result_t
+                && over_point == result_point);
         assert (over_tag == result_tag && over_t_error == t_error);
         assert ($signed({2'b00, over_low}) == (low > 0 ? low : 34'sd0));
         assert ($signed({2'b00, over_high}) == (high < $signed({2'b00, Infinity}) ? high : $signed({2'b00, Infinity})));
@@ -341,11 +326,9 @@ module hits_keep_nearest #(
                   && old_triangle == nearest_triangle[32*result_ray+:32]);
         end
       end
-      assert (over == result && over_sure == sure && over_vague == vague && over_hit == (result && result_hit));
+      assert (over == result && over_sure == sure && over_vague == vague);
       if (state == Kept) assert ($signed({2'b00, nearest_low[32*w_ray+:32]}) == (w_low > 0 ? w_low : 34'sd0));
-      assert (points_count <= 2'(InFlight));
       assert (tests_allowed == (here < 5'(Queue)) && (!doubt_valid || doubts != '0));
-      assert ((points_write == points_read) == (points_count != 2'd1));
       if (!loaded[0]) assert (flight_0 == '0);
       if (!loaded[1]) assert (flight_1 == '0);
       if (loaded[0]) assert (any_hit_q[0] == any_hit[0]);
@@ -353,19 +336,9 @@ module hits_keep_nearest #(
       if (state != Nowhere) begin
         assert (loaded[w_ray] && w_t <= Infinity);
         assert (w_low == $signed({2'b00, w_t}) - $signed(34'd1 << w_error));
-        if (!has_point) assert (points_count == 2'd2 || (points_count == 2'd1 && w_place == points_read));
-      end
-      if (state == Kept) begin
-        if (!has_point) begin
-          assert (points_words[2*w_place+:2] == {w_ray, 1'b1});
-          if (points_count == 2'd2 && points_read == w_place) assert (behind != {w_ray, 1'b1});
-        end else begin
-          if (points_count == 2'd2) assert (behind != {w_ray, 1'b1} && points_words[2*w_place+:2] != {w_ray, 1'b1});
-          if (points_count == 2'd1) assert (points_words[2*points_read+:2] != {w_ray, 1'b1});
-        end
       end
 
-      cover (state == Kept && has_point && end_ray == w_ray);
+      cover (state == Kept && end_ray == w_ray);
       cover (ousted && push);
       cover (ousted && !push);
       cover (state == Beyond && doubts != '0);

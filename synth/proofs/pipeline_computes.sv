@@ -92,28 +92,28 @@ module pipeline_computes #(
     logic [3*Width-1:0] product;
     logic [Width-1:0] sum;
     for (genvar k = 0; k < 3; k++) begin : gen_product
-      fp_multiplier_stages #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_multiply (
+      fp_multiplier #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_multiply (
         .clk_i(clk), .a_i(record[Width*(Row+k)+:Width]), .b_i(direction[Width*k+:Width]),
         .rounding_mode_i(3'd0), .tininess_after_i(1'b0), .result_o(product[Width*k+:Width]));
     end
-    fp_adder_stages #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_add (
+    fp_adder #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_add (
       .clk_i(clk), .a_i(product[0+:Width]), .b_i(product[Width+:Width]), .subtract_i(1'b0),
       .rounding_mode_i(3'd0), .tininess_after_i(1'b0), .result_o(sum));
-    fp_adder_stages #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_add_third (
+    fp_adder #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_add_third (
       .clk_i(clk), .a_i(sum), .b_i(product[2*Width+:Width]), .subtract_i(1'b0),
       .rounding_mode_i(3'd0), .tininess_after_i(1'b0), .result_o(dots[Width*n+:Width]));
   end
 
   for (genvar k = 0; k < 3; k++) begin : gen_coordinate
-    fp_multiplier_stages #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_multiply (
+    fp_multiplier #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_multiply (
       .clk_i(clk), .a_i(record[Width*D+:Width]), .b_i(direction[Width*k+:Width]),
       .rounding_mode_i(3'd0), .tininess_after_i(1'b0), .result_o(products_d[Width*k+:Width]));
-    fp_divider_stages #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_divide (
+    fp_divider #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_divide (
       .clk_i(clk), .valid_i(1'b1), .a_i(old_dividends[Width*k+:Width]), .b_i(old_divisor),
       .rounding_mode_i(3'd0), .tininess_after_i(1'b0), .result_o(quotients[Width*k+:Width]));
   end
 
-  fp_divider_stages #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_divide (
+  fp_divider #(.ExpWidth(ExpWidth), .FracWidth(FracWidth)) u_divide (
     .clk_i(clk), .valid_i(1'b1), .a_i(record[Width*D+:Width]), .b_i(dots[0+:Width]),
     .rounding_mode_i(3'd0), .tininess_after_i(1'b0), .result_o(quotient));
 

@@ -66,10 +66,10 @@ module pipeline_keeps_credits #(
     .report(report),
     .closed(closed),
     .\u_point.valid_q (point_q),
-    .\gen_queue.u_results.push_i (push),
-    .\gen_queue.u_results.count_q (count_q),
-    .\gen_queue.u_results.read_q (read_q),
-    .\gen_queue.u_results.write_q (write_q)
+    .\u_results.push_i (push),
+    .\u_results.count_q (count_q),
+    .\u_results.read_q (read_q),
+    .\u_results.write_q (write_q)
   );
 
   // What may still become a word of results, by the clocks since its test was taken

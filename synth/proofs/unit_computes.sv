@@ -38,17 +38,17 @@ module unit_computes #(
   assign sums[0+:Width] = '0;
   for (genvar k = 0; k < 3; k++) begin : gen_product
     logic [Width-1:0] product;
-    fp_multiplier_stages #(.ConstantRow(1'b1)) u_multiply (
+    fp_multiplier #(.ConstantRow(1'b1)) u_multiply (
       .clk_i(clk), .a_i(words[Width*(3+k)+:Width]), .b_i(words[Width*k+:Width]),
       .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(product));
-    fp_adder_stages u_add (
+    fp_adder u_add (
       .clk_i(clk), .a_i(sums[Width*k+:Width]), .b_i(product), .subtract_i(1'b0),
       .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(sums[Width*(k+1)+:Width]));
   end
-  fp_multiplier_stages #(.ConstantRow(1'b1)) u_numerator (
+  fp_multiplier #(.ConstantRow(1'b1)) u_numerator (
     .clk_i(clk), .a_i(words[Width*6+:Width]), .b_i(words[Width*(age-8)+:Width]),
     .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(numerator));
-  fp_divider_stages u_divide (
+  fp_divider u_divide (
     .clk_i(clk), .valid_i(1'b1), .a_i(numerator), .b_i(sums[3*Width+:Width]),
     .rounding_mode_i(3'd0), .tininess_after_i(1'b1), .result_o(quotient));
 

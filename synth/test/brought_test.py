@@ -46,7 +46,7 @@ class Brought(unittest.TestCase):
 
     def judged(self, **files: str) -> list[dict]:
         brought.bring(files)
-        return brought.judge(files, catalogue.design("hit_test_pipeline", Adder=3))
+        return brought.judge(files, catalogue.design("hit_test_pipeline", Arith=4))
 
     def test_what_is_no_such_module(self) -> None:
         for text, said in {
@@ -87,7 +87,7 @@ class Brought(unittest.TestCase):
             with self.subTest(name):
                 files = {"ADDER": self.file(adder, name), "MULTIPLIER": self.file(multiplier, "times.v")}
                 brought.bring(files)
-        rows = brought.judge(files, catalogue.design("hit_test_pipeline", Adder=3))
+        rows = brought.judge(files, catalogue.design("hit_test_pipeline", Arith=4))
         self.assertEqual({(row["word"], row["holds"]) for row in rows}, {("ADDER", True), ("MULTIPLIER", True)})
         with self.assertRaisesRegex(ValueError, r'/my prefix_adder/a "b" 7%.sv:7:1: expected expression'):
             brought.bring({"ADDER": self.file(f"{HEAD}  assign sum_o = a_i - \nendmodule\n", 'my prefix_adder/a "b" 7%.sv')})

@@ -123,7 +123,7 @@ bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit)
 
 namespace {
 
-// Constants of set_up_unit.sv, where they are explained.
+// Constants of set_up_pkg.sv; triangle_test.sv explains them.
 constexpr int kLeastField = 27;
 constexpr int kBoundShift = 20;
 constexpr int kBias = 127;

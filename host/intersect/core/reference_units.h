@@ -50,7 +50,7 @@ struct SetUpRecord {
   std::uint32_t distance_error = 0;  ///< likewise in d
 };
 
-/// Returns the record of set_up_unit, bit for bit, for any floats including NaN and infinities.
+/// Returns the record of triangle_test, bit for bit, for any floats including NaN and infinities.
 [[nodiscard]] SetUpRecord set_up(const glm::vec3& origin, const Corners& triangle);
 
 /// Returns whether a hit is sure (set_up_pkg::is_good_hit). `grazing` is HitDistance::error.

@@ -15,13 +15,13 @@ from synth.layout.jobs import SPARSE
 LIBRARY = "osu035"  # of the paper's time
 FLOWS = ("parts", "small")  # the first available one is used
 UNITS = {"pipeline": "hit_test_pipeline", "serial": "hit_test_unit"}
-USUAL = {"ExpWidth": 8, "FracWidth": 23, "QuotientBits": 0, "RoundingMode": 0, "Adder": 2, "Arith": 0}
+USUAL = {"ExpWidth": 8, "FracWidth": 23, "QuotientBits": 0, "RoundingMode": 0, "Arith": 0}
 ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")  # as in fp_pkg
 
 
 def _parameters(variant: dict) -> dict[str, int]:
     kind = variant.get("adder", "")
-    adder = {"Arith": 1} if kind == catalogue.BEHAVIOURAL else {"Adder": catalogue.adder_kinds()[kind]} if kind else {}
+    adder = {"Arith": 1 if kind == catalogue.BEHAVIOURAL else catalogue.adder_kinds()[kind]} if kind else {}
     return {"ExpWidth": variant["exponent_bits"], "FracWidth": variant["digits"] - 1,
             "QuotientBits": variant["quotient_digits"],
             "RoundingMode": ROUNDINGS.index(variant["rounding"]), **adder}

@@ -50,10 +50,10 @@ module adders_top (
     localparam int unsigned Width = 32'(Widths[8*w+:8]);
     logic [NumKinds-1:0] wrong, wrong_so_far;
 
-    // The four kinds and the language's own; both carry-select ones with groups cut also where one would do, and with
+    // The five kinds of arithmetic; both carry-select ones with groups cut also where one would do, and with
     // ripple groups; odd groups of both sorts.
     for (genvar k = 0; k < NumKinds; k++) begin : gen_kind
-      localparam int unsigned Adder = (k < 4) ? k : (k == 6) ? 1 : 2;
+      localparam int unsigned Arith = (k < 5) ? k : (k == 6) ? arith_pkg::Uniform : arith_pkg::Graded;
       localparam bit LookAhead = (k < 6) || (k == 7);
       localparam bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = (k == 5) ? arith_pkg::graded_groups(
         Width
@@ -65,8 +65,7 @@ module adders_top (
 
       adder #(
         .Width      (Width),
-        .Arith      ((k == 4) ? arith_pkg::Behavioural : arith_pkg::Structural),
-        .Adder      (Adder),
+        .Arith      (Arith),
         .GroupWidths(GroupWidths),
         .LookAhead  (LookAhead)
       ) u_adder (

@@ -58,7 +58,7 @@ module multipliers_top (
 
     multiplier #(
       .Width(24),
-      .Adder(k)
+      .Arith((k == 0) ? arith_pkg::Graded : k + 1)
     ) u_multiplier (
       .a_i      (a[23:0]),
       .b_i      (b[23:0]),

@@ -52,22 +52,6 @@ TEST_P(RtlPlaneUnitTest, BatchesOfAllSizesEqualFloatArithmetic) {
   }
 }
 
-TEST_P(RtlPlaneUnitTest, TwoUnitsDoNotShareState) {
-  FloatStream floats(20260104);
-  const std::vector<PlaneTest> tests{random_test(floats), random_test(floats)};
-  std::vector<glm::vec3> points(2), again(2);
-  RtlPlaneUnit one(GetParam());
-  one.intersect(tests, points);
-  {
-    RtlPlaneUnit other(GetParam());
-    other.intersect(tests, again);
-  }
-  one.intersect(tests, again);
-  for (int i = 0; i < 2; ++i) {
-    for (int k = 0; k < 3; ++k) EXPECT_EQ(bits(points[i][k]), bits(again[i][k]));
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(Kinds, RtlPlaneUnitTest,
                          testing::Values(Arith::kStructural, Arith::kBehavioural));
 

@@ -34,6 +34,7 @@ TEST(BoxUnitTest, EqualsItsReference) {
   constexpr std::uint32_t kSeed = 20261123;
   BoxCases cases(kSeed);
   Model<Vbox_unit> model;
+  model.reset();
   std::deque<BoxCase> taken;  // the latest first
   int entered = 0;
   BoxRay before;  // of the node before: its origin comes a clock later
@@ -42,6 +43,8 @@ TEST(BoxUnitTest, EqualsItsReference) {
     const BoxRay ray = box.read();
     const MemoryLine line = box.node.line();
     std::memcpy(&model->node_i, &line, sizeof line);
+    model->node_i[16] = 2;  // ray_core_pkg::node_line_t: valid, no error
+    model->ctx_i = clock % 64;
     std::memcpy(&model->origin_i, &before.origin, sizeof ray.origin);
     std::memcpy(&model->inverse_i, &before.inverse, sizeof ray.inverse);
     model->t_max_i = std::bit_cast<std::uint32_t>(before.t_max);
@@ -52,17 +55,19 @@ TEST(BoxUnitTest, EqualsItsReference) {
     if (taken.size() < kLatency) continue;
     taken.resize(kLatency);
     const BoxGroup expected = enter_boxes(taken.back().node, taken.back().read());
-    BoxGroup group{.base = bits(model->group_o, 196, 28), .exponent = expected.exponent, .size = 0};
-    ASSERT_EQ(model->inner_o & model->leaf_o, 0);
+    const auto& boxes = model->boxes_o;  // ray_core_pkg::boxes_t
+    const unsigned leaf = bits(boxes, 0, 7), inner = bits(boxes, 7, 7);
+    BoxGroup group{.base = bits(boxes, 14 + 196, 28), .exponent = expected.exponent, .size = 0};
+    ASSERT_EQ(bits(boxes, 14 + 224, 1), 1u);
+    ASSERT_EQ(model->ctx_o, (clock + 1 - kLatency) % 64);
+    ASSERT_EQ(inner & leaf, 0u);
     for (unsigned n = 0; n < 7; ++n) {
-      if (((model->inner_o | model->leaf_o) >> n & 1) == 0) continue;
+      if (((inner | leaf) >> n & 1) == 0) continue;
       ASSERT_EQ(group.size, static_cast<int>(n)) << "no gaps";
-      const unsigned at = 28 * n;
-      ASSERT_EQ(bits(model->group_o, at + 9, 19),
-                ordered_word(expected.entry[n].enter, expected.exponent));
-      group.entry[n] = {expected.entry[n].enter, bits(model->group_o, at + 3, 6),
-                        bits(model->group_o, at, 3)};
-      ASSERT_EQ(model->inner_o >> n & 1, group.entry[n].count == 0);
+      const unsigned at = 14 + 28 * n;
+      ASSERT_EQ(bits(boxes, at + 9, 19), ordered_word(expected.entry[n].enter, expected.exponent));
+      group.entry[n] = {expected.entry[n].enter, bits(boxes, at + 3, 6), bits(boxes, at, 3)};
+      ASSERT_EQ(inner >> n & 1, group.entry[n].count == 0);
       ++group.size;
     }
     entered += group.size;

@@ -29,15 +29,5 @@ TEST_F(ExactRayCoreAxiTest, EndsAreTheReferences) {
   EXPECT_GT(read(RAYGATE_COUNTERS_EXACT), 10'000u);
 }
 
-/// Records go to memory as two beats each.
-TEST_F(ExactRayCoreAxiTest, RecordsGoToMemory) {
-  look();
-  use_buffer(1'000);
-  write(RAYGATE_SIZE, 10u << 16 | 10u);
-  write(RAYGATE_COMMAND, RAYGATE_COMMAND_START);
-  for (int n = 0; (read(RAYGATE_FLAGS) & RAYGATE_FLAGS_DONE) == 0; ++n) ASSERT_LT(n, 50'000);
-  EXPECT_EQ(answered_, 100u);
-}
-
 }  // namespace
 }  // namespace raygate

@@ -3,9 +3,10 @@ module fp_multiplier #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith = 0,
-  parameter int unsigned Adder = 0,
-  parameter bit ConstantRow = 1'b0
+  parameter bit ConstantRow = 1'b0,
+  parameter bit Pipelined = 1'b0
 ) (
+  input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  logic [2:0]                  rounding_mode_i,
@@ -21,8 +22,9 @@ module fp_adder #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith = 0,
-  parameter int unsigned Adder = 0
+  parameter bit Pipelined = 1'b0
 ) (
+  input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  logic                        subtract_i,
@@ -39,9 +41,11 @@ module fp_divider #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith = 0,
-  parameter int unsigned Adder = 0,
-  parameter int unsigned QuotientBits = 0
+  parameter int unsigned QuotientBits = 0,
+  parameter bit Pipelined = 1'b0
 ) (
+  input  logic                        clk_i,
+  input  logic                        valid_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
   input  logic [2:0]                  rounding_mode_i,

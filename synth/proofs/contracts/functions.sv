@@ -3,12 +3,11 @@
 //
 // induction.py makes each X_result the value of the function X at X_operands. Registers: as the units
 // have them, all or none. What a divider with registers says of operands without valid_i is anything.
-module fp_adder_stages #(
+module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = 0,
-  parameter int unsigned Adder     = 0,
-  parameter bit [2:0]    PipeRegs  = 3'd0
+  parameter bit          Pipelined  = 1'b0
 ) (
   input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
@@ -25,7 +24,7 @@ module fp_adder_stages #(
 
   delay_line #(
     .Width(Width),
-    .Depth((PipeRegs == 0) ? 0 : hit_test_pkg::AdderLatency)
+    .Depth(!Pipelined ? 0 : hit_test_pkg::AdderLatency)
   ) u_operands (
     .clk_i,
     .enable_i(1'b1),
@@ -35,13 +34,12 @@ module fp_adder_stages #(
   assign {result_o, flags_o} = add_result;
 endmodule
 
-module fp_multiplier_stages #(
+module fp_multiplier #(
   parameter int unsigned ExpWidth    = 8,
   parameter int unsigned FracWidth   = 23,
   parameter int unsigned Arith       = 0,
-  parameter int unsigned Adder       = 0,
   parameter bit          ConstantRow = 1'b0,
-  parameter bit [2:0]    PipeRegs    = 3'd0
+  parameter bit          Pipelined    = 1'b0
 ) (
   input  logic                        clk_i,
   input  logic [ExpWidth+FracWidth:0] a_i,
@@ -57,7 +55,7 @@ module fp_multiplier_stages #(
 
   delay_line #(
     .Width(Width),
-    .Depth((PipeRegs == 0) ? 0 : hit_test_pkg::MultiplierLatency)
+    .Depth(!Pipelined ? 0 : hit_test_pkg::MultiplierLatency)
   ) u_operands (
     .clk_i,
     .enable_i(1'b1),
@@ -67,13 +65,12 @@ module fp_multiplier_stages #(
   assign {result_o, flags_o} = multiply_result;
 endmodule
 
-module fp_divider_stages #(
+module fp_divider #(
   parameter int unsigned ExpWidth     = 8,
   parameter int unsigned FracWidth    = 23,
   parameter int unsigned Arith        = 0,
-  parameter int unsigned Adder        = 0,
   parameter int unsigned QuotientBits = 0,
-  parameter bit [31:0]   PipeRegs     = 32'd0
+  parameter bit          Pipelined     = 1'b0
 ) (
   input  logic                        clk_i,
   input  logic                        valid_i,
@@ -92,7 +89,7 @@ module fp_divider_stages #(
 
   delay_line #(
     .Width(1 + Width),
-    .Depth((PipeRegs == 0) ? 0 : hit_test_pkg::divide_latency(FracWidth))
+    .Depth(!Pipelined ? 0 : hit_test_pkg::divide_latency(FracWidth))
   ) u_operands (
     .clk_i,
     .enable_i(1'b1),

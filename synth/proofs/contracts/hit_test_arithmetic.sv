@@ -1,39 +1,25 @@
 // The arithmetic of the pipelined unit, promising nothing: any word, and any one verdict. For what
 // control does, that is enough.
-module vec_scale #(
+module hit_dots #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = 0,
-  parameter int unsigned Adder     = 0,
   parameter bit [2:0]    RoundingMode = 3'd0,
-  parameter int unsigned Words     = 5,
+  parameter int unsigned Clocks    = 1,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
-  input  logic                   clk_i,
-  input  logic [Words*Width-1:0] words_i,
-  input  logic [Width-1:0]       factor_i,
-  output logic [Words*Width-1:0] products_o
+  input  logic               clk_i,
+  input  logic               step_i,
+  input  logic [3*Width-1:0] normal_i,
+  input  logic [9*Width-1:0] edges_i,
+  input  logic [Width-1:0]   d_i,
+  input  logic [3*Width-1:0] direction_i,
+  output logic [Width-1:0]   v_o,
+  output logic [3*Width-1:0] u_o,
+  output logic [3*Width-1:0] dividends_o
 );
-  (* anyseq *) logic [Words*Width-1:0] any;
-  assign products_o = any;
-endmodule
-
-module fp_add3 #(
-  parameter int unsigned ExpWidth  = 8,
-  parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith     = 0,
-  parameter int unsigned Adder     = 0,
-  parameter bit [2:0]    RoundingMode = 3'd0,
-  localparam int unsigned Width = 1 + ExpWidth + FracWidth
-) (
-  input  logic             clk_i,
-  input  logic [Width-1:0] x_i,
-  input  logic [Width-1:0] y_i,
-  input  logic [Width-1:0] z_i,
-  output logic [Width-1:0] sum_o
-);
-  (* anyseq *) logic [Width-1:0] any;
-  assign sum_o = any;
+  (* anyseq *) logic [7*Width-1:0] any;
+  assign {v_o, u_o, dividends_o} = any;
 endmodule
 
 module hit_decision #(
@@ -59,13 +45,12 @@ module hit_decision #(
   assign t_error_o = any;
 endmodule
 
-module fp_divider_stages #(
+module fp_divider #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = 0,
-  parameter int unsigned Adder     = 0,
   parameter int unsigned QuotientBits = 0,
-  parameter bit [31:0]   PipeRegs  = 32'd0
+  parameter bit          Pipelined  = 1'b0
 ) (
   input  logic                        clk_i,
   input  logic                        valid_i,

@@ -3,7 +3,6 @@ module hit_test_pipeline #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = 0,
-  parameter int unsigned Adder     = 0,
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,

@@ -1,6 +1,5 @@
 // A ray core of which nothing is left but rays that come and go: ray_alloc and ray_retire as ray_core joins them.
-// What is to be done for a ray is anything, and so is when its walk begins. One ray may be marked: its tag is one bit
-// here, and its P may be read when it is there and no later ray of its context can have one, else it is anything.
+// What is to be done for a ray is anything, and so is when its walk begins. One ray may be marked: its tag is one bit here.
 module ray_contexts #(
   parameter int unsigned Rays = 4,
   localparam int unsigned CtxWidth = $clog2(Rays)
@@ -17,16 +16,12 @@ module ray_contexts #(
   output logic                 ending_o,
   output logic [CtxWidth-1:0] ending_ctx_o,
   output logic [Rays-1:0]      marks_o,      // of contexts
-  output logic                 marked_o,     // the marked ray ended `age` clocks ago, in context `ctx`
-  output logic [5:0]           age_o,
-  output logic [CtxWidth-1:0]  ctx_o,
+  output logic                 entering_o,   // the marked ray's end comes into the queue
   input  logic                 doubt_valid_i,
   output logic                 result_valid_o,
   input  logic                 result_ready_i,
   output logic                 result_kind_o,
-  output logic                 result_mark_o,
-  output logic                 result_point_o,  // of it, where t is known
-  output logic                 result_known_o
+  output logic                 result_mark_o
 );
 
   logic start_valid;
@@ -54,34 +49,23 @@ module ray_contexts #(
   );
 
   (* anyseq *) ray_core_pkg::end_t known;
-  (* anyseq *) logic any_point;
-  logic [CtxWidth-1:0] end_ctx, point_ctx;
-  logic point;
-
-  // P is there PointDelay clocks after an end, and no later ray of the context has one within as many more.
-  localparam logic [5:0] PointDelay = 6'(hit_test_pkg::divide_latency(23) + 4);
+  (* anyseq *) logic [95:0] point;
+  logic [CtxWidth-1:0] end_ctx;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      marks_o  <= '0;
-      marked_o <= 1'b0;
+      marks_o    <= '0;
+      entering_o <= 1'b0;
     end else begin
       if (ending_o) marks_o[ending_ctx_o] <= 1'b0;
       if (started_o) marks_o[started_ctx_o] <= ray;
-      if (ending_o && marks_o[ending_ctx_o]) marked_o <= 1'b1;
+      entering_o <= ending_o & marks_o[ending_ctx_o];
     end
-  end
-  always_ff @(posedge clk_i) begin
-    if (ending_o && marks_o[ending_ctx_o]) {age_o, ctx_o} <= {6'd1, ending_ctx_o};
-    else if (age_o != '1) age_o <= age_o + 1'b1;
-    point <= (marked_o && point_ctx == ctx_o && age_o >= PointDelay && age_o < 2 * PointDelay) | any_point;
   end
   logic doubt_fire;
   ray_core_pkg::result_t result;
   assign result_kind_o  = result.kind;
   assign result_mark_o  = result.tag[31];
-  assign result_point_o = result.point[95];
-  assign result_known_o = result.found & result.t_error != ray_core_pkg::NoT;
 
   ray_retire #(
     .Rays(Rays)
@@ -94,9 +78,8 @@ module ray_contexts #(
     .ending_o,
     .ending_ctx_o,
     .end_ctx_o(end_ctx),
-    .end_i({marked_o && age_o == 6'd1, {$bits(known) - 1{1'b0}}} | (known >> 1)),
-    .point_ctx_o(point_ctx),
-    .point_i({point, 95'd0}),
+    .end_i({entering_o, {$bits(known) - 1{1'b0}}} | (known >> 1)),
+    .point_i(point),
     .doubt_i({doubt_valid_i, 64'd0}),
     .doubt_fire_o(doubt_fire),
     .result_valid_o,
@@ -144,29 +127,13 @@ module ram_fifo #(
   end
 endmodule
 
-// A delay line of one register.
-module delay_line #(
-  parameter int unsigned Width = 32,
-  parameter int unsigned Depth = 1
-) (
-  input  logic             clk_i,
-  input  logic             enable_i,
-  input  logic [Width-1:0] data_i,
-  output logic [Width-1:0] data_o
-);
-  logic [Width*Depth-1:0] line_q;
-  assign data_o = line_q[Width*(Depth-1)+:Width];
-  always_ff @(posedge clk_i) if (enable_i) line_q <= {line_q[0+:Width*(Depth-1)], data_i};
-endmodule
-
 // A divider that promises nothing.
-module fp_divider_stages #(
+module fp_divider #(
   parameter int unsigned ExpWidth     = 8,
   parameter int unsigned FracWidth    = 23,
   parameter int unsigned Arith        = 0,
-  parameter int unsigned Adder        = 0,
   parameter int unsigned QuotientBits = 0,
-  parameter bit [31:0]   PipeRegs     = 32'd0
+  parameter bit          Pipelined     = 1'b0
 ) (
   input  logic                        clk_i,
   input  logic                        valid_i,

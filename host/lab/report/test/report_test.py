@@ -72,7 +72,7 @@ class Costs(unittest.TestCase):
     def test_unknown_formats_cost_nothing_known(self):
         self.assertIsNone(costs.unit(self.UNITS, {**VARIANT, "digits": 12}))
         self.assertIsNone(costs.unit(self.UNITS, {**VARIANT, "fused": True}))
-        self.assertIsNone(costs.unit([core("hit_test_unit", 1, 1.0, Adder="0")], VARIANT))
+        self.assertIsNone(costs.unit([core("hit_test_unit", 1, 1.0, Arith="2")], VARIANT))
 
 
 class Frames(unittest.TestCase):

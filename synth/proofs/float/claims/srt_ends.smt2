@@ -1,4 +1,4 @@
-; srt_divider_stages around rows that may do anything that keeps |w| <= 2/3 d: the first gets 2 x and d,
+; srt_divider around rows that may do anything that keeps |w| <= 2/3 d: the first gets 2 x and d,
 ; each other what the row before it gave, and d; the quotient is the positive digits less the negative
 ; ones, less one if w is negative in the end.
 (define-fun divisor () Residual (concat #b0 divisor_i))

@@ -2,7 +2,6 @@
 module multiplier #(
   parameter int unsigned Width = 24,
   parameter int unsigned Arith = 0,
-  parameter int unsigned Adder = 0,
   parameter bit ConstantRow = 1'b0
 ) (
   input  logic [Width-1:0]   a_i,

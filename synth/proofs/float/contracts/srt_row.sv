@@ -1,8 +1,7 @@
 // A row that promises nothing: the query says what it does.
 module srt_row #(
   parameter int unsigned Width = 25,
-  parameter int unsigned Arith = 0,
-  parameter int unsigned Adder = 0
+  parameter int unsigned Arith = 0
 ) (
   input  logic [Width-1:0] sum_i,
   input  logic [Width-1:0] carry_i,

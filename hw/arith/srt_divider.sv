@@ -8,19 +8,17 @@
 // nothing). quotient_o: two integer bits and 2 * Rows fraction bits, exact and cut off. side_i goes
 // along and comes out with its quotient.
 //
-// PipeRegs: registers behind the first digit (bit 0), each row (1 to Rows), the remainder (Rows + 1) and the
-// quotient (Rows + 2). As many clocks of latency as registers, a division a clock. Registers load only what is
-// valid: valid_o is valid_i, as much later, and while it is low the outputs of a pipelined divider mean nothing.
-// Nothing is reset, so that valid_o means nothing at first.
+// Pipelined: registers behind the first digit, each row, the remainder and the quotient. Latency: Rows + 3 clocks, a
+// division a clock; else combinational. Registers load only what is valid: valid_o is valid_i, as much later, and while it
+// is low the outputs of a pipelined divider mean nothing. Nothing is reset, so that valid_o means nothing at first.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection
 // constants and why they hold in srt_pkg.
-module srt_divider_stages #(
+module srt_divider #(
   parameter int unsigned Width = 24,  // of both operands
   parameter int unsigned Rows  = 12,
   parameter int unsigned SideWidth = 1,
-  parameter int unsigned Arith = arith_pkg::Structural,
-  parameter int unsigned Adder = arith_pkg::AdderGraded,
-  parameter bit [31:0]   PipeRegs = 32'd0
+  parameter int unsigned Arith = arith_pkg::Graded,
+  parameter bit          Pipelined = 1'b0
 ) (
   input  logic                 clk_i,
   input  logic                 valid_i,
@@ -39,7 +37,7 @@ module srt_divider_stages #(
   localparam int unsigned PadWidth = FracWidth + 1 - Width;
 
   if (!srt_pkg::sound() || !srt_pkg::first_sound()) begin : gen_check
-    $error("srt_divider_stages: expected selection constants that overlap");
+    $error("srt_divider: expected selection constants that overlap");
   end
 
   // ---- Rows: residuals, and the digits so far, the first one at the top of the words
@@ -76,8 +74,7 @@ module srt_divider_stages #(
       assign valid = gen_row[r-1].valid_q;
       srt_row #(
         .Width(ResWidth),
-        .Arith(Arith),
-        .Adder(Adder)
+        .Arith(Arith)
       ) u_row (
         .sum_i(gen_row[r-1].sum_q),
         .carry_i(gen_row[r-1].carry_q),
@@ -91,7 +88,7 @@ module srt_divider_stages #(
 
     delay_line #(
       .Width(1),
-      .Depth(32'(PipeRegs[r]))
+      .Depth(32'(Pipelined))
     ) u_valid (
       .clk_i,
       .enable_i(1'b1),
@@ -99,26 +96,17 @@ module srt_divider_stages #(
       .data_o(valid_q)
     );
     delay_line #(
-      .Width(ResWidth),
-      .Depth(32'(PipeRegs[r]))
-    ) u_sum (
+      .Width(2 * ResWidth),
+      .Depth(32'(Pipelined))
+    ) u_residual (
       .clk_i,
       .enable_i(valid),
-      .data_i(next_sum),
-      .data_o(sum_q)
-    );
-    delay_line #(
-      .Width(ResWidth),
-      .Depth(32'(PipeRegs[r]))
-    ) u_carry (
-      .clk_i,
-      .enable_i(valid),
-      .data_i(next_carry),
-      .data_o(carry_q)
+      .data_i({next_sum, next_carry}),
+      .data_o({sum_q, carry_q})
     );
     delay_line #(
       .Width(ResWidth + 2 * DigitsWidth + SideWidth),
-      .Depth(32'(PipeRegs[r]))
+      .Depth(32'(Pipelined))
     ) u_sideband (
       .clk_i,
       .enable_i(valid),
@@ -134,8 +122,7 @@ module srt_divider_stages #(
     .Digits(Rows + 1),
     .SideWidth(SideWidth),
     .Arith(Arith),
-    .Adder(Adder),
-    .PipeRegs(PipeRegs[Rows+1+:2])
+    .Pipelined(Pipelined)
   ) u_quotient (
     .clk_i,
     .valid_i(gen_row[Rows].valid_q),

@@ -1,11 +1,10 @@
 // A divider of significands that promises nothing: the query says what its quotient is.
-module srt_divider_stages #(
+module srt_divider #(
   parameter int unsigned Width = 24,
   parameter int unsigned Rows  = 12,
   parameter int unsigned SideWidth = 1,
   parameter int unsigned Arith = 0,
-  parameter int unsigned Adder = 0,
-  parameter bit [31:0]   PipeRegs = 32'd0
+  parameter bit          Pipelined = 1'b0
 ) (
   input  logic                clk_i,
   input  logic                valid_i,

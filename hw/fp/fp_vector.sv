@@ -1,0 +1,103 @@
+// Adds, subtracts or multiplies vectors word by word: result[n] = a[n] op b[n].
+//
+// Clocks = 1: a core for each word, a vector a clock; latency 3 clocks, and step_i is not looked at. Else few cores that take
+// turns: step_i is high in one of Clocks clocks; with it words come in, and the results of those that came in with the step
+// before go out. A core has Clocks - 3 words in a step.
+// Multiply: a product, else a sum, or a difference where Subtract has the word's bit. Takes every bit pattern; no flags.
+module fp_vector #(
+  parameter int unsigned ExpWidth = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Words = 3,
+  parameter bit Multiply = 1'b0,
+  parameter bit [Words-1:0] Subtract = '0,
+  parameter int unsigned Clocks = 1,
+  parameter bit [2:0] RoundingMode = 3'd0,
+  parameter int unsigned Arith = arith_pkg::Graded,
+  localparam int unsigned Width = 1 + ExpWidth + FracWidth
+) (
+  input  logic                   clk_i,
+  input  logic                   step_i,
+  input  logic [Words*Width-1:0] a_i,
+  input  logic [Words*Width-1:0] b_i,
+  output logic [Words*Width-1:0] result_o
+);
+
+  localparam int unsigned Share = (Clocks == 1) ? 1 : Clocks - 3;  // of words a core
+  localparam int unsigned Units = (Words + Share - 1) / Share;
+
+  if (Clocks != 1 && Clocks < 5) begin : gen_check
+    $error("fp_vector: expected Clocks of 1, or 5 or more");
+  end
+
+  for (genvar u = 0; u < Units; u++) begin : gen_unit
+    localparam int unsigned First = Share * u;
+    localparam int unsigned Own = (Words - First < Share) ? Words - First : Share;
+    logic [Width-1:0] a, b, result;
+    logic subtract;
+    fp_pkg::flags_t unused_flags;
+
+    if (Clocks == 1) begin : gen_own
+      logic unused_step;
+      assign unused_step = step_i;
+      assign {a, b} = {a_i[Width*u+:Width], b_i[Width*u+:Width]};
+      assign subtract = Subtract[u];
+      assign result_o[Width*u+:Width] = result;
+    end else begin : gen_turns
+      logic [Own*Width-1:0] a_q, b_q;  // the word whose turn it is lowest
+      logic [Own-1:0] subtract_q;
+      logic [(Share-1)*Width-1:0] results_q;  // the latest highest
+      logic [Share*Width-1:0] results;
+
+      always_ff @(posedge clk_i) begin
+        if (step_i) begin
+          {a_q, b_q} <= {a_i[Width*First+:Width*Own], b_i[Width*First+:Width*Own]};
+          subtract_q <= Subtract[First+:Own];
+        end else begin
+          {a_q, b_q} <= {a_q >> Width, b_q >> Width};
+          subtract_q <= subtract_q >> 1;
+        end
+        results_q <= results[Share*Width-1:Width];
+      end
+      assign {a, b, subtract} = {a_q[Width-1:0], b_q[Width-1:0], subtract_q[0]};
+      assign results = {result, results_q};
+      assign result_o[Width*First+:Width*Own] = results[Width*Own-1:0];
+    end
+
+    if (Multiply) begin : gen_multiplier
+      logic unused_subtract;
+      assign unused_subtract = subtract;
+
+      fp_multiplier #(
+        .ExpWidth(ExpWidth),
+        .FracWidth(FracWidth),
+        .Arith(Arith),
+        .Pipelined(1'b1)
+      ) u_core (
+        .clk_i,
+        .a_i(a),
+        .b_i(b),
+        .rounding_mode_i(RoundingMode),
+        .tininess_after_i(1'b0),
+        .result_o(result),
+        .flags_o(unused_flags)
+      );
+    end else begin : gen_adder
+      fp_adder #(
+        .ExpWidth(ExpWidth),
+        .FracWidth(FracWidth),
+        .Arith(Arith),
+        .Pipelined(1'b1)
+      ) u_core (
+        .clk_i,
+        .a_i(a),
+        .b_i(b),
+        .subtract_i(subtract),
+        .rounding_mode_i(RoundingMode),
+        .tininess_after_i(1'b0),
+        .result_o(result),
+        .flags_o(unused_flags)
+      );
+    end
+  end
+
+endmodule

@@ -1,0 +1,97 @@
+// Dot products of a hit test: V = N . I and U_k = E_k . I of a polygon record, and d I_k, the dividends of its P.
+//
+// A dot product is (x + y) + z, rounded after each operation. Clocks: see fp_vector. Latency: hit_test_pkg::DotLatency
+// clocks, or three steps; throughput a test a clock, or a step. Takes every bit pattern.
+//
+// Of the 15 products a coordinate of I is a factor of five, and the word that the multipliers recode: tools keep one recoder
+// for those.
+module hit_dots #(
+  parameter int unsigned ExpWidth  = 8,
+  parameter int unsigned FracWidth = 23,
+  parameter int unsigned Arith     = arith_pkg::Graded,
+  parameter bit [2:0]    RoundingMode = 3'd0,
+  parameter int unsigned Clocks    = 1,
+  localparam int unsigned Width = 1 + ExpWidth + FracWidth
+) (
+  input  logic               clk_i,
+  input  logic               step_i,
+  input  logic [3*Width-1:0] normal_i,
+  input  logic [9*Width-1:0] edges_i,
+  input  logic [Width-1:0]   d_i,
+  input  logic [3*Width-1:0] direction_i,
+  output logic [Width-1:0]   v_o,
+  output logic [3*Width-1:0] u_o,
+  output logic [3*Width-1:0] dividends_o
+);
+
+  // Of an operation: clocks, or steps
+  localparam int unsigned Operation = (Clocks == 1) ? hit_test_pkg::AdderLatency : 1;
+  localparam int unsigned Scaled = 5;  // words of a coordinate: N's, E_k's, d
+  logic [3*Scaled*Width-1:0] words, factors, scaled;
+  logic [4*Width-1:0] thirds, sums, first;
+
+  for (genvar k = 0; k < 3; k++) begin : gen_coordinate
+    assign words[Width*Scaled*k+:Width*Scaled] = {
+      d_i,
+      edges_i[Width*(6+k)+:Width],
+      edges_i[Width*(3+k)+:Width],
+      edges_i[Width*k+:Width],
+      normal_i[Width*k+:Width]
+    };
+    assign factors[Width*Scaled*k+:Width*Scaled] = {Scaled{direction_i[Width*k+:Width]}};
+  end
+
+  fp_vector #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .Words(3 * Scaled),
+    .Multiply(1'b1),
+    .Clocks(Clocks),
+    .RoundingMode(RoundingMode),
+    .Arith(Arith)
+  ) u_scale (
+    .clk_i,
+    .step_i,
+    .a_i(words),
+    .b_i(factors),
+    .result_o(scaled)
+  );
+
+  // ---- x + y, then + z
+
+  delay_line #(
+    .Width(4 * Width),
+    .Depth(Operation)
+  ) u_thirds (
+    .clk_i,
+    .enable_i(step_i),
+    .data_i(scaled[Width*2*Scaled +: 4*Width]),
+    .data_o(thirds)
+  );
+  fp_vector #(
+    .ExpWidth(ExpWidth),
+    .FracWidth(FracWidth),
+    .Words(8),
+    .Clocks(Clocks),
+    .RoundingMode(RoundingMode),
+    .Arith(Arith)
+  ) u_sums (
+    .clk_i,
+    .step_i,
+    .a_i({first, scaled[0 +: 4*Width]}),
+    .b_i({thirds, scaled[Width*Scaled +: 4*Width]}),
+    .result_o({sums, first})
+  );
+  assign {u_o, v_o} = sums;
+
+  delay_line #(
+    .Width(3 * Width),
+    .Depth(2 * Operation)
+  ) u_dividends (
+    .clk_i,
+    .enable_i(step_i),
+    .data_i({scaled[Width*14 +: Width], scaled[Width*9 +: Width], scaled[Width*4 +: Width]}),
+    .data_o(dividends_o)
+  );
+
+endmodule
