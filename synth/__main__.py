@@ -5,7 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import adder_study, catalogue, chosen, measure, prove, report, store, throughput, tools, unit_delay
+from synth import adder_study, catalogue, chosen, measure, prove, report, store, tools, unit_delay
 
 
 def arguments() -> argparse.Namespace:
@@ -44,7 +44,6 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
     for record in records:
         if "blocks" in record:
             print(report.blocks_table(record))
-            print(throughput.ray_table(record))
     timed = [record for record in records if "path" in record]
     if timed:
         best = min((record for record in timed if record["target"] == timed[0]["target"]),
@@ -82,8 +81,6 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     sections = [("Clock rates", report.clock_table(records))]
     if given.top == "adders" or given.all:
         sections.append(("The paper's delay model", adder_study.model_table()))
-    if given.all:
-        sections.append(("Tests a second", throughput.table(records)))
     sections = [section for section in sections if section[1]]
     for title, text in sections:
         print(f"{title}\n\n{text}")

@@ -151,6 +151,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*", help="beginnings of units' names; all if none")
     parser.add_argument("--seeds", type=int, default=3, help="placements, of which the median counts "
                         "(%(default)s)")
+    parser.add_argument("--publish", action="store_true", help="write the table into the pages of hw that have a place for it")
     given = parser.parse_args()
     try:
         units = [(design, form, kind, dataclasses.replace(fpga, seeds=tuple(range(1, given.seeds + 1))))
@@ -169,7 +170,11 @@ def main() -> int:
     except (tools.MissingTool, ValueError) as error:
         print(f"fpga: {error}", file=sys.stderr)
         return 2
-    print(table())
+    text = table()
+    print(text)
+    if given.publish:
+        for page in catalogue.HW.glob("*/README.md"):
+            page.write_text(re.sub(r"(?<=<!-- fpga -->\n).*?(?=<!-- end -->)", lambda _: text, page.read_text(), flags=re.S))
     for failure in failures:
         print("failed:", failure, file=sys.stderr)
     return 1 if failures else 0

@@ -1,16 +1,48 @@
 """Draws a trace of one ray in the ray core (VCD): when each part has something of it.
 
-`python3 -m synth.ray_timeline TRACE SAVE_FILE OUT.svg`. TRACE is what `make lecture PIXEL=64,64` writes. SAVE_FILE is GTKWave's, as for
-synth.waveform: its first signal is the clock, each other one a row, with a bar where it is not zero.
+`python3 -m synth.ray_timeline TRACE SAVE_FILE OUT.svg`. TRACE is what `make lecture PIXEL=64,64` writes. SAVE_FILE is GTKWave's: its
+first signal is the clock, each other one a row, with a bar where it is not zero.
 """
 
 import pathlib
+import re
 import sys
 
-from synth import waveform
 from synth.drawing import plt
 
 COLOURS = ("tab:blue", "tab:green", "tab:orange", "tab:red", "tab:purple")
+
+
+def read(text: str) -> dict[str, list[tuple[int, str]]]:
+    """Signal, by its full name -> its changes, (time, bits)."""
+    scopes, codes = [], {}
+    for word, rest in re.findall(r"\$(scope|upscope|var) (.*?) ?\$end", text):
+        if word == "scope":
+            scopes.append(rest.split()[1])
+        elif word == "upscope":
+            scopes.pop()
+        else:
+            codes[".".join([*scopes, "".join(rest.split()[3:])])] = rest.split()[2]
+    changes: dict[str, list[tuple[int, str]]] = {code: [] for code in codes.values()}
+    now = 0
+    for line in text[text.index("$enddefinitions"):].splitlines()[1:]:
+        if line.startswith("#"):
+            now = int(line[1:])
+        elif match := re.fullmatch(r"b([01xz]+) (\S+)|([01xz])(\S+)", line):
+            changes[match[2] or match[4]].append((now, match[1] or match[3]))
+    return {name: changes[code] for name, code in codes.items()}
+
+
+def groups(save_file: str) -> list[tuple[str, list[tuple[str, str]]]]:
+    """The groups of a save file: their names, and (name, signal) of what is in them."""
+    found: list[tuple[str, list[tuple[str, str]]]] = []
+    for flags, group, name, signal in re.findall(
+            r"^@(\w+)\n(?:-(.*)|\+\{(.*)\} (\S+))$", save_file, re.M):
+        if signal:
+            found[-1][1].append((name, signal))
+        elif int(flags, 16) & 0x800000:  # where a group begins
+            found.append((group, []))
+    return found
 
 
 def bars(changes: list[tuple[int, str]], edges: list[int]) -> list[tuple[int, int]]:
@@ -34,10 +66,10 @@ def bars(changes: list[tuple[int, str]], edges: list[int]) -> list[tuple[int, in
 
 def draw(trace: str, save_file: str, out: pathlib.Path) -> None:
     """Writes OUT.svg; raises KeyError for a signal that is not in the trace."""
-    changes, groups = waveform.read(trace), waveform.groups(save_file)
-    (_, clock), *_ = groups[0][1]
+    changes, chosen = read(trace), groups(save_file)
+    (_, clock), *_ = chosen[0][1]
     edges = [when for when, bits in changes[clock] if bits == "1"]
-    rows = [(place, name, bars(changes[signal], edges)) for place, (_, signals) in enumerate(groups)
+    rows = [(place, name, bars(changes[signal], edges)) for place, (_, signals) in enumerate(chosen)
             for name, signal in signals if signal != clock]
     first = min(stretch[0][0] for _, _, stretch in rows if stretch)
     figure, axes = plt.subplots(figsize=(11, 0.32 * len(rows) + 1), layout="constrained")
@@ -54,6 +86,23 @@ def draw(trace: str, save_file: str, out: pathlib.Path) -> None:
     plt.close(figure)
 
 
+def main() -> int:
+    """The command line; 2 for what the user can mend."""
+    if len(sys.argv) != 4:
+        print("usage: synth.ray_timeline TRACE SAVE_FILE OUT.svg", file=sys.stderr)
+        return 2
+    trace, save_file, out = map(pathlib.Path, sys.argv[1:])
+    try:
+        draw(trace.read_text(), save_file.read_text(), out)
+    except OSError as error:
+        print(f"synth.ray_timeline: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 2
+    except (ValueError, KeyError) as error:
+        print(f"synth.ray_timeline: found in {trace}, or in {save_file}: {error}; expected a value change dump, "
+              "and GTKWave's save file of its signals", file=sys.stderr)
+        return 2
+    return 0
+
+
 if __name__ == "__main__":
-    sys.exit(waveform.main("synth.ray_timeline", "Draws a trace (VCD) of one ray in the ray core, OUT as SVG.",
-                           lambda trace, save_file, out: draw(trace.read_text(), save_file.read_text(), out)))
+    sys.exit(main())
