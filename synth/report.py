@@ -175,8 +175,9 @@ def versions() -> str:
     return ", ".join([f"yosys {yosys.version()}", *stated, f"Python {platform.python_version()}"])
 
 
-def write(records: list[dict], sections: list[tuple[str, str]]) -> None:
-    """Writes the three files. `sections` are (title, Markdown) that follow the tables."""
+def write(records: list[dict], sections: list[tuple[str, str]], publish: bool = False) -> None:
+    """Writes the three files; with `publish` the report and the CSV into results/, too. `sections` are (title, Markdown) that follow
+    the tables."""
     store.OUT.mkdir(parents=True, exist_ok=True)
     parts = ["# What the arithmetic costs\n", f"Made by `make synth` with {versions()}.\n", CAVEATS,
              "Flows: " + "; ".join(f"**{name}**: {text}" for name, text in FLOWS.items()) + ".\n"]
@@ -184,8 +185,11 @@ def write(records: list[dict], sections: list[tuple[str, str]]) -> None:
         parts += [f"## {section}\n", section_tables(records, section)]
     for title, text in sections:
         parts += [f"## {title}\n", text]
-    (store.OUT / "report.md").write_text("\n".join(parts))
+    (store.OUT / "report.md").write_text("\n".join([*parts, tables.measured("make synth ALL=1")]))
     (store.OUT / "results.json").write_text(
         json.dumps({"tools": versions(), "results": records}, indent=1) + "\n")
     columns = ["section", "design", "target", "flow", "area", "delay_ns", "luts", "mhz"]
     (store.OUT / "results.csv").write_text(tables.comma_separated(records, columns))
+    if publish:
+        for name, published in (("report.md", "synth.md"), ("results.csv", "synth.csv")):
+            (tables.RESULTS / published).write_text((store.OUT / name).read_text())

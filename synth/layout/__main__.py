@@ -2,6 +2,7 @@
 
 import argparse
 import dataclasses
+import shutil
 import sys
 
 from synth import catalogue, chosen, runner, store, tables, tools, yosys
@@ -23,6 +24,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--aspect", help="the core's height by its width, of a module (0.75)")
     parser.add_argument("--seeds", help="placements of each adder, of which the median counts (3)")
     parser.add_argument("--jobs", help="at once (2)")
+    parser.add_argument("--publish", help="1: all sections, and writes table and pictures into synth/results, too")
     return chosen.parse(parser)
 
 
@@ -114,6 +116,8 @@ def main() -> int:
     """1 where a layout fails, 2 for what the user can mend."""
     given = arguments()
     try:
+        if given.publish and (given.top or given.targets):
+            raise ValueError("PUBLISH=1: expected all layouts, without TOP and TARGETS")
         yosys.folder()
         for tool in ("sta", "coloquinte", "qrouter", "magic"):
             tools.find(tool)
@@ -127,6 +131,12 @@ def main() -> int:
     report = OUT / f"report-{given.top or 'all'}-{given.targets or 'osu035'}.md"
     report.write_text("\n".join(
         ["# Layouts\n", text, *(f"![{name}]({name}.png)\n" for name in pictures)]))
+    if given.publish:
+        (tables.RESULTS / "layout.md").write_text(f"# Layouts\n\n{text}\n{tables.measured('make layout')}")
+        for name in pictures:
+            published = tables.RESULTS / f"layout-{name.replace('-osu035', '')}.png"
+            if published.exists():  # of the others none is shown
+                shutil.copy(OUT / f"{name}.png", published)
     print(text)
     print(f"Report: {report.relative_to(tools.ROOT)}")
     for failure in failures:

@@ -30,7 +30,3 @@ class ExactProgram(unittest.TestCase):
                     self.assertEqual(exact_program.unsafe(without, lengths, 1 if name == "Limit" else 3, False), place)
                     fences += 1
         self.assertGreater(fences, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,4 @@
-"""Tables of the report."""
+"""Tables of the report, and what is measured for them."""
 
 import contextlib
 import io
@@ -6,8 +6,7 @@ import time
 import unittest
 from unittest import mock
 
-from synth import __main__ as main
-from synth import catalogue, mapping, measure, prove, report, tools
+from synth import __main__ as main, catalogue, mapping, measure, prove, report, tables, tools
 
 
 class ClockTable(unittest.TestCase):
@@ -95,5 +94,14 @@ class Targets(unittest.TestCase):
                 measure.available(["x", "ecp5"])
 
 
-if __name__ == "__main__":
-    unittest.main()
+class Tables(unittest.TestCase):
+    """tables' two forms."""
+
+    def test_markdown(self):
+        """Columns line up, numbers to the right."""
+        self.assertEqual(tables.markdown(["what", "ns"], [["a", "9.5"], ["b", "10.5"]]),
+                         "| what |   ns |\n|------|-----:|\n| a    |  9.5 |\n| b    | 10.5 |\n")
+
+    def test_comma_separated(self):
+        """What a row has not is left empty; what is not asked for is left out."""
+        self.assertEqual(tables.comma_separated([{"a": 1, "c": 2}], ["a", "b"]), "a,b\n1,\n")

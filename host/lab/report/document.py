@@ -1,5 +1,6 @@
 """Generates reports from rows and a Jinja2 template: a Markdown page with plots and long tables."""
 
+import csv
 import pathlib
 import re
 
@@ -52,7 +53,8 @@ def table(rows: list[dict], *columns: str | list[str]) -> str:
 def save(file: pathlib.Path, rows: list[dict], *columns: str | list[str]) -> str:
     """Writes a table that is too long for the page as a CSV file, and returns a link to it."""
     heads, cells = cells_of(rows, columns, "", "")
-    file.write_text(tables.comma_separated([dict(zip(heads, row)) for row in cells], heads))
+    with file.open("w", newline="") as out:
+        csv.writer(out, lineterminator="\n").writerows([heads, *cells])
     return f"[{file.name}]({file.name})"
 
 
