@@ -39,7 +39,7 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
         others = [catalogue.design("adder", adder=kind, look_ahead=False if kind == "uniform" else None, Width=width)
                   for kind in ("ripple", "uniform", "prefix", catalogue.BEHAVIOURAL)]
         rows += [catalogue.Row(design.name, other, plan) for other in others if other.name != design.name]
-    records, failures = report.measured_tables(rows, targets)
+    records, failures, _ = report.measured_tables(rows, targets)
     print(report.legend(records))
     records = [record for record in records if record["design"] == design.name]
     for record in records:
@@ -75,7 +75,7 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     rows = catalogue.report_rows() if given.all else catalogue.first_rows()
     if given.top == "adders":
         rows = [row for row in catalogue.report_rows() if row.design.top == "adder"]
-    records, failures = report.measured_tables(rows, targets)
+    records, failures, measured = report.measured_tables(rows, targets)
     print(report.legend(records))
     print("Critical paths of adders:\n")
     print(*(report.chain(record) for record in records if record["top"] == "adder" and record["flow"] in ("cells", "fast")), "", sep="\n")
@@ -85,7 +85,7 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     sections = [section for section in sections if section[1]]
     for title, text in sections:
         print(f"{title}\n\n{text}")
-    report.write(records, sections, bool(given.publish))
+    report.write(records, measured, sections, bool(given.publish))
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"Took {used.ru_utime + used.ru_stime:.0f} s of processor time. Report: "
           f"{(store.OUT / 'report.md').relative_to(tools.ROOT)}" + "; ALL=1 measures everything." * (not given.all and not given.top))

@@ -26,16 +26,16 @@ def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     wanted = store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts,
                        inspect.getsource(registered), inspect.getsource(_map))
-    netlist, mapped = store.cached(folder, wanted, lambda: _step("mapping", folder / "yosys.log", lambda: _map(design, fpga, folder)))
+    netlist, mapped = store.cached(folder, wanted, lambda: step("mapping", folder / "yosys.log", lambda: _map(design, fpga, folder)))
     # A placement is kept under the netlist's contents, so that RTL which makes the same one keeps it.
     wanted = store.key([], netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz, inspect.getsource(_place))
     runs = [store.cached(folder / f"seed-{seed}", wanted,
-                         lambda s=seed: _step("placing, routing", folder / f"seed-{s}" / "nextpnr.log", lambda: _place(fpga, folder, s)))
+                         lambda s=seed: step("placing, routing", folder / f"seed-{s}" / "nextpnr.log", lambda: _place(fpga, folder, s)))
             for seed in fpga.seeds]
     return median([run for run, _ in runs]), mapped and all(there for _, there in runs)
 
 
-def _step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
+def step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
     """What `work` gives, after a line that says what has begun and where to watch it."""
     print(f"{what}: {log.relative_to(tools.ROOT)}", file=sys.stderr, flush=True)
     return work()

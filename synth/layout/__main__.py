@@ -6,9 +6,60 @@ import shutil
 import sys
 
 from synth import catalogue, chosen, runner, store, tables, tools, yosys
-from synth.layout import flow, jobs, parts, picture
+from synth.catalogue import Design, Library
+from synth.layout import flow, parts, picture
 
 OUT = store.OUT / "layouts"
+
+
+@dataclasses.dataclass(frozen=True)
+class Row:
+    """A design of the table: laid out once for each seed, of which the median counts."""
+
+    section: str
+    design: Design
+    how: str  # the flow
+    density: float
+    aspect: float
+    seeds: int = 1
+    routed: bool = True
+    library: Library = catalogue.library("osu035")
+
+    def jobs(self) -> list[flow.Job]:
+        """One for each seed."""
+        return [flow.Job(self.design, self.library, self.how, self.density, self.aspect, seed, self.routed)
+                for seed in range(1, self.seeds + 1)]
+
+
+SECTIONS = ("adders", "multipliers", "cores", "unit")
+
+
+def section_rows(section: str, seeds: int = 3) -> list[Row]:
+    """The rows of one of SECTIONS. `seeds`: of each adder; the others are large."""
+    if section == "adders":
+        return [Row(section, row.design, how, 1.0, 0.75, seeds) for row in catalogue.report_rows()
+                if row.section == "48-bit adders"
+                for how in ("cells", "fast") if how in row.flows["osu035"]]
+    if section == "multipliers":
+        graded = catalogue.design("booth_multiplier", "booth-graded-ripple-groups", "graded",
+                                  look_ahead=False, Width=24)
+        kinds = [catalogue.design("booth_multiplier", f"booth-{kind}", kind, Width=24)
+                 for kind in ("ripple", "uniform", "prefix")]
+        plain = catalogue.design("multiplier", "multiplier-behavioural", catalogue.BEHAVIOURAL, Width=24)
+        return [Row(section, graded, "cells", *flow.SPARSE),
+                *(Row(section, design, "fast", *flow.SPARSE) for design in (graded, *kinds, plain))]
+    if section == "cores":
+        small = catalogue.FORMATS["binary16"]
+        tops = {"fp_adder": flow.SPARSE, "fp_multiplier": flow.SPARSER, "fp_divider": flow.SPARSE}
+        return [*(Row(section, catalogue.design(top, f"{top.replace('_', '-')}-binary16", "graded",
+                                                ExpWidth=small[0], FracWidth=small[1]), "modules", *flow.SPARSE)
+                  for top in tops),
+                *(Row(section, catalogue.design(top, top.replace("_", "-"), "graded"), "modules", *sparse)
+                  for top, sparse in tops.items())]
+    if section == "unit":  # whether qrouter routes 18,000 nets has not been tried
+        return [Row(section, catalogue.design("hit_test_unit"), how, *flow.SPARSE, routed=False)
+                for how in ("parts", "small")]
+    raise ValueError(f"no section {section}; there are {', '.join(SECTIONS)}")
 
 
 def arguments() -> argparse.Namespace:
@@ -16,7 +67,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="synth.layout", description=(
         "Places and routes netlists of make synth in OSU 0.35 um, or 0.18, times them with their wires and draws "
         "them; the report is build/synth/layouts/report-*.md."))
-    parser.add_argument("--top", help=f"{', '.join(jobs.SECTIONS)}, or a module of hw/; all sections if none")
+    parser.add_argument("--top", help=f"{', '.join(SECTIONS)}, or a module of hw/; all sections if none")
     chosen.add_arguments(parser)
     parser.add_argument("--targets", help="osu035 or osu018 (osu035)")
     parser.add_argument("--flow", help="of a module (see synth/README.md; fast)")
@@ -28,7 +79,7 @@ def arguments() -> argparse.Namespace:
     return chosen.parse(parser)
 
 
-def wanted(given: argparse.Namespace) -> list[jobs.Row]:
+def wanted(given: argparse.Namespace) -> list[Row]:
     """The rows that the command line asks for."""
     library = {entry.name: entry for entry in catalogue.LIBRARIES}.get(given.targets or "osu035")
     if library is None:
@@ -38,20 +89,20 @@ def wanted(given: argparse.Namespace) -> list[jobs.Row]:
     return [dataclasses.replace(row, library=library) for row in _rows(given)]
 
 
-def _rows(given: argparse.Namespace) -> list[jobs.Row]:
+def _rows(given: argparse.Namespace) -> list[Row]:
     seeds = int(given.seeds or 3)
-    if given.top is None or given.top in jobs.SECTIONS:
-        return [row for section in jobs.SECTIONS if given.top in (None, section)
-                for row in jobs.rows(section, seeds)]
+    if given.top is None or given.top in SECTIONS:
+        return [row for section in SECTIONS if given.top in (None, section)
+                for row in section_rows(section, seeds)]
     flow_name, density, aspect = given.flow or "fast", float(given.density or 1), float(given.aspect or 0.75)
     if flow_name not in catalogue.FLOWS:
         raise ValueError(f"no flow {flow_name}, expected one of {', '.join(catalogue.FLOWS)}")
     if not 0 < density <= 1 or not 0 < aspect:
         raise ValueError(f"density {density:g} and aspect {aspect:g}, expected 0 < density <= 1 and 0 < aspect")
-    return [jobs.Row(given.top, chosen.design(given), flow_name, density, aspect, int(given.seeds or 1))]
+    return [Row(given.top, chosen.design(given), flow_name, density, aspect, int(given.seeds or 1))]
 
 
-def measure(rows: list[jobs.Row], workers: int) -> tuple[list[dict], list[str]]:
+def measure(rows: list[Row], workers: int) -> tuple[list[dict], list[str]]:
     """Makes all layouts; one record for each row whose layouts were made, of the median seed."""
     all_jobs = [(row, job) for row in rows for job in row.jobs()]
     results, failures = runner.run_all([runner.Job(
@@ -65,7 +116,7 @@ def measure(rows: list[jobs.Row], workers: int) -> tuple[list[dict], list[str]]:
                         key=lambda pair: pair[1]["wires_ns"])
         if mine:
             job, result = routed[len(routed) // 2] if routed else mine[0]
-            records.append({"section": row.section, "design": row.design.name, "flow": row.flow,
+            records.append({"section": row.section, "design": row.design.name, "flow": row.how,
                             "seed": job.seed, "job": job, **result,
                             "spread": [got["wires_ns"] for _, got in routed],
                             "failed": [got["failed"] for _, got in mine]})

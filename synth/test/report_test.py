@@ -69,9 +69,10 @@ class Measured(unittest.TestCase):
 
         with (mock.patch.object(mapping, "synthesise", side_effect=measured), contextlib.redirect_stdout(printed),
               mock.patch.object(catalogue.Library, "structural", True), contextlib.redirect_stderr(io.StringIO())):
-            records, failures = report.measured_tables(rows, measure.Targets(("osu035",), 1))
+            records, failures, text = report.measured_tables(rows, measure.Targets(("osu035",), 1))
         self.assertEqual((len(records), failures, set(waited)), (3, ["prefix osu035 fast: no"], {True}))
         cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in printed.getvalue().splitlines()]
+        self.assertEqual(text + "\n", printed.getvalue())
         self.assertEqual(cells, [["adders, OSU 0.35 um: um2 / ns", "cells", "fast"], cells[1], ["ripple", "1,000 / 2.50", "1,000 / 2.50"],
                                  ["prefix", "1,000 / 2.50", "-"], []])
 
