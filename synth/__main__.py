@@ -5,7 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import adder_study, catalogue, chosen, float_peers, measure, prove, report, store, throughput, tools, unit_delay
+from synth import catalogue, chosen, float_peers, grading, measure, prove, report, store, tools, unit_delay
 
 
 def arguments() -> argparse.Namespace:
@@ -19,6 +19,7 @@ def arguments() -> argparse.Namespace:
     chosen.add_arguments(parser)
     parser.add_argument("--liberty", help="a Liberty file, measured in place of other targets")
     parser.add_argument("--all", help="1: every design on every target; else the first ones, in osu035")
+    parser.add_argument("--publish", help="1: with --all, writes the report into synth/results, too")
     parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; of one design its standard cells if not given")
     parser.add_argument("--jobs", type=chosen.whole(1, 1024), default="2", help="at once (%(default)s)")
     return chosen.parse(parser)
@@ -34,17 +35,16 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
     plan |= {library.name: flows for library in catalogue.LIBRARIES if library.name in plan}
     rows = [catalogue.Row(design.name, design, plan)]
     if cells:
-        width = dict(design.parameters).get("Width", adder_study.WIDTH)
+        width = dict(design.parameters).get("Width", grading.WIDTH)
         others = [catalogue.design("adder", adder=kind, look_ahead=False if kind == "uniform" else None, Width=width)
                   for kind in ("ripple", "uniform", "prefix", catalogue.BEHAVIOURAL)]
         rows += [catalogue.Row(design.name, other, plan) for other in others if other.name != design.name]
-    records, failures = report.measured_tables(rows, targets)
+    records, failures, _ = report.measured_tables(rows, targets)
     print(report.legend(records))
     records = [record for record in records if record["design"] == design.name]
     for record in records:
         if "blocks" in record:
             print(report.blocks_table(record))
-            print(throughput.ray_table(record))
     timed = [record for record in records if "path" in record]
     if timed:
         best = min((record for record in timed if record["target"] == timed[0]["target"]),
@@ -75,19 +75,17 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     rows = catalogue.report_rows() if given.all else catalogue.first_rows()
     if given.top == "adders":
         rows = [row for row in catalogue.report_rows() if row.design.top == "adder"]
-    records, failures = report.measured_tables(rows, targets)
+    records, failures, measured = report.measured_tables(rows, targets)
     print(report.legend(records))
     print("Critical paths of adders:\n")
     print(*(report.chain(record) for record in records if record["top"] == "adder" and record["flow"] in ("cells", "fast")), "", sep="\n")
     sections = [("Clock rates", report.clock_table(records))]
     if given.top == "adders" or given.all:
-        sections.append(("The paper's delay model", adder_study.model_table()))
-    if given.all:
-        sections.append(("Tests a second", throughput.table(records)))
+        sections.append(("The paper's delay model", grading.model_table()))
     sections = [section for section in sections if section[1]]
     for title, text in sections:
         print(f"{title}\n\n{text}")
-    report.write(records, sections)
+    report.write(records, measured, sections, bool(given.publish))
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"Took {used.ru_utime + used.ru_stime:.0f} s of processor time. Report: "
           f"{(store.OUT / 'report.md').relative_to(tools.ROOT)}" + "; ALL=1 measures everything." * (not given.all and not given.top))
@@ -105,6 +103,8 @@ def main() -> int:
     """Runs the command line; 2 for what the user can mend."""
     given = arguments()
     try:
+        if given.publish and (given.top or not given.all or given.liberty or given.targets):
+            raise ValueError("PUBLISH=1: expected the whole report, ALL=1 without TOP, LIBERTY and TARGETS")
         one = chosen.design(given) if given.top and given.top not in ("adders", "float_peers") else None
         if given.liberty:
             catalogue.LIBRARIES.append(catalogue.of_user(pathlib.Path(given.liberty)))

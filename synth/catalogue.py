@@ -19,12 +19,11 @@ class Design:
     folder: str  # of hw/
     parameters: tuple[tuple[str, str], ...] = ()
     clock: str = ""  # "" for combinational designs
-    tied: tuple[tuple[str, str], ...] = ()  # ports held at constants, e.g. ("carry_i", "1'b0")
 
     @property
     def facts(self) -> tuple:
         """What elaboration depends on besides the files."""
-        return self.top, self.parameters, self.tied
+        return self.top, self.parameters
 
     def sources(self, structural: bool = False) -> list[pathlib.Path]:
         """The files that elaboration needs, packages first; all of the folder where there is no top.
@@ -357,29 +356,7 @@ def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
     return rows
 
 
-# Rounding modes that a unit may hold its cores at: what that is called, and the ports tied for it.
-HELD_MODES = {
-    "to-nearest": (("rounding_mode_i", "3'd0"), ("tininess_after_i", "1'b0")),
-    "truncating": (("rounding_mode_i", "3'd1"), ("tininess_after_i", "1'b0")),
-}
-
-
 def core_rows() -> list[Row]:
-    """The float cores: binary32, and what narrower significands, one rounding mode and a short
-    quotient save.
-
-    fp-multiplier is of binary32; fp-multiplier-16-bits has a significand of 16 bits, its leading one
-    counted.
-    """
-    cores = [(top, top.replace("_", "-")) for top in ("fp_multiplier", "fp_adder", "fp_divider")]
-    rows = [Row("binary32 cores", design(top, name, "graded"),
-                {"osu035": ("area", "small", "fast"), "osu018": ("fast",)}) for top, name in cores]
-    for top, name in cores:
-        rows += [Row("reduced cores", design(top, f"{name}-{bits}-bits", "graded", FracWidth=bits - 1),
-                     {"osu035": ("area", "small")}) for bits in (16, 12)]
-        held = [dataclasses.replace(design(top, f"{name}-{mode}", "graded"), tied=ports)
-                for mode, ports in HELD_MODES.items()]
-        if top == "fp_divider":
-            held.append(design(top, f"{name}-21-bit-quotient", "graded", QuotientBits=21))
-        rows += [Row("reduced cores", core, {"osu035": ("area",)}) for core in held]
-    return rows
+    """The float cores, in binary32."""
+    return [Row("binary32 cores", design(top, top.replace("_", "-"), "graded"), {"osu035": ("area", "small", "fast"), "osu018": ("fast",)})
+            for top in ("fp_multiplier", "fp_adder", "fp_divider")]

@@ -1,10 +1,7 @@
-"""Fills what the pages of hw/ hold between their marks, from the sources and from what was measured.
+"""Writes the table of modules, from the sources and from what was measured.
 
-`python3 -m synth.datasheet` writes the text and draws the diagrams; with `--check` it changes nothing, and
-its exit status is 1 where the table of modules or a timing diagram is out of date, or where the example of
-hw/fp does not pass Verilator. A mark is `<!-- KIND -->`, its text ends at `<!-- end -->`:
-
-  fpga      the units that `make fpga` has placed; where none are, the old text stays
+`python3 -m synth.datasheet` writes it; with `--check` it changes nothing, and its exit status is 1 where the table or what is made
+of the registers' page is out of date, or where the example of hw/fp does not pass Verilator.
 
 hw/modules.csv has all modules: what each is, its latency, and where `make synth` measures it area and time, measured
 again where they have changed. The registers' package and header are made of their page, see `synth.registers`.
@@ -13,26 +10,17 @@ again where they have changed. The registers' package and header are made of the
 import csv
 import dataclasses
 import difflib
-import pathlib
 import re
-import subprocess
 import sys
 
-from synth import catalogue, cores, fpga, measure, registers, store, tables, tools, waveform
+from synth import catalogue, cores, measure, registers, tables, tools
 
-DIAGRAMS = cores.HW / "diagrams"
-MARK = re.compile(r"<!-- (?!end)(\w+) -->\n(.*?)<!-- end -->", re.S)
 MODULES = cores.HW / "modules.csv"
 FIGURES = ["mm2", "ns", "MHz"]
 # Design of the catalogue -> the flow that is shown. Adders have look-ahead groups, as in the units.
 SHOWN = {"adder-graded-look-ahead": "fast", "booth-graded": "fast", "fp-multiplier": "fast",
          "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
          "hit_test_pipeline": "parts", "iterative_hit_test_unit-RowsPerClock1": "parts", "exact_unit": "blocks"}
-
-
-def pages() -> list[pathlib.Path]:
-    """The pages of hw/: one for the whole and one a folder."""
-    return [cores.HW / "README.md", *(cores.HW / core / "README.md" for core in cores.names())]
 
 
 def header(text: str) -> str:
@@ -80,17 +68,6 @@ def measured_figures() -> dict[str, list[str]]:
             for record in records}
 
 
-def filled(page: pathlib.Path, text: str, fpgas: str = "") -> str:
-    """The text of a page with what its marks stand for; what was not measured stays. Raises ValueError for another mark."""
-    def fill(mark: re.Match) -> str:
-        kind, old = mark.groups()
-        if kind != "fpga":
-            raise ValueError(f"{page}: found the mark {kind}, expected fpga")
-        return f"<!-- {kind} -->\n{fpgas or old}<!-- end -->"
-
-    return MARK.sub(fill, text)
-
-
 def example(text: str) -> str:
     """The module of the text's first block of SystemVerilog."""
     return re.search(r"```systemverilog\n(module .*?)```", text, re.S)[1]
@@ -106,47 +83,21 @@ def lint(text: str) -> None:
                *cores.files("hit_test"), file], file.with_suffix(".log"))
 
 
-def say(what: str) -> None:
-    """A line of progress."""
-    print(f"datasheet: {what}", file=sys.stderr, flush=True)
-
-
 def write() -> None:
-    """Fills the text and draws the diagrams."""
-    from synth import diagram  # by graphviz
-
+    """Writes the table of modules and the registers' files."""
     for file, text in registers.made(registers.PAGE.read_text()).items():
         file.write_text(text)
-    say(f"measuring {len(SHOWN)} designs for {MODULES.relative_to(tools.ROOT)}: several minutes the first time")
+    print(f"datasheet: measuring {len(SHOWN)} designs for {MODULES.relative_to(tools.ROOT)}: several minutes the first time",
+          file=sys.stderr, flush=True)
     MODULES.write_text(modules(measured_figures()))
-    say("filling the pages of hw, drawing timing and block diagrams: about a minute")
-    fpgas = fpga.table()
-    for page in pages():
-        page.write_text(filled(page, page.read_text(), fpgas))
-    program = tools.ROOT / "build" / "sim" / "worked_example"
-    trace = program.with_suffix(".vcd")
-    subprocess.run([program, "--trace", trace], check=True, stdout=subprocess.DEVNULL)
-    waveform.draw(trace, tools.ROOT / "sim" / "worked_example.gtkw", DIAGRAMS / "worked_example")
-    for file in DIAGRAMS.glob("*.json"):
-        file.with_suffix(".svg").write_text(waveform.render(file))
-    for unit in ("hit_test_unit", "hit_test_pipeline"):
-        diagram.draw(unit, store.OUT / unit)
-        (DIAGRAMS / f"{unit}.svg").write_text((store.OUT / f"{unit}.svg").read_text())
-    diagram.draw("ray_core", store.OUT / "ray_core", 28, diagram.units)  # a line's number has 28 bits
-    (DIAGRAMS / "ray_core.svg").write_text((store.OUT / "ray_core.svg").read_text())
 
 
 def check() -> list[str]:
     """What is out of date."""
     lines = []
-    made = registers.made(registers.PAGE.read_text())
-    made[MODULES] = modules(published(MODULES.read_text()))
-    for file, new in [*made.items(), *((page, filled(page, page.read_text())) for page in pages())]:
+    for file, new in (registers.made(registers.PAGE.read_text()) | {MODULES: modules(published(MODULES.read_text()))}).items():
         lines += difflib.unified_diff(file.read_text().splitlines(), new.splitlines(),
                                       str(file.relative_to(tools.ROOT)), "the sources", n=0, lineterm="")
-    for file in DIAGRAMS.glob("*.json"):
-        if file.with_suffix(".svg").read_text() != waveform.render(file):
-            lines.append(f"{file.with_suffix('.svg')}: is not what WaveDrom makes of {file.name}")
     lint((cores.HW / "fp" / "README.md").read_text())
     return lines
 

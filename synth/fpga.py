@@ -23,47 +23,27 @@ MOST_PINS = 150  # what every package here has
 
 def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
     """LUTs, registers, multipliers, block RAMs, and the slowest path between registers as MHz: the median of the seeds."""
-    folder, wanted = _keys(design, fpga)
-    netlist, mapped = store.cached(folder, wanted, lambda: _step("mapping", folder / "yosys.log",
-                                                                 lambda: _map(design, fpga, folder)))
-    runs = [store.cached(folder / f"seed-{seed}", _seed_key(fpga, netlist),
-                         lambda s=seed: _step("placing, routing", folder / f"seed-{s}" / "nextpnr.log",
-                                              lambda: _place(fpga, folder, s))) for seed in fpga.seeds]
+    folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
+    wanted = store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts,
+                       inspect.getsource(registered), inspect.getsource(_map))
+    netlist, mapped = store.cached(folder, wanted, lambda: step("mapping", folder / "yosys.log", lambda: _map(design, fpga, folder)))
+    # A placement is kept under the netlist's contents, so that RTL which makes the same one keeps it.
+    wanted = store.key([], netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz, inspect.getsource(_place))
+    runs = [store.cached(folder / f"seed-{seed}", wanted,
+                         lambda s=seed: step("placing, routing", folder / f"seed-{s}" / "nextpnr.log", lambda: _place(fpga, folder, s)))
+            for seed in fpga.seeds]
     return median([run for run, _ in runs]), mapped and all(there for _, there in runs)
 
 
-def _step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
+def step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
     """What `work` gives, after a line that says what has begun and where to watch it."""
     print(f"{what}: {log.relative_to(tools.ROOT)}", file=sys.stderr, flush=True)
     return work()
 
 
-def placed(design: Design, fpga: Fpga) -> dict | None:
-    """The same of those seeds alone that were placed before, with their number and rates; None where none was."""
-    folder, wanted = _keys(design, fpga)
-    netlist = store.kept(folder, wanted)
-    runs = [run for seed in fpga.seeds
-            if netlist and (run := store.kept(folder / f"seed-{seed}", _seed_key(fpga, netlist)))]
-    rates = [run["mhz"] for run in runs]
-    return {**median(runs), "seeds": len(runs), "least": min(rates), "most": max(rates)} if runs else None
-
-
 def median(runs: list[dict]) -> dict:
     """The run of the median clock rate."""
     return sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
-
-
-def _keys(design: Design, fpga: Fpga) -> tuple[pathlib.Path, str]:
-    """Where results are kept, and under what key the netlist is."""
-    folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
-    return folder, store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts, inspect.getsource(registered),
-                             inspect.getsource(_map))
-
-
-def _seed_key(fpga: Fpga, netlist: dict) -> str:
-    """Under what key a placement is: that of the netlist's contents, so that RTL which makes the same one keeps it."""
-    return store.key([], netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz,
-                     inspect.getsource(_place))
 
 
 def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
@@ -151,25 +131,32 @@ def main() -> int:
     parser.add_argument("names", nargs="*", help="beginnings of units' names; all if none")
     parser.add_argument("--seeds", type=int, default=3, help="placements, of which the median counts "
                         "(%(default)s)")
+    parser.add_argument("--publish", action="store_true", help="write the table into the pages of hw that have a place for it")
     given = parser.parse_args()
     try:
-        units = [(design, form, kind, dataclasses.replace(fpga, seeds=tuple(range(1, given.seeds + 1))))
-                 for design, form, kind, fpga in catalogue.fpga_units()
-                 if design.name.startswith(tuple(given.names or [""]))]
+        units = [unit for unit in catalogue.fpga_units() if unit[0].name.startswith(tuple(given.names or [""]))]
+        if given.publish and given.names:
+            raise ValueError("--publish: expected all units, found " + " ".join(given.names))
         if not units or given.seeds < 1:
             raise ValueError("expected at least one seed, and some of "
                              + ", ".join(unit[0].name for unit in catalogue.fpga_units()))
         for _, _, _, fpga in units:
             tools.find(fpga.tool)
-        _, failures = runner.run_all(
+        jobs = [(unit, seed) for unit in units for seed in range(1, given.seeds + 1)]
+        results, failures = runner.run_all(
             [runner.Job(f"{design.name} {fpga.name} seed {seed}",
                         lambda d=design, f=dataclasses.replace(fpga, seeds=(seed,)): place(d, f),
                         lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz, from {got['from']} to {got['to']}")
-             for design, _, _, fpga in units for seed in fpga.seeds], 1)
+             for (design, _, _, fpga), seed in jobs], 1)
     except (tools.MissingTool, ValueError) as error:
         print(f"fpga: {error}", file=sys.stderr)
         return 2
-    print(table())
+    runs = [(unit, [result for (of, _), result in zip(jobs, results, strict=True) if of is unit and result]) for unit in units]
+    text = table([(unit, mine) for unit, mine in runs if mine])
+    print(text)
+    if given.publish:
+        for page in catalogue.HW.glob("*/README.md"):
+            page.write_text(re.sub(r"(?<=<!-- fpga -->\n).*?(?=<!-- end -->)", lambda _: text, page.read_text(), flags=re.S))
     for failure in failures:
         print("failed:", failure, file=sys.stderr)
     return 1 if failures else 0
@@ -184,22 +171,19 @@ def period(top: str, clocks: str = "") -> int | None:
     return said and int(said[1] or 1)
 
 
-def table() -> str:
-    """All units that have been placed as they are now: what they take, their clock rates, and the logic and wires of their slowest paths."""
+def table(units: list[tuple[tuple, list[dict]]]) -> str:
+    """What units (of catalogue.fpga_units) take, their clock rates over the seeds, and the logic and wires of their slowest paths."""
     heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "block RAMs", "least MHz", "median", "most", "seeds", "million tests/s",
              "slowest path: logic, ns", "wires, ns"]
     rows = []
-    for design, form, kind, fpga in catalogue.fpga_units():
-        if tools.installed(fpga.tool) and (got := placed(design, fpga)):
-            name = ", ".join([design.top, *(says for key, says in NAMES.items() if key in design.parameters)])
-            cells = ["-" if not cell else got[key] for key, cell in zip(
-                ("luts", "registers", "multipliers", "block RAMs"), fpga.cells, strict=True)]
-            rows.append([name, form, kind, fpga.title, *cells, got["least"], got["mhz"], got["most"], got["seeds"],
-                         f"{got['mhz'] / period(design.top, dict(design.parameters).get('Clocks', '')):.2f}", got["logic"], got["wires"]])
-    if not rows:
-        return ""
-    commit = tools.run(["git", "describe", "--always", "--dirty"], store.OUT / "git.log").strip()
-    return f"{tables.markdown(heads, rows)}\n`make fpga` at {commit}.\n"
+    for (design, form, kind, fpga), runs in units:
+        got, rates = median(runs), [run["mhz"] for run in runs]
+        name = ", ".join([design.top, *(says for key, says in NAMES.items() if key in design.parameters)])
+        cells = ["-" if not cell else got[key] for key, cell in zip(
+            ("luts", "registers", "multipliers", "block RAMs"), fpga.cells, strict=True)]
+        rows.append([name, form, kind, fpga.title, *cells, min(rates), got["mhz"], max(rates), len(runs),
+                     f"{got['mhz'] / period(design.top, dict(design.parameters).get('Clocks', '')):.2f}", got["logic"], got["wires"]])
+    return f"{tables.markdown(heads, rows)}\n{tables.measured('make fpga')}"
 
 
 # What a parameter makes of a unit, in words.

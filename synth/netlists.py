@@ -102,7 +102,6 @@ def twins(design: Design, ports: dict) -> str:
         connections = [f".{name}({name})" for name in ports if name in named]
         connections += [f".{name}({bits})" for name, bits in slices.items()]
         connections += [f".{name}({twin}_{name})" for name, _ in outputs]
-        connections += [f".{name}({value})" for name, value in design.tied if twin == "rtl"]
         head = f"{design.top} #({parameters})" if twin == "rtl" else "netlist"
         lines.append(f"  {head} u_{twin} ({', '.join(connections)});")
     differences = " || ".join(f"rtl_{name} != netlist_{name}" for name, _ in outputs)

@@ -174,7 +174,7 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="those alone that `make test` runs")
     parser.add_argument("--long", action="store_true", help="those too that take hours")
     parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
-    parser.add_argument("--record", action="store_true",
+    parser.add_argument("--publish", action="store_true",
                         help="write what they took into proofs/proofs.csv")
     parser.add_argument("--kept", action="store_true",
                         help="runs nothing: those alone that an earlier run has left")
@@ -199,7 +199,7 @@ def main() -> int:
         for proof, result in zip(chosen, results, strict=True)]))
     for failure in failures:
         print("failed:", failure, file=sys.stderr)
-    if given.record:
+    if given.publish:
         record(chosen, results)
     counts = collections.Counter(map(outcome, chosen, results))
     seconds = sum((result or {}).get("seconds", 0) for result in results)

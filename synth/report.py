@@ -39,16 +39,14 @@ def groups() -> list[tuple[str, list[tuple[str, str]]]]:
             ("LUTs / MHz", [(device.name, "placed") for device in FPGAS])]
 
 
-def section_tables(records: list[dict], section: str) -> str:
-    """The tables of a section."""
-    mine = [record for record in records if record["section"] == section]
-    return "\n".join(_table(mine, f"{section}, {title}", columns) for title, columns in groups() if any(
-        (record["target"], record["flow"]) in columns for record in mine))
+def measured_tables(rows: list[Row], targets: measure.Targets) -> tuple[list[dict], list[str], str]:
+    """Measures rows and prints their tables, each row as soon as it is measured. Returns records, failures and the tables."""
+    records, failures, printed = [], [], []
 
+    def say(text: str) -> None:
+        printed.append(text)
+        print(text, flush=True)
 
-def measured_tables(rows: list[Row], targets: measure.Targets) -> tuple[list[dict], list[str]]:
-    """Measures rows and prints the same tables, each row as soon as it is measured. Returns records and failures."""
-    records, failures = [], []
     for section, (title, columns) in itertools.product(dict.fromkeys(row.section for row in rows), groups()):
         names = tuple(name for name in targets.names if any(target == name for target, _ in columns))
         flows = {row.design.name: [(name, flow) for name in names for flow in _flows(row, name)] for row in rows
@@ -60,18 +58,18 @@ def measured_tables(rows: list[Row], targets: measure.Targets) -> tuple[list[dic
         width = max(len(f"{section}, {title}"), *(len(row.design.name) for row in mine))
 
         def line(cells: list[str], width: int = width) -> None:
-            print(f"| {cells[0]:{width}} | " + " | ".join(f"{cell:>20}" for cell in cells[1:]) + " |", flush=True)
+            say(f"| {cells[0]:{width}} | " + " | ".join(f"{cell:>20}" for cell in cells[1:]) + " |")
 
         def ended(row: Row, got: list[dict], columns: list = columns, line: Callable = line) -> None:
             at = {(record["target"], record["flow"]): record for record in got}
             line([row.design.name, *(cost(at.get(column)) for column in columns)])
 
         line([f"{section}, {title}", *(_head(column) for column in columns)])
-        print(f"|{'-' * (width + 2)}|" + "|".join(["-" * 21 + ":"] * len(columns)) + "|")
+        say(f"|{'-' * (width + 2)}|" + "|".join(["-" * 21 + ":"] * len(columns)) + "|")
         got, wrong = measure.measure(mine, measure.Targets(names, targets.workers), ended)
         records, failures = records + got, failures + wrong
-        print()
-    return records, failures
+        say("")
+    return records, failures, "\n".join(printed)
 
 
 def _flows(row: Row, target: str) -> tuple[str, ...]:
@@ -91,15 +89,6 @@ def legend(records: list[dict]) -> str:
     if any("mhz" in record for record in records):
         parts.append("LUTs / MHz: placed and routed between registers; the median of the seeds")
     return "\n".join([*parts, *(f"{flow}: {FLOWS[flow]}" for flow in flows)]) + "\n"
-
-
-def _table(records: list[dict], head: str, columns: list[tuple[str, str]]) -> str:
-    at = {(record["design"], record["target"], record["flow"]): record for record in records}
-    columns = [column for column in columns if any(key[1:] == column for key in at)]
-    designs = dict.fromkeys(record["design"] for record in records
-                            if (record["target"], record["flow"]) in columns)
-    return tables.markdown([head, *map(_head, columns)], [
-        [design, *(cost(at.get((design, *column))) for column in columns)] for design in designs])
 
 
 def clock_table(records: list[dict]) -> str:
@@ -175,17 +164,19 @@ def versions() -> str:
     return ", ".join([f"yosys {yosys.version()}", *stated, f"Python {platform.python_version()}"])
 
 
-def write(records: list[dict], sections: list[tuple[str, str]]) -> None:
-    """Writes the three files. `sections` are (title, Markdown) that follow the tables."""
+def write(records: list[dict], measured: str, sections: list[tuple[str, str]], publish: bool = False) -> None:
+    """Writes the three files; with `publish` the report and the CSV into results/, too. `measured`: of measured_tables; `sections`:
+    (title, Markdown) that follow."""
     store.OUT.mkdir(parents=True, exist_ok=True)
     parts = ["# What the arithmetic costs\n", f"Made by `make synth` with {versions()}.\n", CAVEATS,
-             "Flows: " + "; ".join(f"**{name}**: {text}" for name, text in FLOWS.items()) + ".\n"]
-    for section in dict.fromkeys(record["section"] for record in records):
-        parts += [f"## {section}\n", section_tables(records, section)]
+             "Flows: " + "; ".join(f"**{name}**: {text}" for name, text in FLOWS.items()) + ".\n", measured]
     for title, text in sections:
         parts += [f"## {title}\n", text]
-    (store.OUT / "report.md").write_text("\n".join(parts))
+    (store.OUT / "report.md").write_text("\n".join([*parts, tables.measured("make synth ALL=1")]))
     (store.OUT / "results.json").write_text(
         json.dumps({"tools": versions(), "results": records}, indent=1) + "\n")
     columns = ["section", "design", "target", "flow", "area", "delay_ns", "luts", "mhz"]
     (store.OUT / "results.csv").write_text(tables.comma_separated(records, columns))
+    if publish:
+        for name, published in (("report.md", "synth.md"), ("results.csv", "synth.csv")):
+            (tables.RESULTS / published).write_text((store.OUT / name).read_text())

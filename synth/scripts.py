@@ -1,4 +1,4 @@
-"""The flows as scripts of Yosys: what `make synth`, `make fpga`, `make synth VERILOG=1` and the diagrams run."""
+"""The flows as scripts of Yosys: what `make synth`, `make fpga` and `make synth VERILOG=1` run."""
 
 import pathlib
 
@@ -17,12 +17,7 @@ FILES = [pathlib.Path(__file__), pathlib.Path(yosys.__file__)]  # what results d
 
 def elaborated(design: Design, structural: bool = False) -> str:
     """Reads and elaborates a design; `structural`: its full adders and multiplexers as cells."""
-    lines = [yosys.read(design.sources(structural), design.top, design.parameters)]
-    if design.tied:
-        lines += [f"cd {design.top}"]
-        lines += [f"delete -port w:{port}\nconnect -set {port} {value}" for port, value in design.tied]
-        lines += ["cd"]
-    return "\n".join(lines)
+    return yosys.read(design.sources(structural), design.top, design.parameters)
 
 
 def structure(design: Design) -> str:
@@ -42,11 +37,6 @@ opt_clean"""
 def structure_json(design: Design, out: pathlib.Path) -> str:
     """`structure` with gates of one bit, as JSON."""
     return f"{structure(design)}\nsimplemap\nopt_clean\nwrite_json {out}"
-
-
-def modules_json(design: Design, out: pathlib.Path) -> str:
-    """A design as JSON, its instances as they are."""
-    return f"{elaborated(design)}\nproc\nopt_expr\nopt_clean\nopt_dff\nmemory_collect\nopt_clean\nwrite_json {out}"
 
 
 def plain_verilog(design: Design, out: pathlib.Path) -> str:

@@ -13,33 +13,30 @@ $(foreach name,$(filter ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT
 endif
 endif
 
-# The whole report has tests a second in it, which programs count.
-synth: $(if $(filter-out 0,$(ALL)),verilate) ## hardware: area and time: make synth [ALL=1 | TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ... | TOP=fp_adder VERILOG=1: one file of plain Verilog | DATASHEET=1: tables and diagrams of hw]
+synth: ## hardware: area and time: make synth [ALL=1 PUBLISH=1 | TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ... | TOP=fp_adder VERILOG=1: one file of plain Verilog | DATASHEET=1: hw/modules.csv]
 	@$(SETUP) synth
 	@$(if $(filter float_peers,$(TOP)),$(SETUP) lab)
 ifdef DATASHEET
-	$(call build,build,worked_example)
 	@$(PYTHON) -m synth.datasheet
 else ifdef VERILOG
 	@$(PYTHON) -m synth.verilog "$(TOP)" "$(PARAMS)"
 else
-	$(if $(filter-out 0,$(ALL)),$(call build,build,table_1 worked_example))
 	@$(PYTHON) -m synth --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
-	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --liberty '$(LIBERTY)' --all '$(filter-out 0,$(ALL))' \
+	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --liberty '$(LIBERTY)' --all '$(filter-out 0,$(ALL))' --publish '$(PUBLISH)' \
 	  --jobs '$(SYNTH_JOBS)'
 endif
 
-prove: ## hardware: prove arithmetic, units, netlists: make prove [PROOFS='adder. float.add' LONG=1 KEPT=1 RECORD=1]
+prove: ## hardware: prove arithmetic, units, netlists: make prove [PROOFS='adder. float.add' LONG=1 KEPT=1 PUBLISH=1]
 	@$(SETUP) prove
-	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(if $(RECORD),--record) $(if $(KEPT),--kept) $(PROOFS)
+	@$(PYTHON) -m synth.prove --jobs '$(SYNTH_JOBS)' $(if $(LONG),--long) $(if $(PUBLISH),--publish) $(if $(KEPT),--kept) $(PROOFS)
 
-fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-binary32 SEEDS=3] [TOP=small_core BOARD=ulx3s: a bitstream]
+fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-binary32 SEEDS=3 PUBLISH=1] [TOP=small_core BOARD=ulx3s: a bitstream]
 	@$(SETUP) synth
 ifdef BOARD
 	@$(PYTHON) -m synth.board '$(TOP)' '$(BOARD)' $(if $(SEEDS),--seed $(SEEDS))
 else
-	@$(PYTHON) -m synth.fpga $(if $(SEEDS),--seeds $(SEEDS)) $(UNITS)
+	@$(PYTHON) -m synth.fpga $(if $(SEEDS),--seeds $(SEEDS)) $(if $(PUBLISH),--publish) $(UNITS)
 endif
 
 lecture: ## hardware: numbers in gates, a page: make lecture [WIDTH=12 GROUPS=3,4,5 A=1365 B=2731 X=1.5 Y=-0.3 | EXAMPLE=1: the paper's, clock by clock | PIXEL=64,64 SCENE= ARGS=: its ray in the ray core]
@@ -52,17 +49,15 @@ ifdef EXAMPLE
 else ifdef PIXEL
 	$(call build,build,render)
 	@./render $(SCENE) --unit core --size 128x128 $(ARGS) --trace-pixel $(PIXEL) --trace build/pixel.vcd
-	@$(SETUP) synth
-	@$(PYTHON) -m synth.ray_timeline build/pixel.vcd sim/ray_core.gtkw build/pixel.svg
-	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw; drawn: build/pixel.svg'
+	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw'
 else
 	@$(SETUP) synth
 	@$(PYTHON) -m synth.lecture --width '$(WIDTH)' --groups '$(GROUPS)' --a '$(A)' --b '$(B)' --carry '$(CARRY)' --x '$(X)' --y '$(Y)'
 endif
 
-layout: ## hardware: place, route, time, draw: make layout [TOP=adders | multipliers | cores | unit | MODULE SEEDS=3]
+layout: ## hardware: place, route, time, draw: make layout [TOP=adders | multipliers | cores | unit | MODULE SEEDS=3 | PUBLISH=1]
 	@$(SETUP) layout
 	@$(PYTHON) -m synth.layout --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
 	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
-	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --flow '$(FLOW)' --density '$(DENSITY)' --aspect '$(ASPECT)' --seeds '$(SEEDS)' \
+	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --flow '$(FLOW)' --density '$(DENSITY)' --aspect '$(ASPECT)' --seeds '$(SEEDS)' --publish '$(PUBLISH)' \
 	  --jobs '$(SYNTH_JOBS)'

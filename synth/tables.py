@@ -1,7 +1,12 @@
-"""Tables of a report: Markdown that is aligned in a terminal too, and CSV."""
+"""Tables of a report: Markdown that is aligned in a terminal too, and CSV; and what measured them."""
 
 import csv
+import datetime
 import io
+import pathlib
+import subprocess
+
+RESULTS = pathlib.Path(__file__).resolve().parent / "results"  # what PUBLISH=1 writes
 
 
 def markdown(header: list[str], rows: list[list[object]]) -> str:
@@ -27,3 +32,9 @@ def comma_separated(rows: list[dict], columns: list[str]) -> str:
     writer.writeheader()
     writer.writerows(rows)
     return out.getvalue()
+
+
+def measured(command: str) -> str:
+    """The last line of a page: the command, the commit and the date."""
+    commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=RESULTS, capture_output=True, text=True, check=False).stdout.strip()
+    return f"`{command}` at {commit}, {datetime.date.today().isoformat()}.\n"

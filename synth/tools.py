@@ -22,11 +22,8 @@ TOOLS = {
     "valgrind": ("sudo apt-get install valgrind", ["--version"]),
     "g++": ("sudo apt-get install g++ libmpfr-dev", ["--version"]),
     "z3": ("sudo apt-get install z3", ["--version"]),
-    "dot": ("sudo apt-get install graphviz", ["-V"]),
     "coloquinte": ("pip install -r synth/requirements.txt", None),
     "qrouter": ("sudo apt-get install qrouter", ["-v", "0", "-h"]),
-    "iverilog": ("sudo apt-get install iverilog", ["-V"]),
-    "vvp": ("sudo apt-get install iverilog", ["-V"]),
     "magic": ("sudo apt-get install magic", ["--version"]),
 }
 

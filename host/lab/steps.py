@@ -1,12 +1,10 @@
 """Executes the steps of a target. Completed steps keep their rows, so an interrupted run can be continued."""
 
-import concurrent.futures
 import dataclasses
-import hashlib
+import functools
 import json
 import os
 import pathlib
-import re
 import shlex
 import shutil
 import subprocess
@@ -16,6 +14,7 @@ from collections.abc import Callable
 
 from host.lab import machine, rows as kept
 from host.lab.rows import KEPT, ROOT
+from synth import runner, store
 
 LAB = ROOT / "build" / os.environ.get("RAYGATE_LAB", "lab")  # `make variant` has its own program
 
@@ -33,15 +32,15 @@ class Step:
         return shlex.join([f"build/{LAB.name}", *map(str, self.words)]) if self.words else f"make {target} ONLY={self.part}"
 
 
-def _measure(step: Step, file: pathlib.Path) -> None:
+def _measure(step: Step) -> list[dict]:
     if step.measure:
-        kept.write(file, step.measure())
-        return
-    done = subprocess.run([LAB, "--results", f"{file}.unfinished", *map(str, step.words)], cwd=ROOT,
-                          stdout=sys.stderr, check=False)
-    if done.returncode not in (0, 1):  # 1: the rows report errors
-        raise subprocess.CalledProcessError(done.returncode, [LAB, *step.words])
-    os.replace(f"{file}.unfinished", file)
+        return step.measure()
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "rows.jsonl"
+        done = subprocess.run([LAB, "--results", file, *map(str, step.words)], cwd=ROOT, stdout=sys.stderr, check=False)
+        if done.returncode not in (0, 1):  # 1: the rows report errors
+            raise subprocess.CalledProcessError(done.returncode, [LAB, *step.words])
+        return kept.read(file)
 
 
 def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> list[dict]:
@@ -50,34 +49,30 @@ def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> li
     about = machine.describe(ROOT)
     stamp = {"commit": about["commit"], "machine": f"{about['processor']}, {about['processors']} processors"}
     folder = KEPT / "unfinished" / target
-    folder.mkdir(parents=True, exist_ok=True)
 
-    def file_of(step: Step) -> pathlib.Path:
-        digest = hashlib.sha256(f"{step.command(target)} {step.name} {asked} {stamp}".encode()).hexdigest()
-        return folder / f"{re.sub(r'[^A-Za-z0-9]+', '-', step.name)}-{digest[:10]}.jsonl"
+    def work(step: Step) -> tuple[dict, bool]:
+        wanted = store.key([], step.command(target), step.name, asked, stamp)
 
-    files = [(step, file_of(step)) for step in steps]
-    missing = [(step, file) for step, file in files if not file.exists()]
+        def measure() -> dict:
+            print(f"{step.part}: {step.name}", file=sys.stderr)
+            return {"rows": _measure(step)}
 
-    def measure(i: int) -> None:
-        step, file = missing[i]
-        print(f"[{len(files) - len(missing) + i + 1}/{len(files)}] {step.part}: {step.name}", file=sys.stderr)
-        _measure(step, file)
+        return store.cached(folder / wanted[:16], wanted, measure)
 
-    with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
-        list(pool.map(measure, range(len(missing))))
-    found = [{"command": step.command(target)} | row | {"part": step.part} | stamp
-             for step, file in files for row in kept.read(file)]
-    shutil.rmtree(folder)
-    return [about, *found]
+    results, failures = runner.run_all([runner.Job(step.name, functools.partial(work, step), lambda got: f"{len(got['rows'])} rows")
+                                        for step in steps], at_once)
+    if failures:
+        raise ValueError("\n".join(failures))
+    shutil.rmtree(folder, ignore_errors=True)
+    return [about, *({"command": step.command(target)} | row | {"part": step.part} | stamp
+                     for step, result in zip(steps, results, strict=True) for row in result["rows"])]
 
 
-def render(command: list, *words: object, picture: pathlib.Path | None = None, **how: object) -> dict:
-    """Returns the statistics of ./render, with the cpu engine unless `words` select another. `how` is passed to
-    subprocess.run."""
+def render(command: list, *words: object, picture: pathlib.Path | None = None) -> dict:
+    """Returns the statistics of ./render, with the cpu engine unless `words` select another."""
     engine = () if "--engine" in words else ("--engine", "cpu")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         subprocess.run([*command, *engine, "--quiet", *words, "--output", picture or folder / "picture.exr",
-                        "--stats", folder / "stats.json"], cwd=ROOT, check=True, **how)
+                        "--stats", folder / "stats.json"], cwd=ROOT, check=True)
         return json.loads((folder / "stats.json").read_text())

@@ -9,6 +9,8 @@ from synth.catalogue import Design, Library
 from synth.layout import estimate, lef, netlist, parasitics, place, route
 
 HERE = pathlib.Path(__file__).resolve().parent
+SPARSE = 0.45, 1.3  # density and aspect with which a multiplier's nets all find their way,
+SPARSER = 0.42, 1.3  # and binary32's
 TIDIED = 1000  # cells: so many nets are routed again in seconds
 
 

@@ -68,7 +68,7 @@ class Brought(unittest.TestCase):
         bad = self.file(f"{HEAD}  assign sum_o = a_i\nendmodule\n")
         for words, status, said in (([f"ADDER={bad}"], 2, rf"error: {bad}:6:21: expected ';'\n"),
                                     ([f"UNIT={bad}"], 2, r"error: UNIT=.*: found a file, expected one of ADDER, MULTIPLIER, .*\n"),
-                                    ([f"ADDER={EXERCISES}/carry_skip_adder.sv"], 0, "")):
+                                    ([f"ADDER={EXERCISES}/kogge_stone_adder.sv"], 0, "")):
             told = io.StringIO()
             with contextlib.redirect_stderr(told), unittest.mock.patch.object(sys, "argv", ["brought", *words]):
                 self.assertEqual(brought.main(), status, words)
@@ -103,10 +103,9 @@ class Brought(unittest.TestCase):
         self.assertEqual((right, says), ((a + b + carry) % 128, right ^ 8))
 
     def test_the_exercises(self) -> None:
-        for name in ("carry_skip_adder", "kogge_stone_adder"):
-            rows = self.judged(ADDER=str(EXERCISES / f"{name}.sv"))
-            self.assertGreater(len(rows), 5)
-            self.assertEqual([row["claim"] for row in rows if not row["holds"]], [])
+        rows = self.judged(ADDER=str(EXERCISES / "kogge_stone_adder.sv"))
+        self.assertGreater(len(rows), 5)
+        self.assertEqual([row["claim"] for row in rows if not row["holds"]], [])
         (row,) = self.judged(MULTIPLIER=str(EXERCISES / "truncating_multiplier.sv"))
         self.assertRegex(row["counterexample"], r"^product = a \* b at 5 bits: refuted by a = \d+ .*it says product = 0 \(0x000\); right is")
 
@@ -124,7 +123,3 @@ class Brought(unittest.TestCase):
         self.assertIn("refuted by", self.judged(DIVIDER_ROW=self.file(broken))[-1]["counterexample"])
         rounder = (catalogue.HW / "fp/fp_round.sv").read_text().replace("fp_pkg::RoundNearestEven", "fp_pkg::RoundNearestMaxMagnitude")
         self.assertIn("refuted by", self.judged(ROUNDER=self.file(rounder))[-1]["counterexample"])
-
-
-if __name__ == "__main__":
-    unittest.main()

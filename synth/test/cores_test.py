@@ -63,7 +63,3 @@ class Cores(unittest.TestCase):
             with self.assertRaises(tools.ToolFailed):
                 verilog.write(catalogue.design("exact_unit", DigitWidth=1), out)
             self.assertFalse(out.exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,8 +1,8 @@
-"""What the pages of hw/ are filled with."""
+"""The table of modules, and what is made of the registers' page."""
 
 import unittest
 
-from synth import catalogue, cores, datasheet
+from synth import catalogue, cores, datasheet, registers
 
 
 class Datasheet(unittest.TestCase):
@@ -38,14 +38,6 @@ module m;
         self.assertTrue(ripple)
         self.assertEqual(set(datasheet.SHOWN) - {row.design.name for row in catalogue.report_rows()}, set())
 
-    def test_marks(self):
-        """Old text gives way to the new; what was not measured stays; an unknown mark is refused."""
-        page = cores.HW / "hit_test" / "README.md"
-        self.assertIn("old table\n<!-- end -->", datasheet.filled(page, "<!-- fpga -->\nold table\n<!-- end -->"))
-        self.assertEqual(datasheet.filled(page, "<!-- fpga -->\nold\n<!-- end -->", "new\n"), "<!-- fpga -->\nnew\n<!-- end -->")
-        with self.assertRaises(ValueError):
-            datasheet.filled(page, "<!-- nonsense -->\n<!-- end -->")
-
     def test_every_folder_has_a_page(self):
         """The page of all names each core's page, and each core's page the table of modules."""
         text = (cores.HW / "README.md").read_text()
@@ -55,9 +47,34 @@ module m;
 
     def test_pages_fit_a_screen_or_two(self):
         """A page says what is here, how it fits and how to change it, not what the sources say."""
-        for page in datasheet.pages():
+        for page in cores.HW.glob("**/README.md"):
             self.assertLess(len(page.read_text().splitlines()), 100, page)
 
 
-if __name__ == "__main__":
-    unittest.main()
+class Registers(unittest.TestCase):
+    """hw/ray_core/registers.md. That the made files are up to date: `synth.datasheet --check`."""
+
+    def setUp(self):
+        self.text = registers.PAGE.read_text()
+
+    def test_a_changed_row_changes_what_is_made(self):
+        before = registers.made(self.text)
+        for old, new in (("| 1 | `error_line`", "| 1 | `wrong_line`"), ("`flags` | 3 |", "`flags` | 9 |"),
+                         ("0x0fffffff", "0x0000ffff")):
+            self.assertIn(old, self.text)
+            after = registers.made(self.text.replace(old, new))
+            self.assertTrue(any(after[file] != before[file] for file in before), old)
+
+    def test_what_makes_no_sense_is_refused(self):
+        for old, new in (("| 0x018 |", "| 0x014 |"), ("| 0x018 |", "| 0x01a |"), ("| `base` | idle |", "| `base` | often |"),
+                         ("`flags` | 3 |", "`flags` | 2 |"), ("`flags` | 3 |", "`flag` | 3 |"), ("| idle | 0x0fffffff |", "| idle | |")):
+            self.assertIn(old, self.text)
+            with self.assertRaises(ValueError, msg=new):
+                registers.made(self.text.replace(old, new))
+
+    def test_counters_are_events_in_their_order(self):
+        counters = next(register for register in registers.registers(self.text) if register.name == "counters")
+        package = (cores.HW / "ray_core" / "ray_core_pkg.sv").read_text()
+        self.assertEqual(counters.words, 2 * len(counters.bits))
+        for name, number in list(counters.bits.items())[1:]:
+            self.assertRegex(package, rf"Event{''.join(part.capitalize() for part in name.split('_'))} += 4'd{number - 1}\b")

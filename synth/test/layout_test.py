@@ -252,7 +252,3 @@ class Placement(unittest.TestCase):
         self.assertEqual(set(placed.ports), {name for name, port in nets.ports.items() if port.net == name})
         for x, y in placed.ports.values():
             self.assertTrue(x in (0, placed.width) or y in (0, placed.height))
-
-
-if __name__ == "__main__":
-    unittest.main()

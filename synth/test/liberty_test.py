@@ -114,7 +114,3 @@ class OfUser(unittest.TestCase):
                     self.assertEqual(program.main(), 2)
                 self.assertRegex(error.getvalue(), f"^synth: .*{said}")
                 self.assertEqual(error.getvalue().count("\n"), 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -122,7 +122,3 @@ class Netlists(unittest.TestCase):
         self.assertEqual([name for name in names if name.endswith(".blocks")], [])
         clocked = {f"netlist.{row.design.name}." for row in catalogue.report_rows() if row.design.clock}
         self.assertEqual({how for name, how in names.items() if name.startswith(tuple(clocked))}, {"simulation"})
-
-
-if __name__ == "__main__":
-    unittest.main()

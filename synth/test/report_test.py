@@ -1,4 +1,4 @@
-"""Tables of the report."""
+"""Tables of the report, and what is measured for them."""
 
 import contextlib
 import io
@@ -6,8 +6,7 @@ import time
 import unittest
 from unittest import mock
 
-from synth import __main__ as main
-from synth import catalogue, mapping, measure, prove, report, tools
+from synth import __main__ as main, catalogue, mapping, measure, prove, report, tables, tools
 
 
 class ClockTable(unittest.TestCase):
@@ -70,9 +69,10 @@ class Measured(unittest.TestCase):
 
         with (mock.patch.object(mapping, "synthesise", side_effect=measured), contextlib.redirect_stdout(printed),
               mock.patch.object(catalogue.Library, "structural", True), contextlib.redirect_stderr(io.StringIO())):
-            records, failures = report.measured_tables(rows, measure.Targets(("osu035",), 1))
+            records, failures, text = report.measured_tables(rows, measure.Targets(("osu035",), 1))
         self.assertEqual((len(records), failures, set(waited)), (3, ["prefix osu035 fast: no"], {True}))
         cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in printed.getvalue().splitlines()]
+        self.assertEqual(text + "\n", printed.getvalue())
         self.assertEqual(cells, [["adders, OSU 0.35 um: um2 / ns", "cells", "fast"], cells[1], ["ripple", "1,000 / 2.50", "1,000 / 2.50"],
                                  ["prefix", "1,000 / 2.50", "-"], []])
 
@@ -95,5 +95,14 @@ class Targets(unittest.TestCase):
                 measure.available(["x", "ecp5"])
 
 
-if __name__ == "__main__":
-    unittest.main()
+class Tables(unittest.TestCase):
+    """tables' two forms."""
+
+    def test_markdown(self):
+        """Columns line up, numbers to the right."""
+        self.assertEqual(tables.markdown(["what", "ns"], [["a", "9.5"], ["b", "10.5"]]),
+                         "| what |   ns |\n|------|-----:|\n| a    |  9.5 |\n| b    | 10.5 |\n")
+
+    def test_comma_separated(self):
+        """What a row has not is left empty; what is not asked for is left out."""
+        self.assertEqual(tables.comma_separated([{"a": 1, "c": 2}], ["a", "b"]), "a,b\n1,\n")

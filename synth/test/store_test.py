@@ -71,7 +71,3 @@ class Cached(unittest.TestCase):
                     with self.assertRaisesRegex(tools.ToolFailed, "out of time"):
                         store.proven(place / checkout, "k3", give_up)
         self.assertEqual(runs, ["proven", "refuted", "gave up", "gave up"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -10,7 +10,6 @@ import sys
 from host.lab.rows import ROOT
 from synth import brought, catalogue, measure as synth, tools
 from synth.layout import flow as placement
-from synth.layout.jobs import SPARSE
 
 LIBRARY = "osu035"  # of the paper's time
 FLOWS = ("parts", "small")  # the first available one is used
@@ -37,7 +36,7 @@ def _measured(folder: str, rows: dict, workers: int, wires: bool) -> list[dict]:
     with brought.in_place(pathlib.Path(folder)) if folder else contextlib.nullcontext():
         made, failures = synth.measure(list(rows.values()), synth.Targets((LIBRARY,), workers))
         for record in made if wires else ():
-            placed = placement.Job(rows[record["design"]].design, catalogue.library(LIBRARY), FLOWS[0], *SPARSE, routed=False)
+            placed = placement.Job(rows[record["design"]].design, catalogue.library(LIBRARY), FLOWS[0], *placement.SPARSE, routed=False)
             record["wired_ns"] = placement.make(placed)[0]["guess_ns"]
     print("\n".join(failures), file=sys.stderr)
     return [{**record, "brought": folder} for record in made]

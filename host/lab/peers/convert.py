@@ -14,7 +14,6 @@ from host.lab.peers.scene import Material, Mesh, Scene, colour
 
 # Mitsuba's samplers; the first is its default.
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
-LIGHT_TRACER = "ptracer"  # Mitsuba's integrator of that name, in place of a sampler; uses the first sampler
 # Russian roulette begins after this number of surfaces; DEPTH limits paths. Both are those of raygate.
 SURE_SURFACES = 3
 DEPTH = 64
@@ -110,9 +109,7 @@ def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
 def write_mitsuba(scene: Scene, folder: pathlib.Path) -> None:
     """Writes mitsuba.json, a PLY file for each mesh, and a camera for each sampler."""
     everything = numpy.concatenate([mesh.positions for mesh in scene.meshes])
-    depths = {"rr_depth": SURE_SURFACES + 1, "max_depth": DEPTH + 2}
-    found: dict = {"type": "scene", "integrator": {"type": "path"} | depths,
-                   LIGHT_TRACER: {"type": LIGHT_TRACER} | depths}
+    found: dict = {"type": "scene", "integrator": {"type": "path", "rr_depth": SURE_SURFACES + 1, "max_depth": DEPTH + 2}}
     for sampler in SAMPLERS:
         found[f"camera_{sampler}"] = {
             "type": "perspective", "fov_axis": "y", "fov": scene.camera["fov"],

@@ -108,8 +108,6 @@ class Measurement:
             mitsuba = Mitsuba(self.folder, threads, variant)
             found += [(mitsuba, sampler, count) for count in counts for sampler in convert.SAMPLERS
                       if count == COUNT and one_thread or sampler in BEST]
-            if one_thread and variant == VARIANTS[-1]:
-                found.append((mitsuba, convert.LIGHT_TRACER, COUNT))
         return found
 
     def rows(self, threads: int, repeats: int) -> list[dict]:

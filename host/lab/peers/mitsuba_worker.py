@@ -15,8 +15,6 @@ import drjit
 import mitsuba
 import numpy
 
-from host.lab.peers.convert import LIGHT_TRACER, SAMPLERS
-
 # This version of Debian 12's libLLVM works; 14 is too old for Dr.Jit, and 15 fails on some kernels.
 LLVM = "libLLVM.so.19*"
 
@@ -56,7 +54,6 @@ class Worker:
     def _scene(self, width: int, height: int) -> object:
         if (width, height) not in self._scenes:
             asked = json.loads(self._text)
-            self._light_tracer = mitsuba.load_dict(asked.pop(LIGHT_TRACER))  # a scene has only one integrator
             for part in asked.values():
                 if isinstance(part, dict) and "film" in part:
                     part["film"] |= {"width": width, "height": height}
@@ -67,11 +64,9 @@ class Worker:
         """Renders one image."""
         scene = self._scene(width, height)
         names = [sensor.id() for sensor in scene.sensors()]
-        by_light = sampler == LIGHT_TRACER
-        sensor = scene.sensors()[names.index(f"camera_{SAMPLERS[0] if by_light else sampler}")]
-        integrator = self._light_tracer if by_light else scene.integrator()
+        sensor = scene.sensors()[names.index(f"camera_{sampler}")]
         wall, busy = time.perf_counter(), time.process_time()
-        image = mitsuba.render(scene, sensor=sensor, integrator=integrator, spp=samples, seed=seed)
+        image = mitsuba.render(scene, sensor=sensor, spp=samples, seed=seed)
         drjit.eval(image)
         drjit.sync_thread()
         answer = {"seconds": time.perf_counter() - wall, "processor_seconds": time.process_time() - busy,

@@ -5,11 +5,9 @@
 #include <cmath>
 
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/timing.h"
 #include "host/variants/variant_hit_tester.h"
-#include "host/variants/variant_units.h"
 
 namespace raygate::lab {
 namespace {
@@ -18,31 +16,15 @@ struct Counts {
   std::uint64_t tests = 0, doubts = 0, wrong_hits = 0, wrong_misses = 0;
 };
 
-/// Forwards batches to a tester, and audits each of their tests.
+/// Forwards batches to a tester, and audits each of their tests: sends each record in its own
+/// burst, too, as the nearest hit alone is reported of several.
 class AuditTester : public HitTester {
  public:
-  AuditTester(const Bvh& bvh, const glm::vec3& origin, const Variant& variant, HitTester& tester,
-              Counts& counts)
-      : bvh_(bvh),
-        origin_(origin),
-        variant_(variant),
-        unit_(variant.math),
-        tester_(tester),
-        counts_(counts) {
-    host_.rounding = Rounding::kNearestEven;
-  }
+  AuditTester(const Bvh& bvh, const glm::vec3& origin, HitTester& tester, Counts& counts)
+      : bvh_(bvh), origin_(origin), tester_(tester), counts_(counts) {}
 
   void run(std::span<const RayBundle> batch, HitResults& results) override {
     tester_.run(batch, results);
-    if (!variant_.brought.empty()) return judge_hardware(batch);
-    for (const RayBundle& bundle : batch) judge(bundle);
-  }
-
-  [[nodiscard]] HitCounters counters() const override { return tester_.counters(); }
-
- private:
-  /// Audits user-supplied modules, which have no model, by sending each record in its own burst.
-  void judge_hardware(std::span<const RayBundle> batch) {
     std::vector<RayBundle> alone;
     for (const RayBundle& bundle : batch) {
       for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
@@ -60,52 +42,25 @@ class AuditTester : public HitTester {
     for (std::size_t i = 0; i < alone.size(); ++i) {
       for (LaneMask lanes = alone[i].lanes; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
-        const UnitVerdict verdict = (doubts[i] >> lane & 1) != 0 ? UnitVerdict::kDoubt
-                                    : (hits[i] >> lane & 1) != 0 ? UnitVerdict::kHit
-                                                                 : UnitVerdict::kMiss;
-        count(verdict, *alone[i].records, alone[i].lane_direction(lane), alone[i].first_tag);
+        ++counts_.tests;
+        if ((doubts[i] >> lane & 1) != 0) {
+          ++counts_.doubts;
+          continue;
+        }
+        const bool hit = (hits[i] >> lane & 1) != 0;
+        const bool truth = hits_triangle({origin_, alone[i].lane_direction(lane)},
+                                         bvh_.corners_of(alone[i].first_tag));
+        counts_.wrong_hits += hit && !truth;
+        counts_.wrong_misses += !hit && truth;
       }
     }
   }
 
-  void judge(const RayBundle& bundle) {
-    // With the serial unit, software decides.
-    const bool serial = variant_.unit == Variant::Unit::kSerial;
-    for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
-      const PolygonRecord record = variant_record(variant_, bundle.records[i]);
-      for (LaneMask lanes = bundle.lanes; lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        const glm::vec3 direction = bundle.lane_direction(lane);
-        const UnitVerdict said =
-            serial ? ReferenceBurstUnit().edges_verdict(bundle.records[i], direction)
-                   : unit_.verdict(record, host_.read(direction));
-        count(said, record, direction, bundle.first_tag + i);
-      }
-    }
-  }
+  [[nodiscard]] HitCounters counters() const override { return tester_.counters(); }
 
-  void count(UnitVerdict said, const PolygonRecord& record, const glm::vec3& direction,
-             std::uint32_t primitive) {
-    ++counts_.tests;
-    bool hit = said == UnitVerdict::kHit;
-    if (said == UnitVerdict::kDoubt) {
-      if (variant_.doubts) {
-        ++counts_.doubts;
-        return;
-      }
-      const float t = unit_.distance(record, host_.read(direction)).t;
-      hit = t > 0.0f && !std::isinf(t);
-    }
-    const bool truth = hits_triangle({origin_, direction}, bvh_.corners_of(primitive));
-    counts_.wrong_hits += hit && !truth;
-    counts_.wrong_misses += !hit && truth;
-  }
-
+ private:
   const Bvh& bvh_;
   glm::vec3 origin_;
-  const Variant& variant_;
-  VariantBurstUnit unit_;
-  Arithmetic host_ = variant_.math;  // converts rays to the format
   HitTester& tester_;
   Counts& counts_;
 };
@@ -148,7 +103,7 @@ Row audit_decisions(const Bvh& bvh, const Camera& camera, int width, int height,
   const glm::vec3 eye = camera.eye();
   const std::vector<Ray> rays = camera_rays(camera, width, height);
   std::vector<NearestHit> seen(rays.size()), exact(rays.size());
-  UnitIntersector(bvh, std::make_shared<AuditTester>(bvh, eye, variant, tester, counts))
+  UnitIntersector(bvh, std::make_shared<AuditTester>(bvh, eye, tester, counts))
       .intersect(rays, {.common_origin = true}, seen);
   CpuIntersector(bvh).intersect(rays, {.common_origin = true}, exact);
   std::vector<double> t_errors, point_errors;

@@ -18,8 +18,10 @@ class Embree3Queries {
     context_.flags =
         coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
-  void intersect(RTCScene scene, RTCRayHit* query) { rtcIntersect1(scene, &context_, query); }
-  void occluded(RTCScene scene, RTCRay* ray) { rtcOccluded1(scene, &context_, ray); }
+  void intersect(const int*, RTCScene scene, RTCRayHit* query) {
+    rtcIntersect1(scene, &context_, query);
+  }
+  void occluded(const int*, RTCScene scene, RTCRay* ray) { rtcOccluded1(scene, &context_, ray); }
   void intersect(const int* valid, RTCScene scene, RTCRayHit8* query) {
     rtcIntersect8(valid, scene, &context_, query);
   }

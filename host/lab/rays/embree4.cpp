@@ -45,8 +45,10 @@ class Embree4Queries {
     library.load(occluded16_, "rtcOccluded16");
   }
   void set_coherent(bool coherent) { arguments_.flags = coherent ? 1u << 16 : 0; }
-  void intersect(RTCScene scene, RTCRayHit* query) { intersect1_(scene, query, &arguments_); }
-  void occluded(RTCScene scene, RTCRay* ray) { occluded1_(scene, ray, &arguments_); }
+  void intersect(const int*, RTCScene scene, RTCRayHit* query) {
+    intersect1_(scene, query, &arguments_);
+  }
+  void occluded(const int*, RTCScene scene, RTCRay* ray) { occluded1_(scene, ray, &arguments_); }
   void intersect(const int* valid, RTCScene scene, RTCRayHit8* query) {
     intersect8_(valid, scene, query, &arguments_);
   }

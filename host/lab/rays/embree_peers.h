@@ -64,9 +64,14 @@ inline std::shared_ptr<RTCSceneTy> embree_scene(const EmbreeFunctions& embree,
   return loaded;
 }
 
-/// The rays and hits of a packet.
+/// The rays and hits of a packet; of one ray, they are scalars.
 template <std::size_t kWidth>
 struct Packet;
+template <>
+struct Packet<1> {
+  using Rays = RTCRay;
+  using Hits = RTCRayHit;
+};
 template <>
 struct Packet<8> {
   using Rays = RTCRay8;
@@ -84,6 +89,48 @@ struct RoomForHit : RayHit {
   std::uint32_t more[kWords];
 };
 
+/// Return a lane of a field.
+template <class Word>
+Word& in_lane(Word& field, std::size_t) {
+  return field;
+}
+template <class Word, std::size_t kWidth>
+Word& in_lane(Word (&field)[kWidth], std::size_t lane) {
+  return field[lane];
+}
+
+/// Sets a lane of `rays` to ray `number` of the set.
+template <class Rays>
+void set_ray(Rays& rays, std::size_t lane, const RaySet& set, std::size_t number) {
+  const auto& [origin, direction] = set.rays[number];
+  in_lane(rays.org_x, lane) = origin.x, in_lane(rays.org_y, lane) = origin.y;
+  in_lane(rays.org_z, lane) = origin.z;
+  in_lane(rays.dir_x, lane) = direction.x, in_lane(rays.dir_y, lane) = direction.y;
+  in_lane(rays.dir_z, lane) = direction.z;
+  in_lane(rays.tfar, lane) =
+      set.t_max.empty() ? std::numeric_limits<float>::infinity() : set.t_max[number];
+  in_lane(rays.mask, lane) = ~0u;
+}
+
+template <class Hits>
+void set_no_hit(Hits& hits) {
+  std::memset(&hits.geomID, 0xFF, sizeof hits.geomID);
+  std::memset(&hits.primID, 0xFF, sizeof hits.primID);
+  std::memset(&hits.instID, 0xFF, sizeof hits.instID);
+}
+
+/// Stores the result of a lane. Embree sets tfar of a blocked ray to -infinity.
+template <class RayHit>
+void store(const RayHit& query, std::size_t lane, bool any_hit, Found& found, std::size_t ray) {
+  const float t = in_lane(query.ray.tfar, lane);
+  if (any_hit) {
+    found.triangle[ray] = t < 0.0f ? Found::kSome : Found::kNone;
+  } else {
+    found.triangle[ray] = in_lane(query.hit.primID, lane);
+    found.t[ray] = t;
+  }
+}
+
 /// `Queries` calls Embree: set_coherent(), intersect() and occluded() for one ray, 8 or 16.
 template <class Queries>
 class EmbreePeer : public Peer {
@@ -94,9 +141,6 @@ class EmbreePeer : public Peer {
 
  protected:
   [[nodiscard]] RTCScene scene() const { return scene_.get(); }
-  static float limit(const RaySet& set, std::size_t i) {
-    return set.t_max.empty() ? std::numeric_limits<float>::infinity() : set.t_max[i];
-  }
 
   Queries queries_;
   bool any_hit_ = false;
@@ -106,52 +150,8 @@ class EmbreePeer : public Peer {
   std::shared_ptr<RTCSceneTy> scene_;
 };
 
-inline RTCRay embree_ray(const Ray& ray, float limit) {
-  RTCRay query{};
-  query.org_x = ray.origin.x, query.org_y = ray.origin.y, query.org_z = ray.origin.z;
-  query.dir_x = ray.direction.x, query.dir_y = ray.direction.y, query.dir_z = ray.direction.z;
-  query.tfar = limit;
-  query.mask = ~0u;
-  return query;
-}
-
-/// Traces rays one by one, by rtcIntersect1 and rtcOccluded1.
-template <class Queries>
-class SingleRays : public EmbreePeer<Queries> {
- public:
-  using EmbreePeer<Queries>::EmbreePeer;
-
-  void prepare(const RaySet& set) override {
-    this->any_hit_ = set.any_hit;
-    rays_.clear();
-    for (std::size_t i = 0; i < set.rays.size(); ++i) {
-      rays_.push_back(embree_ray(set.rays[i], this->limit(set, i)));
-    }
-  }
-
-  void run(Found& found) override {
-    for (std::size_t i = 0; i < rays_.size(); ++i) {
-      if (this->any_hit_) {
-        RTCRay ray = rays_[i];
-        this->queries_.occluded(this->scene(), &ray);
-        found.triangle[i] = ray.tfar < 0.0f ? Found::kSome : Found::kNone;
-      } else {
-        RoomForHit<RTCRayHit, 4> query;
-        query.ray = rays_[i];
-        query.hit.geomID = query.hit.primID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        this->queries_.intersect(this->scene(), &query);
-        found.triangle[i] = query.hit.primID;
-        found.t[i] = query.ray.tfar;
-      }
-    }
-  }
-
- private:
-  std::vector<RTCRay> rays_;
-};
-
-/// Traces packets of rays, by rtcIntersect8 and the like, with the coherent flag for a common
-/// origin.
+/// Traces rays one by one or in packets, by rtcIntersect1, rtcIntersect8 and the like; packets with
+/// the coherent flag for a common origin.
 template <std::size_t kWidth, class Queries>
 class RayPackets : public EmbreePeer<Queries> {
  public:
@@ -159,17 +159,11 @@ class RayPackets : public EmbreePeer<Queries> {
 
   void prepare(const RaySet& set) override {
     this->any_hit_ = set.any_hit;
-    this->queries_.set_coherent(set.common_origin);
+    this->queries_.set_coherent(kWidth > 1 && set.common_origin);
     count_ = set.rays.size();
     rays_.assign((count_ + kWidth - 1) / kWidth, {});
     for (std::size_t i = 0; i < rays_.size() * kWidth; ++i) {
-      const std::size_t from = std::min(i, count_ - 1), lane = i % kWidth;
-      const auto& [origin, direction] = set.rays[from];
-      auto& ray = rays_[i / kWidth];
-      ray.org_x[lane] = origin.x, ray.org_y[lane] = origin.y, ray.org_z[lane] = origin.z;
-      ray.dir_x[lane] = direction.x, ray.dir_y[lane] = direction.y, ray.dir_z[lane] = direction.z;
-      ray.tfar[lane] = this->limit(set, from);
-      ray.mask[lane] = ~0u;
+      set_ray(rays_[i / kWidth], i % kWidth, set, std::min(i, count_ - 1));
     }
   }
 
@@ -178,21 +172,16 @@ class RayPackets : public EmbreePeer<Queries> {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       const std::size_t first = i * kWidth, lanes = std::min(kWidth, count_ - first);
       for (std::size_t lane = 0; lane < kWidth; ++lane) valid[lane] = lane < lanes ? -1 : 0;
+      RoomForHit<typename Packet<kWidth>::Hits, kWidth> query;
+      query.ray = rays_[i];
       if (this->any_hit_) {
-        auto rays = rays_[i];
-        this->queries_.occluded(valid, this->scene(), &rays);
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-          found.triangle[first + lane] = rays.tfar[lane] < 0.0f ? Found::kSome : Found::kNone;
-        }
+        this->queries_.occluded(valid, this->scene(), &query.ray);
       } else {
-        RoomForHit<typename Packet<kWidth>::Hits, kWidth> query;
-        query.ray = rays_[i];
-        std::memset(query.hit.geomID, 0xFF, sizeof query.hit.geomID);
-        std::memset(query.hit.primID, 0xFF, sizeof query.hit.primID);
-        std::memset(query.hit.instID, 0xFF, sizeof query.hit.instID);
+        set_no_hit(query.hit);
         this->queries_.intersect(valid, this->scene(), &query);
-        std::memcpy(&found.triangle[first], query.hit.primID, lanes * sizeof(std::uint32_t));
-        std::memcpy(&found.t[first], query.ray.tfar, lanes * sizeof(float));
+      }
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        store(query, lane, this->any_hit_, found, first + lane);
       }
     }
   }
@@ -213,9 +202,8 @@ class RayStreams : public EmbreePeer<Queries> {
     this->queries_.set_coherent(set.common_origin);
     queries_of_rays_.assign(set.rays.size(), {});
     for (std::size_t i = 0; i < queries_of_rays_.size(); ++i) {
-      RTCRayHit& query = queries_of_rays_[i];
-      query.ray = embree_ray(set.rays[i], this->limit(set, i));
-      query.hit.geomID = query.hit.primID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      set_ray(queries_of_rays_[i].ray, 0, set, i);
+      set_no_hit(queries_of_rays_[i].hit);
     }
   }
 
@@ -226,14 +214,7 @@ class RayStreams : public EmbreePeer<Queries> {
       std::copy_n(&queries_of_rays_[first], count, stream);
       this->queries_.trace_stream(this->scene(), stream, static_cast<unsigned>(count),
                                   this->any_hit_);
-      for (std::size_t i = 0; i < count; ++i) {
-        if (this->any_hit_) {
-          found.triangle[first + i] = stream[i].ray.tfar < 0.0f ? Found::kSome : Found::kNone;
-        } else {
-          found.triangle[first + i] = stream[i].hit.primID;
-          found.t[first + i] = stream[i].ray.tfar;
-        }
-      }
+      for (std::size_t i = 0; i < count; ++i) store(stream[i], 0, this->any_hit_, found, first + i);
     }
   }
 
@@ -260,7 +241,7 @@ std::vector<std::unique_ptr<Peer>> make_embree_peers(const std::string& name,
       peers.push_back(
           std::make_unique<Kind>(name + " " + mode + (robust ? " robust" : ""), queries, loaded));
     };
-    add("1", std::type_identity<SingleRays<Queries>>());
+    add("1", std::type_identity<RayPackets<1, Queries>>());
     add("8", std::type_identity<RayPackets<8, Queries>>());
     add("16", std::type_identity<RayPackets<16, Queries>>());
     if constexpr (requires(Queries q, RTCRayHit * rays) { q.trace_stream({}, rays, 1u, true); }) {

@@ -1,12 +1,13 @@
 """Generates reports from rows and a Jinja2 template: a Markdown page with plots and long tables."""
 
+import csv
 import pathlib
 import re
 
 import jinja2
-import pandas
 
 from host.lab.rows import of, scene_name
+from synth import tables
 
 # A table column, "HEAD = EXPRESSION :FORMAT". The default expression is the row's value named by HEAD; without a
 # format, cells are text.
@@ -19,11 +20,11 @@ def number(value: object, form: str, dash: str = "-") -> str:
     """Returns the text of a cell: strings unchanged, numbers in format `form`, `dash` for missing values."""
     if isinstance(value, str):
         return value
-    return dash if value is None or pandas.isna(value) else format(value, form)
+    return dash if value is None or value != value else format(value, form)
 
 
-def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, comma: str) -> tuple[list[str], list[str], list[list[str]]]:
-    """Returns heads, formats, and the cells of each row. `dash` replaces missing values; `comma` separates thousands.
+def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, comma: str) -> tuple[list[str], list[list[str]]]:
+    """Returns heads, and the cells of each row. `dash` replaces missing values; `comma` separates thousands.
 
     Expressions can use the row's values, `row`, and all names of templates.
     """
@@ -37,7 +38,7 @@ def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, 
         except (KeyError, TypeError, ZeroDivisionError, jinja2.UndefinedError):  # the row lacks a value
             return dash
 
-    return ([part["head"] for part in parts], forms,
+    return ([part["head"] for part in parts],
             [[cell(value, row, form) for value, form in zip(values, forms, strict=True)] for row in rows])
 
 
@@ -45,15 +46,15 @@ def table(rows: list[dict], *columns: str | list[str]) -> str:
     """Returns a Markdown table."""
     if not rows:
         return "(none)\n"
-    heads, forms, cells = cells_of(rows, columns, "-", ",")
-    return pandas.DataFrame(cells).to_markdown(
-        index=False, headers=heads, disable_numparse=True, colalign=["right" if form else "left" for form in forms]) + "\n"
+    heads, cells = cells_of(rows, columns, "-", ",")
+    return tables.markdown(heads, cells)
 
 
 def save(file: pathlib.Path, rows: list[dict], *columns: str | list[str]) -> str:
     """Writes a table that is too long for the page as a CSV file, and returns a link to it."""
-    heads, _, cells = cells_of(rows, columns, "", "")
-    pandas.DataFrame(cells, columns=heads).to_csv(file, index=False)
+    heads, cells = cells_of(rows, columns, "", "")
+    with file.open("w", newline="") as out:
+        csv.writer(out, lineterminator="\n").writerows([heads, *cells])
     return f"[{file.name}]({file.name})"
 
 

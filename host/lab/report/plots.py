@@ -5,7 +5,6 @@ import math
 import pathlib
 
 import numpy
-from matplotlib import colors
 from PIL import Image
 
 from synth.drawing import plt
@@ -65,24 +64,6 @@ def gallery(pictures: list[tuple[str, pathlib.Path]], file: pathlib.Path, column
         axes.imshow(plt.imread(picture), interpolation="nearest")
         axes.set_title(title, fontsize=8)
         axes.set_axis_off()
-    return save(figure, file)
-
-
-def heat_map(values: list[list[float]], rows: list[str], columns: list[str], title: str,
-           file: pathlib.Path) -> pathlib.Path:
-    """Draws a heat map of fractions from 1e-6 to 1; white for missing values."""
-    figure, axes = plt.subplots(figsize=(12, 0.4 * len(rows) + 2.5), layout="constrained")
-    palette = plt.get_cmap("YlOrRd").with_extremes(bad="white")
-    image = axes.imshow([[share or math.nan for share in row] for row in values], aspect="auto",
-                        cmap=palette, norm=colors.LogNorm(1e-6, 1))
-    for y, row in enumerate(values):
-        for x, share in enumerate(row):
-            axes.text(x, y, f"{100 * share:.2g}" if share else "0", ha="center", va="center",
-                      fontsize=7, color="white" if share > 0.1 else "black")
-    axes.set_xticks(range(len(columns)), columns, rotation=60, ha="right")
-    axes.set_yticks(range(len(rows)), rows)
-    axes.set_title(title)
-    figure.colorbar(image, label="share of tests")
     return save(figure, file)
 
 

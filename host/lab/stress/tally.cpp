@@ -50,23 +50,24 @@ void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& dir
                 bool bounded, Tally& tally) {
   if (!ordinary(truth.t)) return;
   if (const auto error = off(answer.t, truth.t)) {
-    tally.t_ulp.add(error->ulps);
-    tally.t_relative.add(error->relative);
+    tally.t_ulp = std::max(tally.t_ulp, error->ulps);
     if (bounded && !answer.doubt) {
       tally.t_of_bound = std::max(tally.t_of_bound, error->relative / bound_of_t(truth.sine));
     }
   }
   if (const auto error = off(answer.point, direction, truth.t)) {
-    tally.point_ulp.add(error->ulps);
+    tally.point_ulp = std::max(tally.point_ulp, error->ulps);
     tally.point_of_said = std::max(tally.point_of_said, error->relative / answer.point_error);
     if (bounded && !answer.doubt) {
       tally.point_of_bound =
           std::max(tally.point_of_bound, error->relative / bound_of_point(truth.sine));
     }
   }
-  if (const auto error = off(answer.delivered.t, truth.t)) tally.delivered_t_ulp.add(error->ulps);
+  if (const auto error = off(answer.delivered.t, truth.t)) {
+    tally.delivered_t_ulp = std::max(tally.delivered_t_ulp, error->ulps);
+  }
   if (const auto error = off(answer.delivered.point, direction, truth.t)) {
-    tally.delivered_point_ulp.add(error->ulps);
+    tally.delivered_point_ulp = std::max(tally.delivered_point_ulp, error->ulps);
   }
 }
 
@@ -74,14 +75,11 @@ void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& dir
 
 bool Tally::spotless() const {
   return wrong_decisions(true) + escapes + double_hits == 0 && t_of_bound <= 1.0 &&
-         point_of_bound <= 1.0 && point_of_said <= 1.0 && delivered_t_ulp.max() <= kDeliveredUlp &&
-         delivered_point_ulp.max() <= kDeliveredUlp;
+         point_of_bound <= 1.0 && point_of_said <= 1.0 && delivered_t_ulp <= kDeliveredUlp &&
+         delivered_point_ulp <= kDeliveredUlp;
 }
 
 Row Tally::row() const {
-  const auto binned = [](const Errors& errors) -> Row {
-    return {{"max", errors.max()}, {"bins", errors.bins()}};
-  };
   Row cases = Row::array();
   for (const Case& failure : failures) cases.push_back(to_text(failure));
   return {{"tests", tests},
@@ -101,11 +99,10 @@ Row Tally::row() const {
           {"t_of_bound", t_of_bound},
           {"point_of_bound", point_of_bound},
           {"point_of_said", point_of_said},
-          {"t_ulp", binned(t_ulp)},
-          {"t_relative", binned(t_relative)},
-          {"point_ulp", binned(point_ulp)},
-          {"delivered_t_ulp", binned(delivered_t_ulp)},
-          {"delivered_point_ulp", binned(delivered_point_ulp)},
+          {"t_ulp", t_ulp},
+          {"point_ulp", point_ulp},
+          {"delivered_t_ulp", delivered_t_ulp},
+          {"delivered_point_ulp", delivered_point_ulp},
           {"failures", cases}};
 }
 

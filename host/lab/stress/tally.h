@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "host/lab/results.h"
-#include "host/lab/stress/errors.h"
 #include "host/lab/stress/oracle.h"
 #include "host/lab/stress/shot.h"
 #include "host/lab/stress/subjects.h"
@@ -28,10 +27,10 @@ struct Tally {
   std::uint64_t orders = 0;              ///< rays for which the subject returned all hits in order
   std::uint64_t wrong_order = 0;         ///< rays among `orders` with a wrong order or wrong hits
   std::uint64_t hits = 0, doubts = 0;
-  /// Errors of correct hits: of t, and the worst coordinate of P, in ulps; of t, relative.
-  Errors t_ulp, point_ulp, t_relative;
-  /// Errors of the hits that the host delivers.
-  Errors delivered_t_ulp, delivered_point_ulp;
+  /// Largest errors of correct hits, in ulps: of t, and of any coordinate of P.
+  double t_ulp = 0.0, point_ulp = 0.0;
+  /// Largest errors of the hits that the host delivers.
+  double delivered_t_ulp = 0.0, delivered_point_ulp = 0.0;
   /// Largest errors of sure hits, relative to the bounds of errors.h for binary32.
   double t_of_bound = 0.0, point_of_bound = 0.0;
   /// Largest error of P, relative to the reported bound (NearestHit::point_error).
@@ -44,7 +43,7 @@ struct Tally {
   }
   /// Returns whether an exact subject passes: no wrong decision, and errors within proven bounds.
   [[nodiscard]] bool spotless() const;
-  /// Returns a column for each member; errors as lists of [end of a bin, errors in it].
+  /// Returns a column for each member.
   [[nodiscard]] Row row() const;
 };
 

@@ -31,7 +31,3 @@ class CoreReport(unittest.TestCase):
             ["a", "camera", "0.10", "5.00", "20.00", "0.25"],
             ["a", "path", "4.00", "5.00", "25.0", "0.25", "2.00", "1.25"],
             ["a", "camera", "6.00", "3.00", "1.5"]])
-
-
-if __name__ == "__main__":
-    unittest.main()

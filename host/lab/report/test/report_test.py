@@ -1,13 +1,12 @@
 """Documents, costs from synthesis, quantiles, and what is derived from rows."""
 
-import math
 import pathlib
 import tempfile
 import unittest
 
 from host.lab.bench import costs
 from host.lab.report import document, plots
-from host.lab.targets import bench, speed, stress
+from host.lab.targets import bench, speed
 
 VARIANT = {"table": "variants", "variant": "binary32", "unit": "serial", "exponent_bits": 8,
            "digits": 24, "rounding": "nearest-even", "flush": False, "quotient_digits": 0, "fused": False,
@@ -47,13 +46,6 @@ class Rows(unittest.TestCase):
         self.assertEqual((found["fast"], found["fast_mode"]), ("0.50 ± 0.05", "Embree 4 16"))
         self.assertEqual((found["robust"], found["robust_mode"]), ("1.20 ± 0.12", "Embree 1"))
 
-    def test_quantiles_of_bins_of_several_runs(self):
-        parts = [{"max": 3.0, "bins": [[1.0, 60], [4.0, 38]]}, {"max": 7.0, "bins": [[8.0, 2]]}]
-        self.assertEqual(stress.summary(parts), {"count": 100, "median": 1.0, "p99": 7.0, "max": 7.0})
-        self.assertEqual(stress.summary([{"max": 0, "bins": []}])["median"], None)
-        endless = stress.summary([{"max": None, "bins": [[2.0**64 * 65 / 64, 1]]}])
-        self.assertEqual(endless["median"], math.inf)
-
 
 class Plots(unittest.TestCase):
     def test_front(self):
@@ -89,7 +81,3 @@ class Frames(unittest.TestCase):
         self.assertFalse(frame["clocks_modelled"])
         self.assertAlmostEqual(frame["frame_ms"], 0.14)
         self.assertAlmostEqual(frame["area_time"], 7.0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -70,7 +70,3 @@ class Steps(unittest.TestCase):
         self.assertFalse((self.kept / "rows.jsonl").exists())
         rows.write(self.kept / "rows.jsonl", [{"a": 1}])
         self.assertEqual(rows.read(self.kept / "rows.jsonl"), [{"a": 1}])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -80,7 +80,3 @@ class Figures(unittest.TestCase):
         lines = {line["figure"]: (line["usual"], line["mine"], line["ratio"]) for line in variant.figures(usual, mine)}
         self.assertEqual(lines, {"area, um2 in OSU 0.35 um": ("2,000", "500", 0.25), "wrong tests a million": ("0.0", "12.0", None),
                                  "wrong rays": ("0", "7", None), "P, ulp: median": ("0.5", "64", 128.0)})
-
-
-if __name__ == "__main__":
-    unittest.main()

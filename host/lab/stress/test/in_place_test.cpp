@@ -43,18 +43,6 @@ class InPlace : public testing::Test {
   std::vector<Truth> truths_;
 };
 
-TEST_F(InPlace, SearchesAreSpotless) {
-  for (const SubjectKind& kind : cpu_subjects()) {
-    EXPECT_TRUE(kind.exact);
-    Answers answers;
-    kind.make()->run(shots_, answers);
-    const Tally tally = judge(answers);
-    EXPECT_TRUE(tally.spotless()) << kind.name;
-    EXPECT_GT(tally.doubts, 0u) << kind.name;
-    EXPECT_GT(tally.point_of_bound, 0.0) << kind.name;
-  }
-}
-
 // Triangles that fill their boxes, in planes across an axis, equal or a few floats apart: a search
 // that leaves boxes out a little too soon does not find the nearest.
 TEST(InPlaceStacks, TheNearestIsNotCulled) {
