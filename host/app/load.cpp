@@ -36,7 +36,7 @@ Scene load(const SceneFile& file, const LoadOptions& options,
   require_numbers(scene, file.file);
   if (!environment) return scene;
   const std::optional<glm::dvec3>& known = up ? up : file.up;
-  load_environment(*environment, known ? *known : guess_up_axis(scene), scene);
+  load_environment(*environment, known ? *known : usual_up_axis(scene), scene);
   return scene;
 }
 
