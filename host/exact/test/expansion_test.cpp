@@ -1,4 +1,6 @@
 // Expansions and exact sums against rational arithmetic.
+#include "host/exact/expansion.h"
+
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +9,6 @@
 #include <cstdint>
 #include <random>
 
-#include "host/exact/expansion.h"
 #include "host/exact/test/rational_oracle.h"
 
 namespace raygate {

@@ -1,4 +1,6 @@
 // 8-bit pictures: tone curves, PNG files read back with libpng, and hints about blank pictures.
+#include "host/film/display.h"
+
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -8,7 +10,6 @@
 
 #include "host/base/srgb.h"
 #include "host/base/test/temp_folder.h"
-#include "host/film/display.h"
 #include "host/film/test/sample_film.h"
 
 namespace raygate {

@@ -9,7 +9,6 @@
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/timing.h"
 #include "host/variants/variant_hit_tester.h"
-#include "host/variants/variant_units.h"
 
 namespace raygate::lab {
 namespace {

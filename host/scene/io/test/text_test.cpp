@@ -1,4 +1,6 @@
 // Lines, tokens and numbers of text files.
+#include "host/scene/io/text.h"
+
 #include <gtest/gtest.h>
 
 #include <clocale>
@@ -9,7 +11,6 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
-#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {
@@ -26,7 +27,7 @@ Statements statements_of(std::string_view bytes) {
   return statements;
 }
 
-std::string error_of(const std::filesystem::path& file) {
+std::string reading_error_of(const std::filesystem::path& file) {
   try {
     TextLines lines(file);
   } catch (const InputError& error) {
@@ -70,14 +71,14 @@ TEST(TextLines, ACommentThatEndsInABackslashEndsThere) {
 TEST(TextLines, RefuseWhatIsNoText) {
   const TempFolder folder;
   const std::string path = folder.path().string();
-  EXPECT_EQ(error_of(folder.write("empty", "")), path + "/empty: the file is empty");
-  EXPECT_EQ(error_of(folder.path()), path + ": is a folder, expected a file");
-  EXPECT_EQ(error_of(folder.path() / "none"),
+  EXPECT_EQ(reading_error_of(folder.write("empty", "")), path + "/empty: the file is empty");
+  EXPECT_EQ(reading_error_of(folder.path()), path + ": is a folder, expected a file");
+  EXPECT_EQ(reading_error_of(folder.path() / "none"),
             path + "/none: cannot read: No such file or directory");
-  EXPECT_EQ(error_of("/dev/zero"), "/dev/zero: is a device, expected a file");
-  EXPECT_EQ(error_of(folder.write("nul", std::string_view("v\nv\n\0\nv", 7))),
+  EXPECT_EQ(reading_error_of("/dev/zero"), "/dev/zero: is a device, expected a file");
+  EXPECT_EQ(reading_error_of(folder.write("nul", std::string_view("v\nv\n\0\nv", 7))),
             path + "/nul:3: a byte of value 0: not a text file");
-  EXPECT_EQ(error_of(folder.write("wide", std::string_view("\xFF\xFEv\0", 4))),
+  EXPECT_EQ(reading_error_of(folder.write("wide", std::string_view("\xFF\xFEv\0", 4))),
             path + "/wide:1: UTF-16 text, expected ASCII or UTF-8");
 }
 
