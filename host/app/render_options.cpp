@@ -211,7 +211,7 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
         request.camera.reset();
       },
       {}, kInPage);
-  table.add("--up", "AXIS", "up axis: x, -x, y, -y, z or -z (guessed)",
+  table.add("--up", "AXIS", "up axis: x, -x, y, -y, z or -z (that of the format)",
             chosen<glm::dvec3>(request.up, {{"x", {1, 0, 0}},
                                             {"y", {0, 1, 0}},
                                             {"z", {0, 0, 1}},

@@ -1,9 +1,7 @@
 #include "host/scene/view.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "host/base/elementary.h"
@@ -17,69 +15,6 @@ namespace {
 Bounds3 bounding_box(const Scene& scene) {
   if (is_empty(scene)) throw InputError("cannot frame a scene without faces");
   return triangle_bounds(scene);
-}
-
-/// Corners of a triangle, and its normal with a length of twice its area.
-struct Face {
-  glm::dvec3 corners[3];
-  glm::dvec3 normal;
-
-  explicit Face(const Corners& triangle) {
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = triangle[k];
-    normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-  }
-};
-
-/// Stability of a scene on the lower end of one axis.
-struct Stand {
-  /// Tangent of the smallest tilt angle at which the scene falls; negative if it falls untilted.
-  double steadiness = 0.0;
-  double flat_share = 0.0;  ///< fraction of the lower face covered by triangles in it
-};
-
-Stand stand(const Scene& scene, const Bounds3& box, const glm::dvec3& centre_of_mass, int axis) {
-  constexpr int kDirections = 64;  // directions of falling
-  constexpr double kTouching = 0.01;
-  const glm::dvec3 size = box.high - box.low;
-  const int right = (axis + 1) % 3, ahead = (axis + 2) % 3;
-  const double ground = box.low[axis] + kTouching * std::max({size.x, size.y, size.z});
-  const double flat = box.low[axis] + kTouching * size[axis];
-  std::array<SineCosine<double>, kDirections> directions;
-  std::array<double, kDirections> reach;  // extent of the contact points from the centre of mass
-  reach.fill(-std::numeric_limits<double>::infinity());
-  for (int k = 0; k < kDirections; ++k) {
-    directions[k] = sine_cosine(static_cast<double>(k) / kDirections);
-  }
-  double area = 0.0;
-  for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
-    const Face face(triangle);
-    bool is_flat = true;
-    for (const glm::dvec3& corner : face.corners) {
-      is_flat = is_flat && corner[axis] <= flat;
-      if (corner[axis] > ground) continue;
-      const glm::dvec3 way = corner - centre_of_mass;
-      for (int k = 0; k < kDirections; ++k) {
-        reach[k] =
-            std::max(reach[k], way[right] * directions[k].cosine + way[ahead] * directions[k].sine);
-      }
-    }
-    if (is_flat) area += 0.5 * std::abs(face.normal[axis]);
-  });
-  return {*std::ranges::min_element(reach) / (centre_of_mass[axis] - box.low[axis]),
-          std::min(1.0, area / (size[right] * size[ahead]))};
-}
-
-/// Returns the centre of mass of the surface, as a thin sheet.
-glm::dvec3 centre_of_mass(const Scene& scene) {
-  glm::dvec3 sum(0.0);
-  double area = 0.0;
-  for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
-    const Face face(triangle);
-    const double weight = glm::length(face.normal);
-    sum += weight / 3.0 * (face.corners[0] + face.corners[1] + face.corners[2]);
-    area += weight;
-  });
-  return sum / area;
 }
 
 /// The axes of a scene with this up direction: right-handed, of unit length.
@@ -118,47 +53,21 @@ bool is_interior(const Scene& scene) {
   const glm::dvec3 size = box.high - box.low, middle = box.middle();
   double volume = 0.0;
   for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
-    const Face face(triangle);
-    volume += glm::dot(face.corners[0] - middle, face.normal) / 6.0;
+    const glm::dvec3 a = glm::dvec3(triangle[0]) - middle, b = glm::dvec3(triangle[1]) - middle,
+                     c = glm::dvec3(triangle[2]) - middle;
+    volume += glm::dot(a, glm::cross(b, c)) / 6.0;
   });
   return volume < -0.6 * size.x * size.y * size.z;
 }
 
 View default_view(const Scene& scene, const glm::dvec3& up) {
   if (is_interior(scene)) return front_view(scene, up);
-  // For each of the four sides, the fraction of the scene's area that is visible; for a box, half.
-  constexpr double kAzimuths[] = {kDefaultAzimuth, -kDefaultAzimuth, 90.0 + kDefaultAzimuth,
-                                  -90.0 - kDefaultAzimuth};
-  constexpr double kEdgeOn = 0.2;
-  double seen[std::size(kAzimuths)] = {}, area = 0.0;
-  glm::dvec3 towards_eye[std::size(kAzimuths)];
-  for (std::size_t k = 0; k < std::size(kAzimuths); ++k) {
-    towards_eye[k] = Axes(up).direction(kAzimuths[k], kDefaultElevation);
-  }
-  for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
-    const Face face(triangle);
-    area += glm::length(face.normal);
-    for (std::size_t k = 0; k < std::size(kAzimuths); ++k) {
-      seen[k] += std::abs(glm::dot(face.normal, towards_eye[k]));
-    }
-  });
-  const bool is_edge_on = seen[0] < kEdgeOn * area;
-  const auto best = is_edge_on ? std::ranges::max_element(seen) - seen : 0;
-  return {kAzimuths[best], kDefaultElevation, up};
+  return {kDefaultAzimuth, kDefaultElevation, up};
 }
 
-glm::dvec3 guess_up_axis(const Scene& scene) {
+glm::dvec3 usual_up_axis(const Scene& scene) {
   if (scene.up) return *scene.up;
-  const glm::dvec3 axes[] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
-  const int usual = scene.is_usually_z_up ? 2 : 1, other = 3 - usual;
-  const Bounds3 box = bounding_box(scene);
-  const glm::dvec3 size = box.high - box.low, mass = centre_of_mass(scene);
-  if (std::min({size.x, size.y, size.z}) <= 0.0 || !is_finite(glm::vec3(mass))) return axes[usual];
-  constexpr double kFalls = 0.035, kStands = 0.09, kClearly = 0.3;  // tilts of 2 and 5 degrees
-  const Stand usually = stand(scene, box, mass, usual), else_ = stand(scene, box, mass, other);
-  const bool is_other = (usually.steadiness < kFalls && else_.steadiness > kStands) ||
-                        else_.flat_share > usually.flat_share + kClearly;
-  return axes[is_other ? other : usual];
+  return scene.is_usually_z_up ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
 }
 
 CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const View& view,

@@ -24,14 +24,12 @@ inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
 /// Returns whether most triangles face inwards, as in a room seen from inside.
 [[nodiscard]] bool is_interior(const Scene& scene);
 
-/// Returns the default view of a scene: kDefaultAzimuth and kDefaultElevation, another side if that
-/// looks along the edges of a flat model, or front_view() of an interior.
+/// Returns the default view of a scene: kDefaultAzimuth and kDefaultElevation, or front_view() of
+/// an interior.
 [[nodiscard]] View default_view(const Scene& scene, const glm::dvec3& up);
 
-/// Returns +y or +z: Scene::up if the file's format defines it. Otherwise returns the format's
-/// usual axis, unless the scene would fall over on it and stands on the other, or has a clearly
-/// larger flat base on the other. Planar scenes in an axis plane use the usual axis.
-[[nodiscard]] glm::dvec3 guess_up_axis(const Scene& scene);
+/// Returns +y or +z: Scene::up if the file's format defines it, or else the format's usual axis.
+[[nodiscard]] glm::dvec3 usual_up_axis(const Scene& scene);
 
 /// Part of a scene that fills the image.
 enum class FrameFit {

@@ -1,12 +1,12 @@
 #include "host/variants/variant_hit_tester.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "host/intersect/unit/unit_hit_testers.h"
-#include "host/variants/variant_units.h"
 
 // The bound of an edge test in a format of u = 2^-digits
 //
@@ -30,6 +30,25 @@
 // division 59.2 numbers, over (1 - r), r = 56 u below 2^-5 for 11 digits: under 64 = 2^TErrorUnit.
 
 namespace raygate {
+
+template class BasicReferenceBurstUnit<Arithmetic>;
+
+void VariantPlaneUnit::intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) {
+  assert(tests.size() == points.size());
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const glm::vec3 direction = math_.read(tests[i].direction),
+                    normal = math_.read(tests[i].normal);
+    const float d = math_.read(tests[i].d);
+    // The accumulator starts from +0.
+    float dot = math_.add(0.0f, math_.multiply(normal.x, direction.x));
+    dot = math_.add(dot, math_.multiply(normal.y, direction.y));
+    dot = math_.add(dot, math_.multiply(normal.z, direction.z));
+    for (int k = 0; k < 3; ++k) {
+      points[i][k] = math_.divide(math_.multiply(d, direction[k]), dot);
+    }
+  }
+}
+
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();

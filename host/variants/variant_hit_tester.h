@@ -1,4 +1,4 @@
-// Hit testers with a variant's arithmetic, for rendering whole images.
+// Reference models of the units, and hit testers, with a variant's arithmetic.
 #pragma once
 
 #include <memory>
@@ -6,10 +6,27 @@
 
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/variants/arithmetic.h"
 #include "host/variants/variant_table.h"
-#include "host/variants/variant_units.h"
 
 namespace raygate {
+
+/// In binary32, equals ReferenceBurstUnit but is slower.
+extern template class BasicReferenceBurstUnit<Arithmetic>;
+using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
+
+/// Implements PlaneUnit in a variant's format, bit-exact to hit_test_unit with these parameters.
+/// Rounds inputs to the format first, as the host would.
+class VariantPlaneUnit : public PlaneUnit {
+ public:
+  explicit VariantPlaneUnit(const Arithmetic& math) : math_(math) {}
+
+  void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override;
+
+ private:
+  Arithmetic math_;
+};
 
 /// Converts a record to a variant's format, as the host does for such a unit: N with d, and each
 /// edge, are scaled by powers of two if the format has fewer exponents than binary32, and rounded

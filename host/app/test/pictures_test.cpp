@@ -80,9 +80,10 @@ TEST_F(Render, AViewSaysWhatToTypeForIt) {
     return render(more).out;
   };
   const std::string said = picture({}, "a.png");
-  EXPECT_NE(said.find("\nview     --view 33,24 --up z (a guess); --camera "), std::string::npos)
+  EXPECT_NE(said.find("\nview     --view 33,24 --up y (usual in the format); --camera "),
+            std::string::npos)
       << said;
-  EXPECT_EQ(picture({"--view", "33,24", "--up", "z"}, "b.png").find("guess"), std::string::npos);
+  EXPECT_EQ(picture({"--view", "33,24", "--up", "y"}, "b.png").find("usual"), std::string::npos);
   EXPECT_TRUE(folder_.read("a.png") == folder_.read("b.png"));
   EXPECT_EQ(picture({"--camera", "9,9,9,0,0,0"}, "c.png").find("\nview "), std::string::npos);
 }

@@ -9,7 +9,6 @@
 #include "host/intersect/unit/burst_unit.h"
 #include "host/lab/variants/rtl_variant_units.h"
 #include "host/variants/variant_hit_tester.h"
-#include "host/variants/variant_units.h"
 #include "sim/random_bursts.h"
 
 namespace raygate {

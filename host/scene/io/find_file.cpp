@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/scene/io/tokens.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {

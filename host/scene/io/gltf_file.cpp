@@ -6,12 +6,11 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <limits>
 #include <span>
 
 #include "host/base/file_bytes.h"
 #include "host/scene/io/find_file.h"
-#include "host/scene/io/tokens.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {
@@ -110,51 +109,8 @@ glm::dmat4 matrix_of(std::span<const double> t, std::span<const double> r,
 
 }  // namespace
 
-const Json& member(const Json& object, const char* key) {
-  static const Json kMissing;
-  if (!object.is_object()) return kMissing;
-  const auto found = object.find(key);
-  return found == object.end() ? kMissing : *found;
-}
-
 const Json& extension(const Json& part, const char* name) {
   return member(member(part, "extensions"), name);
-}
-
-double number_in(const Json& object, const char* key, double otherwise) {
-  const Json& value = member(object, key);
-  return value.is_number() ? value.get<double>() : otherwise;
-}
-
-static int index_of(const Json& value) {
-  const double index = value.is_number_integer() ? value.get<double>() : -1.0;
-  return std::abs(index) <= std::numeric_limits<int>::max() ? static_cast<int>(index) : -1;
-}
-
-int index_in(const Json& object, const char* key) { return index_of(member(object, key)); }
-
-std::string text_in(const Json& object, const char* key) {
-  const Json& value = member(object, key);
-  return value.is_string() ? value.get<std::string>() : std::string();
-}
-
-std::vector<double> numbers_in(const Json& object, const char* key) {
-  std::vector<double> numbers;
-  const Json& list = member(object, key);
-  if (!list.is_array()) return numbers;
-  for (const Json& number : list) {
-    if (!number.is_number()) return {};
-    numbers.push_back(number);
-  }
-  return numbers;
-}
-
-std::vector<int> indices_in(const Json& object, const char* key) {
-  std::vector<int> indices;
-  const Json& list = member(object, key);
-  if (!list.is_array()) return indices;
-  for (const Json& index : list) indices.push_back(index_of(index));
-  return indices;
 }
 
 GltfFile::GltfFile(const std::filesystem::path& file, std::vector<std::string>& warnings)

@@ -15,21 +15,8 @@
 
 namespace raygate {
 
-// Members of JSON objects. Many programs write glTF with small errors, so a member of a wrong type
-// counts as missing, and so do all members of a value that is not an object.
-
-/// Returns the member at a key; null if it is missing.
-[[nodiscard]] const Json& member(const Json& object, const char* key);
 /// Returns an extension of a part of the file; null if it is missing.
 [[nodiscard]] const Json& extension(const Json& part, const char* name);
-[[nodiscard]] double number_in(const Json& object, const char* key, double otherwise);
-/// Returns an integer; -1, which is no valid index, if it is missing or beyond the range of int.
-[[nodiscard]] int index_in(const Json& object, const char* key);
-[[nodiscard]] std::string text_in(const Json& object, const char* key);
-/// Returns an array of numbers; an empty list unless all elements are numbers.
-[[nodiscard]] std::vector<double> numbers_in(const Json& object, const char* key);
-/// Returns an array of indices, with -1 for elements that are not integers.
-[[nodiscard]] std::vector<int> indices_in(const Json& object, const char* key);
 
 /// A .gltf or .glb file with its buffers.
 class GltfFile {

@@ -7,7 +7,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/srgb.h"
-#include "host/scene/io/tokens.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {

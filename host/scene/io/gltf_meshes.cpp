@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "host/exact/exact.h"
-#include "host/scene/io/tokens.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {

@@ -9,7 +9,7 @@
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
-#include "host/scene/io/tokens.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {
@@ -84,6 +84,50 @@ Json parse(std::string_view text, const std::string& file, std::size_t& line,
 Json parse_json(std::string_view text, const std::string& file) {
   std::size_t line = 1;
   return parse(text, file, line, nullptr);
+}
+
+const Json& member(const Json& object, const char* key) {
+  static const Json kMissing;
+  if (!object.is_object()) return kMissing;
+  const auto found = object.find(key);
+  return found == object.end() ? kMissing : *found;
+}
+
+double number_in(const Json& object, const char* key, double otherwise) {
+  const Json& value = member(object, key);
+  return value.is_number() ? value.get<double>() : otherwise;
+}
+
+/// Returns an integer; -1 for another value or one beyond the range of int.
+static int index_of(const Json& value) {
+  const double index = value.is_number_integer() ? value.get<double>() : -1.0;
+  return std::abs(index) <= std::numeric_limits<int>::max() ? static_cast<int>(index) : -1;
+}
+
+int index_in(const Json& object, const char* key) { return index_of(member(object, key)); }
+
+std::string text_in(const Json& object, const char* key) {
+  const Json& value = member(object, key);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+std::vector<double> numbers_in(const Json& object, const char* key) {
+  std::vector<double> numbers;
+  const Json& list = member(object, key);
+  if (!list.is_array()) return numbers;
+  for (const Json& number : list) {
+    if (!number.is_number()) return {};
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+std::vector<int> indices_in(const Json& object, const char* key) {
+  std::vector<int> indices;
+  const Json& list = member(object, key);
+  if (!list.is_array()) return indices;
+  for (const Json& index : list) indices.push_back(index_of(index));
+  return indices;
 }
 
 JsonFile::JsonFile(const std::filesystem::path& file) : file_(file.string()) {

@@ -21,6 +21,20 @@ using Json = nlohmann::json;
 /// Parses JSON (RFC 8259). Throws InputError, "file:line: not JSON: ...".
 [[nodiscard]] Json parse_json(std::string_view text, const std::string& file);
 
+// Members of JSON objects. For files of other programs, which often have small errors: a member of
+// a wrong type counts as missing, and so do all members of a value that is not an object.
+
+/// Returns the member at a key; null if it is missing.
+[[nodiscard]] const Json& member(const Json& object, const char* key);
+[[nodiscard]] double number_in(const Json& object, const char* key, double otherwise);
+/// Returns an integer; -1, which is no valid index, if it is missing or beyond the range of int.
+[[nodiscard]] int index_in(const Json& object, const char* key);
+[[nodiscard]] std::string text_in(const Json& object, const char* key);
+/// Returns an array of numbers; an empty list unless all elements are numbers.
+[[nodiscard]] std::vector<double> numbers_in(const Json& object, const char* key);
+/// Returns an array of indices, with -1 for elements that are not integers.
+[[nodiscard]] std::vector<int> indices_in(const Json& object, const char* key);
+
 class JsonFile;
 
 /// A value of a JsonFile, which must outlive this object. Functions throw InputError for a value of

@@ -11,7 +11,7 @@
 
 #include "host/base/input_error.h"
 #include "host/scene/io/find_file.h"
-#include "host/scene/io/tokens.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {

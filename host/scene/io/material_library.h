@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host/scene/io/text_lines.h"
+#include "host/scene/io/text.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

@@ -9,7 +9,6 @@
 #include "host/base/srgb.h"
 #include "host/exact/exact.h"
 #include "host/scene/io/ear_clipper.h"
-#include "host/scene/io/smooth_normals.h"
 
 namespace raygate {
 

@@ -16,8 +16,7 @@
 #include "host/scene/io/material_library.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/scene/io/text_lines.h"
-#include "host/scene/io/tokens.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {

@@ -10,7 +10,7 @@
 #include "host/scene/io/find_file.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/scene/io/tokens.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {
@@ -56,8 +56,6 @@ class PlyReader {
         has_vertices = true;
       } else if (element.name == "face" && has_vertices) {
         read_faces(element);
-      } else if (element.name == "tristrips" && has_vertices) {
-        read_strips(element);
       } else if (!element.properties.empty()) {
         unread_.push_back("element " + in_quotes(element.name));
         for (long long i = 0; i < element.count; ++i) {
@@ -267,7 +265,7 @@ class PlyReader {
     unread_.push_back(in_quotes(element.properties[property].name) + " of " + element.name);
   }
 
-  /// Returns the index of the property with the vertices of a face or a strip. Notes all other
+  /// Returns the index of the property with the vertices of a face. Notes all other
   /// properties except `also` as unread.
   [[nodiscard]] std::size_t index_list(const Element& element,
                                        std::optional<std::size_t> also = std::nullopt) {
@@ -292,46 +290,6 @@ class PlyReader {
 
   [[nodiscard]] FileCorner corner_of(std::int32_t position) const {
     return {position, has_texcoords_ ? position : 0, has_normals_ ? position : 0};
-  }
-
-  /// Reads strips: each vertex makes a triangle with the two before it, and every second triangle
-  /// is reversed; -1 begins another strip.
-  void read_strips(const Element& element) {
-    const std::size_t list = index_list(element);
-    for (long long i = 0; i < element.count; ++i) {
-      const std::size_t strip_line = line();
-      for (std::size_t p = 0; p < element.properties.size(); ++p) {
-        const Property& property = element.properties[p];
-        if (p != list) {
-          skip(property);
-          continue;
-        }
-        std::int32_t before[2] = {};
-        bool is_odd = false;
-        int known = 0;
-        const long long count = take_count(property);
-        for (long long k = 0; k < count; ++k) {
-          const double index = take(property.type, "a vertex index");
-          if (index == -1.0) {
-            known = 0;
-            is_odd = false;
-            continue;
-          }
-          const std::int32_t position = position_of(index);
-          const bool is_flat =
-              position == before[0] || position == before[1] || before[0] == before[1];
-          if (known == 2 && !is_flat) {  // degenerate triangles connect parts of a strip
-            const FileCorner corners[] = {corner_of(before[is_odd ? 1 : 0]),
-                                          corner_of(before[is_odd ? 0 : 1]), corner_of(position)};
-            mesh_.add_face(corners, strip_line);
-          }
-          if (known == 2) is_odd = !is_odd;
-          known = std::min(known + 1, 2);
-          before[0] = before[1];
-          before[1] = position;
-        }
-      }
-    }
   }
 
   void read_faces(const Element& element) {

@@ -53,8 +53,8 @@ struct LoadOptions {
 /// instances, exceed 12 million plus the number of bytes of the file.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Loads a PLY file, ASCII or binary: the polygons of the element "face" and the strips of
-/// "tristrips", as one object of one material. Vertices have x, y, z and may have nx, ny, nz, and
+/// Loads a PLY file, ASCII or binary: the polygons of the element "face", as one object
+/// of one material. Vertices have x, y, z and may have nx, ny, nz, and
 /// red, green, blue. If the header has a "comment TextureFile NAME", texture coordinates are s, t
 /// (or u, v, or texture_u, texture_v) of vertices, or the list texcoord of faces. Warns about other
 /// elements and properties.

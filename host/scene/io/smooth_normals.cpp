@@ -1,5 +1,3 @@
-#include "host/scene/io/smooth_normals.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "host/base/elementary.h"
+#include "host/scene/io/mesh_builder.h"
 
 namespace raygate {
 namespace {

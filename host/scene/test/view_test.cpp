@@ -1,9 +1,11 @@
+// Default views, up axes and the ground.
 #include "host/scene/view.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "host/scene/camera.h"
@@ -120,82 +122,57 @@ TEST(FirstView, LooksIntoARoomFromItsFront) {
   EXPECT_EQ(default_view(open_crate, kY).azimuth, kDefaultAzimuth);
 }
 
-// Whatever way a flat model is turned, some of it is seen: the default view shows a fifth of it, or
-// another side does.
-TEST(FirstView, DoesNotLookAlongAFlatModel) {
-  std::mt19937_64 random(20261125);
-  std::normal_distribution<double> normal;
-  int turned = 0;
-  for (int round = 0; round < 1000; ++round) {
-    const glm::dvec3 across =
-        glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-    const glm::dvec3 u = glm::normalize(glm::cross(across, glm::dvec3(0.6, 0.48, 0.64)));
-    Scene scene;
-    for (const glm::dvec3& corner : {glm::dvec3(0.0), u, glm::cross(across, u)}) {
-      scene.positions.emplace_back(corner);
-    }
-    scene.triangles.emplace_back().vertices = {0, 1, 2};
-    const View view = default_view(scene, kY);
-    turned += view.azimuth != kDefaultAzimuth;
-    EXPECT_EQ(view.elevation, kDefaultElevation);
-    EXPECT_GT(std::abs(glm::dot(towards_eye(scene, view), across)), 0.19) << "round " << round;
+TEST(UsualUp, IsTheFormats) {
+  Scene scene = box({0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(usual_up_axis(scene), kY);
+  scene.is_usually_z_up = true;
+  EXPECT_EQ(usual_up_axis(scene), kZ);
+  scene.up = kY;
+  EXPECT_EQ(usual_up_axis(scene), kY) << "the format has the last word";
+}
+
+Scene tetrahedron(float size) {
+  Scene scene;
+  scene.positions = {{1, 2, 3}, {2, 2, 3}, {1, 3, 3}, {1, 2, 4}};
+  for (glm::vec3& position : scene.positions) position *= size;
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    scene.triangles.emplace_back().vertices = {k, (k + 1) % 4, (k + 2) % 4};
   }
-  EXPECT_GT(turned, 150);
-  EXPECT_LT(turned, 250);
-}
-
-TEST(GuessedUp, IsWhereTheSceneDoesNotStand) {
-  EXPECT_EQ(guess_up_axis(box({0, 0, 0}, {1, 1, 1})), kY) << "nothing speaks for z";
-  Scene table;  // a broad foot and a column on it
-  add_box(table, {0, 0, 0}, {1, 1, 0.1});
-  add_box(table, {0.4f, 0.4f, 0.1f}, {0.6f, 0.6f, 1});
-  EXPECT_EQ(guess_up_axis(table), kZ);
-  for (glm::vec3& position : table.positions) std::swap(position.y, position.z);
-  EXPECT_EQ(guess_up_axis(table), kY);
-  table.up = kZ;
-  EXPECT_EQ(guess_up_axis(table), kZ) << "the format has the last word";
-}
-
-/// y becomes z, in the same handedness.
-Scene lain_down(Scene scene) {
-  for (glm::vec3& position : scene.positions) position = {position.x, -position.z, position.y};
+  scene.materials.resize(1);
+  scene.objects = {"it"};
   return scene;
 }
 
-TEST(GuessedUp, IsWhereTheSceneWouldNotFallOver) {
-  Scene motorcycle;  // y is up; two wheels, nothing flat below; a handlebar on one side
-  add_box(motorcycle, {0, 0.4f, -0.1f}, {2, 1, 0.1f});
-  add_box(motorcycle, {0, 0, -0.08f}, {0.4f, 0.4f, 0.08f});
-  add_box(motorcycle, {1.6f, 0, -0.08f}, {2, 0.4f, 0.08f});
-  add_box(motorcycle, {0.3f, 0.9f, -0.4f}, {0.4f, 1, 0.4f});
-  Scene animal;  // y is up; z ends in its nose and in its tail
-  add_box(animal, {-0.3f, 0.5f, 0}, {0.3f, 1, 2});
-  for (const float x : {-0.3f, 0.2f}) {
-    for (const float z : {0.0f, 1.9f}) add_box(animal, {x, 0, z}, {x + 0.1f, 0.5f, z + 0.1f});
-  }
-  add_box(animal, {-0.05f, 1.4f, -0.4f}, {0.05f, 1.5f, 0.2f});
-  add_box(animal, {-0.05f, 0.9f, 2}, {0.05f, 1, 2.5f});
-  const Scene plate = box({0, 0, 0}, {200, 3, 200});
-  for (const Scene& upright : {motorcycle, animal, plate}) {
-    for (const bool is_usually_z_up : {false, true}) {
-      Scene scene = upright;
-      scene.is_usually_z_up = is_usually_z_up;
-      EXPECT_EQ(guess_up_axis(scene), kY);
-      scene = lain_down(scene);
-      EXPECT_EQ(guess_up_axis(scene), kZ);
+TEST(Ground, LiesUnderTheSceneAndLooksUp) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      glm::dvec3 up(0.0);
+      up[axis] = 5 * sign;
+      Scene scene = tetrahedron(1.0f);
+      add_ground(scene, up);
+      ASSERT_EQ(scene.triangles.size(), 6u);
+      EXPECT_EQ(scene.objects[1], "ground");
+      EXPECT_EQ(scene.materials[scene.triangles[5].material].illumination_model, 10);
+      const double lowest = sign * (sign > 0 ? axis + 1 : axis + 2);
+      for (const std::size_t face : {4u, 5u}) {
+        glm::dvec3 corners[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+          corners[k] = scene.positions[scene.triangles[face].vertices[k]];
+          EXPECT_LT(corners[k][axis] * sign, lowest);
+          EXPECT_GT(corners[k][axis] * sign, lowest - 0.01);
+        }
+        EXPECT_GT(glm::cross(corners[1] - corners[0], corners[2] - corners[0])[axis] * sign, 0.0);
+      }
     }
   }
 }
 
-TEST(GuessedUp, IsAsUsualOfWhatSaysNothing) {
-  Scene square;
-  square.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  square.triangles.emplace_back().vertices = {0, 1, 2};
-  for (Scene scene : {square, lain_down(square), box({0, 0, 0}, {1, 1, 1})}) {
-    EXPECT_EQ(guess_up_axis(scene), kY);
-    scene.is_usually_z_up = true;
-    EXPECT_EQ(guess_up_axis(scene), kZ);
-  }
+TEST(Ground, IsLeftOutWhereFloatEnds) {
+  Scene scene = tetrahedron(std::numeric_limits<float>::max() / 8);
+  add_ground(scene, {0, 1, 0});
+  EXPECT_EQ(scene.triangles.size(), 4u);
+  EXPECT_EQ(scene.positions.size(), 4u);
+  EXPECT_EQ(scene.objects.size(), 1u);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/lab/stress/random.h"
 #include "host/scene/camera.h"
-#include "host/variants/variant_units.h"
 #include "sim/random_bursts.h"
 
 namespace raygate {

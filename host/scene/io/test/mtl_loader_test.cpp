@@ -11,7 +11,7 @@ namespace raygate {
 namespace {
 
 const std::string kPicture = test::tga(1, 1, {{1, 2, 3}});
-constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+constexpr std::string_view kObjTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 class LoadMtl : public testing::Test {
  protected:
@@ -21,7 +21,7 @@ class LoadMtl : public testing::Test {
     return load_obj_text("mtllib m.mtl\nusemtl a\nf 1 2 3\n");
   }
   Scene load_obj_text(std::string_view more) {
-    return load_obj(folder_.write("s.obj", std::string(kTriangle) + std::string(more)));
+    return load_obj(folder_.write("s.obj", std::string(kObjTriangle) + std::string(more)));
   }
   Material material(std::string_view mtl) {
     const Scene scene = load(mtl);

@@ -21,7 +21,7 @@ constexpr std::string_view kMtl =
     "newmtl red one\nKd 0.8 0.1 0.1\nKs 0.5\nNs 10\nNi 1.5\nd 0.5\nTr 0.5\nillum 2\n"
     "newmtl blue\nKe 1 2 3\nTf 1 1 1\nmap_Kd -s 1 2 3 -clamp on a b.png\n"
     "Pr 0.5\nmap_Pm a b.png\nmap_d a b.png\nnorm -bm 0.5 a b.png\n";
-constexpr const char* kSplinters[] = {
+constexpr const char* kObjSplinters[] = {
     "/",         "//",      "\\",    "\\\n",         "\n",   "\r",    "#",
     " ",         "\t",      "f ",    "v ",           "vn ",  "vt ",   "g ",
     "o ",        "usemtl ", "s ",    "mtllib ",      ".",    "--",    "mtllib .\n",
@@ -32,7 +32,7 @@ TEST(DamagedObj, LoadsSoundlyOrIsRefused) {
   const TempFolder folder;
   const std::uint64_t seed = 20240521;
   RecordProperty("seed", std::to_string(seed));
-  test::Damage damage(seed, kSplinters);
+  test::Damage damage(seed, kObjSplinters);
   folder.write("a b.png", test::tga(1, 1, {{9, 9, 9}}));
   int loaded = 0, refused = 0;
   for (int round = 0; round < 20000; ++round) {

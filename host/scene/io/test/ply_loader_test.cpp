@@ -70,18 +70,6 @@ TEST_F(LoadPly, ColorsOfVertices) {
   }
 }
 
-TEST_F(LoadPly, StripsOfTriangles) {
-  const Scene scene = load(
-      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
-      "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n11 0 1 2 3 4 5 -1 0 1 2 2\n");
-  using Vertices = std::array<std::uint32_t, 3>;
-  std::vector<Vertices> found;
-  for (const Triangle& triangle : scene.triangles) found.push_back(triangle.vertices);
-  EXPECT_EQ(found, (std::vector<Vertices>{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {4, 3, 5}, {0, 1, 2}}));
-  EXPECT_TRUE(scene.warnings.empty());
-}
-
 TEST_F(LoadPly, BinaryOfBothOrders) {
   for (const bool is_big : {false, true}) {
     const auto ordered = [&](std::string number) {

@@ -15,14 +15,14 @@
 namespace raygate {
 namespace {
 
-constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+constexpr std::string_view kTriangleFile = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 TEST(LoadScene, GoesByTheEndingOfTheName) {
   const TempFolder folder;
-  EXPECT_EQ(load_scene(folder.write("a.OBJ", kTriangle)).triangles.size(), 1u);
-  EXPECT_EQ(load_scene(folder.write("a", kTriangle)).triangles.size(), 1u);
-  EXPECT_THROW((void)load_scene(folder.write("a.stl", kTriangle)), InputError);
-  const std::filesystem::path file = folder.write("a.fbx", kTriangle);
+  EXPECT_EQ(load_scene(folder.write("a.OBJ", kTriangleFile)).triangles.size(), 1u);
+  EXPECT_EQ(load_scene(folder.write("a", kTriangleFile)).triangles.size(), 1u);
+  EXPECT_THROW((void)load_scene(folder.write("a.stl", kTriangleFile)), InputError);
+  const std::filesystem::path file = folder.write("a.fbx", kTriangleFile);
   try {
     (void)load_scene(file);
     FAIL();
@@ -43,7 +43,7 @@ TEST(LoadScene, AStemMeansTheFileThatIsThere) {
   EXPECT_EQ(find_scene_file(folder.path() / "a"), folder.path() / "a.glb");
 }
 
-constexpr std::string_view kPly =
+constexpr std::string_view kPlyFile =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
     "z\n"
     "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
@@ -60,7 +60,7 @@ std::string binary_ply() {
   return text + "\3" + test::bytes_of(0, 1, 2);
 }
 
-std::string binary_stl() {
+std::string binary_stl_file() {
   return std::string(80, ' ') + test::bytes_of(1) +
          test::bytes_of(0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f,
                         std::uint16_t{0});
@@ -122,8 +122,8 @@ TEST_P(DamagedFile, LoadsSoundlyOrIsRefused) {
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, DamagedFile,
-    testing::Values(Kind{"a.ply", std::string(kPly)}, Kind{"b.ply", binary_ply()},
-                    Kind{"a.stl", std::string(kStl)}, Kind{"b.stl", binary_stl()},
+    testing::Values(Kind{"a.ply", std::string(kPlyFile)}, Kind{"b.ply", binary_ply()},
+                    Kind{"a.stl", std::string(kStl)}, Kind{"b.stl", binary_stl_file()},
                     Kind{"a.gltf", whole_gltf()},
                     Kind{"b.glb",
                          test::glb(test::square_json(R"([{"mesh": 0}])"), test::square_buffer())}),

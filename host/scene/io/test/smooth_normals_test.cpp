@@ -1,11 +1,10 @@
-#include "host/scene/io/smooth_normals.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "host/base/test/temp_folder.h"
+#include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
 
 namespace raygate {
@@ -21,7 +20,7 @@ glm::vec3 normal(const Scene& scene, std::size_t triangle, std::size_t corner) {
   return number == kNoIndex ? glm::vec3(0.0f) : scene.normals[number];
 }
 
-void expect_near(const glm::vec3& a, const glm::vec3& b) {
+void expect_normal_near(const glm::vec3& a, const glm::vec3& b) {
   EXPECT_LT(glm::length(a - b), 1e-6f) << a.x << " " << a.y << " " << a.z;
 }
 
@@ -33,11 +32,11 @@ TEST(SmoothNormals, AreThoseOfSmoothingGroups) {
   for (const char* s : {"s 3\n", "s on\n"}) {
     const Scene scene = load(std::string(kCorner) + s + "f 1 2 3 4\nf 2 5 6 3\n");
     const glm::vec3 between(std::sqrt(0.5f), 0.0f, std::sqrt(0.5f));
-    expect_near(normal(scene, 0, 0), {0, 0, 1});
-    expect_near(normal(scene, 0, 1), between);
-    expect_near(normal(scene, 0, 2), between);
-    expect_near(normal(scene, 2, 0), between);
-    expect_near(normal(scene, 2, 1), {1, 0, 0});
+    expect_normal_near(normal(scene, 0, 0), {0, 0, 1});
+    expect_normal_near(normal(scene, 0, 1), between);
+    expect_normal_near(normal(scene, 0, 2), between);
+    expect_normal_near(normal(scene, 2, 0), between);
+    expect_normal_near(normal(scene, 2, 1), {1, 0, 0});
   }
 }
 
@@ -47,21 +46,21 @@ TEST(SmoothNormals, EndWhereTheirGroupDoes) {
     for (const Triangle& triangle : scene.triangles) EXPECT_EQ(triangle.normals[0], kNoIndex);
   }
   const Scene scene = load(std::string(kCorner) + "s 1\nf 1 2 3 4\ns 2\nf 2 5 6 3\n");
-  expect_near(normal(scene, 0, 1), {0, 0, 1});
-  expect_near(normal(scene, 2, 0), {1, 0, 0});
+  expect_normal_near(normal(scene, 0, 1), {0, 0, 1});
+  expect_normal_near(normal(scene, 2, 0), {1, 0, 0});
   EXPECT_EQ(load(std::string(kCorner) + "s much\nf 1 2 3\n").warnings.size(), 1u);
 }
 
 TEST(SmoothNormals, LeaveNormalsOfTheFileAlone) {
   const Scene scene =
       load(std::string(kCorner) + "vn 0 1 0\ns 1\nf 1//1 2//1 3//1 4//1\nf 2 5 6 3\n", 180.0);
-  expect_near(normal(scene, 0, 1), {0, 1, 0});
-  expect_near(normal(scene, 2, 0), {1, 0, 0});
+  expect_normal_near(normal(scene, 0, 1), {0, 1, 0});
+  expect_normal_near(normal(scene, 2, 0), {1, 0, 0});
 }
 
 TEST(SmoothNormals, FollowTheAngle) {
   const std::string text = std::string(kCorner) + "s 1\nf 1 2 3 4\nf 2 5 6 3\n";
-  expect_near(normal(load(text, 89.9), 0, 1), {0, 0, 1});
+  expect_normal_near(normal(load(text, 89.9), 0, 1), {0, 0, 1});
   EXPECT_GT(normal(load(text, 90.0), 0, 1).x, 0.7f);
   EXPECT_EQ(load(text, 0.0).triangles.size(), 4u);
 }
@@ -100,7 +99,7 @@ TEST(SmoothNormals, AreExactOnAnOctahedron) {
       180.0);
   for (std::size_t i = 0; i < 8; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      expect_near(normal(scene, i, k), scene.positions[scene.triangles[i].vertices[k]]);
+      expect_normal_near(normal(scene, i, k), scene.positions[scene.triangles[i].vertices[k]]);
     }
   }
 }

@@ -12,7 +12,7 @@ namespace {
 
 using test::bytes_of;
 
-constexpr std::string_view kAscii =
+constexpr std::string_view kAsciiStl =
     "solid a name of words\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
     "   vertex 0 1e0 0\n  endloop\n endfacet\n"
     "facet normal nan nan nan outer loop vertex 0 0 0 vertex 0 1 0 vertex 0 0 1 endloop endfacet\n"
@@ -41,7 +41,7 @@ class LoadStl : public testing::Test {
 };
 
 TEST_F(LoadStl, Ascii) {
-  const Scene scene = load(kAscii);
+  const Scene scene = load(kAsciiStl);
   ASSERT_EQ(scene.triangles.size(), 2u);
   EXPECT_EQ(scene.origin + glm::dvec3(scene.positions[scene.triangles[1].vertices[2]]),
             glm::dvec3(0, 0, 1));
