@@ -119,18 +119,6 @@ void set_no_hit(Hits& hits) {
   std::memset(&hits.instID, 0xFF, sizeof hits.instID);
 }
 
-/// Stores the result of a lane. Embree sets tfar of a blocked ray to -infinity.
-template <class RayHit>
-void store(const RayHit& query, std::size_t lane, bool any_hit, Found& found, std::size_t ray) {
-  const float t = in_lane(query.ray.tfar, lane);
-  if (any_hit) {
-    found.triangle[ray] = t < 0.0f ? Found::kSome : Found::kNone;
-  } else {
-    found.triangle[ray] = in_lane(query.hit.primID, lane);
-    found.t[ray] = t;
-  }
-}
-
 /// `Queries` calls Embree: set_coherent(), intersect() and occluded() for one ray, 8 or 16.
 template <class Queries>
 class EmbreePeer : public Peer {
@@ -170,18 +158,22 @@ class RayPackets : public EmbreePeer<Queries> {
   void run(Found& found) override {
     alignas(64) int valid[kWidth];
     for (std::size_t i = 0; i < rays_.size(); ++i) {
-      const std::size_t first = i * kWidth, lanes = std::min(kWidth, count_ - first);
+      const std::size_t first = i * kWidth;
+      const std::size_t lanes = kWidth == 1 ? 1 : std::min(kWidth, count_ - first);
       for (std::size_t lane = 0; lane < kWidth; ++lane) valid[lane] = lane < lanes ? -1 : 0;
       RoomForHit<typename Packet<kWidth>::Hits, kWidth> query;
       query.ray = rays_[i];
       if (this->any_hit_) {
         this->queries_.occluded(valid, this->scene(), &query.ray);
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          found.triangle[first + lane] =
+              in_lane(query.ray.tfar, lane) < 0.0f ? Found::kSome : Found::kNone;
+        }
       } else {
         set_no_hit(query.hit);
         this->queries_.intersect(valid, this->scene(), &query);
-      }
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        store(query, lane, this->any_hit_, found, first + lane);
+        std::memcpy(&found.triangle[first], &query.hit.primID, lanes * sizeof(std::uint32_t));
+        std::memcpy(&found.t[first], &query.ray.tfar, lanes * sizeof(float));
       }
     }
   }
@@ -214,7 +206,14 @@ class RayStreams : public EmbreePeer<Queries> {
       std::copy_n(&queries_of_rays_[first], count, stream);
       this->queries_.trace_stream(this->scene(), stream, static_cast<unsigned>(count),
                                   this->any_hit_);
-      for (std::size_t i = 0; i < count; ++i) store(stream[i], 0, this->any_hit_, found, first + i);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (this->any_hit_) {
+          found.triangle[first + i] = stream[i].ray.tfar < 0.0f ? Found::kSome : Found::kNone;
+        } else {
+          found.triangle[first + i] = stream[i].hit.primID;
+          found.t[first + i] = stream[i].ray.tfar;
+        }
+      }
     }
   }
 

@@ -17,8 +17,6 @@ namespace {
 struct RaysOptions {
   std::vector<std::string> scenes;
   int size = 1024, repeats = 15;
-  bool alone = false;
-  std::string only;     // name of one set of rays; empty: all
   std::string embree4;  // path of its library; empty: none
 };
 
@@ -61,12 +59,11 @@ void run(const RaysOptions& options, Results& results) {
     const Scene scene = load_obj(file);
     std::vector<std::unique_ptr<Peer>> peers;
     peers.push_back(make_raygate(scene));
-    if (!options.alone) std::ranges::move(make_embrees(scene), std::back_inserter(peers));
+    std::ranges::move(make_embrees(scene), std::back_inserter(peers));
     if (!options.embree4.empty()) {
       std::ranges::move(make_embrees4(scene, options.embree4), std::back_inserter(peers));
     }
     for (const RaySet& set : ray_sets(scene, options.size - options.size % 128)) {
-      if (!options.only.empty() && options.only != set.name) continue;
       measure(set, file.stem().string(), peers, options.repeats, results);
     }
   }
@@ -82,11 +79,8 @@ void add_rays(CLI::App& lab, Outcome& outcome) {
       ->check(CLI::Range(128, 8192));
   app->add_option("--repeats", options->repeats, "of each set of rays by each peer")
       ->check(CLI::Range(1, 1000));
-  app->add_option("--only", options->only, "camera, light or scattered; all, if not given")
-      ->check(CLI::IsMember({"camera", "light", "scattered"}));
   app->add_option("--embree4", options->embree4, "the shared library of Embree 4, to compare, too")
       ->check(CLI::ExistingFile);
-  app->add_flag("--alone", options->alone, "leave Embree out");
   app->callback([options, &outcome] { run(*options, outcome.results); });
 }
 

@@ -54,7 +54,7 @@ struct SubjectKind {
   std::string what{};                                ///< one line for the report
   bool exact = false;                                ///< any wrong decision fails the run
   bool simulated = false;                            ///< Verilated hardware
-  bool binary32 = false;                             ///< the bounds of errors.h for t and P apply
+  bool binary32 = false;                             ///< the bounds of tally.cpp for t and P apply
   double share = 0.1;                                ///< fraction of the requested number of tests
   std::function<std::unique_ptr<Subject>()> make{};  ///< called once per thread
 };

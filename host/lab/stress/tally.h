@@ -31,7 +31,7 @@ struct Tally {
   double t_ulp = 0.0, point_ulp = 0.0;
   /// Largest errors of the hits that the host delivers.
   double delivered_t_ulp = 0.0, delivered_point_ulp = 0.0;
-  /// Largest errors of sure hits, relative to the bounds of errors.h for binary32.
+  /// Largest errors of sure hits, relative to the bounds of tally.cpp for binary32.
   double t_of_bound = 0.0, point_of_bound = 0.0;
   /// Largest error of P, relative to the reported bound (NearestHit::point_error).
   double point_of_said = 0.0;
