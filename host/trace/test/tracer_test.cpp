@@ -27,7 +27,7 @@ TEST(Trace, WritesTheRowsOfABlockBitByBit) {
   }
   const Scene scene = test::scene_of(sheets);
   const Bvh bvh(scene);
-  const HitTable answers(scene, bvh, {HitColumn::kRay, HitColumn::kTriangle}, TableFormat::kNpy);
+  const HitTable answers(scene, bvh, {HitColumn::kRay, HitColumn::kTriangle}, TableFormat::kBinary);
   std::size_t next = 0, most = 0;
   std::string rows;
   const TraceCounts counts = trace(
