@@ -15,7 +15,8 @@
 namespace raygate {
 namespace {
 
-constexpr std::string_view kBetween = " \t\r\n\v\f";
+/// Returns whether a character separates tokens: a space or one of \t \n \v \f \r.
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
@@ -89,10 +90,11 @@ TokenReader::TokenReader(std::string name, std::string_view text, std::size_t li
 /// Sets the next word to the first one at or after `from`.
 void TokenReader::find_word(std::size_t from) {
   std::size_t at = from;
-  for (; at < text_.size() && kBetween.find(text_[at]) != std::string_view::npos; ++at) {
+  for (; at < text_.size() && is_space(text_[at]); ++at) {
     if (text_[at] == '\n') ++line_;
   }
-  const std::size_t end = std::min(text_.find_first_of(kBetween, at), text_.size());
+  std::size_t end = at;
+  while (end < text_.size() && !is_space(text_[end])) ++end;
   word_ = text_.substr(at, end - at);
 }
 
