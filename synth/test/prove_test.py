@@ -18,7 +18,7 @@ HITS = [("(low_q <= {1'b0, old_t_max_q})", "(low_q < {1'b0, old_t_max_q})"),
         ("(old_low_q <= high_q)", "(old_low_q < high_q)"),
         ("old_open ? old_triangle_q : triangle_q", "open ? triangle_q : old_triangle_q"),
         ("forward ? low_q : nearest_low", "is_over_q ? low_q : nearest_low"),
-        (".data_i({ray_q, replace})", ".data_i({ray_q, is_sure_q})"),
+        ("(high_q < {1'b0, old_t_max_q})", "(high_q <= {1'b0, old_t_max_q})"),  # of two hits at one place the later is kept
         ("if (test_q && !same) counts", "if (test_q) counts"),
         ("here_q < CountWidth'(Queue)", "here_q <= CountWidth'(Queue)")]
 
@@ -44,7 +44,7 @@ WRITER = [("(axi_wready_i & axi_wlast_o)", "axi_wready_i"),
           ("some_room & address_free", "address_free")]
 
 CONTEXTS = [(".Reserve(1)", ".Reserve(0)"),
-            (".data_i(end_ctx_o)", ".data_i(ending_ctx_o)"),
+            ("known_q <= ending_o;", "known_q <= some;"),
             ("active_q & ~busy_i", "active_q")]
 
 # Each with the module and its proof, by name.
