@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "host/base/input_error.h"
-#include "host/scene/io/text.h"
+#include "host/base/text.h"
 
 namespace raygate {
 

@@ -1,4 +1,4 @@
-// Text files: statements of lines, tokens, numbers, and quotes for messages.
+// Text files: statements of lines, and tokens.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "host/base/text.h"
+
 namespace raygate {
 
 /// Removes the first word (up to a space or tab) from `text`, with the spaces and tabs after it,
@@ -18,14 +20,6 @@ namespace raygate {
 
 /// Takes a token, but treats a word that begins with # and all text after it as a comment.
 [[nodiscard]] std::string_view take_token_before_comment(std::string_view& text);
-
-/// Returns the word in quotes for a message: its first 40 characters, with unprintable ones as
-/// \xHH.
-[[nodiscard]] std::string in_quotes(std::string_view word);
-
-/// Returns a decimal number as the nearest double, in any locale, or nullopt if the whole word is
-/// not a number. "nan" and "inf" are numbers; a magnitude too large gives infinity, too small 0.
-[[nodiscard]] std::optional<double> to_number(std::string_view word);
 
 /// Reads a text token by token. Spaces, tabs and ends of lines (LF, CR LF) separate tokens.
 class TokenReader {

@@ -41,7 +41,7 @@ class Words(unittest.TestCase):
 
     def test_what_cannot_be(self) -> None:
         for word, said in {"FRAC_WIDTH=99": "expected 2 to 23", "FRAC_WIDTH=x": "expected 2 to 23", "WIDTH=3": "expected one of",
-                           "ROUNDING=odd": "expected nearest-even", "ADDER=fast": "expected ripple", "UNIT=my.sv": "expected pipeline", "UNIT=": "pipeline"}.items():
+                           "ROUNDING=odd": "expected nearest-even", "ADDER=fast": "expected graded, ripple", "UNIT=my.sv": "expected pipeline", "UNIT=": "pipeline"}.items():
             with self.assertRaisesRegex(ValueError, f"^{word}: .*{said}"):
                 variant.table([word])
         for words in (["EXP_WIDTH=3"], ["FRAC_WIDTH=9", "QUOTIENT_BITS=12"]):
