@@ -215,7 +215,7 @@ class SahBuilder {
   /// Splits large ranges level by level until there are enough for all threads, then each of the
   /// rest on one thread, depth first.
   void build(int threads) {
-    const auto enough = static_cast<std::size_t>(kRunsOfThread * threads);
+    const auto enough = static_cast<std::size_t>(kRunsOfThread) * static_cast<std::size_t>(threads);
     std::vector<Run> large = {{0, tree_.size(), 0, 0, 0}}, small;
     while (!large.empty() && large.size() < enough) {
       std::vector<Run> parts(2 * large.size());

@@ -268,7 +268,7 @@ RAYGATE_INLINE void RaySpawner::find_four(const SpawnQuery* queries, SpawnOrigin
 
 void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin> origins) {
   in_vectors([&](auto code) RAYGATE_BODY {
-    constexpr std::size_t kAhead = 2 * kQuad;  // prefetch distance
+    constexpr std::size_t kAhead = std::size_t{2} * kQuad;  // prefetch distance
     std::size_t first = 0;
     for (; first + kQuad <= queries.size(); first += kQuad) {
       if (first + kAhead + kQuad <= queries.size()) {
