@@ -45,8 +45,7 @@ class CoreModel : public CoreUnit {
     std::uint64_t visited = 0, quiet = 0;
     while (ended < rays.size()) {
       for (Core& core : cores_) {
-        const bool has_room = set_.rays == 0 || core.rays() < set_.rays;
-        if (sent < rays.size() && has_room && !core.is_offering() && !chance(stalls_.no_ray)) {
+        if (sent < rays.size() && !core.is_offering() && !chance(stalls_.no_ray)) {
           core.offer(rays[sent++]);
         }
         if (core.take_result(!chance(stalls_.not_taken))) {

@@ -149,20 +149,11 @@ class CorePort {
     counters_.lines += events >> 8 & 1;
     counters_.waits += events >> 9 & 1;
     counters_.exact_clocks += events >> 10 & 1;
-    nodes_in_span_ += events >> 1 & 1;
-    triangles_in_span_ += events >> 2 & 1;
-    if (model_.clocks() % CoreCounters::kSpan == 0) {
-      counters_.busier += std::max(nodes_in_span_, triangles_in_span_);
-      counters_.busier_two_boxes += std::max((nodes_in_span_ + 1) / 2, triangles_in_span_);
-      counters_.busier_half_triangles += std::max(nodes_in_span_, 2 * triangles_in_span_);
-      nodes_in_span_ = triangles_in_span_ = 0;
-    }
   }
 
   Holder<Top> model_;
   CoreCounters counters_;
   int rays_ = 0;
-  unsigned nodes_in_span_ = 0, triangles_in_span_ = 0;
 };
 
 }  // namespace raygate

@@ -1,7 +1,5 @@
 #include "sim/rtl_core.h"
 
-#include <cassert>
-
 #include "host/intersect/core/linked_core.h"
 #include "sim/model_loader.h"
 
@@ -14,7 +12,6 @@ constexpr ModelFile kExactBehavioural{"ray_core_exact_behavioural",
 constexpr ModelFile kStructural{"ray_core_structural", "the simulated ray core", 90};
 constexpr ModelFile kBehavioural{"ray_core_behavioural",
                                  "the simulated ray core of behavioural arithmetic", 40};
-constexpr ModelFile kWide{"ray_core_wide", "the simulated ray core of 256 rays", 40};
 constexpr ModelFile kOpen{"ray_core_open", "the simulated ray core that writes waveforms", 40};
 constexpr ModelFile kBoard{"board_core", "the simulated board", 40};
 
@@ -22,12 +19,10 @@ constexpr ModelFile kBoard{"board_core", "the simulated board", 40};
 
 std::unique_ptr<CoreUnit> make_rtl_core(Arith arith, const MemoryTiming& timing,
                                         const CoreStalls& stalls, const CoreSet& set) {
-  const bool structural = arith == Arith::kStructural, wide = set.rays > kTableRays;
-  assert(set.rays <= kWideRays && !((structural || set.exact) && wide));
+  const bool structural = arith == Arith::kStructural;
   const auto make = load_model<CoreUnit*(const MemoryTiming&, const CoreStalls&, const CoreSet&)>(
       set.exact    ? (structural ? kExact : kExactBehavioural)
       : structural ? kStructural
-      : wide       ? kWide
                    : kBehavioural);
   return std::unique_ptr<CoreUnit>(make(timing, stalls, set));
 }

@@ -16,16 +16,13 @@ struct CoreStalls {
   std::uint64_t seed = 0;
 };
 
-/// Rays in the table of a core; of a core of behavioural arithmetic that is asked for more.
-inline constexpr int kTableRays = 64, kWideRays = 256;
-/// In a board's.
-inline constexpr int kBoardRays = 16;
+/// Rays in the table of a core, and of a board's.
+inline constexpr int kTableRays = 64, kBoardRays = 16;
 
 /// Cores behind one port to memory.
 struct CoreSet {
   int cores = 1;
-  int rays = 0;        ///< in flight in each core at most; 0: as many as its table holds
-  bool exact = false;  ///< they settle doubts by themselves; a table of 64 rays alone
+  bool exact = false;  ///< they settle doubts by themselves
 };
 
 /// ray_core, Verilated, and the memory behind it. Not for use by two threads at once: each thread

@@ -59,21 +59,15 @@ struct CoreResult {
 
 /// Statistics of a core since its construction. Clocks are 0 without simulation.
 struct CoreCounters {
-  static constexpr std::uint64_t kSpan = 256;
-
   std::uint64_t rays = 0;
-  std::uint64_t nodes = 0;                         ///< node lines processed by the box unit
-  std::uint64_t triangles = 0;                     ///< triangle lines processed by the set-up unit
+  std::uint64_t nodes = 0;      ///< node lines processed by the box unit
+  std::uint64_t triangles = 0;  ///< triangle lines processed by the triangle test
   std::uint64_t hits = 0, misses = 0, doubts = 0;  ///< verdicts of tests
   std::uint64_t near_ties = 0;                     ///< sure hits reported as doubts
   std::uint64_t overflows = 0;                     ///< rays that used the shared stack
   std::uint64_t lines = 0;                         ///< lines read from memory
   std::uint64_t waits = 0;         ///< clocks in which memory did not accept a request
   std::uint64_t exact_clocks = 0;  ///< busy clocks of the exact unit
-  /// Busy clocks of the busier of box unit and triangle unit, summed over spans of kSpan clocks.
-  std::uint64_t busier = 0;
-  /// Likewise with two box units, and with a triangle unit of half the throughput.
-  std::uint64_t busier_two_boxes = 0, busier_half_triangles = 0;
   std::uint64_t clocks = 0;
 
   CoreCounters& operator+=(const CoreCounters& other) {

@@ -370,7 +370,7 @@ TEST(MetallicRoughnessLobes, ACoatMakesNoLight) {
   }
 }
 
-// Smooth ones reflect all that they do in one direction, and nothing is missing.
+// Smooth surfaces reflect in one direction only, so no light is lost between facets.
 TEST(MetallicRoughnessLobes, SmoothOnesLoseNothing) {
   for (const float metallic : {0.0f, 0.5f, 1.0f}) {
     Material white = white_facets(metallic, 0.0f);

@@ -4,7 +4,7 @@
 
 It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector, and needs no trimesh to be installed. Where its answers
 differ from theirs: a ray through an edge or a vertex of a closed mesh hits it once, not once for each triangle there; all
-hits of a ray are found, however near each other they are; points on the surface count as outside or inside, but never fail.
+hits of a ray are found, however near each other they are; a point on the surface may count as inside or outside.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ class RayMeshIntersector:
     """Rays and points against a mesh: anything with `vertices`, shape (n, 3), and `faces`, shape (m, 3). When these have
     changed, the next query builds the scene again."""
 
-    def __init__(self, geometry: Any, **_: Any) -> None:
-        """Further arguments are those of trimesh's own intersectors; they change no answer here."""
+    def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
+        """`scale_to_box` is an argument of trimesh's own intersectors; it changes no answer here."""
         self.mesh = geometry
         self._built: tuple[Any, Scene] | None = None
 
@@ -38,7 +38,7 @@ class RayMeshIntersector:
         return self._built[1]
 
     def intersects_id(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True,
-                      max_hits: int | None = None, return_locations: bool = False, **_: Any) -> tuple[Array, ...]:
+                      max_hits: int | None = None, return_locations: bool = False) -> tuple[Array, ...]:
         """Returns the triangles that rays hit, shape (k,), the numbers of the rays, shape (k,), and with
         `return_locations` the points, shape (k, 3): of each ray all hits, near before far, at most `max_hits`, or without
         `multiple_hits` the nearest."""
@@ -56,17 +56,17 @@ class RayMeshIntersector:
         directions = np.broadcast_to(np.asarray(ray_directions, np.float64), shape)
         return triangles, rays, origins[rays] + hits["t"][:, None] * directions[rays]
 
-    def intersects_location(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True,
-                            **keywords: Any) -> tuple[Array, Array, Array]:
+    def intersects_location(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike,
+                            multiple_hits: bool = True) -> tuple[Array, Array, Array]:
         """Returns the points, shape (k, 3), the numbers of the rays and the triangles of intersects_id()."""
-        triangles, rays, points = self.intersects_id(ray_origins, ray_directions, multiple_hits, return_locations=True, **keywords)
+        triangles, rays, points = self.intersects_id(ray_origins, ray_directions, multiple_hits, return_locations=True)
         return points, rays, triangles
 
-    def intersects_first(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, **_: Any) -> Array:
+    def intersects_first(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> Array:
         """Returns the first triangle that each ray hits, or -1: shape (n,)."""
         return self.scene.trace(ray_origins, ray_directions, columns="triangle")["triangle"].astype(np.int64)
 
-    def intersects_any(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, **_: Any) -> Array:
+    def intersects_any(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> Array:
         """Returns whether each ray hits anything: shape (n,)."""
         found: Array = self.scene.trace(ray_origins, ray_directions, hits="any", columns="hit")["hit"]
         return found.astype(bool)

@@ -93,7 +93,6 @@ TEST_F(RayCoreTest, CoresShareAMemory) {
   const double alone = clocks(narrow, {});
   EXPECT_GT(clocks(narrow, {.cores = 3}), 0.45 * alone) << "there is contention";
   EXPECT_GT(counters_.waits, counters_.lines);
-  EXPECT_GT(clocks({}, {.rays = 1}), 10.0 * one) << "rays wait for each other";
 }
 
 /// Resets in mid-run, at any clock: then the next rays hit what they should.
@@ -301,9 +300,6 @@ TEST_F(RayCoreTest, EventsAreCounted) {
     EXPECT_GE(number(CoreResult::Kind::kDoubt), counters.near_ties);
     EXPECT_GE(counters.doubts + counters.near_ties, number(CoreResult::Kind::kDoubt));
     EXPECT_GT(counters.nodes, counters.rays);
-    EXPECT_LT(counters.busier_two_boxes, counters.busier);
-    EXPECT_GE(2 * counters.busier_two_boxes, counters.busier);
-    EXPECT_GT(counters.busier_half_triangles, counters.busier);
     EXPECT_GT(counters.misses, counters.hits);
     EXPECT_GT(counters.waits, counters.lines / 4);
     EXPECT_LT(counters.waits, 4 * counters.lines);
