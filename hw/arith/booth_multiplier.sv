@@ -104,7 +104,6 @@ module booth_multiplier #(
     .carry_o(carry)
   );
 
-  logic unused_carry;  // of weight 2**(2 * Width): the constants are right modulo that
 
   adder #(
     .Width      (2 * Width),
@@ -116,7 +115,7 @@ module booth_multiplier #(
     .b_i    (carry),
     .carry_i(1'b0),
     .sum_o  (product_o),
-    .carry_o(unused_carry)
+    .carry_o()
   );
 
 endmodule

@@ -9,7 +9,7 @@ module max4 #(
 
   for (genvar n = 0; n < 2; n++) begin : gen_pair
     logic [Width-1:0] a, b, larger;
-    logic less, unused_equal;
+    logic less;
     assign a = words_i[2*Width*n +: Width];
     assign b = words_i[2*Width*n+Width +: Width];
 
@@ -20,12 +20,12 @@ module max4 #(
       .a_i(a),
       .b_i(b),
       .less_o(less),
-      .equal_o(unused_equal)
+      .equal_o()
     );
     assign larger = less ? b : a;
   end
 
-  logic last_less, unused_last_equal;
+  logic last_less;
 
   comparator #(
     .Width(Width),
@@ -34,7 +34,7 @@ module max4 #(
     .a_i(gen_pair[0].larger),
     .b_i(gen_pair[1].larger),
     .less_o(last_less),
-    .equal_o(unused_last_equal)
+    .equal_o()
   );
   assign max_o = last_less ? gen_pair[1].larger : gen_pair[0].larger;
 

@@ -22,7 +22,7 @@ module sort7 #(
     for (genvar n = 0; n < 7; n++) begin : gen_word
       localparam int unsigned Partner = 32'(Partners[21*s+3*n+:3]);
       if (Partner > n) begin : gen_pair
-        logic less, unused_equal;
+        logic less;
         logic [Width-1:0] low, high;
         assign low  = unsorted[Width*n +: Width];
         assign high = unsorted[Width*Partner +: Width];
@@ -34,7 +34,7 @@ module sort7 #(
           .a_i(high),
           .b_i(low),
           .less_o(less),
-          .equal_o(unused_equal)
+          .equal_o()
         );
         assign ordered[Width*n +: Width]       = less ? high : low;
         assign ordered[Width*Partner +: Width] = less ? low : high;

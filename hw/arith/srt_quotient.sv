@@ -29,7 +29,6 @@ module srt_quotient #(
   // ---- Remainder: a negative one takes a unit off the quotient. (Then it is d - |w|, never zero.)
 
   logic [Width-1:0] remainder;
-  logic unused_remainder_carry;
 
   adder #(
     .Width(Width),
@@ -39,7 +38,7 @@ module srt_quotient #(
     .b_i(carry_i),
     .carry_i(1'b0),
     .sum_o(remainder),
-    .carry_o(unused_remainder_carry)
+    .carry_o()
   );
 
   logic [2*Digits-1:0] plus, minus;
@@ -68,7 +67,6 @@ module srt_quotient #(
   // ---- Quotient: positive less negative digits, less that unit
 
   logic [2*Digits-1:0] quotient;
-  logic unused_quotient_carry;
 
   adder #(
     .Width(2 * Digits),
@@ -78,7 +76,7 @@ module srt_quotient #(
     .b_i(~minus),
     .carry_i(~remainder_negative),
     .sum_o(quotient),
-    .carry_o(unused_quotient_carry)
+    .carry_o()
   );
 
   delay_line #(

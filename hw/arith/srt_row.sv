@@ -21,7 +21,6 @@ module srt_row #(
   // ---- Estimate 4 w from the first bits of both words
 
   logic [EstimateWidth-1:0] estimate;
-  logic unused_carry;
 
   adder #(
     .Width(EstimateWidth),
@@ -31,7 +30,7 @@ module srt_row #(
     .b_i(carry_i[Width-1-:EstimateWidth]),
     .carry_i(1'b0),
     .sum_o(estimate),
-    .carry_o(unused_carry)
+    .carry_o()
   );
 
   // ---- Choose the digit (see srt_pkg) by the divisor's first eighths. With its sign bit inverted the

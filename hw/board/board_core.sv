@@ -41,7 +41,6 @@ module board_core #(
   logic [AddressWidth-1:0] lines, read_line, write_line;
   logic [ReadIdWidth-1:0] read_id, line_id;
   logic [LineWidth-1:0] line, write_data;
-  logic [ray_core_pkg::NumEvents-1:0] unused_events;
   ray_core_pkg::ray_t ray;
   ray_core_pkg::result_t result;
 
@@ -100,7 +99,7 @@ module board_core #(
     .line_id_i(line_id),
     .line_i(line),
     .line_error_i(1'b0),
-    .events_o(unused_events)
+    .events_o()
   );
 
   sdram_controller #(

@@ -33,7 +33,7 @@ module exact_accumulator #(
   localparam int unsigned SureBit = DigitWidth - 1 + $clog2(Products);
 
   logic [Width-1:0] sum_q, stays, partial, carries, sum_d;
-  logic round, unused_carry;
+  logic round;
 
   assign stays = first_i ? '0 : !opens_i ? sum_q
                : down_i ? sum_q << DigitWidth : Width'($signed(sum_q) >>> DigitWidth);
@@ -58,7 +58,7 @@ module exact_accumulator #(
     .b_i    (carries),
     .carry_i(round),
     .sum_o  (sum_d),
-    .carry_o(unused_carry)
+    .carry_o()
   );
 
   always_ff @(posedge clk_i) sum_q <= sum_d;

@@ -86,7 +86,6 @@ module fp_adder #(
   // ---- Distance of the exponents, both ways at once beside the ordering
 
   logic [ExpWidth-1:0] a_minus_b, b_minus_a, distance;
-  logic [1:0] unused_distance_carry;
 
   adder #(
     .Width(ExpWidth),
@@ -96,7 +95,7 @@ module fp_adder #(
     .b_i(~b_exp),
     .carry_i(1'b1),
     .sum_o(a_minus_b),
-    .carry_o(unused_distance_carry[0])
+    .carry_o()
   );
   adder #(
     .Width(ExpWidth),
@@ -106,7 +105,7 @@ module fp_adder #(
     .b_i(~a_exp),
     .carry_i(1'b1),
     .sum_o(b_minus_a),
-    .carry_o(unused_distance_carry[1])
+    .carry_o()
   );
   assign distance = swap ? b_minus_a : a_minus_b;
 
@@ -173,7 +172,6 @@ module fp_adder #(
   // complement: the difference is then too low by less than a place, which the sticky bit tells.
 
   logic [FarWidth-1:0] far_sum;
-  logic unused_far_carry;
 
   adder #(
     .Width(FarWidth),
@@ -183,7 +181,7 @@ module fp_adder #(
     .b_i(far_aligned ^ {FarWidth{subtract_1}}),
     .carry_i(subtract_1 & ~far_sticky),
     .sum_o(far_sum),
-    .carry_o(unused_far_carry)
+    .carry_o()
   );
 
   // ---- Far path: exponent for the rounder, less one for a sum and less two for a difference
@@ -204,7 +202,6 @@ module fp_adder #(
   // ---- Near path: subtract, the distance known from the exponents' lowest bits
 
   logic [NearWidth-1:0] near_small, near_difference;
-  logic unused_near_carry;
 
   assign near_small = odd_1 ? {1'b0, small_sig_1} : {small_sig_1, 1'b0};
 
@@ -216,7 +213,7 @@ module fp_adder #(
     .b_i(~near_small),
     .carry_i(1'b1),
     .sum_o(near_difference),
-    .carry_o(unused_near_carry)
+    .carry_o()
   );
 
   // A mark at the place where the exponent becomes the smallest one, for normalising.
@@ -261,14 +258,14 @@ module fp_adder #(
   logic [CountWidth-1:0] near_count;
   logic [ExpWidth-1:0] near_shift, near_exp;
   logic [ExpWidth+FracWidth-1:0] near_magnitude;
-  logic unused_near_exp_carry, unused_near_bit, unused_near_zero;
+  logic unused_near_bit;
 
   leading_zero_counter #(
     .Width(NearWidth)
   ) u_near_count (
     .a_i(near_difference_2 | near_mark_2 | {~near_2, {(NearWidth - 1) {1'b0}}}),
     .count_o(near_count),
-    .zero_o(unused_near_zero)
+    .zero_o()
   );
   assign near_shift = ExpWidth'(near_count);
   adder #(
@@ -279,7 +276,7 @@ module fp_adder #(
     .b_i(~near_shift),
     .carry_i(1'b1),
     .sum_o(near_exp),
-    .carry_o(unused_near_exp_carry)
+    .carry_o()
   );
   assign near_normal = near_difference_2 << near_count;
   assign unused_near_bit = near_normal[0];  // 0 whenever this path is taken

@@ -77,21 +77,20 @@ module fp_divider #(
 
   logic [SigWidth-1:0] a_norm, b_norm;
   logic [CountWidth-1:0] a_count, b_count;
-  logic [1:0] unused_zero;
 
   leading_zero_counter #(
     .Width(SigWidth)
   ) u_count_a (
     .a_i(a_sig),
     .count_o(a_count),
-    .zero_o(unused_zero[0])
+    .zero_o()
   );
   leading_zero_counter #(
     .Width(SigWidth)
   ) u_count_b (
     .a_i(b_sig),
     .count_o(b_count),
-    .zero_o(unused_zero[1])
+    .zero_o()
   );
   assign a_norm = a_sig << a_count;
   assign b_norm = b_sig << b_count;
@@ -102,7 +101,6 @@ module fp_divider #(
   localparam logic [RoundExpWidth-1:0] Offset = RoundExpWidth'(2 ** (ExpWidth - 1) - 3);
   logic [RoundExpWidth-1:0] a_exp_offset, exp_difference, count_difference;
   logic [RoundExpWidth-1:0] a_count_wide, b_count_wide;
-  logic [3:0] unused_carry;
 
   assign a_count_wide = RoundExpWidth'(a_count);
   assign b_count_wide = RoundExpWidth'(b_count);
@@ -114,7 +112,7 @@ module fp_divider #(
     .b_i(Offset),
     .carry_i(1'b0),
     .sum_o(a_exp_offset),
-    .carry_o(unused_carry[0])
+    .carry_o()
   );
   adder #(
     .Width(RoundExpWidth),
@@ -124,7 +122,7 @@ module fp_divider #(
     .b_i(~{2'b00, b_exp}),
     .carry_i(1'b1),
     .sum_o(exp_difference),
-    .carry_o(unused_carry[1])
+    .carry_o()
   );
   adder #(
     .Width(RoundExpWidth),
@@ -134,7 +132,7 @@ module fp_divider #(
     .b_i(~a_count_wide),
     .carry_i(1'b1),
     .sum_o(count_difference),
-    .carry_o(unused_carry[2])
+    .carry_o()
   );
 
   // ---- Specials
@@ -196,7 +194,7 @@ module fp_divider #(
     .b_i(count_difference_1),
     .carry_i(1'b0),
     .sum_o(exponent),
-    .carry_o(unused_carry[3])
+    .carry_o()
   );
 
   // ---- Divide: the doubled quotient, in (1, 4)

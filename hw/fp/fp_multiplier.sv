@@ -64,7 +64,7 @@ module fp_multiplier #(
   // a_exp + b_exp - bias - 1 = a_exp + b_exp - 2**(ExpWidth-1), which leaves the low bits alone.
 
   logic [ExpWidth:0] exp_sum, exp;
-  logic exp_negative, unused_exp_carry;
+  logic exp_negative;
 
   adder #(
     .Width(ExpWidth + 1),
@@ -74,7 +74,7 @@ module fp_multiplier #(
     .b_i({1'b0, b_exp}),
     .carry_i(1'b0),
     .sum_o(exp_sum),
-    .carry_o(unused_exp_carry)
+    .carry_o()
   );
   assign exp_negative = exp_sum[ExpWidth:ExpWidth-1] == 2'b00;
   assign exp = exp_sum ^ {~exp_sum[ExpWidth-1], 1'b1, {(ExpWidth - 1) {1'b0}}};
@@ -130,7 +130,6 @@ module fp_multiplier #(
 
   logic [SigWidth-1:0] may_be_subnormal, mark;
   logic [LeftWidth-1:0] left;
-  logic unused_zero;
 
   assign may_be_subnormal = a_sig_0[SigWidth-1] ? b_sig_0 : a_sig_0;
   assign mark = {1'b1, {FracWidth{1'b0}}} >> exp_0;
@@ -140,7 +139,7 @@ module fp_multiplier #(
   ) u_left (
     .a_i(may_be_subnormal | mark),
     .count_o(left),
-    .zero_o(unused_zero)
+    .zero_o()
   );
 
   // ---- Cut behind the product
@@ -191,7 +190,6 @@ module fp_multiplier #(
   // ---- Exponent after the shift to the left, beside it
 
   logic [ExpWidth:0] exp_less_left, left_extended;
-  logic unused_carry;
 
   assign left_extended = (ExpWidth + 1)'(left_1);
 
@@ -203,7 +201,7 @@ module fp_multiplier #(
     .b_i(~left_extended),
     .carry_i(1'b1),
     .sum_o(exp_less_left),
-    .carry_o(unused_carry)
+    .carry_o()
   );
 
   // ---- Round

@@ -34,7 +34,6 @@ module fp_vector #(
     localparam int unsigned Own = (Words - First < Share) ? Words - First : Share;
     logic [Width-1:0] a, b, result;
     logic subtract;
-    fp_pkg::flags_t unused_flags;
 
     if (Clocks == 1) begin : gen_own
       logic unused_step;
@@ -79,7 +78,7 @@ module fp_vector #(
         .rounding_mode_i(RoundingMode),
         .tininess_after_i(1'b0),
         .result_o(result),
-        .flags_o(unused_flags)
+        .flags_o()
       );
     end else begin : gen_adder
       fp_adder #(
@@ -95,7 +94,7 @@ module fp_vector #(
         .rounding_mode_i(RoundingMode),
         .tininess_after_i(1'b0),
         .result_o(result),
-        .flags_o(unused_flags)
+        .flags_o()
       );
     end
   end

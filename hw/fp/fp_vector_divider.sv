@@ -38,7 +38,7 @@ module fp_vector_divider #(
 
   // ---- Unpack, normalise
 
-  logic sign, unused_zero;
+  logic sign;
   logic [ExpWidth-1:0] exp;
   logic [SigWidth-1:0] sig, norm;
   logic [CountWidth-1:0] count;
@@ -62,7 +62,7 @@ module fp_vector_divider #(
   ) u_count (
     .a_i(sig),
     .count_o(count),
-    .zero_o(unused_zero)
+    .zero_o()
   );
   assign norm = sig << count;
 
@@ -84,7 +84,6 @@ module fp_vector_divider #(
 
   localparam logic [RoundExpWidth-1:0] Offset = RoundExpWidth'(2 ** (ExpWidth - 1) - 3);
   logic [RoundExpWidth-1:0] count_wide, exp_less_count, offset_less_exp, exponent;
-  logic [2:0] unused_carry;
 
   assign count_wide = RoundExpWidth'(count_q);
   adder #(
@@ -95,7 +94,7 @@ module fp_vector_divider #(
     .b_i(~count_wide),
     .carry_i(1'b1),
     .sum_o(exp_less_count),
-    .carry_o(unused_carry[0])
+    .carry_o()
   );
   adder #(
     .Width(RoundExpWidth),
@@ -105,7 +104,7 @@ module fp_vector_divider #(
     .b_i(~exp_less_count),
     .carry_i(1'b1),
     .sum_o(offset_less_exp),
-    .carry_o(unused_carry[1])
+    .carry_o()
   );
 
   logic by_sign_q;
@@ -142,7 +141,7 @@ module fp_vector_divider #(
     .b_i(by_exponent_q),
     .carry_i(1'b0),
     .sum_o(exponent),
-    .carry_o(unused_carry[2])
+    .carry_o()
   );
   assign side = {
     exponent,
@@ -202,7 +201,7 @@ module fp_vector_divider #(
   // ---- Quotient
 
   logic [QuotientWidth-1:0] quotient;
-  logic remainder, result_sign, result_nan, result_infinity, result_zero, unused_valid;
+  logic remainder, result_sign, result_nan, result_infinity, result_zero;
   logic [RoundExpWidth-1:0] result_exponent;
 
   srt_quotient #(
@@ -222,13 +221,12 @@ module fp_vector_divider #(
     .quotient_o(quotient),
     .remainder_o(remainder),
     .side_o({result_exponent, result_sign, result_nan, result_infinity, result_zero}),
-    .valid_o(unused_valid)
+    .valid_o()
   );
 
   // ---- Round
 
   logic [ExpWidth+FracWidth:0] result;
-  fp_pkg::flags_t unused_flags;
   logic [2:0] valid_q;
 
   fp_round #(
@@ -243,7 +241,7 @@ module fp_vector_divider #(
     .rounding_mode_i,
     .tininess_after_i(1'b0),
     .result_o(result),
-    .flags_o(unused_flags)
+    .flags_o()
   );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin

@@ -160,7 +160,6 @@ module hit_test_pipeline #(
   // ---- Divide: t, of which a sure hit makes use
 
   logic [Width-1:0] quotient;
-  fp_pkg::flags_t unused_flags;
 
   fp_divider #(
     .ExpWidth(ExpWidth),
@@ -175,7 +174,7 @@ module hit_test_pipeline #(
     .rounding_mode_i(RoundingMode),
     .tininess_after_i(1'b0),
     .result_o(quotient),
-    .flags_o(unused_flags)
+    .flags_o()
   );
 
   localparam int unsigned PayloadWidth = 4 * Width;

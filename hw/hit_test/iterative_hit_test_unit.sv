@@ -92,7 +92,6 @@ module iterative_hit_test_unit #(
   // ---- Multiply
 
   logic [Width-1:0] product;
-  fp_pkg::flags_t unused_multiplier_flags;
 
   fp_multiplier #(
     .ExpWidth (ExpWidth),
@@ -106,7 +105,7 @@ module iterative_hit_test_unit #(
     .rounding_mode_i (RoundingMode),
     .tininess_after_i(1'b0),
     .result_o        (product),
-    .flags_o         (unused_multiplier_flags)
+    .flags_o         ()
   );
 
   logic [Width-1:0] first_q, third_q, dividend;
@@ -135,7 +134,6 @@ module iterative_hit_test_unit #(
   // ---- Add
 
   logic [Width-1:0] sum;
-  fp_pkg::flags_t unused_adder_flags;
 
   fp_adder #(
     .ExpWidth (ExpWidth),
@@ -150,7 +148,7 @@ module iterative_hit_test_unit #(
     .rounding_mode_i (RoundingMode),
     .tininess_after_i(1'b0),
     .result_o        (sum),
-    .flags_o         (unused_adder_flags)
+    .flags_o         ()
   );
 
   // ---- Divide

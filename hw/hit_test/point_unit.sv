@@ -30,7 +30,6 @@ module point_unit #(
   assign valid_o = valid_q[Latency-1];
 
   for (genvar k = 0; k < 3; k++) begin : gen_coordinate
-    fp_pkg::flags_t unused_flags;
 
     fp_divider #(
       .ExpWidth(ExpWidth),
@@ -45,7 +44,7 @@ module point_unit #(
       .rounding_mode_i(RoundingMode),
       .tininess_after_i(1'b0),
       .result_o(point_o[Width*k+:Width]),
-      .flags_o(unused_flags)
+      .flags_o()
     );
   end
 

@@ -201,7 +201,7 @@ module closest_hit #(
   // ---- Doubts
 
   logic [CountWidth-1:0] here_q;  // tests in flight and doubts, but tests of settle_i
-  logic taken, returned, unused_doubt_space;  // credits
+  logic taken, returned;  // credits
 
   assign taken    = test_i & ~settle_i;
   assign returned = is_over_q & ~settled_q & ~doubt;
@@ -222,7 +222,7 @@ module closest_hit #(
     .rst_ni,
     .push_i(doubt & ~Exact),
     .data_i({tag_q, doubt_triangle}),
-    .space_o(unused_doubt_space),
+    .space_o(),
     .pop_i(doubt_fire_i & ~Exact),
     .valid_o(doubt_o.valid),
     .data_o({doubt_o.tag, doubt_o.triangle})

@@ -71,7 +71,7 @@ module exact_resolver #(
 
   // ---- Doubts that wait
 
-  logic push, pop, queued, queued_hit, unused_space;
+  logic push, pop, queued, queued_hit;
   logic [RayWidth-1:0] queued_ctx;
   logic [AddressWidth-1:0] queued_line;
 
@@ -86,7 +86,7 @@ module exact_resolver #(
     .rst_ni,
     .push_i(push),
     .data_i({open_ctx_i, open_i.is_hit, open_i.line}),
-    .space_o(unused_space),
+    .space_o(),
     .pop_i(pop),
     .valid_o(queued),
     .data_o({queued_ctx, queued_hit, queued_line})

@@ -62,7 +62,7 @@ module memory_subsystem #(
 
   // ---- Requests
 
-  logic node_valid, node_ready, triangle_valid, triangle_ready, unused_space;
+  logic node_valid, node_ready, triangle_valid, triangle_ready;
   logic [RequestWidth-1:0] node;
   logic [WhoWidth+AddressWidth-1:0] triangle;
   logic [WhoWidth-1:0] triangle_who, triangle_asker;
@@ -78,7 +78,7 @@ module memory_subsystem #(
     .rst_ni,
     .push_i(node_i.valid),
     .data_i({node_ctx_i, node_i.line}),
-    .space_o(unused_space),
+    .space_o(),
     .pop_i(node_valid & node_ready),
     .valid_o(node_valid),
     .data_o(node)
@@ -121,7 +121,7 @@ module memory_subsystem #(
   logic [$clog2(NodeLines)-1:0] node_entry;
   logic [$clog2(TriangleLines)-1:0] triangle_entry;
   logic [MissWidth-1:0] node_miss, triangle_miss;
-  logic node_looking, unused_looking;
+  logic node_looking;
   logic node_miss_valid, node_miss_ready, triangle_miss_valid, triangle_miss_ready;
 
   fifo #(
@@ -195,7 +195,7 @@ module memory_subsystem #(
     .demand_i(1'b1),
     .ray_i(triangle[AddressWidth +: WhoWidth]),
     .line_number_i(triangle[AddressWidth-1:0]),
-    .outstanding_o(unused_looking),
+    .outstanding_o(),
     .miss_valid_o(triangle_miss_valid),
     .miss_ready_i(triangle_miss_ready),
     .miss_entry_o(triangle_entry),

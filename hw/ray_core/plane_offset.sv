@@ -29,7 +29,7 @@ module plane_offset #(
   end else begin : gen_rows
     logic [8*SumWidth-1:0] rows;
     logic [SumWidth-1:0] tree_sum, tree_carry, sum_q, carry_q, sum, carry, planes;
-    logic unused_carry, unused;
+    logic unused;
     assign unused = ^planes[7:0];
 
     for (genvar b = 0; b < 8; b++) begin : gen_row
@@ -65,7 +65,7 @@ module plane_offset #(
       .b_i(carry | SumWidth'(back_i)),
       .carry_i(back_i),
       .sum_o(planes),
-      .carry_o(unused_carry)
+      .carry_o()
     );
     assign plane_o = planes[SumWidth-1:8];
   end

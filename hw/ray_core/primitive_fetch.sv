@@ -32,7 +32,7 @@ module primitive_fetch #(
 
   // ---- Groups that wait
 
-  logic push, queued, load, unused_space;
+  logic push, queued, load;
   logic [RayWidth-1:0] queued_ray;
   ray_core_pkg::group_t queued_group, group_q;
   logic [Children-1:0] queued_leaf;
@@ -47,7 +47,7 @@ module primitive_fetch #(
     .rst_ni,
     .push_i(push),
     .data_i({box_ray_i, box_group_i, box_leaf_i}),
-    .space_o(unused_space),
+    .space_o(),
     .pop_i(load),
     .valid_o(queued),
     .data_o({queued_ray, queued_group, queued_leaf})

@@ -72,7 +72,6 @@ module ray_alloc #(
     assign divided       = dividing_q[Latency-1];
 
     for (genvar k = 0; k < 3; k++) begin : gen_word
-      fp_pkg::flags_t unused_flags;
 
       fp_divider #(
         .Arith(Arith),
@@ -85,7 +84,7 @@ module ray_alloc #(
         .rounding_mode_i(fp_pkg::RoundNearestEven),
         .tininess_after_i(1'b0),
         .result_o(inverse[32*k +: 32]),
-        .flags_o(unused_flags)
+        .flags_o()
       );
     end
 
@@ -140,7 +139,7 @@ module ray_alloc #(
 
   // ---- Wait: as many inverses at most as there are rays
 
-  logic inverse_valid, unused_valid, unused_space;
+  logic inverse_valid;
 
   ram_fifo #(
     .Width(Width),
@@ -152,7 +151,7 @@ module ray_alloc #(
     .data_i(ray_i),
     .space_o(space),
     .pop_i(start_fire_i),
-    .valid_o(unused_valid),
+    .valid_o(),
     .data_o(start_ray_o)
   );
   fifo #(
@@ -163,7 +162,7 @@ module ray_alloc #(
     .rst_ni,
     .push_i(divided),
     .data_i(inverse),
-    .space_o(unused_space),
+    .space_o(),
     .pop_i(start_fire_i),
     .valid_o(inverse_valid),
     .data_o(start_inverse_o)

@@ -54,7 +54,6 @@ module slab_setup #(
 
   // ---- a -+ r
 
-  logic [2:0] unused_carry;
 
   adder #(
     .Width(PlaneWidth),
@@ -64,7 +63,7 @@ module slab_setup #(
     .b_i(PlaneWidth'(size_q) ^ {PlaneWidth{is_negative_q}}),
     .carry_i(is_negative_q),
     .sum_o(a),
-    .carry_o(unused_carry[0])
+    .carry_o()
   );
   adder #(
     .Width(PlaneWidth),
@@ -74,7 +73,7 @@ module slab_setup #(
     .b_i(~room),
     .carry_i(1'b1),
     .sum_o(near),
-    .carry_o(unused_carry[1])
+    .carry_o()
   );
   adder #(
     .Width(PlaneWidth),
@@ -84,7 +83,7 @@ module slab_setup #(
     .b_i(room),
     .carry_i(1'b0),
     .sum_o(far),
-    .carry_o(unused_carry[2])
+    .carry_o()
   );
 
   assign near_o = says_nothing_q ? -Far : near;

@@ -67,7 +67,7 @@ module slab_test #(
   // ---- Enter: the largest near plane; leave: the smallest far one
 
   logic [PlaneWidth-1:0] enter, enter_q, complement, leave_q;
-  logic left_before, unused_equal;
+  logic left_before;
 
   max4 #(
     .Width(PlaneWidth),
@@ -97,7 +97,7 @@ module slab_test #(
     .a_i(leave_q),
     .b_i(enter_q),
     .less_o(left_before),
-    .equal_o(unused_equal)
+    .equal_o()
   );
 
   logic entered;

@@ -268,7 +268,7 @@ module triangle_test #(
   logic [95:0] u, dividends, decided_bounds;
   logic [7:0] decided_exponent;
   logic [2*ErrorWidth-1:0] decided_errors;
-  logic unused_miss, hit, doubt, late_hit, late_doubt;
+  logic hit, doubt, late_hit, late_doubt;
   logic [hit_test_pkg::TErrorWidth-1:0] t_error;
 
   hit_dots #(
@@ -300,7 +300,7 @@ module triangle_test #(
     .v_i(v),
     .u_i(u),
     .bounds_i(decided_bounds),
-    .miss_o(unused_miss),
+    .miss_o(),
     .hit_o(hit),
     .doubt_o(doubt),
     .t_error_o(t_error)
@@ -332,7 +332,6 @@ module triangle_test #(
     assign verdict_o.valid = valid_q[Last];
 
     for (genvar k = 0; k < 4; k++) begin : gen_divider
-      fp_pkg::flags_t unused_flags;
 
       fp_divider #(
         .Arith(Arith),
@@ -345,7 +344,7 @@ module triangle_test #(
         .rounding_mode_i(fp_pkg::RoundNearestEven),
         .tininess_after_i(1'b0),
         .result_o(quotients[32*k +: 32]),
-        .flags_o(unused_flags)
+        .flags_o()
       );
     end
   end else begin : gen_turns
@@ -354,7 +353,6 @@ module triangle_test #(
     logic [31:0] quotient;
     logic [Wait*32-1:0] waiting_q;
     logic [(Wait+1)*32-1:0] waiting;  // the latest highest
-    logic unused_valid;
 
     fp_vector_divider #(
       .Arith(Arith),
@@ -368,7 +366,7 @@ module triangle_test #(
       .dividend_i(|since_q[4:1]),
       .word_i(divisor_q),
       .rounding_mode_i(fp_pkg::RoundNearestEven),
-      .valid_o(unused_valid),
+      .valid_o(),
       .result_o(quotient)
     );
     assign waiting = {quotient, waiting_q};

@@ -8,67 +8,90 @@ import unittest.mock
 
 from synth import catalogue, cores, prove, store, tools, unit_proofs
 
-LANES = [(".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])"),
-         (".ready_i(ready_i[n])", ".ready_i(ready_i[Lanes-1-n])"),
-         ("n < Lanes; n++) begin\n        increment", "n < Lanes-1; n++) begin\n        increment"),
-         ("count_q + increment", "count_q | increment")]
-RESULTS = [("assign {report_o, closed_o, found_o", "assign {report_o, found_o, closed_o"),
-           ("push   = report != hit_test_pkg::ReportNone | closed", "push   = closed")]
-HITS = [("(low_q <= {1'b0, old_t_max_q})", "(low_q < {1'b0, old_t_max_q})"),
+# By the proof that refuses them: faults of a module, as a text of it and what stands in its place.
+FAULTS = {
+    "array": ("hit_test_array", [
+        (".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])"),
+        (".ready_i(ready_i[n])", ".ready_i(ready_i[Lanes-1-n])"),
+        ("n < Lanes; n++) begin\n        increment", "n < Lanes-1; n++) begin\n        increment"),
+        ("count_q + increment", "count_q | increment"),
+    ]),
+    "queues.binary16": ("hit_test_pipeline", [
+        ("assign {report_o, closed_o, found_o", "assign {report_o, found_o, closed_o"),
+        ("push   = report != hit_test_pkg::ReportNone | closed", "push   = closed"),
+    ]),
+    "hits": ("closest_hit", [
+        ("(low_q <= {1'b0, old_t_max_q})", "(low_q < {1'b0, old_t_max_q})"),
         ("(old_low_q <= high_q)", "(old_low_q < high_q)"),
         ("old_open ? old_triangle_q : triangle_q", "open ? triangle_q : old_triangle_q"),
         ("forward ? low_q : nearest_low", "is_over_q ? low_q : nearest_low"),
         ("(high_q < {1'b0, old_t_max_q})", "(high_q <= {1'b0, old_t_max_q})"),  # of two hits at one place the later is kept
         ("if (test_q && !same) counts", "if (test_q) counts"),
-        ("here_q < CountWidth'(Queue)", "here_q <= CountWidth'(Queue)")]
-
-LEAVES = [("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
-          ("fire & last & (remaining == '0)", "fire & (remaining == '0)"),
-          ("triangle_o.valid & triangle_ready_i;", "triangle_o.valid;"),
-          ("if (push) leaf_pending_o[box_ray_i] <= 1'b1;", "if (push && !done) leaf_pending_o[box_ray_i] <= 1'b1;")]
-
-CACHE = [("some_free & ~(arrive & fill_set == set & follows[fill_way])", "some_free"),
-         ("changed_q     <= allocate & (asked_set == set)", "changed_q     <= 1'b0"),
-         ("is_changed & (way == WayWidth'(w))", "1'b0"),
-         ("if (arrives) begin", "if (arrives && go) begin"),
-         ("<= follow & head[TargetWidth]", "<= follow"),
-         ("valid_q[fill_entry_i]   <= ~fill_error_i;", "valid_q[fill_entry_i]   <= 1'b1;"),
-         (".requests_i(~pending_ways_q)", ".requests_i({Ways{1'b1}})")]
-
-STACK = [("& (~full | free);", ";"),
-         (" | (level_q == LevelWidth'(Levels))", ""),
-         ("if (free && !full) refused_q <= '0;", "")]
-
-WRITER = [("(axi_wready_i & axi_wlast_o)", "axi_wready_i"),
-          ("next_q[0], 5'd0}", "1'b0, 5'd0}"),
-          ("some_room & address_free", "address_free")]
-
-CONTEXTS = [(".Reserve(1)", ".Reserve(0)"),
-            ("known_q <= ending_o;", "known_q <= some;"),
-            ("active_q & ~busy_i", "active_q")]
-
-# Each with the module and its proof, by name.
-EXACT = [("exact_accumulator", "unit.exact_accumulator_24", [("& sum_q[DigitWidth-1];", "& sum_q[DigitWidth];"),
-                                                             ("$signed(sum_q) >>> DigitWidth", "sum_q >> DigitWidth"),
-                                                             ("DigitWidth - 1 + $clog2", "DigitWidth - 3 + $clog2")]),
-         ("exact_product", "unit.exact_product_6", [("~row[DigitWidth], row", "row[DigitWidth], row"),
-                                                    ("{DigitWidth{negate_i}}) & Ones", "{DigitWidth{1'b0}}) & Ones"),
-                                                    ("Signs | Width'(turned)", "Signs")]),
-         ("exact_sequencer", "unit.exact_sequencer", [("(i_q == x_last_q || j_q == '0)", "(i_q == x_last_q)"),
-                                                      ("else if (from_i_q != x_last_q) begin", "else if (from_i_q == '0) begin"),
-                                                      ("if (start_i | advance) begin\n      term_q", "if (start_i) begin\n      term_q")]),
-         ("exact_slice", "unit.exact_slice", [("DigitWidth * k <= MaxShift", "DigitWidth * k < MaxShift - DigitWidth"),
-                                              ("quotient + 1'b1) ?", "quotient) ?")]),
-         ("exact_exponents", "unit.exact_exponents_3", [("lows[2*n] < lows[2*n+1]", "lows[2*n] > lows[2*n+1]"),
-                                                        ("v < Other || with_other_i", "v < Other"),
-                                                        ("one_shift_o   <= less_q ?", "one_shift_o   <= ~less_q ?"),
-                                                        ("bits + 3 > DigitWidth", "bits + 2 > DigitWidth")])]
+        ("here_q < CountWidth'(Queue)", "here_q <= CountWidth'(Queue)"),
+    ]),
+    "leaves": ("primitive_fetch", [
+        ("<= last ? '0 : number_q + 1'b1", "<= number_q + 1'b1"),
+        ("fire & last & (remaining == '0)", "fire & (remaining == '0)"),
+        ("triangle_o.valid & triangle_ready_i;", "triangle_o.valid;"),
+        ("if (push) leaf_pending_o[box_ray_i] <= 1'b1;", "if (push && !done) leaf_pending_o[box_ray_i] <= 1'b1;"),
+    ]),
+    "cache": ("line_cache", [
+        ("some_free & ~(arrive & fill_set == set & follows[fill_way])", "some_free"),
+        ("changed_q     <= allocate & (asked_set == set)", "changed_q     <= 1'b0"),
+        ("is_changed & (way == WayWidth'(w))", "1'b0"),
+        ("if (arrives) begin", "if (arrives && go) begin"),
+        ("<= follow & head[TargetWidth]", "<= follow"),
+        ("valid_q[fill_entry_i]   <= ~fill_error_i;", "valid_q[fill_entry_i]   <= 1'b1;"),
+        (".requests_i(~pending_ways_q)", ".requests_i({Ways{1'b1}})"),
+    ]),
+    "stack": ("traversal", [
+        ("& (~full | free);", ";"),
+        (" | (level_q == LevelWidth'(Levels))", ""),
+        ("if (free && !full) refused_q <= '0;", ""),
+    ]),
+    "writer_128": ("axi_write_manager", [
+        ("(axi_wready_i & axi_wlast_o)", "axi_wready_i"),
+        ("next_q[0], 5'd0}", "1'b0, 5'd0}"),
+        ("some_room & address_free", "address_free"),
+    ]),
+    "contexts": ("ray_retire", [
+        (".Reserve(1)", ".Reserve(0)"),
+        ("known_q <= ending_o;", "known_q <= some;"),
+        ("active_q & ~busy_i", "active_q"),
+    ]),
+    "exact_accumulator_24": ("exact_accumulator", [
+        ("& sum_q[DigitWidth-1];", "& sum_q[DigitWidth];"),
+        ("$signed(sum_q) >>> DigitWidth", "sum_q >> DigitWidth"),
+        ("DigitWidth - 1 + $clog2", "DigitWidth - 3 + $clog2"),
+    ]),
+    "exact_product_6": ("exact_product", [
+        ("~row[DigitWidth], row", "row[DigitWidth], row"),
+        ("{DigitWidth{negate_i}}) & Ones", "{DigitWidth{1'b0}}) & Ones"),
+        ("Signs | Width'(turned)", "Signs"),
+    ]),
+    "exact_sequencer": ("exact_sequencer", [
+        ("(i_q == x_last_q || j_q == '0)", "(i_q == x_last_q)"),
+        ("else if (from_i_q != x_last_q) begin", "else if (from_i_q == '0) begin"),
+        ("if (start_i | advance) begin\n      term_q", "if (start_i) begin\n      term_q"),
+    ]),
+    "exact_slice": ("exact_slice", [
+        ("DigitWidth * k <= MaxShift", "DigitWidth * k < MaxShift - DigitWidth"),
+        ("quotient + 1'b1) ?", "quotient) ?"),
+    ]),
+    "exact_exponents_3": ("exact_exponents", [
+        ("lows[2*n] < lows[2*n+1]", "lows[2*n] > lows[2*n+1]"),
+        ("v < Other || with_other_i", "v < Other"),
+        ("one_shift_o   <= less_q ?", "one_shift_o   <= ~less_q ?"),
+        ("bits + 3 > DigitWidth", "bits + 2 > DigitWidth"),
+    ]),
+}
 
 
 class ProofsRefuseFaults(unittest.TestCase):
     def refuse(self, module, faults, proof):
         sound = next(catalogue.HW.glob(f"*/{module}.sv"))
         files = cores.files
+        work = next(one.work for one in unit_proofs.ALL if one.name == f"unit.{proof}")
         for before, after in faults:
             self.assertEqual(sound.read_text().count(before), 1, before)
             with self.subTest(after), tempfile.TemporaryDirectory() as folder:
@@ -81,36 +104,11 @@ class ProofsRefuseFaults(unittest.TestCase):
                 with (unittest.mock.patch.object(store, "OUT", pathlib.Path(folder)),
                       unittest.mock.patch.object(cores, "files", with_fault),
                       self.assertRaisesRegex(tools.Refuted, r"synth/proofs/\w+\.sv:\d+")):
-                    proof()
+                    work()
 
-    def test_of_the_array(self):
-        self.refuse("hit_test_array", LANES, unit_proofs.array)
 
-    def test_of_the_results_places(self):
-        self.refuse("hit_test_pipeline", RESULTS, lambda: unit_proofs.queues_results("binary16", 5, 10))
-
-    def test_of_a_rays_hits(self):
-        self.refuse("closest_hit", HITS, unit_proofs.hits_keep_nearest)
-
-    def test_of_leaves(self):
-        self.refuse("primitive_fetch", LEAVES, unit_proofs.leaves_are_asked_for)
-
-    def test_of_the_stack(self):
-        self.refuse("traversal", STACK, unit_proofs.stack_keeps_nodes)
-
-    def test_of_the_writer(self):
-        self.refuse("axi_write_manager", WRITER, lambda: unit_proofs.writer_puts_records(128))
-
-    def test_of_contexts(self):
-        self.refuse("ray_retire", CONTEXTS, unit_proofs.contexts_answer_once)
-
-    def test_of_exact_decisions(self):
-        proofs = {proof.name: proof.work for proof in unit_proofs.ALL}
-        for module, name, faults in EXACT:
-            self.refuse(module, faults, proofs[name])
-
-    def test_of_the_cache(self):
-        self.refuse("line_cache", CACHE, unit_proofs.cache_answers_once)
+for _proof, (_module, _faults) in FAULTS.items():
+    setattr(ProofsRefuseFaults, f"test_{_proof}", lambda self, module=_module, faults=_faults, proof=_proof: self.refuse(module, faults, proof))
 
 
 class Netlists(unittest.TestCase):
