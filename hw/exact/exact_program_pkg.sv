@@ -1,94 +1,143 @@
-// Micro-programs of the exact unit, as exact_pkg::instruction_t. Written by synth/exact_program.py, which says what they do.
+// Micro-programs of the exact unit: the polynomials whose signs it takes, instruction by instruction.
+//
+// An instruction makes a number out of floats or of numbers made before, or takes the sign of one. It may read a digit
+// WriteDelay clocks after the digit's last product (sim/checks/exact_checks.sv watches that), so vectors that do not need
+// each other alternate; where that is not enough an instruction waits until all before it is written (its fence).
+//
+// Limit and Order are of hits, and follow Hit where a request asks for both.
 package exact_program_pkg;
 
-  // verilator lint_off UNUSEDPARAM
-  // No top enters everywhere.
+  // Programs are read from left to right.
+  // verilator lint_off LITENDIAN
+  // verilog_lint: waive-start packed-dimensions-range-ordering
+
+  import exact_pkg::*;
+
+  typedef instruction_t [0:2] vector_t;  // of x, y, z
+  typedef logic [NumberWidth-1:0] place_t;  // of a float in a request, or of a number in memory
+
+  // ---- Places: of vectors those of x
+
+  localparam place_t Origin = place_t'(PlaceOrigin);
+  localparam place_t Triangle = place_t'(PlaceTriangle);  // its corners A, B, C
+  localparam place_t Other = place_t'(PlaceOther);
+  localparam place_t Zero = '1;
+
+  localparam place_t I = 5'd0;  // the direction
+  localparam place_t A = 5'd3;
+  localparam place_t B = 5'd6;
+  localparam place_t C = 5'd9;
+  localparam place_t N = place_t'(Normal);
+  localparam place_t M = place_t'(SecondNormal);
+  localparam place_t T = place_t'(Distance);  // t = T / S
+  localparam place_t S = T + 5'd1;
+  localparam place_t OtherT = place_t'(OtherDistance);
+  localparam place_t OtherS = OtherT + 5'd1;
+
+  // ---- Instructions
+
+  // The number `result`: x0 y0, minus or plus the other products as its kind says (x0 - y0 of floats).
+  function automatic instruction_t number(kind_e kind, place_t result, place_t x0, place_t y0,
+                                          place_t x1 = '0, place_t y1 = '0, place_t x2 = '0,
+                                          place_t y2 = '0);
+    number = '{kind, 1'b0, 1'b0, 1'b0, result, y2, x2, y1, x1, y0, x0};
+  endfunction
+
+  // Floats minus floats.
+  function automatic vector_t difference(place_t result, place_t minuend, place_t subtrahend);
+    for (logic [4:0] k = 0; k < 3; k++) begin
+      difference[k] = number(KindCoordinate, result + k, minuend + k, subtrahend + k);
+    end
+  endfunction
+
+  // The direction as numbers.
+  function automatic vector_t direction();
+    for (logic [4:0] k = 0; k < 3; k++) begin
+      direction[k] = number(KindRay, I + k, place_t'(PlaceDirection) + k, Zero);
+    end
+  endfunction
+
+  function automatic vector_t cross_product(place_t result, place_t x, place_t y);
+    for (logic [4:0] k = 0; k < 3; k++) begin
+      cross_product[k] = number(
+        KindCross,
+        result + k,
+        x + (k + 5'd1) % 5'd3,
+        y + (k + 5'd2) % 5'd3,
+        x + (k + 5'd2) % 5'd3,
+        y + (k + 5'd1) % 5'd3
+      );
+    end
+  endfunction
+
+  function automatic instruction_t dot_product(kind_e kind, place_t result, place_t x, place_t y);
+    dot_product = number(kind, result, x, y, x + 5'd1, y + 5'd1, x + 5'd2, y + 5'd2);
+  endfunction
+
+  // The sign of x . y; `last`: of the program.
+  function automatic instruction_t sign(kind_e kind, place_t x, place_t y, logic last = 1'b0);
+    sign = dot_product(kind, '0, x, y);
+    sign.decide = 1'b1;
+    sign.last = last;
+  endfunction
+
+  // The sign of t - t' times those of both slopes.
+  function automatic instruction_t compare();
+    compare = number(KindCompare, '0, T, OtherS, S, OtherT);
+    compare.decide = 1'b1;
+    compare.fence = 1'b1;
+  endfunction
+
+  // ---- Programs
+
+  localparam int unsigned Length = 77;
   localparam logic [6:0] Hit = 7'd0;
   localparam logic [6:0] Limit = 7'd25;
   localparam logic [6:0] Order = 7'd45;
-  // verilator lint_on UNUSEDPARAM
 
-  function automatic logic [40:0] instruction(logic [6:0] address);
-    case (address)
-      7'd0: instruction = 41'b000_000_00110_00000_00000_00000_00000_00000_01001;
-      7'd1: instruction = 41'b000_000_00111_00000_00000_00000_00000_00001_01010;
-      7'd2: instruction = 41'b000_000_01000_00000_00000_00000_00000_00010_01011;
-      7'd3: instruction = 41'b000_000_01001_00000_00000_00000_00000_00000_01100;
-      7'd4: instruction = 41'b000_000_01010_00000_00000_00000_00000_00001_01101;
-      7'd5: instruction = 41'b000_000_01011_00000_00000_00000_00000_00010_01110;
-      7'd6: instruction = 41'b000_000_00011_00000_00000_00000_00000_00000_00110;
-      7'd7: instruction = 41'b000_000_00100_00000_00000_00000_00000_00001_00111;
-      7'd8: instruction = 41'b000_000_00101_00000_00000_00000_00000_00010_01000;
-      7'd9: instruction = 41'b001_000_00000_00000_00000_00000_00000_11111_00011;
-      7'd10: instruction = 41'b001_000_00001_00000_00000_00000_00000_11111_00100;
-      7'd11: instruction = 41'b001_000_00010_00000_00000_00000_00000_11111_00101;
-      7'd12: instruction = 41'b011_000_01100_00000_00000_01010_01000_01011_00111;
-      7'd13: instruction = 41'b011_000_01101_00000_00000_01011_00110_01001_01000;
-      7'd14: instruction = 41'b011_000_01110_00000_00000_01001_00111_01010_00110;
-      7'd15: instruction = 41'b011_000_01111_00000_00000_00100_01011_00101_01010;
-      7'd16: instruction = 41'b011_000_10000_00000_00000_00101_01001_00011_01011;
-      7'd17: instruction = 41'b011_000_10001_00000_00000_00011_01010_00100_01001;
-      7'd18: instruction = 41'b100_100_00000_01110_00101_01101_00100_01100_00011;
-      7'd19: instruction = 41'b101_100_00000_01110_00010_01101_00001_01100_00000;
-      7'd20: instruction = 41'b011_000_01100_00000_00000_00111_00101_01000_00100;
-      7'd21: instruction = 41'b011_000_01101_00000_00000_01000_00011_00110_00101;
-      7'd22: instruction = 41'b011_000_01110_00000_00000_00110_00100_00111_00011;
-      7'd23: instruction = 41'b101_100_00000_10001_00010_10000_00001_01111_00000;
-      7'd24: instruction = 41'b101_101_00000_01110_00010_01101_00001_01100_00000;
-      7'd25: instruction = 41'b000_000_00110_00000_00000_00000_00000_00110_01001;
-      7'd26: instruction = 41'b000_000_00111_00000_00000_00000_00000_00111_01010;
-      7'd27: instruction = 41'b000_000_01000_00000_00000_00000_00000_01000_01011;
-      7'd28: instruction = 41'b000_000_01001_00000_00000_00000_00000_00110_01100;
-      7'd29: instruction = 41'b000_000_01010_00000_00000_00000_00000_00111_01101;
-      7'd30: instruction = 41'b000_000_01011_00000_00000_00000_00000_01000_01110;
-      7'd31: instruction = 41'b000_000_00011_00000_00000_00000_00000_00000_00110;
-      7'd32: instruction = 41'b000_000_00100_00000_00000_00000_00000_00001_00111;
-      7'd33: instruction = 41'b000_000_00101_00000_00000_00000_00000_00010_01000;
-      7'd34: instruction = 41'b001_000_00000_00000_00000_00000_00000_11111_00011;
-      7'd35: instruction = 41'b001_000_00001_00000_00000_00000_00000_11111_00100;
-      7'd36: instruction = 41'b001_000_00010_00000_00000_00000_00000_11111_00101;
-      7'd37: instruction = 41'b010_000_10100_00000_00000_00000_00000_11111_11000;
-      7'd38: instruction = 41'b011_000_01100_00000_00000_01010_01000_01011_00111;
-      7'd39: instruction = 41'b011_000_01101_00000_00000_01011_00110_01001_01000;
-      7'd40: instruction = 41'b011_000_01110_00000_00000_01001_00111_01010_00110;
-      7'd41: instruction = 41'b010_000_10101_00000_00000_00000_00000_11111_11001;
-      7'd42: instruction = 41'b100_000_10010_01110_00101_01101_00100_01100_00011;
-      7'd43: instruction = 41'b101_000_10011_01110_00010_01101_00001_01100_00000;
-      7'd44: instruction = 41'b110_110_00000_00000_00000_10100_10011_10101_10010;
-      7'd45: instruction = 41'b000_000_00110_00000_00000_00000_00000_00110_01001;
-      7'd46: instruction = 41'b000_000_00111_00000_00000_00000_00000_00111_01010;
-      7'd47: instruction = 41'b000_000_01000_00000_00000_00000_00000_01000_01011;
-      7'd48: instruction = 41'b000_000_01001_00000_00000_00000_00000_00110_01100;
-      7'd49: instruction = 41'b000_000_01010_00000_00000_00000_00000_00111_01101;
-      7'd50: instruction = 41'b000_000_01011_00000_00000_00000_00000_01000_01110;
-      7'd51: instruction = 41'b000_000_00011_00000_00000_00000_00000_00000_00110;
-      7'd52: instruction = 41'b000_000_00100_00000_00000_00000_00000_00001_00111;
-      7'd53: instruction = 41'b000_000_00101_00000_00000_00000_00000_00010_01000;
-      7'd54: instruction = 41'b001_000_00000_00000_00000_00000_00000_11111_00011;
-      7'd55: instruction = 41'b001_000_00001_00000_00000_00000_00000_11111_00100;
-      7'd56: instruction = 41'b001_000_00010_00000_00000_00000_00000_11111_00101;
-      7'd57: instruction = 41'b011_000_01100_00000_00000_01010_01000_01011_00111;
-      7'd58: instruction = 41'b011_000_01101_00000_00000_01011_00110_01001_01000;
-      7'd59: instruction = 41'b011_000_01110_00000_00000_01001_00111_01010_00110;
-      7'd60: instruction = 41'b000_000_00110_00000_00000_00000_00000_01111_10010;
-      7'd61: instruction = 41'b000_000_00111_00000_00000_00000_00000_10000_10011;
-      7'd62: instruction = 41'b000_000_01000_00000_00000_00000_00000_10001_10100;
-      7'd63: instruction = 41'b000_000_01001_00000_00000_00000_00000_01111_10101;
-      7'd64: instruction = 41'b000_000_01010_00000_00000_00000_00000_10000_10110;
-      7'd65: instruction = 41'b000_000_01011_00000_00000_00000_00000_10001_10111;
-      7'd66: instruction = 41'b100_000_10010_01110_00101_01101_00100_01100_00011;
-      7'd67: instruction = 41'b011_000_01111_00000_00000_01010_01000_01011_00111;
-      7'd68: instruction = 41'b011_000_10000_00000_00000_01011_00110_01001_01000;
-      7'd69: instruction = 41'b011_000_10001_00000_00000_01001_00111_01010_00110;
-      7'd70: instruction = 41'b000_000_00011_00000_00000_00000_00000_00000_01111;
-      7'd71: instruction = 41'b000_000_00100_00000_00000_00000_00000_00001_10000;
-      7'd72: instruction = 41'b000_000_00101_00000_00000_00000_00000_00010_10001;
-      7'd73: instruction = 41'b101_000_10011_01110_00010_01101_00001_01100_00000;
-      7'd74: instruction = 41'b100_000_10100_10001_00101_10000_00100_01111_00011;
-      7'd75: instruction = 41'b101_000_10101_10001_00010_10000_00001_01111_00000;
-      7'd76: instruction = 41'b110_110_00000_00000_00000_10100_10011_10101_10010;
-      default: instruction = '0;
-    endcase
-  endfunction
+  // verilog_format: off
+  localparam instruction_t [0:Length-1] Program = {
+    // Hit: the sides on which the ray passes the edges; A, B and C minus the origin
+    difference(B, Triangle + 5'd3, Origin),
+    difference(C, Triangle + 5'd6, Origin),
+    difference(A, Triangle, Origin),
+    direction(),
+    cross_product(N, B, C),
+    cross_product(M, C, A),
+    sign(KindPlane, A, N),
+    sign(KindEdge, I, N),
+    cross_product(N, A, B),
+    sign(KindEdge, I, M),
+    sign(KindEdge, I, N, 1'b1),
+    // Limit: t = A . N / I . N with N = (B - A) x (C - A), against a limit / 1
+    difference(B, Triangle + 5'd3, Triangle),
+    difference(C, Triangle + 5'd6, Triangle),
+    difference(A, Triangle, Origin),
+    direction(),
+    number(KindPair, OtherT, place_t'(PlaceLimit), Zero),
+    cross_product(N, B, C),
+    number(KindPair, OtherS, place_t'(PlaceOne), Zero),
+    dot_product(KindPlane, T, A, N),
+    dot_product(KindEdge, S, I, N),
+    compare(),
+    // Order: t against that of the other triangle
+    difference(B, Triangle + 5'd3, Triangle),
+    difference(C, Triangle + 5'd6, Triangle),
+    difference(A, Triangle, Origin),
+    direction(),
+    cross_product(N, B, C),
+    difference(B, Other + 5'd3, Other),
+    difference(C, Other + 5'd6, Other),
+    dot_product(KindPlane, T, A, N),
+    cross_product(M, B, C),
+    difference(A, Other, Origin),
+    dot_product(KindEdge, S, I, N),
+    dot_product(KindPlane, OtherT, A, M),
+    dot_product(KindEdge, OtherS, I, M),
+    compare()
+  };
+  // verilog_format: on
+  // verilog_lint: waive-stop packed-dimensions-range-ordering
+  // verilator lint_on LITENDIAN
 
 endpackage

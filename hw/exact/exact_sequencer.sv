@@ -50,7 +50,7 @@ module exact_sequencer #(
   logic [CountWidth-1:0] x_last_d, y_last_d, last_d, x_last_q, y_last_q, last_q;
   logic [CountWidth-1:0] normal_digits, fraction_digits;
 
-  assign fetched = exact_program_pkg::instruction(next_q);
+  assign fetched = exact_program_pkg::Program[next_q];
   assign normal_digits = coordinate_digits_i << 1;
   assign fraction_digits = normal_digits
       + ((coordinate_digits_i > direction_digits_i) ? coordinate_digits_i : direction_digits_i);

@@ -193,3 +193,15 @@ bind ray_core stream_checks #(
   .ready(result_ready_i),
   .data (result_o)
 );
+bind exact_unit exact_checks #(
+  .AddressWidth($bits(x_address))
+) u_program_checks (
+  .clk_i,
+  .rst_ni,
+  .reads(valid & (step.kind >= exact_pkg::KindCross) & ~step.empty),
+  .x_address,
+  .y_address,
+  .writes(valid_q & {step_4_q.closes & ~step_4_q.down, step_3_q.closes & ~step_3_q.down,
+                     step_2_q.closes & ~step_2_q.down, step_1_q.closes & ~step_1_q.down}),
+  .addresses({result_4_q, result_3_q, result_2_q, result_1_q})
+);
