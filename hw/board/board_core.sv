@@ -2,7 +2,9 @@
 //
 // core_link's header has the words; sdram_controller's says what the SDRAM is and what clk_i may be. Memory has no errors: a
 // host sends no tree that names lines which it has not sent.
-module board_core #(
+module board_core
+  import ray_core_pkg::*;
+#(
   parameter int unsigned ClockMhz      = 40,
   parameter int unsigned Rays          = 16,
   parameter int unsigned Depth         = 4,
@@ -16,22 +18,20 @@ module board_core #(
   input  logic        word_valid_i,
   output logic        word_ready_o,
   input  logic [31:0] word_i,
-  input  logic        break_i,  // see core_link
+  input  logic        break_i,          // see core_link
   output logic        word_valid_o,
   input  logic        word_ready_i,
   output logic [31:0] word_o,
   output logic        sdram_ras_no,
   output logic        sdram_cas_no,
   output logic        sdram_we_no,
-  output logic [1:0]  sdram_bank_o,
+  output logic [ 1:0] sdram_bank_o,
   output logic [12:0] sdram_address_o,
   output logic        sdram_drive_o,
   output logic [15:0] sdram_data_o,
   input  logic [15:0] sdram_data_i
 );
 
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth;
-  localparam int unsigned LineWidth = ray_core_pkg::LineWidth;
   localparam int unsigned ReadIdWidth = 1 + $clog2(
     NodeLines > TriangleLines ? NodeLines : TriangleLines
   );
@@ -41,8 +41,8 @@ module board_core #(
   logic [AddressWidth-1:0] lines, read_line, write_line;
   logic [ReadIdWidth-1:0] read_id, line_id;
   logic [LineWidth-1:0] line, write_data;
-  ray_core_pkg::ray_t ray;
-  ray_core_pkg::result_t result;
+  ray_t ray;
+  result_t result;
 
   core_link u_link (
     .clk_i,

@@ -5,45 +5,46 @@
 //   2     memory has changed: it has so many lines, and the caches are emptied
 //   4-7   a ray: any_hit in bit 28, no_cull in bit 29; its tag, source_id, skip_id, t_max, and x, y, z of direction and origin
 //         follow, 10 words
-// All others say nothing. A result is 8 words, ray_core_pkg::result_t from bit 0 on, zeros above it.
+// All others say nothing. A result is 8 words, result_t from bit 0 on, zeros above it.
 //
 // The host sends lines, and says that memory has changed, while no ray is in the core; both wait until no line is
 // on its way to it. Words: valid/ready.
 //
 // A break (break_i, for a clock) ends the host's session: the next word is a message's first, and the rays in the core are
 // aborted. Of their results only the one that is being sent goes out. Words are accepted again when no ray is left.
-module core_link (
+module core_link
+  import ray_core_pkg::*;
+(
   input  logic                       clk_i,
   input  logic                       rst_ni,
   // words from the host
   input  logic                       word_valid_i,
   output logic                       word_ready_o,
-  input  logic [31:0]                word_i,
+  input  logic    [            31:0] word_i,
   input  logic                       break_i,
   // words to the host
   output logic                       word_valid_o,
   input  logic                       word_ready_i,
-  output logic [31:0]                word_o,
+  output logic    [            31:0] word_o,
   // lines to memory
   output logic                       write_valid_o,
   input  logic                       write_ready_i,
-  output logic [ray_core_pkg::AddressWidth-1:0] write_line_o,
-  output logic [ray_core_pkg::LineWidth-1:0] write_data_o,
+  output logic    [AddressWidth-1:0] write_line_o,
+  output logic    [   LineWidth-1:0] write_data_o,
   // the core
   output logic                       invalidate_o,
   output logic                       abort_o,
   input  logic                       outstanding_i,
-  output logic [ray_core_pkg::AddressWidth-1:0] lines_o,
+  output logic    [AddressWidth-1:0] lines_o,
   output logic                       ray_valid_o,
   input  logic                       ray_ready_i,
-  output ray_core_pkg::ray_t         ray_o,
+  output ray_t                       ray_o,
   input  logic                       result_valid_i,
   output logic                       result_ready_o,
-  input  ray_core_pkg::result_t      result_i
+  input  result_t                    result_i
 );
 
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth;
-  localparam int unsigned LineWords = ray_core_pkg::LineWidth / 32;
+  localparam int unsigned LineWords = LineWidth / 32;
   localparam int unsigned RayWords = 10;
   localparam int unsigned ResultWords = 8;
   localparam logic [3:0] KindLine = 4'd1;
@@ -132,7 +133,7 @@ module core_link (
   assign word_o         = result_q[31:0];
   assign result_load    = result_valid_i & ~result_left_q[0] & ~abort_o;
   assign result_ready_o = ~result_left_q[0] | abort_o;
-  assign ended = result_valid_i & result_ready_o & (result_i.kind == ray_core_pkg::ResultEnd);
+  assign ended = result_valid_i & result_ready_o & (result_i.kind == ResultEnd);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) result_left_q <= '0;

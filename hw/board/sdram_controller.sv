@@ -9,11 +9,12 @@
 //
 // Latency: 36 clocks at 40 MHz, from the clock that takes a read to line_valid_o. Throughput: a line in 37 clocks.
 // Source: data sheets of MT48LC16M16A2 (Micron) and AS4C16M16 (Alliance): 4 banks, 8,192 rows, 512 columns, 256 Mbit.
-module sdram_controller #(
+module sdram_controller
+  import ray_core_pkg::*;
+#(
   parameter int unsigned ClockMhz = 40,
   parameter int unsigned IdWidth  = 7,
-  localparam int unsigned NumberWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned LineWidth = ray_core_pkg::LineWidth
+  localparam int unsigned NumberWidth = AddressWidth
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
@@ -23,25 +24,25 @@ module sdram_controller #(
   // verilator lint_off UNUSEDSIGNAL
   // Memory has no more lines.
   input  logic [NumberWidth-1:0] read_line_i,
-  input  logic [IdWidth-1:0]     read_id_i,
+  input  logic [    IdWidth-1:0] read_id_i,
   output logic                   line_valid_o,
   input  logic                   line_ready_i,
-  output logic [IdWidth-1:0]     line_id_o,
-  output logic [LineWidth-1:0]   line_o,
+  output logic [    IdWidth-1:0] line_id_o,
+  output logic [  LineWidth-1:0] line_o,
   input  logic                   write_valid_i,
   output logic                   write_ready_o,
   input  logic [NumberWidth-1:0] write_line_i,
   // verilator lint_on UNUSEDSIGNAL
-  input  logic [LineWidth-1:0]   write_data_i,
+  input  logic [  LineWidth-1:0] write_data_i,
   // the SDRAM's pins
   output logic                   sdram_ras_no,
   output logic                   sdram_cas_no,
   output logic                   sdram_we_no,
-  output logic [1:0]             sdram_bank_o,
-  output logic [12:0]            sdram_address_o,
-  output logic                   sdram_drive_o,  // data_o goes out
-  output logic [15:0]            sdram_data_o,
-  input  logic [15:0]            sdram_data_i
+  output logic [            1:0] sdram_bank_o,
+  output logic [           12:0] sdram_address_o,
+  output logic                   sdram_drive_o,    // data_o goes out
+  output logic [           15:0] sdram_data_o,
+  input  logic [           15:0] sdram_data_i
 );
 
   // ---- Times in clocks, rounded up

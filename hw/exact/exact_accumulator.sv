@@ -12,22 +12,24 @@
 //              is not has room for another column: |sum| < 2**(2 DigitWidth + log2 Products).
 //
 // A term comes in two words, sum_i + carry_i modulo 2**Width, at one clock edge; with the next, all outputs have it.
-module exact_accumulator #(
+module exact_accumulator
+  import exact_pkg::*;
+#(
   parameter int unsigned DigitWidth = 48,
   parameter int unsigned Products = 36,  // in a column, at most
   parameter int unsigned Arith = arith_pkg::Graded,
-  localparam int unsigned Width = exact_pkg::sum_width(DigitWidth, Products)
+  localparam int unsigned Width = sum_width(DigitWidth, Products)
 ) (
   input  logic                  clk_i,
-  input  logic                  opens_i,  // a column
-  input  logic                  first_i,  // of them
+  input  logic                  opens_i,     // a column
+  input  logic                  first_i,     // of them
   input  logic                  down_i,
-  input  logic [Width-1:0]      sum_i,
-  input  logic [Width-1:0]      carry_i,
+  input  logic [     Width-1:0] sum_i,
+  input  logic [     Width-1:0] carry_i,
   output logic [DigitWidth-1:0] digit_o,
   output logic                  negative_o,
   output logic                  zero_o,
-  output logic                  sure_o          // of its sign, whatever the columns below
+  output logic                  sure_o       // of its sign, whatever the columns below
 );
 
   localparam int unsigned SureBit = DigitWidth - 1 + $clog2(Products);

@@ -6,35 +6,36 @@
 // theirs below exact_pkg's bound: see digits_of.
 //
 // The exponents come 2 clocks after the request, their digits 3, what is left 4 clocks after.
-module exact_exponents #(
+module exact_exponents
+  import exact_pkg::*;
+#(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned DigitWidth = 48,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,
-  localparam int unsigned CountWidth = exact_pkg::CountWidth,
   localparam int unsigned Significand = FracWidth + 1,
-  localparam int unsigned Gap = exact_pkg::largest_gap(ExpWidth, Significand),
+  localparam int unsigned Gap = largest_gap(ExpWidth, Significand),
   localparam int unsigned ShiftWidth = $clog2(Gap + 1)
 ) (
-  input  logic                               clk_i,
-  input  logic [exact_pkg::Floats*Width-1:0] floats_i,
-  input  logic                               with_other_i,
-  output logic [ExpWidth-1:0]                coordinate_exponent_o,
-  output logic [ExpWidth-1:0]                direction_exponent_o,
-  output logic [CountWidth-1:0]              coordinate_digits_o,
-  output logic [CountWidth-1:0]              direction_digits_o,
-  output logic [ShiftWidth-1:0]              one_shift_o,
-  output logic [ShiftWidth-1:0]              limit_shift_o,
-  output logic [CountWidth-1:0]              pair_digits_o
+  input  logic                    clk_i,
+  input  logic [Floats*Width-1:0] floats_i,
+  input  logic                    with_other_i,
+  output logic [    ExpWidth-1:0] coordinate_exponent_o,
+  output logic [    ExpWidth-1:0] direction_exponent_o,
+  output logic [  CountWidth-1:0] coordinate_digits_o,
+  output logic [  CountWidth-1:0] direction_digits_o,
+  output logic [  ShiftWidth-1:0] one_shift_o,
+  output logic [  ShiftWidth-1:0] limit_shift_o,
+  output logic [  CountWidth-1:0] pair_digits_o
 );
 
-  localparam int unsigned Least = exact_pkg::digits_of(0, Significand, DigitWidth);
-  localparam int unsigned PairDigits = exact_pkg::digits_of(Gap, Significand, DigitWidth);
+  localparam int unsigned Least = digits_of(0, Significand, DigitWidth);
+  localparam int unsigned PairDigits = digits_of(Gap, Significand, DigitWidth);
   // The exponent of a float whose last bit is 1.
   localparam int unsigned Unit = (1 << (ExpWidth - 1)) - 1 + FracWidth;
-  localparam int unsigned Vectors = exact_pkg::PlaceLimit / 3;
+  localparam int unsigned Vectors = PlaceLimit / 3;
 
-  // Of numbers of `bits` bits, shifted by up to `spread`: exact_pkg::digits_of, for what is not known before.
+  // Of numbers of `bits` bits, shifted by up to `spread`: digits_of, for what is not known before.
   function automatic logic [CountWidth-1:0] count(logic [ShiftWidth-1:0] spread, int unsigned bits);
     count = CountWidth'(Least);
     for (int unsigned k = Least; k < PairDigits; k++) begin
@@ -76,8 +77,8 @@ module exact_exponents #(
 
   // ---- Of all coordinates, and of the direction
 
-  localparam int unsigned Direction = exact_pkg::PlaceDirection / 3;
-  localparam int unsigned Other = exact_pkg::PlaceOther / 3;
+  localparam int unsigned Direction = PlaceDirection / 3;
+  localparam int unsigned Other = PlaceOther / 3;
 
   logic [ExpWidth-1:0] lows[2*Vectors], highs[2*Vectors];  // trees: 2 n and 2 n + 1 below n
   logic [ExpWidth-1:0] coordinate_high_q, direction_high_q;
@@ -118,7 +119,7 @@ module exact_exponents #(
 
   assign one_exponent = (ShiftWidth + 1)'(coordinate_exponent_o) + (ShiftWidth + 1)'(Unit);
   assign limit_exponent = (ShiftWidth + 1)'(direction_exponent_o) + (ShiftWidth + 1)'(
-      effective(floats_i[Width*exact_pkg::PlaceLimit+FracWidth+:ExpWidth]));
+      effective(floats_i[Width*PlaceLimit+FracWidth+:ExpWidth]));
   assign less = one_exponent < limit_exponent;
 
   always_ff @(posedge clk_i) begin

@@ -8,35 +8,35 @@
 //
 // start_i: the digits' counts are there, but pair_digits_i, which has another clock; the first step goes out in the
 // clock after.
-module exact_sequencer #(
+module exact_sequencer
+  import exact_pkg::*;
+#(
   parameter int unsigned Digits = 6,  // of a difference, at most
-  localparam int unsigned CountWidth = exact_pkg::CountWidth,
-  localparam int unsigned NumberWidth = exact_pkg::NumberWidth,
-  localparam int unsigned AddressWidth = $clog2(exact_pkg::memory_depth(Digits))
+  localparam int unsigned AddressWidth = $clog2(memory_depth(Digits))
 ) (
-  input  logic                    clk_i,
-  input  logic                    rst_ni,
+  input logic clk_i,
+  input logic rst_ni,
   // a request
-  input  logic                    begin_i,
-  input  logic                    hit_i,
-  input  logic [1:0]              against_i,
-  input  logic                    start_i,
-  input  logic [CountWidth-1:0]   coordinate_digits_i,
-  input  logic [CountWidth-1:0]   direction_digits_i,
-  input  logic [CountWidth-1:0]   pair_digits_i,
+  input logic begin_i,
+  input logic hit_i,
+  input logic [1:0] against_i,
+  input logic start_i,
+  input logic [CountWidth-1:0] coordinate_digits_i,
+  input logic [CountWidth-1:0] direction_digits_i,
+  input logic [CountWidth-1:0] pair_digits_i,
   // what is known meanwhile
-  input  logic                    written_i,
-  input  logic                    stop_i,
-  input  logic [6:0]              stop_address_i,
-  output logic                    stopped_o,  // all steps on their way are of that instruction
-  input  logic                    abort_i,
+  input logic written_i,
+  input logic stop_i,
+  input logic [6:0] stop_address_i,
+  output logic stopped_o,  // all steps on their way are of that instruction
+  input logic abort_i,
   // a step
-  output logic                    valid_o,
-  output exact_pkg::step_t        step_o,
-  output logic [6:0]              address_o,
-  output logic [CountWidth-1:0]   x_digit_o,
-  output logic [NumberWidth-1:0]  x_place_o,
-  output logic [NumberWidth-1:0]  y_place_o,
+  output logic valid_o,
+  output step_t step_o,
+  output logic [6:0] address_o,
+  output logic [CountWidth-1:0] x_digit_o,
+  output logic [NumberWidth-1:0] x_place_o,
+  output logic [NumberWidth-1:0] y_place_o,
   output logic [AddressWidth-1:0] x_address_o,
   output logic [AddressWidth-1:0] y_address_o,
   output logic [AddressWidth-1:0] result_address_o
@@ -44,7 +44,7 @@ module exact_sequencer #(
 
   // ---- Fetch: the next instruction, and how far its digits go
 
-  exact_pkg::instruction_t fetched, instruction_q;
+  instruction_t fetched, instruction_q;
   logic [6:0] compares, next_q, next_d, address_q;
   logic more_q, more_d, busy_q, advance, finishes;
   logic [CountWidth-1:0] x_last_d, y_last_d, last_d, x_last_q, y_last_q, last_q;
@@ -60,37 +60,37 @@ module exact_sequencer #(
     y_last_d = '0;
     last_d   = fraction_digits - 1'b1;
     case (fetched.kind)
-      exact_pkg::KindCoordinate: last_d = coordinate_digits_i - 1'b1;
-      exact_pkg::KindRay: begin
+      KindCoordinate: last_d = coordinate_digits_i - 1'b1;
+      KindRay: begin
         x_last_d = direction_digits_i - 1'b1;
         last_d   = direction_digits_i - 1'b1;
       end
-      exact_pkg::KindPair: begin
+      KindPair: begin
         x_last_d = pair_digits_i - 1'b1;
         last_d   = pair_digits_i - 1'b1;
       end
-      exact_pkg::KindCross: begin
+      KindCross: begin
         y_last_d = coordinate_digits_i - 1'b1;
         last_d   = normal_digits - 1'b1;
       end
-      exact_pkg::KindPlane: y_last_d = normal_digits - 1'b1;
-      exact_pkg::KindEdge: begin
+      KindPlane: y_last_d = normal_digits - 1'b1;
+      KindEdge: begin
         x_last_d = direction_digits_i - 1'b1;
         y_last_d = normal_digits - 1'b1;
       end
       default: begin
         x_last_d = fraction_digits - 1'b1;
         y_last_d = pair_digits_i - 1'b1;
-        if (against_i == exact_pkg::AgainstOther) y_last_d = fraction_digits - 1'b1;
+        if (against_i == AgainstOther) y_last_d = fraction_digits - 1'b1;
       end
     endcase
   end
 
   // What follows the instruction that is fetched.
-  assign compares = (against_i == exact_pkg::AgainstLimit) ? exact_program_pkg::Limit
+  assign compares = (against_i == AgainstLimit) ? exact_program_pkg::Limit
                                                            : exact_program_pkg::Order;
-  assign finishes = (fetched.kind == exact_pkg::KindCompare)
-                  | (fetched.last & (against_i == exact_pkg::AgainstNothing));
+  assign finishes = (fetched.kind == KindCompare)
+                  | (fetched.last & (against_i == AgainstNothing));
   assign next_d = !fetched.last ? next_q + 1'b1
                 : compares;
   assign more_d = ~finishes;
@@ -125,10 +125,10 @@ module exact_sequencer #(
   logic beyond_q, beyond_d, first_q;
   logic single, is_last_term, closes, ends, fire;
 
-  assign single = instruction_q.kind < exact_pkg::KindCross;
+  assign single = instruction_q.kind < KindCross;
   assign terms_last = single ? 2'd0
-                    : (instruction_q.kind == exact_pkg::KindPlane
-                       || instruction_q.kind == exact_pkg::KindEdge) ? 2'd2 : 2'd1;
+                    : (instruction_q.kind == KindPlane
+                       || instruction_q.kind == KindEdge) ? 2'd2 : 2'd1;
   assign is_last_term = term_q == terms_last;
   assign closes = beyond_q | (is_last_term & (i_q == x_last_q || j_q == '0));
   assign ends = instruction_q.decide ? from_i_q == '0 && from_j_q == '0 : column_q == last_q;
@@ -184,8 +184,8 @@ module exact_sequencer #(
 
   function automatic logic [AddressWidth-1:0] first_digit(logic [NumberWidth-1:0] number);
     first_digit = '0;
-    for (int unsigned n = 0; n < exact_pkg::Numbers; n++) begin
-      if (32'(number) == n) first_digit = AddressWidth'(exact_pkg::number_base(n, Digits));
+    for (int unsigned n = 0; n < Numbers; n++) begin
+      if (32'(number) == n) first_digit = AddressWidth'(number_base(n, Digits));
     end
   endfunction
 
@@ -204,7 +204,7 @@ module exact_sequencer #(
     step_o.kind   = instruction_q.kind;
     step_o.down   = instruction_q.decide;
     step_o.last   = instruction_q.last;
-    step_o.second = 32'(instruction_q.y0) == exact_pkg::SecondNormal;
+    step_o.second = 32'(instruction_q.y0) == SecondNormal;
     step_o.result = instruction_q.result;
     step_o.negate = terms_last == 2'd1 && term_q == 2'd1;
     step_o.empty  = beyond_q;

@@ -1,17 +1,18 @@
 // A digit of a shifted significand: digit_o is word digit_i, of DigitWidth bits, of significand_i 2**shift_i. Combinational.
 //
 // shift_i is at most MaxShift; any digit_i.
-module exact_slice #(
+module exact_slice
+  import exact_pkg::*;
+#(
   parameter int unsigned SignificandWidth = 24,
   parameter int unsigned MaxShift = 405,
   parameter int unsigned DigitWidth = 48,
-  localparam int unsigned ShiftWidth = $clog2(MaxShift + 1),
-  localparam int unsigned CountWidth = exact_pkg::CountWidth
+  localparam int unsigned ShiftWidth = $clog2(MaxShift + 1)
 ) (
   input  logic [SignificandWidth-1:0] significand_i,
-  input  logic [ShiftWidth-1:0]       shift_i,
-  input  logic [CountWidth-1:0]       digit_i,
-  output logic [DigitWidth-1:0]       digit_o
+  input  logic [      ShiftWidth-1:0] shift_i,
+  input  logic [      CountWidth-1:0] digit_i,
+  output logic [      DigitWidth-1:0] digit_o
 );
 
   if (SignificandWidth > DigitWidth) begin : gen_check

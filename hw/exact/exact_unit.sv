@@ -16,37 +16,37 @@
 // order is of hits: for others it is the sign of that formula. hit_i, against_i: what is asked. hit_o is high where it
 // was not asked; order_o is 0 then, and for what is not hit. One request at a time: ready_o is high between an answer
 // and the next request.
-module exact_unit #(
+module exact_unit
+  import exact_pkg::*;
+#(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned DigitWidth = 48,  // see exact_product and exact_slice
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
-  input  logic                               clk_i,
-  input  logic                               rst_ni,
-  input  logic                               valid_i,
-  output logic                               ready_o,
-  input  logic                               hit_i,
-  input  logic [1:0]                         against_i,  // exact_pkg::against_e
-  input  logic [exact_pkg::Floats*Width-1:0] floats_i,   // exact_pkg's places
-  output logic                               valid_o,
-  input  logic                               ready_i,
-  output logic                               hit_o,
-  output exact_pkg::sign_t                   order_o
+  input  logic                     clk_i,
+  input  logic                     rst_ni,
+  input  logic                     valid_i,
+  output logic                     ready_o,
+  input  logic                     hit_i,
+  input  logic  [             1:0] against_i,  // against_e
+  input  logic  [Floats*Width-1:0] floats_i,   // exact_pkg's places
+  output logic                     valid_o,
+  input  logic                     ready_i,
+  output logic                     hit_o,
+  output sign_t                    order_o
 );
 
   localparam int unsigned Significand = FracWidth + 1;
-  localparam int unsigned Digits = exact_pkg::difference_digits(ExpWidth, Significand, DigitWidth);
-  localparam int unsigned Depth = exact_pkg::memory_depth(Digits);
+  localparam int unsigned Digits = difference_digits(ExpWidth, Significand, DigitWidth);
+  localparam int unsigned Depth = memory_depth(Digits);
   localparam int unsigned AddressWidth = $clog2(Depth);
-  localparam int unsigned CountWidth = exact_pkg::CountWidth;
-  localparam int unsigned NumberWidth = exact_pkg::NumberWidth;
-  localparam int unsigned MaxShift = exact_pkg::largest_gap(ExpWidth, Significand);
+  localparam int unsigned MaxShift = largest_gap(ExpWidth, Significand);
   localparam int unsigned ShiftWidth = $clog2(MaxShift + 1);
-  localparam int unsigned PlaceBits = exact_pkg::PlaceWidth;
+  localparam int unsigned PlaceBits = PlaceWidth;
   localparam int unsigned Products = 6 * Digits;  // in a column, at most
-  localparam int unsigned SumWidth = exact_pkg::sum_width(DigitWidth, Products);
+  localparam int unsigned SumWidth = sum_width(DigitWidth, Products);
   localparam int unsigned Stages = 4;
 
   // ---- Request: the words, then their exponents
@@ -54,7 +54,7 @@ module exact_unit #(
   logic idle_q, done, asks_hit_q;
   logic [1:0] against_q;
   logic [3:0] starts_q;
-  logic [exact_pkg::Floats*Width-1:0] floats_q;
+  logic [Floats*Width-1:0] floats_q;
 
   assign ready_o = idle_q;
 
@@ -86,7 +86,7 @@ module exact_unit #(
   ) u_exponents (
     .clk_i,
     .floats_i             (floats_q),
-    .with_other_i         (against_q == exact_pkg::AgainstOther),
+    .with_other_i         (against_q == AgainstOther),
     .coordinate_exponent_o(coordinate_exponent),
     .direction_exponent_o (direction_exponent),
     .coordinate_digits_o  (coordinate_digits),
@@ -99,10 +99,10 @@ module exact_unit #(
   // ---- Issue
 
   logic [Stages:1] valid_q;  // of the steps in each stage
-  exact_pkg::step_t step, step_1_q, step_2_q, step_3_q;
+  step_t step, step_1_q, step_2_q, step_3_q;
   // verilator lint_off UNUSEDSIGNAL
   // What only the sum asks for.
-  exact_pkg::step_t step_4_q;
+  step_t step_4_q;
   // verilator lint_on UNUSEDSIGNAL
   logic [6:0] address, address_1_q, address_2_q, address_3_q, address_4_q;
   logic [AddressWidth-1:0] result, result_1_q, result_2_q, result_3_q, result_4_q;
@@ -139,10 +139,10 @@ module exact_unit #(
     .result_address_o   (result)
   );
 
-  function automatic logic [Width-1:0] word(logic [exact_pkg::Floats*Width-1:0] words,
+  function automatic logic [Width-1:0] word(logic [Floats*Width-1:0] words,
                                             logic [PlaceBits-1:0] place);
     word = '0;
-    for (int unsigned k = 0; k < exact_pkg::Floats; k++) begin
+    for (int unsigned k = 0; k < Floats; k++) begin
       if (32'(place) == k) word = words[Width*k+:Width];
     end
   endfunction
@@ -165,8 +165,8 @@ module exact_unit #(
     x_digit_1_q <= x_digit;
     x_word_q    <= word(floats_q, x_place);
     y_word_q    <= word(floats_q, y_place);
-    one_q       <= 32'(x_place) == exact_pkg::PlaceOne;
-    limit_q     <= 32'(x_place) == exact_pkg::PlaceLimit;
+    one_q       <= 32'(x_place) == PlaceOne;
+    limit_q     <= 32'(x_place) == PlaceLimit;
   end
 
   // ---- Stage 1: digits of numbers, from memory; digits of floats
@@ -210,8 +210,8 @@ module exact_unit #(
     significand = {float[FracWidth+:ExpWidth] != '0, float[FracWidth-1:0]};
   endfunction
 
-  assign loads = step_1_q.kind < exact_pkg::KindCross;
-  assign unit = (step_1_q.kind == exact_pkg::KindRay) ? ShiftWidth'(direction_exponent)
+  assign loads = step_1_q.kind < KindCross;
+  assign unit = (step_1_q.kind == KindRay) ? ShiftWidth'(direction_exponent)
                                                       : ShiftWidth'(coordinate_exponent);
   assign x_shift = one_q ? one_shift : limit_q ? limit_shift
                  : exponent(x_word_q[FracWidth+:ExpWidth]) - unit;
@@ -302,7 +302,7 @@ module exact_unit #(
 
   // ---- Stage 4: a digit is written; the sign of a number is that of its highest digit
 
-  logic [exact_pkg::Numbers-1:0] negative_q, nonzero_q;
+  logic [Numbers-1:0] negative_q, nonzero_q;
 
   assign write = valid_q[4] & step_4_q.closes & ~step_4_q.down;
 
@@ -316,7 +316,7 @@ module exact_unit #(
   // ---- Stage 4: a sign is known
 
   logic decided_q, was_decided;
-  exact_pkg::sign_t sum_sign, tie_sign, sign, plane_q;
+  sign_t sum_sign, tie_sign, sign, plane_q;
 
   assign was_decided = decided_q & ~step_4_q.first;
   assign stop = valid_q[4] & step_4_q.down & step_4_q.closes & ~was_decided
@@ -330,37 +330,37 @@ module exact_unit #(
   always_comb begin
     tie_sign = '0;
     for (int unsigned k = 3; k > 0; k--) begin
-      if (step_4_q.second && nonzero_q[exact_pkg::SecondNormal+k-1]) begin
-        tie_sign = {negative_q[exact_pkg::SecondNormal+k-1], 1'b1};
+      if (step_4_q.second && nonzero_q[SecondNormal+k-1]) begin
+        tie_sign = {negative_q[SecondNormal+k-1], 1'b1};
       end
-      if (!step_4_q.second && nonzero_q[exact_pkg::Normal+k-1]) begin
-        tie_sign = {negative_q[exact_pkg::Normal+k-1], 1'b1};
+      if (!step_4_q.second && nonzero_q[Normal+k-1]) begin
+        tie_sign = {negative_q[Normal+k-1], 1'b1};
       end
     end
   end
   assign sum_sign = {sum_negative & ~sum_zero, ~sum_zero};
-  assign sign = (step_4_q.kind == exact_pkg::KindEdge && sum_zero) ? tie_sign : sum_sign;
+  assign sign = (step_4_q.kind == KindEdge && sum_zero) ? tie_sign : sum_sign;
 
   // ---- The answer
 
   logic misses, hits, compares, order_negative, order_nonzero;
 
-  assign misses = stop & ((step_4_q.kind == exact_pkg::KindPlane) ? sum_zero
-                          : (step_4_q.kind == exact_pkg::KindEdge) & (sign != plane_q));
-  assign hits = stop & ~misses & step_4_q.last & (against_q == exact_pkg::AgainstNothing);
-  assign compares = stop & (step_4_q.kind == exact_pkg::KindCompare);
+  assign misses = stop & ((step_4_q.kind == KindPlane) ? sum_zero
+                          : (step_4_q.kind == KindEdge) & (sign != plane_q));
+  assign hits = stop & ~misses & step_4_q.last & (against_q == AgainstNothing);
+  assign compares = stop & (step_4_q.kind == KindCompare);
   assign done = misses | hits | compares;
-  assign order_nonzero = sign.nonzero & nonzero_q[exact_pkg::Distance]
-                       & nonzero_q[exact_pkg::OtherDistance];
-  assign order_negative = sign.negative ^ negative_q[exact_pkg::Distance]
-                        ^ negative_q[exact_pkg::OtherDistance];
+  assign order_nonzero = sign.nonzero & nonzero_q[Distance]
+                       & nonzero_q[OtherDistance];
+  assign order_negative = sign.negative ^ negative_q[Distance]
+                        ^ negative_q[OtherDistance];
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_o <= 1'b0;
     else valid_o <= done | (valid_o & ~ready_i);
   end
   always_ff @(posedge clk_i) begin
-    if (stop && step_4_q.kind == exact_pkg::KindPlane) plane_q <= sum_sign;
+    if (stop && step_4_q.kind == KindPlane) plane_q <= sum_sign;
     if (done) begin
       hit_o   <= ~misses;
       order_o <= compares ? {order_negative & order_nonzero, order_nonzero} : '0;

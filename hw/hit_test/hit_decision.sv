@@ -11,27 +11,29 @@
 //
 // t_error_o: see hit_test_pkg; means something for a hit only.
 // Combinational.
-module hit_decision #(
+module hit_decision
+  import hit_test_pkg::*;
+#(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
-  input  logic [Width-1:0]                     d_i,
-  input  logic [ExpWidth-1:0]                  normal_exponent_i,  // largest field of N's three
-  input  logic [Width-1:0]                     v_i,
-  input  logic [3*Width-1:0]                   u_i,
-  input  logic [3*Width-1:0]                   bounds_i,
-  output logic                                 miss_o,
-  output logic                                 hit_o,
-  output logic                                 doubt_o,
-  output logic [hit_test_pkg::TErrorWidth-1:0] t_error_o
+  input  logic [      Width-1:0] d_i,
+  input  logic [   ExpWidth-1:0] normal_exponent_i,  // largest field of N's three
+  input  logic [      Width-1:0] v_i,
+  input  logic [    3*Width-1:0] u_i,
+  input  logic [    3*Width-1:0] bounds_i,
+  output logic                   miss_o,
+  output logic                   hit_o,
+  output logic                   doubt_o,
+  output logic [TErrorWidth-1:0] t_error_o
 );
 
   if (FracWidth < 7 || FracWidth > 26) begin : gen_check
     $error("hit_decision: expected a FracWidth of 7 to 26, for which t's bound is derived");
   end
 
-  localparam int unsigned MaxGrazing = hit_test_pkg::max_grazing(FracWidth);
+  localparam int unsigned MaxGrazing = max_grazing(FracWidth);
   localparam logic [Width-2:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
 
   logic sign, d_zero, d_nan;
@@ -61,7 +63,7 @@ module hit_decision #(
   assign grazing_negative = grazing[ExpWidth];
   assign v_good = (v_i[Width-1] == sign) & (v_exponent != '0) & ~(&v_exponent)
                 & (grazing_negative | (grazing <= (ExpWidth + 1)'(MaxGrazing)));
-  assign t_error_o = grazing_negative ? '0 : hit_test_pkg::TErrorWidth'(grazing);
+  assign t_error_o = grazing_negative ? '0 : TErrorWidth'(grazing);
 
   // ---- The verdict
 

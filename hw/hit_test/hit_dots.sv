@@ -1,11 +1,13 @@
 // Dot products of a hit test: V = N . I and U_k = E_k . I of a polygon record, and d I_k, the dividends of its P.
 //
-// A dot product is (x + y) + z, rounded after each operation. Clocks: see fp_vector. Latency: hit_test_pkg::DotLatency
+// A dot product is (x + y) + z, rounded after each operation. Clocks: see fp_vector. Latency: DotLatency
 // clocks, or three steps; throughput a test a clock, or a step. Takes every bit pattern.
 //
 // Of the 15 products a coordinate of I is a factor of five, and the word that the multipliers recode: tools keep one recoder
 // for those.
-module hit_dots #(
+module hit_dots
+  import hit_test_pkg::*;
+#(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = arith_pkg::Graded,
@@ -17,15 +19,15 @@ module hit_dots #(
   input  logic               step_i,
   input  logic [3*Width-1:0] normal_i,
   input  logic [9*Width-1:0] edges_i,
-  input  logic [Width-1:0]   d_i,
+  input  logic [  Width-1:0] d_i,
   input  logic [3*Width-1:0] direction_i,
-  output logic [Width-1:0]   v_o,
+  output logic [  Width-1:0] v_o,
   output logic [3*Width-1:0] u_o,
   output logic [3*Width-1:0] dividends_o
 );
 
   // Of an operation: clocks, or steps
-  localparam int unsigned Operation = (Clocks == 1) ? hit_test_pkg::AdderLatency : 1;
+  localparam int unsigned Operation = (Clocks == 1) ? AdderLatency : 1;
   localparam int unsigned Scaled = 5;  // words of a coordinate: N's, E_k's, d
   logic [3*Scaled*Width-1:0] words, factors, scaled;
   logic [4*Width-1:0] thirds, sums, first;

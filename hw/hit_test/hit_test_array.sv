@@ -5,10 +5,12 @@
 // its results come from that lane's slot, in order. What a slot holds: see hit_test_pipeline; slot n
 // of every port is the n-th from the bottom.
 //
-// Counters: counter_o is the count_select_i-th of hit_test_pkg::count_e, summed over the lanes since
+// Counters: counter_o is the count_select_i-th of count_e, summed over the lanes since
 // reset, modulo 2**CounterWidth, three clocks late; other numbers give 0. Clocks are counted per lane:
 // with 4 lanes, 4 a clock.
-module hit_test_array #(
+module hit_test_array
+  import hit_test_pkg::*;
+#(
   parameter int unsigned Lanes     = 1,
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
@@ -17,41 +19,39 @@ module hit_test_array #(
   parameter int unsigned TagWidth  = 32,
   parameter int unsigned CounterWidth = 48,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth,
-  localparam int unsigned RecordWidth = hit_test_pkg::RecordWords * Width,
-  localparam int unsigned TErrorWidth = hit_test_pkg::TErrorWidth
+  localparam int unsigned RecordWidth = RecordWords * Width
 ) (
   input  logic                         clk_i,
   input  logic                         rst_ni,
-  input  logic [Lanes-1:0]             valid_i,
-  output logic [Lanes-1:0]             ready_o,
-  input  logic [Lanes-1:0]             first_i,
-  input  logic [Lanes-1:0]             last_i,
-  input  logic [Lanes*TagWidth-1:0]    tag_i,
-  input  logic [Lanes*3*Width-1:0]     direction_i,
+  input  logic [            Lanes-1:0] valid_i,
+  output logic [            Lanes-1:0] ready_o,
+  input  logic [            Lanes-1:0] first_i,
+  input  logic [            Lanes-1:0] last_i,
+  input  logic [   Lanes*TagWidth-1:0] tag_i,
+  input  logic [    Lanes*3*Width-1:0] direction_i,
   input  logic [Lanes*RecordWidth-1:0] record_i,
-  output logic [Lanes-1:0]             valid_o,
-  input  logic [Lanes-1:0]             ready_i,
-  output logic [Lanes*2-1:0]           report_o,
-  output logic [Lanes*TagWidth-1:0]    report_tag_o,
-  output logic [Lanes-1:0]             closed_o,
-  output logic [Lanes-1:0]             found_o,
-  output logic [Lanes*TagWidth-1:0]    tag_o,
-  output logic [Lanes*Width-1:0]       t_o,
+  output logic [            Lanes-1:0] valid_o,
+  input  logic [            Lanes-1:0] ready_i,
+  output logic [          Lanes*2-1:0] report_o,
+  output logic [   Lanes*TagWidth-1:0] report_tag_o,
+  output logic [            Lanes-1:0] closed_o,
+  output logic [            Lanes-1:0] found_o,
+  output logic [   Lanes*TagWidth-1:0] tag_o,
+  output logic [      Lanes*Width-1:0] t_o,
   output logic [Lanes*TErrorWidth-1:0] t_error_o,
-  output logic [Lanes-1:0]             point_valid_o,
-  output logic [Lanes*3*Width-1:0]     point_o,
-  input  logic [3:0]                   count_select_i,
-  output logic [CounterWidth-1:0]      counter_o
+  output logic [            Lanes-1:0] point_valid_o,
+  output logic [    Lanes*3*Width-1:0] point_o,
+  input  logic [                  3:0] count_select_i,
+  output logic [     CounterWidth-1:0] counter_o
 );
 
-  localparam int unsigned NumCounts = hit_test_pkg::NumCounts;
 
   // ---- Lanes
 
   logic [Lanes*NumCounts-1:0] events;
 
   for (genvar n = 0; n < Lanes; n++) begin : gen_lane
-    hit_test_pkg::report_e report;
+    report_e report;
 
     hit_test_pipeline #(
       .ExpWidth(ExpWidth),

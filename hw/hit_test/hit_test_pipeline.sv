@@ -27,40 +27,40 @@
 // All words are IEEE numbers of the format ExpWidth, FracWidth; dot products are
 // (x + y) + z, rounded after each operation. RoundingMode: one for all, RoundNearestEven for
 // verdicts that are never wrong.
-module hit_test_pipeline #(
+module hit_test_pipeline
+  import hit_test_pkg::*;
+#(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith     = arith_pkg::Graded,
   parameter bit [2:0]    RoundingMode = 3'd0,
   parameter int unsigned TagWidth  = 32,
-  localparam int unsigned Width = 1 + ExpWidth + FracWidth,
-  localparam int unsigned TErrorWidth = hit_test_pkg::TErrorWidth
+  localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
-  input  logic                                      clk_i,
-  input  logic                                      rst_ni,
-  input  logic                                      valid_i,
-  output logic                                      ready_o,
-  input  logic                                      first_i,
-  input  logic                                      last_i,
-  input  logic [TagWidth-1:0]                       tag_i,
-  input  logic [3*Width-1:0]                        direction_i,
-  input  logic [hit_test_pkg::RecordWords*Width-1:0] record_i,
-  output logic                                      valid_o,
-  input  logic                                      ready_i,
-  output hit_test_pkg::report_e                     report_o,
-  output logic [TagWidth-1:0]                       report_tag_o,
-  output logic                                      closed_o,
-  output logic                                      found_o,
-  output logic [TagWidth-1:0]                       tag_o,
-  output logic [Width-1:0]                          t_o,
-  output logic [TErrorWidth-1:0]                    t_error_o,
-  output logic                                      point_valid_o,
-  output logic [3*Width-1:0]                        point_o,
-  output logic [hit_test_pkg::NumCounts-1:0]        events_o  // this clock's, see count_e
+  input  logic                            clk_i,
+  input  logic                            rst_ni,
+  input  logic                            valid_i,
+  output logic                            ready_o,
+  input  logic                            first_i,
+  input  logic                            last_i,
+  input  logic    [         TagWidth-1:0] tag_i,
+  input  logic    [          3*Width-1:0] direction_i,
+  input  logic    [RecordWords*Width-1:0] record_i,
+  output logic                            valid_o,
+  input  logic                            ready_i,
+  output report_e                         report_o,
+  output logic    [         TagWidth-1:0] report_tag_o,
+  output logic                            closed_o,
+  output logic                            found_o,
+  output logic    [         TagWidth-1:0] tag_o,
+  output logic    [            Width-1:0] t_o,
+  output logic    [      TErrorWidth-1:0] t_error_o,
+  output logic                            point_valid_o,
+  output logic    [          3*Width-1:0] point_o,
+  output logic    [        NumCounts-1:0] events_o        // this clock's, see count_e
 );
 
-  localparam int unsigned DotLatency = hit_test_pkg::DotLatency;
-  localparam int unsigned DivideLatency = hit_test_pkg::divide_latency(FracWidth);
+  localparam int unsigned DivideLatency = divide_latency(FracWidth);
 
   // ---- Take
 
@@ -84,9 +84,9 @@ module hit_test_pipeline #(
   ) u_dots (
     .clk_i,
     .step_i(1'b1),
-    .normal_i(record_i[Width*hit_test_pkg::RecordNormal +: 3*Width]),
-    .edges_i(record_i[Width*hit_test_pkg::RecordEdges +: 9*Width]),
-    .d_i(record_i[Width*hit_test_pkg::RecordD +: Width]),
+    .normal_i(record_i[Width*RecordNormal +: 3*Width]),
+    .edges_i(record_i[Width*RecordEdges +: 9*Width]),
+    .d_i(record_i[Width*RecordD +: Width]),
     .direction_i,
     .v_o(v),
     .u_o(u),
@@ -96,9 +96,9 @@ module hit_test_pipeline #(
   // What goes beside: the largest exponent of N instead of N itself.
   logic [ExpWidth-1:0] nx_exponent, ny_exponent, nz_exponent, nxy_exponent, normal_exponent;
 
-  assign nx_exponent     = record_i[Width*hit_test_pkg::RecordNormal+FracWidth +: ExpWidth];
-  assign ny_exponent     = record_i[Width*(hit_test_pkg::RecordNormal+1)+FracWidth +: ExpWidth];
-  assign nz_exponent     = record_i[Width*(hit_test_pkg::RecordNormal+2)+FracWidth +: ExpWidth];
+  assign nx_exponent     = record_i[Width*RecordNormal+FracWidth +: ExpWidth];
+  assign ny_exponent     = record_i[Width*(RecordNormal+1)+FracWidth +: ExpWidth];
+  assign nz_exponent     = record_i[Width*(RecordNormal+2)+FracWidth +: ExpWidth];
   assign nxy_exponent    = (nx_exponent > ny_exponent) ? nx_exponent : ny_exponent;
   assign normal_exponent = (nz_exponent > nxy_exponent) ? nz_exponent : nxy_exponent;
 
@@ -115,8 +115,8 @@ module hit_test_pipeline #(
     .clk_i,
     .enable_i(1'b1),
     .data_i({normal_exponent, first_i, last_i, tag_i,
-             record_i[Width*hit_test_pkg::RecordBounds +: 3*Width],
-             record_i[Width*hit_test_pkg::RecordD +: Width]}),
+             record_i[Width*RecordBounds +: 3*Width],
+             record_i[Width*RecordD +: Width]}),
     .data_o({dot_exponent, dot_first, dot_last, dot_tag, dot_bounds, dot_d})
   );
 
@@ -204,7 +204,7 @@ module hit_test_pipeline #(
 
   // ---- Nearest
 
-  hit_test_pkg::report_e report;
+  report_e report;
   logic [TagWidth-1:0] report_tag, nearest_tag;
   logic closed, found, sure_hit;
   logic [Width-1:0] t;
@@ -265,13 +265,13 @@ module hit_test_pipeline #(
   logic push;
   logic [ResultWidth-1:0] pushed, word;
 
-  assign push   = report != hit_test_pkg::ReportNone | closed | point_valid;
+  assign push   = report != ReportNone | closed | point_valid;
   assign pushed = {report, closed, found, nearest_t_error, point_valid, report_tag, nearest_tag, t,
                    point};
   assign {report_o, closed_o, found_o, t_error_o, point_valid_o, report_tag_o, tag_o, t_o,
           point_o} = word;
 
-  localparam int unsigned Reserve = hit_test_pkg::point_latency(FracWidth) - 1;
+  localparam int unsigned Reserve = point_latency(FracWidth) - 1;
 
   fifo #(
     .Width(ResultWidth),
@@ -299,15 +299,15 @@ module hit_test_pipeline #(
 
   always_comb begin
     events_o = '0;
-    events_o[hit_test_pkg::CountTests]        = test_q[0];
-    events_o[hit_test_pkg::CountMisses]       = decided_q & miss_q;
-    events_o[hit_test_pkg::CountHits]         = sure_hit;
-    events_o[hit_test_pkg::CountDoubts]       = report == hit_test_pkg::ReportDoubt;
-    events_o[hit_test_pkg::CountNearTies]     = report == hit_test_pkg::ReportNearTie;
-    events_o[hit_test_pkg::CountDistances]    = decided_q & hit_q;
-    events_o[hit_test_pkg::CountPoints]       = point_valid;
-    events_o[hit_test_pkg::CountIdleClocks]   = ~test_q[0] & ~stalled_q;
-    events_o[hit_test_pkg::CountOutputStalls] = stalled_q;
+    events_o[CountTests]        = test_q[0];
+    events_o[CountMisses]       = decided_q & miss_q;
+    events_o[CountHits]         = sure_hit;
+    events_o[CountDoubts]       = report == ReportDoubt;
+    events_o[CountNearTies]     = report == ReportNearTie;
+    events_o[CountDistances]    = decided_q & hit_q;
+    events_o[CountPoints]       = point_valid;
+    events_o[CountIdleClocks]   = ~test_q[0] & ~stalled_q;
+    events_o[CountOutputStalls] = stalled_q;
   end
 
 endmodule

@@ -20,7 +20,9 @@
 // with a row a clock, 28 with two.
 //
 // Source: the paper's equation 10; the timetable is this project's.
-module iterative_hit_test_unit #(
+module iterative_hit_test_unit
+  import hit_test_pkg::*;
+#(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith = arith_pkg::Graded,
@@ -39,7 +41,6 @@ module iterative_hit_test_unit #(
 
   localparam int unsigned NumWords = 7;
   localparam int unsigned MultiplierLatency = 3;
-  localparam int unsigned AdderLatency = hit_test_pkg::AdderLatency;
 
   // The adder's two turns must not meet in the period; kept products wait for longer than three arrive, and no longer than
   // until the next ones do.

@@ -15,33 +15,34 @@
 //             nothing is reported report_tag_o is the test's own tag.
 //
 // Payload: whatever else is wanted of the nearest hit.
-module nearest_hit #(
+module nearest_hit
+  import hit_test_pkg::*;
+#(
   parameter int unsigned ExpWidth     = 8,
   parameter int unsigned FracWidth    = 23,
   parameter int unsigned TagWidth     = 32,
   parameter int unsigned PayloadWidth = 160,
-  localparam int unsigned Width = 1 + ExpWidth + FracWidth,
-  localparam int unsigned TErrorWidth = hit_test_pkg::TErrorWidth
+  localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
-  input  logic                    clk_i,
-  input  logic                    rst_ni,
-  input  logic                    valid_i,  // a test; else nothing below matters
-  input  logic                    first_i,  // of its burst
-  input  logic                    last_i,   // of its burst
-  input  logic                    hit_i,
-  input  logic                    doubt_i,
-  input  logic [TagWidth-1:0]     tag_i,
-  input  logic [Width-1:0]        t_i,
-  input  logic [TErrorWidth-1:0]  t_error_i,
-  input  logic [PayloadWidth-1:0] payload_i,
-  output logic                    sure_hit_o,  // combinational: the test is a sure hit, t and all
-  output hit_test_pkg::report_e   report_o,
-  output logic [TagWidth-1:0]     report_tag_o,
-  output logic                    closed_o,
-  output logic                    found_o,
-  output logic [TagWidth-1:0]     tag_o,
-  output logic [Width-1:0]        t_o,
-  output logic [TErrorWidth-1:0]  t_error_o,
+  input logic clk_i,
+  input logic rst_ni,
+  input logic valid_i,  // a test; else nothing below matters
+  input logic first_i,  // of its burst
+  input logic last_i,  // of its burst
+  input logic hit_i,
+  input logic doubt_i,
+  input logic [TagWidth-1:0] tag_i,
+  input logic [Width-1:0] t_i,
+  input logic [TErrorWidth-1:0] t_error_i,
+  input logic [PayloadWidth-1:0] payload_i,
+  output logic sure_hit_o,  // combinational: the test is a sure hit, t and all
+  output report_e report_o,
+  output logic [TagWidth-1:0] report_tag_o,
+  output logic closed_o,
+  output logic found_o,
+  output logic [TagWidth-1:0] tag_o,
+  output logic [Width-1:0] t_o,
+  output logic [TErrorWidth-1:0] t_error_o,
   output logic [PayloadWidth-1:0] payload_o
 );
 
@@ -63,8 +64,8 @@ module nearest_hit #(
 
   assign t       = {1'b0, t_i};
   assign best    = {1'b0, t_o};
-  assign margin  = ((Width + 1)'(1) << (hit_test_pkg::TErrorUnit + 32'(t_error_i)))
-                 + ((Width + 1)'(1) << (hit_test_pkg::TErrorUnit + 32'(t_error_o)));
+  assign margin  = ((Width + 1)'(1) << (TErrorUnit + 32'(t_error_i)))
+                 + ((Width + 1)'(1) << (TErrorUnit + 32'(t_error_o)));
   assign farther = margin + best - t;  // negative: surely farther
   assign nearer  = margin + t - best;  // negative: surely nearer
   assign smaller = t_i < t_o;
@@ -77,12 +78,11 @@ module nearest_hit #(
     if (!rst_ni) begin
       closed_o <= 1'b0;
       found_o  <= 1'b0;
-      report_o <= hit_test_pkg::ReportNone;
+      report_o <= ReportNone;
     end else begin
       closed_o <= valid_i & last_i;
       if (valid_i) found_o <= have | hit;
-      report_o <= doubt ? hit_test_pkg::ReportDoubt
-                : near ? hit_test_pkg::ReportNearTie : hit_test_pkg::ReportNone;
+      report_o <= doubt ? ReportDoubt : near ? ReportNearTie : ReportNone;
     end
   end
 

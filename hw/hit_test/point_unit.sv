@@ -3,7 +3,9 @@
 //
 // Three dividers: no fewer do for streams in which nearly every other test is a nearest hit, which is
 // what is left when a tree of boxes has ruled out most polygons.
-module point_unit #(
+module point_unit
+  import hit_test_pkg::*;
+#(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith = arith_pkg::Graded,
@@ -14,12 +16,12 @@ module point_unit #(
   input  logic               rst_ni,
   input  logic               valid_i,
   input  logic [3*Width-1:0] dividends_i,
-  input  logic [Width-1:0]   v_i,
+  input  logic [  Width-1:0] v_i,
   output logic               valid_o,
   output logic [3*Width-1:0] point_o
 );
 
-  localparam int unsigned Latency = hit_test_pkg::divide_latency(FracWidth);
+  localparam int unsigned Latency = divide_latency(FracWidth);
 
   logic [Latency-1:0] valid_q;
 

@@ -1,5 +1,5 @@
 // Box test: which children of a node a ray enters, near first; a node line and a ray in each clock.
-// Latency: ray_core_pkg::BoxLatency clocks.
+// Latency: BoxLatency clocks.
 //
 //   take        node, then node and ray                                     registers
 //   subtract    D_k = origin_k - O_k                                        3 adders
@@ -42,29 +42,26 @@
 //
 // Source: quantised boxes: Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through
 // compressed wide BVHs", 2017.
-module box_unit #(
+module box_unit
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Rays = 64,
   parameter int unsigned Clocks = 1,  // of a node, see slab_tests
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                     clk_i,
-  input  logic                     rst_ni,
-  input  logic [RayWidth-1:0]      ctx_i,
-  input  ray_core_pkg::node_line_t node_i,
-  input  logic [95:0]              origin_i,
-  input  logic [95:0]              inverse_i,
-  input  logic [30:0]              t_max_i,
-  input  logic                     no_cull_i,
-  output logic [RayWidth-1:0]      ctx_o,
-  output ray_core_pkg::boxes_t     boxes_o
+  input  logic                      clk_i,
+  input  logic                      rst_ni,
+  input  logic       [RayWidth-1:0] ctx_i,
+  input  node_line_t                node_i,
+  input  logic       [        95:0] origin_i,
+  input  logic       [        95:0] inverse_i,
+  input  logic       [        30:0] t_max_i,
+  input  logic                      no_cull_i,
+  output logic       [RayWidth-1:0] ctx_o,
+  output boxes_t                    boxes_o
 );
 
-  localparam int unsigned Children = ray_core_pkg::Children;
-  localparam int unsigned KindWidth = ray_core_pkg::KindWidth;
-  localparam int unsigned UnitBits = ray_core_pkg::UnitBits;
-  localparam int unsigned StepWidth = ray_core_pkg::StepWidth;
-  localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth;
   localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;  // 2**E
 
   // Clocks of the stages
@@ -75,16 +72,15 @@ module box_unit #(
   localparam int unsigned Align = 2;
   localparam int unsigned Slab = 4;
   localparam int unsigned Sort = 4;
-  localparam int unsigned Latency = ray_core_pkg::BoxLatency + ((Clocks == 1) ? 0 : Children);
+  localparam int unsigned Latency = BoxLatency + ((Clocks == 1) ? 0 : Children);
 
-  if (ray_core_pkg::BoxLatency != Take + Subtract + Scale + Multiply + Align + Slab + Sort)
-  begin : gen_check
-    $error("box_unit: expected ray_core_pkg::BoxLatency to be the number of its stages");
+  if (BoxLatency != Take + Subtract + Scale + Multiply + Align + Slab + Sort) begin : gen_check
+    $error("box_unit: expected BoxLatency to be the number of its stages");
   end
 
   // ---- Take
 
-  logic [ray_core_pkg::LineWidth-1:0] first_q, node_q;
+  logic [LineWidth-1:0] first_q, node_q;
   logic [95:0] origin_q, inverse_q;
   logic [30:0] t_max_q;
   logic no_cull_q;
@@ -108,15 +104,15 @@ module box_unit #(
 
   always_ff @(posedge clk_i) begin
     first_q <= node_i.line;
-    if (node_i.error) first_q[ray_core_pkg::NodeKinds+:Children*KindWidth] <= '0;  // all absent
+    if (node_i.error) first_q[NodeKinds+:Children*KindWidth] <= '0;  // all absent
     node_q  <= first_q;
     {origin_q, inverse_q, t_max_q, no_cull_q} <= {origin_i, inverse_i, t_max_i, no_cull_i};
   end
 
   // What goes along: base, kinds and boxes, and of the ray what the planes need
-  localparam int unsigned Base = ray_core_pkg::NodeBase;
-  localparam int unsigned ChildrenWidth = ray_core_pkg::LineWidth - Base;
-  localparam int unsigned Kinds = ray_core_pkg::NodeKinds - Base;
+  localparam int unsigned Base = NodeBase;
+  localparam int unsigned ChildrenWidth = LineWidth - Base;
+  localparam int unsigned Kinds = NodeKinds - Base;
   localparam int unsigned NodeBoxes = ray_core_pkg::NodeBoxes - Base;
 
   typedef struct packed {
@@ -134,7 +130,7 @@ module box_unit #(
 
   sideband_t taken, subtracted, scaled, multiplied;
 
-  assign taken = {node_q[ray_core_pkg::LineWidth-1:Base], t_max_q, no_cull_q};
+  assign taken = {node_q[LineWidth-1:Base], t_max_q, no_cull_q};
 
   // ---- Subtract
 
@@ -147,7 +143,7 @@ module box_unit #(
   ) u_subtract (
     .clk_i,
     .step_i(1'b1),
-    .a_i(node_q[ray_core_pkg::NodeOrigin +: 96]),
+    .a_i(node_q[NodeOrigin +: 96]),
     .b_i(origin_q),
     .result_o(distance)
   );
@@ -157,7 +153,7 @@ module box_unit #(
   ) u_sideband_subtract (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({taken, inverse_q, node_q[ray_core_pkg::NodeExponents +: 24]}),
+    .data_i({taken, inverse_q, node_q[NodeExponents +: 24]}),
     .data_o({subtracted, inverse, cells})
   );
 
@@ -322,7 +318,7 @@ module box_unit #(
   ) u_children (
     .clk_i,
     .start_i(valid_q[Take+Subtract+Scale+Multiply+Align]),
-    .boxes_i(children[NodeBoxes +: Children*ray_core_pkg::BoxWidth]),
+    .boxes_i(children[NodeBoxes +: Children*BoxWidth]),
     .back_i(aligned_back),
     .step_i(step_q),
     .near_i(step_near_q),
@@ -342,7 +338,7 @@ module box_unit #(
     .clk_i,
     .keys_i(keys),
     .kinds_i(sorted_node[Kinds +: Children*KindWidth]),
-    .base_i(sorted_node[0 +: ray_core_pkg::AddressWidth]),
+    .base_i(sorted_node[0 +: AddressWidth]),
     .exponent_i(sorted_exponent),
     .group_o(boxes_o.group),
     .inner_o(boxes_o.inner),

@@ -1,27 +1,21 @@
 // Sort of a node's children: the group of those that the ray enters, near first.
 // Latency: 4 clocks: two registers in the sort, one behind it and one behind the group. keys_i are slab_test's.
-module child_sort #(
+module child_sort
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Arith = arith_pkg::Graded,
-  localparam int unsigned Children = ray_core_pkg::Children,
-  localparam int unsigned KindWidth = ray_core_pkg::KindWidth,
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned UnitBits = ray_core_pkg::UnitBits,
   localparam int unsigned KeyWidth = UnitBits + 2
 ) (
-  input  logic                                 clk_i,
-  input  logic [Children*KeyWidth-1:0]         keys_i,
-  input  logic [Children*KindWidth-1:0]        kinds_i,
-  input  logic [AddressWidth-1:0]              base_i,
-  input  logic [8:0]                           exponent_i,  // E
-  output ray_core_pkg::group_t                 group_o,
-  output logic [Children-1:0]                  inner_o,
-  output logic [Children-1:0]                  leaf_o
+  input  logic                            clk_i,
+  input  logic   [ Children*KeyWidth-1:0] keys_i,
+  input  logic   [Children*KindWidth-1:0] kinds_i,
+  input  logic   [      AddressWidth-1:0] base_i,
+  input  logic   [                   8:0] exponent_i,  // E
+  output group_t                          group_o,
+  output logic   [          Children-1:0] inner_o,
+  output logic   [          Children-1:0] leaf_o
 );
 
-  localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth;
-  localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth;
-  localparam int unsigned CountWidth = ray_core_pkg::CountWidth;
-  localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth;
   localparam int unsigned NumberWidth = 3;
   localparam int unsigned WordWidth = KeyWidth + NumberWidth;
   localparam int unsigned UnitsWidth = 12;  // of a distance that is kept
@@ -67,7 +61,7 @@ module child_sort #(
     for (int unsigned i = 0; i < Children; i++) begin
       next_offsets[OffsetWidth*i +: OffsetWidth] = next;
       kind = kinds_i[KindWidth*i +: KindWidth];
-      next = next + ((kind == ray_core_pkg::KindInner) ? OffsetWidth'(1)
+      next = next + ((kind == KindInner) ? OffsetWidth'(1)
                                                        : OffsetWidth'(kind[CountWidth-1:0]));
     end
   end
@@ -98,7 +92,7 @@ module child_sort #(
     logic is_inner, left_out, is_zero;
     assign {key, number} = sorted[WordWidth*n +: WordWidth];
     assign kind     = kinds[KindWidth*number +: KindWidth];
-    assign is_inner = kind == ray_core_pkg::KindInner;
+    assign is_inner = kind == KindInner;
     assign left_out = key[KeyWidth-1];
     assign inner[n] = ~left_out & is_inner;
     assign leaf[n]  = ~left_out & ~is_inner;

@@ -5,64 +5,65 @@
 // One write and one read at a time; no output of AXI depends on an input in the same clock.
 // interrupt_o is high while a flag is that is enabled.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
-module csr #(
+module csr
+  import ray_core_pkg::*, csr_pkg::*;
+#(
   parameter bit [31:0] Capability = '0,
   localparam int unsigned AddressWidth = 12,
   localparam int unsigned LineNumberWidth = ray_core_pkg::AddressWidth
 ) (
-  input  logic                    clk_i,
-  input  logic                    rst_ni,
+  input  logic                       clk_i,
+  input  logic                       rst_ni,
   // AXI4-Lite
-  input  logic                    axi_awvalid_i,
-  output logic                    axi_awready_o,
-  input  logic [AddressWidth-1:0] axi_awaddr_i,
-  input  logic                    axi_wvalid_i,
-  output logic                    axi_wready_o,
-  input  logic [31:0]             axi_wdata_i,
-  input  logic [3:0]              axi_wstrb_i,
-  output logic                    axi_bvalid_o,
-  input  logic                    axi_bready_i,
-  output logic [1:0]              axi_bresp_o,
-  input  logic                    axi_arvalid_i,
-  output logic                    axi_arready_o,
-  input  logic [AddressWidth-1:0] axi_araddr_i,
-  output logic                    axi_rvalid_o,
-  input  logic                    axi_rready_i,
-  output logic [31:0]             axi_rdata_o,
-  output logic [1:0]              axi_rresp_o,
+  input  logic                       axi_awvalid_i,
+  output logic                       axi_awready_o,
+  input  logic [   AddressWidth-1:0] axi_awaddr_i,
+  input  logic                       axi_wvalid_i,
+  output logic                       axi_wready_o,
+  input  logic [               31:0] axi_wdata_i,
+  input  logic [                3:0] axi_wstrb_i,
+  output logic                       axi_bvalid_o,
+  input  logic                       axi_bready_i,
+  output logic [                1:0] axi_bresp_o,
+  input  logic                       axi_arvalid_i,
+  output logic                       axi_arready_o,
+  input  logic [   AddressWidth-1:0] axi_araddr_i,
+  output logic                       axi_rvalid_o,
+  input  logic                       axi_rready_i,
+  output logic [               31:0] axi_rdata_o,
+  output logic [                1:0] axi_rresp_o,
   // the core's side
-  output logic                    start_o,       // this clock's commands
-  output logic                    invalidate_o,
-  output logic                    abort_o,       // until no ray is left
-  output logic                    drawing_o,     // a rectangle's rays are on their way
-  output logic [63:0]             base_o,
+  output logic                       start_o,         // this clock's commands
+  output logic                       invalidate_o,
+  output logic                       abort_o,         // until no ray is left
+  output logic                       drawing_o,       // a rectangle's rays are on their way
+  output logic [               63:0] base_o,
   output logic [LineNumberWidth-1:0] lines_o,
-  output logic [31:0]             corner_o,
-  output logic [31:0]             size_o,
-  output logic [4*96-1:0]         camera_o,      // eye lowest, then first, right, down
-  output logic [63:0]             results_o,
-  output logic [31:0]             length_o,
-  output logic                    rewind_o,      // this clock's command
-  input  logic                    camera_busy_i,
-  input  logic                    core_busy_i,   // has rays
-  input  logic                    outstanding_i,
-  input  logic                    writing_i,
-  input  logic [31:0]             written_i,
-  input  logic                    doubt_i,       // this clock's
-  input  logic                    ray_error_i,
-  input  logic                    full_i,
-  input  logic                    write_error_i,
-  input  logic                    bus_error_i,
+  output logic [               31:0] corner_o,
+  output logic [               31:0] size_o,
+  output logic [           4*96-1:0] camera_o,        // eye lowest, then first, right, down
+  output logic [               63:0] results_o,
+  output logic [               31:0] length_o,
+  output logic                       rewind_o,        // this clock's command
+  input  logic                       camera_busy_i,
+  input  logic                       core_busy_i,     // has rays
+  input  logic                       outstanding_i,
+  input  logic                       writing_i,
+  input  logic [               31:0] written_i,
+  input  logic                       doubt_i,         // this clock's
+  input  logic                       ray_error_i,
+  input  logic                       full_i,
+  input  logic                       write_error_i,
+  input  logic                       bus_error_i,
   input  logic [LineNumberWidth-1:0] error_number_i,
-  input  logic [ray_core_pkg::NumEvents-1:0] events_i,
-  output logic                    interrupt_o
+  input  logic [      NumEvents-1:0] events_i,
+  output logic                       interrupt_o
 );
 
   localparam logic [31:0] Identity = 32'h5247_0001;
   localparam int unsigned CounterWidth = 48;
-  localparam int unsigned NumFlags = csr_pkg::NumFlags;
 
-  if (csr_pkg::NumCounters != 1 + ray_core_pkg::NumEvents) begin : gen_check
+  if (NumCounters != 1 + NumEvents) begin : gen_check
     $error("csr: expected a counter of each event, and one of clocks");
   end
 
@@ -96,30 +97,30 @@ module csr #(
   end
 
   logic command, plain, rebase, empty, clear;
-  logic [csr_pkg::NumCommand-1:0] commands;
-  assign commands     = (write && write_word_q == csr_pkg::WordCommand)
-                      ? write_data_q[csr_pkg::NumCommand-1:0] & mask[csr_pkg::NumCommand-1:0] : '0;
+  logic [NumCommand-1:0] commands;
+  assign commands     = (write && write_word_q == WordCommand)
+                      ? write_data_q[NumCommand-1:0] & mask[NumCommand-1:0] : '0;
   assign plain        = (write_word_q < 10'd32)
-                      && (csr_pkg::PlainBits[32*write_word_q[4:0]+:32] != '0);
-  assign rebase       = (write_word_q == csr_pkg::WordBase)
-                      | (write_word_q == csr_pkg::WordBaseHigh);
+                      && (PlainBits[32*write_word_q[4:0]+:32] != '0);
+  assign rebase       = (write_word_q == WordBase)
+                      | (write_word_q == WordBaseHigh);
   assign refused      = ((camera_busy_i | core_busy_i)
-                         & (plain | commands[csr_pkg::CommandStart] | empty))
+                         & (plain | commands[CommandStart] | empty))
                       | (outstanding_i & (rebase | empty))
-                      | (writing_i & commands[csr_pkg::CommandRewind]);
-  assign empty        = commands[csr_pkg::CommandInvalidate];
+                      | (writing_i & commands[CommandRewind]);
+  assign empty        = commands[CommandInvalidate];
   assign command      = write & ~refused;
-  assign start_o      = command & commands[csr_pkg::CommandStart];
+  assign start_o      = command & commands[CommandStart];
   assign invalidate_o = command & (empty | rebase);
-  assign rewind_o     = command & commands[csr_pkg::CommandRewind];
-  assign clear        = command & commands[csr_pkg::CommandClear];
+  assign rewind_o     = command & commands[CommandRewind];
+  assign clear        = command & commands[CommandClear];
 
   // ---- Plain registers
 
   logic [32*32-1:0] words;  // by word number
 
   for (genvar n = 0; n < 32; n++) begin : gen_word
-    localparam logic [31:0] Bits = csr_pkg::PlainBits[32*n+:32];
+    localparam logic [31:0] Bits = PlainBits[32*n+:32];
     if (Bits != '0) begin : gen_plain
       logic [31:0] word_q;
       always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -134,14 +135,14 @@ module csr #(
     end
   end
 
-  assign base_o   = words[32*32'(csr_pkg::WordBase)+:64];
-  assign lines_o  = words[32*32'(csr_pkg::WordLines)+:LineNumberWidth];
-  assign corner_o = words[32*32'(csr_pkg::WordCorner)+:32];
-  assign size_o   = words[32*32'(csr_pkg::WordSize)+:32];
-  assign results_o = words[32*32'(csr_pkg::WordResults)+:64];
-  assign length_o = words[32*32'(csr_pkg::WordLength)+:32];
+  assign base_o   = words[32*32'(WordBase)+:64];
+  assign lines_o  = words[32*32'(WordLines)+:LineNumberWidth];
+  assign corner_o = words[32*32'(WordCorner)+:32];
+  assign size_o   = words[32*32'(WordSize)+:32];
+  assign results_o = words[32*32'(WordResults)+:64];
+  assign length_o = words[32*32'(WordLength)+:32];
   for (genvar v = 0; v < 4; v++) begin : gen_vector
-    assign camera_o[96*v+:96] = words[32*(32'(csr_pkg::WordEye)+4*v)+:96];
+    assign camera_o[96*v+:96] = words[32*(32'(WordEye)+4*v)+:96];
   end
 
   // ---- Flags
@@ -151,13 +152,13 @@ module csr #(
   logic [LineNumberWidth-1:0] error_line_q;
 
   assign done    = drawing_q & ~camera_busy_i & ~core_busy_i;
-  assign raised[csr_pkg::FlagsDoubt]    = doubt_i;
-  assign raised[csr_pkg::FlagsDone]     = done;
-  assign raised[csr_pkg::FlagsBusError] = bus_error_i;
-  assign raised[csr_pkg::FlagsRayError] = ray_error_i;
-  assign raised[csr_pkg::FlagsFull]       = full_i;
-  assign raised[csr_pkg::FlagsWriteError] = write_error_i;
-  assign lowered = (write && write_word_q == csr_pkg::WordFlags)
+  assign raised[FlagsDoubt]    = doubt_i;
+  assign raised[FlagsDone]     = done;
+  assign raised[FlagsBusError] = bus_error_i;
+  assign raised[FlagsRayError] = ray_error_i;
+  assign raised[FlagsFull]       = full_i;
+  assign raised[FlagsWriteError] = write_error_i;
+  assign lowered = (write && write_word_q == WordFlags)
                  ? write_data_q[NumFlags-1:0] & mask[NumFlags-1:0] : '0;
   assign interrupt_o = (enable_q & flags_q) != '0;
 
@@ -169,15 +170,14 @@ module csr #(
       abort_q   <= 1'b0;
       error_line_q <= '0;
     end else begin
-      if (write && write_word_q == csr_pkg::WordEnable) begin
+      if (write && write_word_q == WordEnable) begin
         enable_q <= (write_data_q[NumFlags-1:0] & mask[NumFlags-1:0])
                   | (enable_q & ~mask[NumFlags-1:0]);
       end
       flags_q   <= (flags_q & ~lowered) | raised;
       drawing_q <= start_o | camera_busy_i | (drawing_q & ~done);
-      if (bus_error_i && !flags_q[csr_pkg::FlagsBusError]) error_line_q <= error_number_i;
-      abort_q <= (command & commands[csr_pkg::CommandAbort])
-               | (abort_q & (camera_busy_i | core_busy_i));
+      if (bus_error_i && !flags_q[FlagsBusError]) error_line_q <= error_number_i;
+      abort_q <= (command & commands[CommandAbort]) | (abort_q & (camera_busy_i | core_busy_i));
     end
   end
 
@@ -186,11 +186,11 @@ module csr #(
 
   // ---- Counters
 
-  logic [csr_pkg::NumCounters*CounterWidth-1:0] counters;
-  logic [csr_pkg::NumCounters-1:0] counted;
+  logic [NumCounters*CounterWidth-1:0] counters;
+  logic [NumCounters-1:0] counted;
 
   assign counted = {events_i, core_busy_i};
-  for (genvar n = 0; n < csr_pkg::NumCounters; n++) begin : gen_counter
+  for (genvar n = 0; n < NumCounters; n++) begin : gen_counter
     logic [CounterWidth-1:0] count_q;
     always_ff @(posedge clk_i or negedge rst_ni) begin
       if (!rst_ni) count_q <= '0;
@@ -204,33 +204,33 @@ module csr #(
   logic read;
   logic [31:0] value;
   logic [CounterWidth-33:0] high, high_q;
-  logic [csr_pkg::NumStatus-1:0] status;
+  logic [NumStatus-1:0] status;
 
   assign read          = axi_arvalid_i & axi_arready_o;
   assign axi_arready_o = ~axi_rvalid_o;
   assign axi_rresp_o   = 2'b00;
   assign read_word     = axi_araddr_i[AddressWidth-1:2];
-  assign status[csr_pkg::StatusGenerating] = camera_busy_i;
-  assign status[csr_pkg::StatusTracing]    = core_busy_i;
-  assign status[csr_pkg::StatusReading]    = outstanding_i;
-  assign status[csr_pkg::StatusWriting]    = writing_i;
+  assign status[StatusGenerating] = camera_busy_i;
+  assign status[StatusTracing]    = core_busy_i;
+  assign status[StatusReading]    = outstanding_i;
+  assign status[StatusWriting]    = writing_i;
 
   always_comb begin
     value = (read_word < 10'd32) ? words[32*read_word[4:0]+:32] : '0;
     high  = high_q;
-    for (int unsigned n = 0; n < csr_pkg::NumCounters; n++) begin
-      if (read_word == csr_pkg::WordCounters + 10'(2 * n)) begin
+    for (int unsigned n = 0; n < NumCounters; n++) begin
+      if (read_word == WordCounters + 10'(2 * n)) begin
         {high, value} = counters[CounterWidth*n+:CounterWidth];
       end
-      if (read_word == csr_pkg::WordCounters + 10'(2 * n + 1)) value = 32'(high_q);
+      if (read_word == WordCounters + 10'(2 * n + 1)) value = 32'(high_q);
     end
-    if (read_word == csr_pkg::WordIdentity) value = Identity;
-    if (read_word == csr_pkg::WordCapability) value = Capability;
-    if (read_word == csr_pkg::WordStatus) value = 32'(status);
-    if (read_word == csr_pkg::WordWritten) value = written_i;
-    if (read_word == csr_pkg::WordErrorLine) value = 32'(error_line_q);
-    if (read_word == csr_pkg::WordEnable) value = 32'(enable_q);
-    if (read_word == csr_pkg::WordFlags) value = 32'(flags_q);
+    if (read_word == WordIdentity) value = Identity;
+    if (read_word == WordCapability) value = Capability;
+    if (read_word == WordStatus) value = 32'(status);
+    if (read_word == WordWritten) value = written_i;
+    if (read_word == WordErrorLine) value = 32'(error_line_q);
+    if (read_word == WordEnable) value = 32'(enable_q);
+    if (read_word == WordFlags) value = 32'(flags_q);
   end
 
   always_ff @(posedge clk_i or negedge rst_ni) begin

@@ -20,14 +20,15 @@
 // A line that comes with an error goes to its targets, error_o, and is not kept.
 //
 // invalidate_i, while no request and no line is on its way, empties the cache.
-module line_cache #(
+module line_cache
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Lines    = 256,
   parameter int unsigned Targets  = 64,   // requests that may wait for lines
   parameter int unsigned RayWidth = 6,
-  parameter int unsigned Width    = ray_core_pkg::LineWidth,  // of what is kept of a line
+  parameter int unsigned Width    = LineWidth,  // of what is kept of a line
   localparam int unsigned EntryWidth = $clog2(Lines),
-  localparam int unsigned TargetWidth = $clog2(Targets),
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth
+  localparam int unsigned TargetWidth = $clog2(Targets)
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -36,25 +37,25 @@ module line_cache #(
   input  logic                    valid_i,
   output logic                    ready_o,
   input  logic                    demand_i,
-  input  logic [RayWidth-1:0]     ray_i,
+  input  logic [    RayWidth-1:0] ray_i,
   input  logic [AddressWidth-1:0] line_number_i,
   output logic                    outstanding_o,
   // misses
   output logic                    miss_valid_o,
   input  logic                    miss_ready_i,
-  output logic [EntryWidth-1:0]   miss_entry_o,
+  output logic [  EntryWidth-1:0] miss_entry_o,
   output logic [AddressWidth-1:0] miss_number_o,
   // lines from memory
   input  logic                    fill_i,
   output logic                    fill_done_o,
-  input  logic [EntryWidth-1:0]   fill_entry_i,
-  input  logic [Width-1:0]        fill_line_i,
+  input  logic [  EntryWidth-1:0] fill_entry_i,
+  input  logic [       Width-1:0] fill_line_i,
   input  logic                    fill_error_i,
   // answers
   output logic                    valid_o,
-  input  logic                    ready_i,  // else nothing leaves, and fill_i must be low
-  output logic [RayWidth-1:0]     ray_o,
-  output logic [Width-1:0]        line_o,
+  input  logic                    ready_i,        // else nothing leaves, and fill_i must be low
+  output logic [    RayWidth-1:0] ray_o,
+  output logic [       Width-1:0] line_o,
   output logic                    error_o
 );
 

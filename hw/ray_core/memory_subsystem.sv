@@ -10,54 +10,53 @@
 // Lines leave with step_o, which is high in one of Clocks clocks, and wait for nothing else: line_ready_o depends on no result.
 //
 // A line with an error is given to the rays that wait for it, and read again for the next.
-module memory_subsystem #(
+module memory_subsystem
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Rays          = 64,
   parameter int unsigned NodeLines     = 256,  // of the nodes' cache
   parameter int unsigned TriangleLines = 256,  // of the triangles'
   parameter bit Exact = 1'b0,  // triangles have ranks, and some are for exact_resolver
   parameter int unsigned Clocks = 1,
   localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned EntryWidth =
       $clog2(NodeLines > TriangleLines ? NodeLines : TriangleLines),
-  localparam int unsigned ReadIdWidth = 1 + EntryWidth,
-  localparam int unsigned LineWidth = ray_core_pkg::LineWidth
+  localparam int unsigned ReadIdWidth = 1 + EntryWidth
 ) (
-  input  logic                    clk_i,
-  input  logic                    rst_ni,
-  input  logic                    invalidate_i,  // the caches: memory has changed
-  output logic                    outstanding_o,  // a line is on its way, or will be
+  input logic clk_i,
+  input logic rst_ni,
+  input logic invalidate_i,  // the caches: memory has changed
+  output logic outstanding_o,  // a line is on its way, or will be
   // nodes asked for: one for each ray at most
-  input  logic [RayWidth-1:0]     node_ctx_i,
-  input  ray_core_pkg::request_t  node_i,
+  input logic [RayWidth-1:0] node_ctx_i,
+  input request_t node_i,
   // a node that may be asked for soon: a prefetch
-  input  ray_core_pkg::request_t  prefetch_i,
+  input request_t prefetch_i,
   // triangles asked for
-  input  logic [RayWidth-1:0]     triangle_ctx_i,
-  input  ray_core_pkg::triangle_request_t triangle_i,
-  output logic                    triangle_ready_o,
+  input logic [RayWidth-1:0] triangle_ctx_i,
+  input triangle_request_t triangle_i,
+  output logic triangle_ready_o,
   // memory
-  output logic                    read_valid_o,
-  input  logic                    read_ready_i,
+  output logic read_valid_o,
+  input logic read_ready_i,
   output logic [AddressWidth-1:0] read_line_o,
-  output logic [ReadIdWidth-1:0]  read_id_o,
-  input  logic                    line_valid_i,
-  output logic                    line_ready_o,
-  input  logic [ReadIdWidth-1:0]  line_id_i,
-  input  logic [LineWidth-1:0]    line_i,
-  input  logic                    line_error_i,
+  output logic [ReadIdWidth-1:0] read_id_o,
+  input logic line_valid_i,
+  output logic line_ready_o,
+  input logic [ReadIdWidth-1:0] line_id_i,
+  input logic [LineWidth-1:0] line_i,
+  input logic line_error_i,
   // lines
-  output logic                    step_o,
-  output logic [RayWidth-1:0]     node_ctx_o,
-  output ray_core_pkg::node_line_t node_o,
-  output logic [RayWidth-1:0]     triangle_ctx_o,
-  output ray_core_pkg::triangle_line_t triangle_o
+  output logic step_o,
+  output logic [RayWidth-1:0] node_ctx_o,
+  output node_line_t node_o,
+  output logic [RayWidth-1:0] triangle_ctx_o,
+  output triangle_line_t triangle_o
 );
 
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;
   localparam int unsigned WhoWidth = RayWidth + (Exact ? 1 : 0);  // {for exact_resolver, context}
-  localparam int unsigned KeptWidth = ray_core_pkg::TriangleWidth
-                                    + (Exact ? ray_core_pkg::RankWidth : 0);
+  localparam int unsigned KeptWidth = TriangleWidth + (Exact ? RankWidth : 0);
   localparam int unsigned MissWidth = EntryWidth + AddressWidth;
 
   // ---- Requests
@@ -213,7 +212,7 @@ module memory_subsystem #(
   );
   assign {triangle_o.exact, triangle_ctx_o} = (RayWidth + 1)'(triangle_who);
   assign {triangle_o.rank, triangle_o.line} =
-      (ray_core_pkg::RankWidth + ray_core_pkg::TriangleWidth)'(triangle_kept);
+      (RankWidth + TriangleWidth)'(triangle_kept);
 
   assign node_miss     = {EntryWidth'(node_entry), node_number};
   assign triangle_miss = {EntryWidth'(triangle_entry), triangle_number};
@@ -224,21 +223,23 @@ module memory_subsystem #(
 
   logic [MissWidth:0] out;
   logic out_ready, ask, node_last_q;  // the last request was a node's
+  logic ask_q, done_q;  // counted a clock late
   logic [CountWidth-1:0] lines_q;  // asked for, and not in the caches
 
   assign node_miss_ready     = out_ready & (~triangle_miss_valid | ~node_last_q);
   assign triangle_miss_ready = out_ready & ~(node_miss_valid & node_miss_ready);
   assign ask                 = out_ready & (node_miss_valid | triangle_miss_valid);
   assign line_done           = fill & (fill_triangle ? triangle_done : node_done);
-  assign outstanding_o       = (lines_q != '0) | prefetch_valid | node_looking;
+  assign outstanding_o       = (lines_q != '0) | ask_q | prefetch_valid | node_looking;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      node_last_q <= 1'b0;
-      lines_q     <= '0;
+      {node_last_q, ask_q, done_q} <= '0;
+      lines_q <= '0;
     end else begin
       if (ask) node_last_q <= node_miss_valid & node_miss_ready;
-      lines_q <= lines_q + CountWidth'(ask) - CountWidth'(line_done);
+      {ask_q, done_q} <= {ask, line_done};
+      lines_q <= lines_q + CountWidth'(ask_q) - CountWidth'(done_q);
     end
   end
 

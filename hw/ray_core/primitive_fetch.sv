@@ -2,39 +2,34 @@
 //
 // Groups of leaves are served one at a time, in the order in which they came; a ray has at most one. Where a leaf
 // is beyond its ray's t_max by then, it and the leaves behind it are dropped: they are no nearer.
-module primitive_fetch #(
+module primitive_fetch
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Rays = 64,
-  localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth,
-  localparam int unsigned Children = ray_core_pkg::Children
+  localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    box_valid_i,
-  input  logic [RayWidth-1:0]     box_ray_i,
-  input  ray_core_pkg::group_t    box_group_i,
-  input  logic [Children-1:0]     box_leaf_i,
-  output logic [RayWidth-1:0]     t_max_ray_o,
-  input  logic [30:0]             t_max_i,   // of t_max_ray_o of the clock before
-  input  logic                    ended_i,   // of that ray: it needs nothing any more
-  output logic [Rays-1:0]         leaf_pending_o,  // has a group here
+  input  logic     [RayWidth-1:0] box_ray_i,
+  input  group_t                  box_group_i,
+  input  logic     [Children-1:0] box_leaf_i,
+  output logic     [RayWidth-1:0] t_max_ray_o,
+  input  logic     [        30:0] t_max_i,          // of t_max_ray_o of the clock before
+  input  logic                    ended_i,          // of that ray: it needs nothing any more
+  output logic     [    Rays-1:0] leaf_pending_o,   // has a group here
   // triangles asked for
-  output logic [RayWidth-1:0]     triangle_ray_o,
-  output ray_core_pkg::request_t  triangle_o,
+  output logic     [RayWidth-1:0] triangle_ray_o,
+  output request_t                triangle_o,
   input  logic                    triangle_ready_i
 );
 
-  localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth;
-  localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth;
-  localparam int unsigned CountWidth = ray_core_pkg::CountWidth;
-  localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth;
 
   // ---- Groups that wait
 
   logic push, queued, load;
   logic [RayWidth-1:0] queued_ray;
-  ray_core_pkg::group_t queued_group, group_q;
+  group_t queued_group, group_q;
   logic [Children-1:0] queued_leaf;
 
   assign push = box_valid_i & (box_leaf_i != '0);
@@ -73,7 +68,7 @@ module primitive_fetch #(
   end
 
   assign t_max_ray_o = load ? queued_ray : ray_q;
-  assign beyond = ended_i | ray_core_pkg::is_beyond(entry[EntryWidth-1-:EnterWidth], t_max_i);
+  assign beyond = ended_i | is_beyond(entry[EntryWidth-1-:EnterWidth], t_max_i);
   assign triangle_o.valid = valid_q & ~beyond;
   assign triangle_ray_o   = ray_q;
   assign triangle_o.line  = group_q.base + AddressWidth'(entry[CountWidth +: OffsetWidth])

@@ -8,12 +8,14 @@
 //
 // Rays and results: valid/ready. A ray's direction is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact arithmetic, and on triangles `skip_id`
 // and `source_id`, the one that it leaves, do not count. With `any_hit` it ends at its first sure hit, with `no_cull` it enters all boxes. Words about rays come
-// mixed, by tag, and rays end in any order: see ray_core_pkg::result_e. With an error they say nothing, see error_e.
+// mixed, by tag, and rays end in any order: see result_e. With an error they say nothing, see error_e.
 // Memory: reads of lines by number, valid/ready, each with an id. Lines come back with it, in any order, valid/ready;
 // with line_error_i, not to be believed: it is read again for the next ray. Some are prefetched: outstanding_o may be high
 // when the last ray has ended. Memory may change, and invalidate_i be high, while no ray is here and outstanding_o is low.
 // Throughput: a node and a triangle in Clocks clocks, out of the caches; a line of what they lack.
-module ray_core #(
+module ray_core
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Rays  = 64,  // of the table; a power of two
   parameter int unsigned Depth = 8,   // groups on a ray's own stack
   parameter int unsigned Levels = ray_core_pkg::Levels,  // with those shared, see traversal
@@ -26,30 +28,29 @@ module ray_core #(
   localparam int unsigned ReadIdWidth = 1 + $clog2(
       NodeLines > TriangleLines ? NodeLines : TriangleLines)
 ) (
-  input  logic                    clk_i,
-  input  logic                    rst_ni,
-  input  logic                    invalidate_i,  // memory has changed: see above
-  output logic                    outstanding_o,
-  input  logic                    abort_i,  // the rays that are here
-  input  logic [ray_core_pkg::AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
-  input  logic                    ray_valid_i,
-  output logic                    ray_ready_o,
-  input  ray_core_pkg::ray_t        ray_i,
-  output logic                    result_valid_o,
-  input  logic                    result_ready_i,
-  output ray_core_pkg::result_t    result_o,
-  output logic                    read_valid_o,
-  input  logic                    read_ready_i,
-  output logic [ray_core_pkg::AddressWidth-1:0] read_line_o,
-  output logic [ReadIdWidth-1:0]  read_id_o,
-  input  logic                    line_valid_i,
-  output logic                    line_ready_o,
-  input  logic [ReadIdWidth-1:0]  line_id_i,
-  input  logic [ray_core_pkg::LineWidth-1:0] line_i,
-  input  logic                    line_error_i,
-  output logic [ray_core_pkg::NumEvents-1:0] events_o  // of the clock before, see event_e
+  input  logic                       clk_i,
+  input  logic                       rst_ni,
+  input  logic                       invalidate_i,    // memory has changed: see above
+  output logic                       outstanding_o,
+  input  logic                       abort_i,         // the rays that are here
+  input  logic    [AddressWidth-1:0] lines_i,         // of memory; 0: 2**AddressWidth
+  input  logic                       ray_valid_i,
+  output logic                       ray_ready_o,
+  input  ray_t                       ray_i,
+  output logic                       result_valid_o,
+  input  logic                       result_ready_i,
+  output result_t                    result_o,
+  output logic                       read_valid_o,
+  input  logic                       read_ready_i,
+  output logic    [AddressWidth-1:0] read_line_o,
+  output logic    [ ReadIdWidth-1:0] read_id_o,
+  input  logic                       line_valid_i,
+  output logic                       line_ready_o,
+  input  logic    [ ReadIdWidth-1:0] line_id_i,
+  input  logic    [   LineWidth-1:0] line_i,
+  input  logic                       line_error_i,
+  output logic    [   NumEvents-1:0] events_o         // of the clock before, see event_e
 );
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth;
 
   // ---- Rays that begin, and their contexts: what a node, a triangle or a test needs is there in the clock after it was
   // asked for
@@ -61,7 +62,7 @@ module ray_core #(
   logic [31:0] skip_id, source_id;
   logic no_cull;
   logic [31:0] tags[Rays];
-  ray_core_pkg::ray_t start;
+  ray_t start;
 
   ray_alloc #(
     .Rays(Rays),
@@ -127,9 +128,9 @@ module ray_core #(
   logic [30:0] traversal_t_max, box_t_max;
   logic [Rays-1:0] leaf_pending, testing, traversing, failed;
   logic traversal_ended, cycle, overflow;
-  ray_core_pkg::request_t node, prefetch;
-  ray_core_pkg::node_line_t node_line;
-  ray_core_pkg::boxes_t boxes;
+  request_t node, prefetch;
+  node_line_t node_line;
+  boxes_t boxes;
 
   traversal #(
     .Rays(Rays),
@@ -181,10 +182,10 @@ module ray_core #(
   logic [RayWidth-1:0] fetch_ctx, leaf_ctx, exact_ctx, triangle_ctx, verdict_ctx;
   logic [30:0] leaf_t_max;
   logic leaf_ended, tests_allowed, triangle_ready, test;
-  ray_core_pkg::request_t fetch;
-  ray_core_pkg::triangle_request_t exact, triangle;
-  ray_core_pkg::triangle_line_t triangle_line;
-  ray_core_pkg::verdict_t verdict;
+  request_t fetch;
+  triangle_request_t exact, triangle;
+  triangle_line_t triangle_line;
+  verdict_t verdict;
 
   assign triangle     = exact.valid ? exact : {fetch.valid & tests_allowed, 1'b0, fetch.line};
   assign triangle_ctx = exact.valid ? exact_ctx : fetch_ctx;
@@ -234,9 +235,9 @@ module ray_core #(
   logic [AddressWidth-1:0] exact_found_line;
   logic [30:0] exact_t_max;
   logic [95:0] end_point;
-  ray_core_pkg::open_t open;
-  ray_core_pkg::doubt_t doubt;
-  ray_core_pkg::end_t ended;
+  open_t open;
+  doubt_t doubt;
+  end_t ended;
 
   assign idle      = ~(traversing | leaf_pending | testing);
   assign ended.tag = tags[end_ctx];
@@ -327,7 +328,7 @@ module ray_core #(
     .abort_i,
     .start_i(start_fire),
     .start_ctx_i(start_ctx),
-    .start_scaled_i(ray_core_pkg::is_scaled(start.direction)),
+    .start_scaled_i(is_scaled(start.direction)),
     .node_i(node_line.valid & node_line.error),
     .node_ctx_i(node_line_ctx),
     .triangle_i(triangle_line.valid & triangle_line.error),
@@ -398,18 +399,18 @@ module ray_core #(
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) events_o <= '0;
     else begin
-      events_o[ray_core_pkg::EventRay]      <= ending;
-      events_o[ray_core_pkg::EventNode]     <= node_line.valid;
-      events_o[ray_core_pkg::EventTriangle] <= triangle_line.valid & ~triangle_line.exact;
-      events_o[ray_core_pkg::EventHit]      <= verdict.valid & verdict.found & ~verdict.is_skipped;
-      events_o[ray_core_pkg::EventMiss]     <= verdict.valid
+      events_o[EventRay]      <= ending;
+      events_o[EventNode]     <= node_line.valid;
+      events_o[EventTriangle] <= triangle_line.valid & ~triangle_line.exact;
+      events_o[EventHit]      <= verdict.valid & verdict.found & ~verdict.is_skipped;
+      events_o[EventMiss]     <= verdict.valid
           & (verdict.is_skipped | (~verdict.found & ~verdict.doubt));
-      events_o[ray_core_pkg::EventDoubt]    <= verdict.valid & verdict.doubt & ~verdict.is_skipped;
-      events_o[ray_core_pkg::EventNearTie]  <= near_tie;
-      events_o[ray_core_pkg::EventOverflow] <= overflow;
-      events_o[ray_core_pkg::EventRead]     <= read_valid_o & read_ready_i;
-      events_o[ray_core_pkg::EventWait]     <= read_valid_o & ~read_ready_i;
-      events_o[ray_core_pkg::EventExact]    <= computing;
+      events_o[EventDoubt]    <= verdict.valid & verdict.doubt & ~verdict.is_skipped;
+      events_o[EventNearTie]  <= near_tie;
+      events_o[EventOverflow] <= overflow;
+      events_o[EventRead]     <= read_valid_o & read_ready_i;
+      events_o[EventWait]     <= read_valid_o & ~read_ready_i;
+      events_o[EventExact]    <= computing;
     end
   end
 

@@ -10,7 +10,9 @@
 // bufferable, so that bridges may merge beats. Writes have ID 0.
 // Rays of the user's (ray_*) wait while a rectangle is drawn or rays are given up. A generated ray has no t_max, skips no triangle,
 // and begins at the root. The rest as in those modules.
-module ray_core_axi #(
+module ray_core_axi
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,
   parameter int unsigned NodeLines     = 256,
@@ -22,76 +24,75 @@ module ray_core_axi #(
   parameter bit [2:0] AxProt  = 3'b010,
   parameter bit [3:0] AxCache = 4'b0011,
   parameter int unsigned Arith = arith_pkg::Graded,
-  localparam int unsigned RegisterAddressWidth = 12,
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth
+  localparam int unsigned RegisterAddressWidth = 12
 ) (
-  input  logic                   clk_i,
-  input  logic                   rst_ni,
-  output logic                   interrupt_o,
+  input  logic                            clk_i,
+  input  logic                            rst_ni,
+  output logic                            interrupt_o,
   // registers: AXI4-Lite
-  input  logic                   s_axil_awvalid,
-  output logic                   s_axil_awready,
+  input  logic                            s_axil_awvalid,
+  output logic                            s_axil_awready,
   input  logic [RegisterAddressWidth-1:0] s_axil_awaddr,
-  input  logic                   s_axil_wvalid,
-  output logic                   s_axil_wready,
-  input  logic [31:0]            s_axil_wdata,
-  input  logic [3:0]             s_axil_wstrb,
-  output logic                   s_axil_bvalid,
-  input  logic                   s_axil_bready,
-  output logic [1:0]             s_axil_bresp,
-  input  logic                   s_axil_arvalid,
-  output logic                   s_axil_arready,
+  input  logic                            s_axil_wvalid,
+  output logic                            s_axil_wready,
+  input  logic [                    31:0] s_axil_wdata,
+  input  logic [                     3:0] s_axil_wstrb,
+  output logic                            s_axil_bvalid,
+  input  logic                            s_axil_bready,
+  output logic [                     1:0] s_axil_bresp,
+  input  logic                            s_axil_arvalid,
+  output logic                            s_axil_arready,
   input  logic [RegisterAddressWidth-1:0] s_axil_araddr,
-  output logic                   s_axil_rvalid,
-  input  logic                   s_axil_rready,
-  output logic [31:0]            s_axil_rdata,
-  output logic [1:0]             s_axil_rresp,
+  output logic                            s_axil_rvalid,
+  input  logic                            s_axil_rready,
+  output logic [                    31:0] s_axil_rdata,
+  output logic [                     1:0] s_axil_rresp,
   // memory: AXI4, reads
-  output logic                   m_axi_arvalid,
-  input  logic                   m_axi_arready,
-  output logic [IdWidth-1:0]     m_axi_arid,
-  output logic [63:0]            m_axi_araddr,
-  output logic [7:0]             m_axi_arlen,
-  output logic [2:0]             m_axi_arsize,
-  output logic [1:0]             m_axi_arburst,
-  output logic [3:0]             m_axi_arcache,
-  output logic [2:0]             m_axi_arprot,
-  input  logic                   m_axi_rvalid,
-  output logic                   m_axi_rready,
-  input  logic [IdWidth-1:0]     m_axi_rid,
-  input  logic [DataWidth-1:0]   m_axi_rdata,
-  input  logic [1:0]             m_axi_rresp,
-  input  logic                   m_axi_rlast,
+  output logic                            m_axi_arvalid,
+  input  logic                            m_axi_arready,
+  output logic [             IdWidth-1:0] m_axi_arid,
+  output logic [                    63:0] m_axi_araddr,
+  output logic [                     7:0] m_axi_arlen,
+  output logic [                     2:0] m_axi_arsize,
+  output logic [                     1:0] m_axi_arburst,
+  output logic [                     3:0] m_axi_arcache,
+  output logic [                     2:0] m_axi_arprot,
+  input  logic                            m_axi_rvalid,
+  output logic                            m_axi_rready,
+  input  logic [             IdWidth-1:0] m_axi_rid,
+  input  logic [           DataWidth-1:0] m_axi_rdata,
+  input  logic [                     1:0] m_axi_rresp,
+  input  logic                            m_axi_rlast,
   // rays
-  input  logic                   ray_valid_i,
-  output logic                   ray_ready_o,
-  input  ray_core_pkg::ray_t       ray_i,
+  input  logic                            ray_valid_i,
+  output logic                            ray_ready_o,
+  input  ray_t                            ray_i,
   // results to memory: AXI4, writes
-  output logic                   m_axi_awvalid,
-  input  logic                   m_axi_awready,
-  output logic [IdWidth-1:0]     m_axi_awid,
-  output logic [63:0]            m_axi_awaddr,
-  output logic [7:0]             m_axi_awlen,
-  output logic [2:0]             m_axi_awsize,
-  output logic [1:0]             m_axi_awburst,
-  output logic [3:0]             m_axi_awcache,
-  output logic [2:0]             m_axi_awprot,
-  output logic                   m_axi_wvalid,
-  input  logic                   m_axi_wready,
-  output logic [DataWidth-1:0]   m_axi_wdata,
-  output logic [DataWidth/8-1:0] m_axi_wstrb,
-  output logic                   m_axi_wlast,
-  input  logic                   m_axi_bvalid,
-  output logic                   m_axi_bready,
+  output logic                            m_axi_awvalid,
+  input  logic                            m_axi_awready,
+  output logic [             IdWidth-1:0] m_axi_awid,
+  output logic [                    63:0] m_axi_awaddr,
+  output logic [                     7:0] m_axi_awlen,
+  output logic [                     2:0] m_axi_awsize,
+  output logic [                     1:0] m_axi_awburst,
+  output logic [                     3:0] m_axi_awcache,
+  output logic [                     2:0] m_axi_awprot,
+  output logic                            m_axi_wvalid,
+  input  logic                            m_axi_wready,
+  output logic [           DataWidth-1:0] m_axi_wdata,
+  output logic [         DataWidth/8-1:0] m_axi_wstrb,
+  output logic                            m_axi_wlast,
+  input  logic                            m_axi_bvalid,
+  output logic                            m_axi_bready,
   // verilator lint_off UNUSEDSIGNAL
-  input  logic [IdWidth-1:0]     m_axi_bid,  // 0
+  input  logic [             IdWidth-1:0] m_axi_bid,       // 0
   // verilator lint_on UNUSEDSIGNAL
-  input  logic [1:0]             m_axi_bresp,
+  input  logic [                     1:0] m_axi_bresp,
   // results: AXI4-Stream, a record a transfer, see registers.md
-  output logic                   m_axis_tvalid,
-  input  logic                   m_axis_tready,
-  output logic [255:0]           m_axis_tdata,
-  output logic                   m_axis_tlast
+  output logic                            m_axis_tvalid,
+  input  logic                            m_axis_tready,
+  output logic [                   255:0] m_axis_tdata,
+  output logic                            m_axis_tlast
 );
 
   localparam int unsigned ReadIdWidth = 1 + $clog2(
@@ -111,7 +112,7 @@ module ray_core_axi #(
 
   logic start, invalidate, abort, drawing, outstanding, camera_busy, bus_error;
   logic result_valid, result_ready, result_fire, is_doubt, ended;
-  ray_core_pkg::result_t result;
+  result_t result;
   logic [63:0] results;
   logic [31:0] length, written;
   logic rewind, writing, full, write_error;
@@ -119,12 +120,12 @@ module ray_core_axi #(
   logic [AddressWidth-1:0] lines, error_number;
   logic [31:0] corner, size;
   logic [4*96-1:0] camera;
-  logic [ray_core_pkg::NumEvents-1:0] events;
+  logic [NumEvents-1:0] events;
   logic [31:0] in_flight_q;  // rays ray_fire whose end has not been given
 
   assign result_fire = result_valid & result_ready;
-  assign is_doubt    = result_fire & (result.kind == ray_core_pkg::ResultDoubt);
-  assign ended       = result_fire & (result.kind == ray_core_pkg::ResultEnd);
+  assign is_doubt    = result_fire & (result.kind == ResultDoubt);
+  assign ended       = result_fire & (result.kind == ResultEnd);
 
   csr #(
     .Capability(Capability)
@@ -166,7 +167,7 @@ module ray_core_axi #(
     .writing_i(writing),
     .written_i(written),
     .doubt_i(is_doubt),
-    .ray_error_i(ended & (result.error != ray_core_pkg::ErrorNone)),
+    .ray_error_i(ended & (result.error != ErrorNone)),
     .full_i(full),
     .write_error_i(write_error),
     .bus_error_i(bus_error),
@@ -204,7 +205,7 @@ module ray_core_axi #(
 
   // ---- Rays: the camera's first
 
-  ray_core_pkg::ray_t generated;
+  ray_t generated;
   logic core_ready, core_valid, ray_fire;
   logic closed_q;  // to the user's; but one that waits goes in before
   assign core_valid   = camera_valid | (ray_valid_i & ~closed_q);
@@ -230,7 +231,7 @@ module ray_core_axi #(
   logic read_valid, read_ready, line_valid, line_ready, line_error;
   logic [AddressWidth-1:0] read_line;
   logic [ReadIdWidth-1:0] read_id, line_id;
-  logic [ray_core_pkg::LineWidth-1:0] line;
+  logic [LineWidth-1:0] line;
 
   ray_core #(
     .Rays(Rays),
@@ -312,7 +313,7 @@ module ray_core_axi #(
   assign result_ready    = to_memory ? record_ready : m_axis_tready;
   assign m_axis_tvalid = result_valid & ~to_memory;
   assign m_axis_tdata  = record;
-  assign m_axis_tlast  = result.kind == ray_core_pkg::ResultEnd;
+  assign m_axis_tlast  = result.kind == ResultEnd;
 
   axi_write_manager #(
     .DataWidth(DataWidth)

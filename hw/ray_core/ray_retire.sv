@@ -5,28 +5,30 @@
 // triangle alone, an end without a hit no triangle, t, t_error or P.
 //
 // A ray ends a clock at most, a result leaves a clock.
-module ray_retire #(
+module ray_retire
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Rays = 64,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
-  input  logic                   start_i,        // a ray is in a context
-  input  logic [RayWidth-1:0]    start_ctx_i,
-  input  logic [Rays-1:0]        busy_i,         // something is to be done for a context's ray
+  input  logic                   start_i,         // a ray is in a context
+  input  logic    [RayWidth-1:0] start_ctx_i,
+  input  logic    [    Rays-1:0] busy_i,          // something is to be done for a context's ray
   // a ray ends, its context is free; in the clock after what is known of it
   output logic                   ending_o,
-  output logic [RayWidth-1:0]    ending_ctx_o,
-  output logic [RayWidth-1:0]    end_ctx_o,
-  input  ray_core_pkg::end_t     end_i,
-  input  logic [95:0]            point_i,
+  output logic    [RayWidth-1:0] ending_ctx_o,
+  output logic    [RayWidth-1:0] end_ctx_o,
+  input  end_t                   end_i,
+  input  logic    [        95:0] point_i,
   // doubts
-  input  ray_core_pkg::doubt_t   doubt_i,
+  input  doubt_t                 doubt_i,
   output logic                   doubt_fire_o,
   // results
   output logic                   result_valid_o,
   input  logic                   result_ready_i,
-  output ray_core_pkg::result_t  result_o
+  output result_t                result_o
 );
 
   localparam int unsigned Depth = 8;  // for an end a clock
@@ -62,7 +64,7 @@ module ray_retire #(
   // ---- What is known of it waits
 
   logic known_q, end_valid, end_fire;
-  ray_core_pkg::end_t ended;
+  end_t ended;
   logic [95:0] end_point;
 
   always_ff @(posedge clk_i) end_ctx_o <= ending_ctx_o;
@@ -101,7 +103,7 @@ module ray_retire #(
   always_ff @(posedge clk_i) begin
     if (load) begin
       result_o       <= '0;
-      result_o.kind  <= doubt_i.valid ? ray_core_pkg::ResultDoubt : ray_core_pkg::ResultEnd;
+      result_o.kind  <= doubt_i.valid ? ResultDoubt : ResultEnd;
       result_o.tag   <= doubt_i.valid ? doubt_i.tag : ended.tag;
       result_o.found <= end_found;
       if (doubt_i.valid) begin
@@ -114,7 +116,7 @@ module ray_retire #(
         result_o.triangle <= ended.hit.triangle;
         result_o.t        <= ended.hit.t;
         result_o.t_error  <= ended.hit.t_error;
-        if (ended.hit.t_error != ray_core_pkg::NoT) result_o.point <= end_point;
+        if (ended.hit.t_error != NoT) result_o.point <= end_point;
       end
     end
   end

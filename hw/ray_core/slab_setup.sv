@@ -5,25 +5,24 @@
 //      inverse_i    1 / |I|, capped; exponent_i, cap_i: E and the cap, with binary32's bias
 //      is_capped_i  the inverse was above the cap; is_open_i: and the cap is no binary32 number
 // Out: near_o, far_o  a - r and a + r, two's complement; step_o: s in 256ths of a unit
-module slab_setup #(
-  parameter int unsigned Arith = arith_pkg::Graded,
-  localparam int unsigned StepWidth = ray_core_pkg::StepWidth,
-  localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth
+module slab_setup
+  import ray_core_pkg::*;
+#(
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic                  clk_i,
-  input  logic [31:0]           product_i,
-  input  logic [30:0]           inverse_i,
-  input  logic [8:0]            exponent_i,
-  input  logic [10:0]           cap_i,
+  input  logic [          31:0] product_i,
+  input  logic [          30:0] inverse_i,
+  input  logic [           8:0] exponent_i,
+  input  logic [          10:0] cap_i,
   input  logic                  is_capped_i,
   input  logic                  is_open_i,
   output logic [PlaneWidth-1:0] near_o,
   output logic [PlaneWidth-1:0] far_o,
-  output logic [StepWidth-1:0]  step_o
+  output logic [ StepWidth-1:0] step_o
 );
 
   localparam int unsigned SizeWidth = 34;  // of |a|, up to 2**33
-  localparam int unsigned UnitBits = ray_core_pkg::UnitBits;
   localparam logic [PlaneWidth-1:0] Far = PlaneWidth'(1) << 33;
 
   logic [7:0] product_field, inverse_field;

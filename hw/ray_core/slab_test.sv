@@ -7,23 +7,22 @@
 //      t_max_i      in units, two clocks later; no box is entered beyond it
 //      kind_i       ray_core_pkg's, three clocks later; no_cull_i, too
 // Out: key_o        {culled, enter}: enter in units, up to 2**22; 0 where no_cull_i
-module slab_test #(
-  parameter int unsigned Arith = arith_pkg::Graded,
-  localparam int unsigned StepWidth = ray_core_pkg::StepWidth,
-  localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth,
-  localparam int unsigned UnitBits = ray_core_pkg::UnitBits
+module slab_test
+  import ray_core_pkg::*;
+#(
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
-  input  logic                               clk_i,
-  input  logic [ray_core_pkg::BoxWidth-1:0]  box_i,
-  input  logic [2:0]                         back_i,
-  input  logic [3*StepWidth-1:0]             step_i,
-  input  logic [3*PlaneWidth-1:0]            near_i,
-  input  logic [3*PlaneWidth-1:0]            far_i,
-  input  logic [2:0]                         next_back_i,
-  input  logic [UnitBits:0]                  t_max_i,
-  input  logic [ray_core_pkg::KindWidth-1:0] kind_i,
-  input  logic                               no_cull_i,
-  output logic [UnitBits+1:0]                key_o
+  input  logic                    clk_i,
+  input  logic [    BoxWidth-1:0] box_i,
+  input  logic [             2:0] back_i,
+  input  logic [ 3*StepWidth-1:0] step_i,
+  input  logic [3*PlaneWidth-1:0] near_i,
+  input  logic [3*PlaneWidth-1:0] far_i,
+  input  logic [             2:0] next_back_i,
+  input  logic [      UnitBits:0] t_max_i,
+  input  logic [   KindWidth-1:0] kind_i,
+  input  logic                    no_cull_i,
+  output logic [    UnitBits+1:0] key_o
 );
 
   // ---- Planes, with the sign bit turned, so that they compare as unsigned
@@ -101,7 +100,7 @@ module slab_test #(
   );
 
   logic entered;
-  assign entered = (no_cull_i | ~left_before) & (kind_i != ray_core_pkg::KindAbsent);
+  assign entered = (no_cull_i | ~left_before) & (kind_i != KindAbsent);
 
   always_ff @(posedge clk_i) begin
     key_o <= {~entered, (entered & ~no_cull_i) ? enter_q[UnitBits:0] : (UnitBits + 1)'(0)};

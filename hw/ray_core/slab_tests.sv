@@ -3,29 +3,25 @@
 // Clocks clocks; latency Children clocks more.
 //
 // start_i comes with the node, where Clocks is not 1; what else comes, comes as in slab_test.
-module slab_tests #(
+module slab_tests
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Clocks = 1,
   parameter int unsigned Arith = arith_pkg::Graded,
-  localparam int unsigned Children = ray_core_pkg::Children,
-  localparam int unsigned BoxWidth = ray_core_pkg::BoxWidth,
-  localparam int unsigned KindWidth = ray_core_pkg::KindWidth,
-  localparam int unsigned StepWidth = ray_core_pkg::StepWidth,
-  localparam int unsigned PlaneWidth = ray_core_pkg::PlaneWidth,
-  localparam int unsigned UnitBits = ray_core_pkg::UnitBits,
   localparam int unsigned KeyWidth = UnitBits + 2
 ) (
   input  logic                          clk_i,
   input  logic                          start_i,
-  input  logic [Children*BoxWidth-1:0]  boxes_i,
-  input  logic [2:0]                    back_i,
-  input  logic [3*StepWidth-1:0]        step_i,
-  input  logic [3*PlaneWidth-1:0]       near_i,
-  input  logic [3*PlaneWidth-1:0]       far_i,
-  input  logic [2:0]                    next_back_i,
-  input  logic [UnitBits:0]             t_max_i,
+  input  logic [ Children*BoxWidth-1:0] boxes_i,
+  input  logic [                   2:0] back_i,
+  input  logic [       3*StepWidth-1:0] step_i,
+  input  logic [      3*PlaneWidth-1:0] near_i,
+  input  logic [      3*PlaneWidth-1:0] far_i,
+  input  logic [                   2:0] next_back_i,
+  input  logic [            UnitBits:0] t_max_i,
   input  logic [Children*KindWidth-1:0] kinds_i,
   input  logic                          no_cull_i,
-  output logic [Children*KeyWidth-1:0]  keys_o
+  output logic [ Children*KeyWidth-1:0] keys_o
 );
 
   if (Clocks != 1 && Clocks < Children) begin : gen_check

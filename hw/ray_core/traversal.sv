@@ -21,47 +21,42 @@
 //   ask      the node's line, out of the group; or, where there is none, a ray that starts (start_*) its first node
 //
 // A ray that starts goes before those that have tests in flight.
-module traversal #(
+module traversal
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,  // groups on a ray's own stack
   parameter int unsigned Levels = ray_core_pkg::Levels,  // with the shared ones
-  localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
-  localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth,
-  localparam int unsigned Children = ray_core_pkg::Children
+  localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                    clk_i,
-  input  logic                    rst_ni,
+  input logic clk_i,
+  input logic rst_ni,
   // a ray begins
-  input  logic                    start_valid_i,
-  input  logic [RayWidth-1:0]     start_ray_i,
-  output logic                    start_fire_o,
+  input logic start_valid_i,
+  input logic [RayWidth-1:0] start_ray_i,
+  output logic start_fire_o,
   // what box_unit says of a node
-  input  logic                    box_valid_i,
-  input  logic [RayWidth-1:0]     box_ray_i,
-  input  ray_core_pkg::group_t    box_group_i,
-  input  logic [Children-1:0]     box_inner_i,
+  input logic box_valid_i,
+  input logic [RayWidth-1:0] box_ray_i,
+  input group_t box_group_i,
+  input logic [Children-1:0] box_inner_i,
   // what is known of rays
-  input  logic [Rays-1:0]         leaf_pending_i,  // has leaves to be asked for
-  input  logic [Rays-1:0]         testing_i,   // has tests on their way
-  output logic [RayWidth-1:0]     t_max_ray_o,
-  input  logic [30:0]             t_max_i,     // of t_max_ray_o of the clock before
-  input  logic                    ended_i,     // of that ray: it needs nothing any more
-  output logic                    cycle_o,     // cycle_ray_o meets a node again
-  output logic [RayWidth-1:0]     cycle_ray_o,
-  input  logic [AddressWidth-1:0] lines_i,     // of memory; 0: 2**AddressWidth
-  output logic [Rays-1:0]         traversing_o,  // waits for a node, or has some on its stack
+  input logic [Rays-1:0] leaf_pending_i,  // has leaves to be asked for
+  input logic [Rays-1:0] testing_i,  // has tests on their way
+  output logic [RayWidth-1:0] t_max_ray_o,
+  input logic [30:0] t_max_i,  // of t_max_ray_o of the clock before
+  input logic ended_i,  // of that ray: it needs nothing any more
+  output logic cycle_o,  // cycle_ray_o meets a node again
+  output logic [RayWidth-1:0] cycle_ray_o,
+  input logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
+  output logic [Rays-1:0] traversing_o,  // waits for a node, or has some on its stack
   // nodes asked for; as many as there are rays at most
-  output logic [RayWidth-1:0]     node_ray_o,
-  output ray_core_pkg::request_t  node_o,
-  output ray_core_pkg::request_t  prefetch_o,  // the next of the same group, where there is one
-  output logic                    overflow_o   // a ray takes the shared groups
+  output logic [RayWidth-1:0] node_ray_o,
+  output request_t node_o,
+  output request_t prefetch_o,  // the next of the same group, where there is one
+  output logic overflow_o  // a ray takes the shared groups
 );
 
-  localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth;
-  localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth;
-  localparam int unsigned CountWidth = ray_core_pkg::CountWidth;
-  localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth;
   localparam int unsigned LevelWidth = $clog2(Levels + 1);
   localparam int unsigned Shared = Levels - Depth;
   localparam int unsigned SharedWidth = $clog2(Shared);
@@ -187,7 +182,7 @@ module traversal #(
 
     assign masks[Children*d +: Children] = next_q[NextWidth-1 -: Children];
     assign open[d] = (level_q > LevelWidth'(d)) & ~ended_q
-                   & ~ray_core_pkg::is_beyond(next_q[EnterWidth-1:0], t_max_q);
+                   & ~is_beyond(next_q[EnterWidth-1:0], t_max_q);
   end
 
   // ---- Choose
@@ -243,7 +238,7 @@ module traversal #(
 
   logic next_started_q;
   logic [AddressWidth-1:0] base_q;
-  ray_core_pkg::group_t group;
+  group_t group;
   logic [OffsetWidth-1:0] offset_q, prefetch_offset_q;
   logic [EnterWidth-1:0] unused_enter;
   logic [OffsetWidth-1:0] unused_box_offset;

@@ -42,33 +42,35 @@
 //   Overflow gives an infinity or NaN, which is never sure.
 //
 // Source: the paper's section 2.2 (what is computed once for an origin); the bounds are this project's.
-module triangle_test #(
+module triangle_test
+  import ray_core_pkg::*;
+#(
   parameter int unsigned Rays   = 64,
   parameter int unsigned Clocks = 1,
   parameter int unsigned Arith  = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                       clk_i,
-  input  logic                       rst_ni,
-  input  logic                       step_i,
-  input  logic [RayWidth-1:0]        ctx_i,
+  input  logic                          clk_i,
+  input  logic                          rst_ni,
+  input  logic                          step_i,
+  input  logic           [RayWidth-1:0] ctx_i,
   // verilator lint_off UNUSEDSIGNAL
   // Ranks are exact_resolver's, and so are lines that are `exact`.
-  input  ray_core_pkg::triangle_line_t triangle_i,  // with an error it counts for nothing
+  input  triangle_line_t                triangle_i,       // with an error it counts for nothing
   // verilator lint_on UNUSEDSIGNAL
-  input  logic [95:0]                origin_i,
-  input  logic [31:0]                skip_id_i,  // triangles that count for nothing
-  input  logic [31:0]                source_id_i,
-  output logic [RayWidth-1:0]        direction_ctx_o,
-  input  logic [95:0]                direction_i,
-  output logic [RayWidth-1:0]        ctx_o,
-  output ray_core_pkg::verdict_t     verdict_o
+  input  logic           [        95:0] origin_i,
+  input  logic           [        31:0] skip_id_i,        // triangles that count for nothing
+  input  logic           [        31:0] source_id_i,
+  output logic           [RayWidth-1:0] direction_ctx_o,
+  input  logic           [        95:0] direction_i,
+  output logic           [RayWidth-1:0] ctx_o,
+  output verdict_t                      verdict_o
 );
 
   localparam int unsigned ErrorWidth = set_up_pkg::PlaneErrorWidth;
 
-  if ((Clocks != 1 && Clocks < 7) || ray_core_pkg::VerdictErrorWidth != ErrorWidth
-      || ray_core_pkg::VerdictErrorWidth != hit_test_pkg::TErrorWidth) begin : gen_check
+  if ((Clocks != 1 && Clocks < 7) || VerdictErrorWidth != ErrorWidth
+      || VerdictErrorWidth != hit_test_pkg::TErrorWidth) begin : gen_check
     $error("triangle_test: expected Clocks of 1, or 7 or more, and one width of errors");
   end
 
@@ -85,7 +87,7 @@ module triangle_test #(
 
   // ---- Take; which test is where
 
-  logic [ray_core_pkg::TriangleWidth-1:0] line_q;
+  logic [TriangleWidth-1:0] line_q;
   logic [RayWidth-1:0] ctx_q, ctx;
   logic [9*32-1:0] corners;
   logic [95:0] origin;
@@ -93,7 +95,7 @@ module triangle_test #(
   logic [Last:1] valid_q;  // so many steps ago it came
   logic error_q, skipped, taken_skipped, early_skipped;
 
-  assign index   = line_q[ray_core_pkg::TriangleIndex+:32];
+  assign index   = line_q[TriangleIndex+:32];
   assign skipped = error_q | (index == skip_id_i) | (index == source_id_i);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -109,7 +111,7 @@ module triangle_test #(
   ) u_take (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({line_q[ray_core_pkg::TriangleCorners +: 9*32], origin_i, ctx_q, index, skipped}),
+    .data_i({line_q[TriangleCorners +: 9*32], origin_i, ctx_q, index, skipped}),
     .data_o({corners, origin, ctx, taken_index, taken_skipped})
   );
   delay_line #(
