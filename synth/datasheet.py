@@ -20,7 +20,7 @@ FIGURES = ["mm2", "ns", "MHz"]
 # Design of the catalogue -> the flow that is shown. Adders have look-ahead groups, as in the units.
 SHOWN = {"adder-graded-look-ahead": "fast", "booth-graded": "fast", "fp-multiplier": "fast",
          "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
-         "hit_test_pipeline": "parts", "iterative_hit_test_unit-RowsPerClock1": "parts", "exact_unit": "blocks"}
+         "hit_test_pipeline": "parts", "iterative_hit_test_unit": "parts", "exact_unit": "blocks"}
 
 
 def header(text: str) -> str:

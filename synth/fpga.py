@@ -187,8 +187,7 @@ def table(units: list[tuple[tuple, list[dict]]]) -> str:
 
 
 # What a parameter makes of a unit, in words.
-NAMES = {("QuotientBits", "21"): "21-bit quotients", ("RowsPerClock", "1"): "a row a clock",
-         ("RowsPerClock", "2"): "two rows a clock", ("Clocks", "11"): "small (a node and a triangle in 11 clocks)"}
+NAMES = {("QuotientBits", "21"): "21-bit quotients", ("Clocks", "11"): "small (a node and a triangle in 11 clocks)"}
 
 
 if __name__ == "__main__":

@@ -115,29 +115,75 @@ module srt_divider #(
     );
   end
 
-  // ---- Quotient
+  // ---- Remainder: a negative one takes a unit off the quotient. (Then it is d - |w|, never zero.)
 
-  srt_quotient #(
+  localparam int unsigned QuotientWidth = 2 * Rows + 2;
+  logic [ResWidth-1:0] remainder, unused_divisor;
+  logic [QuotientWidth-1:0] plus, minus, quotient;
+  logic [SideWidth-1:0] remainder_side;
+  logic remainder_negative, remainder_left, remainder_valid;
+
+  adder #(
     .Width(ResWidth),
-    .Digits(Rows + 1),
-    .SideWidth(SideWidth),
-    .Arith(Arith),
-    .Pipelined(Pipelined)
-  ) u_quotient (
+    .Arith(Arith)
+  ) u_remainder (
+    .a_i(gen_row[Rows].sum_q),
+    .b_i(gen_row[Rows].carry_q),
+    .carry_i(1'b0),
+    .sum_o(remainder),
+    .carry_o()
+  );
+  assign unused_divisor = gen_row[Rows].divisor_q;
+
+  delay_line #(
+    .Width(1),
+    .Depth(32'(Pipelined))
+  ) u_valid_remainder (
     .clk_i,
-    .valid_i(gen_row[Rows].valid_q),
-    .sum_i(gen_row[Rows].sum_q),
-    .carry_i(gen_row[Rows].carry_q),
-    .positives_i(gen_row[Rows].positives_q),
-    .negatives_i(gen_row[Rows].negatives_q),
-    .side_i(gen_row[Rows].side_q),
-    .quotient_o,
-    .remainder_o,
-    .side_o,
-    .valid_o
+    .enable_i(1'b1),
+    .data_i(gen_row[Rows].valid_q),
+    .data_o(remainder_valid)
+  );
+  delay_line #(
+    .Width(2 * QuotientWidth + SideWidth + 2),
+    .Depth(32'(Pipelined))
+  ) u_cut_remainder (
+    .clk_i,
+    .enable_i(gen_row[Rows].valid_q),
+    .data_i({gen_row[Rows].positives_q, gen_row[Rows].negatives_q, gen_row[Rows].side_q,
+             remainder[ResWidth-1], |remainder}),
+    .data_o({plus, minus, remainder_side, remainder_negative, remainder_left})
   );
 
-  logic [ResWidth-1:0] unused_divisor;
-  assign unused_divisor = gen_row[Rows].divisor_q;
+  // ---- Quotient: positive less negative digits, less that unit
+
+  adder #(
+    .Width(QuotientWidth),
+    .Arith(Arith)
+  ) u_quotient (
+    .a_i(plus),
+    .b_i(~minus),
+    .carry_i(~remainder_negative),
+    .sum_o(quotient),
+    .carry_o()
+  );
+  delay_line #(
+    .Width(1),
+    .Depth(32'(Pipelined))
+  ) u_valid_quotient (
+    .clk_i,
+    .enable_i(1'b1),
+    .data_i(remainder_valid),
+    .data_o(valid_o)
+  );
+  delay_line #(
+    .Width(QuotientWidth + SideWidth + 1),
+    .Depth(32'(Pipelined))
+  ) u_cut_quotient (
+    .clk_i,
+    .enable_i(remainder_valid),
+    .data_i({quotient, remainder_left, remainder_side}),
+    .data_o({quotient_o, remainder_o, side_o})
+  );
 
 endmodule

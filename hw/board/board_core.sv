@@ -18,14 +18,14 @@ module board_core
   input  logic        word_valid_i,
   output logic        word_ready_o,
   input  logic [31:0] word_i,
-  input  logic        break_i,          // see core_link
+  input  logic        break_i,  // see core_link
   output logic        word_valid_o,
   input  logic        word_ready_i,
   output logic [31:0] word_o,
   output logic        sdram_ras_no,
   output logic        sdram_cas_no,
   output logic        sdram_we_no,
-  output logic [ 1:0] sdram_bank_o,
+  output logic [1:0]  sdram_bank_o,
   output logic [12:0] sdram_address_o,
   output logic        sdram_drive_o,
   output logic [15:0] sdram_data_o,

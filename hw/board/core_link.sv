@@ -15,33 +15,33 @@
 module core_link
   import ray_core_pkg::*;
 (
-  input  logic                       clk_i,
-  input  logic                       rst_ni,
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
   // words from the host
-  input  logic                       word_valid_i,
-  output logic                       word_ready_o,
-  input  logic    [            31:0] word_i,
-  input  logic                       break_i,
+  input  logic                    word_valid_i,
+  output logic                    word_ready_o,
+  input  logic [31:0]             word_i,
+  input  logic                    break_i,
   // words to the host
-  output logic                       word_valid_o,
-  input  logic                       word_ready_i,
-  output logic    [            31:0] word_o,
+  output logic                    word_valid_o,
+  input  logic                    word_ready_i,
+  output logic [31:0]             word_o,
   // lines to memory
-  output logic                       write_valid_o,
-  input  logic                       write_ready_i,
-  output logic    [AddressWidth-1:0] write_line_o,
-  output logic    [   LineWidth-1:0] write_data_o,
+  output logic                    write_valid_o,
+  input  logic                    write_ready_i,
+  output logic [AddressWidth-1:0] write_line_o,
+  output logic [LineWidth-1:0]    write_data_o,
   // the core
-  output logic                       invalidate_o,
-  output logic                       abort_o,
-  input  logic                       outstanding_i,
-  output logic    [AddressWidth-1:0] lines_o,
-  output logic                       ray_valid_o,
-  input  logic                       ray_ready_i,
-  output ray_t                       ray_o,
-  input  logic                       result_valid_i,
-  output logic                       result_ready_o,
-  input  result_t                    result_i
+  output logic                    invalidate_o,
+  output logic                    abort_o,
+  input  logic                    outstanding_i,
+  output logic [AddressWidth-1:0] lines_o,
+  output logic                    ray_valid_o,
+  input  logic                    ray_ready_i,
+  output ray_t                    ray_o,
+  input  logic                    result_valid_i,
+  output logic                    result_ready_o,
+  input  result_t                 result_i
 );
 
   localparam int unsigned LineWords = LineWidth / 32;

@@ -24,25 +24,25 @@ module sdram_controller
   // verilator lint_off UNUSEDSIGNAL
   // Memory has no more lines.
   input  logic [NumberWidth-1:0] read_line_i,
-  input  logic [    IdWidth-1:0] read_id_i,
+  input  logic [IdWidth-1:0]     read_id_i,
   output logic                   line_valid_o,
   input  logic                   line_ready_i,
-  output logic [    IdWidth-1:0] line_id_o,
-  output logic [  LineWidth-1:0] line_o,
+  output logic [IdWidth-1:0]     line_id_o,
+  output logic [LineWidth-1:0]   line_o,
   input  logic                   write_valid_i,
   output logic                   write_ready_o,
   input  logic [NumberWidth-1:0] write_line_i,
   // verilator lint_on UNUSEDSIGNAL
-  input  logic [  LineWidth-1:0] write_data_i,
+  input  logic [LineWidth-1:0]   write_data_i,
   // the SDRAM's pins
   output logic                   sdram_ras_no,
   output logic                   sdram_cas_no,
   output logic                   sdram_we_no,
-  output logic [            1:0] sdram_bank_o,
-  output logic [           12:0] sdram_address_o,
-  output logic                   sdram_drive_o,    // data_o goes out
-  output logic [           15:0] sdram_data_o,
-  input  logic [           15:0] sdram_data_i
+  output logic [1:0]             sdram_bank_o,
+  output logic [12:0]            sdram_address_o,
+  output logic                   sdram_drive_o,  // data_o goes out
+  output logic [15:0]            sdram_data_o,
+  input  logic [15:0]            sdram_data_i
 );
 
   // ---- Times in clocks, rounded up

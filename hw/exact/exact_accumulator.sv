@@ -21,15 +21,15 @@ module exact_accumulator
   localparam int unsigned Width = sum_width(DigitWidth, Products)
 ) (
   input  logic                  clk_i,
-  input  logic                  opens_i,     // a column
-  input  logic                  first_i,     // of them
+  input  logic                  opens_i,  // a column
+  input  logic                  first_i,  // of them
   input  logic                  down_i,
-  input  logic [     Width-1:0] sum_i,
-  input  logic [     Width-1:0] carry_i,
+  input  logic [Width-1:0]      sum_i,
+  input  logic [Width-1:0]      carry_i,
   output logic [DigitWidth-1:0] digit_o,
   output logic                  negative_o,
   output logic                  zero_o,
-  output logic                  sure_o       // of its sign, whatever the columns below
+  output logic                  sure_o  // of its sign, whatever the columns below
 );
 
   localparam int unsigned SureBit = DigitWidth - 1 + $clog2(Products);

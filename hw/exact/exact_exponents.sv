@@ -20,13 +20,13 @@ module exact_exponents
   input  logic                    clk_i,
   input  logic [Floats*Width-1:0] floats_i,
   input  logic                    with_other_i,
-  output logic [    ExpWidth-1:0] coordinate_exponent_o,
-  output logic [    ExpWidth-1:0] direction_exponent_o,
-  output logic [  CountWidth-1:0] coordinate_digits_o,
-  output logic [  CountWidth-1:0] direction_digits_o,
-  output logic [  ShiftWidth-1:0] one_shift_o,
-  output logic [  ShiftWidth-1:0] limit_shift_o,
-  output logic [  CountWidth-1:0] pair_digits_o
+  output logic [ExpWidth-1:0]     coordinate_exponent_o,
+  output logic [ExpWidth-1:0]     direction_exponent_o,
+  output logic [CountWidth-1:0]   coordinate_digits_o,
+  output logic [CountWidth-1:0]   direction_digits_o,
+  output logic [ShiftWidth-1:0]   one_shift_o,
+  output logic [ShiftWidth-1:0]   limit_shift_o,
+  output logic [CountWidth-1:0]   pair_digits_o
 );
 
   localparam int unsigned Least = digits_of(0, Significand, DigitWidth);

@@ -7,8 +7,9 @@
 // Limit and Order are of hits, and follow Hit where a request asks for both.
 package exact_program_pkg;
 
-  // Programs are read from left to right.
+  // Programs are read from left to right; no top enters everywhere.
   // verilator lint_off LITENDIAN
+  // verilator lint_off UNUSEDPARAM
   // verilog_lint: waive-start packed-dimensions-range-ordering
 
   import exact_pkg::*;
@@ -138,6 +139,7 @@ package exact_program_pkg;
   };
   // verilog_format: on
   // verilog_lint: waive-stop packed-dimensions-range-ordering
+  // verilator lint_on UNUSEDPARAM
   // verilator lint_on LITENDIAN
 
 endpackage

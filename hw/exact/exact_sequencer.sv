@@ -14,29 +14,29 @@ module exact_sequencer
   parameter int unsigned Digits = 6,  // of a difference, at most
   localparam int unsigned AddressWidth = $clog2(memory_depth(Digits))
 ) (
-  input logic clk_i,
-  input logic rst_ni,
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
   // a request
-  input logic begin_i,
-  input logic hit_i,
-  input logic [1:0] against_i,
-  input logic start_i,
-  input logic [CountWidth-1:0] coordinate_digits_i,
-  input logic [CountWidth-1:0] direction_digits_i,
-  input logic [CountWidth-1:0] pair_digits_i,
+  input  logic                    begin_i,
+  input  logic                    hit_i,
+  input  logic [1:0]              against_i,
+  input  logic                    start_i,
+  input  logic [CountWidth-1:0]   coordinate_digits_i,
+  input  logic [CountWidth-1:0]   direction_digits_i,
+  input  logic [CountWidth-1:0]   pair_digits_i,
   // what is known meanwhile
-  input logic written_i,
-  input logic stop_i,
-  input logic [6:0] stop_address_i,
-  output logic stopped_o,  // all steps on their way are of that instruction
-  input logic abort_i,
+  input  logic                    written_i,
+  input  logic                    stop_i,
+  input  logic [6:0]              stop_address_i,
+  output logic                    stopped_o,  // all steps on their way are of that instruction
+  input  logic                    abort_i,
   // a step
-  output logic valid_o,
-  output step_t step_o,
-  output logic [6:0] address_o,
-  output logic [CountWidth-1:0] x_digit_o,
-  output logic [NumberWidth-1:0] x_place_o,
-  output logic [NumberWidth-1:0] y_place_o,
+  output logic                    valid_o,
+  output step_t                   step_o,
+  output logic [6:0]              address_o,
+  output logic [CountWidth-1:0]   x_digit_o,
+  output logic [NumberWidth-1:0]  x_place_o,
+  output logic [NumberWidth-1:0]  y_place_o,
   output logic [AddressWidth-1:0] x_address_o,
   output logic [AddressWidth-1:0] y_address_o,
   output logic [AddressWidth-1:0] result_address_o

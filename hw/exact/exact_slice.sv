@@ -10,9 +10,9 @@ module exact_slice
   localparam int unsigned ShiftWidth = $clog2(MaxShift + 1)
 ) (
   input  logic [SignificandWidth-1:0] significand_i,
-  input  logic [      ShiftWidth-1:0] shift_i,
-  input  logic [      CountWidth-1:0] digit_i,
-  output logic [      DigitWidth-1:0] digit_o
+  input  logic [ShiftWidth-1:0]       shift_i,
+  input  logic [CountWidth-1:0]       digit_i,
+  output logic [DigitWidth-1:0]       digit_o
 );
 
   if (SignificandWidth > DigitWidth) begin : gen_check

@@ -25,17 +25,17 @@ module exact_unit
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
-  input  logic                     clk_i,
-  input  logic                     rst_ni,
-  input  logic                     valid_i,
-  output logic                     ready_o,
-  input  logic                     hit_i,
-  input  logic  [             1:0] against_i,  // against_e
-  input  logic  [Floats*Width-1:0] floats_i,   // exact_pkg's places
-  output logic                     valid_o,
-  input  logic                     ready_i,
-  output logic                     hit_o,
-  output sign_t                    order_o
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    valid_i,
+  output logic                    ready_o,
+  input  logic                    hit_i,
+  input  logic [1:0]              against_i,  // against_e
+  input  logic [Floats*Width-1:0] floats_i,  // exact_pkg's places
+  output logic                    valid_o,
+  input  logic                    ready_i,
+  output logic                    hit_o,
+  output sign_t                   order_o
 );
 
   localparam int unsigned Significand = FracWidth + 1;

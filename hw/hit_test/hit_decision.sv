@@ -18,11 +18,11 @@ module hit_decision
   parameter int unsigned FracWidth = 23,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
-  input  logic [      Width-1:0] d_i,
-  input  logic [   ExpWidth-1:0] normal_exponent_i,  // largest field of N's three
-  input  logic [      Width-1:0] v_i,
-  input  logic [    3*Width-1:0] u_i,
-  input  logic [    3*Width-1:0] bounds_i,
+  input  logic [Width-1:0]       d_i,
+  input  logic [ExpWidth-1:0]    normal_exponent_i,  // largest field of N's three
+  input  logic [Width-1:0]       v_i,
+  input  logic [3*Width-1:0]     u_i,
+  input  logic [3*Width-1:0]     bounds_i,
   output logic                   miss_o,
   output logic                   hit_o,
   output logic                   doubt_o,

@@ -19,9 +19,9 @@ module hit_dots
   input  logic               step_i,
   input  logic [3*Width-1:0] normal_i,
   input  logic [9*Width-1:0] edges_i,
-  input  logic [  Width-1:0] d_i,
+  input  logic [Width-1:0]   d_i,
   input  logic [3*Width-1:0] direction_i,
-  output logic [  Width-1:0] v_o,
+  output logic [Width-1:0]   v_o,
   output logic [3*Width-1:0] u_o,
   output logic [3*Width-1:0] dividends_o
 );

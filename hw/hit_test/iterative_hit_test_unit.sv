@@ -1,10 +1,9 @@
 // The paper's hit-test unit with a short clock: where a ray meets a polygon's plane, P = d I / (I . N), with its words, its
-// period and its bits (see hit_test_unit), cut into stages, with three small dividers in place of a large one.
+// period and its bits (see hit_test_unit), of pipelined cores.
 //
 // The same seven words come in, Ix Iy Iz a b c d, and the same three go out. Six products go through one
-// multiplier, two sums through one adder, three quotients by the one divisor I . N through three dividers that find
-// 2 RowsPerClock bits a clock. With M = 3, A = 3 and D the clocks of the multiplier, the adder and
-// the dividers (fp_vector_divider), counted from the first word's clock edge:
+// multiplier, two sums through one adder, three quotients by the one divisor I . N through one divider. With M = 3, A = 3
+// and D = divide_latency the clocks of the multiplier, the adder and the divider, counted from the first word's clock edge:
 //
 //   clock      what is there
 //   1-3        Ix Iy Iz shift into I-3, I-2, I-1, which turn while they are multiplied
@@ -16,8 +15,7 @@
 //
 // valid_i with the first word while ready_o; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in three consecutive clocks.
-// Throughput: a test every 7 clocks. Latency M + 2A + D + 8 clocks from first word to last component: 34 in binary32
-// with a row a clock, 28 with two.
+// Throughput: a test every 7 clocks. Latency: M + 2A + D + 8 clocks from first word to last component, 34 in binary32.
 //
 // Source: the paper's equation 10; the timetable is this project's.
 module iterative_hit_test_unit
@@ -26,7 +24,6 @@ module iterative_hit_test_unit
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
   parameter int unsigned Arith = arith_pkg::Graded,
-  parameter int unsigned RowsPerClock = 1,  // of (FracWidth + 2) / 2
   parameter bit [2:0] RoundingMode = fp_pkg::RoundNearestEven,
   localparam int unsigned Width = ExpWidth + FracWidth + 1
 ) (
@@ -40,7 +37,6 @@ module iterative_hit_test_unit
 );
 
   localparam int unsigned NumWords = 7;
-  localparam int unsigned MultiplierLatency = 3;
 
   // The adder's two turns must not meet in the period; kept products wait for longer than three arrive, and no longer than
   // until the next ones do.
@@ -154,22 +150,31 @@ module iterative_hit_test_unit
 
   // ---- Divide
 
-  fp_vector_divider #(
-    .ExpWidth    (ExpWidth),
-    .FracWidth   (FracWidth),
-    .Arith       (Arith),
-    .Components  (3),
-    .Period      (NumWords),
-    .RowsPerClock(RowsPerClock)
+  localparam int unsigned Latency = divide_latency(FracWidth);
+  logic [Width-1:0] divisor_q;
+  logic [Latency-1:0] dividing_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) dividing_q <= '0;
+    else dividing_q <= {dividing_q[Latency-2:0], |divide};
+  end
+  always_ff @(posedge clk_i) if (since[Divisor]) divisor_q <= sum;
+  assign valid_o = dividing_q[Latency-1];
+
+  fp_divider #(
+    .ExpWidth (ExpWidth),
+    .FracWidth(FracWidth),
+    .Arith    (Arith),
+    .Pipelined(1'b1)
   ) u_divider (
     .clk_i,
-    .rst_ni,
-    .divisor_i      (since[Divisor]),
-    .dividend_i     (|divide),
-    .word_i         (since[Divisor] ? sum : dividend),
-    .rounding_mode_i(RoundingMode),
-    .valid_o,
-    .result_o       (bus_o)
+    .valid_i         (|divide),
+    .a_i             (dividend),
+    .b_i             (divisor_q),
+    .rounding_mode_i (RoundingMode),
+    .tininess_after_i(1'b0),
+    .result_o        (bus_o),
+    .flags_o         ()
   );
 
 endmodule

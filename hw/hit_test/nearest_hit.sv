@@ -24,25 +24,25 @@ module nearest_hit
   parameter int unsigned PayloadWidth = 160,
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
-  input logic clk_i,
-  input logic rst_ni,
-  input logic valid_i,  // a test; else nothing below matters
-  input logic first_i,  // of its burst
-  input logic last_i,  // of its burst
-  input logic hit_i,
-  input logic doubt_i,
-  input logic [TagWidth-1:0] tag_i,
-  input logic [Width-1:0] t_i,
-  input logic [TErrorWidth-1:0] t_error_i,
-  input logic [PayloadWidth-1:0] payload_i,
-  output logic sure_hit_o,  // combinational: the test is a sure hit, t and all
-  output report_e report_o,
-  output logic [TagWidth-1:0] report_tag_o,
-  output logic closed_o,
-  output logic found_o,
-  output logic [TagWidth-1:0] tag_o,
-  output logic [Width-1:0] t_o,
-  output logic [TErrorWidth-1:0] t_error_o,
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    valid_i,  // a test; else nothing below matters
+  input  logic                    first_i,  // of its burst
+  input  logic                    last_i,  // of its burst
+  input  logic                    hit_i,
+  input  logic                    doubt_i,
+  input  logic [TagWidth-1:0]     tag_i,
+  input  logic [Width-1:0]        t_i,
+  input  logic [TErrorWidth-1:0]  t_error_i,
+  input  logic [PayloadWidth-1:0] payload_i,
+  output logic                    sure_hit_o,  // combinational: the test is a sure hit, t and all
+  output report_e                 report_o,
+  output logic [TagWidth-1:0]     report_tag_o,
+  output logic                    closed_o,
+  output logic                    found_o,
+  output logic [TagWidth-1:0]     tag_o,
+  output logic [Width-1:0]        t_o,
+  output logic [TErrorWidth-1:0]  t_error_o,
   output logic [PayloadWidth-1:0] payload_o
 );
 

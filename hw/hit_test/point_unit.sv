@@ -16,7 +16,7 @@ module point_unit
   input  logic               rst_ni,
   input  logic               valid_i,
   input  logic [3*Width-1:0] dividends_i,
-  input  logic [  Width-1:0] v_i,
+  input  logic [Width-1:0]   v_i,
   output logic               valid_o,
   output logic [3*Width-1:0] point_o
 );

@@ -18,31 +18,31 @@ module axi_read_manager
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
-  input  logic [            63:0] base_i,         // bits below 64 do not count
+  input  logic [63:0]             base_i,  // bits below 64 do not count
   // the core's
   input  logic                    read_valid_i,
   output logic                    read_ready_o,
   input  logic [AddressWidth-1:0] read_line_i,
-  input  logic [ ReadIdWidth-1:0] read_id_i,
+  input  logic [ReadIdWidth-1:0]  read_id_i,
   output logic                    line_valid_o,
   input  logic                    line_ready_i,
-  output logic [ ReadIdWidth-1:0] line_id_o,
-  output logic [   LineWidth-1:0] line_o,
-  output logic                    line_error_o,   // it must not be believed
+  output logic [ReadIdWidth-1:0]  line_id_o,
+  output logic [LineWidth-1:0]    line_o,
+  output logic                    line_error_o,  // it must not be believed
   // AXI4, read address
   output logic                    axi_arvalid_o,
   input  logic                    axi_arready_i,
-  output logic [     IdWidth-1:0] axi_arid_o,
-  output logic [            63:0] axi_araddr_o,
-  output logic [             7:0] axi_arlen_o,
-  output logic [             2:0] axi_arsize_o,
-  output logic [             1:0] axi_arburst_o,
+  output logic [IdWidth-1:0]      axi_arid_o,
+  output logic [63:0]             axi_araddr_o,
+  output logic [7:0]              axi_arlen_o,
+  output logic [2:0]              axi_arsize_o,
+  output logic [1:0]              axi_arburst_o,
   // AXI4, read data
   input  logic                    axi_rvalid_i,
   output logic                    axi_rready_o,
-  input  logic [     IdWidth-1:0] axi_rid_i,
-  input  logic [   DataWidth-1:0] axi_rdata_i,
-  input  logic [             1:0] axi_rresp_i,
+  input  logic [IdWidth-1:0]      axi_rid_i,
+  input  logic [DataWidth-1:0]    axi_rdata_i,
+  input  logic [1:0]              axi_rresp_i,
   input  logic                    axi_rlast_i,
   output logic                    bus_error_o,
   output logic [AddressWidth-1:0] error_number_o

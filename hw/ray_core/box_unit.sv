@@ -50,16 +50,16 @@ module box_unit
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                      clk_i,
-  input  logic                      rst_ni,
-  input  logic       [RayWidth-1:0] ctx_i,
-  input  node_line_t                node_i,
-  input  logic       [        95:0] origin_i,
-  input  logic       [        95:0] inverse_i,
-  input  logic       [        30:0] t_max_i,
-  input  logic                      no_cull_i,
-  output logic       [RayWidth-1:0] ctx_o,
-  output boxes_t                    boxes_o
+  input  logic                clk_i,
+  input  logic                rst_ni,
+  input  logic [RayWidth-1:0] ctx_i,
+  input  node_line_t          node_i,
+  input  logic [95:0]         origin_i,
+  input  logic [95:0]         inverse_i,
+  input  logic [30:0]         t_max_i,
+  input  logic                no_cull_i,
+  output logic [RayWidth-1:0] ctx_o,
+  output boxes_t              boxes_o
 );
 
   localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;  // 2**E
@@ -113,7 +113,7 @@ module box_unit
   localparam int unsigned Base = NodeBase;
   localparam int unsigned ChildrenWidth = LineWidth - Base;
   localparam int unsigned Kinds = NodeKinds - Base;
-  localparam int unsigned NodeBoxes = ray_core_pkg::NodeBoxes - Base;
+  localparam int unsigned Boxes = NodeBoxes - Base;
 
   typedef struct packed {
     logic [ChildrenWidth-1:0] children;
@@ -281,7 +281,7 @@ module box_unit
   localparam int unsigned KeyWidth = UnitBits + 2;
 
   logic [Children*KeyWidth-1:0] keys;
-  logic [NodeBoxes-1:0] stepped_node, sorted_node;  // base and kinds
+  logic [Boxes-1:0] stepped_node, sorted_node;  // base and kinds
   logic [8:0] stepped_exponent;
   logic stepped_no_cull;
 
@@ -295,16 +295,16 @@ module box_unit
     .data_o(entered_t_max)
   );
   delay_line #(
-    .Width(NodeBoxes + 9 + 1),
+    .Width(Boxes + 9 + 1),
     .Depth(Slab - 1)
   ) u_sideband_step (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({children[NodeBoxes-1:0], aligned_exponent, aligned_no_cull}),
+    .data_i({children[Boxes-1:0], aligned_exponent, aligned_no_cull}),
     .data_o({stepped_node, stepped_exponent, stepped_no_cull})
   );
   delay_line #(
-    .Width(NodeBoxes + 9),
+    .Width(Boxes + 9),
     .Depth((Clocks == 1) ? 1 : 1 + Children)
   ) u_sideband_sort (
     .clk_i,
@@ -318,7 +318,7 @@ module box_unit
   ) u_children (
     .clk_i,
     .start_i(valid_q[Take+Subtract+Scale+Multiply+Align]),
-    .boxes_i(children[NodeBoxes +: Children*BoxWidth]),
+    .boxes_i(children[Boxes +: Children*BoxWidth]),
     .back_i(aligned_back),
     .step_i(step_q),
     .near_i(step_near_q),

@@ -6,14 +6,14 @@ module child_sort
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned KeyWidth = UnitBits + 2
 ) (
-  input  logic                            clk_i,
-  input  logic   [ Children*KeyWidth-1:0] keys_i,
-  input  logic   [Children*KindWidth-1:0] kinds_i,
-  input  logic   [      AddressWidth-1:0] base_i,
-  input  logic   [                   8:0] exponent_i,  // E
-  output group_t                          group_o,
-  output logic   [          Children-1:0] inner_o,
-  output logic   [          Children-1:0] leaf_o
+  input  logic                          clk_i,
+  input  logic [Children*KeyWidth-1:0]  keys_i,
+  input  logic [Children*KindWidth-1:0] kinds_i,
+  input  logic [AddressWidth-1:0]       base_i,
+  input  logic [8:0]                    exponent_i,  // E
+  output group_t                        group_o,
+  output logic [Children-1:0]           inner_o,
+  output logic [Children-1:0]           leaf_o
 );
 
   localparam int unsigned NumberWidth = 3;
@@ -62,7 +62,7 @@ module child_sort
       next_offsets[OffsetWidth*i +: OffsetWidth] = next;
       kind = kinds_i[KindWidth*i +: KindWidth];
       next = next + ((kind == KindInner) ? OffsetWidth'(1)
-                                                       : OffsetWidth'(kind[CountWidth-1:0]));
+                                                       : OffsetWidth'(kind[LeafWidth-1:0]));
     end
   end
 
@@ -78,7 +78,7 @@ module child_sort
 
   // ---- Entries
 
-  logic [Children*EntryWidth-1:0] entries;
+  logic [Children*ChildWidth-1:0] entries;
   logic [Children-1:0] inner, leaf;
 
   for (genvar n = 0; n < Children; n++) begin : gen_entry
@@ -109,9 +109,9 @@ module child_sort
     assign fraction = distance << zeros;
     assign field    = last_field - 9'(zeros);
     assign enter    = is_zero ? '0 : field[8] ? '1 : {field[7:0], fraction[UnitsWidth-2:0]};
-    assign entries[EntryWidth*n +: EntryWidth] = {
+    assign entries[ChildWidth*n +: ChildWidth] = {
         enter, offsets[OffsetWidth*number +: OffsetWidth],
-        is_inner ? CountWidth'(0) : kind[CountWidth-1:0]};
+        is_inner ? LeafWidth'(0) : kind[LeafWidth-1:0]};
     logic unused;  // what is less than an entry's unit
     assign unused = ^{key[UnitBits-UnitsWidth-1:0], fraction[UnitsWidth-1]};
   end

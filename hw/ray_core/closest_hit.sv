@@ -21,60 +21,59 @@ module closest_hit
   parameter int unsigned Rays = 64,
   parameter bit Exact = 1'b0,
   parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be in flight
-  localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth
+  localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                        clk_i,
-  input  logic                        rst_ni,
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
   // a ray comes in
-  input  logic                        load_i,
-  input  logic     [    RayWidth-1:0] load_ray_i,
-  input  logic     [            30:0] load_t_max_i,
-  input  logic                        load_any_hit_i,
+  input  logic                    load_i,
+  input  logic [RayWidth-1:0]     load_ray_i,
+  input  logic [30:0]             load_t_max_i,
+  input  logic                    load_any_hit_i,
   // a test sets out, a ray's triangle was asked for
-  input  logic                        test_i,
-  input  logic     [    RayWidth-1:0] test_ray_i,
-  input  logic                        settle_i,           // with test_i
-  output logic                        tests_allowed_o,
+  input  logic                    test_i,
+  input  logic [RayWidth-1:0]     test_ray_i,
+  input  logic                    settle_i,  // with test_i
+  output logic                    tests_allowed_o,
   // a test is over
-  input  logic     [    RayWidth-1:0] result_ray_i,
-  input  logic     [            31:0] result_tag_i,       // the ray's, for doubts
-  input  verdict_t                    result_i,
+  input  logic [RayWidth-1:0]     result_ray_i,
+  input  logic [31:0]             result_tag_i,  // the ray's, for doubts
+  input  verdict_t                result_i,
   // t_max, by ray, in the clock after; exact_ray_i's in the same one. A ray ends by any hit, or as it has failed
-  input  logic     [        Rays-1:0] failed_i,
-  input  logic     [    RayWidth-1:0] traversal_ray_i,
-  output logic     [            30:0] traversal_t_max_o,
-  output logic                        traversal_ended_o,
-  input  logic     [    RayWidth-1:0] leaf_ray_i,
-  output logic     [            30:0] leaf_t_max_o,
-  output logic                        leaf_ended_o,
-  input  logic     [    RayWidth-1:0] box_ray_i,
-  output logic     [            30:0] box_t_max_o,
-  input  logic     [    RayWidth-1:0] exact_ray_i,
-  output logic                        exact_found_o,
-  output logic                        exact_ended_o,
-  output logic     [AddressWidth-1:0] exact_triangle_o,   // of the nearest sure hit
-  output logic     [            30:0] exact_t_max_o,
-  output logic     [        Rays-1:0] testing_o,
+  input  logic [Rays-1:0]         failed_i,
+  input  logic [RayWidth-1:0]     traversal_ray_i,
+  output logic [30:0]             traversal_t_max_o,
+  output logic                    traversal_ended_o,
+  input  logic [RayWidth-1:0]     leaf_ray_i,
+  output logic [30:0]             leaf_t_max_o,
+  output logic                    leaf_ended_o,
+  input  logic [RayWidth-1:0]     box_ray_i,
+  output logic [30:0]             box_t_max_o,
+  input  logic [RayWidth-1:0]     exact_ray_i,
+  output logic                    exact_found_o,
+  output logic                    exact_ended_o,
+  output logic [AddressWidth-1:0] exact_triangle_o,  // of the nearest sure hit
+  output logic [30:0]             exact_t_max_o,
+  output logic [Rays-1:0]         testing_o,
   // doubts
-  output doubt_t                      doubt_o,
-  input  logic                        doubt_fire_i,       // or exact_resolver takes one up
-  output logic     [    RayWidth-1:0] open_ray_o,
-  output open_t                       open_o,
+  output doubt_t                  doubt_o,
+  input  logic                    doubt_fire_i,  // or exact_resolver takes one up
+  output logic [RayWidth-1:0]     open_ray_o,
+  output open_t                   open_o,
   // the nearest hit of a ray, in the same clock
-  input  logic     [    RayWidth-1:0] end_ray_i,
-  output hit_t                        end_o,
+  input  logic [RayWidth-1:0]     end_ray_i,
+  output hit_t                    end_o,
   // the P of a ray's last hit that was kept, in the clock after
-  input  logic     [    RayWidth-1:0] point_ray_i,
-  output logic     [            95:0] point_o,
+  input  logic [RayWidth-1:0]     point_ray_i,
+  output logic [95:0]             point_o,
   // this clock's, for counters
-  output logic                        near_tie_o
+  output logic                    near_tie_o
 );
 
   localparam int unsigned CountWidth = $clog2(Queue + 2);  // with a test of settle_i
   localparam logic [31:0] Infinity = 32'h7f80_0000;
 
-  if (ray_core_pkg::TErrorWidth != TErrorWidth) begin : gen_check
+  if (TErrorWidth != set_up_pkg::TErrorExponentWidth) begin : gen_check
     $error("closest_hit: expected TErrorWidth of ray_core_pkg to be set_up_pkg's");
   end
 

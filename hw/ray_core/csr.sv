@@ -9,55 +9,54 @@ module csr
   import ray_core_pkg::*, csr_pkg::*;
 #(
   parameter bit [31:0] Capability = '0,
-  localparam int unsigned AddressWidth = 12,
-  localparam int unsigned LineNumberWidth = ray_core_pkg::AddressWidth
+  localparam int unsigned RegisterAddressWidth = 12
 ) (
-  input  logic                       clk_i,
-  input  logic                       rst_ni,
+  input  logic                            clk_i,
+  input  logic                            rst_ni,
   // AXI4-Lite
-  input  logic                       axi_awvalid_i,
-  output logic                       axi_awready_o,
-  input  logic [   AddressWidth-1:0] axi_awaddr_i,
-  input  logic                       axi_wvalid_i,
-  output logic                       axi_wready_o,
-  input  logic [               31:0] axi_wdata_i,
-  input  logic [                3:0] axi_wstrb_i,
-  output logic                       axi_bvalid_o,
-  input  logic                       axi_bready_i,
-  output logic [                1:0] axi_bresp_o,
-  input  logic                       axi_arvalid_i,
-  output logic                       axi_arready_o,
-  input  logic [   AddressWidth-1:0] axi_araddr_i,
-  output logic                       axi_rvalid_o,
-  input  logic                       axi_rready_i,
-  output logic [               31:0] axi_rdata_o,
-  output logic [                1:0] axi_rresp_o,
+  input  logic                            axi_awvalid_i,
+  output logic                            axi_awready_o,
+  input  logic [RegisterAddressWidth-1:0] axi_awaddr_i,
+  input  logic                            axi_wvalid_i,
+  output logic                            axi_wready_o,
+  input  logic [31:0]                     axi_wdata_i,
+  input  logic [3:0]                      axi_wstrb_i,
+  output logic                            axi_bvalid_o,
+  input  logic                            axi_bready_i,
+  output logic [1:0]                      axi_bresp_o,
+  input  logic                            axi_arvalid_i,
+  output logic                            axi_arready_o,
+  input  logic [RegisterAddressWidth-1:0] axi_araddr_i,
+  output logic                            axi_rvalid_o,
+  input  logic                            axi_rready_i,
+  output logic [31:0]                     axi_rdata_o,
+  output logic [1:0]                      axi_rresp_o,
   // the core's side
-  output logic                       start_o,         // this clock's commands
-  output logic                       invalidate_o,
-  output logic                       abort_o,         // until no ray is left
-  output logic                       drawing_o,       // a rectangle's rays are on their way
-  output logic [               63:0] base_o,
-  output logic [LineNumberWidth-1:0] lines_o,
-  output logic [               31:0] corner_o,
-  output logic [               31:0] size_o,
-  output logic [           4*96-1:0] camera_o,        // eye lowest, then first, right, down
-  output logic [               63:0] results_o,
-  output logic [               31:0] length_o,
-  output logic                       rewind_o,        // this clock's command
-  input  logic                       camera_busy_i,
-  input  logic                       core_busy_i,     // has rays
-  input  logic                       outstanding_i,
-  input  logic                       writing_i,
-  input  logic [               31:0] written_i,
-  input  logic                       doubt_i,         // this clock's
-  input  logic                       ray_error_i,
-  input  logic                       full_i,
-  input  logic                       write_error_i,
-  input  logic                       bus_error_i,
-  input  logic [LineNumberWidth-1:0] error_number_i,
-  input  logic [      NumEvents-1:0] events_i,
-  output logic                       interrupt_o
+  output logic                            start_o,  // this clock's commands
+  output logic                            invalidate_o,
+  output logic                            abort_o,  // until no ray is left
+  output logic                            drawing_o,  // a rectangle's rays are on their way
+  output logic [63:0]                     base_o,
+  output logic [AddressWidth-1:0]         lines_o,
+  output logic [31:0]                     corner_o,
+  output logic [31:0]                     size_o,
+  output logic [4*96-1:0]                 camera_o,  // eye lowest, then first, right, down
+  output logic [63:0]                     results_o,
+  output logic [31:0]                     length_o,
+  output logic                            rewind_o,  // this clock's command
+  input  logic                            camera_busy_i,
+  input  logic                            core_busy_i,  // has rays
+  input  logic                            outstanding_i,
+  input  logic                            writing_i,
+  input  logic [31:0]                     written_i,
+  input  logic                            doubt_i,  // this clock's
+  input  logic                            ray_error_i,
+  input  logic                            full_i,
+  input  logic                            write_error_i,
+  input  logic                            bus_error_i,
+  input  logic [AddressWidth-1:0]         error_number_i,
+  input  logic [NumEvents-1:0]            events_i,
+  output logic                            interrupt_o
 );
 
   localparam logic [31:0] Identity = 32'h5247_0001;
@@ -91,7 +90,7 @@ module csr
     end
   end
   always_ff @(posedge clk_i) begin
-    if (!address_q) write_word_q <= axi_awaddr_i[AddressWidth-1:2];
+    if (!address_q) write_word_q <= axi_awaddr_i[RegisterAddressWidth-1:2];
     if (!data_q) {strobes_q, write_data_q} <= {axi_wstrb_i, axi_wdata_i};
     if (write) axi_bresp_o <= {refused, 1'b0};
   end
@@ -136,7 +135,7 @@ module csr
   end
 
   assign base_o   = words[32*32'(WordBase)+:64];
-  assign lines_o  = words[32*32'(WordLines)+:LineNumberWidth];
+  assign lines_o  = words[32*32'(WordLines)+:AddressWidth];
   assign corner_o = words[32*32'(WordCorner)+:32];
   assign size_o   = words[32*32'(WordSize)+:32];
   assign results_o = words[32*32'(WordResults)+:64];
@@ -149,7 +148,7 @@ module csr
 
   logic [NumFlags-1:0] enable_q, flags_q, raised, lowered;
   logic drawing_q, done, abort_q;
-  logic [LineNumberWidth-1:0] error_line_q;
+  logic [AddressWidth-1:0] error_line_q;
 
   assign done    = drawing_q & ~camera_busy_i & ~core_busy_i;
   assign raised[FlagsDoubt]    = doubt_i;
@@ -209,7 +208,7 @@ module csr
   assign read          = axi_arvalid_i & axi_arready_o;
   assign axi_arready_o = ~axi_rvalid_o;
   assign axi_rresp_o   = 2'b00;
-  assign read_word     = axi_araddr_i[AddressWidth-1:2];
+  assign read_word     = axi_araddr_i[RegisterAddressWidth-1:2];
   assign status[StatusGenerating] = camera_busy_i;
   assign status[StatusTracing]    = core_busy_i;
   assign status[StatusReading]    = outstanding_i;

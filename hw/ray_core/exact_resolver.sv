@@ -21,31 +21,31 @@ module exact_resolver
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                                 clk_i,
-  input  logic                                 rst_ni,
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
   // a ray begins
-  input  logic                                 load_i,
-  input  logic              [    RayWidth-1:0] load_ctx_i,
-  input  logic              [            95:0] load_origin_i,
-  input  logic              [            95:0] load_direction_i,
+  input  logic                    load_i,
+  input  logic [RayWidth-1:0]     load_ctx_i,
+  input  logic [95:0]             load_origin_i,
+  input  logic [95:0]             load_direction_i,
   // a test leaves a doubt; one is taken up
-  input  logic              [    RayWidth-1:0] open_ctx_i,
-  input  open_t                                open_i,
-  output logic                                 taken_o,
+  input  logic [RayWidth-1:0]     open_ctx_i,
+  input  open_t                   open_i,
+  output logic                    taken_o,
   // rays of which nothing else is to be done, and those that have doubts or a candidate
-  input  logic              [        Rays-1:0] idle_i,
-  output logic              [        Rays-1:0] busy_o,
+  input  logic [Rays-1:0]         idle_i,
+  output logic [Rays-1:0]         busy_o,
   // the ray whose turn it is; what is known of it, in the same clock
-  output logic              [    RayWidth-1:0] ctx_o,
-  input  logic                                 ended_i,           // it needs no hit, or no other
-  input  logic                                 found_i,           // a sure hit, and its line
-  input  logic              [AddressWidth-1:0] found_line_i,
-  input  logic              [            30:0] t_max_i,           // without one: the user's
+  output logic [RayWidth-1:0]     ctx_o,
+  input  logic                    ended_i,  // it needs no hit, or no other
+  input  logic                    found_i,  // a sure hit, and its line
+  input  logic [AddressWidth-1:0] found_line_i,
+  input  logic [30:0]             t_max_i,  // without one: the user's
   // its lines: for here, or (not exact) to be tested, kept whatever the test says
-  output triangle_request_t                    request_o,
-  input  logic                                 request_ready_i,
-  input  triangle_line_t                       line_i,
-  output logic                                 computing_o        // an exact_unit has a question
+  output triangle_request_t       request_o,
+  input  logic                    request_ready_i,
+  input  triangle_line_t          line_i,
+  output logic                    computing_o  // an exact_unit has a question
 );
 
   localparam int unsigned CountWidth = $clog2(Queue + 1);

@@ -37,25 +37,25 @@ module line_cache
   input  logic                    valid_i,
   output logic                    ready_o,
   input  logic                    demand_i,
-  input  logic [    RayWidth-1:0] ray_i,
+  input  logic [RayWidth-1:0]     ray_i,
   input  logic [AddressWidth-1:0] line_number_i,
   output logic                    outstanding_o,
   // misses
   output logic                    miss_valid_o,
   input  logic                    miss_ready_i,
-  output logic [  EntryWidth-1:0] miss_entry_o,
+  output logic [EntryWidth-1:0]   miss_entry_o,
   output logic [AddressWidth-1:0] miss_number_o,
   // lines from memory
   input  logic                    fill_i,
   output logic                    fill_done_o,
-  input  logic [  EntryWidth-1:0] fill_entry_i,
-  input  logic [       Width-1:0] fill_line_i,
+  input  logic [EntryWidth-1:0]   fill_entry_i,
+  input  logic [Width-1:0]        fill_line_i,
   input  logic                    fill_error_i,
   // answers
   output logic                    valid_o,
-  input  logic                    ready_i,        // else nothing leaves, and fill_i must be low
-  output logic [    RayWidth-1:0] ray_o,
-  output logic [       Width-1:0] line_o,
+  input  logic                    ready_i,  // else nothing leaves, and fill_i must be low
+  output logic [RayWidth-1:0]     ray_o,
+  output logic [Width-1:0]        line_o,
   output logic                    error_o
 );
 

@@ -23,35 +23,35 @@ module memory_subsystem
       $clog2(NodeLines > TriangleLines ? NodeLines : TriangleLines),
   localparam int unsigned ReadIdWidth = 1 + EntryWidth
 ) (
-  input logic clk_i,
-  input logic rst_ni,
-  input logic invalidate_i,  // the caches: memory has changed
-  output logic outstanding_o,  // a line is on its way, or will be
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    invalidate_i,  // the caches: memory has changed
+  output logic                    outstanding_o,  // a line is on its way, or will be
   // nodes asked for: one for each ray at most
-  input logic [RayWidth-1:0] node_ctx_i,
-  input request_t node_i,
+  input  logic [RayWidth-1:0]     node_ctx_i,
+  input  request_t                node_i,
   // a node that may be asked for soon: a prefetch
-  input request_t prefetch_i,
+  input  request_t                prefetch_i,
   // triangles asked for
-  input logic [RayWidth-1:0] triangle_ctx_i,
-  input triangle_request_t triangle_i,
-  output logic triangle_ready_o,
+  input  logic [RayWidth-1:0]     triangle_ctx_i,
+  input  triangle_request_t       triangle_i,
+  output logic                    triangle_ready_o,
   // memory
-  output logic read_valid_o,
-  input logic read_ready_i,
+  output logic                    read_valid_o,
+  input  logic                    read_ready_i,
   output logic [AddressWidth-1:0] read_line_o,
-  output logic [ReadIdWidth-1:0] read_id_o,
-  input logic line_valid_i,
-  output logic line_ready_o,
-  input logic [ReadIdWidth-1:0] line_id_i,
-  input logic [LineWidth-1:0] line_i,
-  input logic line_error_i,
+  output logic [ReadIdWidth-1:0]  read_id_o,
+  input  logic                    line_valid_i,
+  output logic                    line_ready_o,
+  input  logic [ReadIdWidth-1:0]  line_id_i,
+  input  logic [LineWidth-1:0]    line_i,
+  input  logic                    line_error_i,
   // lines
-  output logic step_o,
-  output logic [RayWidth-1:0] node_ctx_o,
-  output node_line_t node_o,
-  output logic [RayWidth-1:0] triangle_ctx_o,
-  output triangle_line_t triangle_o
+  output logic                    step_o,
+  output logic [RayWidth-1:0]     node_ctx_o,
+  output node_line_t              node_o,
+  output logic [RayWidth-1:0]     triangle_ctx_o,
+  output triangle_line_t          triangle_o
 );
 
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;

@@ -8,20 +8,20 @@ module primitive_fetch
   parameter int unsigned Rays = 64,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                    clk_i,
-  input  logic                    rst_ni,
-  input  logic                    box_valid_i,
-  input  logic     [RayWidth-1:0] box_ray_i,
-  input  group_t                  box_group_i,
-  input  logic     [Children-1:0] box_leaf_i,
-  output logic     [RayWidth-1:0] t_max_ray_o,
-  input  logic     [        30:0] t_max_i,          // of t_max_ray_o of the clock before
-  input  logic                    ended_i,          // of that ray: it needs nothing any more
-  output logic     [    Rays-1:0] leaf_pending_o,   // has a group here
+  input  logic                clk_i,
+  input  logic                rst_ni,
+  input  logic                box_valid_i,
+  input  logic [RayWidth-1:0] box_ray_i,
+  input  group_t              box_group_i,
+  input  logic [Children-1:0] box_leaf_i,
+  output logic [RayWidth-1:0] t_max_ray_o,
+  input  logic [30:0]         t_max_i,  // of t_max_ray_o of the clock before
+  input  logic                ended_i,  // of that ray: it needs nothing any more
+  output logic [Rays-1:0]     leaf_pending_o,  // has a group here
   // triangles asked for
-  output logic     [RayWidth-1:0] triangle_ray_o,
-  output request_t                triangle_o,
-  input  logic                    triangle_ready_i
+  output logic [RayWidth-1:0] triangle_ray_o,
+  output request_t            triangle_o,
+  input  logic                triangle_ready_i
 );
 
 
@@ -53,8 +53,8 @@ module primitive_fetch
   logic valid_q;
   logic [RayWidth-1:0] ray_q;
   logic [Children-1:0] mask_q, lowest, remaining;
-  logic [CountWidth-1:0] number_q;  // of the triangle in its leaf
-  logic [EntryWidth-1:0] entry;
+  logic [LeafWidth-1:0] number_q;  // of the triangle in its leaf
+  logic [ChildWidth-1:0] entry;
   logic beyond, fire, last, done;
 
   assign lowest    = mask_q & -mask_q;
@@ -63,18 +63,18 @@ module primitive_fetch
   always_comb begin
     entry = '0;
     for (int unsigned n = 0; n < Children; n++) begin
-      if (lowest[n]) entry = group_q.entries[EntryWidth*n+:EntryWidth];
+      if (lowest[n]) entry = group_q.entries[ChildWidth*n+:ChildWidth];
     end
   end
 
   assign t_max_ray_o = load ? queued_ray : ray_q;
-  assign beyond = ended_i | is_beyond(entry[EntryWidth-1-:EnterWidth], t_max_i);
+  assign beyond = ended_i | is_beyond(entry[ChildWidth-1-:EnterWidth], t_max_i);
   assign triangle_o.valid = valid_q & ~beyond;
   assign triangle_ray_o   = ray_q;
-  assign triangle_o.line  = group_q.base + AddressWidth'(entry[CountWidth +: OffsetWidth])
+  assign triangle_o.line  = group_q.base + AddressWidth'(entry[LeafWidth +: OffsetWidth])
                           + AddressWidth'(number_q);
   assign fire = triangle_o.valid & triangle_ready_i;
-  assign last = number_q + 1'b1 == entry[CountWidth-1:0];
+  assign last = number_q + 1'b1 == entry[LeafWidth-1:0];
   assign done = valid_q & (beyond | (fire & last & (remaining == '0)));
   assign load = queued & (~valid_q | done);
 

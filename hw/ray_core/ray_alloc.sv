@@ -2,8 +2,7 @@
 //
 // A ray waits in a queue until its reciprocals have come, a division's latency later, and a context is free: the
 // lowest free one is start_ctx_o. So no context is held by a division. Reciprocals are rounded to nearest.
-// Clocks = 1: three dividers, a ray a clock. Else (7 or more) a ray in Clocks clocks, and fp_vector_divider, for which each
-// word and one take turns.
+// Clocks = 1: three dividers, a ray a clock. Else (7 or more) a ray in Clocks clocks, and one divider.
 module ray_alloc #(
   parameter int unsigned Rays  = 64,  // contexts
   parameter int unsigned Width = 32,  // of what else there is of a ray
@@ -55,85 +54,69 @@ module ray_alloc #(
     end
   end
 
-  // ---- Divide
+  // ---- Divide: all words at once, or one a clock
 
-  logic fire, space, divider_ready, divided;
+  localparam int unsigned Latency = hit_test_pkg::divide_latency(23);
+  localparam int unsigned Dividers = (Clocks == 1) ? 3 : 1;
   localparam logic [31:0] One = 32'h3f80_0000;
+  logic fire, space, divider_ready, divide, divided;
+  logic [Latency-1:0] dividing_q;
+  logic [Dividers*32-1:0] divisors, quotients;
   logic [95:0] inverse;
 
   assign ready_o = rst_ni & space & divider_ready;
   assign fire    = valid_i & ready_o;
 
-  if (Clocks == 1) begin : gen_dividers
-    localparam int unsigned Latency = hit_test_pkg::divide_latency(23);
-    logic [Latency-1:0] dividing_q;
-
-    assign divider_ready = 1'b1;
-    assign divided       = dividing_q[Latency-1];
-
-    for (genvar k = 0; k < 3; k++) begin : gen_word
-
-      fp_divider #(
-        .Arith(Arith),
-        .Pipelined(1'b1)
-      ) u_divider (
-        .clk_i,
-        .valid_i(fire),
-        .a_i(One),
-        .b_i(direction_i[32*k +: 32]),
-        .rounding_mode_i(fp_pkg::RoundNearestEven),
-        .tininess_after_i(1'b0),
-        .result_o(inverse[32*k +: 32]),
-        .flags_o()
-      );
-    end
-
-    always_ff @(posedge clk_i or negedge rst_ni) begin
-      if (!rst_ni) dividing_q <= '0;
-      else dividing_q <= {dividing_q[Latency-2:0], fire};
-    end
-  end else begin : gen_turns
-    logic [Clocks-2:0] since_q;  // clocks since a vector was taken
-    logic [6*32-1:0] words_q;
-    logic [31:0] quotient;
-    logic [2:0] turn_q;  // whose quotient comes next
-    logic is_divided;
-
-    assign divider_ready = since_q == '0;
-
-    fp_vector_divider #(
+  for (genvar k = 0; k < Dividers; k++) begin : gen_divider
+    fp_divider #(
       .Arith(Arith),
-      .Components(3),
-      .Period(Clocks),
-      .RowsPerClock(1)
+      .Pipelined(1'b1)
     ) u_divider (
       .clk_i,
-      .rst_ni,
-      .divisor_i(since_q[0] | since_q[2] | since_q[4]),
-      .dividend_i(since_q[1] | since_q[3] | since_q[5]),
-      .word_i(words_q[31:0]),
+      .valid_i(divide),
+      .a_i(One),
+      .b_i(divisors[32*k +: 32]),
       .rounding_mode_i(fp_pkg::RoundNearestEven),
-      .valid_o(is_divided),
-      .result_o(quotient)
+      .tininess_after_i(1'b0),
+      .result_o(quotients[32*k +: 32]),
+      .flags_o()
     );
+  end
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) dividing_q <= '0;
+    else dividing_q <= {dividing_q[Latency-2:0], divide};
+  end
+
+  if (Clocks == 1) begin : gen_at_once
+    assign divider_ready = 1'b1;
+    assign divide        = fire;
+    assign divisors      = direction_i;
+    assign inverse       = quotients;
+    assign divided       = dividing_q[Latency-1];
+  end else begin : gen_turns
+    logic [Clocks-2:0] since_q;  // clocks since a vector was taken
+    logic [95:0] words_q;
+    logic [63:0] earlier_words_q;
+    logic [1:0] earlier_q;  // quotients of the vector that have come
+
+    assign divider_ready = since_q == '0;
+    assign divide        = |since_q[2:0];
+    assign divisors      = words_q[31:0];
+    assign inverse       = {quotients, earlier_words_q};
+    assign divided       = dividing_q[Latency-1] & (earlier_q == 2'd2);
 
     always_ff @(posedge clk_i or negedge rst_ni) begin
       if (!rst_ni) begin
-        since_q <= '0;
-        turn_q  <= 3'd1;
-        divided <= 1'b0;
+        since_q   <= '0;
+        earlier_q <= '0;
       end else begin
         since_q <= {since_q[Clocks-3:0], fire};
-        divided <= is_divided & turn_q[2];
-        if (is_divided) turn_q <= {turn_q[1:0], turn_q[2]};
+        if (dividing_q[Latency-1]) earlier_q <= divided ? '0 : earlier_q + 1'b1;
       end
     end
     always_ff @(posedge clk_i) begin
-      words_q <= words_q >> 32;
-      if (fire) begin
-        words_q <= {One, direction_i[95:64], One, direction_i[63:32], One, direction_i[31:0]};
-      end
-      if (is_divided) inverse <= {quotient, inverse[95:32]};
+      words_q <= fire ? direction_i : words_q >> 32;
+      if (dividing_q[Latency-1]) earlier_words_q <= inverse[95:32];
     end
   end
 

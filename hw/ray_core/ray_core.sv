@@ -18,7 +18,7 @@ module ray_core
 #(
   parameter int unsigned Rays  = 64,  // of the table; a power of two
   parameter int unsigned Depth = 8,   // groups on a ray's own stack
-  parameter int unsigned Levels = ray_core_pkg::Levels,  // with those shared, see traversal
+  parameter int unsigned Levels = MaxLevels,  // with those shared, see traversal
   parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
   parameter int unsigned Clocks = 1,  // of a node and a triangle: pipelines; or 7 or more, in turns
@@ -28,28 +28,28 @@ module ray_core
   localparam int unsigned ReadIdWidth = 1 + $clog2(
       NodeLines > TriangleLines ? NodeLines : TriangleLines)
 ) (
-  input  logic                       clk_i,
-  input  logic                       rst_ni,
-  input  logic                       invalidate_i,    // memory has changed: see above
-  output logic                       outstanding_o,
-  input  logic                       abort_i,         // the rays that are here
-  input  logic    [AddressWidth-1:0] lines_i,         // of memory; 0: 2**AddressWidth
-  input  logic                       ray_valid_i,
-  output logic                       ray_ready_o,
-  input  ray_t                       ray_i,
-  output logic                       result_valid_o,
-  input  logic                       result_ready_i,
-  output result_t                    result_o,
-  output logic                       read_valid_o,
-  input  logic                       read_ready_i,
-  output logic    [AddressWidth-1:0] read_line_o,
-  output logic    [ ReadIdWidth-1:0] read_id_o,
-  input  logic                       line_valid_i,
-  output logic                       line_ready_o,
-  input  logic    [ ReadIdWidth-1:0] line_id_i,
-  input  logic    [   LineWidth-1:0] line_i,
-  input  logic                       line_error_i,
-  output logic    [   NumEvents-1:0] events_o         // of the clock before, see event_e
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
+  input  logic                    invalidate_i,  // memory has changed: see above
+  output logic                    outstanding_o,
+  input  logic                    abort_i,  // the rays that are here
+  input  logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
+  input  logic                    ray_valid_i,
+  output logic                    ray_ready_o,
+  input  ray_t                    ray_i,
+  output logic                    result_valid_o,
+  input  logic                    result_ready_i,
+  output result_t                 result_o,
+  output logic                    read_valid_o,
+  input  logic                    read_ready_i,
+  output logic [AddressWidth-1:0] read_line_o,
+  output logic [ReadIdWidth-1:0]  read_id_o,
+  input  logic                    line_valid_i,
+  output logic                    line_ready_o,
+  input  logic [ReadIdWidth-1:0]  line_id_i,
+  input  logic [LineWidth-1:0]    line_i,
+  input  logic                    line_error_i,
+  output logic [NumEvents-1:0]    events_o  // of the clock before, see event_e
 );
 
   // ---- Rays that begin, and their contexts: what a node, a triangle or a test needs is there in the clock after it was

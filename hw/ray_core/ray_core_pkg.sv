@@ -27,7 +27,7 @@ package ray_core_pkg;
   localparam int unsigned BoxWidth = 48;
   localparam logic [KindWidth-1:0] KindAbsent = 4'd0;  // 1 to 7: a leaf of so many triangles
   localparam logic [KindWidth-1:0] KindInner = 4'd8;
-  localparam int unsigned Levels = 48;  // nodes at most on a way from the root to a leaf
+  localparam int unsigned MaxLevels = 48;  // nodes at most on a way from the root to a leaf
 
   // ---- Triangle line
 
@@ -45,14 +45,14 @@ package ray_core_pkg;
 
   localparam int unsigned EnterWidth = 19;
   localparam int unsigned OffsetWidth = 6;  // of a child's first line from `base`: below 7 * 7
-  localparam int unsigned CountWidth = 3;  // of a leaf's triangles; 0: an inner node
+  localparam int unsigned LeafWidth = 3;  // of a leaf's triangles; 0: an inner node
   // {enter, offset, count}
-  localparam int unsigned EntryWidth = EnterWidth + OffsetWidth + CountWidth;
-  localparam int unsigned GroupWidth = AddressWidth + Children * EntryWidth;
+  localparam int unsigned ChildWidth = EnterWidth + OffsetWidth + LeafWidth;
+  localparam int unsigned GroupWidth = AddressWidth + Children * ChildWidth;
 
   typedef struct packed {
     logic [AddressWidth-1:0]        base;
-    logic [Children*EntryWidth-1:0] entries;
+    logic [Children*ChildWidth-1:0] entries;
   } group_t;
 
   // Whether a child begins surely beyond the t_max, a binary32 number without its sign: such numbers are ordered as
@@ -96,7 +96,7 @@ package ray_core_pkg;
   typedef enum logic [2:0] {
     ErrorNone      = 3'd0,
     ErrorMemory    = 3'd1,  // a line for it came with an error
-    ErrorCycle     = 3'd2,  // it meets a node again, or is below more than Levels: see traversal
+    ErrorCycle     = 3'd2,  // it meets a node again, or is below more than Levels of the core: see traversal
     ErrorDirection = 3'd3,  // its direction is not scaled
     ErrorAbort     = 3'd4   // the user gave it up
   } error_e;

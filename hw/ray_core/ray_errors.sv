@@ -23,10 +23,10 @@ module ray_errors
   // a ray meets a node again
   input  logic                cycle_i,
   input  logic [RayWidth-1:0] cycle_ctx_i,
-  output logic [    Rays-1:0] failed_o,
+  output logic [Rays-1:0]     failed_o,
   // of one ray, in the same clock
   input  logic [RayWidth-1:0] end_ctx_i,
-  output logic [         2:0] end_error_o
+  output logic [2:0]          end_error_o
 );
 
   logic [3*Rays-1:0] errors_q;

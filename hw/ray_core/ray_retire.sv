@@ -11,24 +11,24 @@ module ray_retire
   parameter int unsigned Rays = 64,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                   clk_i,
-  input  logic                   rst_ni,
-  input  logic                   start_i,         // a ray is in a context
-  input  logic    [RayWidth-1:0] start_ctx_i,
-  input  logic    [    Rays-1:0] busy_i,          // something is to be done for a context's ray
+  input  logic                clk_i,
+  input  logic                rst_ni,
+  input  logic                start_i,  // a ray is in a context
+  input  logic [RayWidth-1:0] start_ctx_i,
+  input  logic [Rays-1:0]     busy_i,  // something is to be done for a context's ray
   // a ray ends, its context is free; in the clock after what is known of it
-  output logic                   ending_o,
-  output logic    [RayWidth-1:0] ending_ctx_o,
-  output logic    [RayWidth-1:0] end_ctx_o,
-  input  end_t                   end_i,
-  input  logic    [        95:0] point_i,
+  output logic                ending_o,
+  output logic [RayWidth-1:0] ending_ctx_o,
+  output logic [RayWidth-1:0] end_ctx_o,
+  input  end_t                end_i,
+  input  logic [95:0]         point_i,
   // doubts
-  input  doubt_t                 doubt_i,
-  output logic                   doubt_fire_o,
+  input  doubt_t              doubt_i,
+  output logic                doubt_fire_o,
   // results
-  output logic                   result_valid_o,
-  input  logic                   result_ready_i,
-  output result_t                result_o
+  output logic                result_valid_o,
+  input  logic                result_ready_i,
+  output result_t             result_o
 );
 
   localparam int unsigned Depth = 8;  // for an end a clock

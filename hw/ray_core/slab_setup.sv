@@ -11,15 +11,15 @@ module slab_setup
   parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic                  clk_i,
-  input  logic [          31:0] product_i,
-  input  logic [          30:0] inverse_i,
-  input  logic [           8:0] exponent_i,
-  input  logic [          10:0] cap_i,
+  input  logic [31:0]           product_i,
+  input  logic [30:0]           inverse_i,
+  input  logic [8:0]            exponent_i,
+  input  logic [10:0]           cap_i,
   input  logic                  is_capped_i,
   input  logic                  is_open_i,
   output logic [PlaneWidth-1:0] near_o,
   output logic [PlaneWidth-1:0] far_o,
-  output logic [ StepWidth-1:0] step_o
+  output logic [StepWidth-1:0]  step_o
 );
 
   localparam int unsigned SizeWidth = 34;  // of |a|, up to 2**33

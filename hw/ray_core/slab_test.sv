@@ -13,16 +13,16 @@ module slab_test
   parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic                    clk_i,
-  input  logic [    BoxWidth-1:0] box_i,
-  input  logic [             2:0] back_i,
-  input  logic [ 3*StepWidth-1:0] step_i,
+  input  logic [BoxWidth-1:0]     box_i,
+  input  logic [2:0]              back_i,
+  input  logic [3*StepWidth-1:0]  step_i,
   input  logic [3*PlaneWidth-1:0] near_i,
   input  logic [3*PlaneWidth-1:0] far_i,
-  input  logic [             2:0] next_back_i,
-  input  logic [      UnitBits:0] t_max_i,
-  input  logic [   KindWidth-1:0] kind_i,
+  input  logic [2:0]              next_back_i,
+  input  logic [UnitBits:0]       t_max_i,
+  input  logic [KindWidth-1:0]    kind_i,
   input  logic                    no_cull_i,
-  output logic [    UnitBits+1:0] key_o
+  output logic [UnitBits+1:0]     key_o
 );
 
   // ---- Planes, with the sign bit turned, so that they compare as unsigned

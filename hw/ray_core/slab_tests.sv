@@ -12,16 +12,16 @@ module slab_tests
 ) (
   input  logic                          clk_i,
   input  logic                          start_i,
-  input  logic [ Children*BoxWidth-1:0] boxes_i,
-  input  logic [                   2:0] back_i,
-  input  logic [       3*StepWidth-1:0] step_i,
-  input  logic [      3*PlaneWidth-1:0] near_i,
-  input  logic [      3*PlaneWidth-1:0] far_i,
-  input  logic [                   2:0] next_back_i,
-  input  logic [            UnitBits:0] t_max_i,
+  input  logic [Children*BoxWidth-1:0]  boxes_i,
+  input  logic [2:0]                    back_i,
+  input  logic [3*StepWidth-1:0]        step_i,
+  input  logic [3*PlaneWidth-1:0]       near_i,
+  input  logic [3*PlaneWidth-1:0]       far_i,
+  input  logic [2:0]                    next_back_i,
+  input  logic [UnitBits:0]             t_max_i,
   input  logic [Children*KindWidth-1:0] kinds_i,
   input  logic                          no_cull_i,
-  output logic [ Children*KeyWidth-1:0] keys_o
+  output logic [Children*KeyWidth-1:0]  keys_o
 );
 
   if (Clocks != 1 && Clocks < Children) begin : gen_check

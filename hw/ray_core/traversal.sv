@@ -26,35 +26,35 @@ module traversal
 #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,  // groups on a ray's own stack
-  parameter int unsigned Levels = ray_core_pkg::Levels,  // with the shared ones
+  parameter int unsigned Levels = MaxLevels,  // with the shared ones
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input logic clk_i,
-  input logic rst_ni,
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
   // a ray begins
-  input logic start_valid_i,
-  input logic [RayWidth-1:0] start_ray_i,
-  output logic start_fire_o,
+  input  logic                    start_valid_i,
+  input  logic [RayWidth-1:0]     start_ray_i,
+  output logic                    start_fire_o,
   // what box_unit says of a node
-  input logic box_valid_i,
-  input logic [RayWidth-1:0] box_ray_i,
-  input group_t box_group_i,
-  input logic [Children-1:0] box_inner_i,
+  input  logic                    box_valid_i,
+  input  logic [RayWidth-1:0]     box_ray_i,
+  input  group_t                  box_group_i,
+  input  logic [Children-1:0]     box_inner_i,
   // what is known of rays
-  input logic [Rays-1:0] leaf_pending_i,  // has leaves to be asked for
-  input logic [Rays-1:0] testing_i,  // has tests on their way
-  output logic [RayWidth-1:0] t_max_ray_o,
-  input logic [30:0] t_max_i,  // of t_max_ray_o of the clock before
-  input logic ended_i,  // of that ray: it needs nothing any more
-  output logic cycle_o,  // cycle_ray_o meets a node again
-  output logic [RayWidth-1:0] cycle_ray_o,
-  input logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
-  output logic [Rays-1:0] traversing_o,  // waits for a node, or has some on its stack
+  input  logic [Rays-1:0]         leaf_pending_i,  // has leaves to be asked for
+  input  logic [Rays-1:0]         testing_i,  // has tests on their way
+  output logic [RayWidth-1:0]     t_max_ray_o,
+  input  logic [30:0]             t_max_i,  // of t_max_ray_o of the clock before
+  input  logic                    ended_i,  // of that ray: it needs nothing any more
+  output logic                    cycle_o,  // cycle_ray_o meets a node again
+  output logic [RayWidth-1:0]     cycle_ray_o,
+  input  logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
+  output logic [Rays-1:0]         traversing_o,  // waits for a node, or has some on its stack
   // nodes asked for; as many as there are rays at most
-  output logic [RayWidth-1:0] node_ray_o,
-  output request_t node_o,
-  output request_t prefetch_o,  // the next of the same group, where there is one
-  output logic overflow_o  // a ray takes the shared groups
+  output logic [RayWidth-1:0]     node_ray_o,
+  output request_t                node_o,
+  output request_t                prefetch_o,  // the next of the same group, where there is one
+  output logic                    overflow_o  // a ray takes the shared groups
 );
 
   localparam int unsigned LevelWidth = $clog2(Levels + 1);
@@ -88,11 +88,11 @@ module traversal
 
   // The nearest of the entries that are among `which`, 0 for none: {enter, offset}.
   function automatic logic [EnterWidth+OffsetWidth-1:0] nearest(
-    logic [Children*EntryWidth-1:0] entries, logic [Children-1:0] which);
+    logic [Children*ChildWidth-1:0] entries, logic [Children-1:0] which);
     nearest = '0;
     for (int unsigned n = 0; n < Children; n++) begin
       if (which[n] && (which & ((Children'(1) << n) - 1'b1)) == '0) begin
-        nearest = entries[EntryWidth*n+CountWidth+:EnterWidth+OffsetWidth];
+        nearest = entries[ChildWidth*n+LeafWidth+:EnterWidth+OffsetWidth];
       end
     end
   endfunction

@@ -50,21 +50,21 @@ module triangle_test
   parameter int unsigned Arith  = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
-  input  logic                          clk_i,
-  input  logic                          rst_ni,
-  input  logic                          step_i,
-  input  logic           [RayWidth-1:0] ctx_i,
+  input  logic                clk_i,
+  input  logic                rst_ni,
+  input  logic                step_i,
+  input  logic [RayWidth-1:0] ctx_i,
   // verilator lint_off UNUSEDSIGNAL
   // Ranks are exact_resolver's, and so are lines that are `exact`.
-  input  triangle_line_t                triangle_i,       // with an error it counts for nothing
+  input  triangle_line_t      triangle_i,  // with an error it counts for nothing
   // verilator lint_on UNUSEDSIGNAL
-  input  logic           [        95:0] origin_i,
-  input  logic           [        31:0] skip_id_i,        // triangles that count for nothing
-  input  logic           [        31:0] source_id_i,
-  output logic           [RayWidth-1:0] direction_ctx_o,
-  input  logic           [        95:0] direction_i,
-  output logic           [RayWidth-1:0] ctx_o,
-  output verdict_t                      verdict_o
+  input  logic [95:0]         origin_i,
+  input  logic [31:0]         skip_id_i,  // triangles that count for nothing
+  input  logic [31:0]         source_id_i,
+  output logic [RayWidth-1:0] direction_ctx_o,
+  input  logic [95:0]         direction_i,
+  output logic [RayWidth-1:0] ctx_o,
+  output verdict_t            verdict_o
 );
 
   localparam int unsigned ErrorWidth = set_up_pkg::PlaneErrorWidth;
@@ -78,11 +78,8 @@ module triangle_test
   localparam int unsigned Operation = (Clocks == 1) ? hit_test_pkg::AdderLatency : 1;
   localparam int unsigned Take = (Clocks == 1) ? 2 : 1;  // a memory's word gets a register
   localparam int unsigned Decide = Take + 9 * Operation;
-  // fp_vector_divider's clocks from V to t; P's words follow t
-  localparam int unsigned Divide = (set_up_pkg::FracWidth + 2) / 2 + 6;
-  localparam int unsigned DivideSteps = (Clocks == 1) ? hit_test_pkg::divide_latency(
-    set_up_pkg::FracWidth
-  ) + 1 : (Divide + 3) / Clocks + 1;
+  localparam int unsigned Divide = hit_test_pkg::divide_latency(set_up_pkg::FracWidth);  // clocks
+  localparam int unsigned DivideSteps = (Clocks == 1) ? Divide + 1 : (Divide + 3) / Clocks + 1;
   localparam int unsigned Last = Decide + 1 + DivideSteps;
 
   // ---- Take; which test is where
@@ -318,71 +315,58 @@ module triangle_test
              verdict_o.distance_error})
   );
 
-  // ---- Divide: t, then P
+  // ---- Divide: t and P, at once; or t, then P's words
 
+  localparam int unsigned Dividers = (Clocks == 1) ? 4 : 1;
   logic [4*32-1:0] dividends_q, quotients_q;
+  logic [Dividers*32-1:0] quotients;
   logic [31:0] divisor_q;
+  logic divide;
 
-  if (Clocks == 1) begin : gen_dividers
-    logic [4*32-1:0] quotients;
+  for (genvar k = 0; k < Dividers; k++) begin : gen_divider
+    fp_divider #(
+      .Arith(Arith),
+      .Pipelined(1'b1)
+    ) u_divider (
+      .clk_i,
+      .valid_i(divide),
+      .a_i(dividends_q[32*k +: 32]),
+      .b_i(divisor_q),
+      .rounding_mode_i(fp_pkg::RoundNearestEven),
+      .tininess_after_i(1'b0),
+      .result_o(quotients[32*k +: 32]),
+      .flags_o()
+    );
+  end
+
+  if (Clocks == 1) begin : gen_at_once
     logic hit_q;
 
     always_ff @(posedge clk_i) begin
       {dividends_q, divisor_q, hit_q} <= {dividends, decided_d, v, hit};
       quotients_q <= quotients;
     end
+    assign divide          = valid_q[Decide+1] & hit_q;
     assign verdict_o.valid = valid_q[Last];
-
-    for (genvar k = 0; k < 4; k++) begin : gen_divider
-
-      fp_divider #(
-        .Arith(Arith),
-        .Pipelined(1'b1)
-      ) u_divider (
-        .clk_i,
-        .valid_i(valid_q[Decide+1] & hit_q),
-        .a_i(dividends_q[32*k +: 32]),
-        .b_i(divisor_q),
-        .rounding_mode_i(fp_pkg::RoundNearestEven),
-        .tininess_after_i(1'b0),
-        .result_o(quotients[32*k +: 32]),
-        .flags_o()
-      );
-    end
   end else begin : gen_turns
     localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // from t to the step
-    logic [4:0] since_q;  // the clock after the step, and those after it
-    logic [31:0] quotient;
+    logic [3:0] since_q;  // the clock after the step, and those after it
     logic [Wait*32-1:0] waiting_q;
     logic [(Wait+1)*32-1:0] waiting;  // the latest highest
 
-    fp_vector_divider #(
-      .Arith(Arith),
-      .Components(4),
-      .Period(Clocks),
-      .RowsPerClock(1)
-    ) u_divider (
-      .clk_i,
-      .rst_ni,
-      .divisor_i(since_q[0]),
-      .dividend_i(|since_q[4:1]),
-      .word_i(divisor_q),
-      .rounding_mode_i(fp_pkg::RoundNearestEven),
-      .valid_o(),
-      .result_o(quotient)
-    );
-    assign waiting = {quotient, waiting_q};
+    assign waiting = {quotients, waiting_q};
 
     always_ff @(posedge clk_i or negedge rst_ni) begin
       if (!rst_ni) since_q <= '0;
-      else since_q <= {since_q[3:0], step_i};
+      else since_q <= {since_q[2:0], step_i};
     end
     always_ff @(posedge clk_i) begin
-      {dividends_q, divisor_q} <=
-          step_i ? {dividends, decided_d, v} : {32'd0, dividends_q};
+      dividends_q <= step_i ? {dividends, decided_d} : dividends_q >> 32;
+      if (step_i) divisor_q <= v;
       waiting_q <= waiting[(Wait+1)*32-1:32];
       if (step_i) quotients_q <= waiting[4*32-1:0];
     end
+    assign divide          = |since_q;
     assign verdict_o.valid = valid_q[Last] & since_q[0];
   end
 

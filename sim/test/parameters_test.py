@@ -38,7 +38,6 @@ REFUSED = {
     "ray_alloc": ["Rays=48", "Clocks=2"],
     "uart_receiver": ["ClocksPerBit=3"],
     "uart_transmitter": ["ClocksPerBit=1"],
-    "srt_divider_iterative": ["RowsPerClock=5"],
     "triangle_test": ["Clocks=6"],
     "traversal": ["Rays=1", "Depth=0"],
 }

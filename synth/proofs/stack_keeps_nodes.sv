@@ -10,10 +10,10 @@ module stack_keeps_nodes #(
   localparam int unsigned Levels = 4,
   localparam int unsigned Children = ray_core_pkg::Children,
   localparam int unsigned GroupWidth = ray_core_pkg::GroupWidth,
-  localparam int unsigned EntryWidth = ray_core_pkg::EntryWidth,
+  localparam int unsigned EntryWidth = ray_core_pkg::ChildWidth,
   localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth,
   localparam int unsigned OffsetWidth = ray_core_pkg::OffsetWidth,
-  localparam int unsigned CountWidth = ray_core_pkg::CountWidth,
+  localparam int unsigned CountWidth = ray_core_pkg::LeafWidth,
   localparam int unsigned AddressWidth = ray_core_pkg::AddressWidth,
   localparam int unsigned NextWidth = Children + EnterWidth
 ) (

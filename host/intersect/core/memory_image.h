@@ -119,7 +119,7 @@ struct TriangleLine {
 class MemoryImage {
  public:
   static constexpr std::uint32_t kRoot = 0;
-  static constexpr int kMostDepth = Bvh::kMaxDepth;  ///< ray_core_pkg::Levels
+  static constexpr int kMostDepth = Bvh::kMaxDepth;  ///< ray_core_pkg::MaxLevels
 
   /// Throws std::invalid_argument for a BVH with instances, which must be flattened.
   explicit MemoryImage(const Bvh& bvh, int threads = 1);

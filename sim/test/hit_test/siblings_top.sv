@@ -14,21 +14,21 @@ module siblings_top (
   output logic [191:0] bus_o
 );
 
-  // Of each kind: exponent and fraction bits, rounding mode, rows a clock; a byte each
-  localparam bit [6*32-1:0] Kinds = {
-    32'h08_17_02_02,  // binary32, down
-    32'h08_17_03_01,  // binary32, up
-    32'h08_17_01_0c,  // binary32, towards zero; all rows in a clock
-    32'h05_0a_00_03,  // binary16, to the nearest even
-    32'h05_0a_04_01,  // binary16, to the nearest, ties away
-    32'h08_07_02_02   // bfloat16, down
+  // Of each kind: exponent and fraction bits, rounding mode; a byte each
+  localparam bit [6*24-1:0] Kinds = {
+    24'h08_17_02,  // binary32, down
+    24'h08_17_03,  // binary32, up
+    24'h08_17_01,  // binary32, towards zero
+    24'h05_0a_00,  // binary16, to the nearest even
+    24'h05_0a_04,  // binary16, to the nearest, ties away
+    24'h08_07_02   // bfloat16, down
   };
   logic [5:0] ready, paper_ready;
 
   for (genvar n = 0; n < 6; n++) begin : gen_kind
-    localparam int unsigned ExpWidth = 32'(Kinds[32*n+24 +: 8]);
-    localparam int unsigned FracWidth = 32'(Kinds[32*n+16 +: 8]);
-    localparam bit [2:0] RoundingMode = Kinds[32*n+8 +: 3];
+    localparam int unsigned ExpWidth = 32'(Kinds[24*n+16 +: 8]);
+    localparam int unsigned FracWidth = 32'(Kinds[24*n+8 +: 8]);
+    localparam bit [2:0] RoundingMode = Kinds[24*n +: 3];
     localparam int unsigned Width = 1 + ExpWidth + FracWidth;
     logic [Width-1:0] bus, paper_out, out;
 
@@ -41,8 +41,7 @@ module siblings_top (
       .valid_o(paper_valid_o[n])
     );
     iterative_hit_test_unit #(
-      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(1), .RoundingMode(RoundingMode),
-      .RowsPerClock(32'(Kinds[32*n +: 8]))
+      .ExpWidth(ExpWidth), .FracWidth(FracWidth), .Arith(1), .RoundingMode(RoundingMode)
     ) u_iterative (
       .clk_i, .rst_ni, .valid_i, .ready_o(ready[n]), .bus_i(bus), .bus_o(out), .valid_o(valid_o[n])
     );
