@@ -96,7 +96,7 @@ package ray_core_pkg;
   typedef enum logic [2:0] {
     ErrorNone      = 3'd0,
     ErrorMemory    = 3'd1,  // a line for it came with an error
-    ErrorCycle     = 3'd2,  // it meets a node again, or is below more than the Levels: see traversal
+    ErrorCycle     = 3'd2,  // it meets a node again, or is below Levels others: see traversal
     ErrorDirection = 3'd3,  // its direction is not scaled
     ErrorAbort     = 3'd4   // the user gave it up
   } error_e;
