@@ -63,7 +63,7 @@ list(TRANSFORM RAYGATE_HW_FOLDERS PREPEND -I)
 # Assertions stop a simulation that breaks them; they read the asynchronous reset in step with the clock
 # (SYNCASYNCNET). What the RTL leaves open (registers before their first load, x in an assignment) is 0 in
 # a model, or random in one whose context asks for it (sim/model.h): its bits must not depend on that.
-set(RAYGATE_VERILATOR_FLAGS -Wall -Wno-SYNCASYNCNET -fno-const-bit-op-tree --assert
+set(RAYGATE_VERILATOR_FLAGS -Wall -Wno-PINCONNECTEMPTY -Wno-SYNCASYNCNET -fno-const-bit-op-tree --assert
   --x-assign unique --x-initial unique sim/words.vlt)
 set(RAYGATE_CHECKS sim/checks)  # bindings.sv binds them to the modules of hw/
 
