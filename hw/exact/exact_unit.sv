@@ -98,14 +98,18 @@ module exact_unit
 
   // ---- Issue
 
-  logic [Stages:1] valid_q;  // of the steps in each stage
-  step_t step, step_1_q, step_2_q, step_3_q;
+  typedef struct packed {
+    step_t step;
+    logic [6:0] address;  // of its instruction
+    logic [AddressWidth-1:0] result;  // where the digit that it completes goes
+  } stage_t;
+
+  logic [Stages:1] valid_q;
+  stage_t issue;
   // verilator lint_off UNUSEDSIGNAL
-  // What only the sum asks for.
-  step_t step_4_q;
+  // Each stage asks for some of it.
+  stage_t [Stages:1] stage_q;
   // verilator lint_on UNUSEDSIGNAL
-  logic [6:0] address, address_1_q, address_2_q, address_3_q, address_4_q;
-  logic [AddressWidth-1:0] result, result_1_q, result_2_q, result_3_q, result_4_q;
   logic [AddressWidth-1:0] x_address, y_address;
   logic [CountWidth-1:0] x_digit, x_digit_1_q;
   logic [NumberWidth-1:0] x_place, y_place;
@@ -125,18 +129,18 @@ module exact_unit
     .pair_digits_i      (pair_digits),
     .written_i          (valid_q == '0),
     .stop_i             (stop),
-    .stop_address_i     (address_4_q),
+    .stop_address_i     (stage_q[4].address),
     .stopped_o          (stopped),
     .abort_i            (done),
     .valid_o            (valid),
-    .step_o             (step),
-    .address_o          (address),
+    .step_o             (issue.step),
+    .address_o          (issue.address),
     .x_digit_o          (x_digit),
     .x_place_o          (x_place),
     .y_place_o          (y_place),
     .x_address_o        (x_address),
     .y_address_o        (y_address),
-    .result_address_o   (result)
+    .result_address_o   (issue.result)
   );
 
   function automatic logic [Width-1:0] word(logic [Floats*Width-1:0] words,
@@ -158,10 +162,7 @@ module exact_unit
     end
   end
   always_ff @(posedge clk_i) begin
-    {step_1_q, address_1_q, result_1_q} <= {step, address, result};
-    {step_2_q, address_2_q, result_2_q} <= {step_1_q, address_1_q, result_1_q};
-    {step_3_q, address_3_q, result_3_q} <= {step_2_q, address_2_q, result_2_q};
-    {step_4_q, address_4_q, result_4_q} <= {step_3_q, address_3_q, result_3_q};
+    stage_q     <= {stage_q[Stages-1:1], issue};
     x_digit_1_q <= x_digit;
     x_word_q    <= word(floats_q, x_place);
     y_word_q    <= word(floats_q, y_place);
@@ -182,7 +183,7 @@ module exact_unit
   ) u_x (
     .clk_i,
     .write_i        (write),
-    .write_address_i(result_4_q),
+    .write_address_i(stage_q[4].result),
     .data_i         (digit),
     .read_i         (1'b1),
     .read_address_i (x_address),
@@ -195,7 +196,7 @@ module exact_unit
   ) u_y (
     .clk_i,
     .write_i        (write),
-    .write_address_i(result_4_q),
+    .write_address_i(stage_q[4].result),
     .data_i         (digit),
     .read_i         (1'b1),
     .read_address_i (y_address),
@@ -210,8 +211,8 @@ module exact_unit
     significand = {float[FracWidth+:ExpWidth] != '0, float[FracWidth-1:0]};
   endfunction
 
-  assign loads = step_1_q.kind < KindCross;
-  assign unit = (step_1_q.kind == KindRay) ? ShiftWidth'(direction_exponent)
+  assign loads = stage_q[1].step.kind < KindCross;
+  assign unit = (stage_q[1].step.kind == KindRay) ? ShiftWidth'(direction_exponent)
                                                       : ShiftWidth'(coordinate_exponent);
   assign x_shift = one_q ? one_shift : limit_q ? limit_shift
                  : exponent(x_word_q[FracWidth+:ExpWidth]) - unit;
@@ -258,7 +259,7 @@ module exact_unit
   ) u_product (
     .a_i     (x_q),
     .b_i     (y_q),
-    .negate_i(step_2_q.negate),
+    .negate_i(stage_q[2].step.negate),
     .sum_o   (product_sum),
     .carry_o (product_carry)
   );
@@ -274,8 +275,8 @@ module exact_unit
   );
 
   always_ff @(posedge clk_i) begin
-    sum_q   <= step_2_q.empty ? '0 : loads_q ? difference_sum : product_sum;
-    carry_q <= step_2_q.empty ? '0
+    sum_q   <= stage_q[2].step.empty ? '0 : loads_q ? difference_sum : product_sum;
+    carry_q <= stage_q[2].step.empty ? '0
              : loads_q ? difference_carry | SumWidth'(y_taken_q) : product_carry;
   end
 
@@ -289,9 +290,9 @@ module exact_unit
     .Arith     (Arith)
   ) u_accumulator (
     .clk_i,
-    .opens_i   (step_3_q.opens),
-    .first_i   (step_3_q.first),
-    .down_i    (step_3_q.down),
+    .opens_i   (stage_q[3].step.opens),
+    .first_i   (stage_q[3].step.first),
+    .down_i    (stage_q[3].step.down),
     .sum_i     (sum_q),
     .carry_i   (carry_q),
     .digit_o   (digit),
@@ -304,12 +305,12 @@ module exact_unit
 
   logic [Numbers-1:0] negative_q, nonzero_q;
 
-  assign write = valid_q[4] & step_4_q.closes & ~step_4_q.down;
+  assign write = valid_q[4] & stage_q[4].step.closes & ~stage_q[4].step.down;
 
   always_ff @(posedge clk_i) begin
-    if (write && (step_4_q.low || digit != '0)) begin
-      negative_q[step_4_q.result] <= digit[DigitWidth-1];
-      nonzero_q[step_4_q.result]  <= digit != '0;
+    if (write && (stage_q[4].step.low || digit != '0)) begin
+      negative_q[stage_q[4].step.result] <= digit[DigitWidth-1];
+      nonzero_q[stage_q[4].step.result]  <= digit != '0;
     end
   end
 
@@ -318,9 +319,9 @@ module exact_unit
   logic decided_q, was_decided;
   sign_t sum_sign, tie_sign, sign, plane_q;
 
-  assign was_decided = decided_q & ~step_4_q.first;
-  assign stop = valid_q[4] & step_4_q.down & step_4_q.closes & ~was_decided
-              & (sure | step_4_q.ends);
+  assign was_decided = decided_q & ~stage_q[4].step.first;
+  assign stop = valid_q[4] & stage_q[4].step.down & stage_q[4].step.closes & ~was_decided
+              & (sure | stage_q[4].step.ends);
 
   always_ff @(posedge clk_i) begin
     if (valid_q[4]) decided_q <= was_decided | stop;
@@ -330,25 +331,25 @@ module exact_unit
   always_comb begin
     tie_sign = '0;
     for (int unsigned k = 3; k > 0; k--) begin
-      if (step_4_q.second && nonzero_q[SecondNormal+k-1]) begin
+      if (stage_q[4].step.second && nonzero_q[SecondNormal+k-1]) begin
         tie_sign = {negative_q[SecondNormal+k-1], 1'b1};
       end
-      if (!step_4_q.second && nonzero_q[Normal+k-1]) begin
+      if (!stage_q[4].step.second && nonzero_q[Normal+k-1]) begin
         tie_sign = {negative_q[Normal+k-1], 1'b1};
       end
     end
   end
   assign sum_sign = {sum_negative & ~sum_zero, ~sum_zero};
-  assign sign = (step_4_q.kind == KindEdge && sum_zero) ? tie_sign : sum_sign;
+  assign sign = (stage_q[4].step.kind == KindEdge && sum_zero) ? tie_sign : sum_sign;
 
   // ---- The answer
 
   logic misses, hits, compares, order_negative, order_nonzero;
 
-  assign misses = stop & ((step_4_q.kind == KindPlane) ? sum_zero
-                          : (step_4_q.kind == KindEdge) & (sign != plane_q));
-  assign hits = stop & ~misses & step_4_q.last & (against_q == AgainstNothing);
-  assign compares = stop & (step_4_q.kind == KindCompare);
+  assign misses = stop & ((stage_q[4].step.kind == KindPlane) ? sum_zero
+                          : (stage_q[4].step.kind == KindEdge) & (sign != plane_q));
+  assign hits = stop & ~misses & stage_q[4].step.last & (against_q == AgainstNothing);
+  assign compares = stop & (stage_q[4].step.kind == KindCompare);
   assign done = misses | hits | compares;
   assign order_nonzero = sign.nonzero & nonzero_q[Distance]
                        & nonzero_q[OtherDistance];
@@ -360,7 +361,7 @@ module exact_unit
     else valid_o <= done | (valid_o & ~ready_i);
   end
   always_ff @(posedge clk_i) begin
-    if (stop && step_4_q.kind == KindPlane) plane_q <= sum_sign;
+    if (stop && stage_q[4].step.kind == KindPlane) plane_q <= sum_sign;
     if (done) begin
       hit_o   <= ~misses;
       order_o <= compares ? {order_negative & order_nonzero, order_nonzero} : '0;

@@ -198,10 +198,12 @@ bind exact_unit exact_checks #(
 ) u_program_checks (
   .clk_i,
   .rst_ni,
-  .reads(valid & (step.kind >= exact_pkg::KindCross) & ~step.empty),
+  .reads(valid & (issue.step.kind >= exact_pkg::KindCross) & ~issue.step.empty),
   .x_address,
   .y_address,
-  .writes(valid_q & {step_4_q.closes & ~step_4_q.down, step_3_q.closes & ~step_3_q.down,
-                     step_2_q.closes & ~step_2_q.down, step_1_q.closes & ~step_1_q.down}),
-  .addresses({result_4_q, result_3_q, result_2_q, result_1_q})
+  .writes(valid_q & {stage_q[4].step.closes & ~stage_q[4].step.down,
+                     stage_q[3].step.closes & ~stage_q[3].step.down,
+                     stage_q[2].step.closes & ~stage_q[2].step.down,
+                     stage_q[1].step.closes & ~stage_q[1].step.down}),
+  .addresses({stage_q[4].result, stage_q[3].result, stage_q[2].result, stage_q[1].result})
 );
