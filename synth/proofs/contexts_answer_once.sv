@@ -64,7 +64,7 @@ module contexts_answer_once #(
     .\u_alloc.u_rays.bits_q (ray_marks),
     .\u_retire.u_ends.bits_q (end_marks),
     .\u_alloc.free_q (free_q),
-    .\u_alloc.gen_dividers.dividing_q (dividing_q),
+    .\u_alloc.dividing_q (dividing_q),
     .\u_alloc.u_rays.count_q (rays_count),
     .\u_alloc.u_rays.valid_o (rays_valid),
     .\u_alloc.u_rays.space_o (rays_space),
