@@ -58,8 +58,7 @@ TYPED_TEST(IterativeHitTestUnit, RandomStreamsEqualFloatArithmetic) {
   ASSERT_EQ(results.size(), tests.size());
   for (std::size_t i = 0; i < tests.size(); ++i) {
     ASSERT_EQ(results[i].point, point_of(tests[i].words)) << "test " << i;
-    ASSERT_EQ(results[i].last_component, results[i].first_word + kClocks - 1)
-        << "test " << i;
+    ASSERT_EQ(results[i].last_component, results[i].first_word + kClocks - 1) << "test " << i;
   }
 }
 
