@@ -286,6 +286,12 @@ def report_rows() -> list[Row]:
                         design("adder", f"adder-{name}", kind, widths, look_ahead, Width=48),
                         {"osu035": (*own, "kept", "default", "fast"),
                          "osu018": (*own, "fast"), **placed}))
+    # How far ABC's choices move a delay: an order of adders means something beyond that.
+    for name, kind, widths, look_ahead in ADDERS:
+        for width in (47, 49):
+            groups = widths and [*widths[:-1], widths[-1] + width - 48]
+            rows.append(Row("a bit less, a bit more", design("adder", f"adder-{name}-{width}", kind, groups, look_ahead, Width=width),
+                            {"osu035": ("fast",)}))
     section = "24 x 24 multipliers"
     twice = {"osu035": ("small", "fast")}
     everywhere = {**twice, "osu018": ("fast",), **placed}
