@@ -202,8 +202,7 @@ PROOFS = [
       for operation in (*NARROW_CLAIMS, "srt_row", "srt_ends") for kind in (*ADDERS, "behavioural")),
     *(FloatProof(operation, name) for name in NARROW_FORMATS for operation in ("decode", "srt_first_row")),
     *(one for one in _CORES if (one.operation, one.format) != ("add", "binary32")),
-    *(FloatProof("compare", name, kind) for name in FORMATS | NARROW_FORMATS
-      for kind in ("structural", "behavioural")),
+    *(FloatProof("compare", name) for name in FORMATS | NARROW_FORMATS),
     *(FloatProof(part, name, kind) for part in ("srt_row", "srt_ends") for name in FORMATS
       for kind in (*ADDERS, "behavioural")),
     *(FloatProof(part, name) for part in ("decode", "sticky") for name in FORMATS),

@@ -11,7 +11,7 @@ ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "area": "area.abc", "sma
                "modules": "fast.abc", "blocks": "fast.abc"}
 # Modules that flow `modules` maps on their own, so that a picture of the layout can tell them apart.
 PICTURED = ("booth_encoder", "booth_row", "carry_save_tree", "adder", "fp_unpack", "fp_round", "srt_first_row",
-            "srt_row", "sticky_right_shift", "leading_zero_counter", "comparator")
+            "srt_row", "sticky_right_shift", "leading_zero_counter")
 FILES = [pathlib.Path(__file__), pathlib.Path(yosys.__file__)]  # what results depend on beside the files that a flow names
 
 

@@ -3,8 +3,7 @@
 //
 // Source: Batcher's network for eight, less one input.
 module sort7 #(
-  parameter int unsigned Width = 27,
-  parameter int unsigned Arith = arith_pkg::Graded
+  parameter int unsigned Width = 27
 ) (
   input  logic               clk_i,
   input  logic [7*Width-1:0] words_i,
@@ -26,16 +25,7 @@ module sort7 #(
         logic [Width-1:0] low, high;
         assign low  = unsorted[Width*n +: Width];
         assign high = unsorted[Width*Partner +: Width];
-
-        comparator #(
-          .Width(Width),
-          .Arith(Arith)
-        ) u_comparator (
-          .a_i(high),
-          .b_i(low),
-          .less_o(less),
-          .equal_o()
-        );
+        assign less = high < low;
         assign ordered[Width*n +: Width]       = less ? high : low;
         assign ordered[Width*Partner +: Width] = less ? low : high;
       end else if (Partner == n) begin : gen_rest

@@ -69,15 +69,8 @@ module fp_adder #(
   logic [ExpWidth-1:0] big_exp;
   logic [SigWidth-1:0] big_sig, small_sig;
 
-  comparator #(
-    .Width(ExpWidth + FracWidth),
-    .Arith(Arith)
-  ) u_order (
-    .a_i(a_i[ExpWidth+FracWidth-1:0]),
-    .b_i(b_i[ExpWidth+FracWidth-1:0]),
-    .less_o(swap),
-    .equal_o(equal)
-  );
+  assign swap = a_i[ExpWidth+FracWidth-1:0] < b_i[ExpWidth+FracWidth-1:0];
+  assign equal = a_i[ExpWidth+FracWidth-1:0] == b_i[ExpWidth+FracWidth-1:0];
   assign big_exp = swap ? b_exp : a_exp;
   assign big_sig = swap ? b_sig : a_sig;
   assign small_sig = swap ? a_sig : b_sig;
@@ -187,17 +180,8 @@ module fp_adder #(
   // ---- Far path: exponent for the rounder, less one for a sum and less two for a difference
 
   logic [ExpWidth-1:0] far_exp;
-  logic [ExpWidth-2:0] far_exp_high_n;  // complements count downwards
 
-  incrementer #(
-    .Width(ExpWidth - 1),
-    .Arith(Arith)
-  ) u_far_exp (
-    .a_i(~big_exp_1[ExpWidth-1:1]),
-    .carry_i(subtract_1 | ~big_exp_1[0]),
-    .sum_o(far_exp_high_n)
-  );
-  assign far_exp = {~far_exp_high_n, big_exp_1[0] ~^ subtract_1};
+  assign far_exp = big_exp_1 - (subtract_1 ? ExpWidth'(2) : ExpWidth'(1));
 
   // ---- Near path: subtract, the distance known from the exponents' lowest bits
 
@@ -292,8 +276,7 @@ module fp_adder #(
   fp_round #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
-    .SubnormalShift(1'b0),
-    .Arith(Arith)
+    .SubnormalShift(1'b0)
   ) u_round (
     .sign_i(sign_2),
     .exponent_i({2'b00, far_exp_2}),

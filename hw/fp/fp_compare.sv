@@ -7,8 +7,7 @@
 // Combinational; takes every bit pattern. Source: IEEE 754-2019, clause 5.11.
 module fp_compare #(
   parameter int unsigned ExpWidth  = 8,
-  parameter int unsigned FracWidth = 23,
-  parameter int unsigned Arith     = arith_pkg::Graded
+  parameter int unsigned FracWidth = 23
 ) (
   input  logic [ExpWidth+FracWidth:0] a_i,
   input  logic [ExpWidth+FracWidth:0] b_i,
@@ -37,15 +36,9 @@ module fp_compare #(
   // ---- Magnitudes: packed words sort as their values do
 
   logic mag_less, mag_equal;
-  comparator #(
-    .Width(MagWidth),
-    .Arith(Arith)
-  ) u_magnitudes (
-    .a_i(a_mag),
-    .b_i(b_mag),
-    .less_o(mag_less),
-    .equal_o(mag_equal)
-  );
+
+  assign mag_less = a_mag < b_mag;
+  assign mag_equal = a_mag == b_mag;
 
   // ---- Order
 

@@ -246,8 +246,7 @@ module fp_divider #(
 
   fp_round #(
     .ExpWidth(ExpWidth),
-    .FracWidth(FracWidth),
-    .Arith(Arith)
+    .FracWidth(FracWidth)
   ) u_round (
     .sign_i(sign_2),
     .exponent_i(exponent_2),

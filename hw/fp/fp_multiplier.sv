@@ -212,8 +212,7 @@ module fp_multiplier #(
   fp_round #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth),
-    .SubnormalShift(1'b0),
-    .Arith(Arith)
+    .SubnormalShift(1'b0)
   ) u_round (
     .sign_i(sign_1),
     .exponent_i({1'b0, exp_less_left & {(ExpWidth + 1){~exp_negative_1}}}),

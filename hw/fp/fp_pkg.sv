@@ -7,9 +7,9 @@
 // 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2 signed bits; the divider needs FracWidth <= 53,
 // the multiplier, with arith_pkg's groups, FracWidth <= 75.
 //
-// What the cores are made of: sums and differences of significands and exponents are instances of
-// hw/arith's adder (its kind is their parameter Arith), steps by one of its incrementer, products
-// and quotients of its multiplier and divider. The operators + - * / stand in constants alone.
+// What the cores are made of: sums and differences of significands and exponents are instances of hw/arith's adder (its
+// kind is their parameter Arith), products and quotients of its multiplier and divider. Steps by one or two and comparisons
+// are the language's operators, which synthesis makes no slower than structures of ours.
 //
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
 package fp_pkg;

@@ -26,8 +26,7 @@
 module fp_round #(
   parameter int unsigned ExpWidth       = 8,
   parameter int unsigned FracWidth      = 23,
-  parameter bit          SubnormalShift = 1'b1,
-  parameter int unsigned Arith          = arith_pkg::Graded
+  parameter bit          SubnormalShift = 1'b1
 ) (
   input  logic                          sign_i,
   input  logic signed [ExpWidth+1:0]    exponent_i,
@@ -108,33 +107,11 @@ module fp_round #(
   assign increment = (nearest & guard & (sticky | fraction[0] | ~nearest_even))
                    | (away & (guard | sticky));
   assign unused_integer_bit = normal[SigWidth-2];
-  incrementer #(
-    .Width(FieldWidth),
-    .Arith(Arith)
-  ) u_base_plus_1 (
-    .a_i(base),
-    .carry_i(1'b1),
-    .sum_o(base_plus_1)
-  );
-  incrementer #(
-    .Width(FieldWidth - 1),
-    .Arith(Arith)
-  ) u_base_plus_2 (
-    .a_i(base[FieldWidth-1:1]),
-    .carry_i(1'b1),
-    .sum_o(base_plus_2[FieldWidth-1:1])
-  );
-  assign base_plus_2[0] = base[0];
+  assign base_plus_1 = base + FieldWidth'(1);
+  assign base_plus_2 = base + FieldWidth'(2);
   assign field = placed[SigWidth-1] ? base_plus_2 : placed[SigWidth-2] ? base_plus_1 : base;
 
-  incrementer #(
-    .Width(WordWidth),
-    .Arith(Arith)
-  ) u_round (
-    .a_i({field[ExpWidth-1:0], fraction}),
-    .carry_i(increment),
-    .sum_o(rounded)
-  );
+  assign rounded = {field[ExpWidth-1:0], fraction} + WordWidth'(increment);
   // Found beside the increment and not after it.
   assign overflow = (field >= InfField) | ((field == InfField - 1'b1) & (&fraction) & increment);
 

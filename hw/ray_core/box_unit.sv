@@ -8,7 +8,7 @@
 //   align       a_k and the grid's step s_k in units of 2**(E - 22),        see slab_setup
 //               room r_k for errors
 //   step        a_k -+ r_k +- q s_k for the planes of all boxes             42 products, 8 x 33, see plane_offset
-//   enter       largest near plane, smallest far plane                      49 comparators, see slab_test
+//   enter       largest near plane, smallest far plane                      49 comparisons, see slab_test
 //   sort        near first; the group                                       see child_sort, sort7
 //
 // With Clocks a child is stepped and entered in each clock, and the latency is Children clocks more. The ray comes a clock
@@ -332,9 +332,7 @@ module box_unit
 
   // ---- Sort
 
-  child_sort #(
-    .Arith(Arith)
-  ) u_group (
+  child_sort u_group (
     .clk_i,
     .keys_i(keys),
     .kinds_i(sorted_node[Kinds +: Children*KindWidth]),

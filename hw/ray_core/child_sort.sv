@@ -3,7 +3,6 @@
 module child_sort
   import ray_core_pkg::*;
 #(
-  parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned KeyWidth = UnitBits + 2
 ) (
   input  logic                          clk_i,
@@ -33,8 +32,7 @@ module child_sort
     assign words[WordWidth*i+:WordWidth] = {keys_i[KeyWidth*i+:KeyWidth], NumberWidth'(i)};
   end
   sort7 #(
-    .Width(WordWidth),
-    .Arith(Arith)
+    .Width(WordWidth)
   ) u_sort (
     .clk_i,
     .words_i(words),

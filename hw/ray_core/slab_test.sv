@@ -25,10 +25,18 @@ module slab_test
   output logic [UnitBits+1:0]     key_o
 );
 
-  // ---- Planes, with the sign bit turned, so that they compare as unsigned
+  typedef logic signed [PlaneWidth-1:0] plane_t;
 
-  logic [3*PlaneWidth-1:0] near_q, far_q;
-  localparam logic [PlaneWidth-1:0] Zero = PlaneWidth'(1) << (PlaneWidth - 1);
+  function automatic plane_t larger(plane_t a, plane_t b);
+    larger = (a < b) ? b : a;
+  endfunction
+  function automatic plane_t smaller(plane_t a, plane_t b);
+    smaller = (a < b) ? a : b;
+  endfunction
+
+  // ---- Planes
+
+  plane_t near_q[3], far_q[3];
 
   for (genvar k = 0; k < 3; k++) begin : gen_axis
     logic [PlaneWidth-1:0] near, far;
@@ -58,55 +66,30 @@ module slab_test
       .plane_o(far)
     );
     always_ff @(posedge clk_i) begin
-      near_q[PlaneWidth*k +: PlaneWidth] <= near ^ Zero;
-      far_q[PlaneWidth*k +: PlaneWidth]  <= far ^ Zero;
+      near_q[k] <= near;
+      far_q[k]  <= far;
     end
   end
 
   // ---- Enter: the largest near plane; leave: the smallest far one
 
-  logic [PlaneWidth-1:0] enter, enter_q, complement, leave_q;
-  logic left_before;
+  // verilator lint_off UNUSEDSIGNAL
+  // An enter within the t_max has no more than UnitBits + 1 bits.
+  plane_t enter_q, leave_q;
+  // verilator lint_on UNUSEDSIGNAL
 
-  max4 #(
-    .Width(PlaneWidth),
-    .Arith(Arith)
-  ) u_enter (
-    .words_i({Zero, near_q}),
-    .max_o(enter)
-  );
-  max4 #(
-    .Width(PlaneWidth),
-    .Arith(Arith)
-  ) u_leave (
-    .words_i(~{PlaneWidth'(t_max_i) ^ Zero, far_q}),
-    .max_o(complement)
-  );
   always_ff @(posedge clk_i) begin
-    enter_q <= enter;
-    leave_q <= ~complement;
+    enter_q <= larger(larger(near_q[0], near_q[1]), larger(near_q[2], '0));
+    leave_q <= smaller(smaller(far_q[0], far_q[1]), smaller(far_q[2], plane_t'(t_max_i)));
   end
 
   // ---- The key
 
-  comparator #(
-    .Width(PlaneWidth),
-    .Arith(Arith)
-  ) u_entered (
-    .a_i(leave_q),
-    .b_i(enter_q),
-    .less_o(left_before),
-    .equal_o()
-  );
-
   logic entered;
-  assign entered = (no_cull_i | ~left_before) & (kind_i != KindAbsent);
+  assign entered = (no_cull_i | (enter_q <= leave_q)) & (kind_i != KindAbsent);
 
   always_ff @(posedge clk_i) begin
     key_o <= {~entered, (entered & ~no_cull_i) ? enter_q[UnitBits:0] : (UnitBits + 1)'(0)};
   end
-
-  logic unused;  // an enter within the t_max has no more bits
-  assign unused = ^enter_q[PlaneWidth-1:UnitBits+1];
 
 endmodule

@@ -28,8 +28,6 @@ REFUSED = {
     "hit_test_control": ["NumSteps=7"],
     "adder": ["Arith=5"],
     "carry_select_adder": ["GroupWidths=44", "GroupWidths=128'h2c0004", "GroupWidths=128'h040030"],
-    "comparator": ["Arith=5"],
-    "incrementer": ["Width=1", "Arith=5"],
     "leading_zero_counter": ["Width=1"],
     "multiplier": ["Width=1", "Arith=5"],
     "exact_unit": ["DigitWidth=47", "DigitWidth=22"],

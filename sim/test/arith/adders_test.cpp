@@ -1,5 +1,5 @@
-// Every kind of adder, incrementers, comparators and leading-zero counters at 10 widths from 1 to
-// 64 against the CPU's integers.
+// Every kind of adder and leading-zero counters at 10 widths from 1 to 64 against the CPU's
+// integers.
 #include <gtest/gtest.h>
 
 #include <cstdint>
