@@ -229,7 +229,7 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
       const LobeProbabilities<T> lobes(hits.bsdf, hits.path.are_caustic_rays());
       sample_one_light(shading, hits, lobes);
       sample_seen_caustics(shading, hits);
-      sample_scattered_ray<false>(shading, hits, lobes, radiance);
+      sample_scattered_ray<false>(shading, hits, lobes);
     }
     hits.set_radiance(radiance);
   });
@@ -242,9 +242,8 @@ void shade_light_path(const ShadingScene& shading, HitBlock& block, HitKind kind
     connect_to_camera(shading, hits);
     hits.set_radiance(zero<T>());
     if (block.batch->depth > shading.max_depth) return;
-    Triple<T> none = zero<T>();
     sample_scattered_ray<true>(shading, hits,
-                               LobeProbabilities<T>(hits.bsdf, hits.path.history == 1u), none);
+                               LobeProbabilities<T>(hits.bsdf, hits.path.history == 1u));
   });
 }
 

@@ -121,7 +121,7 @@ struct WaysBack {
 /// Spawns one ray per hit: samples a lobe of the BSDF by its probability, then a direction.
 template <bool kFromLight, class T>
 RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& hits,
-                                         const LobeProbabilities<T>& lobes, Triple<T>& radiance) {
+                                         const LobeProbabilities<T>& lobes) {
   const Surface<T>& surface = hits.surface;
   const Bsdf<T>& bsdf = hits.bsdf;
   const SquarePoint<T> choice = hits.random(streams::kChooseLobe);
@@ -184,11 +184,6 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
     next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
     next.path.history = choose(is_mirrored, hits.path.after_mirror(), next.path.history);
-    const auto shows_background = next.is_wanted & is_mirrored & !bsdf.mirror_is_traced();
-    const auto counts_background = shows_background & sees_lights(hits.path.history);
-    radiance = choose(counts_background,
-                      radiance + reflected_throughput * sky(shading.lights, reflected), radiance);
-    next.is_wanted = next.is_wanted & !shows_background;
   }
   if ((hits.kind & kTransmits) != 0) {
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();

@@ -179,13 +179,6 @@ RAYGATE_INLINE T power_heuristic(const T& a, const T& b) {
   return 1.0f / (1.0f + over * over);
 }
 
-/// Returns the radiance of the environment or background in the direction of a unit vector.
-template <class T>
-RAYGATE_INLINE Triple<T> sky(const Lights& lights, const Triple<T>& direction) {
-  const Environment* const environment = lights.environment();
-  return environment != nullptr ? environment->radiance(direction) : spread<T>(lights.background());
-}
-
 /// Returns the fraction of a spot light's intensity in the direction of the hits.
 template <class T>
 RAYGATE_INLINE T spot_falloff_at(const Hits<T>& hits, const Lights& lights,

@@ -156,11 +156,8 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     // Lights are sampled for reflections of these facets.
     next.path.pdf = spread<T>(1.0f);
   }
-  next.is_wanted = bsdf.mirror_is_traced();
-  if (!goes_on) next.is_wanted = next.is_wanted & !next.is_wanted;
-  if (any(next.is_wanted)) {
-    next.is_wanted = next.is_wanted & worthwhile(shading, hits, next.path.throughput);
-  }
+  next.is_wanted = T{} > 0.0f;
+  if (goes_on) next.is_wanted = worthwhile(shading, hits, next.path.throughput);
   if (any(next.is_wanted)) {
     next.reflect_off(hits, mirror_facet);
     next.path.stream = hash(hits.path.stream, kMirror);
@@ -200,7 +197,7 @@ RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
   };
   if ((hits.kind & kMirrors) != 0) {
     next.reflect_off(hits, normal);
-    send(0, bsdf.mirror(), bsdf.mirror_is_traced());
+    send(0, bsdf.mirror(), T{} == 0.0f);
   }
   if ((hits.kind & kTransmits) != 0) {
     const MaskOf<T> is_way = next.pass_through(hits, normal);
@@ -229,13 +226,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     }
     const Triple<T> shown =
         emission + bsdf.unlit() + (bsdf.diffuse() + glossy) * spread<T>(shading.ambient);
-    Triple<T> background = zero<T>();
-    if (any(!bsdf.mirror_is_traced())) {
-      const Triple<T> way = reflect(hits.surface.view, hits.surface.normal);
-      background = bsdf.mirror() * sky(shading.lights, way);
-    }
-    hits.set_radiance(hits.path.throughput *
-                      (shown + choose(bsdf.mirror_is_traced(), zero<T>(), background)));
+    hits.set_radiance(hits.path.throughput * shown);
     sample_all_lights(shading, hits);
     if (goes_on || (kind & kTransmits) != 0) spawn_specular_rays(shading, hits, goes_on);
   });
