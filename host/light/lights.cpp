@@ -33,30 +33,6 @@ std::vector<std::uint32_t> emitting_primitives(const Scene& scene, const Bvh& bv
   return primitives;
 }
 
-/// Sets the centre of a light whose triangles are coplanar and share a side.
-void find_middle(const Bvh& bvh, AreaLight& light) {
-  const glm::dvec3 normal = glm::normalize(triangle_normal(bvh.corners_of(light.primitives[0])));
-  glm::dvec3 sum(0.0);
-  double before = 0.0;
-  bool is_flat = true;
-  for (std::size_t i = 0; i < light.primitives.size(); ++i) {
-    const Corners& t = bvh.corners_of(light.primitives[i]);
-    const glm::dvec3 middle = (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0;
-    sum += (light.area_up_to[i] - before) * middle;
-    before = light.area_up_to[i];
-    const glm::dvec3 own = glm::normalize(triangle_normal(t));
-    is_flat = is_flat && std::abs(glm::dot(own, normal)) > 1.0 - 1e-9;
-  }
-  light.is_flat = is_flat;
-  // Slightly offset towards the first triangle: the exact centre of two triangles is usually on
-  // their common edge, where each ray would need exact arithmetic.
-  const Corners& first = bvh.corners_of(light.primitives[0]);
-  const glm::dvec3 inside =
-      (glm::dvec3(first[0]) + glm::dvec3(first[1]) + glm::dvec3(first[2])) / 3.0;
-  light.middle = glm::mix(sum / light.area(), inside, 0x1p-10);
-  light.middle_normal = normal;
-}
-
 /// Returns the ambient radiance: the reflected part F r / (1 - r) of the lights' flux from one
 /// side, over pi times the total area. r is the mean reflectance.
 glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lights) {
@@ -177,8 +153,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     if (record.is_spot) record.spot = SpotFalloff(*light.spot);
   }
   find_areas();
-  for (AreaLight& light : areas_) {
-    find_middle(bvh, light);
+  for (const AreaLight& light : areas_) {
     Light& record = lights_.emplace_back();
     record.kind = Kind::kArea;
     record.emission = finite_floats(light.radiance);

@@ -94,8 +94,6 @@ struct AreaLight {
   glm::vec3 low{0.0f}, high{0.0f};  ///< bounds
   glm::dvec3 radiance{0.0};         ///< mean
   bool is_textured = false;
-  bool is_flat = false;
-  glm::dvec3 middle{0.0}, middle_normal{0.0};  ///< only of a flat light: centre, and normal there
 
   [[nodiscard]] double area() const { return area_up_to.back(); }
 };
@@ -175,12 +173,6 @@ class Lights {
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
       const std::uint32_t (&numbers)[kLanesOf<T>], const SquarePoint<T>& u) const;
-  /// Returns the centre of a flat light as a sample; its primitive is one of the light's.
-  template <class T>
-  [[nodiscard]] RAYGATE_INLINE static LightPoint<T> middle(const AreaLight& light) {
-    return {spread<T>(glm::vec3(light.middle)), spread<T>(glm::vec3(light.middle_normal)),
-            spread<WordOf<T>>(light.primitives[0])};
-  }
 
   /// Returns the radiance of area lights at points on them, one per lane; of other lights, the
   /// emission.

@@ -36,8 +36,8 @@ using ShadeFunction = void(const ShadingScene& shading, HitBlock& block, HitKind
 /// 2 of the paper. At each hit: emission; direct light of every light, with a shadow ray to each
 /// point light and to one point of each area light; an ambient term for interreflection; and rays
 /// through mirrors and glass, up to the maximum depth or until their throughput is below the
-/// threshold. With one sample per pixel flat area lights are sampled at their centre: no noise,
-/// hard shadows.
+/// threshold. With one sample per pixel a light that is one triangle or parallelogram is sampled at
+/// its centre: no noise, hard shadows.
 ShadeFunction shade_whitted;
 
 /// Path tracing (Kajiya, "The rendering equation", 1986). At each hit one light is sampled and one

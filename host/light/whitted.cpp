@@ -33,11 +33,12 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
     std::uint32_t indices[Hits<T>::kCount];
     std::ranges::fill(indices, i);
     const auto number = static_cast<std::uint32_t>(i - lights.points().size());
-    const AreaLight& area = lights.areas()[number];
-    const bool in_middle = shading.settings.samples == 1 && area.is_flat;
+    // Slightly beside the centre of a quadrilateral, whose triangles share an edge there: rays to
+    // an edge need exact arithmetic.
+    const bool in_middle = shading.settings.samples == 1 && own.patches == 1;
+    const SquarePoint<T> centre = {spread<T>(0.5f + 0x1p-11f), spread<T>(0.5f)};
     const LightPoint<T> point =
-        in_middle ? Lights::middle<T>(area)
-                  : lights.sample<T>(indices, hits.random(kFirstAreaLight + number));
+        lights.sample<T>(indices, in_middle ? centre : hits.random(kFirstAreaLight + number));
     if (own.is_textured && !in_middle) {
       const Lights::Light* same[Hits<T>::kCount];
       std::ranges::fill(same, &own);
