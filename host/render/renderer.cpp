@@ -223,7 +223,7 @@ class RenderThreads {
                    film_, copy);
     std::unique_lock lock(mutex_);
     for (int i = 0; i < tiles_.count; ++i) {
-      set_region(copy, tiles_[i], region_bytes(film_, tiles_[i]));
+      copy_region(film_, tiles_[i], copy);
       if (context_.light_paths != nullptr) continue;
       lock.unlock();
       lock.lock();
