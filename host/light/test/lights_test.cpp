@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "host/base/vectors.h"
+#include "host/base/test/using_vectors.h"
 #include "host/light/environment.h"
 #include "host/light/light_tree.h"
 #include "host/light/test/light_scenes.h"
