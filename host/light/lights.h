@@ -34,12 +34,12 @@ struct CameraLights {
 /// Returns lights for a scene without any (no lights, no background, and no emission except
 /// textures that hardly light anything): a light to the upper left of the camera with soft shadows,
 /// or at the camera if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
-[[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera);
-
-/// Returns lights for a preview, whose camera the user did not choose: as above, with a second,
-/// weaker light from the right, and also for scenes lit only by a background or by faces whose
-/// emission lights nothing.
-[[nodiscard]] std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& camera);
+///
+/// `is_preview`: the user did not choose the camera. Then there is a second, weaker light from the
+/// right, and scenes lit only by a background or by faces whose emission lights nothing get lights,
+/// too.
+[[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
+                                                         bool is_preview = false);
 
 /// Returns a float, with the largest float instead of infinity.
 [[nodiscard]] inline float finite_float(double x) {

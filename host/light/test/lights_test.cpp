@@ -257,7 +257,7 @@ TEST(DefaultLights, StayInTheRangeOfTreesAndPredicates) {
   Scene scene;
   add(scene, rectangle({-8e37f, -8e37f, 0}, {1.6e38f, 0, 0}, {0, 1.6e38f, 0}),
       matte(glm::vec3(0.5f)));
-  const auto lights = preview_lights(scene, camera_from({0, 0, 3e38}));
+  const auto lights = default_lights(scene, camera_from({0, 0, 3e38}), true);
   ASSERT_FALSE(lights->points.empty());
   for (const PointLight& light : lights->points) {
     EXPECT_LE(largest(light.position), kMostCoordinate);
@@ -272,8 +272,7 @@ TEST(DefaultLights, LeaveWhiteBelowOne) {
     const Camera camera = camera_from({side, 1.5, 4});
     for (const bool is_first_look : {false, true}) {
       RenderSettings options = test::light(IntegratorKind::kWhitted, 32, 32, 1);
-      const auto lights =
-          is_first_look ? preview_lights(scene, camera) : default_lights(scene, camera);
+      const auto lights = default_lights(scene, camera, is_first_look);
       float most = 0.0f;
       for (const glm::vec4& color : test::film_of(scene, camera, options, lights).color) {
         most = std::max({most, color.r, color.g, color.b});
@@ -293,7 +292,7 @@ TEST(DefaultLights, LeaveWhiteBelowOne) {
 TEST(PreviewLights, AreTwoLightsAndTheBackground) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   scene.background = kBlue;
-  const auto lights = preview_lights(scene, camera_from({0, 0, -5}));
+  const auto lights = default_lights(scene, camera_from({0, 0, -5}), true);
   ASSERT_TRUE(lights && lights->points.size() == 2);
   EXPECT_EQ(lights->background, kBlue);
   // Seen from behind, left is +x; the lights are on the camera's side.
@@ -307,7 +306,7 @@ TEST(PreviewLights, AreTwoLightsAndTheBackground) {
 TEST(DefaultLights, CastSoftShadows) {
   const Scene wall = square(matte(glm::vec3(0.5f)));
   EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
-  EXPECT_GT(preview_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
+  EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}), true)->radius, 0.0);
   const auto floor_at = [](double x, IntegratorKind integrator, bool has_roof) {
     Scene scene;
     add(scene, rectangle({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}), matte(glm::vec3(0.5f)));
@@ -336,7 +335,7 @@ TEST(DefaultLights, CastSoftShadows) {
 TEST(DefaultLights, AreThoseOfScenesThatNothingLights) {
   const auto expect = [](const Scene& scene, bool by_default, bool in_preview, const char* what) {
     EXPECT_EQ(default_lights(scene, camera_from({0, 0, 5})).has_value(), by_default) << what;
-    const auto lights = preview_lights(scene, camera_from({0, 0, 5}));
+    const auto lights = default_lights(scene, camera_from({0, 0, 5}), true);
     EXPECT_EQ(lights.has_value(), in_preview) << what;
     EXPECT_TRUE(!lights || lights->points.size() == 2) << what;
   };
@@ -361,7 +360,7 @@ TEST(DefaultLights, AreThoseOfScenesThatNothingLights) {
 TEST(PreviewLights, StandAtACameraWithinTheScene) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   add(scene, rectangle({-1, -1, 4}, {2, 0, 0}, {0, 2, 0}), matte(glm::vec3(0.5f)));
-  const auto lights = preview_lights(scene, camera_from({0, 0, 2}));
+  const auto lights = default_lights(scene, camera_from({0, 0, 2}), true);
   ASSERT_TRUE(lights && lights->points.size() == 1);
   EXPECT_EQ(lights->points[0].position, glm::vec3(0, 0, 2));
 }
