@@ -76,7 +76,7 @@ class NeighborClearanceSearch {
     if (primitive - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (primitive - leaf.first));
     if (rest == 0 || !has_hope()) return;
     double apart[kQuad];
-    store(apart, clearances<kCode>(corners, leaf.count));
+    store(apart, clearances<kCode>(corners, leaf.count, rest));
     for (; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       if (apart[i] >= length_) continue;
@@ -134,12 +134,13 @@ class NeighborClearanceSearch {
     return choose(size > 0.0, Vectors3{v.x / size, v.y / size, v.z / size}, zero<DoubleQuad>());
   }
 
-  /// Returns c for each triangle of a leaf alone, or any value of at least length_.
+  /// Returns c for each of the triangles in the mask alone, or any value of at least length_.
   template <Vectors kCode>
-  [[nodiscard]] RAYGATE_INLINE DoubleQuad clearances(const float* corners,
-                                                     std::uint32_t count) const {
+  [[nodiscard]] RAYGATE_INLINE DoubleQuad clearances(const float* corners, std::uint32_t count,
+                                                     LaneMask mask) const {
     DoubleQuad coordinates[3][3];  // relative to from_
-    IntQuad near = IntQuad{} - 1;
+    constexpr IntQuad kBit = {1, 2, 4, 8};
+    IntQuad near = ((IntQuad{} + static_cast<std::int32_t>(mask)) & kBit) != 0;
     for (std::uint32_t k = 0; k < 3; ++k) {
       FloatQuad corner[3];
       for (std::uint32_t v = 0; v < 3; ++v) {
