@@ -151,10 +151,6 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     record.kind = Kind::kArea;
     record.emission = finite_floats(light.radiance);
     record.is_textured = light.is_textured;
-    if (!scene.environment && !own_.studio) {
-      const double ratio = mean(glm::dvec3(own_.background)) / mean(light.radiance);
-      record.sky = static_cast<float>(std::min(ratio, 0.5));
-    }
     record.area = finite_float(light.area() / unit / unit);
     add_patches(light, record);
   }

@@ -146,8 +146,7 @@ class Lights {
     SpotFalloff spot;
     float area = 0.0f;  ///< in square units
     bool is_textured =
-        false;         ///< `emission` is the mean; radiance_at() returns the value at a point
-    float sky = 0.0f;  ///< area light: the background's radiance over its own, at most 1/2
+        false;  ///< `emission` is the mean; radiance_at() returns the value at a point
     std::uint32_t first_patch = 0, patches = 0;
   };
   [[nodiscard]] const Light& light(std::size_t index) const { return lights_[index]; }

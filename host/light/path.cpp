@@ -7,12 +7,6 @@
 namespace raygate {
 namespace {
 
-/// Returns the least MIS weight of a scattered ray that hits the light. Such rays also see the sky
-/// around the light; with this weight both are equally bright to them, which avoids noise.
-float min_mis_weight(const ShadingScene& shading, const Lights::Source& source) {
-  return shading.lights.light(source.light).sky;
-}
-
 /// Returns the MIS weights, relative to light paths, of emission met after mirrors and glass.
 template <class T>
 RAYGATE_INLINE T caustic_weights(const ShadingScene& shading, const Hits<T>& hits) {
@@ -33,24 +27,22 @@ RAYGATE_INLINE T caustic_weights(const ShadingScene& shading, const Hits<T>& hit
 template <class T>
 RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hits<T>& hits) {
   const Lights& lights = shading.lights;
-  float area_pdfs[Hits<T>::kCount] = {}, min_weights[Hits<T>::kCount] = {};
+  float area_pdfs[Hits<T>::kCount] = {};
   for (int k = 0; k < Hits<T>::kCount; ++k) {
     const std::uint32_t source = lights.source_of(hits.block.places[hits.place[k]].primitive);
     const PathState& state = hits.block.state(hits.place[k]);
     if (source == kNoIndex || !(state.pdf > 0.0f)) continue;
     area_pdfs[k] =
         lights.pmf<T>(source, state.scattered_at, state.normal) * lights.source(source).per_area;
-    min_weights[k] = min_mis_weight(shading, lights.source(source));
   }
-  const T area_pdf = load<T>(area_pdfs), min_weight = load<T>(min_weights);
+  const T area_pdf = load<T>(area_pdfs);
   const Triple<T> way =
       (hits.surface.point - hits.path.scattered_at) * spread<T>(lights.per_unit());
   const T squared = dot(way, way);
   const T cosine = absolute(dot(hits.surface.flat_normal, way)) / root(squared);
   const T light_pdf = choose(cosine > 0.0f, area_pdf * squared / cosine, T{});
-  const T mis_weight =
-      choose((area_pdf > 0.0f) & (hits.path.pdf > 0.0f),
-             maximum(power_heuristic(hits.path.pdf, light_pdf), min_weight), spread<T>(1.0f));
+  const T mis_weight = choose((area_pdf > 0.0f) & (hits.path.pdf > 0.0f),
+                              power_heuristic(hits.path.pdf, light_pdf), spread<T>(1.0f));
   return hits.path.throughput *
          (hits.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
 }
@@ -177,9 +169,8 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
     const T light_pdf =
         choose(light.is_area, light.pdf * light.distance_squared / light.light_cosine, light.pdf);
     const T bsdf_pdf = hits.bsdf.pdf(light.direction) * lobes.scatter_probability();
-    const T least = chosen.get(&Lights::Light::sky);
-    mis_weight = choose((bsdf_pdf > kMinPdf) & !is_delta,
-                        minimum(power_heuristic(light_pdf, bsdf_pdf), T(1.0f - least)), mis_weight);
+    mis_weight =
+        choose((bsdf_pdf > kMinPdf) & !is_delta, power_heuristic(light_pdf, bsdf_pdf), mis_weight);
   }
   const Triple<T> scattered = hits.bsdf.eval(light.direction, is_delta);
   add_light_sample(hits, 0, light, scattered_light(hits, light, scattered, mis_weight));

@@ -188,7 +188,6 @@ TEST(LightTree, PrefersWhatIsNearAndFacesTheSurface) {
   }
 }
 
-/// Of all triangles, in their order, but for the last `others`.
 constexpr glm::vec3 kBlue(0.1f, 0.2f, 0.4f);
 
 Scene square(const Material& material) {
