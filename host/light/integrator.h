@@ -79,7 +79,6 @@ class Integrator {
   bool has_masks_;
   const MaterialParameters hole_ = MaterialParameters::hole();
   HitBlock block_;
-  std::uint8_t scattered_count_;           // rays per hit, without caustic rays
   std::vector<SpawnQuery> spawn_queries_;  // of the block's hits, in order
   std::vector<SpawnOrigin> origins_;
   std::vector<HitKind> kinds_;          // by position in the block; kHitKinds: no hit

@@ -150,8 +150,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                                      const LobeProbabilities<T>& lobes) {
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
-  const MaskOf<T> answers_lights = hits.bsdf.answers_lights();
-  const MaskOf<T> answers = answers_lights & !hits.path.are_caustic_rays();
+  const MaskOf<T> answers = hits.bsdf.answers_lights();
   if (!lights.any_power() || !any(answers)) return;
   const ChosenLights<T> chosen(lights, hits);
   IncidentLight<T> light;
@@ -181,7 +180,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
 template <class T>
 RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits) {
   constexpr int kCount = Hits<T>::kCount;
-  const auto scatters = hits.bsdf.scatters() & (hits.path.history != 1u);
+  const auto scatters = hits.bsdf.scatters() & !hits.path.is_first();
   if (!any(scatters) || hits.bsdf.has_rough_glass()) return;
   const SquarePoint<T> u = hits.random(streams::kLens);
   const auto x = unpack(u.x), y = unpack(u.y);
@@ -213,13 +212,10 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
   shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     Triple<T> radiance = zero<T>();
-    if ((kind & kEmits) != 0) {
-      radiance = choose(sees_lights(hits.path.history), emitted_radiance(shading, hits), radiance);
-    }
+    if ((kind & kEmits) != 0) radiance = emitted_radiance(shading, hits);
     if (block.batch->depth <= shading.max_depth) {
-      const LobeProbabilities<T> lobes(hits.bsdf, hits.path.are_caustic_rays());
+      const LobeProbabilities<T> lobes(hits.bsdf);
       sample_one_light(shading, hits, lobes);
-      sample_seen_caustics(shading, hits);
       sample_scattered_ray<false>(shading, hits, lobes);
     }
     hits.set_radiance(radiance);
@@ -234,7 +230,7 @@ void shade_light_path(const ShadingScene& shading, HitBlock& block, HitKind kind
     hits.set_radiance(zero<T>());
     if (block.batch->depth > shading.max_depth) return;
     sample_scattered_ray<true>(shading, hits,
-                               LobeProbabilities<T>(hits.bsdf, hits.path.history == 1u));
+                               LobeProbabilities<T>(hits.bsdf, hits.path.is_first()));
   });
 }
 

@@ -186,14 +186,14 @@ RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
   const Bsdf<T>& bsdf = hits.bsdf;
   const Triple<T>& normal = hits.surface.normal;
   ScatteredRays<T> next(hits);
-  const WordOf<T> first = hits.path.sample - hits.path.history;
+  const WordOf<T> first = hits.path.sample - hits.path.specular_history;
   const auto send = [&](std::size_t number, const Triple<T>& share,
                         const MaskOf<T>& is_way) RAYGATE_BODY {
-    next.path.sample = first + next.path.history;
+    next.path.sample = first + next.path.specular_history;
     next.path.throughput = hits.path.throughput * share;
-    const auto is_asked = PathLanes<T>::has(hits.path.supersampled, next.path.history);
-    next.is_wanted =
-        is_way & is_asked & (next.path.history > 0u) & (largest(next.path.throughput) > 0.0f);
+    const auto is_asked = PathLanes<T>::has(hits.path.supersampled, next.path.specular_history);
+    next.is_wanted = is_way & is_asked & (next.path.specular_history > 0u) &
+                     (largest(next.path.throughput) > 0.0f);
     next.send(hits, number);
   };
   if ((hits.kind & kMirrors) != 0) {
