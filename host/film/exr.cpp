@@ -26,7 +26,6 @@
 #include <new>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -331,16 +330,6 @@ FilmFile read_film(const std::filesystem::path& path) {
 
 namespace {
 
-/// An attribute type whose values all have one length in bytes. The library does not check it.
-struct Fixed {
-  std::string_view type;
-  std::int32_t length;
-};
-constexpr Fixed kFixed[] = {
-    {"box2i", 16}, {"box2f", 16},      {"v2i", 8},    {"v2f", 8},       {"v3i", 12},
-    {"v3f", 12},   {"m33f", 36},       {"m44f", 64},  {"float", 4},     {"double", 8},
-    {"int", 4},    {"compression", 1}, {"envmap", 1}, {"lineOrder", 1}, {"chromaticities", 32}};
-
 void require_readable(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& why) {
     throw InputError(file.string() + ": cannot read: " + why);
@@ -355,42 +344,23 @@ void require_readable(const std::filesystem::path& file) {
   if (!is_exr(file)) throw InputError(file.string() + ": not an OpenEXR file");
 }
 
-/// Throws InputError if an attribute of the header is longer than the file or its length does not
-/// match its type, as the library allocates memory before reading. ("OpenEXR File Layout": an
-/// attribute has a name, a type, a length and a value.)
-void require_lengths(const std::filesystem::path& path) {
-  constexpr std::streamoff kBegin = 8;  // after magic number and version
-  const auto most = static_cast<std::int64_t>(std::filesystem::file_size(path));
-  std::ifstream in(path, std::ios::binary);
-  in.seekg(kBegin);
-  for (std::string name, type; std::getline(in, name, '\0') && !name.empty();) {
-    std::getline(in, type, '\0');
-    char bytes[sizeof(std::int32_t)] = {};
-    in.read(bytes, sizeof bytes);
-    const auto length = number_at<std::int32_t>(bytes);
-    if (!in || length < 0 || length > most) {
-      throw InputError(path.string() + ": damaged: a header that is longer than the file");
-    }
-    const auto* const fixed = std::ranges::find(kFixed, type, &Fixed::type);
-    if (fixed != std::end(kFixed) && length != fixed->length) {
-      throw InputError(path.string() + ": damaged: a " + type + " of another length in its header");
-    }
-    in.seekg(length, std::ios::cur);
-  }
-}
-
-/// Throws InputError for header errors that only the library's C functions detect, such as a
-/// channel list with a wrong length.
-void require_types(const std::filesystem::path& path) {
+/// Throws InputError for any error in the header, such as an attribute that is longer than the file
+/// or of a wrong length for its type: only the library's C functions check before they allocate.
+void require_header(const std::filesystem::path& path) {
+  thread_local exr_result_t problem;  // the C functions recover from some
+  problem = EXR_ERR_SUCCESS;
   exr_context_initializer_t options = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  options.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};
+  options.error_handler_fn = [](exr_const_context_t, exr_result_t code, const char*) {
+    problem = code;
+  };
   exr_context_t file = nullptr;
   const exr_result_t result = exr_start_read(&file, path.c_str(), &options);
-  if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (result != EXR_ERR_SUCCESS) {
-    throw InputError(path.string() + ": damaged: " + exr_get_default_error_message(result));
-  }
   exr_finish(&file);
+  if (result != EXR_ERR_SUCCESS) problem = result;
+  if (problem == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (problem != EXR_ERR_SUCCESS) {
+    throw InputError(path.string() + ": damaged: " + exr_get_default_error_message(problem));
+  }
 }
 
 }  // namespace
@@ -403,8 +373,7 @@ bool is_exr(const std::filesystem::path& file) {
 
 void require_exr(const std::filesystem::path& file) {
   require_readable(file);
-  require_lengths(file);
-  require_types(file);
+  require_header(file);
 }
 
 }  // namespace raygate
