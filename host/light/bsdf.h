@@ -76,7 +76,7 @@ class Bsdf {
     return largest(diffuse_) + glossy_sum() > 0.0f;
   }
   /// Returns whether lights are sampled: scatters(), or a mirror with a highlight of point lights.
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> answers_lights() const {
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> samples_lights() const {
     const MaskOf<T> scatters = this->scatters();
     if (!has_highlight()) return scatters;
     const auto has_one = largest(highlight()) > 0.0f;

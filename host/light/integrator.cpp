@@ -101,7 +101,7 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   spawner_.find(spawn_queries_, origins_);
   const SpawnOrigin* origins = origins_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    if (kinds_[i] != kHitKinds) hand_on(i, origins, output);
+    if (kinds_[i] != kHitKinds) output_hit(i, origins, output);
   }
 }
 
@@ -267,7 +267,7 @@ bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const 
 
 /// Outputs the results of the hit at position i. `origins` are those of its spawn queries and of
 /// the hits after it. Rays to a side without an origin are dropped.
-void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output) {
+void Integrator::output_hit(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output) {
   const std::uint32_t sample = block_.state(i).sample;
   const SurfaceHit& place = block_.places[i];
   output.radiance[sample] += block_.radiance[i];

@@ -68,7 +68,7 @@ class Integrator {
   void add_infinite_light(ShadingOutput& output);
   void list_spawn_queries(std::size_t i);
   [[nodiscard]] bool leaves(const SurfaceHit& place, ScatteredRay& scattered) const;
-  void hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output);
+  void output_hit(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output);
 
   IntegratorKind kind_;
   ShadingScene shading_;

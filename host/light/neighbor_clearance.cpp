@@ -62,7 +62,7 @@ class NeighborClearanceSearch {
   }
 
   /// Returns whether a positive c is still possible.
-  [[nodiscard]] bool has_hope() const { return length_ > 0.0; }
+  [[nodiscard]] bool is_possible() const { return length_ > 0.0; }
   /// Return the corners of the box outside which triangles are irrelevant.
   [[nodiscard]] const glm::vec3& low() const { return low_; }
   [[nodiscard]] const glm::vec3& high() const { return high_; }
@@ -74,7 +74,7 @@ class NeighborClearanceSearch {
     const float* const corners = BvhView(bvh).corners_of(leaf, room);
     LaneMask rest = (LaneMask{1} << leaf.count) - 1;
     if (primitive - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (primitive - leaf.first));
-    if (rest == 0 || !has_hope()) return;
+    if (rest == 0 || !is_possible()) return;
     double apart[kQuad];
     store(apart, clearances<kCode>(corners, leaf.count, rest));
     for (; rest != 0; rest &= rest - 1) {
@@ -94,7 +94,7 @@ class NeighborClearanceSearch {
   /// Returns the clearance with respect to all triangles so far.
   [[nodiscard]] NeighborClearance found() const {
     NeighborClearance result;
-    if (!has_hope()) return result;
+    if (!is_possible()) return result;
     // Accounts for rounding of unit vectors.
     const float length = float_below(length_ * (1.0 - 0x1p-20));
     result.length = overlaps_.size() != 0 ? -length : length;
@@ -250,39 +250,39 @@ NeighborClearances::NeighborClearances(const Bvh& bvh)
       slack_(0x1p-47 * largest_coordinate(bvh)),
       known_(std::make_unique<Known[]>(bvh.primitive_count())) {}
 
-NeighborClearances::Found NeighborClearances::look(std::uint32_t primitive) const {
+NeighborClearances::Found NeighborClearances::compute(std::uint32_t primitive) const {
   const Corners corners = bvh_.corners_of(primitive);
   NeighborClearanceSearch search(corners, slack_);
-  if (search.has_hope()) {
+  if (search.is_possible()) {
     in_vectors([&](auto code) RAYGATE_BODY {
       // Leaves are processed some time after they are found, when they are in the cache.
       constexpr std::size_t kMostWaiting = 16;
       Bvh::Child waiting[kMostWaiting];
       std::size_t count = 0;
-      const auto look = [&]() RAYGATE_BODY {
+      const auto process = [&]() RAYGATE_BODY {
         for (std::size_t i = 0; i < count; ++i)
           search.consider<code()>(bvh_, waiting[i], primitive);
         count = 0;
       };
       const auto found = [&](const Bvh::Child& leaf) RAYGATE_BODY {
-        if (count == kMostWaiting) look();
+        if (count == kMostWaiting) process();
         waiting[count++] = leaf;
         return false;
       };
       (void)any_leaf_near<code()>(bvh_, search.low(), search.high(), found);
-      look();
+      process();
     });
   }
   return {search.found(), std::move(search.overlaps())};
 }
 
 const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const {
-  Found looked = look(primitive);
+  Found computed = compute(primitive);
   Known& known = known_[primitive];
   const std::lock_guard lock(mutex_);
-  const NeighborClearance& found = clearances_.emplace_back(looked.clearance);
+  const NeighborClearance& found = clearances_.emplace_back(computed.clearance);
   if (found.length < 0.0f) {
-    known.overlaps.store(&overlaps_.emplace_back(std::move(looked.overlaps)),
+    known.overlaps.store(&overlaps_.emplace_back(std::move(computed.overlaps)),
                          std::memory_order_relaxed);
   }
   known.clearance.store(&found, std::memory_order_release);

@@ -150,8 +150,8 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                                      const LobeProbabilities<T>& lobes) {
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
-  const MaskOf<T> answers = hits.bsdf.answers_lights();
-  if (!lights.any_power() || !any(answers)) return;
+  const MaskOf<T> is_lit = hits.bsdf.samples_lights();
+  if (!lights.any_power() || !any(is_lit)) return;
   const ChosenLights<T> chosen(lights, hits);
   IncidentLight<T> light;
   if (any(chosen.are(Kind::kPoint))) light.take(chosen.points(lights, hits));
@@ -161,7 +161,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
     light.take(chosen.environment(*lights.environment(), hits));
   }
   if (any(chosen.are(Kind::kArea))) light.take(chosen.areas(lights, hits));
-  light.is_asked = light.is_asked & answers;
+  light.is_asked = light.is_asked & is_lit;
 
   T mis_weight = spread<T>(1.0f);
   if (any(light.is_asked & !is_delta)) {  // scattered rays may find it, too

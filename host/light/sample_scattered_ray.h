@@ -54,12 +54,12 @@ RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
 /// LightPaths). Light paths carry flux; their throughput has the cosines of the opposite ends of
 /// edges and the adjoint BSDF ("Robust Monte Carlo methods", 5.3).
 template <bool kFromLight, class T>
-struct WaysBack {
+struct ReversePdf {
   T arrived;  ///< PathState::light_over_camera_pdf at the hit
   T in;       ///< cosine of the incoming edge
   MaskOf<T> is_first;
 
-  RAYGATE_INLINE WaysBack(const ShadingScene& shading, const Hits<T>& hits)
+  RAYGATE_INLINE ReversePdf(const ShadingScene& shading, const Hits<T>& hits)
       : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.is_first()) {
     T ratio = hits.path.light_over_camera_pdf;
     if (!kFromLight) {
@@ -131,9 +131,9 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   next.has_flat = is_mirrored | next.is_transmitted;
   next.path.stream = hash(hits.path.stream, streams::kNextRay);
 
-  const bool has_ways_back = kFromLight || shading.light_paths != nullptr;
-  std::optional<WaysBack<kFromLight, T>> ways_back;
-  if (has_ways_back) ways_back.emplace(shading, hits);
+  const bool has_reverse = kFromLight || shading.light_paths != nullptr;
+  std::optional<ReversePdf<kFromLight, T>> reverse;
+  if (has_reverse) reverse.emplace(shading, hits);
   const bool has_rough_glass = bsdf.has_rough_glass();
   const bool has_choice = has_rough_glass || (hits.kind & kCoated) != 0;
   next.path.scattered_at = surface.point;
@@ -148,20 +148,20 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.flat = next.direction;
     next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
     const T cosine = hits.cosine(next.direction);
-    const auto brings = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
-    next.path.throughput =
-        choose(brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
-               zero<T>());
+    const auto contributes = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
+    next.path.throughput = choose(
+        contributes, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
+        zero<T>());
     // Light paths do not pass: PathState::light_over_camera_pdf is 0 from here on.
     if (has_rough_glass) {
       if (kFromLight) return;
       next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
-      next.is_wanted = next.is_wanted & brings;
+      next.is_wanted = next.is_wanted & contributes;
       next.path.light_over_camera_pdf = T{};
       next.send(hits, 0);
       return;
     }
-    if (has_ways_back) ways_back->scatter(hits, throughput, next);
+    if (has_reverse) reverse->scatter(hits, throughput, next);
   }
   if ((hits.kind & kMirrors) != 0) {
     const Triple<T> reflected = reflect(surface.view, surface.normal);
@@ -196,11 +196,11 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
         choose(is_straight, hits.path.specular_history,
                choose(is_bent, hits.path.after_glass(), next.path.specular_history));
   }
-  if (has_ways_back) {
+  if (has_reverse) {
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();
     const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
     const T eta = choose(is_bent, bsdf.eta(), spread<T>(1.0f));
-    ways_back->mirror(hits, is_mirrored | is_bent, eta, next);
+    reverse->mirror(hits, is_mirrored | is_bent, eta, next);
     next.path.light_over_camera_pdf =
         choose(is_straight, hits.path.light_over_camera_pdf, next.path.light_over_camera_pdf);
   }
