@@ -255,22 +255,11 @@ NeighborClearances::Found NeighborClearances::compute(std::uint32_t primitive) c
   NeighborClearanceSearch search(corners, slack_);
   if (search.is_possible()) {
     in_vectors([&](auto code) RAYGATE_BODY {
-      // Leaves are processed some time after they are found, when they are in the cache.
-      constexpr std::size_t kMostWaiting = 16;
-      Bvh::Child waiting[kMostWaiting];
-      std::size_t count = 0;
-      const auto process = [&]() RAYGATE_BODY {
-        for (std::size_t i = 0; i < count; ++i)
-          search.consider<code()>(bvh_, waiting[i], primitive);
-        count = 0;
-      };
-      const auto found = [&](const Bvh::Child& leaf) RAYGATE_BODY {
-        if (count == kMostWaiting) process();
-        waiting[count++] = leaf;
+      const auto visit = [&](const Bvh::Child& leaf) RAYGATE_BODY {
+        search.consider<code()>(bvh_, leaf, primitive);
         return false;
       };
-      (void)any_leaf_near<code()>(bvh_, search.low(), search.high(), found);
-      process();
+      (void)any_leaf_near<code()>(bvh_, search.low(), search.high(), visit);
     });
   }
   return {search.found(), std::move(search.overlaps())};
