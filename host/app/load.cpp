@@ -112,7 +112,7 @@ Framing frame_picture(const CameraRequest& request, const Scene& scene, double a
   if (request.up && !is_view) setting.up = request.up;
   if (request.fov) setting.fov = request.fov;
   const Camera camera = Camera::look_at(setting, aspect);
-  const auto lights = is_view ? preview_lights(scene, camera) : default_lights(scene, camera);
+  const auto lights = default_lights(scene, camera, is_view);
   const bool needs_ground = is_view && lights && view.elevation > 0.0 && !is_interior(scene);
   Framing framing{camera, lights, request.ground.value_or(needs_ground), view.up, "", {}};
 

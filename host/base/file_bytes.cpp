@@ -36,31 +36,28 @@ std::string read_file(const std::filesystem::path& file) {
   return text;
 }
 
-std::size_t bytes_of(NumberType type) {
-  constexpr std::size_t kBytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kBytes[static_cast<std::size_t>(type)];
+namespace {
+
+template <class Number>
+double read(const char* bytes, bool highest_first) {
+  return number_at<Number>(bytes, highest_first);
 }
 
+struct Reader {
+  std::size_t bytes;
+  double (*read)(const char* bytes, bool highest_first);
+};
+constexpr Reader kReaders[] = {{1, read<std::int8_t>},  {1, read<std::uint8_t>},
+                               {2, read<std::int16_t>}, {2, read<std::uint16_t>},
+                               {4, read<std::int32_t>}, {4, read<std::uint32_t>},
+                               {4, read<float>},        {8, read<double>}};  // by NumberType
+
+}  // namespace
+
+std::size_t bytes_of(NumberType type) { return kReaders[static_cast<std::size_t>(type)].bytes; }
+
 double number_at(const char* bytes, NumberType type, bool highest_first) {
-  switch (type) {
-    case NumberType::kInt8:
-      return number_at<std::int8_t>(bytes);
-    case NumberType::kUint8:
-      return number_at<std::uint8_t>(bytes);
-    case NumberType::kInt16:
-      return number_at<std::int16_t>(bytes, highest_first);
-    case NumberType::kUint16:
-      return number_at<std::uint16_t>(bytes, highest_first);
-    case NumberType::kInt32:
-      return number_at<std::int32_t>(bytes, highest_first);
-    case NumberType::kUint32:
-      return number_at<std::uint32_t>(bytes, highest_first);
-    case NumberType::kFloat:
-      return number_at<float>(bytes, highest_first);
-    case NumberType::kDouble:
-      return number_at<double>(bytes, highest_first);
-  }
-  return 0.0;
+  return kReaders[static_cast<std::size_t>(type)].read(bytes, highest_first);
 }
 
 }  // namespace raygate

@@ -1,50 +1,53 @@
-// Runs work on several threads, including the caller's.
+// Work on several threads, and checkpoints at which it can be ended early.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
-
-#include "host/base/checkpoint.h"
 
 namespace raygate {
 
-/// Calls `work` on up to `threads` threads at once, including the caller's, and waits for all. Uses
-/// fewer if the system cannot start as many. Rethrows the first exception of any thread.
-template <class Work>
-void on_threads(int threads, const Work& work) {
-  std::mutex mutex;
-  std::exception_ptr error;
-  const auto guarded = [&] {
-    try {
-      work();
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!error) error = std::current_exception();
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    try {
-      for (int i = 1; i < threads; ++i) others.emplace_back(guarded);
-    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): these will do
-    }
-    guarded();
+/// During its lifetime, checkpoint() on its thread calls `check`, which may throw to end the work.
+class CheckpointScope {
+ public:
+  explicit CheckpointScope(std::function<void()> check)
+      : check_(std::move(check)), outer_(std::exchange(innermost(), this)) {}
+  CheckpointScope(const CheckpointScope&) = delete;
+  CheckpointScope& operator=(const CheckpointScope&) = delete;
+  ~CheckpointScope() { innermost() = outer_; }
+
+ private:
+  friend void checkpoint();
+
+  static CheckpointScope*& innermost() {
+    thread_local CheckpointScope* scope = nullptr;
+    return scope;
   }
-  if (error) std::rethrow_exception(error);
+
+  std::function<void()> check_;
+  CheckpointScope* outer_;
+};
+
+/// Calls this thread's innermost check, if any. Long work calls it several times per 100 ms.
+inline void checkpoint() {
+  if (const CheckpointScope* const scope = CheckpointScope::innermost()) scope->check_();
 }
 
-/// Calls work(i) once for each i below `count`, in any order. An exception ends the others early.
+/// Calls work(i) once for each i below `count`, in any order, on up to `threads` threads including
+/// the caller's, and waits for all. Uses fewer if the system cannot start as many. An exception
+/// ends the others early; rethrows the first one.
 template <class Work>
 void for_each_on_threads(int threads, std::size_t count, const Work& work) {
   std::atomic<std::size_t> next = 0;
-  const auto most = static_cast<int>(std::min<std::size_t>(count, 1 << 16));
-  on_threads(std::min(threads, most), [&] {
+  std::mutex mutex;
+  std::exception_ptr error;
+  const auto run = [&] {
     try {
       for (std::size_t i = next++; i < count; i = next++) {
         checkpoint();
@@ -52,9 +55,21 @@ void for_each_on_threads(int threads, std::size_t count, const Work& work) {
       }
     } catch (...) {
       next = count;
-      throw;
+      const std::lock_guard lock(mutex);
+      if (!error) error = std::current_exception();
     }
-  });
+  };
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (int i = 1; i < threads && static_cast<std::size_t>(i) < count; ++i) {
+        others.emplace_back(run);
+      }
+    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): these will do
+    }
+    run();
+  }
+  if (error) std::rethrow_exception(error);
 }
 
 }  // namespace raygate

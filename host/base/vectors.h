@@ -102,18 +102,6 @@ inline void use_vectors(Vectors vectors) { detail::vectors_in_use = static_cast<
   return vectors_in_use();
 }
 
-/// Selects an instruction set for the lifetime of the object.
-class UsingVectors {
- public:
-  explicit UsingVectors(Vectors vectors) : before_(vectors_in_use()) { use_vectors(vectors); }
-  UsingVectors(const UsingVectors&) = delete;
-  UsingVectors& operator=(const UsingVectors&) = delete;
-  ~UsingVectors() { use_vectors(before_); }
-
- private:
-  Vectors before_;
-};
-
 namespace detail {
 
 template <class Body>

@@ -21,31 +21,6 @@ namespace fs = std::filesystem;
   throw InputError(path.string() + ": cannot write: " + std::generic_category().message(error));
 }
 
-struct Target {
-  fs::path path;                      ///< symbolic links resolved
-  bool is_stream = false;             ///< a device, pipe or socket, or standard output
-  std::optional<mode_t> permissions;  ///< of an existing file
-};
-
-Target inspect(const fs::path& name) {
-  Target target;
-  struct stat status {};
-  const bool is_there = ::stat(name.c_str(), &status) == 0;
-  if (!is_there && errno != ENOENT) fail(name, errno);
-  target.is_stream = is_there && (!(S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) ||
-                                  is_standard_output(name));
-  if (!target.is_stream) {  // streams such as /dev/stdout may have no resolvable path
-    std::error_code error;
-    target.path = target_of(name, error);
-    if (error) fail(name, error.value());
-  }
-  if (!is_there) return target;
-  if (S_ISDIR(status.st_mode)) fail(name, EISDIR);
-  if (::access(name.c_str(), W_OK) != 0) fail(name, errno);
-  if (!target.is_stream) target.permissions = status.st_mode & 07777;
-  return target;
-}
-
 /// Opens the stream `name` and returns its descriptor.
 int open_stream(const fs::path& name) {
   if (is_standard_output(name)) return ::dup(STDOUT_FILENO);
@@ -97,14 +72,20 @@ int write_all(int fd, std::string_view bytes) {
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& path) : name_(path) {
-  Target target = inspect(path);
-  target_ = std::move(target.path);
-  permissions_ = target.permissions;
-  if (target.is_stream) {
-    descriptor_ = open_stream(name_);
-  } else {
-    std::tie(temporary_, descriptor_) = create_beside(target_, name_);
+  struct stat status {};
+  const bool exists = ::stat(name_.c_str(), &status) == 0;
+  if (!exists && errno != ENOENT) fail(name_, errno);
+  if (exists && S_ISDIR(status.st_mode)) fail(name_, EISDIR);
+  if (exists && ::access(name_.c_str(), W_OK) != 0) fail(name_, errno);
+  if (exists && (!S_ISREG(status.st_mode) || is_standard_output(name_))) {
+    descriptor_ = open_stream(name_);  // streams such as /dev/stdout may have no resolvable path
+    return;
   }
+  if (exists) permissions_ = status.st_mode & 07777;
+  std::error_code error;
+  target_ = target_of(name_, error);
+  if (error) fail(name_, error.value());
+  std::tie(temporary_, descriptor_) = create_beside(target_, name_);
 }
 
 AtomicFile::AtomicFile(const fs::path& path, std::string_view bytes) : AtomicFile(path) {
@@ -177,15 +158,9 @@ void require_distinct(std::span<const fs::path> outputs, std::span<const fs::pat
 }
 
 void require_writable(const fs::path& path) {
-  const Target target = inspect(path);
-  if (target.is_stream) {
-    // The pipe stays open until the program exits, as its reader would take closing for the end.
-    if (fs::is_fifo(path) && !is_standard_output(path)) open_stream(path);
-    return;
-  }
-  const auto [probe, fd] = create_beside(target.path, path);
-  ::close(fd);
-  ::unlink(probe.c_str());
+  AtomicFile probe(path);
+  // A pipe stays open until the program exits, as its reader would take closing for the end.
+  if (probe.is_stream() && fs::is_fifo(path)) probe.descriptor_ = -1;
 }
 
 }  // namespace raygate

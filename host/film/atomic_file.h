@@ -18,8 +18,7 @@ namespace raygate {
 ///
 /// Symbolic links are followed, also to missing targets; the permissions of an old file are kept.
 /// Other hard links of the old file keep its contents. Bytes for a device, a pipe or standard
-/// output
-/// (/dev/stdout) are written at once; a pipe without a reader is an error. All errors are
+/// output (/dev/stdout) are written at once; a pipe without a reader is an error. All errors are
 /// InputError, "path: cannot write: reason".
 class AtomicFile {
  public:
@@ -44,6 +43,8 @@ class AtomicFile {
   [[nodiscard]] bool is_stream() const { return temporary_.empty(); }
 
  private:
+  friend void require_writable(const std::filesystem::path& path);
+
   void fail_if(int error);
 
   std::filesystem::path name_;         ///< as the user wrote it, for messages

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "host/base/checkpoint.h"
 #include "host/base/elementary.h"
 #include "host/base/srgb.h"
+#include "host/base/threads.h"
 
 namespace raygate {
 namespace {

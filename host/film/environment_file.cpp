@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -12,12 +13,13 @@
 #include "host/base/elementary.h"
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
+#include "host/base/text.h"
 #include "host/film/exr.h"
 
 namespace raygate {
 namespace {
 
-using Rgbe = std::array<std::uint8_t, 4>;
+float usable(double x) { return x > 0.0 ? static_cast<float>(std::min(x, 1e30)) : 0.0f; }
 
 /// Reads a Radiance file sequentially.
 class Reader {
@@ -25,80 +27,59 @@ class Reader {
   Reader(std::string name, std::string_view bytes) : name_(std::move(name)), rest_(bytes) {}
 
   HdrImage read() {
-    read_header();
     HdrImage picture;
-    read_size(picture);
+    read_header(picture);
     if (std::int64_t{picture.width} * picture.height > kMaxPixels) {
       fail("more than " + std::to_string(kMaxPixels) + " pixels");
     }
-    // With the longest runs, a pixel takes 1/8 byte.
+    // With the longest runs, a pixel takes 1/16 byte.
     if (rest_.size() < static_cast<std::size_t>(picture.height)) fail("it ends too early");
     std::vector<Rgbe> row(static_cast<std::size_t>(picture.width));
     for (int y = 0; y < picture.height; ++y) {
       read_row(row);
       for (const Rgbe& pixel : row) {
         const double unit = pixel[3] == 0 ? 0.0 : std::ldexp(1.0 / exposure_, pixel[3] - 136);
-        picture.pixels.emplace_back(
-            glm::min(unit * glm::dvec3(pixel[0], pixel[1], pixel[2]), glm::dvec3(kMost)));
+        picture.pixels.emplace_back(usable(unit * pixel[0]), usable(unit * pixel[1]),
+                                    usable(unit * pixel[2]));
       }
     }
     return picture;
   }
 
  private:
-  static constexpr double kMost = 1e30;
+  using Rgbe = std::array<std::uint8_t, 4>;
 
   [[noreturn]] void fail(const std::string& what) const { throw InputError(name_ + ": " + what); }
 
-  std::string_view line() {
+  std::string line() {
     const std::size_t end = rest_.find('\n');
     if (end == std::string_view::npos || end > 4096) fail("damaged: its header has no end");
-    std::string_view found = rest_.substr(0, end);
+    std::string text(rest_.substr(0, end));
     rest_.remove_prefix(end + 1);
-    if (found.ends_with('\r')) found.remove_suffix(1);
-    return found;
+    if (text.ends_with('\r')) text.pop_back();
+    return text;
   }
 
-  static std::string quoted(std::string_view text) {
-    return std::string("'").append(text).append("'");
-  }
-
-  void read_header() {
-    if (!rest_.starts_with("#?"))
+  void read_header(HdrImage& picture) {
+    if (!rest_.starts_with("#?")) {
       fail("found a file of another kind, expected OpenEXR or Radiance HDR");
-    for (std::string_view text = line(); !text.empty(); text = line()) {
+    }
+    for (std::string text = line(); !text.empty(); text = line()) {
       if (text.starts_with("FORMAT=") && text != "FORMAT=32-bit_rle_rgbe") {
-        fail(quoted(text) + ", expected FORMAT=32-bit_rle_rgbe");
+        fail(in_quotes(text) + ", expected FORMAT=32-bit_rle_rgbe");
       }
       if (!text.starts_with("EXPOSURE=")) continue;
-      text.remove_prefix(text.find('=') + 1);
-      while (text.starts_with(' ')) text.remove_prefix(1);
+      const std::size_t number = std::min(text.find_first_not_of(' ', 9), text.size());
       double factor = 0.0;
-      std::from_chars(text.data(), text.data() + text.size(), factor);
-      if (!(factor > 1e-30 && factor < 1e30)) fail("EXPOSURE: expected a positive number");
+      std::from_chars(&text[number], &text[text.size()], factor);
       exposure_ *= factor;
+      if (!(exposure_ > 1e-30 && exposure_ < 1e30)) fail("EXPOSURE: expected a positive number");
     }
-    if (!(exposure_ > 1e-30 && exposure_ < 1e30)) fail("EXPOSURE: expected a positive number");
-  }
-
-  void read_size(HdrImage& picture) {
-    const std::string_view text = line();
-    const auto number = [&](std::string_view before, std::size_t& at) {
-      if (at > text.size() || text.substr(at, before.size()) != before) {
-        at = std::string_view::npos;
-        return 0;
-      }
-      int value = 0;
-      const char* const end = text.data() + text.size();
-      const auto found = std::from_chars(text.data() + at + before.size(), end, value);
-      at = static_cast<std::size_t>(found.ptr - text.data());
-      return value;
-    };
-    std::size_t at = 0;
-    picture.height = number("-Y ", at);
-    picture.width = number(" +X ", at);
-    if (at != text.size() || picture.width < 1 || picture.height < 1) {
-      fail(quoted(text.substr(0, 40)) + ", expected -Y HEIGHT +X WIDTH");
+    const std::string size = line();
+    int end = 0;
+    std::sscanf(size.c_str(), "-Y %9d +X %9d%n", &picture.height, &picture.width, &end);
+    if (end != static_cast<int>(size.size()) || picture.width < 1 || picture.height < 1) {
+      fail(in_quotes(size) + ", expected -Y HEIGHT +X WIDTH");
     }
   }
 
@@ -110,12 +91,15 @@ class Reader {
   }
 
   /// Reads a row: run-length encoded by component if its first bytes say so, otherwise pixel by
-  /// pixel, where (1, 1, 1, n) repeats the previous pixel.
+  /// pixel.
   void read_row(std::vector<Rgbe>& row) {
     const std::size_t width = row.size();
-    const bool is_new = width >= 8 && width < 0x8000 && rest_.size() >= 4 && rest_[0] == 2 &&
-                        rest_[1] == 2 && (static_cast<std::uint8_t>(rest_[2]) & 0x80) == 0;
-    if (!is_new) return read_old_row(row);
+    if (width < 8 || width >= 0x8000 || !rest_.starts_with("\2\2")) {
+      for (Rgbe& pixel : row) {
+        for (std::uint8_t& component : pixel) component = byte();
+      }
+      return;
+    }
     rest_.remove_prefix(2);
     const std::size_t said = std::size_t{byte()} << 8 | byte();
     if (said != width) fail("damaged: a row of " + std::to_string(said) + " pixels");
@@ -134,29 +118,10 @@ class Reader {
     }
   }
 
-  void read_old_row(std::vector<Rgbe>& row) {
-    int shift = 0;
-    for (std::size_t x = 0; x < row.size();) {
-      Rgbe pixel;
-      for (std::uint8_t& component : pixel) component = byte();
-      if (pixel[0] != 1 || pixel[1] != 1 || pixel[2] != 1) {
-        row[x++] = pixel;
-        shift = 0;
-        continue;
-      }
-      const std::size_t count = shift > 16 ? row.size() : std::size_t{pixel[3]} << shift;
-      if (x == 0 || count > row.size() - x) fail("damaged: a run that is too long");
-      for (std::size_t k = 0; k < count; ++k, ++x) row[x] = row[x - 1];
-      shift += 8;
-    }
-  }
-
   std::string name_;
   std::string_view rest_;
   double exposure_ = 1.0;
 };
-
-float usable(double x) { return x > 0.0 ? static_cast<float>(std::min(x, 1e30)) : 0.0f; }
 
 /// Returns the direction ahead for this up direction: perpendicular to `up`, close to -z or +y.
 glm::dvec3 ahead_of(const glm::dvec3& up) {

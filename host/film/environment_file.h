@@ -15,10 +15,10 @@ struct HdrImage {
   std::vector<glm::vec3> pixels;  ///< finite, none negative
 };
 
-/// Reads a Radiance picture with 32-bit RGBE pixels, run-length encoded or not, in standard
-/// orientation (Ward, "Real pixels", 1991; format description at radsite.lbl.gov). EXPOSURE lines
-/// are undone. Throws InputError if the file cannot be read, is not such a picture, is damaged, or
-/// has more than 2^26 pixels.
+/// Reads a Radiance picture with 32-bit RGBE pixels in standard orientation (Ward, "Real pixels",
+/// 1991): flat, or run-length encoded by component; not in the runs of whole pixels of before 1991.
+/// EXPOSURE lines are undone. Throws InputError if the file cannot be read, is not such a picture,
+/// is damaged, or has more than 2^26 pixels.
 [[nodiscard]] HdrImage read_hdr(const std::filesystem::path& file);
 
 /// Reads an environment map, OpenEXR (channels R, G, B) or Radiance HDR by its first bytes, into

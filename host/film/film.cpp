@@ -1,29 +1,11 @@
 #include "host/film/film.h"
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <type_traits>
 
-#include "host/base/input_error.h"
-
 namespace raygate {
-namespace {
-
-/// Calls visit(first pixel, bytes) for each row of `rect` in each non-empty array.
-template <class AnyFilm, class Visit>
-void for_each_row(AnyFilm& film, const PixelRect& rect, const Visit& visit) {
-  const auto visit_rows = [&](const FilmField&, auto& values) {
-    using Pixel = std::remove_cvref_t<decltype(values.front())>;
-    static_assert(std::is_trivially_copyable_v<Pixel>);
-    for (int y = rect.y0; y < rect.y1 && !values.empty(); ++y) {
-      visit(values.data() + film.index_of(rect.x0, y), sizeof(Pixel) * std::size_t(rect.width()));
-    }
-  };
-  for_each_field(visit_rows, film);
-}
-
-}  // namespace
-
 Film make_film(int width, int height, const PixelRect& window, const ExtraChannels& extra) {
   Film film;
   film.width = width;
@@ -91,30 +73,14 @@ double value_at(const Channel& channel, std::size_t index) {
   return number;
 }
 
-std::string region_bytes(const Film& film, const PixelRect& rect) {
-  std::string bytes;
-  for_each_row(film, rect, [&](const auto* row, std::size_t size) {
-    bytes.append(reinterpret_cast<const char*>(row), size);
-  });
-  return bytes;
-}
-
-void set_region(Film& film, const PixelRect& rect, std::string_view bytes) {
-  const PixelRect& window = film.window;
-  if (rect.x0 < window.x0 || rect.y0 < window.y0 || rect.x1 > window.x1 || rect.y1 > window.y1 ||
-      rect.x0 > rect.x1) {
-    throw InputError("pixels of another process: found some beyond the window");
-  }
-  std::size_t expected = 0;
-  for_each_row(film, rect, [&](const auto*, std::size_t size) { expected += size; });
-  if (bytes.size() != expected) {
-    throw InputError("pixels of another process: found " + std::to_string(bytes.size()) +
-                     " bytes, expected " + std::to_string(expected));
-  }
-  for_each_row(film, rect, [&](auto* row, std::size_t size) {
-    std::memcpy(static_cast<void*>(row), bytes.data(), size);
-    bytes.remove_prefix(size);
-  });
+void copy_region(const Film& from, const PixelRect& rect, Film& to) {
+  const auto copy = [&](const FilmField&, const auto& source, auto& target) {
+    for (int y = rect.y0; y < rect.y1 && !source.empty(); ++y) {
+      std::copy_n(&source[from.index_of(rect.x0, y)], rect.width(),
+                  &target[to.index_of(rect.x0, y)]);
+    }
+  };
+  for_each_field(copy, from, to);
 }
 
 }  // namespace raygate

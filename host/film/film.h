@@ -215,10 +215,7 @@ struct Channel {
 /// Returns the channel's value at array index `index`; exact.
 [[nodiscard]] double value_at(const Channel& channel, std::size_t index);
 
-/// Returns the data of `rect`, a part of the film's window, as bytes for another process or film.
-[[nodiscard]] std::string region_bytes(const Film& film, const PixelRect& rect);
-/// Stores bytes of region_bytes() of a film with the same window and arrays. Throws InputError if
-/// their number is wrong or `rect` is not within the window.
-void set_region(Film& film, const PixelRect& rect, std::string_view bytes);
+/// Copies the pixels of `rect`, which is within both windows, to a film with the same arrays.
+void copy_region(const Film& from, const PixelRect& rect, Film& to);
 
 }  // namespace raygate

@@ -216,8 +216,7 @@ FilmFile merge(std::vector<NamedFilm> parts) {
   };
   for_each_field(make_room, windows[0].second.film, film);
   for (const NamedFilm& window : windows) {
-    const Film& part = window.second.film;
-    set_region(film, part.window, region_bytes(part, part.window));
+    copy_region(window.second.film, window.second.film.window, film);
   }
   return result;
 }

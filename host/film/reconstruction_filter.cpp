@@ -66,60 +66,37 @@ double tent(double u) {
   return u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - u));
 }
 
-const Inverse& gauss_inverse() {
-  static const Inverse kInverse(gauss);
-  return kInverse;
-}
-const Inverse& blackman_harris_inverse() {
-  static const Inverse kInverse(blackman_harris);
-  return kInverse;
-}
+struct Kernel {
+  double radius;
+  double (*offset)(double u);
+  double (*density)(double at);
+};
 
-double density(ReconstructionFilter filter, double at) {
-  switch (filter) {
-    case ReconstructionFilter::kBox:
-      return at >= -0.5 && at < 0.5 ? 1.0 : 0.0;
-    case ReconstructionFilter::kTent:
-      return std::max(0.0, 1.0 - std::abs(at));
-    case ReconstructionFilter::kGauss:
-      return gauss_inverse().density(at);
-    case ReconstructionFilter::kBlackmanHarris:
-      break;
-  }
-  return blackman_harris_inverse().density(at);
+const Kernel& kernel_of(ReconstructionFilter filter) {
+  static const Inverse gauss_table(gauss), blackman_harris_table(blackman_harris);
+  static constexpr Kernel kKernels[] = {
+      {0.5, [](double u) { return u - 0.5; },
+       [](double at) { return at >= -0.5 && at < 0.5 ? 1.0 : 0.0; }},
+      {1.0, tent, [](double at) { return std::max(0.0, 1.0 - std::abs(at)); }},
+      {kRadius, [](double u) { return gauss_table(u); },
+       [](double at) { return gauss_table.density(at); }},
+      {kRadius, [](double u) { return blackman_harris_table(u); },
+       [](double at) { return blackman_harris_table.density(at); }}};
+  return kKernels[static_cast<std::size_t>(filter)];
 }
 
 }  // namespace
 
 double filter_density(ReconstructionFilter filter, const glm::dvec2& offset) {
-  return density(filter, offset.x) * density(filter, offset.y);
+  const Kernel& kernel = kernel_of(filter);
+  return kernel.density(offset.x) * kernel.density(offset.y);
 }
 
 glm::dvec2 filter_offset(ReconstructionFilter filter, const glm::dvec2& u) {
-  switch (filter) {
-    case ReconstructionFilter::kBox:
-      return u - 0.5;
-    case ReconstructionFilter::kTent:
-      return {tent(u.x), tent(u.y)};
-    case ReconstructionFilter::kGauss:
-      return {gauss_inverse()(u.x), gauss_inverse()(u.y)};
-    case ReconstructionFilter::kBlackmanHarris:
-      break;
-  }
-  return {blackman_harris_inverse()(u.x), blackman_harris_inverse()(u.y)};
+  const Kernel& kernel = kernel_of(filter);
+  return {kernel.offset(u.x), kernel.offset(u.y)};
 }
 
-double filter_radius(ReconstructionFilter filter) {
-  switch (filter) {
-    case ReconstructionFilter::kBox:
-      return 0.5;
-    case ReconstructionFilter::kTent:
-      return 1.0;
-    case ReconstructionFilter::kGauss:
-    case ReconstructionFilter::kBlackmanHarris:
-      break;
-  }
-  return kRadius;
-}
+double filter_radius(ReconstructionFilter filter) { return kernel_of(filter).radius; }
 
 }  // namespace raygate

@@ -26,7 +26,7 @@ namespace raygate {
 /// | 5 | d Kd | | d times Schlick's Fresnel from Ks | 1 - d, straight |
 /// | 6 | d Kd | | Ks | the rest of (1 - d) Tf, refracted by Ni |
 /// | 7 | d Kd | | Fresnel's formula for Ni | the rest of (1 - d) Tf, refracted by Ni |
-/// | 8, 9 | as 3, 4, but mirrors show only the background | | | |
+/// | 8, 9 | as 3, 4 | | | |
 /// | 10 | as 1, with the colour at which it looks like the background (catcher_colour) | | | |
 ///
 /// With 4, 6, 7 and 9, d = 1 counts as 0: exporters leave this default, and the model implies a
@@ -64,9 +64,6 @@ class Bsdf {
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& glossy() const { return glossy_; }
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& mirror() const { return mirror_; }
   [[nodiscard]] RAYGATE_INLINE const Triple<T>& transmission() const { return transmission_; }
-  [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& mirror_is_traced() const {
-    return mirror_is_traced_;
-  }
   [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& is_refracting() const { return is_refracting_; }
   /// Returns the index of refraction behind the interface over that in front of it.
   [[nodiscard]] RAYGATE_INLINE const T& eta() const { return eta_; }
@@ -79,7 +76,7 @@ class Bsdf {
     return largest(diffuse_) + glossy_sum() > 0.0f;
   }
   /// Returns whether lights are sampled: scatters(), or a mirror with a highlight of point lights.
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> answers_lights() const {
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> samples_lights() const {
     const MaskOf<T> scatters = this->scatters();
     if (!has_highlight()) return scatters;
     const auto has_one = largest(highlight()) > 0.0f;
@@ -172,7 +169,7 @@ class Bsdf {
   Triple<T> view_, normal_;
   T eta_, exponent_;
   Triple<T> diffuse_, glossy_, mirror_, transmission_, emission_, unlit_;
-  MaskOf<T> mirror_is_traced_, is_refracting_;
+  MaskOf<T> is_refracting_;
   MetallicRoughnessLobes<T> facets_;  // only for kMetallicRoughness
 };
 
@@ -193,7 +190,6 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
   const Triple<T>& colour = surface.colour;
   diffuse_ = clamped(colour) * gather<T>(materials, &Material::diffuse);
   const T opacity = gather<T>(materials, &Material::opacity), one = spread<T>(1.0f);
-  mirror_is_traced_ = one > 0.0f;
   is_refracting_ = one < 0.0f;
   if ((kind & kEmits) != 0) {
     emission_ = gather<T>(materials, &Material::emission);
@@ -213,7 +209,6 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
   if ((kind & (kMirrors | kTransmits)) != 0) {
     is_glass = gather<T>(materials, &Material::is_glass);
     is_refracting_ = gather<T>(materials, &Material::refracts);
-    mirror_is_traced_ = gather<T>(materials, &Material::mirror_is_traced);
     const T index = gather<T>(materials, &Material::index);
     eta_ = choose(is_refracting_, choose(surface.outside, index, 1.0f / index), one);
     const T cosine = at_most(at_least(dot(normal_, view_), 0.0f), 1.0f);

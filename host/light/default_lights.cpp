@@ -13,53 +13,6 @@
 namespace raygate {
 namespace {
 
-/// Computes positions of lights from those of the camera and the scene.
-class LightPlaces {
- public:
-  LightPlaces(const Scene& scene, const Camera& camera) : camera_(camera) {
-    const auto [low, high] = position_bounds(scene);
-    const glm::dvec3 eye(camera.eye());
-    middle_ = 0.5 * (low + high);
-    size_ = glm::length(high - low);
-    is_inside_ = glm::all(glm::lessThanEqual(low, eye)) && glm::all(glm::lessThanEqual(eye, high));
-  }
-
-  [[nodiscard]] bool is_inside() const { return is_inside_; }
-  [[nodiscard]] double size() const { return size_; }
-  /// Returns the radius of spherical lights. Penumbras are 1/8 as wide as the occluder's distance.
-  [[nodiscard]] double radius() const { return 0.5 * size_; }
-
-  /// Returns the main light: to the upper left of the camera, or at a camera inside the scene.
-  /// Otherwise, `radiance` is that of a white wall in the middle of the scene facing the light; in
-  /// front it is slightly higher.
-  [[nodiscard]] PointLight key(double radiance) const {
-    if (is_inside_) return light(glm::dvec3(camera_.eye()), 0.35 * size_, 0.8);
-    const glm::dvec3 at = place(-0.8, 1.2);
-    return light(at, glm::length(at - middle_), radiance);
-  }
-  /// Returns the fill light, from the right of the camera.
-  [[nodiscard]] PointLight fill() const {
-    const glm::dvec3 at = place(1.4, 0.3);
-    return light(at, glm::length(at - middle_), 0.16);
-  }
-
- private:
-  [[nodiscard]] glm::dvec3 place(double right, double up) const {
-    constexpr double kFar = 4.0;  // all parts of the scene are at about the same distance
-    return middle_ +
-           kFar * size_ * (up * camera_.up() + right * camera_.right() - 1.3 * camera_.forward());
-  }
-  [[nodiscard]] static PointLight light(const glm::dvec3& at, double distance, double radiance) {
-    return {glm::vec3(glm::clamp(at, -kMostCoordinate, kMostCoordinate)),
-            glm::dvec3(radiance * std::numbers::pi * distance * distance)};
-  }
-
-  const Camera& camera_;
-  glm::dvec3 middle_;
-  double size_;
-  bool is_inside_;
-};
-
 bool has_lights(const Scene& scene) {
   return !scene.lights.empty() || !scene.directional_lights.empty() || scene.environment;
 }
@@ -138,31 +91,37 @@ EnvironmentMap studio(const Camera& camera, const glm::vec3& mean_radiance) {
 
 }  // namespace
 
-std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera) {
-  if (is_empty(scene) || scene.background != glm::vec3(0.0f) || has_lights(scene) ||
-      has_emitter(scene)) {
-    return {};
-  }
-  const LightPlaces places(scene, camera);
-  if (is_lit_by_emitters(scene, places.size())) return {};
-  CameraLights lights{{places.key(0.6)}, kDimSky, {}};
-  if (places.is_inside()) return lights;
-  lights.studio = studio(camera, kDimSky);
-  lights.radius = places.radius();
-  return lights;
-}
-
-std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& camera) {
+std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
+                                           bool is_preview) {
   if (is_empty(scene) || has_lights(scene)) return {};
-  const LightPlaces places(scene, camera);
-  if (is_lit_by_emitters(scene, places.size())) return {};
-  // Leaves room for the fill light, the sky and interreflection: white stays below 1.
-  CameraLights lights{{places.key(0.4)}, scene.background, {}};
-  if (lights.background == glm::vec3(0.0f)) lights.background = kDimSky;
-  if (places.is_inside()) return lights;
-  lights.points.push_back(places.fill());
+  const bool is_dark = scene.background == glm::vec3(0.0f);
+  if (!is_preview && (!is_dark || has_emitter(scene))) return {};
+  const auto [low, high] = position_bounds(scene);
+  const glm::dvec3 eye(camera.eye()), middle = 0.5 * (low + high);
+  const double size = glm::length(high - low);
+  if (is_lit_by_emitters(scene, size)) return {};
+  CameraLights lights;
+  lights.background = is_preview && !is_dark ? scene.background : kDimSky;
+  // `radiance` is that of a facing white wall at `distance`.
+  const auto add = [&](const glm::dvec3& at, double distance, double radiance) {
+    lights.points.push_back({glm::vec3(glm::clamp(at, -kMostCoordinate, kMostCoordinate)),
+                             glm::dvec3(radiance * std::numbers::pi * distance * distance)});
+  };
+  if (glm::all(glm::lessThanEqual(low, eye)) && glm::all(glm::lessThanEqual(eye, high))) {
+    add(eye, 0.35 * size, 0.8);
+    return lights;
+  }
+  const auto add_far = [&](double right, double up, double radiance) {
+    constexpr double kFar = 4.0;  // all parts of the scene are at about the same distance
+    const glm::dvec3 at =
+        middle + kFar * size * (up * camera.up() + right * camera.right() - 1.3 * camera.forward());
+    add(at, glm::length(at - middle), radiance);
+  };
+  // Together with the sky and interreflection, white stays below 1.
+  add_far(-0.8, 1.2, is_preview ? 0.4 : 0.6);
+  if (is_preview) add_far(1.4, 0.3, 0.16);
   lights.studio = studio(camera, lights.background);
-  lights.radius = places.radius();
+  lights.radius = 0.5 * size;  // penumbras are 1/8 as wide as the occluder's distance
   return lights;
 }
 

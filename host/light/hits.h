@@ -61,20 +61,13 @@ RAYGATE_INLINE T flag_words(const Masks&... masks) {
   return float_of(flags);
 }
 
-/// Returns whether a path with this history adds the emission that it meets. Light that reaches a
-/// surface seen through mirrors or glass by further mirrors or glass is added by caustic rays only.
-template <class W>
-RAYGATE_INLINE auto sees_lights(const W& history) {
-  return (history < (kAfterSeenSurface | kThenSpecular)) | (history > kCausticRay);
-}
-
 /// Path states, field by field, one path per lane.
 template <class T>
 struct PathLanes {
   Triple<T> throughput;
   T pdf;
   Triple<T> scattered_at, normal;
-  WordOf<T> sample, stream, index, history;
+  WordOf<T> sample, stream, index, specular_history;
   T light_over_camera_pdf;
   WordOf<T> supersampled;
 
@@ -89,14 +82,15 @@ struct PathLanes {
     sample = words_in(w[10]);
     stream = words_in(w[11]);
     index = words_in(w[12]);
-    history = words_in(w[13]);
+    specular_history = words_in(w[13]);
     light_over_camera_pdf = w[14];
     supersampled = words_in(w[15]);
   }
+  /// Returns where the ray is its path's first.
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return specular_history == 1u; }
   /// Return the histories after reflection in a mirror and after refraction by glass.
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_caustic_rays() const { return history >= kCausticRay; }
   /// Returns whether `mask` contains the history. Its histories are below kSpecularHistories.
   [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& mask,
                                                     const WordOf<T>& history) {
@@ -105,21 +99,31 @@ struct PathLanes {
   /// Stores the words of the records.
   RAYGATE_INLINE void put(T* w) const {
     static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
-                  offsetof(PathState, history) == 52 &&
+                  offsetof(PathState, specular_history) == 52 &&
                   offsetof(PathState, light_over_camera_pdf) == 56 && sizeof(PathState) == 64);
-    const T words[] = {
-        throughput.x,    throughput.y,      throughput.z,          pdf,
-        scattered_at.x,  scattered_at.y,    scattered_at.z,        normal.x,
-        normal.y,        normal.z,          float_of(sample),      float_of(stream),
-        float_of(index), float_of(history), light_over_camera_pdf, float_of(supersampled)};
+    const T words[] = {throughput.x,
+                       throughput.y,
+                       throughput.z,
+                       pdf,
+                       scattered_at.x,
+                       scattered_at.y,
+                       scattered_at.z,
+                       normal.x,
+                       normal.y,
+                       normal.z,
+                       float_of(sample),
+                       float_of(stream),
+                       float_of(index),
+                       float_of(specular_history),
+                       light_over_camera_pdf,
+                       float_of(supersampled)};
     for (int i = 0; i < 16; ++i) w[i] = words[i];
   }
 
  private:
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_specular(std::uint32_t step) const {
-    const auto has_next = (history > 0u) & (history < kSpecularHistories / 2);
-    return choose(history >= kAfterSeenSurface, history | kThenSpecular,
-                  choose(has_next, 2u * history + step, WordOf<T>{}));
+    const auto has_next = (specular_history > 0u) & (specular_history < kSpecularHistories / 2);
+    return choose(has_next, 2u * specular_history + step, WordOf<T>{});
   }
 };
 
@@ -132,7 +136,6 @@ struct HitBlock {
   std::vector<glm::vec3> radiance;                   ///< along the ray, times the path's throughput
   std::vector<LightSample> light_samples;            ///< `light_samples_per_hit` for each hit
   std::vector<ScatteredRay> scattered;               ///< `scattered_per_hit` for each hit
-  std::vector<std::uint8_t> scattered_counts;  ///< number of used elements of `scattered`, by hit
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
   /// By position; null if the hit is not the first surface of its path. Empty if all are null.
   std::vector<FirstSurface*> first_surfaces;
@@ -145,7 +148,7 @@ struct HitBlock {
         .subspan(i * light_samples_per_hit, hits * light_samples_per_hit);
   }
   [[nodiscard]] std::span<ScatteredRay> scattered_of(std::size_t i) {
-    return std::span(scattered).subspan(i * scattered_per_hit, scattered_counts[i]);
+    return std::span(scattered).subspan(i * scattered_per_hit, scattered_per_hit);
   }
 };
 
@@ -226,7 +229,7 @@ struct Hits {
   /// Returns whether EmitterSupersampler adds the emission of the hit.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
     const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
-    const auto are_wanted = PathLanes<T>::has(path.supersampled, path.history);
+    const auto are_wanted = PathLanes<T>::has(path.supersampled, path.specular_history);
     return are_even & are_wanted;
   }
   /// Returns the emission, without that added by EmitterSupersampler.
@@ -291,7 +294,7 @@ struct ScatteredRays {
     flat = reflect(hits.surface.view, hits.surface.flat_normal);
     has_flat = T{} == 0.0f;
     is_transmitted = !has_flat;
-    path.history = hits.path.after_mirror();
+    path.specular_history = hits.path.after_mirror();
   }
   /// Sets the directions to those through the surface: refracted at `normal` if the material
   /// refracts, otherwise straight on. Returns where such a direction exists.
@@ -305,7 +308,7 @@ struct ScatteredRays {
     flat = choose(is_bent, flat_bent.direction, -surface.view);
     has_flat = (!is_bent) | flat_bent.exists;
     is_transmitted = T{} == 0.0f;
-    path.history = choose(is_bent, hits.path.after_glass(), hits.path.history);
+    path.specular_history = choose(is_bent, hits.path.after_glass(), hits.path.specular_history);
     return (!is_bent) | bent.exists;
   }
 

@@ -62,9 +62,7 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
   const bool is_whitted = kind == IntegratorKind::kWhitted;
   const bool splits = is_whitted || kind == IntegratorKind::kEmitters;
   block_.light_samples_per_hit = is_whitted ? lights.count() : is_path() ? 1 : 0;
-  scattered_count_ = splits ? 2 : is_path() || has_masks_ ? 1 : 0;
-  const bool has_caustic_rays = kind == IntegratorKind::kPath && light_paths != nullptr;
-  block_.scattered_per_hit = scattered_count_ + (has_caustic_rays ? kCausticRays : 0);
+  block_.scattered_per_hit = splits ? 2 : is_path() || has_masks_ ? 1 : 0;
   block_size_ = std::clamp<std::size_t>(
       kMostLightSamples / std::max<std::size_t>(1, block_.light_samples_per_hit), 1, kMostHits);
   block_.places.resize(block_size_);
@@ -72,7 +70,6 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
   block_.radiance.resize(block_size_);
   block_.light_samples.resize(block_size_ * block_.light_samples_per_hit);
   block_.scattered.resize(block_size_ * block_.scattered_per_hit);
-  block_.scattered_counts.resize(block_size_);
   kinds_.resize(block_size_);
 }
 
@@ -83,7 +80,6 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   block_.begin = begin;
   for (LightSample& sample : block_.light_samples_of(0, count)) sample.is_asked = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    block_.scattered_counts[i] = scattered_count_;
     for (ScatteredRay& scattered : block_.scattered_of(i)) scattered.is_wanted = 0;
   }
   sort(hits, count, output);
@@ -105,7 +101,7 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   spawner_.find(spawn_queries_, origins_);
   const SpawnOrigin* origins = origins_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    if (kinds_[i] != kHitKinds) hand_on(i, origins, output);
+    if (kinds_[i] != kHitKinds) output_hit(i, origins, output);
   }
 }
 
@@ -135,7 +131,6 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     if (hit.primitive == NearestHit::kNone) {
       if (is_dark) continue;
       const PathState& state = block_.state(i);
-      if (!sees_lights(state.history)) continue;
       output.radiance[state.sample] += state.throughput * behind;
       continue;
     }
@@ -218,7 +213,6 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
                                                                      directions[k]);
                   });
                 });
-        light = choose(sees_lights(path.history), light, zero<T>());
       }
       const auto lights_out = unpack(light);
       for (std::size_t k = 0; k < count; ++k) {
@@ -273,7 +267,7 @@ bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const 
 
 /// Outputs the results of the hit at position i. `origins` are those of its spawn queries and of
 /// the hits after it. Rays to a side without an origin are dropped.
-void Integrator::hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output) {
+void Integrator::output_hit(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output) {
   const std::uint32_t sample = block_.state(i).sample;
   const SurfaceHit& place = block_.places[i];
   output.radiance[sample] += block_.radiance[i];

@@ -68,7 +68,7 @@ class Integrator {
   void add_infinite_light(ShadingOutput& output);
   void list_spawn_queries(std::size_t i);
   [[nodiscard]] bool leaves(const SurfaceHit& place, ScatteredRay& scattered) const;
-  void hand_on(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output);
+  void output_hit(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output);
 
   IntegratorKind kind_;
   ShadingScene shading_;
@@ -79,7 +79,6 @@ class Integrator {
   bool has_masks_;
   const MaterialParameters hole_ = MaterialParameters::hole();
   HitBlock block_;
-  std::uint8_t scattered_count_;           // rays per hit, without caustic rays
   std::vector<SpawnQuery> spawn_queries_;  // of the block's hits, in order
   std::vector<SpawnOrigin> origins_;
   std::vector<HitKind> kinds_;          // by position in the block; kHitKinds: no hit

@@ -63,7 +63,7 @@ class LightTree::Builder {
     tree_.nodes_.emplace_back();
     tree_.nodes_[number].parent = parent;
     tree_.nodes_[number].place = place;
-    const std::vector<Group> children = parted(group);
+    const std::vector<Group> children = split_into_eight(group);
     for (std::uint32_t k = 0; k < children.size(); ++k) {
       set(tree_.nodes_[number], k, cluster(children[k]));
       std::uint32_t child = children[k][0] | kIsSource;
@@ -85,7 +85,7 @@ class LightTree::Builder {
   }
 
   /// Splits a group into up to eight, always splitting the one with the highest cost.
-  [[nodiscard]] std::vector<Group> parted(Group group) const {
+  [[nodiscard]] std::vector<Group> split_into_eight(Group group) const {
     std::vector<Group> groups = {group};
     std::vector<double> costs = {sum_of(group).cost()};
     while (groups.size() < std::min<std::size_t>(kLanes, group.size())) {

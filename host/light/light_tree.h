@@ -126,9 +126,9 @@ RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& poi
       return choose(sent > reach, sent, T{});
     };
     const T sent = maximum(sent_at(leaving), load<T>(node.back + k) * sent_at(-leaving));
-    const T brought = load<T>(node.power + k) * received * sent /
-                      at_least(maximum(squared, radius), kLeastSquare);
-    store(weights + k, choose(received > 0.0f, brought, T{}));
+    const T weight = load<T>(node.power + k) * received * sent /
+                     at_least(maximum(squared, radius), kLeastSquare);
+    store(weights + k, choose(received > 0.0f, weight, T{}));
   }
   total = 0.0f;
   for (const float weight : weights) total += weight;

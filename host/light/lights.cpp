@@ -1,15 +1,11 @@
 #include "host/light/lights.h"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <numbers>
-#include <numeric>
-#include <unordered_map>
 #include <utility>
 
-#include "host/bvh/closest_point.h"
 #include "host/exact/exact.h"
 #include "host/scene/bounds.h"
 #include "host/scene/camera.h"
@@ -31,30 +27,6 @@ std::vector<std::uint32_t> emitting_primitives(const Scene& scene, const Bvh& bv
   std::ranges::sort(primitives, {},
                     [&](std::uint32_t primitive) { return bvh.triangle_of(primitive); });
   return primitives;
-}
-
-/// Sets the centre of a light whose triangles are coplanar and share a side.
-void find_middle(const Bvh& bvh, AreaLight& light) {
-  const glm::dvec3 normal = glm::normalize(triangle_normal(bvh.corners_of(light.primitives[0])));
-  glm::dvec3 sum(0.0);
-  double before = 0.0;
-  bool is_flat = true;
-  for (std::size_t i = 0; i < light.primitives.size(); ++i) {
-    const Corners& t = bvh.corners_of(light.primitives[i]);
-    const glm::dvec3 middle = (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0;
-    sum += (light.area_up_to[i] - before) * middle;
-    before = light.area_up_to[i];
-    const glm::dvec3 own = glm::normalize(triangle_normal(t));
-    is_flat = is_flat && std::abs(glm::dot(own, normal)) > 1.0 - 1e-9;
-  }
-  light.is_flat = is_flat;
-  // Slightly offset towards the first triangle: the exact centre of two triangles is usually on
-  // their common edge, where each ray would need exact arithmetic.
-  const Corners& first = bvh.corners_of(light.primitives[0]);
-  const glm::dvec3 inside =
-      (glm::dvec3(first[0]) + glm::dvec3(first[1]) + glm::dvec3(first[2])) / 3.0;
-  light.middle = glm::mix(sum / light.area(), inside, 0x1p-10);
-  light.middle_normal = normal;
 }
 
 /// Returns the ambient radiance: the reflected part F r / (1 - r) of the lights' flux from one
@@ -108,9 +80,6 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
   }
   return std::nullopt;
 }
-
-/// Weight of the back of a closed light without other geometry in its box: small, but positive.
-constexpr double kBackOfClosed = 1.0 / 16.0;
 
 /// Returns bounds with lengths in units of `unit`.
 LightBounds light_bounds(const PointLight& light, double unit) {
@@ -177,16 +146,11 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     if (record.is_spot) record.spot = SpotFalloff(*light.spot);
   }
   find_areas();
-  for (AreaLight& light : areas_) {
-    find_middle(bvh, light);
+  for (const AreaLight& light : areas_) {
     Light& record = lights_.emplace_back();
     record.kind = Kind::kArea;
     record.emission = finite_floats(light.radiance);
     record.is_textured = light.is_textured;
-    if (!scene.environment && !own_.studio) {
-      const double ratio = mean(glm::dvec3(own_.background)) / mean(light.radiance);
-      record.sky = static_cast<float>(std::min(ratio, 0.5));
-    }
     record.area = finite_float(light.area() / unit / unit);
     add_patches(light, record);
   }
@@ -286,16 +250,13 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
 }
 
 /// Returns bounds with lengths in units of `unit`.
-LightBounds Lights::light_bounds(const Patch& patch, const AreaLight& light, double unit,
-                                 OuterSide side) {
+LightBounds Lights::light_bounds(const Patch& patch, const AreaLight& light, double unit) {
   const glm::dvec3 corner(patch.corner), u(patch.u), v(patch.v);
   LightBounds source;
   source.axis = glm::dvec3(patch.normal);
   source.spread = 1.0;
   source.reach = 0.0;
   source.back = 1.0;
-  if (side != OuterSide::kBoth) source.back = kBackOfClosed;
-  if (side == OuterSide::kAgainstNormal) source.axis = -source.axis;
   source.middle = (corner + (u + v) * (patch.is_triangle ? 1.0 / 3.0 : 0.5)) / unit;
   for (const glm::dvec3& other : {corner, corner + u, corner + v, corner + u + v}) {
     if (patch.is_triangle && other == corner + u + v) continue;
@@ -318,20 +279,14 @@ void Lights::add_sources(double unit) {
     add(raygate::light_bounds(light, unit));
     ++number;
   }
-  std::vector<std::uint32_t> primitives;
-  for (const AreaLight& light : areas_)
-    primitives.insert(primitives.end(), light.primitives.begin(), light.primitives.end());
-  const std::vector<OuterSide> sides = outer_sides(bvh_, primitives);
   if (!areas_.empty()) source_of_primitive_.assign(bvh_.primitive_count(), kNoIndex);
-  std::vector<OuterSide> side_of_primitive(source_of_primitive_.size());
-  for (std::size_t i = 0; i < primitives.size(); ++i) side_of_primitive[primitives[i]] = sides[i];
   for (const AreaLight& light : areas_) {
     const std::uint32_t first = lights_[number].first_patch;
     for (std::uint32_t i = first; i < first + lights_[number].patches; ++i) {
       const Patch& patch = patches_[i];
       source_of_primitive_[patch.primitive] = source_of_primitive_[patch.primitive_beyond] =
           static_cast<std::uint32_t>(sources.size());
-      add(light_bounds(patch, light, unit, side_of_primitive[patch.primitive]), i, patch.area);
+      add(light_bounds(patch, light, unit), i, patch.area);
     }
     ++number;
   }
@@ -348,90 +303,6 @@ void Lights::add_sources(double unit) {
   }
   any_power_ = std::ranges::any_of(sources, [](const auto& source) { return source.power > 0.0; });
   tree_ = LightTree(sources);
-}
-
-namespace {
-
-/// Connected components of triangles, which are numbered from 0 (union-find).
-class Parts {
- public:
-  explicit Parts(std::size_t count) : leads_to_(count) {
-    std::iota(leads_to_.begin(), leads_to_.end(), 0u);
-  }
-  void join(std::uint32_t a, std::uint32_t b) { leads_to_[of(a)] = of(b); }
-  /// Returns the representative triangle of a component.
-  [[nodiscard]] std::uint32_t of(std::uint32_t i) {
-    while (leads_to_[i] != i) i = leads_to_[i] = leads_to_[leads_to_[i]];
-    return i;
-  }
-
- private:
-  std::vector<std::uint32_t> leads_to_;  // another triangle of the component, or itself
-};
-
-/// Properties of a component.
-struct Part {
-  bool is_open = false;
-  double volume = 0.0;  // times six; negative if triangles face inwards
-  glm::vec3 low, high;
-};
-
-}  // namespace
-
-std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t> primitives) {
-  std::map<std::array<float, 3>, std::uint32_t> places;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges;
-  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
-    std::array<std::uint32_t, 3> numbers{};
-    const Corners corners = bvh.corners_of(primitives[i]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto next = static_cast<std::uint32_t>(places.size());
-      numbers[k] =
-          places.try_emplace({corners[k].x, corners[k].y, corners[k].z}, next).first->second;
-    }
-    for (std::size_t k = 0; k < 3; ++k) edges[{numbers[k], numbers[(k + 1) % 3]}].push_back(i);
-  }
-  Parts parts(primitives.size());
-  for (const auto& [edge, along] : edges) {
-    for (const std::uint32_t i : along) parts.join(i, along[0]);
-    const auto back = edges.find({edge.second, edge.first});
-    if (back != edges.end()) parts.join(back->second[0], along[0]);
-  }
-  std::unordered_map<std::uint32_t, std::uint32_t> part_of_primitive;
-  std::map<std::uint32_t, Part> found;
-  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
-    const Corners t = bvh.corners_of(primitives[i]);
-    const glm::dvec3 middle(bvh.corners_of(primitives[parts.of(i)])[0]);
-    const auto [at, is_new] = found.try_emplace(parts.of(i));
-    Part& part = at->second;
-    if (is_new) part.low = part.high = t[0];
-    part.low = glm::min(part.low, glm::min(t[0], glm::min(t[1], t[2])));
-    part.high = glm::max(part.high, glm::max(t[0], glm::max(t[1], t[2])));
-    part.volume += glm::dot(glm::dvec3(t[0]) - middle,
-                            glm::cross(glm::dvec3(t[1]) - middle, glm::dvec3(t[2]) - middle));
-    part_of_primitive[primitives[i]] = parts.of(i);
-  }
-  for (const auto& [edge, along] : edges) {
-    const auto back = edges.find({edge.second, edge.first});
-    if (along.size() != 1 || back == edges.end()) found[parts.of(along[0])].is_open = true;
-  }
-  for (auto& entry : found) {
-    const std::uint32_t number = entry.first;
-    Part& part = entry.second;
-    part.is_open =
-        part.is_open || part.volume == 0.0 ||
-        any_primitive_near(bvh, part.low, part.high, [&](std::uint32_t primitive, const Corners&) {
-          const auto known = part_of_primitive.find(primitive);
-          return known == part_of_primitive.end() || known->second != number;
-        });
-  }
-  std::vector<OuterSide> sides(primitives.size());
-  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
-    const Part& part = found[parts.of(i)];
-    if (part.is_open) continue;
-    sides[i] = part.volume > 0.0 ? OuterSide::kAlongNormal : OuterSide::kAgainstNormal;
-  }
-  return sides;
 }
 
 }  // namespace raygate

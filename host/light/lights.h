@@ -34,12 +34,12 @@ struct CameraLights {
 /// Returns lights for a scene without any (no lights, no background, and no emission except
 /// textures that hardly light anything): a light to the upper left of the camera with soft shadows,
 /// or at the camera if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
-[[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera);
-
-/// Returns lights for a preview, whose camera the user did not choose: as above, with a second,
-/// weaker light from the right, and also for scenes lit only by a background or by faces whose
-/// emission lights nothing.
-[[nodiscard]] std::optional<CameraLights> preview_lights(const Scene& scene, const Camera& camera);
+///
+/// `is_preview`: the user did not choose the camera. Then there is a second, weaker light from the
+/// right, and scenes lit only by a background or by faces whose emission lights nothing get lights,
+/// too.
+[[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
+                                                         bool is_preview = false);
 
 /// Returns a float, with the largest float instead of infinity.
 [[nodiscard]] inline float finite_float(double x) {
@@ -73,19 +73,6 @@ RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) 
   return ramp * ramp;
 }
 
-/// Side of a triangle that is outside of the closed surface to which the triangle belongs.
-enum class OuterSide : std::uint8_t {
-  kBoth,           ///< the triangle is not known to belong to a closed surface
-  kAlongNormal,    ///< the side of its normal
-  kAgainstNormal,  ///< the opposite side
-};
-
-/// Returns the outer side of each of the primitives. A closed surface is a set of these triangles,
-/// connected by edges, in which each edge belongs to exactly two triangles that traverse it in
-/// opposite directions. It counts as open if any other primitive is within its bounding box.
-[[nodiscard]] std::vector<OuterSide> outer_sides(const Bvh& bvh,
-                                                 std::span<const std::uint32_t> primitives);
-
 /// The emitting faces of one object and material: one light that emits from both sides of each
 /// face.
 struct AreaLight {
@@ -94,8 +81,6 @@ struct AreaLight {
   glm::vec3 low{0.0f}, high{0.0f};  ///< bounds
   glm::dvec3 radiance{0.0};         ///< mean
   bool is_textured = false;
-  bool is_flat = false;
-  glm::dvec3 middle{0.0}, middle_normal{0.0};  ///< only of a flat light: centre, and normal there
 
   [[nodiscard]] double area() const { return area_up_to.back(); }
 };
@@ -161,8 +146,7 @@ class Lights {
     SpotFalloff spot;
     float area = 0.0f;  ///< in square units
     bool is_textured =
-        false;         ///< `emission` is the mean; radiance_at() returns the value at a point
-    float sky = 0.0f;  ///< area light: the background's radiance over its own, at most 1/2
+        false;  ///< `emission` is the mean; radiance_at() returns the value at a point
     std::uint32_t first_patch = 0, patches = 0;
   };
   [[nodiscard]] const Light& light(std::size_t index) const { return lights_[index]; }
@@ -175,12 +159,6 @@ class Lights {
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
       const std::uint32_t (&numbers)[kLanesOf<T>], const SquarePoint<T>& u) const;
-  /// Returns the centre of a flat light as a sample; its primitive is one of the light's.
-  template <class T>
-  [[nodiscard]] RAYGATE_INLINE static LightPoint<T> middle(const AreaLight& light) {
-    return {spread<T>(glm::vec3(light.middle)), spread<T>(glm::vec3(light.middle_normal)),
-            spread<WordOf<T>>(light.primitives[0])};
-  }
 
   /// Returns the radiance of area lights at points on them, one per lane; of other lights, the
   /// emission.
@@ -261,7 +239,7 @@ class Lights {
   void add_patches(const AreaLight& light, Light& record);
   void add_sources(double unit);
   [[nodiscard]] static LightBounds light_bounds(const Patch& patch, const AreaLight& light,
-                                                double unit, OuterSide side);
+                                                double unit);
 
   const Scene& scene_;
   const Bvh& bvh_;

@@ -31,7 +31,6 @@ void MaterialParameters::set(const Material& material, const MetallicRoughness& 
   const bool has_map = shares.map.texture != kNoIndex;
   refracts = transmission > 0.0f && (metallic < 1.0f || has_map);
   is_glass = is_fresnel = false;
-  mirror_is_traced = true;
   opacity = refracts ? 1.0f : std::clamp(material.opacity, 0.0f, 1.0f);
   transmittance = glm::vec3(1.0f - opacity);
   // Roughness textures may have any value, so such a material is never treated as smooth.
@@ -54,7 +53,6 @@ MaterialParameters::MaterialParameters(const Material& material) {
   is_glass = model == 4 || model == 6 || model == 7 || model == 9;
   refracts = model == 6 || model == 7;
   is_fresnel = model == 7;
-  mirror_is_traced = model != 8 && model != 9;
   const float d = std::clamp(material.opacity, 0.0f, 1.0f);
   opacity = is_glass && d == 1.0f ? 0.0f : d;
   exponent = std::clamp(material.shininess, 0.0f, 1e6f);

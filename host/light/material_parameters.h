@@ -38,8 +38,7 @@ struct MaterialParameters {
   float index = 1.0f;     ///< index of refraction
   bool is_glass = false;  ///< lobes below the mirror receive only light that it does not reflect
   bool refracts = false;
-  bool is_fresnel = false;  ///< the mirror follows Fresnel's formula
-  bool mirror_is_traced = true;
+  bool is_fresnel = false;    ///< the mirror follows Fresnel's formula
   bool emits_evenly = false;  ///< the emission has no texture
   /// Metallic-roughness materials only; textures multiply all of these.
   float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
@@ -58,7 +57,7 @@ struct MaterialParameters {
   /// Returns whether this is a mirror or smooth glass, whose directions are not random.
   [[nodiscard]] bool is_mirror_or_glass() const {
     constexpr HitKind kRoughGlass = kMetallicRoughness | kGlossy | kMirrors;
-    return (kind & kMirrors) != 0 && (~kind & kRoughGlass) != 0 && (mirror_is_traced || refracts);
+    return (kind & kMirrors) != 0 && (~kind & kRoughGlass) != 0;
   }
 
   /// Returns the material of a hole in a mask: light passes straight through.

@@ -1,10 +1,12 @@
 #include "host/light/neighbor_clearance.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "host/base/triple.h"
 #include "host/bvh/closest_point.h"
 
 // Why c is a bound
@@ -18,34 +20,6 @@
 
 namespace raygate {
 namespace {
-
-/// Corner coordinates of the triangles of a leaf, relative to `from`.
-struct LeafCorners {
-  DoubleQuad y[3][3];
-  FloatQuad low[3], high[3];  // boxes of the triangles
-
-  template <Vectors kCode>
-  RAYGATE_INLINE LeafCorners(VectorCode<kCode>, const float* leaf_corners, std::uint32_t count,
-                             const glm::dvec3& from) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      FloatQuad corner[3];
-      for (std::uint32_t v = 0; v < 3; ++v) {
-        corner[v] = load<FloatQuad>(leaf_corners + std::size_t{3 * v + k} * count);
-        y[v][k] = widen<kCode>(corner[v]);
-        y[v][k] -= from[static_cast<int>(k)];
-      }
-      low[k] = minimum(minimum(corner[0], corner[1]), corner[2]);
-      high[k] = maximum(maximum(corner[0], corner[1]), corner[2]);
-    }
-  }
-
-  /// Returns the triangles whose boxes touch a box: bit i for triangle i.
-  [[nodiscard]] RAYGATE_INLINE LaneMask touching(const glm::vec3& from, const glm::vec3& to) const {
-    IntQuad touches = IntQuad{} - 1;
-    for (int k = 0; k < 3; ++k) touches &= (low[k] <= to[k]) & (high[k] >= from[k]);
-    return sign_mask(touches);
-  }
-};
 
 /// Computes the clearance of one triangle from the triangles passed to it.
 class NeighborClearanceSearch {
@@ -63,121 +37,64 @@ class NeighborClearanceSearch {
     cross({b.x, b.y, b.z}, {c.x, c.y, c.z}, normal_, normal_sizes_);
     const glm::dvec3 normal(normal_[0], normal_[1], normal_[2]);
     const double area = glm::length(normal);
-    unit_normal_ = unit(normal);
+    const glm::dvec3 unit_normal = area > 0.0 ? normal / area : glm::dvec3(0.0);
+    // The planes through the edges, perpendicular to the triangle or parallel to the coordinate
+    // axis that is closest to the normal. Most neighbours are behind one of the latter.
+    const glm::dvec3 sizes = glm::abs(normal);
+    const int wider = sizes.x < sizes.y ? 1 : 0, along = sizes[wider] < sizes.z ? 2 : wider;
+    glm::dvec3 parallel(0.0);
+    parallel[along] = normal[along] < 0.0 ? -1.0 : 1.0;
     double longest = 0.0;
     for (int k = 0; k < 3; ++k) {
-      const glm::dvec3 edge = vertex_[(k + 1) % 3] - vertex_[k];
+      const glm::dvec3 edge = edge_[k] = vertex_[(k + 1) % 3] - vertex_[k];
       const double length = glm::length(edge);
-      inward_[k] = length > 0.0 ? glm::cross(unit_normal_, edge) / length : glm::dvec3(0.0);
+      const glm::dvec3 inward = glm::cross(parallel, edge);
+      const double size = glm::length(inward);
+      axes_[k] = size > 0.0 ? inward / size : glm::dvec3(0.0);
+      axes_[3 + k] = length > 0.0 ? glm::cross(unit_normal, edge) / length : glm::dvec3(0.0);
       inverse_height_[k] = length / area;
       longest = std::max(longest, length);
     }
-    const int along = axis_of(normal);
-    for (int k = 0; k < 2; ++k) across_[k] = static_cast<std::uint32_t>((along + 1 + k) % 3);
-    for (int k = 0; k < 3; ++k) {
-      const auto place = [&](int vertex, int axis) {
-        return double(corners[vertex % 3][static_cast<int>(across_[axis])]);
-      };
-      const double x = place(k + 1, 0) - place(k, 0), y = place(k + 1, 1) - place(k, 1);
-      const double scale = (normal[along] < 0.0 ? -1.0 : 1.0) / std::sqrt(x * x + y * y);
-      Edge& edge = edges_[k];
-      edge.inward[0] = -scale * y;
-      edge.inward[1] = scale * x;
-      edge.most = edge.inward[0] * place(k, 0) + edge.inward[1] * place(k, 1) + slack_;
-    }
+    axes_[6] = unit_normal;
+    axes_[7] = -unit_normal;
     most_ = length_ = kShareOfHeight * area / longest;
     if (!(most_ > 4.0 * slack_)) length_ = 0.0;
   }
 
   /// Returns whether a positive c is still possible.
-  [[nodiscard]] bool has_hope() const { return length_ > 0.0; }
-  /// Returns the origin of relative coordinates.
-  [[nodiscard]] const glm::dvec3& from() const { return from_; }
+  [[nodiscard]] bool is_possible() const { return length_ > 0.0; }
   /// Return the corners of the box outside which triangles are irrelevant.
   [[nodiscard]] const glm::vec3& low() const { return low_; }
   [[nodiscard]] const glm::vec3& high() const { return high_; }
 
-  /// Returns the triangles of a leaf whose boxes are near: bit i for triangle i.
-  [[nodiscard]] RAYGATE_INLINE LaneMask near(const LeafCorners& others) const {
-    return has_hope() ? others.touching(low_, high_) : 0;
-  }
-
-  /// Returns the triangles of a leaf (bit i for triangle i) that are surely behind a plane through
-  /// an edge and parallel to the axis closest to the normal. Projected along that axis, heights
-  /// shrink by less than a factor of sqrt(3), so such triangles do not reduce c, up to slack.
+  /// Updates c and the overlaps for the triangles of a leaf, except `primitive` itself.
   template <Vectors kCode>
-  [[nodiscard]] RAYGATE_INLINE LaneMask behind_an_edge(const float* leaf,
-                                                       std::uint32_t count) const {
-    DoubleQuad y[3][2];
-    for (std::uint32_t v = 0; v < 3; ++v) {
-      for (std::uint32_t k = 0; k < 2; ++k) {
-        y[v][k] = widen<kCode>(load<FloatQuad>(leaf + std::size_t{3 * v + across_[k]} * count));
+  RAYGATE_INLINE void consider(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_t primitive) {
+    Bvh::LeafRoom room;
+    const float* const corners = BvhView(bvh).corners_of(leaf, room);
+    LaneMask rest = (LaneMask{1} << leaf.count) - 1;
+    if (primitive - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (primitive - leaf.first));
+    if (rest == 0 || !is_possible()) return;
+    double apart[kQuad];
+    store(apart, clearances<kCode>(corners, leaf.count, rest));
+    for (; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      if (apart[i] >= length_) continue;
+      const std::uint32_t other = leaf.first + static_cast<std::uint32_t>(i);
+      const Corners others = bvh.corners_of(other);
+      if (lies_beyond(others, corners_, 1) && lies_beyond(others, corners_, -1)) continue;
+      if (apart[i] < kShareOfOverlaps * most_ && overlaps_.size() < kMaxOverlaps) {
+        overlaps_.add(other, others);
+      } else {
+        length_ = apart[i];
       }
-    }
-    LongQuad behind = {};
-    for (const Edge& edge : edges_) {
-      LongQuad all = LongQuad{} - 1;
-      for (const DoubleQuad(&point)[2] : y) {
-        all &= edge.inward[0] * point[0] + edge.inward[1] * point[1] <= edge.most;
-      }
-      behind |= all;
-    }
-    return sign_mask(whole(behind));
-  }
-
-  /// Returns the triangles of a leaf from which this triangle is far enough: it is beyond a plane
-  /// through one of their edges, perpendicular to them.
-  [[nodiscard]] RAYGATE_INLINE LaneMask beyond_their_edge(const LeafCorners& leaf) const {
-    DoubleQuad to_b[3], to_c[3], normal[3], sizes[3];
-    for (int k = 0; k < 3; ++k) {
-      to_b[k] = leaf.y[1][k] - leaf.y[0][k];
-      to_c[k] = leaf.y[2][k] - leaf.y[0][k];
-    }
-    cross(to_b, to_c, normal, sizes);
-    LongQuad beyond = {};
-    for (int j = 0; j < 3; ++j) {
-      DoubleQuad edge[3], axis[3], along, highest, sum = {}, squared = {}, size = {};
-      for (int k = 0; k < 3; ++k) edge[k] = leaf.y[(j + 1) % 3][k] - leaf.y[j][k];
-      cross(edge, normal, axis, sizes);
-      for (int k = 0; k < 3; ++k) {
-        squared += axis[k] * axis[k];
-        size = size < axis[k] ? axis[k] : size;
-        size = size < -axis[k] ? -axis[k] : size;
-      }
-      for (int v = 0; v < 3; ++v) {
-        along = axis[0] * leaf.y[v][0] + axis[1] * leaf.y[v][1] + axis[2] * leaf.y[v][2];
-        highest = v == 0 || highest < along ? along : highest;
-      }
-      // Squares must neither overflow nor underflow.
-      const DoubleQuad enough = length_ * length_ * squared;
-      LongQuad all = (enough > 0x1p-900) & (enough < 0x1p900);
-      for (const glm::dvec3& v : vertex_) {
-        const DoubleQuad gap = axis[0] * v.x + axis[1] * v.y + axis[2] * v.z - highest;
-        all &= gap >= -slack_ * size;
-        sum += gap > 0.0 ? gap : DoubleQuad{};
-      }
-      beyond |= all & (sum * sum >= enough);
-    }
-    return sign_mask(whole(beyond));
-  }
-
-  /// Updates c and the overlaps for a triangle that may not be behind an edge.
-  void consider(std::uint32_t primitive, const Corners& other) {
-    const double apart = clearance(other);
-    if (apart >= length_ || (lies_beyond(other, corners_, 1) && lies_beyond(other, corners_, -1))) {
-      return;
-    }
-    if (apart < kShareOfOverlaps * most_ && overlaps_.size() < kMaxOverlaps) {
-      overlaps_.add(primitive, other);
-    } else {
-      length_ = apart;
     }
   }
 
   /// Returns the clearance with respect to all triangles so far.
   [[nodiscard]] NeighborClearance found() const {
     NeighborClearance result;
-    if (!has_hope()) return result;
+    if (!is_possible()) return result;
     // Accounts for rounding of unit vectors.
     const float length = float_below(length_ * (1.0 - 0x1p-20));
     result.length = overlaps_.size() != 0 ? -length : length;
@@ -187,109 +104,105 @@ class NeighborClearanceSearch {
     for (int k = 0; k < 3; ++k) {
       result.normal[k] = scale * normal_[k];
       result.corner[k] = corners_[0][k];
-      result.gradient[0][k] = static_cast<float>(length * inverse_height_[2] * inward_[2][k]);
-      result.gradient[1][k] = static_cast<float>(length * inverse_height_[0] * inward_[0][k]);
+      result.gradient[0][k] = static_cast<float>(length * inverse_height_[2] * axes_[5][k]);
+      result.gradient[1][k] = static_cast<float>(length * inverse_height_[0] * axes_[3][k]);
     }
     return result;
   }
   [[nodiscard]] Overlaps& overlaps() { return overlaps_; }
 
  private:
+  using Vectors3 = Triple<DoubleQuad>;
+
   static constexpr std::size_t kMaxOverlaps = 128;
   static constexpr double kShareOfHeight = 0.125;  // largest c, as a fraction of the height
   // Triangles nearer than this fraction of the largest c are overlaps.
   static constexpr double kShareOfOverlaps = 0x1p-4;
   // Of the dot product of a normal and a point.
   static constexpr double kNormalError = 10.0 * 0x1p-53;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  /// Returns the axis of the largest magnitude.
-  static int axis_of(const glm::dvec3& v) {
-    const glm::dvec3 sizes = glm::abs(v);
-    const int axis = sizes.x < sizes.y ? 1 : 0;
-    return sizes[axis] < sizes.z ? 2 : axis;
+  static RAYGATE_INLINE Vectors3 vectors(const glm::dvec3& v) {
+    return {spread<DoubleQuad>(v.x), spread<DoubleQuad>(v.y), spread<DoubleQuad>(v.z)};
   }
-  /// Returns the unit vector in the direction of `v`, or 0 if `v` is 0.
-  static glm::dvec3 unit(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0.0 ? v / length : glm::dvec3(0.0);
+  static RAYGATE_INLINE Vectors3 product(const Vectors3& a, const Vectors3& b) {
+    return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
+  }
+  /// Returns unit vectors, or 0 for 0.
+  static RAYGATE_INLINE Vectors3 unit(const Vectors3& v) {
+    const DoubleQuad size = root(dot(v, v));
+    return choose(size > 0.0, Vectors3{v.x / size, v.y / size, v.z / size}, zero<DoubleQuad>());
   }
 
-  /// Returns c for `other` alone, or a value of at least length_.
-  [[nodiscard]] double clearance(const Corners& other) const {
-    glm::dvec3 y[3];
-    for (int k = 0; k < 3; ++k) y[k] = glm::dvec3(other[k]) - from_;
-    double best = 0.0;
-    const auto try_axis = [&](const glm::dvec3& axis) {
-      best = std::max(best, std::max(apart(axis, y), apart(-axis, y)));
-      return best >= length_;
-    };
-    for (const glm::dvec3& axis : inward_) {
-      best = std::max(best, apart(axis, y));
-      if (best >= length_) return best;
+  /// Returns c for each of the triangles in the mask alone, or any value of at least length_.
+  template <Vectors kCode>
+  [[nodiscard]] RAYGATE_INLINE DoubleQuad clearances(const float* corners, std::uint32_t count,
+                                                     LaneMask mask) const {
+    DoubleQuad coordinates[3][3];  // relative to from_
+    constexpr IntQuad kBit = {1, 2, 4, 8};
+    IntQuad near = ((IntQuad{} + static_cast<std::int32_t>(mask)) & kBit) != 0;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      FloatQuad corner[3];
+      for (std::uint32_t v = 0; v < 3; ++v) {
+        corner[v] = load<FloatQuad>(corners + std::size_t{3 * v + k} * count);
+        coordinates[v][k] = widen<kCode>(corner[v]) - from_[static_cast<int>(k)];
+      }
+      near &= (minimum(minimum(corner[0], corner[1]), corner[2]) <= high_[static_cast<int>(k)]) &
+              (maximum(maximum(corner[0], corner[1]), corner[2]) >= low_[static_cast<int>(k)]);
     }
-    if (try_axis(unit_normal_)) return best;
-    const glm::dvec3 other_normal = unit(triangle_normal(other));
-    if (try_axis(other_normal)) return best;
+    Vectors3 y[3];
+    for (int v = 0; v < 3; ++v) y[v] = {coordinates[v][0], coordinates[v][1], coordinates[v][2]};
+    DoubleQuad best = choose(near, DoubleQuad{}, spread<DoubleQuad>(kInfinity));
+    // Returns whether all values are sufficient.
+    const auto try_axis = [&](const Vectors3& axis) RAYGATE_BODY {
+      best = maximum(best, apart(axis, y));
+      return sign_mask(whole(best >= length_)) == (LaneMask{1} << kQuad) - 1;
+    };
+    for (const glm::dvec3& axis : axes_) {
+      if (try_axis(vectors(axis))) return best;
+    }
+    const Vectors3 normal = unit(product(y[1] - y[0], y[2] - y[0]));
+    if (try_axis(normal) || try_axis(-normal)) return best;
     for (int j = 0; j < 3; ++j) {
-      const glm::dvec3 edge = y[(j + 1) % 3] - y[j];
-      if (try_axis(unit(glm::cross(other_normal, edge)))) return best;
-      for (int k = 0; k < 3; ++k) {
-        if (try_axis(unit(glm::cross(edge, vertex_[(k + 1) % 3] - vertex_[k])))) return best;
+      const Vectors3 edge = y[(j + 1) % 3] - y[j];
+      for (int k = -1; k < 3; ++k) {
+        const Vectors3 axis =
+            unit(k < 0 ? product(normal, edge) : product(edge, vectors(edge_[k])));
+        if (try_axis(axis) || try_axis(-axis)) return best;
       }
     }
     return best;
   }
 
   /// Returns the sum of the g_i: 0 if one is negative, infinite if all exceed reach_.
-  [[nodiscard]] double apart(const glm::dvec3& axis, const glm::dvec3 (&y)[3]) const {
-    const double highest =
-        std::max({glm::dot(axis, y[0]), glm::dot(axis, y[1]), glm::dot(axis, y[2])});
-    double sum = 0.0, least = std::numeric_limits<double>::infinity();
+  [[nodiscard]] RAYGATE_INLINE DoubleQuad apart(const Vectors3& axis,
+                                                const Vectors3 (&y)[3]) const {
+    const DoubleQuad highest = maximum(maximum(dot(axis, y[0]), dot(axis, y[1])), dot(axis, y[2]));
+    DoubleQuad sum = {}, least = spread<DoubleQuad>(kInfinity);
+    LongQuad is_apart = LongQuad{} - 1;
     for (const glm::dvec3& v : vertex_) {
-      const double gap = glm::dot(axis, v) - highest;
-      if (!(gap >= -slack_)) return 0.0;
-      sum += std::max(gap, 0.0);
-      least = std::min(least, gap);
+      const DoubleQuad gap = dot(axis, vectors(v)) - highest;
+      is_apart &= gap >= -slack_;
+      sum += maximum(gap, DoubleQuad{});
+      least = minimum(least, gap);
     }
-    return least >= reach_ ? std::numeric_limits<double>::infinity() : sum;
+    sum = choose(least >= reach_, spread<DoubleQuad>(kInfinity), sum);
+    return choose(is_apart, sum, DoubleQuad{});
   }
 
   const Corners& corners_;
-  glm::dvec3 from_;
+  glm::dvec3 from_;  // origin of relative coordinates
   double reach_, slack_;
   glm::vec3 low_, high_;
-  glm::dvec3 vertex_[3], unit_normal_, inward_[3];
-  /// An edge, projected along the axis closest to the normal.
-  struct Edge {
-    double inward[2];  // unit vector
-    double most;       // largest coordinate along `inward` that is behind the edge
-  };
-  Edge edges_[3];
-  std::uint32_t across_[2];  // the two axes of the projection
+  glm::dvec3 vertex_[3], edge_[3];
+  // Axes that do not depend on the other triangle: perpendicular to an edge and in a coordinate
+  // plane; perpendicular to an edge and in the triangle's plane; the normal, both ways.
+  glm::dvec3 axes_[8];
   double inverse_height_[3];
   double normal_[3], normal_sizes_[3];
   double most_, length_;  // largest possible c, and c so far
   Overlaps overlaps_;
 };
-
-/// Updates the search for `primitive` with the triangles of a leaf, except `primitive` itself.
-template <Vectors kCode>
-RAYGATE_INLINE void take_in(const Bvh& bvh, const Bvh::Child& leaf, std::uint32_t primitive,
-                            NeighborClearanceSearch& search) {
-  LaneMask rest = (LaneMask{1} << leaf.count) - 1;
-  Bvh::LeafRoom room;
-  const float* const corners = BvhView(bvh).corners_of(leaf, room);
-  rest &= ~search.behind_an_edge<kCode>(corners, leaf.count);
-  if (primitive - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (primitive - leaf.first));
-  if (rest == 0) return;
-  const LeafCorners others(VectorCode<kCode>{}, corners, leaf.count, search.from());
-  rest &= search.near(others);
-  if (rest != 0) rest &= ~search.beyond_their_edge(others);
-  for (; rest != 0; rest &= rest - 1) {
-    const std::uint32_t other = leaf.first + static_cast<std::uint32_t>(std::countr_zero(rest));
-    search.consider(other, bvh.corners_of(other));
-  }
-}
 
 float largest_coordinate(const Bvh& bvh) {
   float size = 0.0f;
@@ -337,39 +250,28 @@ NeighborClearances::NeighborClearances(const Bvh& bvh)
       slack_(0x1p-47 * largest_coordinate(bvh)),
       known_(std::make_unique<Known[]>(bvh.primitive_count())) {}
 
-NeighborClearances::Found NeighborClearances::look(std::uint32_t primitive) const {
+NeighborClearances::Found NeighborClearances::compute(std::uint32_t primitive) const {
   const Corners corners = bvh_.corners_of(primitive);
   NeighborClearanceSearch search(corners, slack_);
-  if (search.has_hope()) {
+  if (search.is_possible()) {
     in_vectors([&](auto code) RAYGATE_BODY {
-      // Leaves are processed some time after they are found, when they are in the cache.
-      constexpr std::size_t kMostWaiting = 16;
-      Bvh::Child waiting[kMostWaiting];
-      std::size_t count = 0;
-      const auto look = [&]() RAYGATE_BODY {
-        for (std::size_t i = 0; i < count; ++i)
-          take_in<code()>(bvh_, waiting[i], primitive, search);
-        count = 0;
-      };
-      const auto found = [&](const Bvh::Child& leaf) RAYGATE_BODY {
-        if (count == kMostWaiting) look();
-        waiting[count++] = leaf;
+      const auto visit = [&](const Bvh::Child& leaf) RAYGATE_BODY {
+        search.consider<code()>(bvh_, leaf, primitive);
         return false;
       };
-      (void)any_leaf_near<code()>(bvh_, search.low(), search.high(), found);
-      look();
+      (void)any_leaf_near<code()>(bvh_, search.low(), search.high(), visit);
     });
   }
   return {search.found(), std::move(search.overlaps())};
 }
 
 const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const {
-  Found looked = look(primitive);
+  Found computed = compute(primitive);
   Known& known = known_[primitive];
   const std::lock_guard lock(mutex_);
-  const NeighborClearance& found = clearances_.emplace_back(looked.clearance);
+  const NeighborClearance& found = clearances_.emplace_back(computed.clearance);
   if (found.length < 0.0f) {
-    known.overlaps.store(&overlaps_.emplace_back(std::move(looked.overlaps)),
+    known.overlaps.store(&overlaps_.emplace_back(std::move(computed.overlaps)),
                          std::memory_order_relaxed);
   }
   known.clearance.store(&found, std::memory_order_release);

@@ -94,7 +94,7 @@ class NeighborClearances {
     Overlaps overlaps;
   };
   /// Computes the clearance of any primitive, including those of instances.
-  [[nodiscard]] Found look(std::uint32_t primitive) const;
+  [[nodiscard]] Found compute(std::uint32_t primitive) const;
 
   /// Returns the clearance of a primitive that belongs to no instance.
   [[nodiscard]] RAYGATE_INLINE const NeighborClearance& of(std::uint32_t primitive) const {

@@ -7,12 +7,6 @@
 namespace raygate {
 namespace {
 
-/// Returns the least MIS weight of a scattered ray that hits the light. Such rays also see the sky
-/// around the light; with this weight both are equally bright to them, which avoids noise.
-float min_mis_weight(const ShadingScene& shading, const Lights::Source& source) {
-  return shading.lights.light(source.light).sky;
-}
-
 /// Returns the MIS weights, relative to light paths, of emission met after mirrors and glass.
 template <class T>
 RAYGATE_INLINE T caustic_weights(const ShadingScene& shading, const Hits<T>& hits) {
@@ -33,24 +27,22 @@ RAYGATE_INLINE T caustic_weights(const ShadingScene& shading, const Hits<T>& hit
 template <class T>
 RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hits<T>& hits) {
   const Lights& lights = shading.lights;
-  float area_pdfs[Hits<T>::kCount] = {}, min_weights[Hits<T>::kCount] = {};
+  float area_pdfs[Hits<T>::kCount] = {};
   for (int k = 0; k < Hits<T>::kCount; ++k) {
     const std::uint32_t source = lights.source_of(hits.block.places[hits.place[k]].primitive);
     const PathState& state = hits.block.state(hits.place[k]);
     if (source == kNoIndex || !(state.pdf > 0.0f)) continue;
     area_pdfs[k] =
         lights.pmf<T>(source, state.scattered_at, state.normal) * lights.source(source).per_area;
-    min_weights[k] = min_mis_weight(shading, lights.source(source));
   }
-  const T area_pdf = load<T>(area_pdfs), min_weight = load<T>(min_weights);
+  const T area_pdf = load<T>(area_pdfs);
   const Triple<T> way =
       (hits.surface.point - hits.path.scattered_at) * spread<T>(lights.per_unit());
   const T squared = dot(way, way);
   const T cosine = absolute(dot(hits.surface.flat_normal, way)) / root(squared);
   const T light_pdf = choose(cosine > 0.0f, area_pdf * squared / cosine, T{});
-  const T mis_weight =
-      choose((area_pdf > 0.0f) & (hits.path.pdf > 0.0f),
-             maximum(power_heuristic(hits.path.pdf, light_pdf), min_weight), spread<T>(1.0f));
+  const T mis_weight = choose((area_pdf > 0.0f) & (hits.path.pdf > 0.0f),
+                              power_heuristic(hits.path.pdf, light_pdf), spread<T>(1.0f));
   return hits.path.throughput *
          (hits.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
 }
@@ -158,9 +150,8 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
                                      const LobeProbabilities<T>& lobes) {
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
-  const MaskOf<T> answers_lights = hits.bsdf.answers_lights();
-  const MaskOf<T> answers = answers_lights & !hits.path.are_caustic_rays();
-  if (!lights.any_power() || !any(answers)) return;
+  const MaskOf<T> is_lit = hits.bsdf.samples_lights();
+  if (!lights.any_power() || !any(is_lit)) return;
   const ChosenLights<T> chosen(lights, hits);
   IncidentLight<T> light;
   if (any(chosen.are(Kind::kPoint))) light.take(chosen.points(lights, hits));
@@ -170,16 +161,15 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
     light.take(chosen.environment(*lights.environment(), hits));
   }
   if (any(chosen.are(Kind::kArea))) light.take(chosen.areas(lights, hits));
-  light.is_asked = light.is_asked & answers;
+  light.is_asked = light.is_asked & is_lit;
 
   T mis_weight = spread<T>(1.0f);
   if (any(light.is_asked & !is_delta)) {  // scattered rays may find it, too
     const T light_pdf =
         choose(light.is_area, light.pdf * light.distance_squared / light.light_cosine, light.pdf);
     const T bsdf_pdf = hits.bsdf.pdf(light.direction) * lobes.scatter_probability();
-    const T least = chosen.get(&Lights::Light::sky);
-    mis_weight = choose((bsdf_pdf > kMinPdf) & !is_delta,
-                        minimum(power_heuristic(light_pdf, bsdf_pdf), T(1.0f - least)), mis_weight);
+    mis_weight =
+        choose((bsdf_pdf > kMinPdf) & !is_delta, power_heuristic(light_pdf, bsdf_pdf), mis_weight);
   }
   const Triple<T> scattered = hits.bsdf.eval(light.direction, is_delta);
   add_light_sample(hits, 0, light, scattered_light(hits, light, scattered, mis_weight));
@@ -190,7 +180,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
 template <class T>
 RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits) {
   constexpr int kCount = Hits<T>::kCount;
-  const auto scatters = hits.bsdf.scatters() & (hits.path.history != 1u);
+  const auto scatters = hits.bsdf.scatters() & !hits.path.is_first();
   if (!any(scatters) || hits.bsdf.has_rough_glass()) return;
   const SquarePoint<T> u = hits.random(streams::kLens);
   const auto x = unpack(u.x), y = unpack(u.y);
@@ -222,14 +212,11 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
   shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     Triple<T> radiance = zero<T>();
-    if ((kind & kEmits) != 0) {
-      radiance = choose(sees_lights(hits.path.history), emitted_radiance(shading, hits), radiance);
-    }
+    if ((kind & kEmits) != 0) radiance = emitted_radiance(shading, hits);
     if (block.batch->depth <= shading.max_depth) {
-      const LobeProbabilities<T> lobes(hits.bsdf, hits.path.are_caustic_rays());
+      const LobeProbabilities<T> lobes(hits.bsdf);
       sample_one_light(shading, hits, lobes);
-      sample_seen_caustics(shading, hits);
-      sample_scattered_ray<false>(shading, hits, lobes, radiance);
+      sample_scattered_ray<false>(shading, hits, lobes);
     }
     hits.set_radiance(radiance);
   });
@@ -242,9 +229,8 @@ void shade_light_path(const ShadingScene& shading, HitBlock& block, HitKind kind
     connect_to_camera(shading, hits);
     hits.set_radiance(zero<T>());
     if (block.batch->depth > shading.max_depth) return;
-    Triple<T> none = zero<T>();
     sample_scattered_ray<true>(shading, hits,
-                               LobeProbabilities<T>(hits.bsdf, hits.path.history == 1u), none);
+                               LobeProbabilities<T>(hits.bsdf, hits.path.is_first()));
   });
 }
 

@@ -12,8 +12,7 @@ namespace raygate {
 /// Streams of random numbers used at a surface of a path.
 namespace streams {
 inline constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
-                               kDirection = 5, kFacet = 6, kLens = 9, kCausticRay = 14,
-                               kCausticDirection = 15, kCausticFacet = 16;
+                               kDirection = 5, kFacet = 6, kLens = 9;
 }  // namespace streams
 
 // Russian roulette begins after this many surfaces, for paths with less throughput.
@@ -45,17 +44,6 @@ struct LobeProbabilities {
   }
 };
 
-/// Returns where caustics are found by caustic rays instead of the path: at scattering surfaces
-/// seen through mirrors or glass.
-template <bool kFromLight, class T>
-RAYGATE_INLINE MaskOf<T> has_seen_caustics(const ShadingScene& shading, const Hits<T>& hits) {
-  const auto scatters = hits.bsdf.scatters();
-  const auto is_seen = (hits.path.history > 1u) & (hits.path.history < kSpecularHistories);
-  if (kFromLight || shading.light_paths == nullptr || hits.bsdf.has_rough_glass())
-    return T{} > 0.0f;
-  return is_seen & scatters;
-}
-
 /// Returns the cosine of a direction with the surface, clamped, as used in ratios of densities.
 template <class T>
 RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
@@ -66,13 +54,13 @@ RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
 /// LightPaths). Light paths carry flux; their throughput has the cosines of the opposite ends of
 /// edges and the adjoint BSDF ("Robust Monte Carlo methods", 5.3).
 template <bool kFromLight, class T>
-struct WaysBack {
+struct ReversePdf {
   T arrived;  ///< PathState::light_over_camera_pdf at the hit
   T in;       ///< cosine of the incoming edge
   MaskOf<T> is_first;
 
-  RAYGATE_INLINE WaysBack(const ShadingScene& shading, const Hits<T>& hits)
-      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.history == 1u) {
+  RAYGATE_INLINE ReversePdf(const ShadingScene& shading, const Hits<T>& hits)
+      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.is_first()) {
     T ratio = hits.path.light_over_camera_pdf;
     if (!kFromLight) {
       const Triple<T> way =
@@ -121,7 +109,7 @@ struct WaysBack {
 /// Spawns one ray per hit: samples a lobe of the BSDF by its probability, then a direction.
 template <bool kFromLight, class T>
 RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& hits,
-                                         const LobeProbabilities<T>& lobes, Triple<T>& radiance) {
+                                         const LobeProbabilities<T>& lobes) {
   const Surface<T>& surface = hits.surface;
   const Bsdf<T>& bsdf = hits.bsdf;
   const SquarePoint<T> choice = hits.random(streams::kChooseLobe);
@@ -143,16 +131,15 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   next.has_flat = is_mirrored | next.is_transmitted;
   next.path.stream = hash(hits.path.stream, streams::kNextRay);
 
-  const bool has_ways_back = kFromLight || shading.light_paths != nullptr;
-  std::optional<WaysBack<kFromLight, T>> ways_back;
-  if (has_ways_back) ways_back.emplace(shading, hits);
+  const bool has_reverse = kFromLight || shading.light_paths != nullptr;
+  std::optional<ReversePdf<kFromLight, T>> reverse;
+  if (has_reverse) reverse.emplace(shading, hits);
   const bool has_rough_glass = bsdf.has_rough_glass();
   const bool has_choice = has_rough_glass || (hits.kind & kCoated) != 0;
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
   const WordOf<T> none{};
-  next.path.history = choose(has_seen_caustics<kFromLight>(shading, hits),
-                             spread<WordOf<T>>(kAfterSeenSurface), none);
+  next.path.specular_history = none;
   next.path.supersampled = choose(next.has_flat, hits.path.supersampled, none);
   next.direction = next.flat = zero<T>();
   if (any(bsdf.scatters())) {
@@ -161,20 +148,20 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.flat = next.direction;
     next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
     const T cosine = hits.cosine(next.direction);
-    const auto brings = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
-    next.path.throughput =
-        choose(brings, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
-               zero<T>());
+    const auto contributes = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
+    next.path.throughput = choose(
+        contributes, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
+        zero<T>());
     // Light paths do not pass: PathState::light_over_camera_pdf is 0 from here on.
     if (has_rough_glass) {
       if (kFromLight) return;
       next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
-      next.is_wanted = next.is_wanted & brings;
+      next.is_wanted = next.is_wanted & contributes;
       next.path.light_over_camera_pdf = T{};
       next.send(hits, 0);
       return;
     }
-    if (has_ways_back) ways_back->scatter(hits, throughput, next);
+    if (has_reverse) reverse->scatter(hits, throughput, next);
   }
   if ((hits.kind & kMirrors) != 0) {
     const Triple<T> reflected = reflect(surface.view, surface.normal);
@@ -183,12 +170,8 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
     next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
     next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
-    next.path.history = choose(is_mirrored, hits.path.after_mirror(), next.path.history);
-    const auto shows_background = next.is_wanted & is_mirrored & !bsdf.mirror_is_traced();
-    const auto counts_background = shows_background & sees_lights(hits.path.history);
-    radiance = choose(counts_background,
-                      radiance + reflected_throughput * sky(shading.lights, reflected), radiance);
-    next.is_wanted = next.is_wanted & !shows_background;
+    next.path.specular_history =
+        choose(is_mirrored, hits.path.after_mirror(), next.path.specular_history);
   }
   if ((hits.kind & kTransmits) != 0) {
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();
@@ -209,64 +192,19 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.pdf = choose(is_straight, hits.path.pdf, next.path.pdf);
     next.path.scattered_at = choose(is_straight, hits.path.scattered_at, next.path.scattered_at);
     next.path.normal = choose(is_straight, hits.path.normal, next.path.normal);
-    next.path.history = choose(is_straight, hits.path.history,
-                               choose(is_bent, hits.path.after_glass(), next.path.history));
+    next.path.specular_history =
+        choose(is_straight, hits.path.specular_history,
+               choose(is_bent, hits.path.after_glass(), next.path.specular_history));
   }
-  if (has_ways_back) {
+  if (has_reverse) {
     const auto is_bent = next.is_transmitted & bsdf.is_refracting();
     const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
     const T eta = choose(is_bent, bsdf.eta(), spread<T>(1.0f));
-    ways_back->mirror(hits, is_mirrored | is_bent, eta, next);
+    reverse->mirror(hits, is_mirrored | is_bent, eta, next);
     next.path.light_over_camera_pdf =
         choose(is_straight, hits.path.light_over_camera_pdf, next.path.light_over_camera_pdf);
   }
   next.send(hits, 0);
-}
-
-inline constexpr std::uint32_t kCausticRays = 4;  // per hit
-
-/// Spawns caustic rays from the surfaces of has_seen_caustics() towards mirrors and glass. Light
-/// paths cannot reach the lens through a mirror, so only scattered rays find these caustics.
-/// Additional rays reduce their noise. Caustic rays follow mirrors and glass only and add the
-/// emission at the end, which the path itself leaves out.
-template <class T>
-RAYGATE_INLINE void sample_seen_caustics(const ShadingScene& shading, Hits<T>& hits) {
-  const Bsdf<T>& bsdf = hits.bsdf;
-  const MaskOf<T> has_caustics = has_seen_caustics<false>(shading, hits);
-  if (!any(has_caustics)) return;
-  const auto points = unpack(hits.surface.point);
-  for (std::uint32_t i = 0; i < kCausticRays; ++i) {
-    ScatteredRays<T> next(hits);
-    next.path.index = hits.path.index * kCausticRays + i;
-    next.path.stream = hash(hits.path.stream, streams::kCausticRay);
-    next.path.history = spread<WordOf<T>>(kCausticRay);
-    next.path.scattered_at = hits.surface.point;
-    next.path.normal = hits.lit_normal();
-    next.path.supersampled = WordOf<T>{};
-    next.path.light_over_camera_pdf = T{};
-    const auto random = [&](std::uint32_t purpose) RAYGATE_BODY {
-      return sobol_point<T>(next.path.index, hash(hits.path.stream, purpose));
-    };
-    next.direction =
-        bsdf.sample(random(streams::kCausticDirection),
-                    (hits.kind & kCoated) != 0 ? random(streams::kCausticFacet).x : T{});
-    next.flat = next.direction;
-    next.has_flat = next.is_transmitted = T{} > 0.0f;
-    next.path.pdf = bsdf.pdf(next.direction);
-    const T cosine = hits.cosine(next.direction);
-    next.path.throughput = bounded(hits.path.throughput * bsdf.eval(next.direction) *
-                                   (cosine / (next.path.pdf * float{kCausticRays})));
-    const auto directions = unpack(next.direction);
-    const auto may_meet = gather<T>([&](int k) RAYGATE_BODY {
-      return shading.light_paths->may_meet(points[k], directions[k]) ? 1.0f : 0.0f;
-    });
-    next.is_wanted = has_caustics & (may_meet > 0.0f) & (next.path.pdf > kMinPdf) & (cosine > 0.0f);
-    next.send(hits, 1 + i);
-  }
-  const auto has_them = unpack(choose(has_caustics, spread<T>(1.0f), T{}));
-  for (int k = 0; k < hits.count; ++k) {
-    if (has_them[k] > 0.0f) hits.block.scattered_counts[hits.place[k]] = 1 + kCausticRays;
-  }
 }
 
 }  // namespace raygate

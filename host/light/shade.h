@@ -36,8 +36,8 @@ using ShadeFunction = void(const ShadingScene& shading, HitBlock& block, HitKind
 /// 2 of the paper. At each hit: emission; direct light of every light, with a shadow ray to each
 /// point light and to one point of each area light; an ambient term for interreflection; and rays
 /// through mirrors and glass, up to the maximum depth or until their throughput is below the
-/// threshold. With one sample per pixel flat area lights are sampled at their centre: no noise,
-/// hard shadows.
+/// threshold. With one sample per pixel a light that is one triangle or parallelogram is sampled at
+/// its centre: no noise, hard shadows.
 ShadeFunction shade_whitted;
 
 /// Path tracing (Kajiya, "The rendering equation", 1986). At each hit one light is sampled and one
@@ -177,13 +177,6 @@ template <class T>
 RAYGATE_INLINE T power_heuristic(const T& a, const T& b) {
   const T over = b / a;
   return 1.0f / (1.0f + over * over);
-}
-
-/// Returns the radiance of the environment or background in the direction of a unit vector.
-template <class T>
-RAYGATE_INLINE Triple<T> sky(const Lights& lights, const Triple<T>& direction) {
-  const Environment* const environment = lights.environment();
-  return environment != nullptr ? environment->radiance(direction) : spread<T>(lights.background());
 }
 
 /// Returns the fraction of a spot light's intensity in the direction of the hits.

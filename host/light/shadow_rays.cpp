@@ -1,7 +1,6 @@
 #include "host/light/shadow_rays.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -31,23 +30,6 @@ glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const Surface
       Bsdf<float>(surface_at<float>(scene, bvh, kind, places), kind, materials).transmission();
   return {through.x, through.y, through.z};
 }
-
-/// Scaled direction between two points, and t of the second one.
-struct Aim {
-  glm::vec3 direction{0.0f};  // 0 hits nothing
-  float whole_way = 1.0f;
-
-  Aim(const glm::vec3& from, const glm::vec3& to) {
-    const glm::vec3 way = to - from;
-    const double size = largest(way);
-    if (size == 0.0) return;
-    // Scaling by a power of two is exact.
-    constexpr std::uint64_t kExponent = 0x7FF0000000000000, kOne = 0x3FF0000000000000;
-    const std::uint64_t exponent = std::bit_cast<std::uint64_t>(size) & kExponent;
-    direction = glm::vec3(glm::dvec3(way) * std::bit_cast<double>(2 * kOne - exponent));
-    whole_way = static_cast<float>(std::bit_cast<double>(exponent));
-  }
-};
 
 // Why a sure occluder blocks all light
 //
@@ -219,15 +201,14 @@ void ShadowRays::trace(bool from_light, float enough) {
     const Segment& segment = segments_[i];
     batch_[i].origin = segment.from;
     ignored_[i] = segment.ignored;
-    if (segment.share == kNoEnd) {
-      batch_[i].direction = scaled_direction(glm::dvec3(segment.to));
-      limits_[i] = enough_[i] = kNoEnd;
-    } else {
-      const Aim aim(segment.from, segment.to);
-      batch_[i].direction = aim.direction;
-      limits_[i] = aim.whole_way * segment.share;
-      enough_[i] = aim.whole_way * std::min(enough, segment.share);
-    }
+    const bool is_endless = segment.share == kNoEnd;
+    const glm::vec3 way = is_endless ? segment.to : segment.to - segment.from;
+    const bool is_point = way == glm::vec3(0.0f);  // hits nothing
+    batch_[i].direction = is_point ? way : scaled_direction(glm::dvec3(way));
+    // t of the end, a power of two.
+    const float end = is_point ? 1.0f : largest(way) / largest(batch_[i].direction);
+    limits_[i] = is_endless ? kNoEnd : end * segment.share;
+    enough_[i] = is_endless ? kNoEnd : end * std::min(enough, segment.share);
     // Rounding may turn a grazing ray back towards its own triangle.
     if (!sources_.empty()) {
       const bool leaves = !is_ahead(batch_[i], bvh_.corners_of(segment.source));

@@ -227,7 +227,7 @@ RAYGATE_INLINE void RaySpawner::find_four(const SpawnQuery* queries, SpawnOrigin
   for (int i = 0; i < kQuad; ++i) {
     const std::uint32_t primitive = queries[i].primitive;
     if (bvh_.is_instanced(primitive)) [[unlikely]] {
-      triangles[i] = &(found_[i] = clearances_.look(primitive)).clearance;
+      triangles[i] = &(found_[i] = clearances_.compute(primitive)).clearance;
     } else {
       triangles[i] = &clearances_.of(primitive);
     }

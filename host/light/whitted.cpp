@@ -33,11 +33,12 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
     std::uint32_t indices[Hits<T>::kCount];
     std::ranges::fill(indices, i);
     const auto number = static_cast<std::uint32_t>(i - lights.points().size());
-    const AreaLight& area = lights.areas()[number];
-    const bool in_middle = shading.settings.samples == 1 && area.is_flat;
+    // Slightly beside the centre of a quadrilateral, whose triangles share an edge there: rays to
+    // an edge need exact arithmetic.
+    const bool in_middle = shading.settings.samples == 1 && own.patches == 1;
+    const SquarePoint<T> centre = {spread<T>(0.5f + 0x1p-11f), spread<T>(0.5f)};
     const LightPoint<T> point =
-        in_middle ? Lights::middle<T>(area)
-                  : lights.sample<T>(indices, hits.random(kFirstAreaLight + number));
+        lights.sample<T>(indices, in_middle ? centre : hits.random(kFirstAreaLight + number));
     if (own.is_textured && !in_middle) {
       const Lights::Light* same[Hits<T>::kCount];
       std::ranges::fill(same, &own);
@@ -156,11 +157,8 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     // Lights are sampled for reflections of these facets.
     next.path.pdf = spread<T>(1.0f);
   }
-  next.is_wanted = bsdf.mirror_is_traced();
-  if (!goes_on) next.is_wanted = next.is_wanted & !next.is_wanted;
-  if (any(next.is_wanted)) {
-    next.is_wanted = next.is_wanted & worthwhile(shading, hits, next.path.throughput);
-  }
+  next.is_wanted = T{} > 0.0f;
+  if (goes_on) next.is_wanted = worthwhile(shading, hits, next.path.throughput);
   if (any(next.is_wanted)) {
     next.reflect_off(hits, mirror_facet);
     next.path.stream = hash(hits.path.stream, kMirror);
@@ -188,19 +186,19 @@ RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
   const Bsdf<T>& bsdf = hits.bsdf;
   const Triple<T>& normal = hits.surface.normal;
   ScatteredRays<T> next(hits);
-  const WordOf<T> first = hits.path.sample - hits.path.history;
+  const WordOf<T> first = hits.path.sample - hits.path.specular_history;
   const auto send = [&](std::size_t number, const Triple<T>& share,
                         const MaskOf<T>& is_way) RAYGATE_BODY {
-    next.path.sample = first + next.path.history;
+    next.path.sample = first + next.path.specular_history;
     next.path.throughput = hits.path.throughput * share;
-    const auto is_asked = PathLanes<T>::has(hits.path.supersampled, next.path.history);
-    next.is_wanted =
-        is_way & is_asked & (next.path.history > 0u) & (largest(next.path.throughput) > 0.0f);
+    const auto is_asked = PathLanes<T>::has(hits.path.supersampled, next.path.specular_history);
+    next.is_wanted = is_way & is_asked & (next.path.specular_history > 0u) &
+                     (largest(next.path.throughput) > 0.0f);
     next.send(hits, number);
   };
   if ((hits.kind & kMirrors) != 0) {
     next.reflect_off(hits, normal);
-    send(0, bsdf.mirror(), bsdf.mirror_is_traced());
+    send(0, bsdf.mirror(), T{} == 0.0f);
   }
   if ((hits.kind & kTransmits) != 0) {
     const MaskOf<T> is_way = next.pass_through(hits, normal);
@@ -229,13 +227,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     }
     const Triple<T> shown =
         emission + bsdf.unlit() + (bsdf.diffuse() + glossy) * spread<T>(shading.ambient);
-    Triple<T> background = zero<T>();
-    if (any(!bsdf.mirror_is_traced())) {
-      const Triple<T> way = reflect(hits.surface.view, hits.surface.normal);
-      background = bsdf.mirror() * sky(shading.lights, way);
-    }
-    hits.set_radiance(hits.path.throughput *
-                      (shown + choose(bsdf.mirror_is_traced(), zero<T>(), background)));
+    hits.set_radiance(hits.path.throughput * shown);
     sample_all_lights(shading, hits);
     if (goes_on || (kind & kTransmits) != 0) spawn_specular_rays(shading, hits, goes_on);
   });

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/base/checkpoint.h"
+#include "host/base/threads.h"
 #include "sim/fp/float_format.h"
 #include "sim/test/fp/oracle.h"
 

@@ -22,9 +22,9 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
 
 /// Returns the number of samples of the next check after `samples`.
 [[nodiscard]] inline int next_error_check(int samples) {
-  int look = kFirstErrorCheck;
-  while (look <= samples) look *= 2;
-  return look;
+  int check = kFirstErrorCheck;
+  while (check <= samples) check *= 2;
+  return check;
 }
 
 [[nodiscard]] inline bool is_error_check(int samples) {

@@ -53,7 +53,7 @@ EmitterSupersampler::EmitterSupersampler(const RenderContext& context, Intersect
 void EmitterSupersampler::add(const Ray& ray, HistoryMask histories) {
   PathState& state = batch_.states.emplace_back();
   state.sample =
-      static_cast<std::uint32_t>(batch_.rays.size() * kSpecularHistories + state.history);
+      static_cast<std::uint32_t>(batch_.rays.size() * kSpecularHistories + state.specular_history);
   state.supersampled = with_prefixes(histories);
   batch_.rays.push_back(ray);
 }

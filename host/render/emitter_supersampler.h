@@ -16,7 +16,7 @@
 
 namespace raygate {
 
-/// Bit mask of a pixel's histories (PathState::history); kUnknownHistories before find().
+/// Bit mask of a pixel's histories (PathState::specular_history); kUnknownHistories before find().
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 

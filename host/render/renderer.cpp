@@ -57,7 +57,7 @@ class RenderThreads {
 
   /// Returns when the image is complete or the monitor has stopped the render.
   void run() {
-    look();
+    report();
     const int wanted = std::min(context_.settings.threads, tiles_.count);
     start(wanted);
     const auto threads = static_cast<int>(threads_.size());
@@ -76,9 +76,9 @@ class RenderThreads {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kLook{50};    // maximum interval between reports
-  static constexpr std::chrono::milliseconds kShare{500};  // between estimates of remaining work
-  static constexpr std::chrono::milliseconds kGrace{500};  // for threads to stop
+  static constexpr std::chrono::milliseconds kReport{50};     // maximum interval between reports
+  static constexpr std::chrono::milliseconds kEstimate{500};  // between estimates of remaining work
+  static constexpr std::chrono::milliseconds kGrace{500};     // for threads to stop
 
   /// Starts up to `count` threads, or fewer if the system cannot start as many.
   void start(int count) {
@@ -130,7 +130,7 @@ class RenderThreads {
   /// tile's pixels meanwhile.
   [[nodiscard]] bool render(TileRenderer& renderer, const TileQueue::Step& step) {
     const auto keep_going = [this] {
-      if (is_alone_) look();
+      if (is_alone_) report();
       const std::scoped_lock lock(mutex_);
       return !stopped_;
     };
@@ -163,15 +163,15 @@ class RenderThreads {
   void watch(int threads) {
     std::unique_lock lock(mutex_);
     while (gone_ < threads) {
-      changed_.wait_for(lock, kLook);
+      changed_.wait_for(lock, kReport);
       lock.unlock();
-      look();
+      report();
       lock.lock();
     }
   }
 
   /// Reports progress, and saves when it is time.
-  void look() {
+  void report() {
     try {
       std::unique_lock lock(mutex_);
       if (stopped_) {
@@ -182,7 +182,7 @@ class RenderThreads {
         }
         return;
       }
-      const double fraction = share_done();
+      const double fraction = completed_fraction();
       lock.unlock();
       if (monitor_.progress && !monitor_.progress(fraction)) {
         stop();
@@ -223,7 +223,7 @@ class RenderThreads {
                    film_, copy);
     std::unique_lock lock(mutex_);
     for (int i = 0; i < tiles_.count; ++i) {
-      set_region(copy, tiles_[i], region_bytes(film_, tiles_[i]));
+      copy_region(film_, tiles_[i], copy);
       if (context_.light_paths != nullptr) continue;
       lock.unlock();
       lock.lock();
@@ -233,15 +233,15 @@ class RenderThreads {
   }
 
   /// Returns the completed fraction. With an error limit, estimates it periodically from the film.
-  double share_done() {
+  double completed_fraction() {
     const double wanted = context_.settings.error;
     if (wanted == 0.0) return queue_.fraction();
     const Clock::time_point now = Clock::now();
-    if (now >= next_share_) {
-      share_ = fraction_done(film_, context_.settings.samples, wanted);
-      next_share_ = now + kShare;
+    if (now >= next_estimate_) {
+      fraction_ = fraction_done(film_, context_.settings.samples, wanted);
+      next_estimate_ = now + kEstimate;
     }
-    return share_;
+    return fraction_;
   }
 
   const RenderContext& context_;
@@ -264,8 +264,8 @@ class RenderThreads {
   bool is_alone_ = false;
   Stopwatch watch_;
   double since_snapshot_ = 0.0;
-  double share_ = 0.0;
-  Clock::time_point next_share_;
+  double fraction_ = 0.0;
+  Clock::time_point next_estimate_;
   std::vector<std::jthread> threads_;
 };
 

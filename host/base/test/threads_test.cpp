@@ -7,8 +7,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "host/base/checkpoint.h"
-
 namespace raygate {
 namespace {
 

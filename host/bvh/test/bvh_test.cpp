@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "host/base/test/using_vectors.h"
 #include "host/bvh/sah_builder.h"
 #include "host/exact/test/meshes.h"
 #include "host/scene/test/instanced_scene.h"

@@ -37,15 +37,12 @@ class EnvironmentFile : public testing::Test {
 };
 
 TEST_F(EnvironmentFile, PixelsOneByOne) {
-  // 128 * 2^(136 - 136) / 2, and a pixel that is repeated twice.
-  const HdrImage picture =
-      hdr("-Y 2 +X 2\n\x80\x40\x20\x88"s + "\0\0\0\0"s + "\x02\x04\x06\x89\x01\x01\x01\x01"s);
+  // 128 * 2^(136 - 136) / 2
+  const HdrImage picture = hdr("-Y 1 +X 2\n\x80\x40\x20\x88"s + "\0\0\0\0"s);
   EXPECT_EQ(picture.width, 2);
-  ASSERT_EQ(picture.pixels.size(), 4u);
+  ASSERT_EQ(picture.pixels.size(), 2u);
   EXPECT_EQ(picture.pixels[0], glm::vec3(64, 32, 16));
   EXPECT_EQ(picture.pixels[1], glm::vec3(0.0f));
-  EXPECT_EQ(picture.pixels[2], glm::vec3(2, 4, 6));
-  EXPECT_EQ(picture.pixels[3], glm::vec3(2, 4, 6));
 }
 
 TEST_F(EnvironmentFile, RunsOfComponents) {
@@ -70,7 +67,6 @@ TEST_F(EnvironmentFile, DamagedOnesAreRefused) {
   expect_refused(kHeader + "+Y 2 +X 2\n", "'+Y 2 +X 2', expected -Y HEIGHT +X WIDTH");
   expect_refused(kHeader + "-Y 0 +X 2\n", "'-Y 0 +X 2', expected ");
   expect_refused(kHeader + "-Y 2000000 +X 2000000\n", "more than 67108864 pixels");
-  expect_refused(kHeader + "-Y 2 +X 2\n\x01\x01\x01\x01"s, "damaged: a run that is too long");
   expect_refused(kHeader + "-Y 1 +X 8\n\x02\x02\0\x09"s, "damaged: a row of 9 pixels");
   expect_refused(kHeader + "-Y 1 +X 8\n\x02\x02\0\x08\x89\x01"s, "damaged: a run that is too long");
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "host/base/test/using_vectors.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/test/model_intersector.h"
 #include "host/scene/test/instanced_scene.h"

@@ -219,8 +219,8 @@ TEST(Bsdf, EachIllumDoesWhatItsTableSays) {
   EXPECT_NEAR(of(7, 0).transmission().x, (1 - fresnel) * 0.9, 1e-6);
   EXPECT_EQ(of(7, 1).transmission().x, of(7, 0).transmission().x)
       << "d 1 of a glass is left there by exporters";
-  EXPECT_FALSE(of(8, 1).mirror_is_traced());
-  EXPECT_FALSE(of(9, 1).mirror_is_traced());
+  EXPECT_EQ(of(8, 1).mirror().x, of(3, 1).mirror().x);
+  EXPECT_EQ(of(9, 0.5f).transmission().x, of(4, 0.5f).transmission().x);
   EXPECT_NEAR(of(10, 1).diffuse().x, 0.4, 1e-7);
 }
 

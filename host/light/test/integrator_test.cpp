@@ -7,7 +7,7 @@
 #include <new>
 #include <optional>
 
-#include "host/base/vectors.h"
+#include "host/base/test/using_vectors.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/unit_hit_testers.h"

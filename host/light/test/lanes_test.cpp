@@ -6,8 +6,8 @@
 #include <random>
 
 #include "host/base/elementary.h"
+#include "host/base/test/using_vectors.h"
 #include "host/base/triple.h"
-#include "host/base/vectors.h"
 #include "host/light/sampler.h"
 #include "host/light/scattering.h"
 

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "host/base/vectors.h"
+#include "host/base/test/using_vectors.h"
 #include "host/light/environment.h"
 #include "host/light/light_tree.h"
 #include "host/light/test/light_scenes.h"
@@ -188,42 +188,6 @@ TEST(LightTree, PrefersWhatIsNearAndFacesTheSurface) {
   }
 }
 
-/// Of all triangles, in their order, but for the last `others`.
-std::vector<OuterSide> sides_of(const std::vector<Corners>& triangles, std::size_t others = 0) {
-  const Scene scene = test::scene_of(triangles);
-  const Bvh bvh(scene);
-  std::vector<std::uint32_t> primitives(triangles.size());
-  for (std::uint32_t primitive = 0; primitive < primitives.size(); ++primitive)
-    primitives[bvh.triangle_of(primitive)] = primitive;
-  primitives.resize(primitives.size() - others);
-  return outer_sides(bvh, primitives);
-}
-
-TEST(OuterSides, OfEachSphereAreOutside) {
-  std::vector<Corners> all = test::sphere(1, 1.0f, {0, 0, 0});
-  const std::size_t count = all.size();
-  for (Corners triangle : test::sphere(1, 1.0f, {5, 0, 0})) {
-    std::swap(triangle[0], triangle[1]);
-    all.push_back(triangle);
-  }
-  const auto sides = sides_of(all);
-  ASSERT_EQ(sides.size(), 2 * count);
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    ASSERT_EQ(sides[i], i < count ? OuterSide::kAlongNormal : OuterSide::kAgainstNormal);
-  }
-}
-
-TEST(OuterSides, AreBothOfWhatIsOpen) {
-  std::vector<Corners> hole = test::sphere(1, 1.0f, {0, 0, 0}), torn = hole, full = hole;
-  hole.pop_back();
-  std::swap(torn[3][0], torn[3][1]);  // one triangle the other way round
-  full.push_back({glm::vec3(0.0f), {0.1f, 0, 0}, {0, 0.1f, 0}});
-  for (const auto& sides : {sides_of(rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})), sides_of(hole),
-                            sides_of(torn), sides_of(full, 1)}) {
-    for (const OuterSide side : sides) ASSERT_EQ(side, OuterSide::kBoth);
-  }
-}
-
 constexpr glm::vec3 kBlue(0.1f, 0.2f, 0.4f);
 
 Scene square(const Material& material) {
@@ -257,7 +221,7 @@ TEST(DefaultLights, StayInTheRangeOfTreesAndPredicates) {
   Scene scene;
   add(scene, rectangle({-8e37f, -8e37f, 0}, {1.6e38f, 0, 0}, {0, 1.6e38f, 0}),
       matte(glm::vec3(0.5f)));
-  const auto lights = preview_lights(scene, camera_from({0, 0, 3e38}));
+  const auto lights = default_lights(scene, camera_from({0, 0, 3e38}), true);
   ASSERT_FALSE(lights->points.empty());
   for (const PointLight& light : lights->points) {
     EXPECT_LE(largest(light.position), kMostCoordinate);
@@ -272,8 +236,7 @@ TEST(DefaultLights, LeaveWhiteBelowOne) {
     const Camera camera = camera_from({side, 1.5, 4});
     for (const bool is_first_look : {false, true}) {
       RenderSettings options = test::light(IntegratorKind::kWhitted, 32, 32, 1);
-      const auto lights =
-          is_first_look ? preview_lights(scene, camera) : default_lights(scene, camera);
+      const auto lights = default_lights(scene, camera, is_first_look);
       float most = 0.0f;
       for (const glm::vec4& color : test::film_of(scene, camera, options, lights).color) {
         most = std::max({most, color.r, color.g, color.b});
@@ -293,7 +256,7 @@ TEST(DefaultLights, LeaveWhiteBelowOne) {
 TEST(PreviewLights, AreTwoLightsAndTheBackground) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   scene.background = kBlue;
-  const auto lights = preview_lights(scene, camera_from({0, 0, -5}));
+  const auto lights = default_lights(scene, camera_from({0, 0, -5}), true);
   ASSERT_TRUE(lights && lights->points.size() == 2);
   EXPECT_EQ(lights->background, kBlue);
   // Seen from behind, left is +x; the lights are on the camera's side.
@@ -307,7 +270,7 @@ TEST(PreviewLights, AreTwoLightsAndTheBackground) {
 TEST(DefaultLights, CastSoftShadows) {
   const Scene wall = square(matte(glm::vec3(0.5f)));
   EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
-  EXPECT_GT(preview_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
+  EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}), true)->radius, 0.0);
   const auto floor_at = [](double x, IntegratorKind integrator, bool has_roof) {
     Scene scene;
     add(scene, rectangle({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}), matte(glm::vec3(0.5f)));
@@ -336,7 +299,7 @@ TEST(DefaultLights, CastSoftShadows) {
 TEST(DefaultLights, AreThoseOfScenesThatNothingLights) {
   const auto expect = [](const Scene& scene, bool by_default, bool in_preview, const char* what) {
     EXPECT_EQ(default_lights(scene, camera_from({0, 0, 5})).has_value(), by_default) << what;
-    const auto lights = preview_lights(scene, camera_from({0, 0, 5}));
+    const auto lights = default_lights(scene, camera_from({0, 0, 5}), true);
     EXPECT_EQ(lights.has_value(), in_preview) << what;
     EXPECT_TRUE(!lights || lights->points.size() == 2) << what;
   };
@@ -361,7 +324,7 @@ TEST(DefaultLights, AreThoseOfScenesThatNothingLights) {
 TEST(PreviewLights, StandAtACameraWithinTheScene) {
   Scene scene = square(matte(glm::vec3(0.5f)));
   add(scene, rectangle({-1, -1, 4}, {2, 0, 0}, {0, 2, 0}), matte(glm::vec3(0.5f)));
-  const auto lights = preview_lights(scene, camera_from({0, 0, 2}));
+  const auto lights = default_lights(scene, camera_from({0, 0, 2}), true);
   ASSERT_TRUE(lights && lights->points.size() == 1);
   EXPECT_EQ(lights->points[0].position, glm::vec3(0, 0, 2));
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "host/base/test/using_vectors.h"
 #include "host/exact/exact.h"
 #include "host/exact/test/meshes.h"
 #include "host/scene/camera.h"

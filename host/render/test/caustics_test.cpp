@@ -191,38 +191,6 @@ TEST(Caustics, OfAnEnvironmentHaveTheMeansOfChance) {
   expect_same_means(scene, camera_at({0.5, 2.5, 5}, {0, -0.7, 0}, 40.0), 256);
 }
 
-// The same floor beside a mirror as below another lamp, seen in a second mirror overhead.
-TEST(Caustics, InAMirrorAreThoseOfAnotherLamp) {
-  Scene floor;
-  add(floor, rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), matte(glm::vec3(0.5f)));
-  add(floor, rectangle({1, 3, -0.5f}, {0, 1, 0.3f}, {0, 0, 1}), emitter({4, 3, 2}));
-  add(floor, rectangle({-0.5f, 4, -0.5f}, {1, 0, 0}, {0, 0, 1}), mirror(0.9f));
-  Scene with_mirror = floor, with_lamp = floor;
-  add(with_mirror, rectangle({3, 0.1f, -1.5f}, {0, 0, 3}, {0, 4, 0}), mirror(0.8f));
-  add(with_lamp, rectangle({5, 3, -0.5f}, {0, 1, 0.3f}, {0, 0, 1}), emitter({3.2f, 2.4f, 1.6f}));
-  const Camera overhead = camera_at({0, 2, 0}, {0, 4, 0}, 10.0);
-  const glm::dvec3 expected =
-      mean_colour(caustics_of(with_lamp, overhead, options_of(16, 2048, Caustics::kOff)));
-  const glm::dvec3 found = mean_colour(caustics_of(with_mirror, overhead, options_of(16, 1024)));
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k], expected[k], 0.01 * expected[k]);
-}
-
-// Mirrors that show the background and nothing else are none that caustics come from.
-TEST(Caustics, OfMirrorsThatAreNotTracedAreNotCountedTwice) {
-  Scene scene;
-  scene.background = glm::dvec3(0.5);
-  Material untraced = mirror(1.0f);
-  untraced.illumination_model = 8;
-  add(scene, rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), matte(glm::vec3(0.5f)));
-  add(scene, rectangle({-0.5f, 4, -0.5f}, {1, 0, 0}, {0, 0, 1}), mirror(0.9f));
-  add(scene, rectangle({-0.4f, 2.5f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}), untraced);
-  add(scene, rectangle({1, 3, -0.5f}, {0, 1, 0.3f}, {0, 0, 1}), emitter(glm::vec3(0.1f)));
-  const Camera overhead = camera_at({0.45, 2, 0}, {0.45, 4, 0}, 2.0);
-  const double off =
-      mean_colour(caustics_of(scene, overhead, options_of(16, 1024, Caustics::kOff))).x;
-  EXPECT_NEAR(mean_colour(caustics_of(scene, overhead, options_of(16, 1024))).x, off, 0.005 * off);
-}
-
 // Every kind of surface in a mirror, under a lamp and a sky with a bright part.
 TEST(Caustics, InAMirrorHaveTheMeansOfChance) {
   Scene scene;
@@ -236,9 +204,6 @@ TEST(Caustics, InAMirrorHaveTheMeansOfChance) {
   half.specular = glm::vec3(0.4f);
   half.illumination_model = 3;
   add_smooth(scene, {-1.9f, -0.6f, -2}, 0.4f, half);
-  Material untraced = mirror(0.9f);
-  untraced.illumination_model = 8;
-  add_smooth(scene, {1.9f, -0.1f, -1.2f}, 0.9f, untraced);
   add_smooth(scene, {-0.6f, -0.6f, -2.4f}, 0.4f, facets(1.0f, 0.4f, 0.0f));
   EnvironmentMap& map = scene.environment.emplace();
   map.width = 8;

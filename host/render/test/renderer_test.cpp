@@ -115,24 +115,6 @@ TEST(Renderer, FilmDoesNotDependOnThreadsOrOrder) {
       film, render(scene, bvh, kCamera, size(200, 150), serial(bvh, Order::kPlanesFirst), other)));
 }
 
-TEST(Renderer, WindowIsAPartOfTheWhole) {
-  const Scene scene = sphere_in_box();
-  const Bvh bvh(scene);
-  RenderStats stats;
-  const Film whole = render(scene, bvh, kCamera, size(100, 80), serial(bvh), stats);
-  RenderSettings options = size(100, 80);
-  options.window = {13, 7, 60, 71};
-  const Film part = render(scene, bvh, kCamera, options, serial(bvh), stats);
-  ASSERT_EQ(part.color.size(), 47u * 64u);
-  for (int y = 7; y < 71; ++y) {
-    for (int x = 13; x < 60; ++x) {
-      const std::size_t in_part = std::size_t(y - 7) * 47 + (x - 13), in_whole = y * 100u + x;
-      ASSERT_EQ(part.primitive[in_part], whole.primitive[in_whole]);
-      ASSERT_EQ(part.color[in_part], whole.color[in_whole]);
-    }
-  }
-}
-
 TEST(Renderer, MissesLeaveNothing) {
   const Scene scene = test::scene_of({});
   const Bvh bvh(scene);

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/base/vectors.h"
+#include "host/base/test/using_vectors.h"
 #include "host/exact/test/meshes.h"
 #include "host/exact/test/rational_oracle.h"
 #include "host/intersect/unit/test/model_intersector.h"
