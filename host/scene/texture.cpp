@@ -132,27 +132,6 @@ Texture Texture::decode(std::string_view bytes, const std::string& file, Content
   return {width, height, std::move(texels)};
 }
 
-Texture Texture::combine_channels(const Texture* green, const Texture* blue) {
-  const Texture& one = green != nullptr ? *green : *blue;
-  const Texture& other = blue != nullptr ? *blue : one;
-  const int width = std::max(one.width_, other.width_),
-            height = std::max(one.height_, other.height_);
-  std::vector<Texel> texels;
-  texels.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const auto code = [&](const Texture* texture) -> std::uint8_t {
-        if (texture == nullptr) return 255;
-        const auto column = std::int64_t{x} * texture->width_ / width;
-        const auto row = std::int64_t{y} * texture->height_ / height;
-        return texture->texels_[static_cast<std::size_t>(row * texture->width_ + column)][0];
-      };
-      texels.push_back({255, code(green), code(blue)});
-    }
-  }
-  return {width, height, std::move(texels)};
-}
-
 double Texture::min_code() const {
   std::uint8_t least = 255;
   for (const Texel& codes : texels_) least = std::min(least, codes[0]);
