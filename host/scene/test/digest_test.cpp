@@ -69,8 +69,7 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
   };
   using Change = std::function<void(Material&)>;
   for (const Change& change : std::initializer_list<Change>{
-           [](Material& m) { m.specular.g = 0.5f; },
-           [](Material& m) { m.illumination_model = 1; },
+           [](Material& m) { m.specular.g = 0.5f; }, [](Material& m) { m.illumination_model = 1; },
            [](Material& m) { m.diffuse_map.texture = 0; },
            [](Material& m) { m.diffuse_map.mapping.sampling = Wrap::kClamp; },
            [](Material& m) { m.diffuse_map.mapping.sampling = Wrap::kMirror; },
