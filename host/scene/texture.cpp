@@ -38,7 +38,7 @@ const std::array<float, 256>& linear_of_code() {
 /// Two adjacent texels of a row or column, and the weight of the second one.
 struct Neighbours {
   int first, second;
-  double share;
+  double weight;
 };
 
 /// Returns a coordinate in texels, relative to the centre of the first: in [-0.5, size - 0.5].
@@ -62,9 +62,9 @@ int wrapped(int i, int size, Wrap wrap) {
 
 Neighbours neighbours(double coordinate, int size, Wrap wrap, bool is_nearest) {
   const double place = place_along(coordinate, size, wrap), below = std::floor(place);
-  const double share = place - below;
-  const int first = static_cast<int>(below) + (is_nearest && share >= 0.5 ? 1 : 0);
-  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), is_nearest ? 0.0 : share};
+  const double weight = place - below;
+  const int first = static_cast<int>(below) + (is_nearest && weight >= 0.5 ? 1 : 0);
+  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), is_nearest ? 0.0 : weight};
 }
 
 /// Returns whether the bytes begin like a format that Texture::load() supports. The library has
@@ -181,9 +181,9 @@ glm::vec3 Texture::between(const glm::dvec2& uv, const Sampling& sampling,
                                  static_cast<std::size_t>(column)];
     return glm::dvec3(value(codes[0]), value(codes[1]), value(codes[2]));
   };
-  const glm::dvec3 upper = glm::mix(texel(x.first, y.first), texel(x.second, y.first), x.share);
-  const glm::dvec3 lower = glm::mix(texel(x.first, y.second), texel(x.second, y.second), x.share);
-  return glm::vec3(glm::mix(upper, lower, y.share));
+  const glm::dvec3 upper = glm::mix(texel(x.first, y.first), texel(x.second, y.first), x.weight);
+  const glm::dvec3 lower = glm::mix(texel(x.first, y.second), texel(x.second, y.second), x.weight);
+  return glm::vec3(glm::mix(upper, lower, y.weight));
 }
 
 glm::vec3 Texture::at(const glm::dvec2& uv, const Sampling& sampling) const {

@@ -53,7 +53,7 @@ using PlacedNode = std::pair<const Json*, glm::dmat4>;
 
 /// Returns the options required by glTF 2.0, 3.7.2.1: primitives without normals are flat.
 LoadOptions as_specified(LoadOptions options) {
-  options.smooth_if_unsaid = false;
+  options.smooth_by_default = false;
   return options;
 }
 
@@ -176,7 +176,7 @@ class GltfReader {
       const Shape shape = shape_of(node);
       const int skin = index_in(node, "skin");
       if (skin < 0 && uses_[shape] > 1) {
-        instances_.push_back({shape, world, object});
+        instances_.push_back({shape, world * glm::dmat4(1.0), object});  // without negative zeros
       } else {
         GltfPlacement placement{world, &shape.second, {}};
         if (skin >= 0) file_.optionally("left out", [&] { placement.joints = joints_of(skin); });

@@ -264,7 +264,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   scene.texcoords = std::move(texcoords_);
   if (options.smooth || !groups.empty()) {
     add_smooth_normals(groups, options.smooth, scene);
-  } else if (options.smooth_if_unsaid && !is_smoothing_said_ && scene.normals.empty()) {
+  } else if (options.smooth_by_default && !defines_smoothing_ && scene.normals.empty()) {
     add_smooth_normals(groups, LoadOptions::kSmoothAngle, scene, FlatFaces::kStayFlat);
   }
 }

@@ -69,7 +69,7 @@ class MeshBuilder {
     others_.expand(box.high);
   }
   /// Notes that the file defines smoothing, so that none is guessed.
-  void smoothing_is_said() { is_smoothing_said_ = true; }
+  void defines_smoothing() { defines_smoothing_ = true; }
   /// Makes build() accept a scene in which no face has an area.
   void allow_empty() { may_be_empty_ = true; }
 
@@ -104,7 +104,7 @@ class MeshBuilder {
   std::string file_name_;
   Source source_;
   Bounds3 others_;
-  bool may_be_empty_ = false, is_smoothing_said_ = false;
+  bool may_be_empty_ = false, defines_smoothing_ = false;
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> colors_;  // of the first positions; kNoColor: white
   std::size_t bad_colors_ = 0;     // number of colours that are not finite

@@ -19,7 +19,7 @@ struct LoadOptions {
   std::optional<double> smooth = {};
   /// Whether curved surfaces of an OBJ, PLY or STL file without normals and smoothing groups are
   /// smoothed with kSmoothAngle, unless `smooth` is set.
-  bool smooth_if_unsaid = false;
+  bool smooth_by_default = false;
   static constexpr double kSmoothAngle = 30.0;
 };
 
