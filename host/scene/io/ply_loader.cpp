@@ -1,6 +1,7 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdio>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
+#include "host/exact/exact.h"
 #include "host/scene/io/find_file.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
@@ -22,31 +24,47 @@ constexpr std::string_view kTypeNames[][2] = {
     {"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"},   {"ushort", "uint16"},
     {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
 
-/// Attributes of vertices, with the names of their properties. There are three names for texture
-/// coordinates, of which the first ones in this order are read.
-enum Attribute { kPosition, kNormal, kColor, kTexcoord, kAttributes = kTexcoord + 3 };
-constexpr std::array<std::string_view, 3> kAttributeNames[] = {
-    {"x", "y", "z"}, {"nx", "ny", "nz"}, {"red", "green", "blue"},
-    {"s", "t"},      {"u", "v"},         {"texture_u", "texture_v"}};
-
 struct Property {
   std::string name;
   NumberType type = NumberType::kFloat;
   std::optional<NumberType> count_type;  // of a list
+  bool is_used = false;
+  std::vector<double> values = {};  // of the element that was read last: one, or a list
 };
 
 struct Element {
   std::string name;
   long long count = 0;
-  std::vector<Property> properties;
+  std::vector<Property> properties = {};
 
-  /// Returns the index of a property, which is a list or is none.
-  [[nodiscard]] std::optional<std::size_t> find(std::string_view property, bool is_list) const {
-    const auto found = std::ranges::find(properties, property, &Property::name);
-    if (found == properties.end() || found->count_type.has_value() != is_list) return std::nullopt;
-    return static_cast<std::size_t>(found - properties.begin());
+  /// Returns a list, and marks it as used; nullptr if there is none.
+  const Property* use_list(std::string_view name) {
+    const auto found = std::ranges::find(properties, name, &Property::name);
+    if (found == properties.end() || !found->count_type) return nullptr;
+    found->is_used = true;
+    return &*found;
   }
 };
+
+/// The properties of an attribute of vertices; empty if one of them is missing.
+using Attribute = std::vector<Property*>;
+
+Attribute attribute_of(Element& element, std::initializer_list<std::string_view> names) {
+  Attribute attribute;
+  for (const std::string_view name : names) {
+    const auto found = std::ranges::find(element.properties, name, &Property::name);
+    if (found == element.properties.end() || found->count_type) return {};
+    attribute.push_back(&*found);
+  }
+  for (Property* const property : attribute) property->is_used = true;
+  return attribute;
+}
+
+glm::dvec3 vector_of(const Attribute& attribute) {
+  glm::dvec3 vector(0.0);
+  for (int k = 0; const Property* property : attribute) vector[k++] = property->values[0];
+  return vector;
+}
 
 enum class Format { kAscii, kLittle, kBig };
 
@@ -65,7 +83,7 @@ class PlyReader {
     // Messages about binary data name no line.
     words_ = format_ == Format::kAscii ? Words(name_, text_, lines_ + 1) : Words(name_, "");
     bool has_vertices = false;
-    for (const Element& element : elements_) {
+    for (Element& element : elements_) {
       if (element.name == "vertex" && !has_vertices) {
         read_vertices(element);
         has_vertices = true;
@@ -73,9 +91,7 @@ class PlyReader {
         read_faces(element);
       } else if (!element.properties.empty()) {
         unread_.push_back("element " + in_quotes(element.name));
-        for (long long i = 0; i < element.count; ++i) {
-          for (const Property& property : element.properties) skip(property);
-        }
+        for (long long i = 0; i < element.count; ++i) read_row(element);
       }
     }
     if (!texture_.empty() && !has_texcoords_) {
@@ -181,16 +197,6 @@ class PlyReader {
 
   // Data
 
-  /// Takes a finite number within the range of float.
-  double take(NumberType type, std::string_view what) {
-    if (format_ == Format::kAscii) return words_.number(what);
-    const double number = take_any(type);
-    if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
-      words_.fail(std::string(what) + ": not a finite number");
-    }
-    return number;
-  }
-
   /// Takes any number; NaN for a word that is no number.
   double take_any(NumberType type) {
     const bool is_ascii = format_ == Format::kAscii;
@@ -203,123 +209,94 @@ class PlyReader {
     return number_at(bytes, type, format_ == Format::kBig);
   }
 
-  /// Takes the length of a list. If the file is shorter, taking its elements fails.
-  long long take_count(const Property& list) {
-    const double count = take(*list.count_type, "a list's length");
-    if (!is_whole(count, 0xFFFF'FFFF)) {
-      words_.fail("a list's length: expected a whole number from 0 to 4294967295");
-    }
-    return static_cast<long long>(count);
-  }
-
-  void skip(const Property& property) {
-    const long long count = property.count_type ? take_count(property) : 1;
-    for (long long i = 0; i < count; ++i) (void)take_any(property.type);
-  }
-
-  void read_vertices(const Element& element) {
-    struct Slot {
-      int attribute = -1, component = 0;
-    };
-    std::vector<Slot> slots(element.properties.size());
-    const auto find_all = [&](int attribute) {
-      std::vector<std::size_t> found;
-      for (const std::string_view name : kAttributeNames[attribute]) {
-        if (name.empty()) continue;
-        const auto property = element.find(name, false);
-        if (!property) return false;
-        found.push_back(*property);
+  /// Reads the next values of all properties.
+  void read_row(Element& element) {
+    row_line_ = words_.line();
+    for (Property& property : element.properties) {
+      const double count = property.count_type ? take_any(*property.count_type) : 1.0;
+      if (!is_whole(count, 0xFFFF'FFFF)) {
+        fail_row("a list's length: expected a whole number from 0 to 4294967295");
       }
-      for (int k = 0; const std::size_t property : found) slots[property] = {attribute, k++};
-      return true;
-    };
-    if (!find_all(kPosition)) words_.fail("vertices without x, y and z");
-    has_normals_ = find_all(kNormal);
-    const bool has_colors = find_all(kColor);
-    int texcoord = kTexcoord;
-    while (texcoord < kAttributes && (texture_.empty() || !find_all(texcoord))) ++texcoord;
-    has_texcoords_ = texcoord < kAttributes;
-    for (std::size_t p = 0; p < slots.size(); ++p) {
-      if (slots[p].attribute < 0) note_unread(element, p);
+      property.values.clear();
+      for (double k = 0.0; k < count; ++k) property.values.push_back(take_any(property.type));
+    }
+  }
+
+  [[noreturn]] void fail_row(const std::string& what) const {
+    throw InputError(name_, row_line_, what);
+  }
+
+  void note_unread(const Element& element) {
+    for (const Property& property : element.properties) {
+      if (property.is_used) continue;
+      unread_.push_back(in_quotes(property.name) + " of " + element.name);
+    }
+  }
+
+  void read_vertices(Element& element) {
+    const Attribute position = attribute_of(element, {"x", "y", "z"}),
+                    normal = attribute_of(element, {"nx", "ny", "nz"}),
+                    color = attribute_of(element, {"red", "green", "blue"});
+    if (position.empty()) words_.fail("vertices without x, y and z");
+    Attribute texcoord;
+    if (!texture_.empty()) texcoord = attribute_of(element, {"s", "t"});
+    if (!texture_.empty() && texcoord.empty()) texcoord = attribute_of(element, {"u", "v"});
+    if (!texture_.empty() && texcoord.empty()) {
+      texcoord = attribute_of(element, {"texture_u", "texture_v"});
+    }
+    has_normals_ = !normal.empty();
+    has_texcoords_ = !texcoord.empty();
+    note_unread(element);
+    glm::dvec3 white(1.0);  // codes of 1
+    for (int k = 0; const Property* property : color) {
+      if (property->type == NumberType::kUint8) white[k] = 255.0;
+      if (property->type == NumberType::kUint16) white[k] = 65535.0;
+      ++k;
     }
     for (long long i = 0; i < element.count; ++i) {
-      glm::dvec3 values[kAttributes]{};
-      for (std::size_t p = 0; p < slots.size(); ++p) {
-        const Property& property = element.properties[p];
-        const auto [attribute, component] = slots[p];
-        if (attribute < 0) {
-          skip(property);
-        } else if (attribute == kPosition) {
-          values[attribute][component] = take(property.type, property.name);
-        } else {
-          const double one = attribute == kColor ? largest_code(property.type) : 1.0;
-          values[attribute][component] = take_any(property.type) / one;
-        }
+      read_row(element);
+      const glm::dvec3 at = vector_of(position);
+      if (!is_finite(at) || largest(at) > std::numeric_limits<float>::max()) {
+        char found[64];
+        std::snprintf(found, sizeof found, "%g %g %g", at.x, at.y, at.z);
+        fail_row(std::string("a vertex: found ") + found +
+                 ", expected numbers within the range of float");
       }
-      mesh_.add_position(values[kPosition]);
-      if (has_colors) mesh_.add_color(glm::vec3(values[kColor]));
-      if (has_normals_) mesh_.add_normal(values[kNormal]);
-      if (has_texcoords_) mesh_.add_texcoord(glm::vec2(values[texcoord]));
+      mesh_.add_position(at);
+      if (!color.empty()) mesh_.add_color(glm::vec3(vector_of(color) / white));
+      if (has_normals_) mesh_.add_normal(vector_of(normal));
+      if (has_texcoords_) mesh_.add_texcoord(glm::vec2(vector_of(texcoord)));
     }
   }
 
-  /// Returns the code of 1 in a colour of that type.
-  [[nodiscard]] static double largest_code(NumberType type) {
-    return type == NumberType::kUint8 ? 255.0 : type == NumberType::kUint16 ? 65535.0 : 1.0;
-  }
-
-  void note_unread(const Element& element, std::size_t property) {
-    unread_.push_back(in_quotes(element.properties[property].name) + " of " + element.name);
-  }
-
-  [[nodiscard]] std::uint32_t take_index(NumberType type) {
-    const double index = take(type, "a vertex index");
-    if (!is_whole(index, 2147483646.0)) {
-      words_.fail("a vertex index: expected a whole number from 0 to 2147483646");
-    }
-    return static_cast<std::uint32_t>(index);
-  }
-
-  void read_faces(const Element& element) {
-    auto indices = element.find("vertex_indices", true);
-    if (!indices) indices = element.find("vertex_index", true);
-    if (!indices) words_.fail("element face without a list vertex_indices");
+  void read_faces(Element& element) {
+    const Property* indices = element.use_list("vertex_indices");
+    if (indices == nullptr) indices = element.use_list("vertex_index");
+    if (indices == nullptr) words_.fail("element face without a list vertex_indices");
     // The texture coordinates of corners, in pairs, replace those of vertices.
-    std::optional<std::size_t> texcoords;
-    if (!texture_.empty()) texcoords = element.find("texcoord", true);
-    for (std::size_t p = 0; p < element.properties.size(); ++p) {
-      if (p != indices && p != texcoords) note_unread(element, p);
-    }
+    const Property* const pairs = texture_.empty() ? nullptr : element.use_list("texcoord");
+    note_unread(element);
     std::vector<FaceCorner> corners;
-    std::vector<double> pairs;
     for (long long i = 0; i < element.count; ++i) {
-      const std::size_t face_line = words_.line();
-      for (std::size_t p = 0; p < element.properties.size(); ++p) {
-        const Property& property = element.properties[p];
-        if (p == indices) {
-          corners.clear();
-          for (long long count = take_count(property); count > 0; --count) {
-            const std::uint32_t at = take_index(property.type);
-            corners.push_back({at, has_texcoords_ ? at : kNoIndex, has_normals_ ? at : kNoIndex});
-          }
-        } else if (p == texcoords) {
-          pairs.clear();
-          for (long long count = take_count(property); count > 0; --count) {
-            pairs.push_back(take_any(property.type));
-          }
-        } else {
-          skip(property);
+      read_row(element);
+      corners.clear();
+      for (const double index : indices->values) {
+        if (!is_whole(index, 2147483646.0)) {
+          fail_row("a vertex index: expected a whole number from 0 to 2147483646");
         }
+        const auto at = static_cast<std::uint32_t>(index);
+        FaceCorner& corner = corners.emplace_back();
+        corner = {at, has_texcoords_ ? at : kNoIndex, has_normals_ ? at : kNoIndex};
+        if (pairs == nullptr) continue;
+        const std::size_t u = 2 * corners.size() - 2;
+        const bool has_pair = u + 1 < pairs->values.size();
+        corner.texcoord =
+            has_pair ? static_cast<std::uint32_t>(mesh_.counts().texcoords) : kNoIndex;
+        if (has_pair) mesh_.add_texcoord({pairs->values[u], pairs->values[u + 1]});
       }
-      for (std::size_t k = 0; texcoords && k < corners.size(); ++k) {
-        corners[k].texcoord = kNoIndex;
-        if (2 * k + 1 >= pairs.size()) continue;
-        corners[k].texcoord = static_cast<std::uint32_t>(mesh_.counts().texcoords);
-        mesh_.add_texcoord({pairs[2 * k], pairs[2 * k + 1]});
-      }
-      mesh_.add_face(corners, face_line);
+      mesh_.add_face(corners, row_line_);
     }
-    has_texcoords_ = has_texcoords_ || texcoords;
+    has_texcoords_ = has_texcoords_ || pairs != nullptr;
   }
 
   /// Sets the texture of the material.
@@ -335,10 +312,11 @@ class PlyReader {
   }
 
   std::string name_;
-  std::string_view text_;  // the unread part of the header or of binary data
-  char line_end_ = '\n';   // of the header
-  std::size_t lines_ = 0;  // number of the header's lines that were read
-  Words words_;            // of the header's last line, or of all ASCII data
+  std::string_view text_;     // the unread part of the header or of binary data
+  char line_end_ = '\n';      // of the header
+  std::size_t lines_ = 0;     // number of the header's lines that were read
+  Words words_;               // of the header's last line, or of all ASCII data
+  std::size_t row_line_ = 0;  // of the element that was read last
   Format format_ = Format::kAscii;
   std::vector<Element> elements_;
   std::vector<std::string> unread_;  // properties and elements to warn about
