@@ -53,8 +53,8 @@ std::string_view Words::take() {
 }
 
 bool Words::take_if(std::string_view word) {
-  const bool is_equal = std::ranges::equal(
-      word, word_, [](char small, char letter) { return small == in_lower_case(letter); });
+  const auto is_same = [](char small, char letter) { return small == in_lower_case(letter); };
+  const bool is_equal = word == word_ || std::ranges::equal(word, word_, is_same);
   if (is_equal) (void)take();
   return is_equal;
 }
