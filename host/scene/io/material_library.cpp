@@ -1,7 +1,6 @@
 #include "host/scene/io/material_library.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iomanip>
 #include <limits>

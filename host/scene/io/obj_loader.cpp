@@ -2,15 +2,11 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <exception>
-#include <limits>
 #include <map>
-#include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "host/scene/io/material_library.h"
