@@ -314,7 +314,7 @@ Options with_words(const Options& given, const std::vector<std::string>& words) 
   options.scene_file = given.scene_file;
   options.is_bare_model = given.is_bare_model;
   options.camera = camera_request(options.scene_file);
-  options.environment = options.scene_file.lights.environment;
+  options.environment = options.scene_file.environment;
   options = read_options(options, words);
   options.words = words;
   require_distinct_outputs(options);

@@ -90,8 +90,7 @@ class Run {
                   {.strict = options_.strict,
                    .keep_instances = true,
                    .smooth = options_.smooth,
-                   .smooth_if_unsaid = options_.is_bare_model,
-                   .threads = options_.threads},
+                   .smooth_by_default = options_.is_bare_model},
                   options_.environment, options_.camera.up);
     report_.load_seconds = seconds_since(start_);
     report_.triangles = triangle_count(scene_);

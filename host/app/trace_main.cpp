@@ -182,10 +182,8 @@ std::string summary(const TraceOptions& options, const CornerRounding& rounding,
 
 int run(const TraceOptions& options) {
   if (!options.is_to_standard_output()) require_writable(options.output);
-  Scene scene = load(read_scene_file(options.scene), {.strict = options.strict,
-                                                      .keep_instances = true,
-                                                      .textures = false,
-                                                      .threads = options.engine.threads});
+  Scene scene = load(read_scene_file(options.scene),
+                     {.strict = options.strict, .keep_instances = true, .textures = false});
   resolve_instances(scene, options.engine.instances, options.scene);
   for (const std::string& warning : scene.warnings) print_warning(warning);
   prepare_engine(options.engine);

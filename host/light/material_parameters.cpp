@@ -28,7 +28,8 @@ void MaterialParameters::set(const Material& material, const MetallicRoughness& 
   reflectance = root * root * shares.specular_color;
   coat = std::clamp(shares.coat, 0.0f, 1.0f);
   coat_roughness = std::clamp(shares.coat_roughness, 0.0f, 1.0f);
-  const bool has_map = shares.map.texture != kNoIndex;
+  const bool has_map =
+      shares.roughness_map.texture != kNoIndex || shares.metallic_map.texture != kNoIndex;
   refracts = transmission > 0.0f && (metallic < 1.0f || has_map);
   is_glass = is_fresnel = false;
   opacity = refracts ? 1.0f : std::clamp(material.opacity, 0.0f, 1.0f);
@@ -60,11 +61,10 @@ MaterialParameters::MaterialParameters(const Material& material) {
   emission = material.emission;
   if (is_any(emission)) kind |= kEmits;
   emits_evenly = is_any(emission) && material.emission_map.texture == kNoIndex;
-  if (material.diffuse_texture != kNoIndex) kind |= kInterpolates;
+  if (material.diffuse_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.emission_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.normal_map.texture != kNoIndex) kind |= kInterpolates | kIsBumpy;
-  has_mask = (material.opacity_map.texture != kNoIndex || material.has_vertex_opacity) &&
-             !material.opacity_blends;
+  has_mask = material.opacity_map.texture != kNoIndex && !material.opacity_blends;
   if (material.opacity_blends) kind |= kInterpolates | kTransmits;
   if (material.metallic_roughness) {
     set(material, *material.metallic_roughness);

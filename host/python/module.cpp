@@ -162,10 +162,8 @@ class PythonScene {
     const std::filesystem::path path = std::string(file.c_str(), file.size());
     const nb::gil_scoped_release release;
     file_ = read_scene_file(path);
-    scene_ = load(
-        file_,
-        {.strict = strict, .keep_instances = true, .smooth = smooth, .threads = keywords.threads},
-        file_.lights.environment);
+    scene_ = load(file_, {.strict = strict, .keep_instances = true, .smooth = smooth},
+                  file_.environment);
     resolve_instances(scene_, InstanceMode::kFlatten, path);
     build(keywords.threads);
   }
@@ -181,10 +179,10 @@ class PythonScene {
     const nb::gil_scoped_release release;
     MeshBuilder mesh(name, MeshBuilder::Source::kArray);
     for (std::size_t i = 0; i + 2 < corners.shape(0); i += 3) {
-      std::array<FileCorner, 3> face;
+      std::array<FaceCorner, 3> face;
       for (std::size_t k = 0; k < 3; ++k) {
         mesh.add_position(points.vector(i + k));
-        face[k].position = static_cast<std::int32_t>(i + k + 1);
+        face[k].position = static_cast<std::uint32_t>(i + k);
       }
       mesh.add_face(face, i / 3 + 1);
     }

@@ -49,12 +49,6 @@ Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box) {
   return result;
 }
 
-Bounds3 transform_bounds(const glm::dmat4& world, const glm::dvec3& origin, const Bounds3& box) {
-  Instance instance;
-  set_rows(world, origin, glm::dvec3(0.0), instance);
-  return transform_bounds(instance.rows, box);
-}
-
 Bounds3 triangle_bounds(const Scene& scene) {
   Bounds3 box;
   for (const Triangle& triangle : scene.triangles) {

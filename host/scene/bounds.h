@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "host/exact/exact.h"
 #include "host/scene/instances.h"
@@ -30,9 +31,6 @@ struct Bounds3 {
 
 /// Returns a box around the image of `box` under an instance transform. It is as tight as possible.
 [[nodiscard]] Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box);
-/// Returns a world-space box around `box`, whose coordinates are relative to `origin`.
-[[nodiscard]] Bounds3 transform_bounds(const glm::dmat4& world, const glm::dvec3& origin,
-                                       const Bounds3& box);
 
 /// Returns the bounds of the corners of all triangles, including those of instances.
 [[nodiscard]] Bounds3 triangle_bounds(const Scene& scene);
@@ -59,21 +57,20 @@ void for_each_position(const Scene& scene, const Visit& visit) {
 /// of their indices. Skips triangles without area.
 template <class Visit>
 void for_each_face(const Scene& scene, const Visit& visit) {
-  Corners corners;
-  for (const Triangle& face : scene.triangles) {
-    if (is_left_out(face)) continue;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = scene.positions[face.vertices[k]];
-    visit(corners, face);
-  }
-  for (const Instance& instance : scene.instances) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    for (const Triangle& face : mesh.triangles) {
+  const auto visit_all = [&](const std::vector<Triangle>& triangles, const auto& position_of) {
+    Corners corners;
+    for (const Triangle& face : triangles) {
       if (is_left_out(face)) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        corners[k] = transform_point(instance.rows, mesh.positions[face.vertices[k]]);
-      }
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = position_of(face.vertices[k]);
       visit(corners, face);
     }
+  };
+  visit_all(scene.triangles, [&](std::uint32_t vertex) { return scene.positions[vertex]; });
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    visit_all(mesh.triangles, [&](std::uint32_t vertex) {
+      return transform_point(instance.rows, mesh.positions[vertex]);
+    });
   }
 }
 

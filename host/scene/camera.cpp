@@ -99,34 +99,34 @@ Camera Camera::look_at(const CameraSetting& setting, double aspect) {
 /// Models a thin lens: all rays of an image point meet in the plane of focus.
 Ray Camera::ray(double x, double y, const glm::dvec2& lens) const {
   const double across = 2.0 * x - 1.0, along = 1.0 - 2.0 * y;
-  glm::dvec3 origin(eye_), way = forward_;
+  glm::dvec3 origin(eye_), towards = forward_;
   switch (projection_) {
     case Projection::kPerspective:
-      way += across * half_width_ * right_ + along * half_height_ * up_;
+      towards += across * half_width_ * right_ + along * half_height_ * up_;
       break;
     case Projection::kOrthographic:
       origin += distance_ * (across * half_width_ * right_ + along * half_height_ * up_);
       break;
     case Projection::kPanorama: {
       const SineCosine<double> turn = sine_cosine(0.5 * across), angle = sine_cosine(0.5 * y);
-      way = angle.sine * (turn.cosine * forward_ + turn.sine * right_) + angle.cosine * up_;
+      towards = angle.sine * (turn.cosine * forward_ + turn.sine * right_) + angle.cosine * up_;
       break;
     }
   }
   if (aperture_ > 0.0) {
-    const glm::dvec3 sharp = origin + focus_ * way;
+    const glm::dvec3 sharp = origin + focus_ * towards;
     // Perpendicular to the view; a panorama's lens turns with the ray.
     glm::dvec3 u = right_, v = up_;
     if (projection_ == Projection::kPanorama) {
       const SineCosine<double> turn = sine_cosine(0.5 * across);
       u = turn.cosine * right_ - turn.sine * forward_;
-      v = glm::cross(u, way);
+      v = glm::cross(u, towards);
     }
     const SineCosine<double> turn = sine_cosine(lens.y);
     origin += aperture_ * std::sqrt(lens.x) * (turn.cosine * u + turn.sine * v);
-    way = sharp - glm::dvec3(glm::vec3(origin));
+    towards = sharp - glm::dvec3(glm::vec3(origin));
   }
-  return {glm::vec3(origin), scaled_direction(way)};
+  return {glm::vec3(origin), scaled_direction(towards)};
 }
 
 glm::dvec3 Camera::lens_point(const glm::dvec2& lens) const {
@@ -139,10 +139,10 @@ glm::dvec3 Camera::lens_point(const glm::dvec2& lens) const {
 /// Finds the image point whose ray through the lens's centre meets the same focus point.
 std::optional<glm::dvec2> Camera::place_of(const glm::dvec3& point,
                                            const glm::dvec3& lens_point) const {
-  const glm::dvec3 way = point - lens_point;
-  const double far = glm::dot(way, forward_);
-  if (!(far > 0.0)) return std::nullopt;
-  const glm::dvec3 at = (lens_point - glm::dvec3(eye_)) / focus_ + way / far;
+  const glm::dvec3 offset = point - lens_point;
+  const double distance = glm::dot(offset, forward_);
+  if (!(distance > 0.0)) return std::nullopt;
+  const glm::dvec3 at = (lens_point - glm::dvec3(eye_)) / focus_ + offset / distance;
   return glm::dvec2(0.5 + 0.5 * glm::dot(at, right_) / half_width_,
                     0.5 - 0.5 * glm::dot(at, up_) / half_height_);
 }

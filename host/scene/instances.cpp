@@ -21,15 +21,6 @@ std::uint32_t append(std::vector<T>& all, std::vector<T>&& more) {
   return first;
 }
 
-/// Appends attributes that are parallel to another list, which has `count` elements so far.
-template <class T>
-void append_parallel(std::vector<T>& all, std::size_t count, std::vector<T>&& more,
-                     const T& missing = T(0.0f)) {
-  if (more.empty()) return;
-  all.resize(count, missing);
-  (void)append(all, std::move(more));
-}
-
 /// Sets the tangent of the scene's last normal.
 void add_tangent(Scene& scene, const glm::vec4& tangent) {
   scene.tangents.resize(scene.normals.size(), glm::vec4(0.0f));
@@ -97,23 +88,15 @@ void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3&
 
 std::uint32_t add_mesh(Scene& scene, Scene&& part) {
   const bool has_materials = !part.materials.empty();
-  append_parallel(scene.tangents, scene.normals.size(), std::move(part.tangents));
-  append_parallel(scene.second_texcoords, scene.texcoords.size(), std::move(part.second_texcoords));
-  append_parallel(scene.opacities, scene.texcoords.size(), std::move(part.opacities), 1.0f);
+  if (!part.tangents.empty()) scene.tangents.resize(scene.normals.size(), glm::vec4(0.0f));
+  (void)append(scene.tangents, std::move(part.tangents));
   const std::uint32_t normals = append(scene.normals, std::move(part.normals));
   const std::uint32_t texcoords = append(scene.texcoords, std::move(part.texcoords));
   const std::uint32_t textures = append(scene.textures, std::move(part.textures));
   for (Material& material : part.materials) {
-    const auto shift = [&](std::uint32_t& texture) {
-      if (texture != kNoIndex) texture += textures;
-    };
-    shift(material.diffuse_texture);
-    shift(material.normal_map.texture);
-    shift(material.opacity_map.texture);
-    shift(material.emission_map.texture);
-    if (material.metallic_roughness) {
-      for_each_map(*material.metallic_roughness, [&](MaterialMap& map) { shift(map.texture); });
-    }
+    for_each_map(material, [&](MaterialMap& map) {
+      if (map.texture != kNoIndex) map.texture += textures;
+    });
   }
   const std::uint32_t materials = append(scene.materials, std::move(part.materials));
   scene.rounding.add(part.rounding);

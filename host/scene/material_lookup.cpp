@@ -1,6 +1,5 @@
 #include "host/scene/material_lookup.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "host/scene/instances.h"
@@ -9,11 +8,8 @@ namespace raygate {
 namespace {
 
 /// Returns the texture coordinates of a vertex. The triangle must have texture coordinates.
-glm::dvec2 texcoord(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
-                    std::size_t vertex) {
-  const std::uint32_t at = triangle.texcoords[vertex];
-  const bool is_second = mapping.is_second && at < scene.second_texcoords.size();
-  return glm::dvec2(is_second ? scene.second_texcoords[at] : scene.texcoords[at]);
+glm::dvec2 texcoord(const Scene& scene, const Triangle& triangle, int vertex) {
+  return glm::dvec2(scene.texcoords[triangle.texcoords[static_cast<std::size_t>(vertex)]]);
 }
 
 /// Returns texture coordinates, or differences of them, scaled and rotated.
@@ -27,39 +23,36 @@ glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Tri
                     const glm::dvec3& weights) {
   glm::dvec2 uv(0.0);
   for (int k = 0; k < 3; ++k) {
-    uv += weights[k] * texcoord(mapping, scene, triangle, static_cast<std::size_t>(k));
+    uv += weights[k] * texcoord(scene, triangle, k);
   }
   return turned(mapping, uv) + glm::dvec2(mapping.offset);
 }
 
-bool has_mask(const Scene& scene, const Triangle& triangle) {
-  const Material& material = scene.materials[triangle.material];
-  return (material.opacity_map.texture != kNoIndex || material.has_vertex_opacity) &&
-         !material.opacity_blends && triangle.texcoords[0] != kNoIndex;
+bool is_missing(const MaterialMap& map, const Triangle& triangle) {
+  return map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex;
 }
 
-/// Returns the opacity of a vertex. The triangle must have texture coordinates.
-double vertex_opacity(const Scene& scene, const Triangle& triangle, int vertex) {
-  const std::uint32_t at = triangle.texcoords[static_cast<std::size_t>(vertex)];
-  return at < scene.opacities.size() ? scene.opacities[at] : 1.0;
-}
-
-/// Returns the codes of a map, from 0 to 1.
+/// Returns the codes of a map, from 0 to 1; 1 without a texture or texture coordinates.
 glm::vec3 codes_of(const MaterialMap& map, const Scene& scene, const Triangle& triangle,
                    const glm::dvec3& weights) {
-  if (map.texture == kNoIndex) return glm::vec3(1.0f);
+  if (is_missing(map, triangle)) return glm::vec3(1.0f);
   return scene.textures[map.texture].codes_at(place_on(map.mapping, scene, triangle, weights),
                                               map.mapping.sampling);
 }
 
-/// Returns opacity map times vertex opacity. The triangle must have texture coordinates.
-float opacity_of(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+/// Returns the scene-linear colour of a map; white without a texture or texture coordinates.
+glm::vec3 color_of(const MaterialMap& map, const Scene& scene, const Triangle& triangle,
+                   const glm::dvec3& weights) {
+  if (is_missing(map, triangle)) return glm::vec3(1.0f);
+  return scene.textures[map.texture].at(place_on(map.mapping, scene, triangle, weights),
+                                        map.mapping.sampling);
+}
+
+/// Returns the map that hides points of a triangle, or nullptr.
+const MaterialMap* mask_of(const Scene& scene, const Triangle& triangle) {
   const Material& material = scene.materials[triangle.material];
-  const float mapped = codes_of(material.opacity_map, scene, triangle, weights).r;
-  if (!material.has_vertex_opacity) return mapped;
-  double between = 0.0;
-  for (int k = 0; k < 3; ++k) between += weights[k] * vertex_opacity(scene, triangle, k);
-  return mapped * static_cast<float>(between);
+  if (material.opacity_blends || is_missing(material.opacity_map, triangle)) return nullptr;
+  return &material.opacity_map;
 }
 
 /// Returns the tangent at a point: a direction, and the sign of y; 0 if the file has none.
@@ -81,12 +74,7 @@ glm::dvec4 tangent_at(const Scene& scene, const Triangle& triangle, const Instan
 
 glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
-  if (material.diffuse_texture == kNoIndex || triangle.texcoords[0] == kNoIndex) {
-    return material.diffuse;
-  }
-  const TextureMapping& mapping = material.diffuse_mapping;
-  return material.diffuse * scene.textures[material.diffuse_texture].at(
-                                place_on(mapping, scene, triangle, weights), mapping.sampling);
+  return material.diffuse * color_of(material.diffuse_map, scene, triangle, weights);
 }
 
 glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors, const Triangle& triangle,
@@ -100,36 +88,29 @@ glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors, const Triangle& 
 }
 
 bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
-  if (!has_mask(scene, triangle)) return false;
-  const Material& material = scene.materials[triangle.material];
-  return opacity_of(scene, triangle, weights) < material.opacity_cutoff;
+  const MaterialMap* const mask = mask_of(scene, triangle);
+  return mask != nullptr && codes_of(*mask, scene, triangle, weights).r <
+                                scene.materials[triangle.material].opacity_cutoff;
 }
 
 bool is_nowhere_masked(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights,
                        const glm::dvec3& change) {
-  if (!has_mask(scene, triangle)) return true;
-  const Material& material = scene.materials[triangle.material];
-  double least = 1.0;
-  if (const MaterialMap& map = material.opacity_map; map.texture != kNoIndex) {
-    const auto uv = [&](std::size_t k) { return texcoord(map.mapping, scene, triangle, k); };
-    // The changes of the three coordinates sum to 0.
-    const glm::dvec2 reach = change.y * glm::abs(turned(map.mapping, uv(1) - uv(0))) +
-                             change.z * glm::abs(turned(map.mapping, uv(2) - uv(0)));
-    least = scene.textures[map.texture].min_code_near(
-        place_on(map.mapping, scene, triangle, weights), reach, map.mapping.sampling);
-  }
-  if (material.has_vertex_opacity) {
-    least *= std::min({vertex_opacity(scene, triangle, 0), vertex_opacity(scene, triangle, 1),
-                       vertex_opacity(scene, triangle, 2)});
-  }
+  const MaterialMap* const mask = mask_of(scene, triangle);
+  if (mask == nullptr) return true;
+  const auto uv = [&](int vertex) { return texcoord(scene, triangle, vertex); };
+  // The changes of the three coordinates sum to 0.
+  const glm::dvec2 reach = change.y * glm::abs(turned(mask->mapping, uv(1) - uv(0))) +
+                           change.z * glm::abs(turned(mask->mapping, uv(2) - uv(0)));
+  const double least = scene.textures[mask->texture].min_code_near(
+      place_on(mask->mapping, scene, triangle, weights), reach, mask->mapping.sampling);
   constexpr double kRounding = 1e-6;
-  return least > material.opacity_cutoff + kRounding;
+  return least > scene.materials[triangle.material].opacity_cutoff + kRounding;
 }
 
 float opacity_factor_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
-  if (!material.opacity_blends || triangle.texcoords[0] == kNoIndex) return 1.0f;
-  return opacity_of(scene, triangle, weights);
+  return material.opacity_blends ? codes_of(material.opacity_map, scene, triangle, weights).r
+                                 : 1.0f;
 }
 
 glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
@@ -137,9 +118,9 @@ glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
                         const glm::dvec3& weights, const glm::vec3& normal) {
   const Material& material = scene.materials[triangle.material];
   const MaterialMap& map = material.normal_map;
-  if (map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) return normal;
-  const auto uv = [&](std::size_t k) {
-    return turned(map.mapping, texcoord(map.mapping, scene, triangle, k));
+  if (is_missing(map, triangle)) return normal;
+  const auto uv = [&](int vertex) {
+    return turned(map.mapping, texcoord(scene, triangle, vertex));
   };
   const glm::dvec2 to_1 = uv(1) - uv(0), to_2 = uv(2) - uv(0);
   const glm::dvec3 a(corners[0]), edge_1 = glm::dvec3(corners[1]) - a,
@@ -155,8 +136,7 @@ glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
   const double turn = given.w != 0.0 ? given.w : glm::dot(side, along_v);
   if (!(length > 0.0) || !std::isfinite(length) || turn == 0.0) return normal;
   const glm::dvec3 x = across / length, y = (turn < 0.0 ? -side : side) / length;
-  const glm::dvec2 place = place_on(map.mapping, scene, triangle, weights);
-  const glm::dvec3 codes(scene.textures[map.texture].codes_at(place, map.mapping.sampling));
+  const glm::dvec3 codes(codes_of(map, scene, triangle, weights));
   const double scale = material.normal_scale;
   const glm::dvec3 bent = x * ((2.0 * codes.x - 1.0) * scale) +
                           y * ((2.0 * codes.y - 1.0) * scale) + n * (2.0 * codes.z - 1.0);
@@ -166,10 +146,7 @@ glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
 
 glm::vec3 emission_factor_at(const Scene& scene, const Triangle& triangle,
                              const glm::dvec3& weights) {
-  const MaterialMap& map = scene.materials[triangle.material].emission_map;
-  if (map.texture == kNoIndex || triangle.texcoords[0] == kNoIndex) return glm::vec3(1.0f);
-  return scene.textures[map.texture].at(place_on(map.mapping, scene, triangle, weights),
-                                        map.mapping.sampling);
+  return color_of(scene.materials[triangle.material].emission_map, scene, triangle, weights);
 }
 
 glm::dvec3 mean_emission(const Scene& scene, const Material& material) {
@@ -181,22 +158,20 @@ glm::dvec3 mean_emission(const Scene& scene, const Material& material) {
 MetallicRoughnessFactors metallic_roughness_factors_at(const Scene& scene, const Triangle& triangle,
                                                        const glm::dvec3& weights) {
   MetallicRoughnessFactors factors;
-  const auto& shares = scene.materials[triangle.material].metallic_roughness;
-  if (!shares || triangle.texcoords[0] == kNoIndex) return factors;
+  const auto& model = scene.materials[triangle.material].metallic_roughness;
+  if (!model || triangle.texcoords[0] == kNoIndex) return factors;
   const auto codes = [&](const MaterialMap& map) {
     return codes_of(map, scene, triangle, weights);
   };
-  const glm::vec3 map = codes(shares->map);
-  factors.roughness = map.g;
-  factors.metallic = map.b;
-  factors.transmission = codes(shares->transmission_map).r;
-  factors.specular = codes(shares->specular_map).r;
-  factors.coat = codes(shares->coat_map).r;
-  factors.coat_roughness = codes(shares->coat_roughness_map).g;
-  if (const MaterialMap& color = shares->specular_color_map; color.texture != kNoIndex) {
-    factors.specular_color = scene.textures[color.texture].at(
-        place_on(color.mapping, scene, triangle, weights), color.mapping.sampling);
-  }
+  const bool is_one_map = model->metallic_map.texture == model->roughness_map.texture;
+  const glm::vec3 rough = codes(model->roughness_map);
+  factors.roughness = rough.g;
+  factors.metallic = is_one_map ? rough.b : codes(model->metallic_map).b;
+  factors.transmission = codes(model->transmission_map).r;
+  factors.specular = codes(model->specular_map).r;
+  factors.coat = codes(model->coat_map).r;
+  factors.coat_roughness = codes(model->coat_roughness_map).g;
+  factors.specular_color = color_of(model->specular_color_map, scene, triangle, weights);
   return factors;
 }
 

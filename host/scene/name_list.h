@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <initializer_list>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,38 +14,31 @@ namespace raygate {
 /// A list of names that stores repeated sequences, such as the object names of instances, once.
 class NameList {
  public:
-  NameList() = default;
-  NameList(std::initializer_list<std::string> names) : NameList(std::vector(names)) {}
-  explicit NameList(std::vector<std::string> names) : texts_(std::move(names)) {
-    size_ = texts_.size();
-    if (size_ > 0) runs_.push_back({0, 0, size_});
-  }
+  NameList(std::initializer_list<std::string> names = {}) : NameList(std::vector(names)) {}
+  explicit NameList(std::vector<std::string> names) { append(std::move(names), 1); }
 
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// Returns a name. `index` is below size(). Takes O(log n) time for n appended sequences.
   [[nodiscard]] const std::string& operator[](std::size_t index) const {
-    const Run& run =
-        *std::prev(std::upper_bound(runs_.begin(), runs_.end(), index,
-                                    [](std::size_t i, const Run& r) { return i < r.first; }));
-    return texts_[run.text + (index - run.first) % run.period];
+    const auto next = std::ranges::upper_bound(runs_, index, {}, &Run::first);
+    const Run& run = *std::prev(next);
+    return run.names[(index - run.first) % run.names.size()];
   }
 
   void push_back(std::string name) {
-    if (runs_.empty() || size_ - runs_.back().first != runs_.back().period) {
-      runs_.push_back({size_, texts_.size(), 0});
-    }
-    texts_.push_back(std::move(name));
-    ++runs_.back().period;
+    const bool repeats = runs_.empty() || runs_.back().names.size() < size_ - runs_.back().first;
+    if (repeats) return append({std::move(name)}, 1);
+    runs_.back().names.push_back(std::move(name));
     ++size_;
   }
 
-  /// Appends all names of `names`, in order, `times` times.
-  void append(const NameList& names, std::size_t times) {
-    if (names.size() == 0 || times == 0) return;
-    runs_.push_back({size_, texts_.size(), names.size()});
-    for (std::size_t i = 0; i < names.size(); ++i) texts_.push_back(names[i]);
-    size_ += names.size() * times;
+  /// Appends all of these names, in order, `times` times.
+  void append(std::vector<std::string> names, std::size_t times) {
+    if (names.empty() || times == 0) return;
+    const std::size_t count = names.size() * times;
+    runs_.push_back({size_, std::move(names)});
+    size_ += count;
   }
 
   /// Returns a copy of the names as strings.
@@ -57,12 +50,12 @@ class NameList {
   }
 
  private:
-  // Names from index `first` to the next run repeat `period` texts from index `text` on.
+  /// Names from index `first` to the next run, which repeat `names`.
   struct Run {
-    std::size_t first, text, period;
+    std::size_t first;
+    std::vector<std::string> names;
   };
 
-  std::vector<std::string> texts_;
   std::vector<Run> runs_;
   std::size_t size_ = 0;
 };

@@ -10,6 +10,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "host/base/input_error.h"
+#include "host/exact/exact.h"
+
 namespace raygate {
 namespace {
 
@@ -69,40 +72,39 @@ class Digest {
   // Structured bindings name all members: a new one does not compile until it is handled. Rarely
   // used members are skipped at their defaults, which keeps older digests valid.
   void add(const TextureMapping& m) {
-    const auto& [scale, offset, sampling, turn, is_second] = m;
+    const auto& [scale, offset, sampling, turn] = m;
     const bool clamps = sampling == Sampling(Wrap::kClamp);
     add(scale, offset, clamps);
     if (!clamps && sampling != Sampling()) add(sampling.u, sampling.v, sampling.is_nearest);
     if (turn != glm::vec2(1.0f, 0.0f)) add(turn);
-    if (is_second) add(is_second);
   }
   void add(const MaterialMap& m) {
     const auto& [file, mapping, texture] = m;
     add(mapping, texture);
   }
   void add(const MetallicRoughness& m) {
-    const auto& [metallic, roughness, transmission, map, metallic_file, specular, specular_color,
-                 coat, coat_roughness, transmission_map, specular_map, specular_color_map, coat_map,
-                 coat_roughness_map] = m;
-    add(metallic, roughness, transmission, map);
+    const auto& [metallic, roughness, transmission, specular, specular_color, coat, coat_roughness,
+                 roughness_map, coat_roughness_map, metallic_map, transmission_map, coat_map,
+                 specular_map, specular_color_map] = m;
+    add(metallic, roughness, transmission, roughness_map);
     if (specular != 1.0f || specular_color != glm::vec3(1.0f)) add(specular, specular_color);
     if (coat != 0.0f) add(coat, coat_roughness);
     int number = 0;
     for_each_map(m, [&](const MaterialMap& map) {
-      if (number++ > 0 && map.texture != kNoIndex) add(number, map);
+      const bool is_same = &map == &m.metallic_map && map.texture == m.roughness_map.texture;
+      if (number++ > 0 && map.texture != kNoIndex && !is_same) add(number, map);
     });
   }
   void add(const Material& m) {
     const auto& [name, diffuse, specular, emission, transmittance, shininess, refraction_index,
-                 opacity, illumination_model, diffuse_map, diffuse_mapping, diffuse_texture,
-                 metallic_roughness, normal_map, normal_scale, emission_map, opacity_map,
-                 opacity_cutoff, opacity_blends, has_vertex_opacity, has_vertex_colors] = m;
+                 opacity, illumination_model, diffuse_map, metallic_roughness, normal_map,
+                 normal_scale, emission_map, opacity_map, opacity_cutoff, opacity_blends,
+                 has_vertex_colors] = m;
     add(diffuse, specular, emission, transmittance, shininess, refraction_index, opacity,
-        illumination_model, diffuse_mapping, diffuse_texture);
+        illumination_model, diffuse_map);
     add(metallic_roughness, normal_map, normal_scale, opacity_map, opacity_cutoff);
     if (emission_map.texture != kNoIndex) add(emission_map);
     if (opacity_blends) add(opacity_blends);
-    if (has_vertex_opacity) add(has_vertex_opacity);
   }
   void add(const NameList& names) {
     word(names.size());
@@ -137,16 +139,13 @@ class Digest {
   }
   // `camera`, `up` and `is_usually_z_up` are omitted: images record their own view.
   void add(const Scene& s) {
-    const auto& [positions, colors, normals, tangents, texcoords, second_texcoords, opacities,
-                 triangles, meshes, instances, materials, textures, objects, lights,
-                 directional_lights, background, environment, origin, rounding, camera, up,
-                 is_usually_z_up, files, warnings] = s;
+    const auto& [positions, colors, normals, tangents, texcoords, triangles, meshes, instances,
+                 materials, textures, objects, lights, directional_lights, background, environment,
+                 origin, rounding, camera, up, is_usually_z_up, files, warnings] = s;
     add(positions, normals, texcoords, triangles, meshes, instances, materials, textures, objects);
     add(lights, directional_lights, background, environment, origin);
     if (!colors.empty()) add(colors);
     if (!tangents.empty()) add(tangents);
-    if (!second_texcoords.empty()) add(second_texcoords);
-    if (!opacities.empty()) add(opacities);
     // Indices of materials that ignore vertex colours, if there are vertex colours.
     const auto has_colors = [](const Mesh& mesh) { return !mesh.colors.empty(); };
     if (colors.empty() && std::ranges::none_of(meshes, has_colors)) return;
@@ -165,6 +164,25 @@ class Digest {
 };
 
 }  // namespace
+
+void add_light(Scene& scene, const WorldPointLight& light, const std::string& file) {
+  const glm::vec3 position(light.position - scene.origin);
+  if (!is_finite(position)) throw InputError(file + ": a light is beyond the range of float");
+  scene.lights.push_back({position, light.intensity, light.spot});
+}
+
+void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, const Material& material) {
+  const auto first = static_cast<std::uint32_t>(scene.positions.size());
+  scene.positions.insert(scene.positions.end(), corners.begin(), corners.end());
+  for (const std::uint32_t second : {1u, 2u}) {
+    Triangle& triangle = scene.triangles.emplace_back();
+    triangle.vertices = {first, first + second, first + second + 1};
+    triangle.material = static_cast<std::uint32_t>(scene.materials.size());
+    triangle.object = static_cast<std::uint32_t>(scene.objects.size());
+  }
+  scene.materials.push_back(material);
+  scene.objects.push_back(material.name);
+}
 
 std::string digest_of(const Scene& scene) {
   Digest digest;

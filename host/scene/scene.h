@@ -27,7 +27,6 @@ struct TextureMapping {
   glm::vec2 offset{0.0f};      ///< MTL option -o
   Sampling sampling;           ///< MTL's "-clamp on" is Wrap::kClamp
   glm::vec2 turn{1.0f, 0.0f};  ///< cosine and sine of a counter-clockwise rotation
-  bool is_second = false;      ///< uses Scene::second_texcoords
 };
 
 /// A texture of a material, and its mapping.
@@ -44,28 +43,18 @@ struct MetallicRoughness {
   float metallic = 1.0f;      ///< in [0, 1]
   float roughness = 1.0f;     ///< in [0, 1]; alpha of GGX is its square
   float transmission = 0.0f;  ///< in [0, 1]: fraction of the dielectric part that is (rough) glass
-  MaterialMap map;            ///< multiplies roughness (green channel) and metallic (blue channel)
-  /// Grey metallic texture, if `map.file` has roughness alone; combined on loading.
-  std::string metallic_file;
   float specular = 1.0f;  ///< in [0, 1]: strength of dielectric reflection (KHR_materials_specular)
-  /// colour of dielectric reflection at normal incidence (same extension)
+  /// Colour of dielectric reflection at normal incidence (same extension).
   glm::vec3 specular_color{1.0f};
   float coat = 0.0f;  ///< in [0, 1]: weight of a clear top layer (KHR_materials_clearcoat)
-  float coat_roughness = 0.0f;       ///< in [0, 1]
-  MaterialMap transmission_map{};    ///< multiplies transmission: red channel
-  MaterialMap specular_map{};        ///< multiplies `specular`: alpha, stored in all three channels
-  MaterialMap specular_color_map{};  ///< multiplies specular_color
-  /// Multiply coat: red channel; coat_roughness: green channel.
-  MaterialMap coat_map{}, coat_roughness_map{};
+  float coat_roughness = 0.0f;  ///< in [0, 1]
+  // Maps that multiply these values, each in one channel.
+  MaterialMap roughness_map{}, coat_roughness_map{};  ///< green
+  MaterialMap metallic_map{};                         ///< blue
+  MaterialMap transmission_map{}, coat_map{};         ///< red
+  MaterialMap specular_map{};                         ///< opacity, stored in all three channels
+  MaterialMap specular_color_map{};                   ///< scene-linear RGB
 };
-
-/// Calls visit(map) for each map of a metallic-roughness material.
-template <class Shares, class Visit>
-void for_each_map(Shares& shares, const Visit& visit) {
-  for (auto* const map : {&shares.map, &shares.transmission_map, &shares.specular_map,
-                          &shares.specular_color_map, &shares.coat_map, &shares.coat_roughness_map})
-    visit(*map);
-}
 
 /// A material of an MTL file, or of another format converted to MTL terms. Colours are scene-linear
 /// RGB, usually in [0, 1].
@@ -79,19 +68,36 @@ struct Material {
   float refraction_index = 1.0f;  ///< Ni
   float opacity = 1.0f;           ///< d, or 1 - Tr
   int illumination_model = 2;     ///< illum
-  std::string diffuse_map;        ///< map_Kd, joined to the MTL file's folder; empty: none
-  TextureMapping diffuse_mapping;
-  std::uint32_t diffuse_texture = kNoIndex;  ///< index into Scene::textures
+  MaterialMap diffuse_map;        ///< map_Kd; multiplies `diffuse`
   std::optional<MetallicRoughness> metallic_roughness;
-  MaterialMap normal_map;       ///< codes 0 to 1 are -1 to 1 along tangent, bitangent and normal
-  float normal_scale = 1.0f;    ///< multiplies the map's x and y
-  MaterialMap emission_map;     ///< multiplies emission
-  MaterialMap opacity_map;      ///< hides points where it is below opacity_cutoff
-  float opacity_cutoff = 0.5f;  ///< in [0, 1]
-  bool opacity_blends = false;  ///< the map multiplies the opacity; no cutoff
-  bool has_vertex_opacity = false;  ///< Scene::opacities multiply the map
-  bool has_vertex_colors = true;    ///< vertex colours multiply `diffuse`
+  MaterialMap normal_map;         ///< codes 0 to 1 are -1 to 1 along tangent, bitangent and normal
+  float normal_scale = 1.0f;      ///< multiplies the map's x and y
+  MaterialMap emission_map;       ///< multiplies emission
+  MaterialMap opacity_map;        ///< hides points where it is below opacity_cutoff
+  float opacity_cutoff = 0.5f;    ///< in [0, 1]
+  bool opacity_blends = false;    ///< the map multiplies the opacity; no cutoff
+  bool has_vertex_colors = true;  ///< vertex colours multiply `diffuse`
 };
+
+/// Calls visit(map) for each map of a metallic-roughness material.
+template <class Model, class Visit>
+void for_each_map(Model& model, const Visit& visit) {
+  for (auto* const map : {&model.roughness_map, &model.transmission_map, &model.specular_map,
+                          &model.specular_color_map, &model.coat_map, &model.coat_roughness_map,
+                          &model.metallic_map}) {
+    visit(*map);
+  }
+}
+
+/// Calls visit(map) for each map of a material.
+template <class Visit>
+void for_each_map(Material& material, const Visit& visit) {
+  visit(material.diffuse_map);
+  visit(material.normal_map);
+  visit(material.emission_map);
+  visit(material.opacity_map);
+  if (material.metallic_roughness) for_each_map(*material.metallic_roughness, visit);
+}
 
 [[nodiscard]] inline bool emits(const Material& material) {
   return glm::any(glm::greaterThan(material.emission, glm::vec3(0.0f)));
@@ -143,6 +149,13 @@ struct PointLight {
   /// with the square of lengths.
   glm::dvec3 intensity{0.0};
   std::optional<SpotCone> spot = {};  ///< none: isotropic
+};
+
+/// A point light in world coordinates, for scenes whose origin is not known yet.
+struct WorldPointLight {
+  glm::dvec3 position{0.0};
+  glm::dvec3 intensity{0.0};  ///< as PointLight::intensity
+  std::optional<SpotCone> spot = {};
 };
 
 /// A directional light, infinitely far away.
@@ -204,10 +217,6 @@ struct Scene {
   /// -1) along cross(normal, x). If missing or 0, texture coordinates define the directions.
   std::vector<glm::vec4> tangents;
   std::vector<glm::vec2> texcoords;
-  /// Second texture coordinates of the first `texcoords`.
-  std::vector<glm::vec2> second_texcoords;
-  /// Vertex opacities of the first `texcoords`; 1 if missing.
-  std::vector<float> opacities;
   std::vector<Triangle> triangles;
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;  ///< instances that were not flattened; see instances.h
@@ -227,6 +236,14 @@ struct Scene {
   std::vector<std::filesystem::path> files;  ///< all files read: OBJ, MTL and textures
   std::vector<std::string> warnings;  ///< "file:line: ...": first of statements, then of faces
 };
+
+/// Adds a light to a scene whose origin is set. Throws InputError, which names `file`, if it is
+/// beyond the range of float.
+void add_light(Scene& scene, const WorldPointLight& light, const std::string& file);
+
+/// Adds two triangles, (0, 1, 2) and (0, 2, 3) of `corners`, with an object and a material of
+/// `material.name`.
+void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, const Material& material);
 
 /// Returns a 64-bit digest, as 16 hexadecimal digits, of a scene's geometry, materials, textures,
 /// lights and instances. Equal scenes have equal digests on all machines of the same byte order;

@@ -38,7 +38,7 @@ const std::array<float, 256>& linear_of_code() {
 /// Two adjacent texels of a row or column, and the weight of the second one.
 struct Neighbours {
   int first, second;
-  double share;
+  double weight;
 };
 
 /// Returns a coordinate in texels, relative to the centre of the first: in [-0.5, size - 0.5].
@@ -62,9 +62,9 @@ int wrapped(int i, int size, Wrap wrap) {
 
 Neighbours neighbours(double coordinate, int size, Wrap wrap, bool is_nearest) {
   const double place = place_along(coordinate, size, wrap), below = std::floor(place);
-  const double share = place - below;
-  const int first = static_cast<int>(below) + (is_nearest && share >= 0.5 ? 1 : 0);
-  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), is_nearest ? 0.0 : share};
+  const double weight = place - below;
+  const int first = static_cast<int>(below) + (is_nearest && weight >= 0.5 ? 1 : 0);
+  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), is_nearest ? 0.0 : weight};
 }
 
 /// Returns whether the bytes begin like a format that Texture::load() supports. The library has
@@ -132,27 +132,6 @@ Texture Texture::decode(std::string_view bytes, const std::string& file, Content
   return {width, height, std::move(texels)};
 }
 
-Texture Texture::combine_channels(const Texture* green, const Texture* blue) {
-  const Texture& one = green != nullptr ? *green : *blue;
-  const Texture& other = blue != nullptr ? *blue : one;
-  const int width = std::max(one.width_, other.width_),
-            height = std::max(one.height_, other.height_);
-  std::vector<Texel> texels;
-  texels.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const auto code = [&](const Texture* texture) -> std::uint8_t {
-        if (texture == nullptr) return 255;
-        const auto column = std::int64_t{x} * texture->width_ / width;
-        const auto row = std::int64_t{y} * texture->height_ / height;
-        return texture->texels_[static_cast<std::size_t>(row * texture->width_ + column)][0];
-      };
-      texels.push_back({255, code(green), code(blue)});
-    }
-  }
-  return {width, height, std::move(texels)};
-}
-
 double Texture::min_code() const {
   std::uint8_t least = 255;
   for (const Texel& codes : texels_) least = std::min(least, codes[0]);
@@ -202,9 +181,9 @@ glm::vec3 Texture::between(const glm::dvec2& uv, const Sampling& sampling,
                                  static_cast<std::size_t>(column)];
     return glm::dvec3(value(codes[0]), value(codes[1]), value(codes[2]));
   };
-  const glm::dvec3 upper = glm::mix(texel(x.first, y.first), texel(x.second, y.first), x.share);
-  const glm::dvec3 lower = glm::mix(texel(x.first, y.second), texel(x.second, y.second), x.share);
-  return glm::vec3(glm::mix(upper, lower, y.share));
+  const glm::dvec3 upper = glm::mix(texel(x.first, y.first), texel(x.second, y.first), x.weight);
+  const glm::dvec3 lower = glm::mix(texel(x.first, y.second), texel(x.second, y.second), x.weight);
+  return glm::vec3(glm::mix(upper, lower, y.weight));
 }
 
 glm::vec3 Texture::at(const glm::dvec2& uv, const Sampling& sampling) const {

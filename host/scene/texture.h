@@ -45,10 +45,6 @@ class Texture {
   [[nodiscard]] static Texture decode(std::string_view bytes, const std::string& name,
                                       Content content = Content::kColour);
 
-  /// Returns a texture with the red channels of two textures in its green and blue channels, in the
-  /// size of the larger one. A missing texture gives 255; at least one must be given.
-  [[nodiscard]] static Texture combine_channels(const Texture* green, const Texture* blue);
-
   /// Returns the smallest red code, from 0 to 1.
   [[nodiscard]] double min_code() const;
 

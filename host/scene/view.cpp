@@ -1,6 +1,7 @@
 #include "host/scene/view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -126,25 +127,15 @@ void add_ground(Scene& scene, const glm::dvec3& up) {
   const glm::dvec3 across = std::abs(upright.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 v = kHalfSide * size * glm::normalize(glm::cross(across, upright));
   const glm::dvec3 u = glm::cross(v, upright);
-  const auto first = static_cast<std::uint32_t>(scene.positions.size());
-  for (const glm::dvec3& corner : {-u - v, u - v, u + v, v - u}) {
-    const glm::vec3 rounded(centre + corner);
-    if (!(largest(rounded) <= kMostCoordinate)) {
-      scene.positions.resize(first);
-      return;
-    }
-    scene.positions.push_back(rounded);
+  const std::array<glm::vec3, 4> corners{centre + (-u - v), centre + (u - v), centre + (u + v),
+                                         centre + (v - u)};
+  for (const glm::vec3& corner : corners) {
+    if (!(largest(corner) <= kMostCoordinate)) return;
   }
-  for (const std::uint32_t second : {1u, 2u}) {
-    Triangle& triangle = scene.triangles.emplace_back();
-    triangle.vertices = {first, first + second, first + second + 1};
-    triangle.material = static_cast<std::uint32_t>(scene.materials.size());
-    triangle.object = static_cast<std::uint32_t>(scene.objects.size());
-  }
-  Material& material = scene.materials.emplace_back();
+  Material material;
   material.name = "ground";
   material.illumination_model = 10;
-  scene.objects.push_back("ground");
+  add_quad(scene, corners, material);
 }
 
 }  // namespace raygate

@@ -42,7 +42,7 @@ Material material(int model, float diffuse, float specular, float opacity) {
 Material facets(float metallic, float roughness, float transmission = 0.0f) {
   Material material;
   material.diffuse = {1.0f, 0.5f, 0.1f};
-  material.metallic_roughness = {metallic, roughness, transmission, {}, {}};
+  material.metallic_roughness = {metallic, roughness, transmission};
   return material;
 }
 

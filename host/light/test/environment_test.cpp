@@ -137,7 +137,7 @@ TEST(Environment, LightsAFloorAsItsIntegralSays) {
     });
     EXPECT_NEAR(floor_under(map, matte(glm::vec3(1.0f)), 4096), integral, 0.01 * integral);
     Material rough = matte(glm::vec3(1.0f));
-    rough.metallic_roughness = {0.0f, 1.0f, 0.0f, {}, {}};
+    rough.metallic_roughness = {0.0f, 1.0f, 0.0f};
     EXPECT_LT(floor_under(map, rough, 1024), 1.01 * integral);
     EXPECT_GT(floor_under(map, rough, 1024), 0.8 * integral);
   }

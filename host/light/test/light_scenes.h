@@ -46,7 +46,7 @@ inline Material emitter(const glm::vec3& emission) {
 /// glTF's shares of a white material.
 inline Material facets(float metallic, float roughness, float transmission) {
   Material material = matte(glm::vec3(1.0f));
-  material.metallic_roughness = {metallic, roughness, transmission, {}, {}};
+  material.metallic_roughness = {metallic, roughness, transmission};
   return material;
 }
 

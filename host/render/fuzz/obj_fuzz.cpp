@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   write(folder / "s.mtl", split < size ? bytes.substr(split + 1) : std::string_view());
   try {
     // In chunks of one or a few lines.
-    raygate::test::draw(raygate::load_obj(folder / "s.obj", {.threads = 2, .chunk_size = 1}));
+    raygate::test::draw(raygate::load_obj(folder / "s.obj"));
   } catch (const raygate::InputError&) {
     // Expected for invalid files.
   }

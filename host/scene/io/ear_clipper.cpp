@@ -6,100 +6,65 @@
 #include "host/exact/exact.h"
 
 namespace raygate {
+namespace {
 
-/// A subtree: nodes [first, last), the root in the middle.
-struct PointTree::Range {
-  std::size_t first, last;
-
-  [[nodiscard]] bool empty() const { return first == last; }
-  [[nodiscard]] std::size_t root() const { return first + (last - first) / 2; }
-  [[nodiscard]] Range lower() const { return {first, root()}; }
-  [[nodiscard]] Range upper() const { return {root() + 1, last}; }
-};
-
-struct PointTree::Question {
-  const std::array<glm::vec2, 3>& triangle;
-
-  [[nodiscard]] bool holds(const glm::vec2& point) const {
-    for (int i = 0; i < 3; ++i) {
-      if (point == triangle[i] || orient2d(triangle[i], triangle[(i + 1) % 3], point) < 0)
-        return false;
+/// Returns whether a point is inside a counter-clockwise triangle or on its border, except at its
+/// corners.
+bool contains(const std::array<glm::vec2, 3>& triangle, const glm::vec2& point) {
+  for (int i = 0; i < 3; ++i) {
+    if (point == triangle[i] || orient2d(triangle[i], triangle[(i + 1) % 3], point) < 0) {
+      return false;
     }
-    return true;
   }
-
-  // Separating axes: the box is disjoint from the triangle's bounds, or all of it, including the
-  // corner that is farthest inwards, is on the outer side of an edge.
-  [[nodiscard]] bool misses(const glm::vec2& low, const glm::vec2& high) const {
-    for (int axis = 0; axis < 2; ++axis) {
-      const auto [least, most] =
-          std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
-      if (high[axis] < least || low[axis] > most) return true;
-    }
-    for (int i = 0; i < 3; ++i) {
-      const glm::vec2& from = triangle[i];
-      const glm::vec2& to = triangle[(i + 1) % 3];
-      const glm::vec2 innermost(to.y > from.y ? low.x : high.x, to.x > from.x ? high.y : low.y);
-      if (orient2d(from, to, innermost) < 0) return true;
-    }
-    return false;
-  }
-};
-
-void PointTree::build(std::span<const Point> points, std::size_t id_limit) {
-  nodes_.clear();
-  for (const Point& point : points) {
-    nodes_.push_back({point, point.position, point.position, 1, true});
-  }
-  split({0, nodes_.size()});
-  place_.resize(id_limit);
-  for (std::uint32_t i = 0; i < nodes_.size(); ++i) place_[nodes_[i].point.id] = i;
+  return true;
 }
 
-// Partitions the points around the median along the longer side of their box.
-void PointTree::split(const Range& range) {
-  if (range.last - range.first < 2) return;
-  glm::vec2 low = nodes_[range.first].point.position;
-  glm::vec2 high = low;
-  for (std::size_t i = range.first; i < range.last; ++i) {
-    low = glm::min(low, nodes_[i].point.position);
-    high = glm::max(high, nodes_[i].point.position);
+/// Returns whether a box and a triangle are separated by one of the box's axes or by an edge: then
+/// even the box's innermost corner is on the outer side of the edge.
+bool are_separate(const std::array<glm::vec2, 3>& triangle, const glm::vec2& low,
+                  const glm::vec2& high) {
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto [least, most] =
+        std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+    if (high[axis] < least || low[axis] > most) return true;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const glm::vec2 &from = triangle[i], &to = triangle[(i + 1) % 3];
+    const glm::vec2 innermost(to.y > from.y ? low.x : high.x, to.x > from.x ? high.y : low.y);
+    if (orient2d(from, to, innermost) < 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+// Nodes [first, last) become a subtree whose root is in the middle: the median along the longer
+// side of their box.
+void EarClipper::build_tree(std::size_t first, std::size_t last) {
+  if (last - first < 2) return;
+  glm::vec2 low = tree_[first].position, high = low;
+  for (std::size_t i = first; i < last; ++i) {
+    low = glm::min(low, tree_[i].position);
+    high = glm::max(high, tree_[i].position);
   }
   const int axis = high.y - low.y > high.x - low.x ? 1 : 0;
-  const auto at = [this](std::size_t i) { return nodes_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(range.first), at(range.root()), at(range.last),
-                   [axis](const Node& a, const Node& b) {
-                     return a.point.position[axis] < b.point.position[axis];
-                   });
-  Node& root = nodes_[range.root()];
-  root.low = low;
-  root.high = high;
-  root.present_below = static_cast<std::uint32_t>(range.last - range.first);
-  split(range.lower());
-  split(range.upper());
+  const std::size_t root = first + (last - first) / 2;
+  std::nth_element(
+      &tree_[first], &tree_[root], tree_.data() + last,
+      [axis](const Node& a, const Node& b) { return a.position[axis] < b.position[axis]; });
+  tree_[root].low = low;
+  tree_[root].high = high;
+  build_tree(first, root);
+  build_tree(root + 1, last);
 }
 
-void PointTree::remove(std::uint32_t id) {
-  const std::size_t place = place_[id];
-  nodes_[place].present = false;
-  Range range{0, nodes_.size()};
-  while (range.root() != place) {
-    --nodes_[range.root()].present_below;
-    range = place < range.root() ? range.lower() : range.upper();
-  }
-  --nodes_[place].present_below;
-}
-
-bool PointTree::any_in_triangle(const std::array<glm::vec2, 3>& triangle) const {
-  return ask({triangle}, {0, nodes_.size()});
-}
-
-bool PointTree::ask(const Question& question, const Range& range) const {
-  if (range.empty()) return false;
-  const Node& root = nodes_[range.root()];
-  if (root.present_below == 0 || question.misses(root.low, root.high)) return false;
-  if (root.present && question.holds(root.point.position)) return true;
-  return ask(question, range.lower()) || ask(question, range.upper());
+bool EarClipper::has_obstacle(const Ear& ear, std::size_t first, std::size_t last) const {
+  if (first == last) return false;
+  const std::size_t middle = first + (last - first) / 2;
+  const Node& root = tree_[middle];
+  if (are_separate(ear, root.low, root.high)) return false;
+  if (ring_[root.corner].reflex && contains(ear, root.position)) return true;
+  return has_obstacle(ear, first, middle) || has_obstacle(ear, middle + 1, last);
 }
 
 // Fills ring_ with the corners, without repeated ones. Returns false if the polygon has no area.
@@ -162,8 +127,8 @@ bool EarClipper::is_ear(std::uint32_t corner) const {
   if (turn_at(corner) <= 0) return false;
   if (!mind_obstacles_) return true;
   const Corner& c = ring_[corner];
-  return !obstacles_.any_in_triangle(
-      {ring_[c.previous].position, c.position, ring_[c.next].position});
+  const Ear ear{ring_[c.previous].position, c.position, ring_[c.next].position};
+  return !has_obstacle(ear, 0, tree_.size());
 }
 
 void EarClipper::cut_off(std::uint32_t corner) {
@@ -174,9 +139,8 @@ void EarClipper::cut_off(std::uint32_t corner) {
   // Cutting off an ear narrows its neighbours, so a reflex corner may become convex, but not vice
   // versa. (Obstacles are ignored when there is no ear, so a reflex corner may be cut off then.)
   for (const std::uint32_t neighbour : {c.previous, c.next}) {
-    if (!ring_[neighbour].reflex || turn_at(neighbour) <= 0) continue;
-    ring_[neighbour].reflex = false;
-    obstacles_.remove(neighbour);
+    bool& reflex = ring_[neighbour].reflex;
+    reflex = reflex && turn_at(neighbour) <= 0;
   }
 }
 
@@ -225,15 +189,11 @@ PolygonKind EarClipper::clip_ears() {
     }
   }
   // The last three corners or, for a polygon that is not simple, a fan of the remaining ones.
-  list_all_left();
-  if (candidates_.back() == 0) {
-    candidates_.pop_back();
-    candidates_.insert(candidates_.begin(), 0);
-  }
-  const Corner& hub = ring_[candidates_[0]];
-  for (std::size_t i = 2; i < candidates_.size(); ++i) {
-    const Corner& a = ring_[candidates_[i - 1]];
-    const Corner& b = ring_[candidates_[i]];
+  std::uint32_t first = 0;
+  while (ring_[first].gone) ++first;
+  const Corner& hub = ring_[first];
+  for (std::uint32_t i = hub.next; ring_[i].next != first; i = ring_[i].next) {
+    const Corner &a = ring_[i], &b = ring_[a.next];
     const int winding = orient2d(hub.position, a.position, b.position);
     if (winding <= 0) kind = PolygonKind::kSelfTouching;
     if (winding != 0) triangles_.push_back({hub.number, a.number, b.number});
@@ -244,12 +204,13 @@ PolygonKind EarClipper::clip_ears() {
 PolygonKind EarClipper::cut(std::span<const glm::vec3> corners) {
   triangles_.clear();
   if (!project(corners)) return PolygonKind::kZeroArea;
-  reflex_corners_.clear();
+  tree_.clear();
   for (std::uint32_t i = 0; i < ring_.size(); ++i) {
-    ring_[i].reflex = turn_at(i) <= 0;
-    if (ring_[i].reflex) reflex_corners_.push_back({ring_[i].position, i});
+    Corner& corner = ring_[i];
+    corner.reflex = turn_at(i) <= 0;
+    if (corner.reflex) tree_.push_back({corner.position, corner.position, corner.position, i});
   }
-  obstacles_.build(reflex_corners_, ring_.size());
+  build_tree(0, tree_.size());
   mind_obstacles_ = true;
   return clip_ears();
 }

@@ -1,18 +1,12 @@
 #include "host/scene/io/find_file.h"
 
 #include <algorithm>
+#include <set>
 
 #include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {
-
-std::string in_small_letters(std::string text) {
-  for (char& letter : text) {
-    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-  }
-  return text;
-}
 
 /// Returns the name with '/' in place of '\', and without the quotes around it, if any.
 std::string with_slashes(std::string_view name) {
@@ -48,25 +42,23 @@ std::optional<std::filesystem::path> find_file(const std::filesystem::path& fold
                                                std::string_view name, const std::string& place,
                                                std::vector<std::string>& warnings) {
   if (auto exact = find_exact_file(folder, name)) return exact;
-  const std::filesystem::path said(with_slashes(name));
-  const std::string wanted = in_small_letters(said.filename().string());
+  const std::filesystem::path asked(with_slashes(name));
+  const std::string wanted = in_lower_case(asked.filename().string());
   if (wanted.empty()) return std::nullopt;
-  for (const std::filesystem::path& where : {folder / said.parent_path(), folder}) {
-    std::optional<std::filesystem::path> found;  // the first one by name
-    std::error_code ignored;
-    const std::filesystem::path listed = where.empty() ? "." : where;
-    for (std::filesystem::directory_iterator entry(listed, ignored), end; entry != end;
-         entry.increment(ignored)) {
-      const std::filesystem::path file = where / entry->path().filename();
-      if (in_small_letters(file.filename().string()) == wanted && entry->is_regular_file(ignored) &&
-          (!found || file < *found)) {
-        found = file;
+  for (const std::filesystem::path& where : {folder / asked.parent_path(), folder}) {
+    std::set<std::filesystem::path> found;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(where.empty() ? "." : where, error), end;
+         !error && entry != end; entry.increment(error)) {
+      const std::filesystem::path file = entry->path().filename();
+      if (in_lower_case(file.string()) == wanted && entry->is_regular_file(error)) {
+        found.insert(where / file);
       }
-      if (ignored) break;
     }
-    if (!found) continue;
-    warnings.push_back(place + in_quotes(name) + " is missing, " + found->string() + " instead");
-    return found;
+    if (found.empty()) continue;
+    const std::filesystem::path& first = *found.begin();
+    warnings.push_back(place + in_quotes(name) + " is missing, " + first.string() + " instead");
+    return first;
   }
   return std::nullopt;
 }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <map>
 #include <span>
 
 #include "host/base/file_bytes.h"
@@ -17,11 +17,9 @@ namespace {
 
 /// Extensions that are read. A file that uses another one gets a warning.
 constexpr std::string_view kRead[] = {
-    "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
-    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_materials_unlit",
-    "KHR_mesh_quantization",      "KHR_texture_transform"};
+    "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",   "KHR_materials_specular",  "KHR_materials_transmission",
+    "KHR_materials_unlit", "KHR_mesh_quantization",   "KHR_texture_transform"};
 
 /// Extensions that are not read but may be required: without them, surfaces are only plainer.
 constexpr std::string_view kDispensable[] = {"KHR_materials_sheen", "KHR_materials_variants",
@@ -88,23 +86,6 @@ std::string decode_base64(std::string_view text) {
     bytes += static_cast<char>(bits >> count & 0xFF);
   }
   return bytes;
-}
-
-/// Returns a transform of a translation, a rotation (a quaternion x, y, z, w) and a scale, each of
-/// which may be empty.
-glm::dmat4 matrix_of(std::span<const double> t, std::span<const double> r,
-                     std::span<const double> s) {
-  glm::dmat4 matrix(1.0);
-  if (t.size() == 3) matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
-  if (r.size() == 4) {
-    const glm::dquat turn(r[3], r[0], r[1], r[2]);
-    const double length = glm::length(turn);
-    if (length > 0.0) matrix = matrix * glm::mat4_cast(turn / length);
-  }
-  if (s.size() == 3) {
-    for (int axis = 0; axis < 3; ++axis) matrix[axis] *= s[static_cast<std::size_t>(axis)];
-  }
-  return matrix;
 }
 
 }  // namespace
@@ -221,17 +202,12 @@ struct GltfFile::Component {
   double one;
 };
 
-/// The location of an accessor's elements, which is within their buffer.
+/// The elements of an accessor, without gaps.
 struct GltfFile::Elements {
-  const char* first;
-  std::size_t stride, count;
-  const Component* component;
+  Component component;
   int components;
-  std::vector<char> own = {};  // the elements, if they are sparse or have no buffer
-
-  [[nodiscard]] std::size_t size() const {
-    return bytes_of(component->type) * static_cast<std::size_t>(components);
-  }
+  std::size_t count;
+  std::string bytes;
 };
 
 std::string_view GltfFile::stored(int buffer_view, const std::string& place) const {
@@ -254,80 +230,71 @@ std::string_view GltfFile::stored(int buffer_view, const std::string& place) con
   return data.substr(offset, length);
 }
 
-void GltfFile::find_stored(const Json& part, const std::string& number, Elements& elements) const {
-  const int buffer_view = index_in(part, "bufferView");
-  const std::string_view bytes = stored(buffer_view, number);
-  const std::size_t element = elements.size(), offset = size_in(part, "byteOffset"),
-                    stride = size_in(list("bufferViews").at(static_cast<std::size_t>(buffer_view)),
-                                     "byteStride");
-  elements.stride = stride == 0 ? element : stride;
-  const bool is_within = offset <= bytes.size() && elements.count > 0 &&
-                         element <= bytes.size() - offset &&
-                         elements.count - 1 <= (bytes.size() - offset - element) / elements.stride;
-  if (!is_within) fail(number + "beyond its buffer, which ends too soon");
-  elements.first = bytes.data() + offset;
+std::string GltfFile::packed(const Json& part, std::size_t size, std::size_t count,
+                             const std::string& place) const {
+  const int number = index_in(part, "bufferView");
+  std::string_view bytes = stored(number, place);
+  const Json& view = list("bufferViews").at(static_cast<std::size_t>(number));
+  const std::size_t offset = size_in(part, "byteOffset"),
+                    stride = std::max(size_in(view, "byteStride"), size);
+  bytes.remove_prefix(std::min(offset, bytes.size()));
+  const bool is_within =
+      count > 0 && size <= bytes.size() && count - 1 <= (bytes.size() - size) / stride;
+  if (!is_within) fail(place + "beyond its buffer, which ends too soon");
+  if (stride == size) return std::string(bytes.substr(0, count * size));
+  std::string result;
+  result.reserve(count * size);
+  for (std::size_t i = 0; i < count; ++i) result.append(bytes.substr(i * stride, size));
+  return result;
 }
 
-GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
+const GltfFile::Component& GltfFile::component_of(const Json& part,
+                                                  const std::string& place) const {
   static constexpr Component kComponents[] = {
       {5120, NumberType::kInt8, 127.0},          {5121, NumberType::kUint8, 255.0},
       {5122, NumberType::kInt16, 32767.0},       {5123, NumberType::kUint16, 65535.0},
       {5125, NumberType::kUint32, 4294967295.0}, {5126, NumberType::kFloat, 1.0}};
-  static constexpr std::pair<std::string_view, int> kTypes[] = {
+  const auto* const found =
+      std::ranges::find(kComponents, index_in(part, "componentType"), &Component::code);
+  if (found == std::end(kComponents)) fail(place + "of an unknown type");
+  return *found;
+}
+
+GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
+  static const std::map<std::string, int> kTypes = {
       {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
-  const std::string number = "accessor " + std::to_string(accessor) + " (" + what + "): ";
-  const Json& a = this->accessor(accessor);
-  const auto* const type =
-      std::ranges::find(kTypes, text_in(a, "type"), &std::pair<std::string_view, int>::first);
-  const auto typed = [&](const Json& part, int components, std::size_t count) {
-    const auto* const component =
-        std::ranges::find(kComponents, index_in(part, "componentType"), &Component::code);
-    if (component == std::end(kComponents) || components == 0) fail(number + "of an unknown type");
-    return Elements{nullptr, 0, count, component, components};
-  };
-  Elements result = typed(a, type == std::end(kTypes) ? 0 : type->second, count(accessor));
-  const bool has_view = !member(a, "bufferView").is_null();
-  const Json& sparse = member(a, "sparse");
-  if (has_view) find_stored(a, number, result);
-  if (has_view && !sparse.is_object()) return result;
-  // Elements without a buffer are 0; then the sparse ones are replaced.
-  constexpr std::size_t kMost = 1'000'000;
-  if (result.count > kMost + bytes_) fail(number + "too many elements without a buffer");
-  const std::size_t size = result.size();
-  std::vector<char> own(size * result.count);
-  for (std::size_t i = 0; result.first != nullptr && i < result.count; ++i) {
-    std::copy_n(result.first + i * result.stride, size, own.data() + i * size);
+  const std::string place = "accessor " + std::to_string(accessor) + " (" + what + "): ";
+  const Json& from = this->accessor(accessor);
+  const auto type = kTypes.find(text_in(from, "type"));
+  if (type == kTypes.end()) fail(place + "of an unknown type");
+  Elements result{component_of(from, place), type->second, count(accessor), ""};
+  const std::size_t size = bytes_of(result.component.type) * static_cast<std::size_t>(type->second);
+  if (!member(from, "bufferView").is_null()) {
+    result.bytes = packed(from, size, result.count, place);
+  } else {  // they are 0, apart from sparse ones
+    constexpr std::size_t kMost = 1'000'000;
+    if (result.count > kMost + bytes_) fail(place + "too many elements without a buffer");
+    result.bytes.assign(size * result.count, '\0');
   }
-  if (sparse.is_object()) {
-    const std::size_t count = size_in(sparse, "count");
-    Elements places = typed(member(sparse, "indices"), 1, count);
-    Elements values = typed(a, result.components, count);
-    find_stored(member(sparse, "indices"), number, places);
-    find_stored(member(sparse, "values"), number, values);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double place = number_at(places.first + i * places.stride, places.component->type);
-      if (!(place >= 0.0 && place < static_cast<double>(result.count))) {
-        fail(number + "a sparse element beyond its end");
-      }
-      std::copy_n(values.first + i * values.stride, size,
-                  own.data() + static_cast<std::size_t>(place) * size);
+  const Json& sparse = member(from, "sparse");
+  if (!sparse.is_object()) return result;
+  const std::size_t count = size_in(sparse, "count");
+  const Json& indices = member(sparse, "indices");
+  const NumberType index_type = component_of(indices, place).type;
+  const std::size_t index_size = bytes_of(index_type);
+  const std::string places = packed(indices, index_size, count, place),
+                    values = packed(member(sparse, "values"), size, count, place);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = number_at(places.data() + i * index_size, index_type);
+    if (!(at >= 0.0 && at < static_cast<double>(result.count))) {
+      fail(place + "a sparse element beyond its end");
     }
+    result.bytes.replace(static_cast<std::size_t>(at) * size, size, values, i * size, size);
   }
-  result.own = std::move(own);
-  result.first = result.own.data();
-  result.stride = size;
   return result;
 }
 
-std::vector<double> GltfFile::vectors(int accessor, int width, const char* what) const {
-  std::vector<double> all = numbers(accessor, width, what);
-  if (!std::ranges::all_of(all, [](double number) { return std::isfinite(number); })) {
-    fail("accessor " + std::to_string(accessor) + " (" + what + "): a number that is not finite");
-  }
-  return all;
-}
-
-std::vector<double> GltfFile::optional_vectors(int accessor, int width, const char* what,
+std::vector<double> GltfFile::optional_numbers(int accessor, int width, const char* what,
                                                std::size_t vertices) {
   std::vector<double> all;
   if (accessor < 0) return all;
@@ -347,70 +314,54 @@ std::vector<double> GltfFile::numbers(int accessor, int width, const char* what)
     fail("accessor " + std::to_string(accessor) + " (" + what + "): " + found);
   };
   if (from.components < width) fail_here("too few components");
-  if (from.component->type == NumberType::kUint32) {
+  if (from.component.type == NumberType::kUint32) {
     fail_here("numbers of a type that is not expected there");
   }
-  const auto [ignored, type, one] = *from.component;
+  const auto [ignored, type, one] = from.component;
   const Json& normalized = member(this->accessor(accessor), "normalized");
   const bool is_normalized = normalized.is_boolean() && normalized.get<bool>();
+  const std::size_t size = bytes_of(type), components = static_cast<std::size_t>(from.components);
   std::vector<double> numbers;
   numbers.reserve(from.count * static_cast<std::size_t>(width));
-  for (std::size_t i = 0; i < from.count; ++i) {
-    const char* at = from.first + i * from.stride;
-    for (int k = 0; k < width; ++k, at += bytes_of(type)) {
-      double number = number_at(at, type);
-      if (is_normalized) number = std::max(number / one, -1.0);
-      numbers.push_back(number);
-    }
+  for (std::size_t i = 0; i < from.count * components; ++i) {
+    if (i % components >= static_cast<std::size_t>(width)) continue;
+    const double number = number_at(from.bytes.data() + i * size, type);
+    numbers.push_back(is_normalized ? std::max(number / one, -1.0) : number);
   }
   return numbers;
 }
 
 std::vector<std::uint32_t> GltfFile::indices(int accessor) const {
   const Elements from = elements(accessor, "indices");
-  const NumberType type = from.component->type;
+  const NumberType type = from.component.type;
   if (type != NumberType::kUint8 && type != NumberType::kUint16 && type != NumberType::kUint32) {
     fail("accessor " + std::to_string(accessor) + " (indices): not of whole numbers");
   }
+  const std::size_t stride = from.bytes.size() / std::max<std::size_t>(from.count, 1);
   std::vector<std::uint32_t> numbers;
   numbers.reserve(from.count);
   for (std::size_t i = 0; i < from.count; ++i) {
-    numbers.push_back(static_cast<std::uint32_t>(number_at(from.first + i * from.stride, type)));
+    numbers.push_back(static_cast<std::uint32_t>(number_at(from.bytes.data() + i * stride, type)));
   }
   return numbers;
 }
 
 glm::dmat4 local_matrix(const Json& node) {
-  const std::vector<double> numbers = numbers_in(node, "matrix");
-  if (numbers.size() == 16) return glm::make_mat4(numbers.data());
-  return matrix_of(numbers_in(node, "translation"), numbers_in(node, "rotation"),
-                   numbers_in(node, "scale"));
-}
-
-std::vector<glm::dmat4> GltfFile::instance_transforms(const Json& node) const {
-  const Json& attributes =
-      member(raygate::extension(node, "EXT_mesh_gpu_instancing"), "attributes");
-  if (!attributes.is_object()) return {glm::dmat4(1.0)};
-  std::optional<std::size_t> count;
-  const auto read = [&](const char* name, int width) {
-    const int accessor = index_in(attributes, name);
-    if (accessor < 0) return std::vector<double>();
-    std::vector<double> all = vectors(accessor, width, name);
-    const std::size_t found = all.size() / static_cast<std::size_t>(width);
-    if (count.value_or(found) != found) fail("instances: not as many of each attribute");
-    count = found;
-    return all;
-  };
-  const std::vector<double> places = read("TRANSLATION", 3), turns = read("ROTATION", 4),
-                            scales = read("SCALE", 3);
-  const auto part = [](const std::vector<double>& all, std::size_t i, std::size_t width) {
-    return std::span(all).subspan(all.empty() ? 0 : i * width, all.empty() ? 0 : width);
-  };
-  std::vector<glm::dmat4> transforms;
-  for (std::size_t i = 0; i < count.value_or(0); ++i) {
-    transforms.push_back(matrix_of(part(places, i, 3), part(turns, i, 4), part(scales, i, 3)));
+  const std::vector<double> matrix = numbers_in(node, "matrix");
+  if (matrix.size() == 16) return glm::make_mat4(matrix.data());
+  const std::vector<double> t = numbers_in(node, "translation"), r = numbers_in(node, "rotation"),
+                            s = numbers_in(node, "scale");
+  glm::dmat4 result(1.0);
+  if (t.size() == 3) result[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
+  if (r.size() == 4) {
+    const glm::dquat turn(r[3], r[0], r[1], r[2]);
+    const double length = glm::length(turn);
+    if (length > 0.0) result = result * glm::mat4_cast(turn / length);
   }
-  return transforms;
+  for (std::size_t axis = 0; s.size() == 3 && axis < 3; ++axis) {
+    result[static_cast<int>(axis)] *= s[axis];
+  }
+  return result;
 }
 
 }  // namespace raygate

@@ -60,22 +60,18 @@ class GltfFile {
   /// Returns the number of elements of an accessor.
   [[nodiscard]] std::size_t count(int accessor) const;
 
-  /// Returns the first `width` components of each element of an accessor. Throws InputError if they
-  /// cannot be read or are not finite.
-  [[nodiscard]] std::vector<double> vectors(int accessor, int width, const char* what) const;
-  /// Returns the vectors of an optional attribute of a primitive with this number of vertices,
-  /// which may be infinite or NaN. Returns an empty list for accessor -1 and, with a warning, for
-  /// an accessor that cannot be read.
-  [[nodiscard]] std::vector<double> optional_vectors(int accessor, int width, const char* what,
+  /// Returns the first `width` components of each element of an accessor, which may be infinite or
+  /// NaN. Throws InputError if they cannot be read.
+  [[nodiscard]] std::vector<double> numbers(int accessor, int width, const char* what) const;
+  /// Returns the numbers of an optional attribute of a primitive with this number of vertices.
+  /// Returns an empty list for accessor -1 and, with a warning, for an accessor that cannot be
+  /// read.
+  [[nodiscard]] std::vector<double> optional_numbers(int accessor, int width, const char* what,
                                                      std::size_t vertices);
   /// Returns the numbers of an accessor of indices.
   [[nodiscard]] std::vector<std::uint32_t> indices(int accessor) const;
   /// Returns the bytes of an image file. Throws InputError if it has none.
   [[nodiscard]] std::string_view picture_bytes(int image);
-
-  /// Returns the transforms of a node's mesh to the node's coordinates: those of
-  /// EXT_mesh_gpu_instancing or, without it, the identity alone.
-  [[nodiscard]] std::vector<glm::dmat4> instance_transforms(const Json& node) const;
 
  private:
   struct Component;
@@ -84,13 +80,15 @@ class GltfFile {
   /// Returns the bytes of a data URI or of a file beside this one; nullopt if there are none.
   std::optional<std::string_view> load(const std::string& uri);
   void add_warning(const std::string& warning);
+  [[nodiscard]] const Component& component_of(const Json& part, const std::string& place) const;
   [[nodiscard]] Elements elements(int accessor, const char* what) const;
   /// Returns the bytes of a buffer view. Throws InputError, which names `place`, if it has none or
   /// is not within its buffer.
   [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;
-  /// Locates elements of this type and count. Throws InputError if they exceed their buffer view.
-  void find_stored(const Json& part, const std::string& number, Elements& elements) const;
-  [[nodiscard]] std::vector<double> numbers(int accessor, int width, const char* what) const;
+  /// Returns the bytes of `count` elements of this size, without gaps. Throws InputError if they
+  /// exceed their buffer view.
+  [[nodiscard]] std::string packed(const Json& part, std::size_t size, std::size_t count,
+                                   const std::string& place) const;
   [[noreturn]] void fail_extension(const std::string& extension) const;
 
   std::string name_;

@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,13 +26,9 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kLumensPerWatt = 683.0;
 constexpr double kMostFloat = std::numeric_limits<float>::max();
 
-bool has_finite_elements(const glm::dmat4& m) {
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) {
-      if (!std::isfinite(m[column][row])) return false;
-    }
-  }
-  return true;
+bool is_finite(const glm::dmat4& m) {
+  const std::span elements(glm::value_ptr(m), 16);
+  return std::ranges::all_of(elements, [](double element) { return std::isfinite(element); });
 }
 
 /// The index of a mesh, and the weights of its morph targets.
@@ -53,16 +51,9 @@ struct MeshInstance {
 /// A node, and its transform to the world.
 using PlacedNode = std::pair<const Json*, glm::dmat4>;
 
-/// A point or spot light in world coordinates.
-struct PlacedLight {
-  glm::dvec3 position;
-  glm::dvec3 intensity;
-  std::optional<SpotCone> spot;
-};
-
 /// Returns the options required by glTF 2.0, 3.7.2.1: primitives without normals are flat.
 LoadOptions as_specified(LoadOptions options) {
-  options.smooth_if_unsaid = false;
+  options.smooth_by_default = false;
   return options;
 }
 
@@ -83,7 +74,7 @@ class GltfReader {
     builder_.build(options_, scene_);
     for (const MeshInstance& instance : instances_) add_instance(instance);
     if (is_empty(scene_)) throw InputError(file_.name() + ": no face has an area");
-    place_lights();
+    for (const WorldPointLight& light : lights_) add_light(scene_, light, file_.name());
     aim_camera();
     if (!options_.keep_instances) resolve_instances(scene_, InstanceMode::kFlatten, file_.name());
     scene_.up = glm::dvec3(0.0, 1.0, 0.0);
@@ -103,16 +94,13 @@ class GltfReader {
       return indices_in(file_.at(file_.list("scenes"), scene, "scene"), "nodes");
     }
     const Json& nodes = file_.list("nodes");
-    std::vector<bool> is_child(nodes.size());
+    std::set<int> children;
     for (const Json& parent : nodes) {
-      for (const int child : indices_in(parent, "children")) {
-        (void)node(child);
-        is_child[static_cast<std::size_t>(child)] = true;
-      }
+      for (const int child : indices_in(parent, "children")) children.insert(child);
     }
     std::vector<int> found;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (!is_child[i]) found.push_back(static_cast<int>(i));
+    for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
+      if (!children.contains(i)) found.push_back(i);
     }
     return found;
   }
@@ -139,7 +127,7 @@ class GltfReader {
       }
       seen[static_cast<std::size_t>(step.node)] = true;
       const glm::dmat4 world = step.parent * local_matrix(node);
-      if (!has_finite_elements(world)) {
+      if (!is_finite(world)) {
         file_.fail("node " + std::to_string(step.node) + ": its place is not finite");
       }
       nodes_.emplace_back(&node, world);
@@ -159,7 +147,7 @@ class GltfReader {
 
   void count_uses(const Json& node) {
     if (index_in(node, "mesh") < 0 || index_in(node, "skin") >= 0) return;
-    uses_[shape_of(node)] += extension(node, "EXT_mesh_gpu_instancing").is_null() ? 1 : 2;
+    ++uses_[shape_of(node)];
   }
 
   /// Returns the transforms of a skin's joints, from the mesh's coordinates to the world's.
@@ -171,7 +159,7 @@ class GltfReader {
       joints.push_back(placed == nodes_.end() ? glm::dmat4(1.0) : placed->second);
     }
     if (joints.empty()) file_.warn_once("a skin without joints is left out");
-    const std::vector<double> inverse = file_.optional_vectors(
+    const std::vector<double> inverse = file_.optional_numbers(
         index_in(skin, "inverseBindMatrices"), 16, "inverseBindMatrices", joints.size());
     for (std::size_t i = 0; i < inverse.size() / 16; ++i)
       joints[i] *= glm::make_mat4(&inverse[16 * i]);
@@ -188,29 +176,24 @@ class GltfReader {
       const Shape shape = shape_of(node);
       const int skin = index_in(node, "skin");
       if (skin < 0 && uses_[shape] > 1) {
-        for (const glm::dmat4& own : file_.instance_transforms(node)) {
-          instances_.push_back({shape, world * own, object});
-        }
+        instances_.push_back({shape, world * glm::dmat4(1.0), object});  // without negative zeros
       } else {
         GltfPlacement placement{world, &shape.second, {}};
-        if (skin >= 0) optionally([&] { placement.joints = joints_of(skin); });
+        if (skin >= 0) file_.optionally("left out", [&] { placement.joints = joints_of(skin); });
         meshes_.read(mesh(number), placement, object, builder_);
       }
     }
     if (const int camera = index_in(node, "camera"); camera >= 0) {
-      optionally([&] { read_camera(file_.at(file_.list("cameras"), camera, "camera"), world); });
+      file_.optionally("left out", [&] {
+        read_camera(file_.at(file_.list("cameras"), camera, "camera"), world);
+      });
     }
     constexpr const char* kLights = "KHR_lights_punctual";
     if (const int light = index_in(extension(node, kLights), "light"); light >= 0) {
-      optionally([&] {
+      file_.optionally("left out", [&] {
         read_light(file_.at(member(file_.extension(kLights), "lights"), light, "light"), world);
       });
     }
-  }
-
-  template <class Read>
-  void optionally(const Read& read) {
-    file_.optionally("left out", read);
   }
 
   /// Returns the mesh of an instance, in its own coordinates, which is read at the first call.
@@ -231,7 +214,9 @@ class GltfReader {
     const auto& [part, own_box, ignored] = shared(instance.shape);
     if (is_empty(part)) return;
     if (!options_.keep_instances) meshes_.count(part.positions.size() + 3 * part.triangles.size());
-    const Bounds3 box = transform_bounds(instance.world, part.origin, own_box);
+    Instance placed;
+    set_rows(instance.world, part.origin, glm::dvec3(0.0), placed);
+    const Bounds3 box = transform_bounds(placed.rows, own_box);
     if (!(largest(box.low) <= kMostFloat && largest(box.high) <= kMostFloat)) {
       file_.fail("a vertex is beyond the range of float");
     }
@@ -322,7 +307,9 @@ class GltfReader {
       scene_.directional_lights.push_back({direction, glm::vec3(intensity)});
       return;
     }
-    PlacedLight& placed = lights_.emplace_back(PlacedLight{glm::dvec3(world[3]), intensity, {}});
+    WorldPointLight& placed = lights_.emplace_back();
+    placed.position = glm::dvec3(world[3]);
+    placed.intensity = intensity;
     if (!is_spot) return;
     const Json& spot = member(light, "spot");
     if (!spot.is_object()) file_.warn_once("a spot light without 'spot' has the usual cone");
@@ -337,17 +324,6 @@ class GltfReader {
     cone.inner = inner >= 0.0 ? std::min(inner, cone.outer) : 0.0;
   }
 
-  /// Adds the point lights to the scene, whose origin must be set.
-  void place_lights() {
-    for (const PlacedLight& light : lights_) {
-      const glm::vec3 rounded(light.position - scene_.origin);
-      if (!is_finite(rounded)) {
-        file_.fail("a light is beyond the range of float");
-      }
-      scene_.lights.push_back({rounded, light.intensity, light.spot});
-    }
-  }
-
   Scene scene_;
   GltfFile file_;
   const LoadOptions options_;
@@ -357,7 +333,7 @@ class GltfReader {
   std::map<Shape, int> uses_;
   std::map<Shape, SharedMesh> shared_;
   std::vector<MeshInstance> instances_;
-  std::vector<PlacedLight> lights_;
+  std::vector<WorldPointLight> lights_;
 };
 
 }  // namespace

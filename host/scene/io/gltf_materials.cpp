@@ -47,32 +47,6 @@ int set_of(const Json& info) {
   return static_cast<int>(std::clamp(set, -1.0, 1e6));
 }
 
-/// Calls visit(texture) for the textures of a material that are read; null for missing ones.
-template <class Visit>
-void for_each_texture(const Json& from, const Visit& visit) {
-  const Json &pbr = member(from, "pbrMetallicRoughness"), &coat = extension(from, kCoat),
-             &specular = extension(from, kSpecular);
-  visit(member(pbr, "baseColorTexture"));
-  visit(member(pbr, "metallicRoughnessTexture"));
-  visit(member(from, "normalTexture"));
-  visit(member(from, "emissiveTexture"));
-  visit(member(coat, "clearcoatTexture"));
-  visit(member(coat, "clearcoatRoughnessTexture"));
-  visit(member(extension(from, kTransmission), "transmissionTexture"));
-  visit(member(specular, "specularTexture"));
-  visit(member(specular, "specularColorTexture"));
-}
-
-/// Returns the opacity of a base colour.
-double base_opacity(const std::vector<double>& base_color) {
-  return base_color.size() == 4 ? in_unit(base_color[3]) : 1.0;
-}
-
-/// Returns the cutoff of a mask; above 1 nothing is visible.
-double cutoff_of(const Json& material) {
-  return std::max(number_in(material, "alphaCutoff", 0.5), 0.0);
-}
-
 }  // namespace
 
 const Json& GltfMaterials::material(int index) const {
@@ -80,16 +54,16 @@ const Json& GltfMaterials::material(int index) const {
   return index == -1 ? kDefault : file_.at(file_.list("materials"), index, "material");
 }
 
-std::uint32_t GltfMaterials::number_of(int material) {
-  const auto [entry, is_new] =
-      numbers_.try_emplace(material, static_cast<std::uint32_t>(scene_.materials.size()));
-  if (is_new) {
-    Material result;
-    result.name = "default";
-    if (material != -1) result = translated(this->material(material));
-    scene_.materials.push_back(std::move(result));
-  }
-  return entry->second;
+GltfMaterials::Converted GltfMaterials::convert(int material) {
+  const auto found = converted_.find(material);
+  if (found != converted_.end()) return found->second;
+  set_ = -1;
+  Material result;
+  result.name = "default";
+  if (material != -1) result = translated(this->material(material));
+  const Converted converted{static_cast<std::uint32_t>(scene_.materials.size()), set_};
+  scene_.materials.push_back(std::move(result));
+  return converted_.emplace(material, converted).first->second;
 }
 
 std::vector<double> GltfMaterials::numbers(const Json& object, const char* key, std::size_t size) {
@@ -99,23 +73,6 @@ std::vector<double> GltfMaterials::numbers(const Json& object, const char* key, 
     file_.warn_once(in_quotes(key) + " of a material is not as glTF has it, left out");
   }
   return {};
-}
-
-GltfMaterials::Sets GltfMaterials::sets_of(const Json& from) {
-  Sets sets{-1, -1};
-  for_each_texture(from, [&](const Json& info) {
-    if (index_in(info, "index") < 0) return;
-    const int set = set_of(info);
-    auto at = std::ranges::find(sets, set);
-    if (at == sets.end()) at = std::ranges::find(sets, -1);
-    if (at != sets.end()) {
-      *at = set;
-    } else {
-      file_.warn_once(
-          "of textures of one material with three sets of coordinates the third is not read");
-    }
-  });
-  return sets;
 }
 
 std::optional<Texture> GltfMaterials::picture(const Json& texture, Texture::Content content) {
@@ -149,7 +106,11 @@ MaterialMap GltfMaterials::map_of(const Json& parent, const char* key, Texture::
 
 MaterialMap GltfMaterials::read_map(const Json& info, Texture::Content content) {
   MaterialMap map;
-  map.mapping.is_second = set_of(info) == sets_[1];
+  const int set = set_of(info);
+  if (set_ == -1) set_ = set;
+  if (set_ != set) {
+    file_.fail("textures of one material with different sets of coordinates, expected one set");
+  }
   const Json& texture = file_.at(file_.list("textures"), index_in(info, "index"), "texture");
   const auto [entry, is_new] =
       texture_of_image_.try_emplace(std::pair(index_in(texture, "source"), content), kNoIndex);
@@ -195,25 +156,15 @@ bool GltfMaterials::has_opacity(int material) const {
   return mode == "MASK" || mode == "BLEND";
 }
 
-void GltfMaterials::use_vertex_opacity(int material) {
-  const Json &from = this->material(material), &pbr = member(from, "pbrMetallicRoughness");
-  Material& to = scene_.materials[number_of(material)];
-  sets_ = sets_of(from);
-  to.has_vertex_opacity = true;
-  to.opacity_blends = text_in(from, "alphaMode") == "BLEND";
-  to.opacity_map = map_of(pbr, "baseColorTexture", Texture::Content::kAlpha);
-  if (to.opacity_blends) return;
-  to.opacity_cutoff =
-      static_cast<float>(cutoff_of(from) / base_opacity(numbers(pbr, "baseColorFactor", 4)));
-}
-
 /// Sets the opacity from the base colour's factor and texture, which blend or are a mask.
 void GltfMaterials::set_opacity(const Json& from, Material& material) {
   const std::string mode = text_in(from, "alphaMode");
   if (mode != "MASK" && mode != "BLEND") return;
   const Json& pbr = member(from, "pbrMetallicRoughness");
+  const std::vector<double> color = numbers(pbr, "baseColorFactor", 4);
   const bool is_mask = mode == "MASK";
-  const double factor = base_opacity(numbers(pbr, "baseColorFactor", 4)), cutoff = cutoff_of(from);
+  const double factor = color.size() == 4 ? in_unit(color[3]) : 1.0,
+               cutoff = std::max(number_in(from, "alphaCutoff", 0.5), 0.0);
   if (!is_mask) material.opacity = static_cast<float>(factor);
   if (is_mask && factor < cutoff) material.opacity = 0.0f;
   if (material.opacity == 0.0f) return;
@@ -233,17 +184,16 @@ Material GltfMaterials::translated(const Json& from) {
     return static_cast<float>(in_unit(number_in(object, key, otherwise)));
   };
   Material material;
-  sets_ = sets_of(from);
+  const Json& base = member(pbr, "baseColorTexture");
+  if (index_in(base, "index") >= 0) set_ = set_of(base);  // the set of the base colour is read
   material.name = text_in(from, "name");
   if (!pbr.is_object()) (void)numbers(from, "pbrMetallicRoughness", 0);
   material.diffuse = colour_of(numbers(pbr, "baseColorFactor", 4));
-  MetallicRoughness& shares = material.metallic_roughness.emplace();
-  shares.metallic = fraction(pbr, "metallicFactor", 1.0);
-  shares.roughness = fraction(pbr, "roughnessFactor", 1.0);
-  shares.map = map_of(pbr, "metallicRoughnessTexture");
-  const MaterialMap diffuse = map_of(pbr, "baseColorTexture");
-  material.diffuse_texture = diffuse.texture;
-  material.diffuse_mapping = diffuse.mapping;
+  MetallicRoughness& model = material.metallic_roughness.emplace();
+  model.metallic = fraction(pbr, "metallicFactor", 1.0);
+  model.roughness = fraction(pbr, "roughnessFactor", 1.0);
+  model.roughness_map = model.metallic_map = map_of(pbr, "metallicRoughnessTexture");
+  material.diffuse_map = map_of(pbr, "baseColorTexture");
   material.normal_map = map_of(from, "normalTexture");
   material.normal_scale = finite_in(normal, "scale", 1.0);
   set_opacity(from, material);
@@ -260,17 +210,17 @@ Material GltfMaterials::translated(const Json& from) {
   if (material.emission != glm::vec3(0.0f)) {
     material.emission_map = map_of(from, "emissiveTexture");
   }
-  shares.specular = fraction(specular, "specularFactor", 1.0);
-  shares.specular_map = map_of(specular, "specularTexture", Texture::Content::kAlpha);
-  shares.specular_color =
+  model.specular = fraction(specular, "specularFactor", 1.0);
+  model.specular_map = map_of(specular, "specularTexture", Texture::Content::kAlpha);
+  model.specular_color =
       colour_of(numbers_in(specular, "specularColorFactor"), std::numeric_limits<float>::max());
-  shares.specular_color_map = map_of(specular, "specularColorTexture");
-  shares.transmission = fraction(transmission, "transmissionFactor", 0.0);
-  shares.transmission_map = map_of(transmission, "transmissionTexture");
-  shares.coat = fraction(coat, "clearcoatFactor", 0.0);
-  shares.coat_roughness = fraction(coat, "clearcoatRoughnessFactor", 0.0);
-  shares.coat_map = map_of(coat, "clearcoatTexture");
-  shares.coat_roughness_map = map_of(coat, "clearcoatRoughnessTexture");
+  model.specular_color_map = map_of(specular, "specularColorTexture");
+  model.transmission = fraction(transmission, "transmissionFactor", 0.0);
+  model.transmission_map = map_of(transmission, "transmissionTexture");
+  model.coat = fraction(coat, "clearcoatFactor", 0.0);
+  model.coat_roughness = fraction(coat, "clearcoatRoughnessFactor", 0.0);
+  model.coat_map = map_of(coat, "clearcoatTexture");
+  model.coat_roughness_map = map_of(coat, "clearcoatRoughnessTexture");
   if (!member(coat, "clearcoatNormalTexture").is_null()) {
     file_.warn_once(
         "clearcoatNormalTexture is not read: a coat has the normals of what is under it");

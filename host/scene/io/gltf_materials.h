@@ -1,7 +1,6 @@
 // GltfMaterials: converts the materials and textures of a glTF file to those of a Scene.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -21,17 +20,14 @@ class GltfMaterials {
   GltfMaterials(GltfFile& file, Scene& scene, bool textures)
       : file_(file), scene_(scene), textures_(textures) {}
 
-  /// Returns the index in the scene of a material of the file, which is converted at its first use;
-  /// -1 is the default material.
-  std::uint32_t number_of(int material);
-  /// Returns the numbers of the sets of texture coordinates that a material uses; -1: none. Warns
-  /// about a third set.
-  using Sets = std::array<int, 2>;
-  [[nodiscard]] Sets texcoord_sets(int material) { return sets_of(this->material(material)); }
-  /// Returns whether a material uses the opacity of its vertices.
+  struct Converted {
+    std::uint32_t number;  ///< index into Scene::materials
+    int texcoord_set;      ///< set of texture coordinates of its textures; -1: it has none
+  };
+  /// Returns a material of the file, which is converted at its first use; -1 is the default one.
+  Converted convert(int material);
+  /// Returns whether a material has a mask or blends.
   [[nodiscard]] bool has_opacity(int material) const;
-  /// Makes a material of the scene use the opacity of its vertices.
-  void use_vertex_opacity(int material);
 
  private:
   /// Returns a member of a list of a material; an empty list, with a warning if the member is not
@@ -39,7 +35,6 @@ class GltfMaterials {
   std::vector<double> numbers(const Json& object, const char* key, std::size_t size);
   Material translated(const Json& from);
   void set_opacity(const Json& from, Material& material);
-  [[nodiscard]] Sets sets_of(const Json& from);
   /// Returns the material with this index, or null for index -1.
   [[nodiscard]] const Json& material(int index) const;
   /// Returns the texture at a key with its mapping; no texture if there is none or, with a warning,
@@ -54,8 +49,8 @@ class GltfMaterials {
   GltfFile& file_;
   Scene& scene_;
   const bool textures_;
-  std::map<int, std::uint32_t> numbers_;  // from materials of the file to those of the scene
-  Sets sets_{-1, -1};                     // of the material that is being read
+  std::map<int, Converted> converted_;  // by the material's index in the file
+  int set_ = -1;                        // texcoord_set of the material that is being read
   /// Textures of the scene by image of the file; kNoIndex: it could not be read.
   std::map<std::pair<int, Texture::Content>, std::uint32_t> texture_of_image_;
   std::int64_t texels_ = 0;  // decoded so far

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "host/exact/exact.h"
 #include "host/scene/io/text.h"
@@ -14,6 +16,14 @@ namespace {
 
 constexpr int kTriangles = 4, kTriangleFan = 6;    // modes of primitives
 constexpr std::size_t kMostVertices = 12'000'000;  // plus the number of bytes of the file
+
+/// Returns whether an attribute may be missed. Texture coordinates that no texture uses, and joints
+/// without a skin, change no picture.
+bool is_unread(std::string_view name) {
+  return name != "POSITION" && name != "NORMAL" && name != "TANGENT" && name != "COLOR_0" &&
+         !name.starts_with("TEXCOORD_") && !name.starts_with("JOINTS_") &&
+         !name.starts_with("WEIGHTS_");
+}
 
 }  // namespace
 
@@ -44,46 +54,32 @@ std::vector<std::uint32_t> GltfMeshes::corners_of(const Json& primitive, std::si
   if (mode == kTriangles || mode == -1) return order;
   std::vector<std::uint32_t> corners;
   for (std::size_t i = 2; i < order.size(); ++i) {
-    const bool is_fan = mode == kTriangleFan;
-    const std::size_t first = is_fan ? 0 : i - 2, second = i - 1;
-    const bool is_turned = !is_fan && i % 2 == 1;
-    corners.insert(corners.end(), {order[is_turned ? second : first],
-                                   order[is_turned ? first : second], order[i]});
+    std::uint32_t first = order[mode == kTriangleFan ? 0 : i - 2], second = order[i - 1];
+    if (mode != kTriangleFan && i % 2 == 1) std::swap(first, second);
+    corners.insert(corners.end(), {first, second, order[i]});
   }
   return corners;
-}
-
-void GltfMeshes::warn_of_attributes(const Json& primitive) {
-  constexpr std::string_view kRead[] = {"POSITION", "NORMAL", "TANGENT", "COLOR_0"};
-  // Texture coordinates that no texture uses, and joints without a skin, change no picture.
-  constexpr std::string_view kNumbered[] = {"TEXCOORD_", "JOINTS_", "WEIGHTS_"};
-  for (const auto& [name, accessor] : member(primitive, "attributes").items()) {
-    const auto begins_name = [&](std::string_view start) { return name.starts_with(start); };
-    if (std::ranges::find(kRead, name) != std::end(kRead)) continue;
-    if (std::ranges::any_of(kNumbered, begins_name)) continue;
-    file_.warn_once("the attribute " + in_quotes(name) + " is not read");
-  }
 }
 
 std::vector<double> GltfMeshes::attribute(const Json& primitive, const std::string& name, int width,
                                           std::size_t vertices,
                                           const std::vector<double>& weights) {
-  const Json &attributes = member(primitive, "attributes"), &targets = member(primitive, "targets");
-  const int accessor = index_in(attributes, name.c_str());
+  const int accessor = index_in(member(primitive, "attributes"), name.c_str());
   const auto optional = [&](int number, int components) {
-    return file_.optional_vectors(number, components, name.c_str(), vertices);
+    return file_.optional_numbers(number, components, name.c_str(), vertices);
   };
   std::vector<double> all =
-      name == "POSITION" ? file_.vectors(accessor, width, "POSITION") : optional(accessor, width);
+      name == "POSITION" ? file_.numbers(accessor, width, "POSITION") : optional(accessor, width);
   const int moved = std::min(width, 3);  // targets move a tangent's direction, not its sign
-  const std::size_t count = targets.is_array() ? targets.size() : 0;
-  for (std::size_t target = 0; target < std::min(weights.size(), count); ++target) {
-    if (weights[target] == 0.0 || all.empty()) continue;
-    const std::vector<double> by = optional(index_in(targets.at(target), name.c_str()), moved);
+  std::size_t target = 0;
+  for (const Json& targets : member(primitive, "targets")) {
+    const double weight = target < weights.size() ? weights[target++] : 0.0;
+    if (weight == 0.0 || all.empty()) continue;
+    const std::vector<double> by = optional(index_in(targets, name.c_str()), moved);
     for (std::size_t i = 0; i < by.size(); ++i) {
       const std::size_t vertex = i / static_cast<std::size_t>(moved),
                         k = i % static_cast<std::size_t>(moved);
-      all[vertex * static_cast<std::size_t>(width) + k] += weights[target] * by[i];
+      all[vertex * static_cast<std::size_t>(width) + k] += weight * by[i];
     }
   }
   return all;
@@ -96,8 +92,8 @@ std::vector<glm::dmat4> GltfMeshes::skinned(const Json& primitive, const GltfPla
   for (int set = 0;; ++set) {
     const std::string number = std::to_string(set);
     if (!member(primitive, "attributes").contains("JOINTS_" + number)) break;
-    const std::vector<double> joints = attribute(primitive, "JOINTS_" + number, 4, vertices, {}),
-                              weights = attribute(primitive, "WEIGHTS_" + number, 4, vertices, {});
+    const std::vector<double> joints = attribute(primitive, "JOINTS_" + number, 4, vertices),
+                              weights = attribute(primitive, "WEIGHTS_" + number, 4, vertices);
     for (std::size_t i = 0; i < std::min(joints.size(), weights.size()); ++i) {
       const bool is_joint =
           joints[i] >= 0.0 && joints[i] < static_cast<double>(placement.joints.size());
@@ -122,7 +118,9 @@ void GltfMeshes::read_primitive(const Json& primitive, const GltfPlacement& plac
   if (!attributes.contains("POSITION")) {
     return file_.warn_once("a primitive without positions is left out");
   }
-  warn_of_attributes(primitive);
+  for (const auto& [name, accessor] : attributes.items()) {
+    if (is_unread(name)) file_.warn_once("the attribute " + in_quotes(name) + " is not read");
+  }
   const std::size_t vertices = file_.count(index_in(attributes, "POSITION"));
   count(vertices);
   const auto read = [&](const std::string& name, int width) {
@@ -133,21 +131,20 @@ void GltfMeshes::read_primitive(const Json& primitive, const GltfPlacement& plac
   if (!normals.empty()) tangents = read("TANGENT", 4);
   const int color = index_in(attributes, "COLOR_0");
   const bool has_alpha = color >= 0 && text_in(file_.accessor(color), "type") == "VEC4";
-  const std::size_t channels = has_alpha ? 4 : 3;
-  const std::vector<double> colors = read("COLOR_0", static_cast<int>(channels));
-  if (!colors.empty()) to.colors_are_linear();
-  const auto [set, second_set] = materials_.texcoord_sets(number);
-  const auto read_set = [&](int number) {
-    return number < 0 ? std::vector<double>() : read("TEXCOORD_" + std::to_string(number), 2);
-  };
-  std::vector<double> texcoords = read_set(set);
-  const std::vector<double> seconds = read_set(second_set);
-  const bool is_clear = has_alpha && !colors.empty() && materials_.has_opacity(number);
-  if (is_clear && set < 0) texcoords.resize(2 * vertices);  // opacities need them
+  const std::vector<double> colors = read("COLOR_0", 3);
   const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
   count(corners.size());
-  if (corners.size() % 3 != 0)
+  if (corners.size() % 3 != 0) {
     file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
+  }
+  const auto [material, set] = materials_.convert(number);
+  if (has_alpha && materials_.has_opacity(number)) {
+    file_.warn_once("the opacity of vertices (COLOR_0) is not read");
+  }
+  std::vector<double> texcoords;
+  if (set >= 0) texcoords = read("TEXCOORD_" + std::to_string(set), 2);
+  if (!colors.empty()) to.colors_are_linear();
+  if (number < 0 && !colors.empty()) scene_.materials[material].diffuse = glm::vec3(1.0f);
 
   std::vector<glm::dmat4> places;
   if (!placement.joints.empty()) places = skinned(primitive, placement, vertices);
@@ -159,61 +156,43 @@ void GltfMeshes::read_primitive(const Json& primitive, const GltfPlacement& plac
   for (std::size_t i = 0; i < vertices; ++i) {
     const glm::dmat4& place = place_of(i);
     const glm::dmat3 turn(place);
-    const glm::dvec3 at(
-        place * glm::dvec4(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2], 1.0));
+    const glm::dvec3 at(place * glm::dvec4(glm::make_vec3(&positions[3 * i]), 1.0));
     if (!(is_finite(at) && largest(at) <= std::numeric_limits<float>::max())) {
       file_.fail("a vertex is beyond the range of float");
     }
     to.add_position(at);
-    if (!colors.empty()) {
-      const double* const rgb = &colors[channels * i];
-      to.add_color({rgb[0], rgb[1], rgb[2]});
-    }
+    if (!colors.empty()) to.add_color(glm::vec3(glm::make_vec3(&colors[3 * i])));
     if (!normals.empty()) {
       // The inverse transpose up to a factor; cofactors also exist for a singular matrix.
       const glm::dmat3 cofactors(glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]),
                                  glm::cross(turn[0], turn[1]));
-      to.add_normal(
-          sign * (cofactors * glm::dvec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2])));
+      to.add_normal(sign * (cofactors * glm::make_vec3(&normals[3 * i])));
     }
     if (!tangents.empty()) {
-      const glm::dvec3 along =
-          turn * glm::dvec3(tangents[4 * i], tangents[4 * i + 1], tangents[4 * i + 2]);
+      const glm::dvec3 along = turn * glm::make_vec3(&tangents[4 * i]);
       const double side = tangents[4 * i + 3] < 0.0 ? -sign : sign, size = glm::length(along);
       const bool is_direction = size > 0.0 && std::isfinite(size);
       to.add_tangent(is_direction ? glm::vec4(along / size, side) : glm::vec4(0.0f));
     }
     if (!texcoords.empty()) to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
-    if (!seconds.empty() && !texcoords.empty()) {
-      to.add_second_texcoord({seconds[2 * i], 1.0 - seconds[2 * i + 1]});
-    }
-    if (is_clear && !texcoords.empty()) {
-      const double alpha = colors[4 * i + 3];
-      to.add_opacity(std::isfinite(alpha) ? static_cast<float>(std::clamp(alpha, 0.0, 1.0)) : 1.0f);
-    }
   }
 
-  const std::size_t first_face = to.face_count();
   for (std::size_t i = 0; i < corners.size(); i += 3) {
-    std::array<FileCorner, 3> face;
+    std::array<FaceCorner, 3> face;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t vertex = corners[i + (sign < 0.0 ? 2 - k : k)];
       if (vertex >= vertices) {
         file_.fail("index " + std::to_string(vertex) + " in a primitive of " +
                    std::to_string(vertices) + " vertices");
       }
-      const auto number = [&](std::size_t earlier) {
-        return static_cast<std::int32_t>(earlier + vertex + 1);
+      const auto index = [&](std::size_t earlier) {
+        return static_cast<std::uint32_t>(earlier + vertex);
       };
-      face[k] = {number(before.positions), texcoords.empty() ? 0 : number(before.texcoords),
-                 normals.empty() ? 0 : number(before.normals)};
+      face[k] = {index(before.positions), texcoords.empty() ? kNoIndex : index(before.texcoords),
+                 normals.empty() ? kNoIndex : index(before.normals)};
     }
-    to.add_face(face, 0);
+    to.add_face(face, 0, {material, object});
   }
-  const std::uint32_t material = materials_.number_of(number);
-  if (number < 0 && !colors.empty()) scene_.materials[material].diffuse = glm::vec3(1.0f);
-  if (is_clear) materials_.use_vertex_opacity(number);
-  to.assign_faces(first_face, to.face_count(), material, object);
 }
 
 }  // namespace raygate

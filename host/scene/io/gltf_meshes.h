@@ -41,12 +41,11 @@ class GltfMeshes {
  private:
   void read_primitive(const Json& primitive, const GltfPlacement& placement, std::uint32_t object,
                       MeshBuilder& to);
-  /// Warns about attributes that are not read.
-  void warn_of_attributes(const Json& primitive);
-  /// Returns the numbers of an attribute plus the weighted sum of its morph targets.
+  /// Returns the numbers of an attribute plus the weighted sum of its morph targets; an empty list
+  /// if there is no such attribute.
   [[nodiscard]] std::vector<double> attribute(const Json& primitive, const std::string& name,
                                               int width, std::size_t vertices,
-                                              const std::vector<double>& weights);
+                                              const std::vector<double>& weights = {});
   /// Returns the transform of each vertex to the world: the weighted mean of its joints.
   [[nodiscard]] std::vector<glm::dmat4> skinned(const Json& primitive,
                                                 const GltfPlacement& placement,

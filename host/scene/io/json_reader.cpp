@@ -33,13 +33,7 @@ class LineCounter {
     was_line_feed_ = *at_++ == '\n';
     return *this;
   }
-  LineCounter operator++(int) {
-    const LineCounter before = *this;
-    ++*this;
-    return before;
-  }
   bool operator==(const LineCounter& other) const { return at_ == other.at_; }
-  bool operator!=(const LineCounter& other) const { return at_ != other.at_; }
 
  private:
   const char* at_;
@@ -180,7 +174,7 @@ void JsonValue::fail(const std::string& expected) const {
                    name() + ": " + shown(*value_) + ", expected " + expected);
 }
 
-void JsonValue::require_keys(std::span<const char* const> known) const {
+void JsonValue::require_keys(std::initializer_list<const char*> known) const {
   std::string names;
   for (const char* key : known) names.append(names.empty() ? "" : ", ").append(key);
   if (!value_->is_object()) fail("an object with " + names);
@@ -235,10 +229,10 @@ double JsonValue::number() const {
   return number;
 }
 
-double JsonValue::number_in(const std::string& key, double low, double high,
-                            const std::string& expected, double missing) const {
+std::optional<double> JsonValue::number_in(const std::string& key, double low, double high,
+                                           const std::string& expected) const {
   const auto value = find(key);
-  if (!value) return missing;
+  if (!value) return std::nullopt;
   const double found = value->number();
   if (!(found >= low && found <= high)) value->fail(expected);
   return found;

@@ -8,7 +8,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,10 +44,7 @@ class JsonValue {
   [[nodiscard]] std::size_t line() const;
 
   /// Requires an object without other keys than these.
-  void require_keys(std::span<const char* const> known) const;
-  void require_keys(std::initializer_list<const char*> known) const {
-    require_keys(std::span(known.begin(), known.size()));
-  }
+  void require_keys(std::initializer_list<const char*> known) const;
   /// Returns the values of an object and their keys, sorted by key.
   [[nodiscard]] std::map<std::string, JsonValue> members() const;
   /// Returns the value of a key of an object, or nullopt if the key is missing.
@@ -63,10 +59,10 @@ class JsonValue {
 
   /// Returns a number within the range of float.
   [[nodiscard]] double number() const;
-  /// Returns the number at a key, which is from `low` to `high`, or `missing` if there is no such
+  /// Returns the number at a key, which is from `low` to `high`, or nullopt if there is no such
   /// key. `expected` describes the range in messages.
-  [[nodiscard]] double number_in(const std::string& key, double low, double high,
-                                 const std::string& expected, double missing) const;
+  [[nodiscard]] std::optional<double> number_in(const std::string& key, double low, double high,
+                                                const std::string& expected) const;
   /// Returns a string that is not empty; `expected` describes it in messages.
   [[nodiscard]] std::string string(const std::string& expected) const;
   /// Returns a string, or a number as text.

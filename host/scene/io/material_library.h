@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "host/scene/io/text.h"
@@ -17,16 +16,14 @@ namespace raygate {
 
 class MaterialLibrary {
  public:
-  /// Searches for MTL files in `folder`. Warnings refer to the current line of `obj`. `obj` and
-  /// `warnings` must outlive this object.
-  MaterialLibrary(std::filesystem::path folder, const TextLines& obj,
-                  std::vector<std::string>& warnings)
-      : folder_(std::move(folder)), obj_(obj), warnings_(warnings) {}
+  /// Searches for MTL files in `folder`. `warnings` must outlive this object.
+  MaterialLibrary(std::filesystem::path folder, std::vector<std::string>& warnings)
+      : folder_(std::move(folder)), warnings_(warnings) {}
 
-  /// Loads the files that a mtllib statement names, which find_file finds: one file whose name may
-  /// hold spaces, or several names, separated by spaces, some perhaps in quotes. Warns about a file
-  /// that is missing. Throws InputError for a file with an error.
-  void load_library(std::string_view names);
+  /// Loads the files that a mtllib statement names: one file whose name may hold spaces, or several
+  /// names, separated by spaces, some perhaps in quotes. Warns about a file that is missing. Throws
+  /// InputError for a file with an error.
+  void load_library(const Words& names);
 
   /// Returns the index in materials() of the first material with this name.
   [[nodiscard]] std::optional<std::uint32_t> find(const std::string& name) const;
@@ -38,7 +35,6 @@ class MaterialLibrary {
   void load(const std::filesystem::path& file);  // once each
 
   std::filesystem::path folder_;
-  const TextLines& obj_;
   std::vector<std::string>& warnings_;
   std::set<std::filesystem::path> loaded_;
   std::map<std::string, std::uint32_t> index_of_name_;

@@ -1,6 +1,7 @@
 #include "host/scene/io/mesh_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -15,29 +16,40 @@ namespace raygate {
 namespace {
 
 constexpr glm::vec3 kNoColor(-1.0f);
-/// Marks a corner whose index in the file is out of range.
-constexpr std::uint32_t kBadIndex = kNoIndex - 1;
 constexpr std::size_t kCheckpointFaces = 4096;
 
 }  // namespace
 
-// Counts occurrences of a frequent problem, for one warning with its first line.
-class MeshBuilder::WarningCount {
- public:
-  void note(std::size_t line) {
-    if (count_++ == 0) first_line_ = line;
-  }
-  void report(const MeshBuilder& mesh, const std::string& what, Scene& scene) const {
-    if (count_ == 0) return;
-    scene.warnings.push_back(mesh.location(first_line_) + what +
-                             (count_ > 1 ? ", here and in " + std::to_string(count_ - 1) +
-                                               " later face" + (count_ > 2 ? "s" : "")
-                                         : ""));
+/// Counts the faces with each flaw, for one warning that names the first of them.
+struct MeshBuilder::Flaws {
+  enum Flaw { kNoArea, kTooShort, kMoved, kTouching, kNoDirection, kNoNormal, kNoTexcoord, kCount };
+  std::array<std::size_t, kCount> counts{}, first_lines{};
+
+  void note(Flaw flaw, std::size_t line) {
+    if (counts[flaw]++ == 0) first_lines[flaw] = line;
   }
 
- private:
-  std::size_t count_ = 0;
-  std::size_t first_line_ = 0;
+  void report(const MeshBuilder& mesh, Scene& scene) const {
+    char most[32];
+    std::snprintf(most, sizeof most, "%.3g", scene.rounding.most);
+    const std::string texts[kCount] = {
+        "face of zero area, left out",
+        "face of fewer than 3 corners, left out",
+        std::string("corners moved by up to ") + most +
+            ", more than a hundredth of their face, by rounding to binary32",
+        "polygon crosses or touches itself, cut as well as can be",
+        "normal without a direction, the face is taken as flat",
+        "face corner without a normal, the face is taken as flat",
+        "face corner without texture coordinates, the face has no texture"};
+    for (std::size_t flaw = 0; flaw < kCount; ++flaw) {
+      if (counts[flaw] == 0) continue;
+      std::string text = mesh.location(first_lines[flaw]) + texts[flaw];
+      if (const std::size_t more = counts[flaw] - 1; more > 0) {
+        text += ", here and in " + std::to_string(more) + " later face" + (more > 1 ? "s" : "");
+      }
+      scene.warnings.push_back(text);
+    }
+  }
 };
 
 glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
@@ -85,82 +97,11 @@ void MeshBuilder::add_tangent(const glm::vec4& tangent) {
   tangents_.push_back(tangent);
 }
 
-void MeshBuilder::add_second_texcoord(const glm::vec2& texcoord) {
-  second_texcoords_.resize(texcoords_.size() - 1, glm::vec2(0.0f));
-  second_texcoords_.push_back(texcoord);
-}
-
-void MeshBuilder::add_opacity(float opacity) {
-  opacities_.resize(texcoords_.size() - 1, 1.0f);
-  opacities_.push_back(opacity);
-}
-
-std::uint32_t MeshBuilder::resolve(std::int32_t index, std::size_t count, std::size_t field) {
-  if (index == 0) return kNoIndex;
-  if (index > 0) return static_cast<std::uint32_t>(index - 1);
-  const std::ptrdiff_t from_start = static_cast<std::ptrdiff_t>(count) + index;
-  if (is_relative_) {
-    relative_.push_back(3 * corners_.size() + field);
-    if (field == 0) first_position_ = std::min(first_position_, from_start);
-  } else if (from_start < 0) {
-    return kBadIndex;
-  }
-  return static_cast<std::uint32_t>(from_start);
-}
-
-void MeshBuilder::add_face(std::span<const FileCorner> corners, std::size_t line) {
+void MeshBuilder::add_face(std::span<const FaceCorner> corners, std::size_t line,
+                           const FaceAttributes& attributes) {
   if (faces_.size() % kCheckpointFaces == 0) checkpoint();
-  for (const FileCorner& corner : corners) {
-    const std::size_t vertices = earlier_.positions + positions_.size();
-    const std::uint32_t position = resolve(corner.position, vertices, 0);
-    if (position == kBadIndex) {
-      fail(line, "vertex index " + std::to_string(corner.position) +
-                     " in a face, but the file has " + std::to_string(vertices) + " so far");
-    }
-    corners_.push_back({position,
-                        resolve(corner.texcoord, earlier_.texcoords + texcoords_.size(), 1),
-                        resolve(corner.normal, earlier_.normals + normals_.size(), 2)});
-  }
-  faces_.push_back({corners_.size(), line});
-}
-
-void MeshBuilder::assign_faces(std::size_t begin, std::size_t end, std::uint32_t material,
-                               std::uint32_t object, std::uint32_t group) {
-  for (std::size_t i = begin; i < end; ++i) {
-    faces_[i].material = material;
-    faces_[i].object = object;
-    faces_[i].group = group;
-  }
-}
-
-void MeshBuilder::append(MeshBuilder&& part, std::size_t line) {
-  const std::size_t earlier[] = {positions_.size(), texcoords_.size(), normals_.size()};
-  for (const std::size_t slot : part.relative_) {
-    std::uint32_t& index = part.corners_[slot / 3].*kFields[slot % 3];
-    const std::ptrdiff_t in_file =
-        static_cast<std::int32_t>(index) + static_cast<std::ptrdiff_t>(earlier[slot % 3]);
-    index = in_file < 0 ? kBadIndex : static_cast<std::uint32_t>(in_file);
-  }
-  const auto add = [](auto& all, auto& more) {
-    if (all.empty()) {
-      all = std::move(more);
-    } else {
-      all.insert(all.end(), more.begin(), more.end());
-    }
-  };
-  const std::size_t corners = corners_.size();
-  bad_colors_ += part.bad_colors_;
-  for (Face& face : part.faces_) {
-    face.end += corners;
-    face.line += line;
-  }
-  if (!part.colors_.empty()) colors_.resize(positions_.size(), kNoColor);
-  add(colors_, part.colors_);
-  add(positions_, part.positions_);
-  add(normals_, part.normals_);
-  add(texcoords_, part.texcoords_);
-  add(corners_, part.corners_);
-  add(faces_, part.faces_);
+  corners_.insert(corners_.end(), corners.begin(), corners.end());
+  faces_.push_back({corners_.size(), line, attributes});
 }
 
 std::string MeshBuilder::location(std::size_t line) const {
@@ -172,33 +113,23 @@ void MeshBuilder::fail(std::size_t line, const std::string& what) const {
   throw InputError(location(line) + what);
 }
 
-void MeshBuilder::fail_strictly(std::size_t line, const std::string& what) const {
-  fail(line, what + (source_ == Source::kFile ? ", as --strict asks" : ", as strict=True asks"));
-}
-
 void MeshBuilder::check_indices() const {
-  std::size_t i = 0;
-  for (const Face& face : faces_) {
-    for (; i < face.end; ++i) {
-      if (corners_[i].position < positions_.size()) continue;
-      fail(face.line, "vertex index " + std::to_string(corners_[i].position + std::uint64_t{1}) +
-                          " in a face, but the file has " + std::to_string(positions_.size()));
-    }
-  }
+  const auto bad = std::ranges::find_if(
+      corners_, [&](const FaceCorner& corner) { return corner.position >= positions_.size(); });
+  if (bad == corners_.end()) return;
+  fail(line_of(static_cast<std::size_t>(bad - corners_.begin())),
+       "vertex index " + std::to_string(bad->position + std::uint64_t{1}) +
+           " in a face, but the file has " + std::to_string(positions_.size()));
 }
 
-void MeshBuilder::fail_far(std::size_t position) const {
-  std::size_t i = 0;
-  while (corners_[i].position != position) ++i;
-  const auto face = std::ranges::upper_bound(faces_, i, {}, &Face::end);
-  fail(face->line,
-       "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
+std::size_t MeshBuilder::line_of(std::size_t corner) const {
+  return std::ranges::upper_bound(faces_, corner, {}, &Face::end)->line;
 }
 
 // Keeps the positions that a face uses, relative to the origin, and renumbers the corners.
 void MeshBuilder::recentre(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
-  for (const Corner& corner : corners_) new_index[corner.position] = 0;
+  for (const FaceCorner& corner : corners_) new_index[corner.position] = 0;
   Bounds3 box = others_;
   std::uint32_t used = 0;
   for (std::size_t i = 0; i < positions_.size(); ++i) {
@@ -214,32 +145,18 @@ void MeshBuilder::recentre(Scene& scene) {
   });
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     if (new_index[i] == kNoIndex) continue;
-    if (!(largest(positions_[i] - scene.origin) <= kMostCoordinate)) fail_far(i);
+    if (!(largest(positions_[i] - scene.origin) <= kMostCoordinate)) {
+      const auto corner = std::ranges::find(corners_, i, &FaceCorner::position);
+      fail(line_of(static_cast<std::size_t>(corner - corners_.begin())),
+           "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
+    }
     const auto [position, error] = recentred(positions_[i], scene.origin);
     scene.positions[new_index[i]] = position;
     scene.rounding.add({error != 0.0, error});
     positions_[new_index[i]] = positions_[i];
     if (!colors_.empty()) scene.colors[new_index[i]] = linear_color(i, is_bytes ? 255.0f : 1.0f);
   }
-  for (Corner& corner : corners_) corner.position = new_index[corner.position];
-}
-
-// Returns whether a polygon has no area in its file, up to the rounding of decimals to double.
-bool MeshBuilder::was_flat(std::span<const Corner> corners) const {
-  const glm::dvec3& first = positions_[corners[0].position];
-  glm::dvec3 area(0.0), size(0.0), reach = glm::abs(first);
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    const glm::dvec3 &p = positions_[corners[i - 1].position], &q = positions_[corners[i].position];
-    area += glm::cross(p - first, q - first);
-    size = glm::max(size, glm::abs(q - first));
-    reach = glm::max(reach, glm::abs(q));
-  }
-  const auto products = [](const glm::dvec3& a, const glm::dvec3& b) {
-    return glm::dvec3(a.y * b.z, a.z * b.x, a.x * b.y);
-  };
-  const glm::dvec3 bound = products(reach, size) + products(size, reach);
-  return glm::all(
-      glm::lessThanEqual(glm::abs(area), 0x1p-50 * static_cast<double>(corners.size()) * bound));
+  for (FaceCorner& corner : corners_) corner.position = new_index[corner.position];
 }
 
 std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
@@ -247,33 +164,26 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
   std::vector<glm::vec3> polygon;
-  WarningCount dropped, flattened, moved, too_short, touching, no_direction, no_normal, no_texcoord;
-  const auto has_all = [](std::span<const Corner> corners, std::uint32_t Corner::*index,
-                          std::size_t count) {
-    return std::ranges::all_of(corners, [&](const Corner& c) { return c.*index < count; });
-  };
-  const auto has_none = [](std::span<const Corner> corners, std::uint32_t Corner::*index) {
-    return std::ranges::all_of(corners, [&](const Corner& c) { return c.*index == kNoIndex; });
-  };
+  Flaws flaws;
   scene.triangles.reserve(std::max(corners_.size(), 2 * faces_.size()) - 2 * faces_.size());
   std::size_t begin = 0;
   for (const Face& face : faces_) {
-    const std::span<const Corner> corners(corners_.data() + begin, face.end - begin);
+    const std::span<const FaceCorner> corners(corners_.data() + begin, face.end - begin);
     begin = face.end;
     if (scene.triangles.size() % kCheckpointFaces == 0) checkpoint();
     if (corners.size() < 3) {
       if (options.strict) {
-        fail_strictly(face.line, "face with " + std::to_string(corners.size()) +
-                                     " corners, expected at least 3");
+        fail(face.line,
+             "face with " + std::to_string(corners.size()) + " corners, expected at least 3");
       }
-      too_short.note(face.line);
+      flaws.note(Flaws::kTooShort, face.line);
       continue;
     }
     polygon.clear();
-    for (const Corner& corner : corners) polygon.push_back(scene.positions[corner.position]);
+    for (const FaceCorner& corner : corners) polygon.push_back(scene.positions[corner.position]);
 
-    static constexpr std::array<std::uint32_t, 3> kWhole{0, 1, 2};
-    std::span<const std::array<std::uint32_t, 3>> pieces(&kWhole, 1);
+    static constexpr EarClipper::Triangle kWhole{0, 1, 2};
+    std::span<const EarClipper::Triangle> pieces(&kWhole, 1);
     PolygonKind kind = PolygonKind::kSimple;
     if (polygon.size() > 3) {
       kind = clipper.cut(polygon);
@@ -282,71 +192,56 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
       kind = PolygonKind::kZeroArea;
     }
     if (kind == PolygonKind::kZeroArea) {
-      const bool is_flat = was_flat(corners);
       if (options.strict) {
-        fail_strictly(face.line,
-                      is_flat
-                          ? "face of zero area (its corners are on one line, or cancel out), "
-                            "expected one with an area"
-                          : "face flattened by rounding to binary32, expected one with an area");
+        fail(face.line,
+             "face of zero area after rounding to binary32, expected one with "
+             "an area");
       }
-      (is_flat ? dropped : flattened).note(face.line);
-      Triangle left_out{.material = face.material, .object = face.object};
+      flaws.note(Flaws::kNoArea, face.line);
+      Triangle left_out{.material = face.attributes.material, .object = face.attributes.object};
       left_out.vertices.fill(corners[0].position);
       scene.triangles.insert(scene.triangles.end(), corners.size() - 2, left_out);
       continue;
     }
-    if (kind == PolygonKind::kSelfTouching) touching.note(face.line);
+    if (kind == PolygonKind::kSelfTouching) flaws.note(Flaws::kTouching, face.line);
     double error = 0.0, size = 0.0;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       error = std::max(error, recentred(positions_[corners[i].position], scene.origin).error);
       size = std::max(size, largest(glm::dvec3(polygon[i]) - glm::dvec3(polygon[0])));
     }
-    if (error > 0.01 * size) moved.note(face.line);
+    if (error > 0.01 * size) flaws.note(Flaws::kMoved, face.line);
 
-    bool has_normals = has_all(corners, &Corner::normal, normals_.size());
-    if (!has_normals && !has_none(corners, &Corner::normal)) no_normal.note(face.line);
-    if (has_normals && std::ranges::any_of(corners, [&](const Corner& corner) {
-          return normals_[corner.normal] == glm::vec3(0.0f);
-        })) {
-      no_direction.note(face.line);
-      has_normals = false;
+    // A face has normals or texture coordinates if all of its corners have valid ones.
+    bool has_normals = true, has_texcoords = true, has_direction = true;
+    bool names_normal = false, names_texcoord = false;
+    for (const FaceCorner& corner : corners) {
+      names_normal |= corner.normal != kNoIndex;
+      names_texcoord |= corner.texcoord != kNoIndex;
+      has_normals &= corner.normal < normals_.size();
+      has_direction &= !has_normals || normals_[corner.normal] != glm::vec3(0.0f);
+      has_texcoords &= corner.texcoord < texcoords_.size() &&
+                       is_finite(glm::vec3(texcoords_[corner.texcoord], 0.0f));
     }
-    const bool has_texcoords = has_all(corners, &Corner::texcoord, texcoords_.size()) &&
-                               std::ranges::all_of(corners, [&](const Corner& corner) {
-                                 return is_finite(glm::vec3(texcoords_[corner.texcoord], 0.0f));
-                               });
-    if (!has_texcoords && !has_none(corners, &Corner::texcoord)) no_texcoord.note(face.line);
-    for (const auto& piece : pieces) {
+    if (names_normal && !has_normals) flaws.note(Flaws::kNoNormal, face.line);
+    if (has_normals && !has_direction) flaws.note(Flaws::kNoDirection, face.line);
+    if (names_texcoord && !has_texcoords) flaws.note(Flaws::kNoTexcoord, face.line);
+    for (const EarClipper::Triangle& piece : pieces) {
       Triangle& triangle = scene.triangles.emplace_back();
-      triangle.material = face.material;
-      triangle.object = face.object;
-      if (face.group != 0 || !groups.empty()) {
+      triangle.material = face.attributes.material;
+      triangle.object = face.attributes.object;
+      if (face.attributes.group != 0 || !groups.empty()) {
         groups.resize(scene.triangles.size() - 1);
-        groups.push_back(face.group);
+        groups.push_back(face.attributes.group);
       }
       for (int i = 0; i < 3; ++i) {
-        const Corner& corner = corners[piece[i]];
+        const FaceCorner& corner = corners[piece[i]];
         triangle.vertices[i] = corner.position;
         if (has_texcoords) triangle.texcoords[i] = corner.texcoord;
-        if (has_normals) triangle.normals[i] = corner.normal;
+        if (has_normals && has_direction) triangle.normals[i] = corner.normal;
       }
     }
   }
-  dropped.report(*this, "face of zero area, left out", scene);
-  too_short.report(*this, "face of fewer than 3 corners, left out", scene);
-  flattened.report(*this, "face flattened by rounding to binary32, left out", scene);
-  char most[32];
-  std::snprintf(most, sizeof most, "%.3g", scene.rounding.most);
-  moved.report(*this,
-               std::string("corners moved by up to ") + most +
-                   ", more than a hundredth of their face, by rounding to binary32",
-               scene);
-  touching.report(*this, "polygon crosses or touches itself, cut as well as can be", scene);
-  no_direction.report(*this, "normal without a direction, the face is taken as flat", scene);
-  no_normal.report(*this, "face corner without a normal, the face is taken as flat", scene);
-  no_texcoord.report(*this, "face corner without texture coordinates, the face has no texture",
-                     scene);
+  flaws.report(*this, scene);
   return groups;
 }
 
@@ -367,11 +262,9 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   scene.normals = std::move(normals_);
   scene.tangents = std::move(tangents_);
   scene.texcoords = std::move(texcoords_);
-  scene.second_texcoords = std::move(second_texcoords_);
-  scene.opacities = std::move(opacities_);
   if (options.smooth || !groups.empty()) {
     add_smooth_normals(groups, options.smooth, scene);
-  } else if (options.smooth_if_unsaid && !is_smoothing_said_ && scene.normals.empty()) {
+  } else if (options.smooth_by_default && !defines_smoothing_ && scene.normals.empty()) {
     add_smooth_normals(groups, LoadOptions::kSmoothAngle, scene, FlatFaces::kStayFlat);
   }
 }

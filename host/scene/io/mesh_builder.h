@@ -15,10 +15,15 @@
 
 namespace raygate {
 
-/// One corner of a polygon. Indices are as in an OBJ file: positive ones count from 1, negative
-/// ones from the last element so far (-1); 0 stands for none.
-struct FileCorner {
-  std::int32_t position = 0, texcoord = 0, normal = 0;
+/// One corner of a polygon: indices into the builder's positions, texture coordinates and normals,
+/// which may be added later. kNoIndex stands for none.
+struct FaceCorner {
+  std::uint32_t position = 0, texcoord = kNoIndex, normal = kNoIndex;
+};
+
+struct FaceAttributes {
+  std::uint32_t material = 0, object = 0;
+  std::uint32_t group = 0;  ///< smoothing group; 0: flat
 };
 
 /// Collects vertices and polygons in the file's order and builds the scene at the end, when the
@@ -31,6 +36,8 @@ class MeshBuilder {
   explicit MeshBuilder(std::string file_name, Source source = Source::kFile)
       : file_name_(std::move(file_name)), source_(source) {}
 
+  [[nodiscard]] const std::string& file_name() const { return file_name_; }
+
   void add_position(const glm::dvec3& position) { positions_.push_back(position); }
   /// Sets the colour of the last position: sRGB codes from 0 to 1, or to 255 if any colour of the
   /// file exceeds 1; scene-linear RGB after colors_are_linear().
@@ -38,21 +45,15 @@ class MeshBuilder {
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
   void add_normal(const glm::dvec3& normal);
-  /// Set the tangent of the last normal, and the second texture coordinates and the opacity of the
-  /// last texture coordinates, in the format of Scene.
+  /// Sets the tangent of the last normal, in the format of Scene::tangents.
   void add_tangent(const glm::vec4& tangent);
-  void add_second_texcoord(const glm::vec2& texcoord);
-  void add_opacity(float opacity);
 
   /// Adds a polygon. build() leaves out polygons of fewer than three corners, and the normals or
   /// texture coordinates of a face if one of its corners has none, with a warning. `line` is for
   /// messages: 0 in a file without lines; of an array the row, counted from 1.
-  void add_face(std::span<const FileCorner> corners, std::size_t line);
+  void add_face(std::span<const FaceCorner> corners, std::size_t line,
+                const FaceAttributes& attributes = {});
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }
-  /// Sets the material, object and smoothing group (0: flat) of the faces in [begin, end). All
-  /// three are 0 by default.
-  void assign_faces(std::size_t begin, std::size_t end, std::uint32_t material,
-                    std::uint32_t object, std::uint32_t group = 0);
 
   /// Numbers of positions, texture coordinates and normals.
   struct Counts {
@@ -61,19 +62,6 @@ class MeshBuilder {
   [[nodiscard]] Counts counts() const {
     return {positions_.size(), texcoords_.size(), normals_.size()};
   }
-  /// Makes this the builder of a part of a file, after a part of `earlier` elements held by other
-  /// builders. If that is unknown, negative indices are resolved by append(). Must be called first.
-  void begin_after(const std::optional<Counts>& earlier) {
-    earlier_ = earlier.value_or(Counts{});
-    is_relative_ = !earlier;
-  }
-  /// Returns whether no vertex index of this part would be before the beginning of `earlier`.
-  [[nodiscard]] bool can_follow(const MeshBuilder& earlier) const {
-    return first_position_ + static_cast<std::ptrdiff_t>(earlier.positions_.size()) >= 0;
-  }
-  /// Appends the next part of the file, which can follow this one. `line` is added to the lines of
-  /// its faces.
-  void append(MeshBuilder&& part, std::size_t line);
 
   /// Includes this box in the bounds by which the scene is recentred.
   void expand_extent(const Bounds3& box) {
@@ -81,7 +69,7 @@ class MeshBuilder {
     others_.expand(box.high);
   }
   /// Notes that the file defines smoothing, so that none is guessed.
-  void smoothing_is_said() { is_smoothing_said_ = true; }
+  void defines_smoothing() { defines_smoothing_ = true; }
   /// Makes build() accept a scene in which no face has an area.
   void allow_empty() { may_be_empty_ = true; }
 
@@ -93,29 +81,21 @@ class MeshBuilder {
   void build_plain(const LoadOptions& options, Scene& scene);
 
  private:
-  struct Corner {
-    std::uint32_t position, texcoord, normal;  // from 0, or kNoIndex
-  };
-  static constexpr std::uint32_t Corner::*kFields[] = {&Corner::position, &Corner::texcoord,
-                                                       &Corner::normal};
   struct Face {
     std::size_t end;  // end of its corners; they start at the previous face's end
     std::size_t line;
-    std::uint32_t material = 0, object = 0, group = 0;
+    FaceAttributes attributes;
   };
-  class WarningCount;
+  struct Flaws;
 
-  /// Returns the index from 0 of an element, of `count` so far, for a field of the next corner.
-  std::uint32_t resolve(std::int32_t index, std::size_t count, std::size_t field);
-  /// Throws the InputError of a face; fail_strictly() adds that --strict caused it.
+  /// Throws the InputError of a face.
   [[noreturn]] void fail(std::size_t line, const std::string& what) const;
-  [[noreturn]] void fail_strictly(std::size_t line, const std::string& what) const;
   /// Returns the prefix of messages about the face on this line.
   [[nodiscard]] std::string location(std::size_t line) const;
   void check_indices() const;
+  /// Returns the line of the face with this corner.
+  [[nodiscard]] std::size_t line_of(std::size_t corner) const;
   void recentre(Scene& scene);
-  [[noreturn]] void fail_far(std::size_t position) const;
-  [[nodiscard]] bool was_flat(std::span<const Corner> corners) const;
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
   /// Returns the smoothing groups of the triangles; empty: all are flat.
   [[nodiscard]] std::vector<std::uint32_t> triangulate(const LoadOptions& options,
@@ -124,13 +104,7 @@ class MeshBuilder {
   std::string file_name_;
   Source source_;
   Bounds3 others_;
-  bool may_be_empty_ = false, is_smoothing_said_ = false;
-  Counts earlier_;
-  /// Whether negative indices are relative to this part, and those that are: 3 times the corner's
-  /// index plus the field's. The corners hold them as std::int32_t.
-  bool is_relative_ = false;
-  std::vector<std::size_t> relative_;
-  std::ptrdiff_t first_position_ = 0;  // the least vertex index of them
+  bool may_be_empty_ = false, defines_smoothing_ = false;
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> colors_;  // of the first positions; kNoColor: white
   std::size_t bad_colors_ = 0;     // number of colours that are not finite
@@ -138,9 +112,7 @@ class MeshBuilder {
   std::vector<glm::vec3> normals_;
   std::vector<glm::vec4> tangents_;  // of the first normals
   std::vector<glm::vec2> texcoords_;
-  std::vector<glm::vec2> second_texcoords_;
-  std::vector<float> opacities_;  // of the first texture coordinates
-  std::vector<Corner> corners_;
+  std::vector<FaceCorner> corners_;
   std::vector<Face> faces_;
 };
 

@@ -1,12 +1,16 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <initializer_list>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
+#include "host/exact/exact.h"
 #include "host/scene/io/find_file.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
@@ -24,33 +28,62 @@ struct Property {
   std::string name;
   NumberType type = NumberType::kFloat;
   std::optional<NumberType> count_type;  // of a list
+  bool is_used = false;
+  std::vector<double> values = {};  // of the element that was read last: one, or a list
 };
 
 struct Element {
   std::string name;
   long long count = 0;
-  std::vector<Property> properties;
+  std::vector<Property> properties = {};
 
-  [[nodiscard]] std::optional<std::size_t> find(std::string_view property) const {
-    const auto found = std::ranges::find(properties, property, &Property::name);
-    if (found == properties.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - properties.begin());
+  /// Returns a list, and marks it as used; nullptr if there is none.
+  const Property* use_list(std::string_view name) {
+    const auto found = std::ranges::find(properties, name, &Property::name);
+    if (found == properties.end() || !found->count_type) return nullptr;
+    found->is_used = true;
+    return &*found;
   }
 };
 
+/// The properties of an attribute of vertices; empty if one of them is missing.
+using Attribute = std::vector<Property*>;
+
+Attribute attribute_of(Element& element, std::initializer_list<std::string_view> names) {
+  Attribute attribute;
+  for (const std::string_view name : names) {
+    const auto found = std::ranges::find(element.properties, name, &Property::name);
+    if (found == element.properties.end() || found->count_type) return {};
+    attribute.push_back(&*found);
+  }
+  for (Property* const property : attribute) property->is_used = true;
+  return attribute;
+}
+
+glm::dvec3 vector_of(const Attribute& attribute) {
+  glm::dvec3 vector(0.0);
+  for (int k = 0; const Property* property : attribute) vector[k++] = property->values[0];
+  return vector;
+}
+
 enum class Format { kAscii, kLittle, kBig };
+
+bool is_whole(double number, double most) {
+  return number >= 0.0 && number <= most && std::floor(number) == number;
+}
 
 class PlyReader {
  public:
   PlyReader(const std::filesystem::path& file, const std::string& bytes)
-      : name_(file.string()), text_(bytes), mesh_(name_), tokens_(name_, "") {}
+      : name_(file.string()), text_(bytes), words_(name_, ""), mesh_(name_) {}
 
   Scene read(const LoadOptions& options) {
     Scene scene;
     read_header(scene.warnings);
-    if (format_ == Format::kAscii) tokens_ = TokenReader(name_, text_.substr(at_), line_ + 1);
+    // Messages about binary data name no line.
+    words_ = format_ == Format::kAscii ? Words(name_, text_, lines_ + 1) : Words(name_, "");
     bool has_vertices = false;
-    for (const Element& element : elements_) {
+    for (Element& element : elements_) {
       if (element.name == "vertex" && !has_vertices) {
         read_vertices(element);
         has_vertices = true;
@@ -58,9 +91,7 @@ class PlyReader {
         read_faces(element);
       } else if (!element.properties.empty()) {
         unread_.push_back("element " + in_quotes(element.name));
-        for (long long i = 0; i < element.count; ++i) {
-          for (const Property& property : element.properties) skip(property);
-        }
+        for (long long i = 0; i < element.count; ++i) read_row(element);
       }
     }
     if (!texture_.empty() && !has_texcoords_) {
@@ -77,258 +108,195 @@ class PlyReader {
   }
 
  private:
-  /// Returns the current line of the header, or of the next number after it; 0 in a binary file.
-  [[nodiscard]] std::size_t line() const {
-    return in_header_ ? line_ : format_ == Format::kAscii ? tokens_.line() : 0;
-  }
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(name_, line(), what); }
-
   // Header
 
+  /// Sets words_ to those of the next line, and returns its first word.
   std::string_view next_line() {
-    ++line_;
-    // The first line determines the line ending, as binary data after the header may resemble one.
-    const bool is_old_mac = text_.starts_with("ply\r") && !text_.starts_with("ply\r\n");
-    const std::size_t end = text_.find(is_old_mac ? '\r' : '\n', at_);
-    if (end == std::string_view::npos) fail("the header has no end_header");
-    std::string_view line = text_.substr(at_, end - at_);
-    at_ = end + 1;
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
-    return line;
+    words_ = Words(name_, "", ++lines_);
+    const std::size_t length = text_.find(line_end_);
+    if (length == text_.npos) words_.fail("the header has no end_header");
+    words_ = Words(name_, text_.substr(0, length), lines_);
+    text_.remove_prefix(length + 1);
+    return words_.take();
   }
 
   void read_header(std::vector<std::string>& warnings) {
-    if (next_line() != "ply") fail("not a PLY file: its first line is not \"ply\"");
+    // The first line determines the line ending, as binary data after the header may resemble one.
+    if (text_.starts_with("ply\r") && !text_.starts_with("ply\r\n")) line_end_ = '\r';
+    if (next_line() != "ply") words_.fail("not a PLY file: its first line is not \"ply\"");
     bool has_format = false;
-    for (std::string_view line = next_line(); line != "end_header"; line = next_line()) {
-      const std::string_view keyword = take_token(line);
-      if (keyword == "format") {
-        read_format(take_token(line));
+    for (std::string_view word = next_line(); word != "end_header"; word = next_line()) {
+      if (word == "format") {
+        read_format();
         has_format = true;
-      } else if (keyword == "element") {
-        read_element(line);
-      } else if (keyword == "property") {
-        if (elements_.empty()) fail("a property before the first element");
-        elements_.back().properties.push_back(read_property(line));
-      } else if (keyword == "comment") {
-        if (take_token(line) != "TextureFile") continue;
+      } else if (word == "element") {
+        read_element();
+      } else if (word == "property") {
+        if (elements_.empty()) words_.fail("a property before the first element");
+        elements_.back().properties.push_back(read_property());
+      } else if (word == "comment") {
+        if (words_.take() != "TextureFile") continue;
+        std::string_view file = words_.rest();
+        while (file.ends_with('\r') || file.ends_with(' ')) file.remove_suffix(1);
         if (texture_.empty()) {
-          texture_ = line;
+          texture_ = file;
         } else {
-          unread_.push_back("texture " + in_quotes(line));
+          unread_.push_back("texture " + in_quotes(file));
         }
-      } else if (keyword != "obj_info" && !keyword.empty()) {
-        warnings.push_back(InputError::location(name_, line_) + in_quotes(keyword) +
+      } else if (word != "obj_info" && !word.empty()) {
+        warnings.push_back(words_.place() + in_quotes(word) +
                            " is no word of a PLY header, ignored");
       }
     }
-    if (!has_format) fail("the header names no format");
-    in_header_ = false;
+    if (!has_format) words_.fail("the header names no format");
   }
 
-  void read_format(std::string_view format) {
+  void read_format() {
     constexpr std::string_view kFormats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+    const std::string_view format = words_.take();
     const auto* const found = std::ranges::find(kFormats, format);
     if (found == std::end(kFormats)) {
-      fail("format: found " + in_quotes(format) +
-           ", expected ascii, binary_little_endian or binary_big_endian");
+      words_.fail("format: found " + in_quotes(format) +
+                  ", expected ascii, binary_little_endian or binary_big_endian");
     }
     format_ = static_cast<Format>(found - std::begin(kFormats));
   }
 
-  void read_element(std::string_view words) {
+  void read_element() {
     Element& element = elements_.emplace_back();
-    element.name = take_token(words);
-    const auto count = to_number(take_token(words));
-    if (!count || !(*count >= 0.0 && *count < 0x1p53) || std::floor(*count) != *count) {
-      fail("element: expected its name and how many there are");
-    }
-    element.count = static_cast<long long>(*count);
+    element.name = words_.take();
+    const double count = words_.any_number();
+    if (!is_whole(count, 0x1p53)) words_.fail("element: expected its name and how many there are");
+    element.count = static_cast<long long>(count);
   }
 
-  NumberType read_type(std::string_view& words) {
-    const std::string_view word = take_token(words);
+  NumberType read_type() {
+    const std::string_view word = words_.take();
     const auto* const found = std::ranges::find_if(
         kTypeNames, [&](const auto& names) { return word == names[0] || word == names[1]; });
     if (found == std::end(kTypeNames)) {
-      fail("property: found " + in_quotes(word) + ", expected a type as int, uchar or float");
+      words_.fail("property: found " + in_quotes(word) +
+                  ", expected a type as int, uchar or float");
     }
     return static_cast<NumberType>(found - std::begin(kTypeNames));
   }
 
-  Property read_property(std::string_view words) {
+  Property read_property() {
     Property property;
-    std::string_view peeked = words;
-    if (take_token(peeked) == "list") {
-      words = peeked;
-      property.count_type = read_type(words);
+    if (words_.take_if("list")) {
+      property.count_type = read_type();
       if (*property.count_type >= NumberType::kFloat) {
-        fail("property: a list's length of a type that is not whole");
+        words_.fail("property: a list's length of a type that is not whole");
       }
     }
-    property.type = read_type(words);
-    property.name = take_token(words);
-    if (property.name.empty()) fail("property: without a name");
+    property.type = read_type();
+    property.name = words_.take();
+    if (property.name.empty()) words_.fail("property: without a name");
     return property;
   }
 
   // Data
 
-  /// Takes a finite number within the range of float.
-  double take(NumberType type, std::string_view of_what) {
-    if (format_ == Format::kAscii) return tokens_.number(of_what);
-    const double number = take_any(type);
-    if (!(std::abs(number) <= std::numeric_limits<float>::max())) {
-      fail(std::string(of_what) + ": not a finite number");
-    }
-    return number;
-  }
-
   /// Takes any number; NaN for a word that is no number.
   double take_any(NumberType type) {
-    if (format_ == Format::kAscii) {
-      return to_number(tokens_.take()).value_or(std::numeric_limits<double>::quiet_NaN());
+    const bool is_ascii = format_ == Format::kAscii;
+    if (is_ascii ? words_.at_end() : text_.size() < bytes_of(type)) {
+      words_.fail("the file ends too soon");
     }
-    if (text_.size() - at_ < bytes_of(type)) fail("the file ends too soon");
-    const char* const bytes = text_.data() + at_;
-    at_ += bytes_of(type);
+    if (is_ascii) return words_.any_number();
+    const char* const bytes = text_.data();
+    text_.remove_prefix(bytes_of(type));
     return number_at(bytes, type, format_ == Format::kBig);
   }
 
-  /// Takes the length of a list. If the file is shorter, taking its elements fails.
-  long long take_count(const Property& list) {
-    const double count = take(*list.count_type, "a list's length");
-    if (!(count >= 0.0 && count <= 0xFFFF'FFFF) || std::floor(count) != count) {
-      fail("a list's length: expected a whole number from 0 to 4294967295");
+  /// Reads the next values of all properties.
+  void read_row(Element& element) {
+    row_line_ = words_.line();
+    for (Property& property : element.properties) {
+      const double count = property.count_type ? take_any(*property.count_type) : 1.0;
+      if (!is_whole(count, 0xFFFF'FFFF)) {
+        fail_row("a list's length: expected a whole number from 0 to 4294967295");
+      }
+      property.values.clear();
+      for (double k = 0.0; k < count; ++k) property.values.push_back(take_any(property.type));
     }
-    return static_cast<long long>(count);
   }
 
-  void skip(const Property& property) {
-    const long long count = property.count_type ? take_count(property) : 1;
-    for (long long i = 0; i < count; ++i) (void)take_any(property.type);
+  [[noreturn]] void fail_row(const std::string& what) const {
+    throw InputError(name_, row_line_, what);
   }
 
-  void read_vertices(const Element& element) {
-    constexpr std::string_view kNames[] = {"x",  "y",   "z",     "nx",        "ny",
-                                           "nz", "red", "green", "blue",      "s",
-                                           "t",  "u",   "v",     "texture_u", "texture_v"};
-    constexpr int kColor = 6, kTexcoord = 9, kCount = 15;
-    std::vector<int> place(element.properties.size(), -1);
-    int found = 0;
-    for (int i = 0; i < kCount; ++i) {
-      const auto at = element.find(kNames[i]);
-      if (!at || element.properties[*at].count_type) continue;
-      place[*at] = i;
-      found |= 1 << i;
+  void note_unread(const Element& element) {
+    for (const Property& property : element.properties) {
+      if (property.is_used) continue;
+      unread_.push_back(in_quotes(property.name) + " of " + element.name);
     }
-    if ((found & 7) != 7) fail("vertices without x, y and z");
-    has_normals_ = (found & 070) == 070;
-    const bool has_colors = (found & 0700) == 0700;
-    int s = kTexcoord;  // index of the name of the first texture coordinate, if there are any
-    while (s < kCount && (texture_.empty() || (found >> s & 3) != 3)) s += 2;
-    has_texcoords_ = s < kCount;
-    for (std::size_t p = 0; p < place.size(); ++p) {
-      const bool is_read = place[p] < 3           ? true
-                           : place[p] < kColor    ? has_normals_
-                           : place[p] < kTexcoord ? has_colors
-                                                  : place[p] == s || place[p] == s + 1;
-      if (!is_read) place[p] = -1;
-      if (place[p] < 0) note_unread(element, p);
+  }
+
+  void read_vertices(Element& element) {
+    const Attribute position = attribute_of(element, {"x", "y", "z"}),
+                    normal = attribute_of(element, {"nx", "ny", "nz"}),
+                    color = attribute_of(element, {"red", "green", "blue"});
+    if (position.empty()) words_.fail("vertices without x, y and z");
+    Attribute texcoord;
+    if (!texture_.empty()) texcoord = attribute_of(element, {"s", "t"});
+    if (!texture_.empty() && texcoord.empty()) texcoord = attribute_of(element, {"u", "v"});
+    if (!texture_.empty() && texcoord.empty()) {
+      texcoord = attribute_of(element, {"texture_u", "texture_v"});
+    }
+    has_normals_ = !normal.empty();
+    has_texcoords_ = !texcoord.empty();
+    note_unread(element);
+    glm::dvec3 white(1.0);  // codes of 1
+    for (int k = 0; const Property* property : color) {
+      if (property->type == NumberType::kUint8) white[k] = 255.0;
+      if (property->type == NumberType::kUint16) white[k] = 65535.0;
+      ++k;
     }
     for (long long i = 0; i < element.count; ++i) {
-      double values[kCount] = {};
-      for (std::size_t p = 0; p < element.properties.size(); ++p) {
-        const Property& property = element.properties[p];
-        const int at = place[p];
-        if (at < 0) {
-          skip(property);
-        } else if (at >= kColor && at < kTexcoord) {
-          values[at] = take_any(property.type) / largest_code(property.type);
-        } else {
-          values[at] = at < 3 ? take(property.type, property.name) : take_any(property.type);
-        }
+      read_row(element);
+      const glm::dvec3 at = vector_of(position);
+      if (!is_finite(at) || largest(at) > std::numeric_limits<float>::max()) {
+        char found[64];
+        std::snprintf(found, sizeof found, "%g %g %g", at.x, at.y, at.z);
+        fail_row(std::string("a vertex: found ") + found +
+                 ", expected numbers within the range of float");
       }
-      mesh_.add_position({values[0], values[1], values[2]});
-      if (has_colors) mesh_.add_color({values[kColor], values[kColor + 1], values[kColor + 2]});
-      if (has_normals_) mesh_.add_normal({values[3], values[4], values[5]});
-      if (has_texcoords_) mesh_.add_texcoord({values[s], values[s + 1]});
+      mesh_.add_position(at);
+      if (!color.empty()) mesh_.add_color(glm::vec3(vector_of(color) / white));
+      if (has_normals_) mesh_.add_normal(vector_of(normal));
+      if (has_texcoords_) mesh_.add_texcoord(glm::vec2(vector_of(texcoord)));
     }
   }
 
-  /// Returns the code of 1 in a colour of that type.
-  [[nodiscard]] static double largest_code(NumberType type) {
-    return type == NumberType::kUint8 ? 255.0 : type == NumberType::kUint16 ? 65535.0 : 1.0;
-  }
-
-  void note_unread(const Element& element, std::size_t property) {
-    unread_.push_back(in_quotes(element.properties[property].name) + " of " + element.name);
-  }
-
-  /// Returns the index of the property with the vertices of a face. Notes all other
-  /// properties except `also` as unread.
-  [[nodiscard]] std::size_t index_list(const Element& element,
-                                       std::optional<std::size_t> also = std::nullopt) {
-    auto list = element.find("vertex_indices");
-    if (!list) list = element.find("vertex_index");
-    if (!list || !element.properties[*list].count_type) {
-      fail("element " + element.name + " without a list vertex_indices");
-    }
-    for (std::size_t p = 0; p < element.properties.size(); ++p) {
-      if (p != *list && p != also) note_unread(element, p);
-    }
-    return *list;
-  }
-
-  /// Returns a vertex index counted from 1, as in FileCorner.
-  [[nodiscard]] std::int32_t position_of(double index) const {
-    if (!(index >= 0.0 && index < 2147483647.0) || std::floor(index) != index) {
-      fail("a vertex index: expected a whole number from 0 to 2147483646");
-    }
-    return static_cast<std::int32_t>(index) + 1;
-  }
-
-  [[nodiscard]] FileCorner corner_of(std::int32_t position) const {
-    return {position, has_texcoords_ ? position : 0, has_normals_ ? position : 0};
-  }
-
-  void read_faces(const Element& element) {
+  void read_faces(Element& element) {
+    const Property* indices = element.use_list("vertex_indices");
+    if (indices == nullptr) indices = element.use_list("vertex_index");
+    if (indices == nullptr) words_.fail("element face without a list vertex_indices");
     // The texture coordinates of corners, in pairs, replace those of vertices.
-    std::optional<std::size_t> texcoords = element.find("texcoord");
-    if (texture_.empty() || !texcoords || !element.properties[*texcoords].count_type) {
-      texcoords.reset();
-    }
-    const std::size_t list = index_list(element, texcoords);
-    std::vector<FileCorner> corners;
-    std::vector<double> pairs;
+    const Property* const pairs = texture_.empty() ? nullptr : element.use_list("texcoord");
+    note_unread(element);
+    std::vector<FaceCorner> corners;
     for (long long i = 0; i < element.count; ++i) {
-      const std::size_t face_line = line();
-      for (std::size_t p = 0; p < element.properties.size(); ++p) {
-        const Property& property = element.properties[p];
-        if (p == list) {
-          corners.clear();
-          const long long count = take_count(property);
-          for (long long k = 0; k < count; ++k) {
-            const double index = take(property.type, "a vertex index");
-            corners.push_back(corner_of(position_of(index)));
-          }
-        } else if (p == texcoords) {
-          pairs.clear();
-          const long long count = take_count(property);
-          for (long long k = 0; k < count; ++k) pairs.push_back(take_any(property.type));
-        } else {
-          skip(property);
+      read_row(element);
+      corners.clear();
+      for (const double index : indices->values) {
+        if (!is_whole(index, 2147483646.0)) {
+          fail_row("a vertex index: expected a whole number from 0 to 2147483646");
         }
+        const auto at = static_cast<std::uint32_t>(index);
+        FaceCorner& corner = corners.emplace_back();
+        corner = {at, has_texcoords_ ? at : kNoIndex, has_normals_ ? at : kNoIndex};
+        if (pairs == nullptr) continue;
+        const std::size_t u = 2 * corners.size() - 2;
+        const bool has_pair = u + 1 < pairs->values.size();
+        corner.texcoord =
+            has_pair ? static_cast<std::uint32_t>(mesh_.counts().texcoords) : kNoIndex;
+        if (has_pair) mesh_.add_texcoord({pairs->values[u], pairs->values[u + 1]});
       }
-      for (std::size_t k = 0; texcoords && k < corners.size(); ++k) {
-        corners[k].texcoord = 0;
-        if (2 * k + 1 >= pairs.size()) continue;
-        mesh_.add_texcoord({pairs[2 * k], pairs[2 * k + 1]});
-        corners[k].texcoord = static_cast<std::int32_t>(mesh_.counts().texcoords);
-      }
-      mesh_.add_face(corners, face_line);
+      mesh_.add_face(corners, row_line_);
     }
-    has_texcoords_ = has_texcoords_ || texcoords;
+    has_texcoords_ = has_texcoords_ || pairs != nullptr;
   }
 
   /// Sets the texture of the material.
@@ -337,21 +305,22 @@ class PlyReader {
     Material& material = scene.materials[0];
     material.diffuse = glm::vec3(1.0f);
     material.has_vertex_colors = false;  // scanners duplicate the image's colours at the vertices
-    material.diffuse_map = find_file(folder, texture_, name_ + ": ", scene.warnings)
-                               .value_or(folder / texture_)
-                               .string();
+    material.diffuse_map.file = find_file(folder, texture_, name_ + ": ", scene.warnings)
+                                    .value_or(folder / texture_)
+                                    .string();
     if (options.textures) load_textures(scene);
   }
 
   std::string name_;
-  std::string_view text_;
-  std::size_t at_ = 0, line_ = 0;  // numbers of bytes, and of lines of the header, that were read
-  bool in_header_ = true;
+  std::string_view text_;     // the unread part of the header or of binary data
+  char line_end_ = '\n';      // of the header
+  std::size_t lines_ = 0;     // number of the header's lines that were read
+  Words words_;               // of the header's last line, or of all ASCII data
+  std::size_t row_line_ = 0;  // of the element that was read last
   Format format_ = Format::kAscii;
   std::vector<Element> elements_;
   std::vector<std::string> unread_;  // properties and elements to warn about
   MeshBuilder mesh_;
-  TokenReader tokens_;        // of an ASCII file, after the header
   std::string_view texture_;  // the file of the header's first "comment TextureFile"
   bool has_normals_ = false, has_texcoords_ = false;
 };

@@ -1,6 +1,7 @@
 #include "host/scene/io/scene_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -13,66 +14,32 @@
 namespace raygate {
 namespace {
 
-std::optional<glm::dvec3> read_up(const JsonValue& camera) {
-  const auto value = camera.find("up");
-  if (!value) return std::nullopt;
-  const glm::dvec3 up = value->vector();
-  if (up == glm::dvec3(0.0)) value->fail("a direction across the view");
-  return up;
-}
+constexpr double kMost = std::numeric_limits<float>::max();
+constexpr double kLeast = std::numeric_limits<float>::min();
 
-std::optional<double> read_fov(const JsonValue& camera) {
-  const auto value = camera.find("fov");
-  if (!value) return std::nullopt;
-  const double fov = value->number();
-  if (!(fov > 0.0 && fov < 180.0)) value->fail("degrees above 0 and below 180");
-  return fov;
-}
-
-LensSetting read_lens(const JsonValue& camera) {
-  LensSetting lens;
-  if (const auto value = camera.find("projection")) {
-    const std::string expected = "perspective, orthographic or panorama";
-    lens.projection = projection_named(value->string(expected));
-    if (!lens.projection) value->fail(expected);
-  }
-  constexpr double kMost = std::numeric_limits<float>::max();
-  constexpr double kLeast = std::numeric_limits<float>::min();
-  if (camera.find("aperture")) {
-    lens.aperture =
-        camera.number_in("aperture", 0.0, kMost, "the radius of a lens, 0 or more", 0.0);
-  }
-  if (camera.find("focus")) {
-    lens.focus = camera.number_in("focus", kLeast, kMost, "a distance, more than 0", 0.0);
-  }
-  return lens;
-}
-
-CameraSetting read_camera(const JsonValue& value) {
-  CameraSetting camera;
-  const JsonValue target = value.at("target");
-  camera.eye = value.at("eye").vector();
-  camera.target = target.vector();
-  if (camera.eye == camera.target) target.fail("another point than the eye");
-  camera.up = read_up(value);
-  if (camera.up) {
-    const glm::dvec3 view = camera.target - camera.eye;
-    const double sine_times_lengths = glm::length(glm::cross(view, *camera.up));
-    if (!(sine_times_lengths > 1e-9 * glm::length(view) * glm::length(*camera.up))) {
-      value.at("up").fail("a direction across the view");
-    }
-  }
-  camera.fov = read_fov(value);
-  camera.lens = read_lens(value);
-  return camera;
-}
-
-void read_cameras(const JsonValue& value, SceneFile& scene) {
+void read_camera(const JsonValue& value, SceneFile& scene) {
   value.require_keys({"eye", "target", "up", "fov", "projection", "aperture", "focus"});
-  if (value.find("eye") || value.find("target")) scene.camera = read_camera(value);
-  scene.up = read_up(value);
-  scene.fov = read_fov(value);
-  scene.lens = read_lens(value);
+  const auto up = value.find("up");
+  const std::string across = "a direction across the view";
+  if (up) scene.up = up->vector();
+  if (scene.up == glm::dvec3(0.0)) up->fail(across);
+  scene.fov =
+      value.number_in("fov", kLeast, std::nextafter(180.0, 0.0), "degrees above 0 and below 180");
+  if (const auto name = value.find("projection")) {
+    const std::string expected = "perspective, orthographic or panorama";
+    scene.lens.projection = projection_named(name->string(expected));
+    if (!scene.lens.projection) name->fail(expected);
+  }
+  scene.lens.aperture = value.number_in("aperture", 0.0, kMost, "the radius of a lens, 0 or more");
+  scene.lens.focus = value.number_in("focus", kLeast, kMost, "a distance, more than 0");
+  if (!value.find("eye") && !value.find("target")) return;
+  const JsonValue target = value.at("target");
+  scene.camera = {value.at("eye").vector(), target.vector(), scene.up, scene.fov, scene.lens};
+  const glm::dvec3 view = scene.camera->target - scene.camera->eye;
+  if (view == glm::dvec3(0.0)) target.fail("another point than the eye");
+  if (!scene.up) return;
+  const double sine_times_lengths = glm::length(glm::cross(view, *scene.up));
+  if (!(sine_times_lengths > 1e-9 * glm::length(view) * glm::length(*scene.up))) up->fail(across);
 }
 
 std::vector<InstanceSetting> read_instances(const JsonValue& scene,
@@ -100,10 +67,10 @@ std::vector<InstanceSetting> read_instances(const JsonValue& scene,
 SpotCone read_spot(const JsonValue& light) {
   SpotCone cone;
   cone.axis = light.at("direction").direction();
-  cone.outer =
-      light.number_in("outer", 1e-3, 90.0, "degrees from the axis, 0.001 to 90", cone.outer);
-  cone.inner = light.number_in("inner", 0.0, cone.outer, "degrees from the axis, from 0 to 'outer'",
-                               cone.inner);
+  cone.outer = light.number_in("outer", 1e-3, 90.0, "degrees from the axis, 0.001 to 90")
+                   .value_or(cone.outer);
+  cone.inner = light.number_in("inner", 0.0, cone.outer, "degrees from the axis, from 0 to 'outer'")
+                   .value_or(cone.inner);
   return cone;
 }
 
@@ -123,34 +90,33 @@ AreaLightSetting read_area(const JsonValue& value) {
   return light;
 }
 
-LightSettings read_lights(const JsonValue& scene, const std::filesystem::path& folder) {
-  LightSettings lights;
-  for (const JsonValue& value : scene.elements("point_lights")) {
+void read_lights(const JsonValue& root, const std::filesystem::path& folder, SceneFile& scene) {
+  for (const JsonValue& value : root.elements("point_lights")) {
     value.require_keys({"position", "intensity"});
-    lights.points.push_back({value.at("position").vector(), value.at("intensity").light()});
+    scene.point_lights.push_back({value.at("position").vector(), value.at("intensity").light()});
   }
-  for (const JsonValue& value : scene.elements("spot_lights")) {
+  for (const JsonValue& value : root.elements("spot_lights")) {
     value.require_keys({"position", "direction", "intensity", "inner", "outer"});
     const SpotCone cone = read_spot(value);
-    lights.points.push_back({value.at("position").vector(), value.at("intensity").light(), cone});
+    scene.point_lights.push_back(
+        {value.at("position").vector(), value.at("intensity").light(), cone});
   }
-  for (const JsonValue& value : scene.elements("directional_lights")) {
+  for (const JsonValue& value : root.elements("directional_lights")) {
     value.require_keys({"direction", "irradiance"});
-    lights.directions.push_back(
+    scene.directional_lights.push_back(
         {value.at("direction").direction(), value.at("irradiance").light()});
   }
-  for (const JsonValue& value : scene.elements("area_lights")) {
-    lights.areas.push_back(read_area(value));
+  for (const JsonValue& value : root.elements("area_lights")) {
+    scene.area_lights.push_back(read_area(value));
   }
-  if (const auto value = scene.find("environment")) {
+  if (const auto value = root.find("environment")) {
     value->require_keys({"file", "rotation", "strength"});
-    lights.environment = {
+    scene.environment = {
         folder / value->at("file").string("the name of an EXR or HDR file"),
-        value->number_in("rotation", -360.0, 360.0, "degrees from -360 to 360", 0.0),
-        value->number_in("strength", 0.0, 1e9, "a factor from 0 to 1e9", 1.0)};
+        value->number_in("rotation", -360.0, 360.0, "degrees from -360 to 360").value_or(0.0),
+        value->number_in("strength", 0.0, 1e9, "a factor from 0 to 1e9").value_or(1.0)};
   }
-  if (const auto value = scene.find("background")) lights.background = value->light();
-  return lights;
+  if (const auto value = root.find("background")) scene.background = value->light();
 }
 
 std::vector<OptionSetting> read_options(const JsonValue& render) {
@@ -163,45 +129,30 @@ std::vector<OptionSetting> read_options(const JsonValue& render) {
 }
 
 void add_lights(const SceneFile& file, Scene& scene) {
-  const LightSettings& lights = file.lights;
-  for (const PointLightSetting& light : lights.points) {
-    const glm::vec3 position(light.position - scene.origin);
-    if (!is_finite(position)) {
-      throw InputError(file.file.string() + ": a point light is beyond the range of float");
-    }
-    scene.lights.push_back({position, light.intensity, light.spot});
+  for (const WorldPointLight& light : file.point_lights) {
+    add_light(scene, light, file.file.string());
   }
-  scene.directional_lights.insert(scene.directional_lights.end(), lights.directions.begin(),
-                                  lights.directions.end());
-  if (lights.background) scene.background = *lights.background;
+  scene.directional_lights.insert(scene.directional_lights.end(), file.directional_lights.begin(),
+                                  file.directional_lights.end());
+  if (file.background) scene.background = *file.background;
   int number = 0;
-  for (const AreaLightSetting& light : lights.areas) {
-    const std::string name = "light " + std::to_string(++number);
-    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+  for (const AreaLightSetting& light : file.area_lights) {
     const glm::dvec3 corner = light.corner - scene.origin;
-    scene.positions.emplace_back(corner);
-    scene.positions.emplace_back(corner + light.edges[0]);
-    scene.positions.emplace_back(corner + light.edges[0] + light.edges[1]);
-    scene.positions.emplace_back(corner + light.edges[1]);
-    const glm::vec3* const corners = &scene.positions[first];
-    const auto is_near = [](const glm::vec3& at) { return largest(at) <= kMostCoordinate; };
-    if (!std::all_of(corners, corners + 4, is_near) ||
-        collinear(corners[0], corners[1], corners[2]) ||
+    const std::array<glm::vec3, 4> corners{corner, corner + light.edges[0],
+                                           corner + light.edges[0] + light.edges[1],
+                                           corner + light.edges[1]};
+    const bool is_near = std::ranges::all_of(
+        corners, [](const glm::vec3& at) { return largest(at) <= kMostCoordinate; });
+    if (!is_near || collinear(corners[0], corners[1], corners[2]) ||
         collinear(corners[0], corners[2], corners[3])) {
-      throw InputError(file.file.string() + ": area_lights[" + std::to_string(number - 1) +
+      throw InputError(file.file.string() + ": area_lights[" + std::to_string(number) +
                        "] is beyond the range of float, or too small for its place");
     }
-    for (const std::uint32_t second : {1u, 2u}) {
-      Triangle& triangle = scene.triangles.emplace_back();
-      triangle.vertices = {first, first + second, first + second + 1};
-      triangle.material = static_cast<std::uint32_t>(scene.materials.size());
-      triangle.object = static_cast<std::uint32_t>(scene.objects.size());
-    }
-    Material& material = scene.materials.emplace_back();
-    material.name = name;
+    Material material;
+    material.name = "light " + std::to_string(++number);
     material.diffuse = glm::vec3(0.0f);
     material.emission = light.radiance;
-    scene.objects.push_back(name);
+    add_quad(scene, corners, material);
   }
 }
 
@@ -218,9 +169,9 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
   scene.file = file;
   scene.obj = find_scene_file(std::filesystem::path(file).replace_extension());
   if (const auto obj = root.find("obj")) scene.obj = folder / obj->string("the name of a scene");
-  if (const auto camera = root.find("camera")) read_cameras(*camera, scene);
+  if (const auto camera = root.find("camera")) read_camera(*camera, scene);
   scene.instances = read_instances(root, folder);
-  scene.lights = read_lights(root, folder);
+  read_lights(root, folder, scene);
   if (const auto render = root.find("render")) scene.options = read_options(*render);
   return scene;
 }
@@ -232,7 +183,7 @@ Scene load_scene(const SceneFile& file, const LoadOptions& options) {
   Scene scene = load_scene(file.obj, kept);
   for (const InstanceSetting& setting : file.instances) {
     Scene model = load_scene(setting.model, flat);
-    const NameList objects = std::move(model.objects);
+    const std::vector<std::string> objects = model.objects.all();
     MeshInstancer instancer(scene, std::move(model));
     std::size_t object = scene.objects.size();
     scene.objects.append(objects, setting.transforms.size());

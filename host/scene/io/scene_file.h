@@ -22,21 +22,6 @@ struct AreaLightSetting {
   glm::vec3 radiance{0.0f};  ///< scene-linear RGB, none negative
 };
 
-struct PointLightSetting {
-  glm::dvec3 position{0.0};
-  glm::vec3 intensity{0.0f};  ///< radiant intensity, scene-linear RGB, none negative
-  std::optional<SpotCone> spot = {};
-};
-
-/// Lights in world coordinates.
-struct LightSettings {
-  std::vector<PointLightSetting> points;
-  std::vector<AreaLightSetting> areas;
-  std::vector<DirectionalLight> directions;
-  std::optional<EnvironmentSetting> environment;
-  std::optional<glm::vec3> background;  ///< radiance, scene-linear RGB, none negative
-};
-
 /// A model and the transforms of its instances.
 struct InstanceSetting {
   std::filesystem::path model;
@@ -50,7 +35,8 @@ struct OptionSetting {
   std::size_t line = 0;
 };
 
-/// The contents of a scene file, whose values were checked, except those of options.
+/// The contents of a scene file, in world coordinates. Values were checked, except those of
+/// options.
 struct SceneFile {
   std::filesystem::path file = {};
   std::filesystem::path obj = {};
@@ -58,7 +44,11 @@ struct SceneFile {
   std::optional<glm::dvec3> up = {};  ///< "camera.up"; --view uses it even without a camera
   std::optional<double> fov = {};     ///< "camera.fov", likewise
   LensSetting lens = {};              ///< lens of "camera", likewise
-  LightSettings lights = {};
+  std::vector<WorldPointLight> point_lights = {};
+  std::vector<AreaLightSetting> area_lights = {};
+  std::vector<DirectionalLight> directional_lights = {};
+  std::optional<EnvironmentSetting> environment = {};
+  std::optional<glm::vec3> background = {};  ///< radiance, scene-linear RGB, none negative
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionSetting> options = {};
 };

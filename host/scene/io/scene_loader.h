@@ -1,7 +1,6 @@
 // load_scene: reads models of all supported formats into a Scene.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 
@@ -20,10 +19,8 @@ struct LoadOptions {
   std::optional<double> smooth = {};
   /// Whether curved surfaces of an OBJ, PLY or STL file without normals and smoothing groups are
   /// smoothed with kSmoothAngle, unless `smooth` is set.
-  bool smooth_if_unsaid = false;
+  bool smooth_by_default = false;
   static constexpr double kSmoothAngle = 30.0;
-  int threads = 1;  ///< threads for reading an OBJ file; they do not affect the scene
-  std::size_t chunk_size = 1u << 18;  ///< smallest part of an OBJ file per thread, in bytes
 };
 
 /// Loads a model. The ending of its name gives the format: .obj (or none), .gltf, .glb, .ply or
@@ -53,14 +50,10 @@ struct LoadOptions {
 /// instances, exceed 12 million plus the number of bytes of the file.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Loads a PLY file, ASCII or binary: the polygons of the element "face", as one object
-/// of one material. Vertices have x, y, z and may have nx, ny, nz, and
-/// red, green, blue. If the header has a "comment TextureFile NAME", texture coordinates are s, t
-/// (or u, v, or texture_u, texture_v) of vertices, or the list texcoord of faces. Warns about other
-/// elements and properties.
-///
-/// (assimp 5.2, the only library of Debian 12 that reads PLY, crashed on damaged files and keeps
-/// positions in float, which is too coarse for a scene far from its origin.)
+/// Loads a PLY file, ASCII or binary: the polygons of the element "face", as one object of one
+/// material. Vertices have x, y, z and may have nx, ny, nz, and red, green, blue. If the header has
+/// a "comment TextureFile NAME", texture coordinates are s, t (or u, v, or texture_u, texture_v) of
+/// vertices, or the list texcoord of faces. Warns about other elements and properties.
 [[nodiscard]] Scene load_ply(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Loads an STL file, binary or ASCII, as one object of a default material. +z is up, as in most
@@ -68,8 +61,8 @@ struct LoadOptions {
 [[nodiscard]] Scene load_stl(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Loads the texture files of all materials that triangles use, once for each kind of content, into
-/// Scene::textures, and sets the materials' indices. Combines textures of roughness and metalness.
-/// Drops fully opaque opacity maps. Warns about a file that is missing or cannot be read.
+/// Scene::textures, and sets the materials' indices. Drops fully opaque opacity maps. Warns about a
+/// file that is missing or cannot be read.
 void load_textures(Scene& scene);
 
 }  // namespace raygate

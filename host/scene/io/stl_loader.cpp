@@ -1,11 +1,8 @@
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
@@ -17,103 +14,70 @@ namespace raygate {
 namespace {
 
 constexpr std::size_t kHeader = 80, kStart = kHeader + 4, kFacet = 50, kNormal = 12;
+constexpr std::size_t kMostFacets = std::numeric_limits<std::int32_t>::max() / 3;
 
-/// Adds a facet with three vertices of its own.
-void add_facet(const std::array<glm::dvec3, 3>& corners, std::size_t line, MeshBuilder& mesh,
-               std::int32_t& positions) {
-  std::array<FileCorner, 3> face;
-  for (std::size_t k = 0; k < 3; ++k) {
-    mesh.add_position(corners[k]);
-    face[k].position = ++positions;
-  }
+/// Adds a face of the last three positions.
+void add_facet(MeshBuilder& mesh, std::size_t line) {
+  const auto end = static_cast<std::uint32_t>(mesh.counts().positions);
+  const FaceCorner face[] = {{end - 3}, {end - 2}, {end - 1}};
   mesh.add_face(face, line);
 }
 
 void read_binary(const std::string& name, std::string_view bytes, std::size_t facets,
                  MeshBuilder& mesh) {
-  if (facets > std::size_t{std::numeric_limits<std::int32_t>::max()} / 3) {
-    throw InputError(name + ": " + std::to_string(facets) + " facets, expected at most 715827882");
+  if (facets > kMostFacets) {
+    throw InputError(name + ": " + std::to_string(facets) + " facets, expected at most " +
+                     std::to_string(kMostFacets));
   }
-  std::int32_t positions = 0;
   for (std::size_t i = 0; i < facets; ++i) {
     const char* at = bytes.data() + kStart + i * kFacet + kNormal;
-    std::array<glm::dvec3, 3> corners;
-    for (glm::dvec3& corner : corners) {
+    for (int corner = 0; corner < 3; ++corner) {
+      glm::dvec3 position;
       for (int axis = 0; axis < 3; ++axis, at += sizeof(float)) {
-        corner[axis] = number_at<float>(at);
-        if (!std::isfinite(corner[axis])) {
+        position[axis] = number_at<float>(at);
+        if (!std::isfinite(position[axis])) {
           throw InputError(name + ": facet " + std::to_string(i + 1) +
                            " has a coordinate that is not a finite number");
         }
       }
+      mesh.add_position(position);
     }
-    add_facet(corners, 0, mesh, positions);
-  }
-}
-
-/// Returns whether the next word equals `word`, ignoring case.
-bool is_next(std::string_view word, const TokenReader& tokens) {
-  return std::ranges::equal(word, tokens.peek(), [](char small, char letter) {
-    return letter == small || (letter >= 'A' && letter <= 'Z' && letter - 'A' + 'a' == small);
-  });
-}
-
-/// Takes the next word, which must equal `word`, ignoring case.
-void expect(std::string_view word, TokenReader& tokens) {
-  if (is_next(word, tokens)) {
-    (void)tokens.take();
-  } else {
-    tokens.expect(word);
+    add_facet(mesh, 0);
   }
 }
 
 /// Takes "endWORD" or "end WORD".
-void expect_end(const std::string& word, TokenReader& tokens) {
-  if (is_next("end", tokens)) {
-    (void)tokens.take();
-    expect(word, tokens);
-  } else {
-    expect("end" + word, tokens);
-  }
+void expect_end(const std::string& word, Words& words) {
+  words.take_if("end") ? words.expect(word) : words.expect("end" + word);
 }
 
 /// Reads solids (solid NAME, facets, endsolid NAME), which become one; names may have several
-/// words. Warns if the last endsolid is missing.
-void read_ascii(const std::string& name, std::string_view text, MeshBuilder& mesh,
-                std::vector<std::string>& warnings) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  TokenReader tokens(name, text);
-  std::int32_t positions = 0;
-  while (!tokens.at_end()) {
-    expect("solid", tokens);
-    tokens.skip_line();
-    while (is_next("facet", tokens)) {
-      const std::size_t line = tokens.line();
-      expect("facet", tokens);
-      expect("normal", tokens);
-      for (int axis = 0; axis < 3; ++axis) (void)tokens.take();  // often nan
-      expect("outer", tokens);
-      expect("loop", tokens);
-      std::array<glm::dvec3, 3> corners;
-      for (glm::dvec3& corner : corners) {
-        expect("vertex", tokens);
-        for (int axis = 0; axis < 3; ++axis) corner[axis] = tokens.number("a coordinate");
+/// words. Returns whether the last endsolid is there.
+bool read_ascii(Words words, MeshBuilder& mesh) {
+  while (!words.at_end()) {
+    words.expect("solid");
+    words.skip_line();
+    for (std::size_t line = words.line(); words.take_if("facet"); line = words.line()) {
+      words.expect("normal");
+      for (int axis = 0; axis < 3; ++axis) (void)words.take();  // often nan
+      words.expect("outer");
+      words.expect("loop");
+      for (int corner = 0; corner < 3; ++corner) {
+        words.expect("vertex");
+        glm::dvec3 position;
+        for (int axis = 0; axis < 3; ++axis) position[axis] = words.number("a coordinate");
+        mesh.add_position(position);
       }
-      expect_end("loop", tokens);
-      expect_end("facet", tokens);
-      if (positions > std::numeric_limits<std::int32_t>::max() - 3) {
-        tokens.fail("too many facets");
-      }
-      add_facet(corners, line, mesh, positions);
+      expect_end("loop", words);
+      expect_end("facet", words);
+      if (mesh.face_count() == kMostFacets) words.fail("too many facets");
+      add_facet(mesh, line);
     }
-    if (tokens.at_end() && positions > 0) {
-      warnings.push_back(name + ": the file ends without endsolid, perhaps too soon");
-      break;
-    }
-    expect_end("solid", tokens);
-    tokens.skip_line();
+    if (words.at_end() && mesh.face_count() > 0) return false;
+    expect_end("solid", words);
+    words.skip_line();
   }
+  return true;
 }
 
 }  // namespace
@@ -134,7 +98,10 @@ Scene load_stl(const std::filesystem::path& file, const LoadOptions& options) {
                                std::to_string(facets) + " that its header counts, ignored");
     }
   } else if (!has_zero) {
-    read_ascii(name, bytes, mesh, scene.warnings);
+    const std::string_view text = bytes, mark = "\xEF\xBB\xBF";  // UTF-8's byte order mark
+    if (!read_ascii({name, text.substr(text.starts_with(mark) ? mark.size() : 0), 1}, mesh)) {
+      scene.warnings.push_back(name + ": the file ends without endsolid, perhaps too soon");
+    }
   } else {
     throw InputError(name + ": found " + std::to_string(bytes.size()) + " bytes, expected " +
                      std::to_string(length) + " for the " + std::to_string(facets) +

@@ -1,7 +1,6 @@
 #include "host/scene/io/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -11,187 +10,139 @@
 namespace raygate {
 namespace {
 
-/// Returns whether a character separates tokens: a space or one of \t \n \v \f \r.
+/// Returns whether a character separates words: a space or one of \t \n \v \f \r.
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
+char in_lower_case(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
+/// Returns the place of the first # that begins a word, or npos.
+std::size_t find_comment(std::string_view line) {
+  std::size_t at = line.find('#');
+  while (at != line.npos && at > 0 && !is_space(line[at - 1])) at = line.find('#', at + 1);
+  return at;
 }
 
-bool has_comment(std::string_view line) {
-  for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
-    if (at == 0 || is_blank(line[at - 1])) return true;
-  }
-  return false;
+bool is_continued(std::string_view line) {
+  return line.ends_with('\\') && find_comment(line) == line.npos;
 }
 
 }  // namespace
 
-std::string_view take_token(std::string_view& text) {
-  std::size_t end = 0;
-  while (end < text.size() && text[end] != ' ' && text[end] != '\t') ++end;
-  const std::string_view word = text.substr(0, end);
-  while (end < text.size() && (text[end] == ' ' || text[end] == '\t')) ++end;
-  text.remove_prefix(end);
-  return word;
-}
-
-std::string_view take_token_before_comment(std::string_view& text) {
-  if (!text.empty() && text[0] == '#') text = {};
-  return take_token(text);
-}
-
-TokenReader::TokenReader(std::string name, std::string_view text, std::size_t line)
-    : name_(std::move(name)), text_(text), line_(line) {
-  find_word(0);
+std::string in_lower_case(std::string text) {
+  for (char& letter : text) letter = in_lower_case(letter);
+  return text;
 }
 
 /// Sets the next word to the first one at or after `from`.
-void TokenReader::find_word(std::size_t from) {
+void Words::find_word(std::size_t from) {
   std::size_t at = from;
   for (; at < text_.size() && is_space(text_[at]); ++at) {
-    if (text_[at] == '\n') ++line_;
+    if (text_[at] == '\n' && line_ > 0) ++line_;
   }
-  std::size_t end = at;
-  while (end < text_.size() && !is_space(text_[end])) ++end;
-  word_ = text_.substr(at, end - at);
+  next_ = at;
+  while (next_ < text_.size() && !is_space(text_[next_])) ++next_;
+  word_ = text_.substr(at, next_ - at);
 }
 
-std::string_view TokenReader::take() {
-  if (at_end()) fail("the file ends too soon");
+std::string_view Words::take() {
   const std::string_view word = word_;
-  last_ = static_cast<std::size_t>(word.data() - text_.data()) + word.size();
+  last_ = next_;
   last_line_ = line_;
-  find_word(last_);
+  find_word(next_);
   return word;
 }
 
-void TokenReader::expect(std::string_view word) {
-  if (at_end()) fail("the file ends too soon, expected " + in_quotes(word));
-  if (peek() != word) fail("found " + in_quotes(peek()) + ", expected " + in_quotes(word));
-  (void)take();
+bool Words::take_if(std::string_view word) {
+  const auto is_same = [](char small, char letter) { return small == in_lower_case(letter); };
+  const bool is_equal = word == word_ || std::ranges::equal(word, word_, is_same);
+  if (is_equal) (void)take();
+  return is_equal;
 }
 
-double TokenReader::number(std::string_view of_what) {
-  const auto number = to_number(peek());
+void Words::expect(std::string_view word) {
+  if (take_if(word)) return;
+  fail((at_end() ? "the file ends too soon" : "found " + in_quotes(word_)) + ", expected " +
+       in_quotes(word));
+}
+
+double Words::number(std::string_view what) {
+  const auto number = to_number(word_);
   if (!number || !(std::abs(*number) <= std::numeric_limits<float>::max())) {
-    fail(std::string(of_what) + ": found " + (at_end() ? "the file's end" : in_quotes(peek())) +
-         ", expected a finite number");
+    fail(std::string(what) + ": found " + (at_end() ? "the end" : in_quotes(word_)) +
+         ", expected a number within the range of float");
   }
   (void)take();
   return *number;
 }
 
-long long TokenReader::whole(std::string_view of_what, long long low, long long high) {
-  const std::string_view word = peek();
-  long long number = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc() || end != word.data() + word.size() || number < low || number > high) {
-    fail(std::string(of_what) + ": found " + (at_end() ? "the file's end" : in_quotes(word)) +
-         ", expected a whole number from " + std::to_string(low) + " to " + std::to_string(high));
-  }
-  (void)take();
-  return number;
+double Words::any_number() {
+  return to_number(take()).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-void TokenReader::skip_line() {
-  const std::size_t end = std::min(text_.find('\n', last_), text_.size());
+void Words::drop_comment() {
+  const std::size_t begin = next_ - word_.size(), length = find_comment(text_.substr(begin));
+  if (length == text_.npos) return;
+  text_ = text_.substr(0, begin + length);
+  find_word(begin);
+}
+
+void Words::skip_line() {
   line_ = last_line_;
-  find_word(end);
+  find_word(std::min(text_.find('\n', last_), text_.size()));
 }
 
-void TokenReader::fail(const std::string& what) const { throw InputError(name_, line_, what); }
+std::string Words::place() const { return InputError::location(*file_, line_); }
+
+void Words::fail(const std::string& what) const { throw InputError(*file_, line_, what); }
 
 TextLines::TextLines(const std::filesystem::path& file)
-    : name_(file.string()),
-      bytes_(std::make_shared<const std::string>(read_file(file))),
-      text_(*bytes_) {
-  if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
+    : name_(file.string()), bytes_(read_file(file)) {
+  if (bytes_.starts_with("\xFF\xFE") || bytes_.starts_with("\xFE\xFF")) {
     throw InputError(name_, 1, "UTF-16 text, expected ASCII or UTF-8");
   }
-  if (text_.starts_with("\xEF\xBB\xBF")) position_ = 3;
-  if (const std::size_t nul = text_.find('\0'); nul != std::string_view::npos) {
-    while (position_ <= nul) take_line();
-    throw InputError(name_, lines_taken_, "a byte of value 0: not a text file");
-  }
-}
-
-// Takes one line without its end. There must be one.
-std::string_view TextLines::take_line() {
-  // Each LF is searched once, so that a file whose lines end in CR alone takes linear time.
-  if (newline_ == kNotLooked || newline_ < position_) {
-    newline_ = std::min(text_.find('\n', position_), text_.size());
-  }
-  const std::string_view to_newline(text_.data() + position_, newline_ - position_);
-  const std::size_t length = std::min(to_newline.find('\r'), to_newline.size());
-  position_ += length + 1;
-  if (position_ == newline_ && length < to_newline.size()) ++position_;  // CR LF
-  position_ = std::min(position_, text_.size());
-  ++lines_taken_;
-  return to_newline.substr(0, length);
-}
-
-std::optional<std::string_view> TextLines::next() {
-  while (position_ < text_.size()) {
-    std::string_view line = take_line();
-    statement_line_ = lines_taken_;
-    std::string_view statement = trimmed(line);
-    if (statement.empty() || statement[0] == '#') continue;
-    if (line.back() == '\\' && !has_comment(line)) {
-      joined_.clear();
-      while (!line.empty() && line.back() == '\\' && !has_comment(line)) {
-        joined_ += line.substr(0, line.size() - 1);
-        joined_ += ' ';
-        line = position_ < text_.size() ? take_line() : std::string_view();
-      }
-      joined_ += line;
-      statement = trimmed(joined_);
-      if (statement.empty()) continue;
+  if (bytes_.find('\r') != bytes_.npos) {  // CR LF and CR become LF
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < bytes_.size(); ++i) {
+      if (bytes_[i] == '\r' && bytes_.compare(i + 1, 1, "\n") == 0) continue;
+      bytes_[size++] = bytes_[i] == '\r' ? '\n' : bytes_[i];
     }
-    return statement;
+    bytes_.resize(size);
+  }
+  if (const std::size_t nul = bytes_.find('\0'); nul != bytes_.npos) {
+    const auto line =
+        std::count(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+    throw InputError(name_, static_cast<std::size_t>(line) + 1,
+                     "a byte of value 0: not a text file");
+  }
+  text_ = bytes_;
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+}
+
+/// Takes one line without its end. There must be one.
+std::string_view TextLines::take_line() {
+  const std::size_t length = std::min(text_.find('\n'), text_.size());
+  const std::string_view line = text_.substr(0, length);
+  text_.remove_prefix(std::min(length + 1, text_.size()));
+  ++lines_taken_;
+  return line;
+}
+
+std::optional<Words> TextLines::next() {
+  while (!text_.empty()) {
+    std::string_view line = take_line();
+    const std::size_t first_line = lines_taken_;
+    if (is_continued(line)) {
+      joined_.clear();
+      for (; is_continued(line); line = text_.empty() ? std::string_view() : take_line()) {
+        joined_.append(line.substr(0, line.size() - 1)).append(" ");
+      }
+      line = joined_.append(line);
+    }
+    while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+    const Words words(name_, line, first_line);
+    if (!words.at_end() && !words.peek().starts_with('#')) return words;
   }
   return std::nullopt;
-}
-
-// Parts start after an LF without a preceding backslash, which might join two lines.
-std::vector<TextLines> TextLines::split(std::size_t most, std::size_t size) const {
-  std::vector<TextLines> parts;
-  const std::size_t step = std::max(size, (text_.size() - position_) / most + 1);
-  std::size_t begin = position_;
-  while (begin < text_.size()) {
-    std::size_t end = begin + std::min(step, text_.size() - begin) - 1;
-    const auto joins = [&] {
-      const std::size_t before = end > begin && text_[end - 1] == '\r' ? end - 1 : end;
-      return before > begin && text_[before - 1] == '\\';
-    };
-    do {
-      end = std::min(text_.find('\n', end), text_.size() - 1);
-    } while (joins() && ++end < text_.size());
-    end = std::min(end + 1, text_.size());
-    parts.push_back(TextLines(*this, begin, end));
-    begin = end;
-  }
-  return parts;
-}
-
-std::string TextLines::place() const { return InputError::location(name_, statement_line_); }
-
-double TextLines::number(std::string_view word, std::string_view of_what) const {
-  const std::optional<double> number = to_number(word);
-  if (!number) fail(std::string(of_what) + ": " + in_quotes(word) + ", expected a number");
-  if (!(std::abs(*number) <= std::numeric_limits<float>::max())) {
-    fail(std::string(of_what) + ": " + in_quotes(word) +
-         ", expected a finite number within the range of float");
-  }
-  return *number;
-}
-
-void TextLines::fail(const std::string& what) const {
-  throw InputError(name_, statement_line_, what);
 }
 
 }  // namespace raygate

@@ -107,7 +107,7 @@ TEST(Instances, MeshesBringWhatTheyName) {
   part.texcoords.resize(2);
   part.positions.emplace_back(9.0f);  // of no triangle
   part.textures.push_back(Texture(1, 1, {{}}));
-  part.materials[0].diffuse_texture = 0;
+  part.materials[0].diffuse_map.texture = 0;
   part.triangles[3].normals = {0, 1, kNoIndex};
   part.triangles[3].texcoords = {1, 0, 1};
   ASSERT_EQ(add_mesh(scene, std::move(part)), 0u);
@@ -117,7 +117,7 @@ TEST(Instances, MeshesBringWhatTheyName) {
   EXPECT_EQ(triangle.normals, (std::array<std::uint32_t, 3>{5, 6, kNoIndex}));
   EXPECT_EQ(triangle.texcoords, (std::array<std::uint32_t, 3>{8, 7, 8}));
   EXPECT_EQ(triangle.material, 1u);
-  EXPECT_EQ(scene.materials[1].diffuse_texture, 1u);
+  EXPECT_EQ(scene.materials[1].diffuse_map.texture, 1u);
 }
 
 TEST(Instances, TurnedMeshesHaveTheirFrontOnTheOtherSide) {
@@ -141,7 +141,7 @@ TEST(NameList, IsTheListThatItStandsFor) {
   NameList names = {"ground"};
   for (int i = 0; i < 3; ++i) {
     names.push_back(plain.emplace_back("tree " + std::to_string(i)));
-    names.append(NameList(model), 4 * i);
+    names.append(model, 4 * i);
     for (int k = 0; k < 4 * i; ++k) plain.insert(plain.end(), model.begin(), model.end());
   }
   names.append({}, 5);

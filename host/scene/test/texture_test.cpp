@@ -203,8 +203,8 @@ TEST_F(TextureFile, EachFileIsLoadedOnce) {
       "s.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 2\n"));
   EXPECT_TRUE(scene.warnings.empty());
   EXPECT_EQ(scene.textures.size(), 1u);
-  EXPECT_EQ(scene.materials[0].diffuse_texture, 0u);
-  EXPECT_EQ(scene.materials[1].diffuse_texture, 0u);
+  EXPECT_EQ(scene.materials[0].diffuse_map.texture, 0u);
+  EXPECT_EQ(scene.materials[1].diffuse_map.texture, 0u);
 }
 
 TEST_F(TextureFile, AMissingOneIsWarnedOf) {

@@ -62,9 +62,8 @@ TEST(OriginForBox, StaysFinite) {
 TEST(MeshBuilder, KeepsWhatFacesUse) {
   MeshBuilder builder("m.obj");
   for (int i = 0; i < 5; ++i) builder.add_position({i, i * i, 0});
-  const FileCorner corners[]{{2, 0, 0}, {-1, 0, 0}, {-2, 0, 0}};
-  builder.add_face(corners, 1);
-  builder.assign_faces(0, 1, 7, 3);
+  const FaceCorner corners[]{{1}, {4}, {3}};
+  builder.add_face(corners, 1, {.material = 7, .object = 3});
   Scene scene;
   builder.build({}, scene);
   EXPECT_EQ(scene.positions, (std::vector<glm::vec3>{{1, 1, 0}, {3, 9, 0}, {4, 16, 0}}));

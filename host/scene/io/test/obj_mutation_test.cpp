@@ -5,7 +5,6 @@
 #include "host/base/test/damage.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/scene/io/test/in_chunks.h"
 #include "host/scene/io/test/sound.h"
 #include "host/scene/test/tga.h"
 
@@ -42,9 +41,6 @@ TEST(DamagedObj, LoadsSoundlyOrIsRefused) {
     folder.write("m.mtl", mtl);
     const std::filesystem::path file = folder.write("s.obj", obj);
     const LoadOptions options = {.strict = damage.below(2) == 0};
-    if (round % 8 == 1) {
-      ASSERT_EQ(test::outcome(file, options), test::outcome_in_parts(file, options)) << obj;
-    }
     try {
       const Scene scene = load_obj(file, options);
       test::expect_sound(scene);

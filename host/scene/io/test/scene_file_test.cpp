@@ -43,14 +43,14 @@ TEST_F(ReadSceneFile, EveryKey) {
   EXPECT_EQ(scene.camera->target, glm::dvec3(0, 1, 0));
   EXPECT_EQ(scene.camera->up, glm::dvec3(0, 1, 0.5));
   EXPECT_EQ(scene.camera->fov, 39.5);
-  ASSERT_EQ(scene.lights.points.size(), 1u);
-  EXPECT_EQ(scene.lights.points[0].position, glm::dvec3(1, 2, 3));
-  EXPECT_EQ(scene.lights.points[0].intensity, glm::vec3(10, 20, 30));
-  ASSERT_EQ(scene.lights.areas.size(), 1u);
-  EXPECT_EQ(scene.lights.areas[0].corner, glm::dvec3(0, 3, 0));
-  EXPECT_EQ(scene.lights.areas[0].edges[1], glm::dvec3(0, 0, 2));
-  EXPECT_EQ(scene.lights.areas[0].radiance, glm::vec3(5)) << "one number is grey";
-  EXPECT_EQ(scene.lights.background, glm::vec3(0.1f, 0.2f, 0.3f));
+  ASSERT_EQ(scene.point_lights.size(), 1u);
+  EXPECT_EQ(scene.point_lights[0].position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(scene.point_lights[0].intensity, glm::dvec3(10, 20, 30));
+  ASSERT_EQ(scene.area_lights.size(), 1u);
+  EXPECT_EQ(scene.area_lights[0].corner, glm::dvec3(0, 3, 0));
+  EXPECT_EQ(scene.area_lights[0].edges[1], glm::dvec3(0, 0, 2));
+  EXPECT_EQ(scene.area_lights[0].radiance, glm::vec3(5)) << "one number is grey";
+  EXPECT_EQ(scene.background, glm::vec3(0.1f, 0.2f, 0.3f));
   ASSERT_EQ(scene.options.size(), 4u);
   EXPECT_EQ(scene.options[0].name, "exposure") << "sorted by name";
   EXPECT_EQ(scene.options[0].value, "-0.5");
@@ -63,8 +63,8 @@ TEST_F(ReadSceneFile, NothingIsNeeded) {
   const SceneFile scene = read("{}");
   EXPECT_EQ(scene.obj, folder_.path() / "s.obj") << "the same name";
   EXPECT_FALSE(scene.camera);
-  EXPECT_TRUE(scene.lights.points.empty() && scene.lights.areas.empty());
-  EXPECT_FALSE(scene.lights.background);
+  EXPECT_TRUE(scene.point_lights.empty() && scene.area_lights.empty());
+  EXPECT_FALSE(scene.background);
 }
 
 TEST_F(ReadSceneFile, UpAndFieldOfViewAreKnownWithoutACamera) {
@@ -155,10 +155,10 @@ TEST_F(ReadSceneFile, LensesAndEnvironments) {
   EXPECT_EQ(file.camera->lens.projection, Projection::kPanorama);
   EXPECT_EQ(file.camera->lens.aperture, 0.5);
   EXPECT_EQ(file.lens.focus, 3.0) << "also of views";
-  ASSERT_TRUE(file.lights.environment);
-  EXPECT_EQ(file.lights.environment->file, folder_.path() / "sky.exr");
-  EXPECT_EQ(file.lights.environment->rotation, 90.0);
-  EXPECT_EQ(file.lights.environment->strength, 2.0);
+  ASSERT_TRUE(file.environment);
+  EXPECT_EQ(file.environment->file, folder_.path() / "sky.exr");
+  EXPECT_EQ(file.environment->rotation, 90.0);
+  EXPECT_EQ(file.environment->strength, 2.0);
   EXPECT_EQ(error(R"({"camera": {"projection": "fisheye"}})"),
             "s.json:1: camera.projection: 'fisheye', expected perspective, orthographic or "
             "panorama");
@@ -176,15 +176,15 @@ TEST_F(ReadSceneFile, SpotAndDirectionalLights) {
       "spot_lights": [{"position": [1, 2, 3], "direction": [0, -2, 0], "intensity": 9},
           {"position": [0, 0, 0], "direction": [1, 0, 0], "intensity": 1, "inner": 5, "outer": 6}],
       "directional_lights": [{"direction": [0, 0, 1e-30], "irradiance": [1, 2, 3]}]})");
-  ASSERT_EQ(file.lights.points.size(), 2u);
-  ASSERT_TRUE(file.lights.points[0].spot && file.lights.points[1].spot);
-  EXPECT_EQ(file.lights.points[0].spot->axis, glm::dvec3(0, -1, 0));
-  EXPECT_EQ(file.lights.points[0].spot->inner, 0.0);
-  EXPECT_EQ(file.lights.points[0].spot->outer, 45.0);
-  EXPECT_EQ(file.lights.points[1].spot->inner, 5.0);
-  ASSERT_EQ(file.lights.directions.size(), 1u);
-  EXPECT_EQ(file.lights.directions[0].direction, glm::dvec3(0, 0, 1));
-  EXPECT_EQ(file.lights.directions[0].irradiance, glm::vec3(1, 2, 3));
+  ASSERT_EQ(file.point_lights.size(), 2u);
+  ASSERT_TRUE(file.point_lights[0].spot && file.point_lights[1].spot);
+  EXPECT_EQ(file.point_lights[0].spot->axis, glm::dvec3(0, -1, 0));
+  EXPECT_EQ(file.point_lights[0].spot->inner, 0.0);
+  EXPECT_EQ(file.point_lights[0].spot->outer, 45.0);
+  EXPECT_EQ(file.point_lights[1].spot->inner, 5.0);
+  ASSERT_EQ(file.directional_lights.size(), 1u);
+  EXPECT_EQ(file.directional_lights[0].direction, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(file.directional_lights[0].irradiance, glm::vec3(1, 2, 3));
   const auto spot = [&](const std::string& rest) {
     return error(R"({"spot_lights": [{"position": [0, 0, 0], "intensity": 1, )" + rest + "}]}");
   };

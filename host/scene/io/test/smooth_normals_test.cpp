@@ -69,7 +69,7 @@ TEST(SmoothNormals, FollowTheAngle) {
 TEST(SmoothNormals, OfWhatSaysNothing) {
   const auto has_normals = [](const std::string& text) {
     const TempFolder folder;
-    const Scene scene = load_scene(folder.write("scene.obj", text), {.smooth_if_unsaid = true});
+    const Scene scene = load_scene(folder.write("scene.obj", text), {.smooth_by_default = true});
     return std::ranges::any_of(
         scene.triangles, [](const Triangle& triangle) { return triangle.normals[0] != kNoIndex; });
   };

@@ -72,7 +72,7 @@ TEST_F(LoadStl, WhatIsRefused) {
             "s.stl: facet 1 has a coordinate that is not a finite number");
   EXPECT_EQ(error("solid\nendsolid\n"), "s.stl: no faces, expected at least one polygon");
   EXPECT_EQ(error("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n"),
-            "s.stl:4: a coordinate: found 'x', expected a finite number");
+            "s.stl:4: a coordinate: found 'x', expected a number within the range of float");
   EXPECT_EQ(error("solid\nfacet normal 0 0 1\nouter ring\n"),
             "s.stl:3: found 'ring', expected 'loop'");
   EXPECT_EQ(error("solid\nfacet normal 0 0 1"),

@@ -19,7 +19,7 @@ Statements statements_of(std::string_view bytes) {
   TextLines lines(folder.write("text", bytes));
   Statements statements;
   while (const auto statement = lines.next()) {
-    statements.emplace_back(lines.line(), std::string(*statement));
+    statements.emplace_back(statement->line(), std::string(statement->rest()));
   }
   return statements;
 }
@@ -87,20 +87,26 @@ TEST(TextLines, ManyLinesEndedByCrAlone) {
 }
 
 TEST(Words, AreTakenOneByOne) {
-  std::string_view text = "usemtl\t a  b ";
-  EXPECT_EQ(take_token(text), "usemtl");
-  EXPECT_EQ(text, "a  b ");
-  EXPECT_EQ(take_token(text), "a");
-  EXPECT_EQ(take_token(text), "b");
-  EXPECT_EQ(take_token(text), "");
+  const std::string file = "a.obj";
+  Words words(file, "usemtl\t a  b", 7);
+  EXPECT_EQ(words.take(), "usemtl");
+  EXPECT_EQ(words.rest(), "a  b");
+  EXPECT_TRUE(words.take_if("a"));
+  EXPECT_FALSE(words.take_if("a"));
+  EXPECT_EQ(words.take(), "b");
+  EXPECT_TRUE(words.at_end());
+  EXPECT_EQ(words.take(), "");
+  EXPECT_EQ(words.rest(), "");
+  EXPECT_EQ(words.place(), "a.obj:7: ");
 }
 
 TEST(Words, ACommentEndsThem) {
-  std::string_view text = "1 2#3 #4 5";
-  EXPECT_EQ(take_token_before_comment(text), "1");
-  EXPECT_EQ(take_token_before_comment(text), "2#3");
-  EXPECT_EQ(take_token_before_comment(text), "");
-  EXPECT_EQ(take_token_before_comment(text), "");
+  const std::string file = "a.obj";
+  Words words(file, "1 2#3 #4 5");
+  words.drop_comment();
+  EXPECT_EQ(words.take(), "1");
+  EXPECT_EQ(words.take(), "2#3");
+  EXPECT_TRUE(words.at_end());
 }
 
 }  // namespace
