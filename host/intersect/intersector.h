@@ -129,9 +129,4 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 bool take_if_nearest(const Bvh& bvh, const Ray& ray, float t_max, NearestHit hit, bool is_sure,
                      NearestHit& best, IntersectCounters& counters);
 
-/// Computes P and its error of all hits, with the bits of plane_point. `is_common`: all rays start
-/// at one point. Returns the number of hits.
-std::uint64_t add_points(const Bvh& bvh, std::span<const Ray> rays, bool is_common,
-                         std::span<NearestHit> hits);
-
 }  // namespace raygate

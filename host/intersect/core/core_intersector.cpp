@@ -6,6 +6,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/stopwatch.h"
+#include "host/intersect/point_writer.h"
 
 namespace raygate {
 namespace {
@@ -78,9 +79,13 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
     resolve(rays[result.tag], query.t_max_of(result.tag), result, hits[result.tag]);
   }
   counters_.traverse += watch.lap();
-  if (query.any_hit_before.empty()) {
-    counters_.hit.plane_tests += add_points(bvh_, rays, false, hits);
+  PointWriter points(bvh_, rays, false, hits);
+  for (std::uint32_t i = 0; i < rays.size() && query.any_hit_before.empty(); ++i) {
+    if (points.count() == PointWriter::kMost) points.write();
+    if (hits[i].primitive != NearestHit::kNone) points.add(i, hits[i].primitive);
   }
+  points.write();
+  counters_.hit.plane_tests += points.written();
   counters_.record += watch.lap();
 }
 

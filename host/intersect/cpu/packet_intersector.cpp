@@ -12,7 +12,7 @@
 #include "host/exact/exact.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/cpu/quad_test.h"
-#include "host/intersect/polygon_record.h"
+#include "host/intersect/point_writer.h"
 
 // Why a group never skips a triangle wrongly
 //
@@ -544,9 +544,11 @@ class PacketIntersector {
         origin_(rays[0].origin),
         rays_(rays),
         query_(query),
-        hits_(hits) {}
+        hits_(hits),
+        points_(bvh, rays, true, hits) {}
 
-  void trace() {
+  /// Returns the number of points that were computed.
+  std::uint64_t trace() {
     assert(std::ranges::all_of(rays_, [&](const Ray& ray) { return ray.origin == origin_; }));
     RayPacket block;
     ConeTraversal walk;
@@ -567,11 +569,9 @@ class PacketIntersector {
         traverse(walk);
         finish(walk);
       }
-      if (query_.with_points()) {
-        counters_.hit.plane_tests +=
-            add_points(bvh_, rays_.subspan(first, count), true, hits_.subspan(first, count));
-      }
+      points_.write();
     }
+    return points_.written();
   }
 
  private:
@@ -779,7 +779,7 @@ class PacketIntersector {
     return true;
   }
 
-  /// Writes the nearest hits, without P.
+  /// Writes the nearest hits, and adds them to those whose P is to be computed.
   void finish(const ConeTraversal& walk) {
     for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
       const int g = std::countr_zero(groups);
@@ -788,6 +788,7 @@ class PacketIntersector {
         NearestHit& hit = hits_[walk.number(g, lane)];
         hit.primitive = static_cast<std::uint32_t>(walk.primitive[g][lane]);
         hit.t = walk.t(g, lane);
+        if (query_.with_points()) points_.add(walk.number(g, lane), hit.primitive);
       }
     }
   }
@@ -798,13 +799,14 @@ class PacketIntersector {
   const std::span<const Ray> rays_;
   const RayQuery query_;
   const std::span<NearestHit> hits_;
+  PointWriter points_;
 };
 
 }  // namespace
 
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                    std::span<NearestHit> hits, IntersectCounters& counters) {
-  PacketIntersector(bvh, rays, query, hits, counters).trace();
+  counters.hit.plane_tests += PacketIntersector(bvh, rays, query, hits, counters).trace();
 }
 
 }  // namespace raygate

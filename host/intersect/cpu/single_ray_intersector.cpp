@@ -15,7 +15,7 @@
 #include "host/exact/exact.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/cpu/quad_test.h"
-#include "host/intersect/polygon_record.h"
+#include "host/intersect/point_writer.h"
 
 // Why no true hit is culled
 //
@@ -290,13 +290,17 @@ class SingleRayIntersector {
  public:
   SingleRayIntersector(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                        std::span<NearestHit> hits, IntersectCounters& counters)
-      : bvh_(bvh), counters_(counters), rays_(rays), query_(query), hits_(hits) {}
+      : bvh_(bvh),
+        counters_(counters),
+        rays_(rays),
+        query_(query),
+        hits_(hits),
+        points_(bvh, rays, false, hits) {}
 
   void trace() {
     walk_all();
-    if (query_.any_hit_before.empty()) {
-      counters_.hit.plane_tests += add_points(bvh_, rays_, false, hits_);
-    }
+    points_.write();
+    counters_.hit.plane_tests += points_.written();
   }
 
  private:
@@ -402,7 +406,9 @@ class SingleRayIntersector {
     counters.edge_doubts += walk.work.doubts;
     if (!query_.work.empty()) query_.work[walk.number] = walk.work;
     hits_[walk.number].primitive = walk.primitive;
-    hits_[walk.number].t = walk.primitive != NearestHit::kNone ? walk.t() : Interval{};
+    if (walk.primitive == NearestHit::kNone) return;
+    hits_[walk.number].t = walk.t();
+    if (query_.any_hit_before.empty()) points_.add(walk.number, walk.primitive);
   }
 
   /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
@@ -469,6 +475,7 @@ class SingleRayIntersector {
         leaf_count = static_cast<std::size_t>(ends[Bvh::Child::kLeaf] - leaves);
         idle_count = static_cast<std::size_t>(ends[Bvh::Child::kNone] - idle);
         for (std::size_t i = were_idle; i < idle_count; ++i) finish(*idle[i]);
+        if (points_.count() >= PointWriter::kMost / 2) points_.write();
       }
     });
   }
@@ -478,6 +485,7 @@ class SingleRayIntersector {
   const std::span<const Ray> rays_;
   const RayQuery query_;
   const std::span<NearestHit> hits_;
+  PointWriter points_;
   std::size_t next_ = 0;  // the next ray to start
 };
 
