@@ -14,17 +14,6 @@
 #include "host/intersect/cpu/quad_test.h"
 #include "host/intersect/point_writer.h"
 
-// Why a group never skips a triangle wrongly
-//
-// Let F be an edge's words, E the exact edge, b its bound, L and u as in quad_test.h, C the
-// group's centre and R its radius, and I the direction of one of its rays, divided by the ray's
-// t_scale; components are below 8.
-// As derived there for components below 2, float32(C . F) differs from C . E by less than 8 (4 +
-// 3.001) u L + 2^-143 < 3.9 b, and b >= kQuadBound u L. And |I . E - C . E| <= R |E|_1 <= R L (1 +
-// 4 u). So if float32(C . F) < -b (4.1 + R / (kQuadBound u)), I . E < 0 for all the group's rays:
-// all are outside of the edge and miss. `slack`, the factor of b, is rounded up by a factor of 1 +
-// 2^-20, which covers the rounding of slack and of the product.
-
 namespace raygate {
 namespace {
 
@@ -105,10 +94,9 @@ struct ConeTraversal {
   IntLanes primitive[kGroups];           ///< of the nearest hit; -1: none
   IntLanes skip_id[kGroups];             ///< a primitive; -1: none
   IntLanes enough[kGroups];              ///< a hit that is surely nearer than this ends the ray
-  FloatLanes slack;     ///< lane g: the factor of edge bounds for group g (see packet_steps.h)
-  std::uint64_t going;  ///< rays that continue
-  float cutoff;         ///< boxes beyond this are skipped
-  int depth;            ///< of the stack
+  std::uint64_t going;                   ///< rays that continue
+  float cutoff;                          ///< boxes beyond this are skipped
+  int depth;                             ///< of the stack
   StackEntry stack[Bvh::kStackSize];
 
   [[nodiscard]] std::uint32_t number(int group, int lane) const {
@@ -424,24 +412,6 @@ RAYGATE_INLINE void worst_side_of(const FloatLanes (&direction)[3], const QuadRe
   }
 }
 
-/// Computes the factor of the edge bounds for cones of these radii.
-RAYGATE_INLINE void slack_of(const FloatLanes (&radius)[3], FloatLanes& slack) {
-  FloatLanes largest = radius[0] > radius[1] ? radius[0] : radius[1];
-  largest = largest > radius[2] ? largest : radius[2];
-  slack = static_cast<float>(1.0 + 0x1p-20) *
-          (4.1f + largest * static_cast<float>(1.0 / (kQuadBound * 0x1p-24)));
-}
-
-/// Returns those of `groups` with rays that may hit the triangle.
-template <Vectors kCode>
-RAYGATE_INLINE LaneMask groups_near(const ConeTraversal& walk, const QuadRecord& record,
-                                    int triangle, LaneMask groups) {
-  if (!several(groups)) return groups;
-  FloatLanes worst;
-  worst_side_of(walk.cones.center, record, triangle, worst);
-  return groups & ~sign_mask<kCode>(worst < -(record.bounds[triangle] * walk.slack));
-}
-
 /// Computes bounds of t from those of |d| and of I . N, t being their quotient. Both are positive,
 /// even if I . N is not in float32. There are four roundings each; a quotient that underflows is
 /// between 0 and the smallest normal float.
@@ -580,7 +550,6 @@ class PacketIntersector {
     in_vectors([&](auto) RAYGATE_BODY {
       const std::span limits = query_.t_max, enough = query_.any_hit_before;
       const std::span skip_id = query_.skip_ids;
-      slack_of(walk.cones.radius, walk.slack);
       walk.split = 0;
       walk.going = 0;
       walk.cones.bounds8.cutoff = FloatLanes{} - 1.0f;
@@ -614,8 +583,7 @@ class PacketIntersector {
     for (; there != 0; there &= there - 1) {
       const int i = std::countr_zero(there);
       const auto primitive = static_cast<std::int32_t>(leaf.first) + i;
-      LaneMask left = groups_near<kCode>(walk, record, i, groups_of(rays));
-      for (; left != 0; left &= left - 1) {
+      for (LaneMask left = groups_of(rays); left != 0; left &= left - 1) {
         const int g = std::countr_zero(left);
         const LaneMask tested = rays_of(rays, g);
         Verdict<IntLanes> verdict;
