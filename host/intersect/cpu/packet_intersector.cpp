@@ -35,9 +35,6 @@ struct RayPacket {
   }
 };
 
-/// Loads up to 64 rays. Returns a mask of the rays that are usable but not scaled.
-[[nodiscard]] std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block);
-
 /// Bounding cones of rays in one octant, independent of the lengths of directions. Lane g belongs
 /// to group g; absent groups have radius 0. A ray I is represented by I / t_scale, where t_scale is
 /// the magnitude of one component, the same for all rays, or 1 for all; t then becomes t_scale t.
@@ -50,9 +47,6 @@ struct Cones {
   PacketBounds8 bounds8;  ///< the caller sets the cutoffs
   PacketBounds whole;     ///< bounds of all groups
 };
-
-/// Computes all members for the packet's rays in `cones.active`, which must be in this octant.
-void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones);
 
 // Sets of a packet's 64 rays: byte g holds the rays of group g.
 
@@ -151,17 +145,7 @@ RAYGATE_INLINE int t_scale_axis(const RayPacket& block, const LaneMask* active) 
   return axis;
 }
 
-/// Loads the directions of four rays, transposed. Each load includes the float before the
-/// direction, which belongs to the same ray.
-RAYGATE_INLINE void load_directions(const Ray* const (&rays)[kQuad], FloatQuad (&components)[3]) {
-  static_assert(offsetof(Ray, direction) + sizeof(Ray::direction) == sizeof(Ray));
-  FloatQuad rows[kQuad];
-  for (int i = 0; i < kQuad; ++i)
-    rows[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i] + 1) - kQuad);
-  transpose(rows);
-  for (int k = 0; k < 3; ++k) components[k] = rows[k + 1];
-}
-
+/// Loads up to 64 rays. Returns a mask of the rays that are usable but not scaled.
 std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
   return in_vectors([&](auto) RAYGATE_BODY {
     LaneMask positive[3] = {}, negative[3] = {};  // whether any ray is
@@ -170,17 +154,14 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
       const std::size_t begin = std::size_t(group) * kLanes;
       const std::size_t count =
           begin < rays.size() ? std::min<std::size_t>(kLanes, rays.size() - begin) : 0;
-      const Ray* of[2][kQuad];  // beyond the end: the last ray
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        of[i / kQuad][i % kQuad] = &rays[std::min(begin + i, rays.size() - 1)];
+      float components[3][kLanes];
+      for (std::size_t i = 0; i < kLanes; ++i) {  // beyond the end: the last ray
+        const Ray& ray = rays[std::min(begin + i, rays.size() - 1)];
+        for (int k = 0; k < 3; ++k) components[k][i] = ray.direction[k];
       }
-      FloatQuad half[2][3];
-      load_directions(of[0], half[0]);
-      load_directions(of[1], half[1]);
       IntLanes largest = {};  // largest magnitude of each ray, as bits of a float
       for (int k = 0; k < 3; ++k) {
-        const FloatLanes d =
-            __builtin_shufflevector(half[0][k], half[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
+        const auto d = load<FloatLanes>(components[k]);
         block.direction[k][group] = d;
         block.negative[k][group] = sign_mask(d < 0.0f);
         const IntLanes size = reinterpret_cast<IntLanes>(d) & 0x7FFFFFFF;
@@ -208,6 +189,7 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
   });
 }
 
+/// Computes all members for the packet's rays in `cones.active`, which must be in this octant.
 void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones) {
   in_vectors([&](auto) RAYGATE_BODY {
     // Each rounding changes a value by a factor of at most 1 + 2^-24. Components over a t_scale are
