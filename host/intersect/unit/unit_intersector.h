@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "host/bvh/packet_traversal.h"
+#include "host/intersect/intersector.h"
 #include "host/intersect/unit/hit_tester.h"
 
 namespace raygate {
