@@ -71,7 +71,7 @@ void make_planes(const PlaneViews& views, Planes& planes);
 // two are not small relative to a small coordinate: together they are less than 2^-46 of the
 // largest.
 
-/// Returns the grazing that the unit reports with a hit (BurstHit::t_error), from the largest
+/// Returns the grazing that the unit reports with a hit (BurstResult::t_error), from the largest
 /// exponent field of N and the bits of V (finite). `Bits` is std::int32_t or a vector of it.
 template <class Bits>
 RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
