@@ -71,7 +71,7 @@ class BurstCursor {
 struct LaneShare {
   std::vector<BurstCursor::Burst> bursts;  // all that went in, and the one that does
   std::size_t closed = 0;                  // so many of them are over
-  std::size_t pointed = 0;                 // so many of `hits` have their point
+  std::size_t pointed = 0;                 // so many of `results` are complete
   BurstResults results;
 
   void clear() {
@@ -79,8 +79,12 @@ struct LaneShare {
     results.clear();
     closed = pointed = 0;
   }
-  [[nodiscard]] bool all_closed() const { return closed == bursts.size(); }
-  [[nodiscard]] bool all_pointed() const { return pointed == results.hits.size(); }
+  [[nodiscard]] bool all_closed() { return closed == bursts.size(); }
+  /// Whether no hit lacks its point.
+  [[nodiscard]] bool all_pointed() {
+    while (pointed < results.size() && results[pointed].kind != BurstResult::Kind::kHit) ++pointed;
+    return pointed == results.size();
+  }
 };
 
 /// The burst that goes into a lane.
@@ -139,7 +143,7 @@ class ArrayModel : public BurstModel {
 
   void finish(BurstResults& results) override {
     assert(in_flight_ > 0);
-    const Work& work = work_at(0);
+    Work& work = work_at(0);
     while (!drained(work)) step();
     for (Model<Top>& model : models_) model->valid_i = 0;
     merge(work, results);
@@ -176,8 +180,8 @@ class ArrayModel : public BurstModel {
   /// The batches in flight in the order of their start.
   Work& work_at(unsigned age) { return works_[(oldest_ + age) % kMostBatches]; }
 
-  static bool drained(const Work& work) {
-    return work.cursor.done() && std::ranges::all_of(work.shares, [](const LaneShare& share) {
+  static bool drained(Work& work) {
+    return work.cursor.done() && std::ranges::all_of(work.shares, [](LaneShare& share) {
              return share.all_closed() && share.all_pointed();
            });
   }
@@ -272,7 +276,7 @@ class ArrayModel : public BurstModel {
   }
 
   /// The oldest batch of which lane n still has something to say, by `all` of LaneShare.
-  LaneShare* awaited(int n, bool (LaneShare::*all)() const) {
+  LaneShare* awaited(int n, bool (LaneShare::*all)()) {
     for (unsigned age = 0; age < in_flight_; ++age) {
       LaneShare& share = work_at(age).shares[n];
       if (!(share.*all)()) return &share;
@@ -292,13 +296,13 @@ class ArrayModel : public BurstModel {
       if (share == nullptr) broken("a result for no burst, lane " + std::to_string(n));
       const auto& [bundle, bundle_lane] = share->bursts[share->closed];
       if (kind != 0) {
-        share->results.reports.push_back({bundle, bundle_lane,
-                                          read_slot<std::uint32_t>(model.report_tag_o, own),
-                                          static_cast<TestReport::Kind>(kind)});
+        share->results.push_back({bundle, bundle_lane,
+                                  read_slot<std::uint32_t>(model.report_tag_o, own),
+                                  static_cast<BurstResult::Kind>(kind)});
       }
       if (closed) {
         if (bit(model.found_o, n)) {
-          BurstHit& hit = share->results.hits.emplace_back();
+          BurstResult& hit = share->results.emplace_back();
           hit = {bundle, bundle_lane, read_slot<std::uint32_t>(model.tag_o, own)};
           numbers_.read(model.t_o, own, &hit.t, 1);
           hit.t_error = static_cast<std::uint32_t>(model.t_error_o >> (4 * own) & 15);
@@ -310,7 +314,7 @@ class ArrayModel : public BurstModel {
     if (bit(model.point_valid_o, n)) {
       LaneShare* const share = awaited(n, &LaneShare::all_pointed);
       if (share == nullptr) broken("a point for no hit, lane " + std::to_string(n));
-      numbers_.read(model.point_o, own, &share->results.hits[share->pointed++].point.x, 3);
+      numbers_.read(model.point_o, own, &share->results[share->pointed++].point.x, 3);
       quiet_ = 0;
     }
   }
@@ -320,15 +324,11 @@ class ArrayModel : public BurstModel {
     const auto before = [](const auto& a, const auto& b) {
       return a.bundle != b.bundle ? a.bundle < b.bundle : a.lane < b.lane;
     };
-    const auto append = [&](auto& to, auto part) {
-      const auto old = static_cast<std::ptrdiff_t>(to.size());
-      for (const LaneShare& share : work.shares) {
-        to.insert(to.end(), (share.results.*part).begin(), (share.results.*part).end());
-      }
-      if (lanes() > 1) std::stable_sort(to.begin() + old, to.end(), before);
-    };
-    append(results.hits, &BurstResults::hits);
-    append(results.reports, &BurstResults::reports);
+    const auto old = static_cast<std::ptrdiff_t>(results.size());
+    for (const LaneShare& share : work.shares) {
+      results.insert(results.end(), share.results.begin(), share.results.end());
+    }
+    if (lanes() > 1) std::stable_sort(results.begin() + old, results.end(), before);
   }
 
   std::vector<Model<Top>> models_;

@@ -37,11 +37,6 @@ RtlBurstUnit::RtlBurstUnit(std::unique_ptr<BurstModel> model)
 
 RtlBurstUnit::~RtlBurstUnit() = default;
 
-void RtlBurstUnit::run(std::span<const RayBundle> batch, BurstResults& results) {
-  start(batch);
-  finish(results);
-}
-
 void RtlBurstUnit::start(std::span<const RayBundle> batch) { model_->start(batch); }
 void RtlBurstUnit::finish(BurstResults& results) { model_->finish(results); }
 

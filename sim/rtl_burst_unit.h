@@ -27,7 +27,6 @@ class RtlBurstUnit : public BurstUnit {
   explicit RtlBurstUnit(std::unique_ptr<BurstModel> model);  ///< of another format
   ~RtlBurstUnit() override;
 
-  void run(std::span<const RayBundle> batch, BurstResults& results) override;
   /// The tests of the second batch follow those of the first without a gap.
   void start(std::span<const RayBundle> batch) override;
   void finish(BurstResults& results) override;

@@ -30,7 +30,6 @@ RtlBurstUnit::RtlBurstUnit(int /*lanes*/, Arith /*arith*/, const BurstStalls& /*
   fail(kUnit);
 }
 RtlBurstUnit::~RtlBurstUnit() = default;
-void RtlBurstUnit::run(std::span<const RayBundle> /*batch*/, BurstResults& /*results*/) {}
 void RtlBurstUnit::start(std::span<const RayBundle> /*batch*/) {}
 void RtlBurstUnit::finish(BurstResults& /*results*/) {}
 BurstCounters RtlBurstUnit::counters() const { return {}; }

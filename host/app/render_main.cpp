@@ -81,7 +81,7 @@ class Run {
 
   /// Renders what the options ask for, or serves it. Prints warnings and progress on standard error
   /// and the summary on standard output. Throws InputError for errors of the user,
-  /// IntersectorMismatch, and other exceptions for internal errors; then no output file has
+  /// EngineMismatch, and other exceptions for internal errors; then no output file has
   /// changed. Throws Interrupted after the unfinished pictures were written.
   void operator()() {
     if (!options_.serve) check_outputs();

@@ -22,6 +22,7 @@ namespace {
 using Ref = BinaryBvh::Ref;
 
 constexpr std::uint32_t kTreeTask = 4096;  // maximum number of primitives in a task of one thread
+constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
 constexpr float kNodeCost = 1.0f;
 /// Cost of a leaf with 1 to 4 triangles, which are tested at once.
 constexpr float kLeafCost[Bvh::kMaxLeafSize + 1] = {0.0f, 0.95f, 1.0f, 1.05f, 1.1f};
@@ -39,13 +40,19 @@ struct Plan {
 /// Collapses a binary BVH to a wide one.
 class BvhWriter {
  public:
-  BvhWriter(Bvh& bvh, const TreeContent& content, const BinaryBvh& tree, int threads)
-      : bvh_(bvh), content_(content), tree_(tree), threads_(threads), plans_(tree.size()) {}
+  BvhWriter(Bvh& bvh, std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
+            const BinaryBvh& tree, int threads)
+      : bvh_(bvh),
+        positions_(positions),
+        triangles_(triangles),
+        tree_(tree),
+        threads_(threads),
+        plans_(tree.size()) {}
 
   void write() {
     bvh_.nodes_.assign(1, {});
     clear(bvh_.nodes_[0]);
-    const std::size_t primitives = tree_.size() - content_.others.size();
+    const std::size_t primitives = tree_.size() - bvh_.instances_.size();
     bvh_.triangles_.resize(primitives);
     bvh_.places_.resize(primitives);
     bvh_.corners_.resize(9 * primitives + Bvh::kMaxLeafSize);
@@ -65,7 +72,7 @@ class BvhWriter {
  private:
   /// Numbers the primitives if instances, which have no primitives, are among the triangles.
   void number_primitives() {
-    if (content_.others.empty()) return;
+    if (!bvh_.has_instances()) return;
     first_primitives_.reserve(tree_.size());
     std::uint32_t primitives = 0;
     for (const Primitive& primitive : tree_.primitives) {
@@ -74,10 +81,10 @@ class BvhWriter {
     }
   }
   [[nodiscard]] bool is_triangle(const Primitive& primitive) const {
-    return primitive.triangle < content_.triangles.size();
+    return primitive.number < triangles_.size();
   }
   [[nodiscard]] bool are_triangles(Ref ref) const {
-    return content_.others.empty() ||
+    return !bvh_.has_instances() ||
            std::ranges::all_of(
                std::span(tree_.primitives).subspan(tree_.first(ref), tree_.count(ref)),
                [&](const Primitive& p) { return is_triangle(p); });
@@ -194,7 +201,7 @@ class BvhWriter {
     const std::uint32_t first = tree_.first(ref);
     const Primitive& primitive = tree_.primitives[first];
     if (!is_triangle(primitive)) {
-      node.child[i] = {content_.others[primitive.triangle - content_.triangles.size()].root, 0};
+      node.child[i] = {bvh_.instances_[primitive.number - triangles_.size()].first, 0};
       return;
     }
     node.child[i] = {first_primitives_.empty() ? first : first_primitives_[first],
@@ -208,13 +215,12 @@ class BvhWriter {
   void write_primitives(const Bvh::Child& leaf, std::uint32_t first) {
     float* const to = &bvh_.corners_[9 * std::size_t{leaf.first}];
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
-      const std::uint32_t primitive = leaf.first + i,
-                          triangle = tree_.primitives[first + i].triangle;
+      const std::uint32_t primitive = leaf.first + i, triangle = tree_.primitives[first + i].number;
       bvh_.triangles_[primitive] = triangle;
       bvh_.places_[primitive] = {static_cast<std::uint8_t>(i),
                                  static_cast<std::uint8_t>(leaf.count)};
       for (std::uint32_t v = 0; v < 3; ++v) {
-        const glm::vec3& corner = content_.positions[content_.triangles[triangle].vertices[v]];
+        const glm::vec3& corner = positions_[triangles_[triangle].vertices[v]];
         for (std::uint32_t k = 0; k < 3; ++k) {
           to[(3 * v + k) * leaf.count + i] = corner[static_cast<int>(k)];
         }
@@ -273,7 +279,8 @@ class BvhWriter {
   }
 
   Bvh& bvh_;
-  const TreeContent& content_;
+  std::span<const glm::vec3> positions_;
+  std::span<const Triangle> triangles_;
   const BinaryBvh& tree_;
   int threads_;
   float unit_ = 0.0f;
@@ -281,15 +288,36 @@ class BvhWriter {
   std::vector<std::uint32_t> first_primitives_;  // index of each primitive; empty: the identity
 };
 
-void Bvh::build(const TreeContent& content, int most_levels, int threads) {
-  const BinaryBvh tree(content, most_levels, threads);
-  BvhWriter(*this, content, tree, threads).write();
+void Bvh::build(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
+                int most_levels, int threads) {
+  std::vector<Primitive> primitives(triangles.size());
+  const std::size_t tasks = (primitives.size() + kTreeTask - 1) / kTreeTask;
+  for_each_on_threads(threads, tasks, [&](std::size_t task) {
+    const std::size_t end = std::min((task + 1) * kTreeTask, primitives.size());
+    for (std::size_t i = task * kTreeTask; i < end; ++i) {
+      const auto& [a, b, c] = triangles[i].vertices;
+      Box box;
+      box_around(positions[a], positions[b], positions[c], box);
+      primitives[i] =
+          Primitive(box, is_left_out(triangles[i]) ? kLeftOut : static_cast<std::uint32_t>(i));
+    }
+  });
+  std::erase_if(primitives, [](const Primitive& one) { return one.number == kLeftOut; });
+  auto number = static_cast<std::uint32_t>(triangles.size());
+  for (const InstanceBvh& at : instances_) {
+    Node root;
+    make_instance_node(at.first, root);
+    const auto [low, high] = root.box();
+    const Box box = {low.x, low.y, low.z, 0.0f, -high.x, -high.y, -high.z, 0.0f};
+    primitives.push_back(Primitive(box, number++));
+  }
+  const BinaryBvh tree(std::move(primitives), most_levels, threads);
+  BvhWriter(*this, positions, triangles, tree, threads).write();
 }
 
 Bvh::Bvh(const Scene& scene, int threads) {
-  TreeContent content{scene.positions, scene.triangles};
-  const int levels = scene.instances.empty() ? 0 : add_instances(scene, threads, content);
-  build(content, kMaxDepth - levels, threads);
+  const int levels = scene.instances.empty() ? 0 : add_instances(scene, threads);
+  build(scene.positions, scene.triangles, kMaxDepth - levels, threads);
 }
 
 }  // namespace raygate

@@ -17,8 +17,6 @@
 
 namespace raygate {
 
-struct TreeContent;
-
 /// Consecutive non-empty ranges of numbers. Finding the range of a number takes one table lookup if
 /// the ranges have similar lengths.
 class RangeMap {
@@ -57,13 +55,13 @@ class RangeMap {
 };
 
 /// An instance of a mesh. Its nodes and primitives are those of the mesh's BVH, renumbered from
-/// `first_node` and `first_primitive` on.
+/// `first` on.
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance
   float matrix[3][3];     ///< its linear part, rounded
   float low[3], high[3];  ///< bounds of its translation, widened for all rounding
   std::uint32_t mesh;     ///< index of the mesh's BVH
-  std::uint32_t first_node = 0, first_primitive = 0;
+  std::uint32_t first = 0;
   std::uint32_t first_triangle = 0;  ///< index in the scene
 
   /// `size`: the largest magnitudes of the bounds of the mesh's BVH, by axis.
@@ -109,6 +107,15 @@ class Bvh {
       return {{bounds[0][0][i], bounds[0][1][i], bounds[0][2][i]},
               {bounds[1][0][i], bounds[1][1][i], bounds[1][2][i]}};
     }
+    /// Returns the low and the high corner of the box around all children.
+    [[nodiscard]] std::pair<glm::vec3, glm::vec3> box() const {
+      auto [low, high] = box(0);
+      for (int i = 1; i < kWidth; ++i) {
+        low = glm::min(low, box(i).first);
+        high = glm::max(high, box(i).second);
+      }
+      return {low, high};
+    }
   };
 
   /// The vertices of a primitive's triangle, in the triangle's order.
@@ -135,18 +142,15 @@ class Bvh {
   /// Returns the primitives of all instances, [first, second); they follow the stored ones.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> instance_primitives() const {
     if (!has_instances()) return {primitive_count(), primitive_count()};
-    return {instance_primitives_.begin(), instance_primitives_.end()};
+    return {instance_numbers_.begin(), instance_numbers_.end()};
   }
   /// Returns whether a primitive or node index belongs to an instance.
   [[nodiscard]] RAYGATE_INLINE bool is_instanced(std::uint32_t number) const {
     return number >= first_instanced_;
   }
-  /// Returns the leaves of the BVH, including those of instances.
-  [[nodiscard]] std::vector<Child> leaves() const;
   /// Returns the number of triangles, including those of instances.
   [[nodiscard]] std::uint64_t triangle_count() const {
-    return std::uint64_t{primitive_count()} +
-           (instance_primitives_.end() - instance_primitives_.begin());
+    return std::uint64_t{primitive_count()} + (instance_numbers_.end() - instance_numbers_.begin());
   }
 
   /// Returns the scene's index of a primitive's triangle.
@@ -172,14 +176,18 @@ class Bvh {
 
   Bvh() = default;
 
-  /// Builds the BVH with at most `most_levels` levels.
-  void build(const TreeContent& content, int most_levels, int threads);
-  /// Builds the BVHs of the scene's meshes, adds the instances to the content, and returns the
-  /// number of levels below an instance.
-  int add_instances(const Scene& scene, int threads, TreeContent& content);
+  /// Builds the BVH of these triangles and of the instances, with at most `most_levels` levels.
+  void build(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,
+             int most_levels, int threads);
+  /// Builds the BVHs of the scene's meshes, adds the instances, and returns the number of levels
+  /// below an instance.
+  int add_instances(const Scene& scene, int threads);
   /// Returns the number of nodes on the longest path down from a node.
   [[nodiscard]] int levels(std::uint32_t index = 0) const;
 
+  [[nodiscard]] const InstanceBvh& instance_of(std::uint32_t number) const {
+    return instances_[instance_numbers_.find(number)];
+  }
   void make_instance_node(std::uint32_t index, Node& room) const;
   void make_instance_corners(const Child& leaf, LeafRoom& room) const;
   [[nodiscard]] Corners instance_corners(std::uint32_t primitive) const;
@@ -207,9 +215,10 @@ class Bvh {
   std::vector<std::uint32_t> triangles_;  // index in the scene, by primitive
   std::vector<Place> places_;
 
-  // Nodes and primitives from this number on belong to instances, each to a range of these.
+  // Nodes and primitives from this number on belong to instances. Each has a range of numbers, as
+  // many as its mesh has primitives, which are at least as many as its nodes.
   std::uint32_t first_instanced_ = 0xFFFFFFFF;
-  RangeMap instance_nodes_, instance_primitives_;
+  RangeMap instance_numbers_;
   std::vector<InstanceBvh> instances_;
   std::vector<Bvh> meshes_;
 };

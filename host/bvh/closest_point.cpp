@@ -1,9 +1,10 @@
 #include "host/bvh/closest_point.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <queue>
+#include <utility>
 
 namespace raygate {
 namespace {
@@ -31,60 +32,34 @@ glm::dvec3 closest_on(const Corners& corners, const glm::dvec3& point) {
   return a + ab * (of_b * inverse) + ac * (of_c * inverse);
 }
 
-/// A child to visit, whose triangles are all at least `bound` away.
-struct Waiting {
-  double bound;
-  Bvh::Child child;
-  bool operator<(const Waiting& other) const { return bound > other.bound; }  // the nearest first
-};
+constexpr double kRounding = 1.0 - 0x1p-40;  // of distances in double
 
-/// Returns the largest magnitude of the coordinates of the BVH's boxes.
-double size_of(const BvhView& tree) {
-  double size = 0.0;
+/// Improves `best` by the triangles below a child, nearest boxes first.
+void search(const Bvh& bvh, const Bvh::Child& child, const glm::dvec3& point, ClosestPoint& best) {
+  for (std::uint32_t primitive = child.first; primitive < child.first + child.count; ++primitive) {
+    const glm::dvec3 at = closest_on(bvh.corners_of(primitive), point);
+    const double distance = glm::distance(at, point);
+    if (distance < best.distance ||
+        (distance == best.distance &&
+         bvh.triangle_of(primitive) < bvh.triangle_of(best.primitive))) {
+      best = {primitive, distance, at};
+    }
+  }
+  if (child.count != 0) return;
   Bvh::Node room;
-  const Bvh::Node& root = tree.node(0, room);
+  const Bvh::Node& node = BvhView(bvh).node(child.first, room);
+  std::array<std::pair<double, Bvh::Child>, Bvh::kWidth> below;  // with lower bounds of distances
   for (int i = 0; i < Bvh::kWidth; ++i) {
-    const auto [low, high] = root.box(i);
-    if (low.x > high.x) continue;  // an absent child
-    size = std::max({size, largest(glm::dvec3(low)), largest(glm::dvec3(high))});
+    const auto [low, high] = node.box(i);  // infinite for absent children
+    const glm::dvec3 gap =
+        glm::max(glm::max(glm::dvec3(low) - point, point - glm::dvec3(high)), 0.0);
+    below[static_cast<std::size_t>(i)] = {kRounding * glm::length(gap), node.child[i]};
   }
-  return size;
-}
-
-/// Searches best first: nearest boxes first, until none can contain a nearer point.
-ClosestPoint search(const BvhView& tree, const Bvh& bvh, const glm::dvec3& point) {
-  constexpr double kRounding = 1.0 - 0x1p-40;  // of distances in double
-  ClosestPoint best;
-  best.distance = std::numeric_limits<double>::infinity();
-  std::priority_queue<Waiting> waiting;
-  for (Waiting nearest{0.0, {0, 0}}; nearest.bound <= best.distance;) {
-    const Bvh::Child& child = nearest.child;
-    for (std::uint32_t primitive = child.first; primitive < child.first + child.count;
-         ++primitive) {
-      const glm::dvec3 at = closest_on(bvh.corners_of(primitive), point);
-      const double distance = glm::distance(at, point);
-      if (distance < best.distance ||
-          (distance == best.distance &&
-           bvh.triangle_of(primitive) < bvh.triangle_of(best.primitive))) {
-        best = {primitive, distance, at};
-      }
-    }
-    if (child.count == 0) {
-      Bvh::Node room;
-      const Bvh::Node& node = tree.node(child.first, room);
-      for (int i = 0; i < Bvh::kWidth; ++i) {
-        const auto [low, high] = node.box(i);  // infinite for absent children
-        const glm::dvec3 gap =
-            glm::max(glm::max(glm::dvec3(low) - point, point - glm::dvec3(high)), 0.0);
-        const double bound = kRounding * glm::length(gap);
-        if (bound <= best.distance) waiting.push({bound, node.child[i]});
-      }
-    }
-    if (waiting.empty()) break;
-    nearest = waiting.top();
-    waiting.pop();
+  std::ranges::sort(below, {}, [](const auto& one) { return one.first; });
+  for (const auto& [bound, next] : below) {
+    if (!(bound <= best.distance) || std::isinf(bound)) return;
+    search(bvh, next, point, best);
   }
-  return best;
 }
 
 }  // namespace
@@ -94,12 +69,16 @@ ClosestPoint search(const BvhView& tree, const Bvh& bvh, const glm::dvec3& point
 /// direction. The triangle nearest to this point is farther from `point` than the nearest one by
 /// less than the rounding of the distance.
 ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point) {
-  const BvhView tree(bvh);
-  const double far = 0x1p27 * size_of(tree);
-  if (largest(point) <= far) return search(tree, bvh, point);
-  ClosestPoint best = search(tree, bvh, point / largest(point) * far);
-  const glm::dvec3 way = best.point - point;
-  best.distance = std::hypot(way.x, way.y, way.z);
+  Bvh::Node room;
+  const auto [low, high] = BvhView(bvh).node(0, room).box();
+  const double far = 0x1p27 * std::max(largest(low), largest(high));
+  const bool is_far = largest(point) > far;
+  ClosestPoint best{.distance = std::numeric_limits<double>::infinity()};
+  search(bvh, {0, 0}, is_far ? point / largest(point) * far : point, best);
+  if (is_far) {
+    const glm::dvec3 way = best.point - point;
+    best.distance = std::hypot(way.x, way.y, way.z);
+  }
   return best;
 }
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "host/base/lanes.h"
-#include "host/bvh/sah_builder.h"
+#include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
 
 // Why boxes of an instance contain its triangles
@@ -44,10 +44,6 @@ InstanceBvh::InstanceBvh(const Instance& instance, const glm::dvec3& size) : mes
 
 namespace {
 
-Bvh::Child placed(const InstanceBvh& at, const Bvh::Child& child) {
-  return {child.first + (child.count == 0 ? at.first_node : at.first_primitive), child.count};
-}
-
 /// Computes a node of the instance from one of its mesh.
 RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Node& to) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -70,7 +66,8 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Nod
     std::memcpy(to.bounds[0][k], &low, sizeof low);
     std::memcpy(to.bounds[1][k], &high, sizeof high);
   }
-  for (int i = 0; i < Bvh::kWidth; ++i) to.child[i] = placed(at, from.child[i]);
+  for (int i = 0; i < Bvh::kWidth; ++i)
+    to.child[i] = {from.child[i].first + at.first, from.child[i].count};
 }
 
 /// Computes the corners of a leaf's triangles, with the bits of `transform_point`
@@ -89,65 +86,43 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const float* from, std::size_t 
   }
 }
 
-/// Computes the box around a node's children.
-void box_around(const Bvh::Node& node, Box& box) {
-  clear(box);
-  for (int i = 0; i < Bvh::kWidth; ++i) {
-    const auto [low, high] = node.box(i);
-    if (low.x <= high.x) {
-      grow(box, Box{low.x, low.y, low.z, 0.0f, -high.x, -high.y, -high.z, 0.0f});
-    }
-  }
-}
-
 }  // namespace
 
-int Bvh::add_instances(const Scene& scene, int threads, TreeContent& content) {
+int Bvh::add_instances(const Scene& scene, int threads) {
   int most_levels = 0;
   std::vector<glm::dvec3> sizes;
   for (const Mesh& mesh : scene.meshes) {
-    const TreeContent triangles{mesh.positions, mesh.triangles, {}};
     Bvh& tree = meshes_.emplace_back(Bvh());
-    tree.build(triangles, kMaxDepth, threads);
+    tree.build(mesh.positions, mesh.triangles, kMaxDepth, threads);
     // Rarely needed: half of the levels are for the BVH above the instances.
-    if (tree.levels() > kMaxDepth / 2) tree.build(triangles, kMaxDepth / 2, threads);
-    most_levels = std::max(most_levels, tree.levels());
-    Box box;
-    box_around(tree.nodes_[0], box);
-    sizes.emplace_back(0.0);
-    for (int k = 0; k < 3; ++k) {
-      sizes.back()[k] = std::max(std::abs(double{box[k]}), std::abs(double{box[k + 4]}));
+    if (tree.levels() > kMaxDepth / 2) {
+      tree.build(mesh.positions, mesh.triangles, kMaxDepth / 2, threads);
     }
+    most_levels = std::max(most_levels, tree.levels());
+    const auto [low, high] = tree.nodes_[0].box();
+    sizes.push_back(glm::max(glm::abs(glm::dvec3(low)), glm::abs(glm::dvec3(high))));
   }
   // An upper bound of the numbers of the BVH's own nodes and primitives.
   first_instanced_ =
       static_cast<std::uint32_t>(scene.triangles.size() + scene.instances.size()) + 1;
-  std::vector<std::uint32_t> node_counts, primitive_counts;
-  auto triangle = static_cast<std::uint32_t>(scene.triangles.size());
+  std::vector<std::uint32_t> primitive_counts;
   std::uint64_t primitives = first_instanced_;
   for (const Instance& instance : scene.instances) {
-    const Bvh& tree = meshes_[instance.mesh];
-    node_counts.push_back(static_cast<std::uint32_t>(tree.nodes_.size()));
-    primitive_counts.push_back(tree.primitive_count());
-    primitives += tree.primitive_count();
+    primitive_counts.push_back(meshes_[instance.mesh].primitive_count());
+    primitives += primitive_counts.back();
   }
   if (primitives >= std::uint64_t{1} << 31) throw std::length_error("2^31 triangles or more");
-  instance_nodes_ = RangeMap(first_instanced_, node_counts);
-  instance_primitives_ = RangeMap(first_instanced_, primitive_counts);
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    InstanceBvh& at = instances_.emplace_back(scene.instances[i], sizes[scene.instances[i].mesh]);
-    at.first_node = instance_nodes_.begin(i);
-    at.first_primitive = instance_primitives_.begin(i);
-    at.first_triangle = triangle;
-    triangle += static_cast<std::uint32_t>(scene.meshes[scene.instances[i].mesh].triangles.size());
-    Node root;
-    make_instance_node(at.first_node, root);
-    TreeContent::Other& other = content.others.emplace_back();
-    box_around(root, other.box);
-    other.root = at.first_node;
-  }
   if (static_cast<int>(std::bit_width(first_instanced_)) > kMaxDepth - most_levels) {
     throw std::length_error("meshes and instances too many for one tree");
+  }
+  instance_numbers_ = RangeMap(first_instanced_, primitive_counts);
+  auto triangle = static_cast<std::uint32_t>(scene.triangles.size());
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const std::uint32_t mesh = scene.instances[i].mesh;
+    InstanceBvh& at = instances_.emplace_back(scene.instances[i], sizes[mesh]);
+    at.first = instance_numbers_.begin(i);
+    at.first_triangle = triangle;
+    triangle += static_cast<std::uint32_t>(scene.meshes[mesh].triangles.size());
   }
   return most_levels;
 }
@@ -162,54 +137,38 @@ int Bvh::levels(std::uint32_t index) const {
 }
 
 void Bvh::make_instance_node(std::uint32_t index, Node& room) const {
-  const InstanceBvh& at = instances_[instance_nodes_.find(index)];
-  const Node& from = meshes_[at.mesh].nodes_[index - at.first_node];
+  const InstanceBvh& at = instance_of(index);
+  const Node& from = meshes_[at.mesh].nodes_[index - at.first];
   in_vectors([&](auto) RAYGATE_BODY { place(at, from, room); });
 }
 
 void Bvh::make_instance_corners(const Child& leaf, LeafRoom& room) const {
-  const InstanceBvh& at = instances_[instance_primitives_.find(leaf.first)];
-  const float* const from =
-      &meshes_[at.mesh].corners_[9 * std::size_t{leaf.first - at.first_primitive}];
+  const InstanceBvh& at = instance_of(leaf.first);
+  const float* const from = &meshes_[at.mesh].corners_[9 * std::size_t{leaf.first - at.first}];
   in_vectors([&](auto) RAYGATE_BODY { place(at, from, leaf.count, room.corners); });
 }
 
 Corners Bvh::instance_corners(std::uint32_t primitive) const {
-  const InstanceBvh& at = instances_[instance_primitives_.find(primitive)];
-  Corners corners = meshes_[at.mesh].stored_corners(primitive - at.first_primitive);
+  const InstanceBvh& at = instance_of(primitive);
+  Corners corners = meshes_[at.mesh].stored_corners(primitive - at.first);
   for (glm::vec3& corner : corners) corner = raygate::transform_point(at.rows, corner);
   return corners;
 }
 
 std::uint32_t Bvh::instance_triangle(std::uint32_t primitive) const {
-  const InstanceBvh& at = instances_[instance_primitives_.find(primitive)];
-  return at.first_triangle + meshes_[at.mesh].triangles_[primitive - at.first_primitive];
+  const InstanceBvh& at = instance_of(primitive);
+  return at.first_triangle + meshes_[at.mesh].triangles_[primitive - at.first];
 }
 
 FaceRef Bvh::instance_face(std::uint32_t primitive) const {
-  const std::uint32_t instance = instance_primitives_.find(primitive);
+  const std::uint32_t instance = instance_numbers_.find(primitive);
   const InstanceBvh& at = instances_[instance];
-  return {instance, meshes_[at.mesh].triangles_[primitive - at.first_primitive]};
+  return {instance, meshes_[at.mesh].triangles_[primitive - at.first]};
 }
 
 void Bvh::prefetch_instance(const Child& child) const {
-  const InstanceBvh& at = instances_[child.count == 0 ? instance_nodes_.find(child.first)
-                                                      : instance_primitives_.find(child.first)];
-  BvhView(meshes_[at.mesh])
-      .prefetch(
-          {child.first - (child.count == 0 ? at.first_node : at.first_primitive), child.count});
-}
-
-std::vector<Bvh::Child> Bvh::leaves() const {
-  std::vector<Child> leaves;
-  for (const Node& node : nodes_) {
-    std::ranges::copy_if(node.child, std::back_inserter(leaves),
-                         [](const Child& child) { return child.count != 0; });
-  }
-  for (const InstanceBvh& at : instances_) {
-    for (const Child& leaf : meshes_[at.mesh].leaves()) leaves.push_back(placed(at, leaf));
-  }
-  return leaves;
+  const InstanceBvh& at = instance_of(child.first);
+  BvhView(meshes_[at.mesh]).prefetch({child.first - at.first, child.count});
 }
 
 }  // namespace raygate

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "host/bvh/sah_builder.h"
-#include "host/bvh/traversal.h"
 
 // Why no true hit is culled
 //
@@ -41,106 +40,50 @@ namespace {
 
 constexpr float kFarthest = std::numeric_limits<float>::max();  // larger than any t or entry
 
-/// Returns the smallest lane. There must be no NaN.
-RAYGATE_INLINE float smallest_of(const FloatLanes& lanes) {
-  FloatLanes x = lanes, other = __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
-  x = x < other ? x : other;
-  other = __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5);
-  x = x < other ? x : other;
-  other = __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
-  x = x < other ? x : other;
-  return x[0];
-}
-
 }  // namespace
 
-PacketTraversal::PacketTraversal(const Bvh& bvh, int octant)
-    : bvh_(&bvh), octant_(octant), cutoff_(FloatLanes{} - 1.0f) {  // below any entry: no ray
+PacketTraversal::PacketTraversal(const Bvh& bvh, int octant) : bvh_(&bvh), octant_(octant) {
+  rays_.cutoff = FloatLanes{} - 1.0f;  // below any entry: no ray
   stack_[0] = {{0, 0}, 0.0f, 0xFF};
 }
 
 void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction) {
   assert(octant_of(direction) == octant_);
-  cutoff_[lane] = kFarthest;
+  rays_.cutoff[lane] = kFarthest;
   const PacketBounds bounds(origin, direction);
   for (int k = 0; k < 3; ++k) {
     origin_[k][lane] = origin[k];
-    inverse_near_[k][lane] = bounds.inverse_near[k];
-    inverse_far_[k][lane] = bounds.inverse_far[k];
+    rays_.inverse_near[k][lane] = bounds.inverse_near[k];
+    rays_.inverse_far[k][lane] = bounds.inverse_far[k];
   }
 }
 
-void PacketTraversal::set_cutoff(int lane, double t) { cutoff_[lane] = cutoff_beyond(t); }
+void PacketTraversal::set_cutoff(int lane, double t) { rays_.cutoff[lane] = cutoff_beyond(t); }
 
-/// The rays in registers.
-struct PacketTraversal::Rays {
-  int octant;
-  FloatLanes origin[3], inverse_near[3], inverse_far[3], cutoff;
-
-  RAYGATE_INLINE explicit Rays(const PacketTraversal& packet)
-      : octant(packet.octant_), cutoff(packet.cutoff_) {
-    for (int k = 0; k < 3; ++k) {
-      origin[k] = packet.origin_[k];
-      inverse_near[k] = packet.inverse_near_[k];
-      inverse_far[k] = packet.inverse_far_[k];
-    }
+/// Returns the rays that meet the box of one triangle of a leaf.
+RAYGATE_INLINE LaneMask PacketTraversal::meet(const Bvh::Corners& corners) const {
+  Box box;
+  box_around(corners[0], corners[1], corners[2], box);
+  float near[3], far[3];
+  for (int k = 0; k < 3; ++k) {
+    const bool negative = (octant_ >> k & 1) != 0;
+    near[k] = negative ? -box[k + 4] : box[k];
+    far[k] = negative ? box[k] : -box[k + 4];
   }
-
-  /// Returns the rays that meet a box, given by its near and far planes, and sets their entries.
-  RAYGATE_INLINE LaneMask meet(const float (&near)[3], const float (&far)[3],
-                               FloatLanes& enter) const {
-    FloatLanes leave = cutoff;
-    enter = FloatLanes{};
-    for (int k = 0; k < 3; ++k) {
-      const FloatLanes t_near = (near[k] - origin[k]) * inverse_near[k];
-      const FloatLanes t_far = (far[k] - origin[k]) * inverse_far[k];
-      enter = t_near > enter ? t_near : enter;
-      leave = t_far < leave ? t_far : leave;
-    }
-    return sign_mask(enter <= leave);
-  }
-
-  /// Returns the rays that meet the box of a node's child, and sets the entry of the first.
-  RAYGATE_INLINE LaneMask meet(const Bvh::Node& node, int child, float& entry) const {
-    float near[3], far[3];
-    for (int k = 0; k < 3; ++k) {
-      const int negative = octant >> k & 1;
-      near[k] = node.bounds[negative][k][child];
-      far[k] = node.bounds[negative ^ 1][k][child];
-    }
-    FloatLanes enter;
-    const LaneMask lanes = meet(near, far, enter);
-    enter = enter <= cutoff ? enter : FloatLanes{} + kFarthest;
-    entry = smallest_of(enter);
-    return lanes;
-  }
-
-  /// Returns the rays that meet the box of one triangle of a leaf.
-  RAYGATE_INLINE LaneMask meet(const Bvh::Corners& corners) const {
-    Box box;
-    box_around(corners[0], corners[1], corners[2], box);
-    float near[3], far[3];
-    for (int k = 0; k < 3; ++k) {
-      const bool negative = (octant >> k & 1) != 0;
-      near[k] = negative ? -box[k + 4] : box[k];
-      far[k] = negative ? box[k] : -box[k + 4];
-    }
-    FloatLanes enter;
-    return meet(near, far, enter);
-  }
-};
+  FloatLanes enter;
+  return intersect_box(rays_, origin_, near, far, enter);
+}
 
 LeafVisits PacketTraversal::next_leaf() {
   LeafVisits leaf;
   in_vectors([&](auto) RAYGATE_BODY {
-    const Rays rays(*this);
     const BvhView tree(*bvh_);
     while (leaf.count == 0 && depth_ > 0) {
       const StackEntry at = stack_[--depth_];
-      if ((at.lanes & sign_mask(rays.cutoff >= at.entry)) == 0) continue;
+      if ((at.lanes & sign_mask(rays_.cutoff >= at.entry)) == 0) continue;
       const std::uint32_t end = at.child.first + at.child.count;
       for (std::uint32_t primitive = at.child.first; primitive < end; ++primitive) {
-        const LaneMask lanes = rays.meet(bvh_->corners_of(primitive));
+        const LaneMask lanes = meet(bvh_->corners_of(primitive));
         if (lanes == 0) continue;
         LeafVisit* const last = leaf.count == 0 ? nullptr : &leaf.visits[leaf.count - 1];
         if (last != nullptr && last->lanes == lanes && last->first + last->count == primitive) {
@@ -154,12 +97,14 @@ LeafVisits PacketTraversal::next_leaf() {
       const Bvh::Node& node = tree.node(at.child.first, room);
       const int bottom = depth_;
       for (int i = 0; i < Bvh::kWidth && node.bounds[0][0][i] <= node.bounds[1][0][i]; ++i) {
+        FloatLanes enter;
         StackEntry child = {node.child[i], 0.0f, 0};
-        child.lanes = rays.meet(node, i, child.entry);
+        child.lanes = intersect_child(rays_, origin_, octant_, node, i, enter);
         if (child.lanes == 0) continue;
         tree.prefetch(child.child);
+        enter = enter <= rays_.cutoff ? enter : FloatLanes{} + kFarthest;
         // The order of the hardware's batches: entries without their last three bits, then indices.
-        child.entry = std::bit_cast<float>(std::bit_cast<std::int32_t>(child.entry) & ~7);
+        child.entry = std::bit_cast<float>(std::bit_cast<std::int32_t>(-largest_of(-enter)) & ~7);
         int place = depth_++;
         for (; place > bottom && stack_[place - 1].entry <= child.entry; --place) {
           stack_[place] = stack_[place - 1];

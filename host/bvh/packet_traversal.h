@@ -8,6 +8,7 @@
 
 #include "host/base/lanes.h"
 #include "host/bvh/bvh.h"
+#include "host/bvh/traversal.h"
 
 namespace raygate {
 
@@ -49,7 +50,7 @@ class PacketTraversal {
   [[nodiscard]] LeafVisits next_leaf();
 
  private:
-  struct Rays;
+  [[nodiscard]] LaneMask meet(const Bvh::Corners& corners) const;
 
   /// A node or leaf to visit, with a lower bound of the distance at which the first ray enters its
   /// box, and the rays that may enter it.
@@ -62,8 +63,7 @@ class PacketTraversal {
   const Bvh* bvh_;
   int octant_;
   FloatLanes origin_[3] = {};
-  FloatLanes inverse_near_[3] = {}, inverse_far_[3] = {};
-  FloatLanes cutoff_;
+  PacketBounds8 rays_ = {};
   int depth_ = 1;  // of the stack; the nearest child of a node is on top of its siblings
   StackEntry stack_[Bvh::kStackSize];
 };

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <memory>
+#include <utility>
 
 #include "host/base/threads.h"
 
@@ -266,31 +267,9 @@ class SahBuilder {
 
 }  // namespace
 
-BinaryBvh::BinaryBvh(const TreeContent& content, int max_depth, int threads)
-    : primitives(content.size()) {
-  constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
-  const std::size_t tasks = (primitives.size() + kTaskSize - 1) / kTaskSize;
-  for_each_on_threads(threads, tasks, [&](std::size_t task) {
-    const std::size_t begin = task * kTaskSize;
-    const std::size_t end = std::min(begin + kTaskSize, primitives.size());
-    for (std::size_t i = begin; i < end; ++i) {
-      Box box;
-      auto number = static_cast<std::uint32_t>(i);
-      if (i < content.triangles.size()) {
-        if (is_left_out(content.triangles[i])) number = kLeftOut;
-        const auto& [a, b, c] = content.triangles[i].vertices;
-        box_around(content.positions[a], content.positions[b], content.positions[c], box);
-      } else {
-        box = content.others[i - content.triangles.size()].box;
-      }
-      std::memcpy(&primitives[i], &box, sizeof box);
-      primitives[i].triangle = number;
-    }
-  });
-  std::erase_if(primitives, [](const Primitive& one) { return one.triangle == kLeftOut; });
-  nodes.resize(primitives.size());
-  if (primitives.empty()) return;
-  SahBuilder(*this, max_depth).build(threads);
+BinaryBvh::BinaryBvh(std::vector<Primitive> boxes, int max_depth, int threads)
+    : primitives(std::move(boxes)), nodes(primitives.size()) {
+  if (!primitives.empty()) SahBuilder(*this, max_depth).build(threads);
 }
 
 }  // namespace raygate

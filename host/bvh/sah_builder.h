@@ -1,4 +1,4 @@
-// SAH builder: splits triangles into a binary tree by the surface area heuristic; boxes in
+// SAH builder: splits primitives into a binary tree by the surface area heuristic; boxes in
 // registers.
 #pragma once
 
@@ -12,8 +12,6 @@
 #include <vector>
 
 #include "host/base/lanes.h"
-#include "host/bvh/bvh.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -58,26 +56,18 @@ RAYGATE_INLINE void box_around(const glm::vec3& a, const glm::vec3& b, const glm
                                           : below);
 }
 
-/// The primitives of a BVH. Faces without area are skipped (see is_left_out).
-struct TreeContent {
-  /// An instance, which has a BVH of its own.
-  struct Other {
-    Box box;
-    std::uint32_t root;  ///< node index of the root of its BVH
-  };
-  std::span<const glm::vec3> positions;
-  std::span<const Triangle> triangles;
-  std::vector<Other> others = {};
-
-  [[nodiscard]] std::size_t size() const { return triangles.size() + others.size(); }
-};
-
-/// A triangle with its widened box or, if the index is beyond the last triangle, an instance.
+/// A primitive of a BinaryBvh: its box, and a number of the user's.
 struct Primitive {
   float low[3];
-  std::uint32_t triangle;
+  std::uint32_t number;
   float turned_high[3];
   std::uint32_t unused;
+
+  Primitive() = default;
+  RAYGATE_INLINE Primitive(const Box& box, std::uint32_t own_number) {
+    std::memcpy(static_cast<void*>(this), &box, sizeof box);
+    number = own_number;
+  }
 
   RAYGATE_INLINE void get(Box& box) const { std::memcpy(&box, this, sizeof box); }
   /// Returns the box's centre along an axis. Sides are halved first, so that the sum is finite.
@@ -86,8 +76,8 @@ struct Primitive {
   }
 };
 
-/// A binary BVH with one triangle per leaf, split top-down by the surface area heuristic (Wald, "On
-/// fast construction of SAH-based bounding volume hierarchies", 2007). A node covers a range of
+/// A binary BVH with one primitive per leaf, split top-down by the surface area heuristic (Wald,
+/// "On fast construction of SAH-based bounding volume hierarchies", 2007). A node covers a range of
 /// `primitives`, which the builder sorts; the node whose range is split at m is nodes[m]. So each
 /// thread knows where its nodes are stored, and the BVH does not depend on which thread builds a
 /// part.
@@ -101,10 +91,10 @@ struct BinaryBvh {
     std::uint32_t first, count;  ///< range of primitives
   };
 
-  /// All positions are finite with a magnitude of at most 2^126; there are fewer than 2^31
-  /// primitives. No leaf is deeper than `max_depth` (the root's depth is 0), unless a balanced tree
-  /// would be deeper.
-  BinaryBvh(const TreeContent& content, int max_depth, int threads);
+  /// Bounds are finite with a magnitude of at most 2^126; there are fewer than 2^31 primitives. No
+  /// leaf is deeper than `max_depth` (the root's depth is 0), unless a balanced tree would be
+  /// deeper.
+  BinaryBvh(std::vector<Primitive> boxes, int max_depth, int threads);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(primitives.size()); }
   [[nodiscard]] bool is_leaf(Ref ref) const { return ref >= size(); }

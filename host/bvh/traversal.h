@@ -135,21 +135,35 @@ RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
   return bounds;
 }
 
-/// Returns a mask of the packets that meet the box of a node's child.
-template <Vectors kCode = Vectors::kBaseline>
-RAYGATE_INLINE LaneMask intersect_packets(const PacketBounds8& bounds8, const glm::vec3& origin,
-                                          int octant, const Bvh::Node& node, int child) {
-  FloatLanes enter = {}, leave = bounds8.cutoff;
+/// Returns a mask of the packets that meet a box before their cutoffs; sets their entry distances.
+/// `near` and `far` are the planes of the box that their octant meets first and last.
+template <Vectors kCode = Vectors::kBaseline, class Origin>
+RAYGATE_INLINE LaneMask intersect_box(const PacketBounds8& bounds8, const Origin (&origin)[3],
+                                      const float (&near)[3], const float (&far)[3],
+                                      FloatLanes& enter) {
+  enter = FloatLanes{};
+  FloatLanes leave = bounds8.cutoff;
   for (int k = 0; k < 3; ++k) {
-    const int negative = octant >> k & 1;
-    const float near = node.bounds[negative][k][child] - origin[k];
-    const float far = node.bounds[negative ^ 1][k][child] - origin[k];
-    const FloatLanes t_near = near * bounds8.inverse_near[k];
-    const FloatLanes t_far = far * bounds8.inverse_far[k];
+    const FloatLanes t_near = (near[k] - origin[k]) * bounds8.inverse_near[k];
+    const FloatLanes t_far = (far[k] - origin[k]) * bounds8.inverse_far[k];
     enter = t_near > enter ? t_near : enter;
     leave = t_far < leave ? t_far : leave;
   }
   return sign_mask<kCode>(enter <= leave);
+}
+
+/// Does the same for the box of a node's child.
+template <Vectors kCode = Vectors::kBaseline, class Origin>
+RAYGATE_INLINE LaneMask intersect_child(const PacketBounds8& bounds8, const Origin (&origin)[3],
+                                        int octant, const Bvh::Node& node, int child,
+                                        FloatLanes& enter) {
+  float near[3], far[3];
+  for (int k = 0; k < 3; ++k) {
+    const int negative = octant >> k & 1;
+    near[k] = node.bounds[negative][k][child];
+    far[k] = node.bounds[negative ^ 1][k][child];
+  }
+  return intersect_box<kCode>(bounds8, origin, near, far, enter);
 }
 
 }  // namespace raygate

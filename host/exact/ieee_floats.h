@@ -1,8 +1,13 @@
-// Checks for IEEE 754 arithmetic with rounding to nearest, which exactness requires.
+// IEEE 754 arithmetic with rounding to nearest, which exactness requires: checks, and the
+// operations of the hardware in it.
 #pragma once
 
+#include <bit>
 #include <cfenv>
 #include <cfloat>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
 #include <limits>
 
 // Reproducibility guarantees
@@ -50,5 +55,31 @@ class IeeeFloats {
 /// subnormals flushed to zero (a side effect of other code linked with -ffast-math), or fused
 /// multiply-adds. Threads inherit the state of the thread that starts them, so one call is enough.
 void require_ieee_floats();
+
+/// The operations of the hardware's float cores, bit for bit. Requires the machine's default
+/// floating-point environment (subnormals kept) and no fused multiply-adds.
+struct Binary32 {
+  /// Returns the number or vector, as all its bits fit the format.
+  template <class T>
+  static const T& read(const T& x) {
+    return x;
+  }
+  static float add(float a, float b) { return canonical(a + b); }
+  static float multiply(float a, float b) { return canonical(a * b); }
+  static float divide(float a, float b) { return canonical(a / b); }
+  /// Returns (ax bx + ay by) + az bz. NaN results are not used, and may differ from the hardware's.
+  static float dot(const glm::vec3& a, const glm::vec3& b) {
+    return (a.x * b.x + a.y * b.y) + a.z * b.z;
+  }
+
+  static std::uint32_t to_word(float x) { return std::bit_cast<std::uint32_t>(x); }
+  static int exponent_field(float x) { return static_cast<int>(to_word(x) >> 23 & 0xFF); }
+  static bool is_normal(float x) { return exponent_field(x) != 0 && exponent_field(x) != 0xFF; }
+  static constexpr int fraction_bits() { return 23; }
+
+ private:
+  /// Returns x, with the hardware's only NaN in place of any NaN.
+  static float canonical(float x) { return std::isnan(x) ? std::bit_cast<float>(0x7FC00000u) : x; }
+};
 
 }  // namespace raygate

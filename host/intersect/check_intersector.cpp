@@ -25,7 +25,12 @@ std::string describe(const Bvh& bvh, const NearestHit& hit) {
 
 CheckIntersector::CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> intersector,
                                    std::unique_ptr<Intersector> reference)
-    : bvh_(bvh), intersector_(std::move(intersector)), reference_(std::move(reference)) {}
+    : Intersector(intersector->traits()),
+      bvh_(bvh),
+      intersector_(std::move(intersector)),
+      reference_(std::move(reference)) {
+  traits_.filters_hits = false;  // which hits are asked about depends on the engine
+}
 
 void CheckIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
                                  std::span<NearestHit> hits) {
@@ -38,10 +43,9 @@ void CheckIntersector::intersect(std::span<const Ray> rays, const RayQuery& quer
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (agree(rays[i], query, i, hits[i], expected_[i])) continue;
     const float limit = query.t_max_of(i);
-    throw IntersectorMismatch("the intersectors differ: ray" + hex(rays[i].origin) + "," +
-                              hex(rays[i].direction) + ", limit" + hex_words({&limit, 1}) + ": " +
-                              describe(bvh_, hits[i]) +
-                              "; reference: " + describe(bvh_, expected_[i]));
+    throw EngineMismatch("the intersectors differ: ray" + hex(rays[i].origin) + "," +
+                         hex(rays[i].direction) + ", limit" + hex_words({&limit, 1}) + ": " +
+                         describe(bvh_, hits[i]) + "; reference: " + describe(bvh_, expected_[i]));
   }
 }
 

@@ -14,15 +14,15 @@
 
 namespace raygate {
 
-/// Thrown by CheckIntersector. The text is one line with the ray, ready to replay (origin,
-/// direction and limit in hexadecimal), and the results of both intersectors.
-class IntersectorMismatch : public std::runtime_error {
+/// Thrown where two implementations differ. The text is one line with the inputs in hexadecimal,
+/// ready to replay, and both results.
+class EngineMismatch : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// Passes all queries to both intersectors, returns the results and counters of the first, and
-/// throws IntersectorMismatch at the first ray for which they differ: in the triangle, in any bit
+/// throws EngineMismatch at the first ray for which they differ: in the triangle, in any bit
 /// of P or its error, or by disjoint intervals of t. For a ray that may end at any hit, both must
 /// find one.
 class CheckIntersector : public Intersector {
@@ -32,10 +32,6 @@ class CheckIntersector : public Intersector {
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
-  [[nodiscard]] std::size_t preferred_batch() const override {
-    return intersector_->preferred_batch();
-  }
-  [[nodiscard]] bool wants_sources() const override { return intersector_->wants_sources(); }
   [[nodiscard]] IntersectCounters counters() const override { return intersector_->counters(); }
 
  private:

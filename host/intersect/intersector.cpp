@@ -40,32 +40,26 @@ bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a, const Neares
   return order < 0 || (order == 0 && bvh.triangle_of(a.primitive) <= bvh.triangle_of(b.primitive));
 }
 
-bool take_if_nearer(const Bvh& bvh, const Ray& ray, float t_max, const NearestHit& hit,
-                    NearestHit& best, IntersectCounters& counters) {
+bool take_if_nearest(const Bvh& bvh, const Ray& ray, float t_max, NearestHit hit, bool is_sure,
+                     NearestHit& best, IntersectCounters& counters) {
+  const bool is_first = best.primitive == NearestHit::kNone;
+  if (!is_sure) {
+    const Corners corners = bvh.corners_of(hit.primitive);
+    hit.t = hit_distance(ray, corners);
+    if (hit.t.low >= t_max || (!is_first && hit.t.low > best.t.high)) return false;
+    ++counters.exact_inside;
+    if (!hits_triangle(ray, corners)) return false;
+  }
   const bool has_limit = t_max != std::numeric_limits<float>::infinity();
   counters.exact_depth += has_limit && !tells(hit.t, t_max);
   if (!is_before(bvh, ray, hit, t_max)) return false;
-  if (best.primitive == NearestHit::kNone) {
-    best = hit;
-    return true;
+  if (!is_first) {
+    counters.exact_depth += overlap(hit.t, best.t);
+    if (!is_nearer(bvh, ray, hit, best)) return false;
+    hit.t.high = std::min(hit.t.high, best.t.high);  // nearer than the best
   }
-  counters.exact_depth += overlap(hit.t, best.t);
-  if (!is_nearer(bvh, ray, hit, best)) return false;
-  const double farthest = best.t.high;
   best = hit;
-  best.t.high = std::min(best.t.high, farthest);  // a nearer hit
   return true;
-}
-
-bool resolve_doubt(const Bvh& bvh, const Ray& ray, float t_max, NearestHit doubt, NearestHit& best,
-                   IntersectCounters& counters) {
-  const Corners& corners = bvh.corners_of(doubt.primitive);
-  doubt.t = hit_distance(ray, corners);
-  if (doubt.t.low >= t_max || (best.primitive != NearestHit::kNone && doubt.t.low > best.t.high)) {
-    return false;
-  }
-  ++counters.exact_inside;
-  return hits_triangle(ray, corners) && take_if_nearer(bvh, ray, t_max, doubt, best, counters);
 }
 
 }  // namespace raygate

@@ -60,8 +60,9 @@ struct RayQuery {
   std::span<const std::uint32_t> source_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
-  /// With any_hit_before, if filters_hits() and no common origin: whether a sure hit of a ray with
-  /// a primitive ends the ray. If none does, the nearest hit is reported. Null: every hit does.
+  /// With any_hit_before, if the engine filters hits and without common origin: whether a sure hit
+  /// of a ray with a primitive ends the ray. If none does, the nearest hit is reported. Null: every
+  /// hit does.
   const std::function<bool(std::size_t ray, std::uint32_t primitive)>* is_enough = nullptr;
   /// False: every ray is tested against every polygon, ignoring boxes.
   bool culling = true;
@@ -76,11 +77,22 @@ struct RayQuery {
   [[nodiscard]] bool with_points() const { return skip_ids.empty() && any_hit_before.empty(); }
 };
 
+/// What an engine makes use of.
+struct EngineTraits {
+  /// Best number of rays per query: about 16,384 for each test done at the same time.
+  std::size_t batch = std::size_t{1} << 14;
+  bool wants_sources = false;  ///< benefits from RayQuery::source_ids that need exact arithmetic
+  bool filters_hits = false;   ///< calls RayQuery::is_enough
+};
+
 /// Finds nearest hits with exact decisions: results depend only on ray and scene, not on the
 /// intersector or the other rays of the query. Not thread-safe: each thread has its own.
 class Intersector {
  public:
+  explicit Intersector(const EngineTraits& traits) : traits_(traits) {}
   virtual ~Intersector() = default;
+
+  [[nodiscard]] const EngineTraits& traits() const { return traits_; }
 
   /// Sets hits[i] to the nearest hit of rays[i]. Neighbouring rays should have similar directions.
   /// Directions that are zero or not finite hit nothing; others must be scaled (is_scaled), or
@@ -88,21 +100,13 @@ class Intersector {
   virtual void intersect(std::span<const Ray> rays, const RayQuery& query,
                          std::span<NearestHit> hits) = 0;
 
-  /// Returns the best number of rays per query: about 16,384 for each test done at the same time.
-  [[nodiscard]] virtual std::size_t preferred_batch() const { return kBatch; }
-
-  /// Returns whether the engine benefits from RayQuery::source_ids that need exact arithmetic.
-  [[nodiscard]] virtual bool wants_sources() const { return false; }
-
-  /// Returns whether the engine calls RayQuery::is_enough.
-  [[nodiscard]] virtual bool filters_hits() const { return false; }
-
   [[nodiscard]] virtual IntersectCounters counters() const = 0;
 
  protected:
-  static constexpr std::size_t kBatch = std::size_t{1} << 14;
   /// Initialises the results of a query to misses without work.
   static void clear(const RayQuery& query, std::span<NearestHit> hits);
+
+  EngineTraits traits_;
 };
 
 /// Throws the exception of Intersector::intersect for a direction that is not scaled.
@@ -118,15 +122,11 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a,
                              const NearestHit& b);
 
-/// Replaces `best` by `hit` if that has t < t_max and is nearer; returns whether it did. The order
-/// of calls does not matter. Counts the use of exact arithmetic.
-bool take_if_nearer(const Bvh& bvh, const Ray& ray, float t_max, const NearestHit& hit,
-                    NearestHit& best, IntersectCounters& counters);
-
-/// Resolves a doubt, a triangle that binary32 finds neither hit nor missed, and updates `best` as
-/// take_if_nearer() does. `doubt.t` is not read. Decides the distance first, which usually needs
-/// doubles only.
-bool resolve_doubt(const Bvh& bvh, const Ray& ray, float t_max, NearestHit doubt, NearestHit& best,
-                   IntersectCounters& counters);
+/// Replaces `best` by `hit` if that is a hit with t < t_max and nearer; returns whether it did. The
+/// order of calls does not matter. If not `is_sure`, binary32 finds the triangle neither hit nor
+/// missed, and hit.t is not read; the distance is decided first, which usually needs doubles only.
+/// Counts the use of exact arithmetic.
+bool take_if_nearest(const Bvh& bvh, const Ray& ray, float t_max, NearestHit hit, bool is_sure,
+                     NearestHit& best, IntersectCounters& counters);
 
 }  // namespace raygate

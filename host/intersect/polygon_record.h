@@ -42,10 +42,6 @@ inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
 /// Returns only the plane: words 0-3 of that record; the others are 0.
 [[nodiscard]] PolygonRecord make_plane(const glm::vec3& origin, const Corners& triangle);
 
-/// Sets records[i] to make_record(origin, triangles[i]), bit for bit. The spans have the same size.
-void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
-                  std::span<PolygonRecord> records);
-
 /// Number of planes that make_planes makes at once.
 inline constexpr int kPlanes = 4;
 
@@ -75,7 +71,7 @@ void make_planes(const PlaneViews& views, Planes& planes);
 // two are not small relative to a small coordinate: together they are less than 2^-46 of the
 // largest.
 
-/// Returns the grazing that the unit reports with a hit (BurstHit::t_error), from the largest
+/// Returns the grazing that the unit reports with a hit (BurstResult::t_error), from the largest
 /// exponent field of N and the bits of V (finite). `Bits` is std::int32_t or a vector of it.
 template <class Bits>
 RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {

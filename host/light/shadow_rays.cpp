@@ -101,7 +101,7 @@ ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
   // without masks, this search costs more tests than it saves.
   const bool has_masks = std::ranges::any_of(materials_, &MaterialParameters::has_mask);
   first_occluder_ =
-      skips.first_occluder && (!any_clear_ || (has_masks && intersector.filters_hits()));
+      skips.first_occluder && (!any_clear_ || (has_masks && intersector.traits().filters_hits));
 }
 
 void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced) {
@@ -196,7 +196,7 @@ void ShadowRays::trace(bool from_light, float enough) {
   limits_.resize(count);
   enough_.resize(count);
   ignored_.resize(count);
-  sources_.resize(from_light || !intersector_.wants_sources() ? 0 : count);
+  sources_.resize(from_light || !intersector_.traits().wants_sources ? 0 : count);
   for (std::size_t i = 0; i < count; ++i) {
     const Segment& segment = segments_[i];
     batch_[i].origin = segment.from;

@@ -308,7 +308,7 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   Film film = empty_film(settings);
   auto first_intersector = make_intersector();
   const int end = settings.end_sample > 0 ? settings.end_sample : settings.samples;
-  const Tiles tiles(film.window, end - settings.first_sample, first_intersector->preferred_batch(),
+  const Tiles tiles(film.window, end - settings.first_sample, first_intersector->traits().batch,
                     settings.threads);
   const bool is_path = settings.integrator == IntegratorKind::kPath;
   const auto sampling = is_path ? Lights::Sampling::kOne : Lights::Sampling::kAll;

@@ -26,7 +26,7 @@ struct Tiles {
   int width, height;  ///< of a tile
   int columns, count;
 
-  /// `batch` is Intersector::preferred_batch().
+  /// `batch` is EngineTraits::batch.
   Tiles(const PixelRect& rect, int samples_per_pixel, std::size_t batch, int threads)
       : window(rect), samples(samples_per_pixel), samples_per_pass(std::min(samples_per_pixel, 4)) {
     const int edge = samples_per_pass == 1 ? 128 : samples_per_pass < 4 ? 80 : 64;

@@ -4,19 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "host/exact/expansion.h"
+
 namespace raygate {
 namespace {
 
 constexpr int kDoubleDigits = 53;
 
 std::uint64_t bits_of(double x) { return std::bit_cast<std::uint64_t>(x); }
-
-/// Returns a + b rounded; sum + error equals a + b exactly (Knuth).
-double two_sum(double a, double b, double& error) {
-  const double sum = a + b, b_seen = sum - a;
-  error = (a - (sum - b_seen)) + (b - b_seen);
-  return sum;
-}
 
 float not_a_number() { return std::bit_cast<float>(0x7FC00000u); }
 
@@ -85,8 +80,7 @@ float Arithmetic::read(float x) const { return fit(x, 0.0); }
 float Arithmetic::multiply(float a, float b) const { return fit(static_cast<double>(a) * b, 0.0); }
 
 float Arithmetic::add(float a, float b) const {
-  double rest = 0.0;
-  const double sum = two_sum(a, b, rest);
+  const auto [sum, rest] = two_sum(a, b);
   // The exact zero sum of operands with different signs is -0 when rounding down.
   if (sum == 0.0 && rounding == Rounding::kDown &&
       (a != 0.0f || std::signbit(a) != std::signbit(b))) {
@@ -112,12 +106,12 @@ float Arithmetic::dot(const glm::vec3& a, const glm::vec3& b) const {
   // ulp of it, and low + rest has the sign of the difference.
   const double x = static_cast<double>(a.x) * b.x, y = static_cast<double>(a.y) * b.y,
                z = static_cast<double>(a.z) * b.z;
-  double error_1 = 0.0, error_2 = 0.0, error_3 = 0.0, low = 0.0, rest = 0.0;
-  const double sum_1 = two_sum(x, y, error_1), sum_2 = two_sum(sum_1, z, error_2);
+  const auto [sum_1, error_1] = two_sum(x, y);
+  const auto [sum_2, error_2] = two_sum(sum_1, z);
   if (!std::isfinite(sum_2)) return fit(sum_2, 0.0);
-  const double errors = two_sum(error_1, error_2, error_3);
-  const double high = two_sum(sum_2, errors, low);
-  const double middle = two_sum(low, error_3, rest);
+  const auto [errors, error_3] = two_sum(error_1, error_2);
+  const auto [high, low] = two_sum(sum_2, errors);
+  const auto [middle, rest] = two_sum(low, error_3);
   return fit(high, middle != 0.0 ? middle : rest);
 }
 

@@ -1,12 +1,9 @@
 #include "host/variants/variant_hit_tester.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
-
-#include "host/intersect/unit/unit_hit_testers.h"
 
 // The bound of an edge test in a format of u = 2^-digits
 //
@@ -31,24 +28,6 @@
 
 namespace raygate {
 
-template class BasicReferenceBurstUnit<Arithmetic>;
-
-void VariantPlaneUnit::intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) {
-  assert(tests.size() == points.size());
-  for (std::size_t i = 0; i < tests.size(); ++i) {
-    const glm::vec3 direction = math_.read(tests[i].direction),
-                    normal = math_.read(tests[i].normal);
-    const float d = math_.read(tests[i].d);
-    // The accumulator starts from +0.
-    float dot = math_.add(0.0f, math_.multiply(normal.x, direction.x));
-    dot = math_.add(dot, math_.multiply(normal.y, direction.y));
-    dot = math_.add(dot, math_.multiply(normal.z, direction.z));
-    for (int k = 0; k < 3; ++k) {
-      points[i][k] = math_.divide(math_.multiply(d, direction[k]), dot);
-    }
-  }
-}
-
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -57,10 +36,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 Arithmetic to_nearest(Arithmetic math) {
   math.rounding = Rounding::kNearestEven;
   return math;
-}
-
-float largest(const glm::vec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
 glm::vec3 scaled(const glm::vec3& v, int exponent) {
@@ -85,8 +60,8 @@ Interval around(const Arithmetic& math, float t, std::uint32_t error) {
 
 /// Returns NearestHit's point_error for a `point` computed in the format, or infinity if the
 /// format's range is too small for a coordinate. `wide` is the direction before conversion.
-float point_error(const Arithmetic& math, float d, const glm::vec3& direction,
-                  const glm::vec3& wide, const glm::vec3& point, std::uint32_t t_error) {
+float format_error(const Arithmetic& math, float d, const glm::vec3& direction,
+                   const glm::vec3& wide, const glm::vec3& point, std::uint32_t t_error) {
   for (int k = 0; k < 3; ++k) {
     const bool in_range = math.is_normal(direction[k]) && math.is_normal(point[k]) &&
                           math.is_normal(math.multiply(d, direction[k]));
@@ -99,31 +74,22 @@ float point_error(const Arithmetic& math, float d, const glm::vec3& direction,
 class SerialVariantTester : public SerialHitTester {
  public:
   SerialVariantTester(const Variant& variant, std::unique_ptr<PlaneUnit> unit)
-      : SerialHitTester(std::move(unit)), variant_(variant) {}
-
-  void run(std::span<const RayBundle> batch, HitResults& results) override {
-    const std::size_t hits = results.hits.size(), doubts = results.doubts.size();
-    SerialHitTester::run(batch, results);
-    for (std::size_t i = hits; i < results.hits.size(); ++i) widen(batch, results.hits[i]);
-    for (std::size_t i = doubts; i < results.doubts.size(); ++i) widen(batch, results.doubts[i]);
-  }
+      : SerialHitTester(std::move(unit)), math_(variant.math) {}
 
  private:
   /// Scales an error in binary32 to the format: as many ulps. Errors above 1/8 become infinite, as
   /// the bound of V's error does not hold for them.
-  template <class Report>
-  void widen(std::span<const RayBundle> batch, Report& report) const {
-    if (variant_.math == Arithmetic{} || std::isinf(report.point_error)) return;
-    const RayBundle& bundle = batch[report.bundle];
-    const glm::vec3 wide = bundle.lane_direction(static_cast<int>(report.lane));
-    const Arithmetic math = to_nearest(variant_.math);
-    const float d = math.read(bundle.records[report.tag - bundle.first_tag].d);
-    const float error = std::ldexp(report.point_error, 24 - math.digits);
-    const bool ranged = !std::isinf(point_error(math, d, math.read(wide), wide, report.point, 0));
-    report.point_error = ranged && error <= 0.125f ? error : kInfinity;
+  [[nodiscard]] float point_error(const PolygonRecord& record, const glm::vec3& direction,
+                                  const glm::vec3& point) const override {
+    const float error = std::ldexp(plane_point(record, direction).error, 24 - math_.digits);
+    if (math_ == Arithmetic{}) return error;
+    const Arithmetic host = to_nearest(math_);
+    const bool in_range = !std::isinf(
+        format_error(host, host.read(record.d), host.read(direction), direction, point, 0));
+    return in_range && error <= 0.125f ? error : kInfinity;
   }
 
-  Variant variant_;
+  Arithmetic math_;
 };
 
 }  // namespace
@@ -178,9 +144,6 @@ float variant_t(const Variant& variant, const PolygonRecord& record, const glm::
       .t;
 }
 
-VariantHitTester::VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit)
-    : variant_(variant), unit_(std::move(unit)), twin_(variant.math) {}
-
 /// Converts the batch to the variant's format.
 void VariantHitTester::narrow(std::span<const RayBundle> batch) {
   const Arithmetic math = to_nearest(variant_.math);
@@ -201,98 +164,61 @@ void VariantHitTester::narrow(std::span<const RayBundle> batch) {
   }
 }
 
-void VariantHitTester::run(std::span<const RayBundle> batch, HitResults& results) {
+void VariantHitTester::finish(HitReports& reports) {
+  const std::span<const RayBundle> batch = pop_started();
   narrow(batch);
-  found_.clear();
-  unit_->run(batch_, found_);
-  if (!variant_.doubts) return resolve_nothing(batch, results);
-  auto next = found_.reports.begin();
-  const auto take_reports = [&](auto belongs_here) {
-    for (; next != found_.reports.end() && belongs_here(*next); ++next) {
-      report(batch[next->bundle], results, *next);
+  results_.clear();
+  unit_->run(batch_, results_);
+  for (const BurstResult& result : results_) {
+    const RayBundle &wide = batch[result.bundle], &bundle = batch_[result.bundle];
+    const PolygonRecord& record = bundle.records[result.record];
+    const int lane = static_cast<int>(result.lane);
+    const glm::vec3 direction = bundle.lane_direction(lane);
+    const bool is_hit = result.kind == BurstResult::Kind::kHit;
+    const HitDistance distance =
+        is_hit ? HitDistance{result.t, result.t_error} : twin_.distance(record, direction);
+    HitReport report{result.bundle,
+                     result.lane,
+                     result.kind != BurstResult::Kind::kDoubt,
+                     {.primitive = wide.first_tag + result.record,
+                      .point = is_hit ? result.point : twin_.point(record, direction)}};
+    if (!variant_.doubts) {
+      if (result.kind != BurstResult::Kind::kNearTie) take_as_it_is(distance.t, report, reports);
+      continue;
     }
-  };
-  for (const BurstHit& hit : found_.hits) {
-    take_reports([&](const TestReport& r) {
-      return r.bundle != hit.bundle ? r.bundle < hit.bundle : r.lane <= hit.lane;
-    });
-    const RayBundle& wide = batch[hit.bundle];
-    const RayBundle& bundle = batch_[hit.bundle];
-    const int lane = static_cast<int>(hit.lane);
-    results.hits.push_back(
-        {hit.bundle, hit.lane, wide.first_tag + hit.record, hit.point,
-         point_error(variant_.math, bundle.records[hit.record].d, bundle.lane_direction(lane),
-                     wide.lane_direction(lane), hit.point, hit.t_error),
-         around(variant_.math, hit.t, hit.t_error)});
+    // If a doubt is a hit, its P is as accurate as that of a sure hit, provided that V can be a
+    // divisor and d was not clamped.
+    const float v = variant_.math.dot(record.normal, direction);
+    const bool divisible =
+        variant_.math.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
+        static_cast<int>(distance.error) <= std::max(variant_.math.fraction_bits() - 11, 0) &&
+        !std::isinf(record.bounds[0]);
+    if (report.is_sure || divisible) {
+      report.hit.point_error =
+          format_error(variant_.math, record.d, direction, wide.lane_direction(lane),
+                       report.hit.point, distance.error);
+    }
+    if (report.is_sure) report.hit.t = around(variant_.math, distance.t, distance.error);
+    reports.push_back(report);
   }
-  take_reports([](const TestReport&) { return true; });
 }
 
-/// Adds P and t to a report of the unit, by the unit's own formulas.
-void VariantHitTester::report(const RayBundle& wide, HitResults& results,
-                              const TestReport& report) {
-  const RayBundle& bundle = batch_[report.bundle];
-  const PolygonRecord& record = bundle.records[report.record];
-  const glm::vec3 direction = bundle.lane_direction(static_cast<int>(report.lane));
-  const std::uint32_t tag = wide.first_tag + report.record;
-  const glm::vec3 point = twin_.point(record, direction);
-  const HitDistance distance = twin_.distance(record, direction);
-  const float error =
-      point_error(variant_.math, record.d, direction,
-                  wide.lane_direction(static_cast<int>(report.lane)), point, distance.error);
-  if (report.kind == TestReport::Kind::kNearTie) {
-    results.hits.push_back({report.bundle, report.lane, tag, point, error,
-                            around(variant_.math, distance.t, distance.error)});
-    return;
+/// Keeps the nearest hit of each burst. A doubt is a hit if its t is positive and finite.
+void VariantHitTester::take_as_it_is(float t, HitReport& report, HitReports& reports) {
+  if (!(t > 0.0f) || std::isinf(t)) return;
+  // Separates equal distances in the order of the tags, far below the precision of float32.
+  const double told_apart = t * (1.0 + std::ldexp(double{report.hit.primitive}, -52));
+  report.is_sure = true;
+  report.hit.t = {told_apart, told_apart};
+  report.hit.point_error = 0.0f;  // without bounds, the unit's P is used as it is
+  const bool same_burst = !reports.empty() && reports.back().bundle == report.bundle &&
+                          reports.back().lane == report.lane;
+  if (!same_burst) {
+    reports.push_back(report);
+  } else if (told_apart < reports.back().hit.t.low) {
+    reports.back() = report;
   }
-  // If it is a hit, its P is as accurate as that of a sure hit, provided that V can be a divisor.
-  const float v = variant_.math.dot(record.normal, direction);
-  const bool divisible =
-      variant_.math.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
-      static_cast<int>(distance.error) <= std::max(variant_.math.fraction_bits() - 11, 0) &&
-      !std::isinf(record.bounds[0]);  // d was not clamped
-  results.doubts.push_back({report.bundle, report.lane, tag, point, divisible ? error : kInfinity});
 }
-
-/// Keeps one hit per burst: the unit's hit or a nearer one that the unit reported as a doubt.
-void VariantHitTester::resolve_nothing(std::span<const RayBundle> batch, HitResults& results) {
-  const auto offer = [&](std::uint32_t index, std::uint32_t lane, std::uint32_t record, float t,
-                         const glm::vec3& point) {
-    const std::uint32_t tag = batch[index].first_tag + record;
-    // Separates equal distances in the order of the tags, far below the precision of float32.
-    const double told_apart = t * (1.0 + std::ldexp(static_cast<double>(tag), -52));
-    // Without bounds, the unit's P is used as it is.
-    const SureHit hit{index, lane, tag, point, 0.0f, {told_apart, told_apart}};
-    const bool same_burst = !results.hits.empty() && results.hits.back().bundle == index &&
-                            results.hits.back().lane == lane;
-    if (!same_burst) {
-      results.hits.push_back(hit);
-    } else if (told_apart < results.hits.back().t.low) {
-      results.hits.back() = hit;
-    }
-  };
-  auto hit = found_.hits.begin();
-  const auto offer_hits = [&](auto belongs_here) {
-    for (; hit != found_.hits.end() && belongs_here(*hit); ++hit) {
-      offer(hit->bundle, hit->lane, hit->record, hit->t, hit->point);
-    }
-  };
-  for (const TestReport& report : found_.reports) {
-    if (report.kind != TestReport::Kind::kDoubt) continue;
-    offer_hits([&](const BurstHit& h) {
-      return h.bundle != report.bundle ? h.bundle < report.bundle : h.lane <= report.lane;
-    });
-    const RayBundle& bundle = batch_[report.bundle];
-    const PolygonRecord& record = bundle.records[report.record];
-    const glm::vec3 direction = bundle.lane_direction(static_cast<int>(report.lane));
-    const float t = twin_.distance(record, direction).t;
-    if (!(t > 0.0f) || std::isinf(t)) continue;
-    offer(report.bundle, report.lane, report.record, t, twin_.point(record, direction));
-  }
-  offer_hits([](const BurstHit&) { return true; });
-}
-
-HitCounters VariantHitTester::counters() const { return hit_counters(unit_->counters()); }
 
 std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                std::unique_ptr<PlaneUnit> unit) {

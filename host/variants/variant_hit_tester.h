@@ -4,29 +4,18 @@
 #include <memory>
 #include <vector>
 
-#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 #include "host/variants/arithmetic.h"
 #include "host/variants/variant_table.h"
 
 namespace raygate {
 
 /// In binary32, equals ReferenceBurstUnit but is slower.
-extern template class BasicReferenceBurstUnit<Arithmetic>;
 using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
 
-/// Implements PlaneUnit in a variant's format, bit-exact to hit_test_unit with these parameters.
-/// Rounds inputs to the format first, as the host would.
-class VariantPlaneUnit : public PlaneUnit {
- public:
-  explicit VariantPlaneUnit(const Arithmetic& math) : math_(math) {}
-
-  void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override;
-
- private:
-  Arithmetic math_;
-};
+/// Rounds inputs to the format first, as the host would; then bit-exact to hit_test_unit with these
+/// parameters.
+using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 
 /// Converts a record to a variant's format, as the host does for such a unit: N with d, and each
 /// edge, are scaled by powers of two if the format has fewer exponents than binary32, and rounded
@@ -52,26 +41,24 @@ class VariantPlaneUnit : public PlaneUnit {
 /// three equal signs and a positive t, and the hit with the smaller t is nearer (the first of
 /// equals). Exact arithmetic is never used: t is reported as exact, and equal values of t are
 /// separated by less than an ulp.
-class VariantHitTester : public HitTester {
+class VariantHitTester : public PipelineHitTester {
  public:
   /// `unit` computes in the format of `variant`, which must be a pipelined one.
-  VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit);
+  VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit)
+      : PipelineHitTester(std::move(unit)), variant_(variant), twin_(variant.math) {}
 
-  void run(std::span<const RayBundle> batch, HitResults& results) override;
-  [[nodiscard]] HitCounters counters() const override;
+  void start(std::span<const RayBundle> batch) override { HitTester::start(batch); }
+  void finish(HitReports& reports) override;
 
  private:
   void narrow(std::span<const RayBundle> batch);
-  void report(const RayBundle& wide, HitResults& results, const TestReport& report);
-  void resolve_nothing(std::span<const RayBundle> batch, HitResults& results);
+  static void take_as_it_is(float t, HitReport& report, HitReports& reports);
 
   Variant variant_;
-  std::unique_ptr<BurstUnit> unit_;
-  VariantBurstUnit twin_;  // computes t and P for reports of the unit
+  VariantBurstUnit twin_;  // computes t and P of doubts and near ties
   // Reused buffers.
   std::vector<PolygonRecord> records_;
   std::vector<RayBundle> batch_;
-  BurstResults found_;
 };
 
 /// Returns a tester for a serial variant, whose unit (that of the paper) computes P alone.

@@ -29,10 +29,34 @@ void require_possible(const Variant& variant) {
   }
 }
 
+/// Returns `value`. Throws InputError if it is out of range.
+int in_range(const std::string& column, int value, int low, int high) {
+  if (low <= value && value <= high) return value;
+  throw InputError(column + " is " + std::to_string(value) + ", expected " + std::to_string(low) +
+                   " to " + std::to_string(high));
+}
+
+/// Returns all columns of a variant, with defaults for missing ones. Throws InputError for an
+/// unknown column or a value of another type than the default.
+Json with_defaults(const Json& object) {
+  Json row = Variant{}.row();
+  row.erase("hardware");  // follows from the other columns
+  std::string columns;
+  for (const auto& column : row.items()) columns += " " + column.key();
+  if (!object.is_object()) throw InputError("found no object, expected" + columns);
+  for (const auto& [name, value] : object.items()) {
+    if (!row.contains(name)) throw InputError("a variant has " + name + ", expected" + columns);
+    const Json& like = row[name];
+    if (like.is_number() ? !value.is_number_integer() : value.type() != like.type()) {
+      throw InputError(name + " is " + value.dump() + ", expected a value like " + like.dump());
+    }
+    row[name] = value;
+  }
+  return row;
+}
+
 Variant parse_variant(const Json& object) {
-  Json usual = Variant{}.row();
-  usual.erase("hardware");  // follows from the other columns
-  const Json row = with_usual(object, usual, "a variant");
+  const Json row = with_defaults(object);
   const auto number = [&](const char* column, int low, int high) {
     return in_range(column, row[column], low, high);
   };
@@ -119,33 +143,6 @@ const Variant& variant_named(std::string_view name) {
   std::string expected;
   for (const Variant& variant : variants) expected += (expected.empty() ? "" : ", ") + variant.name;
   throw InputError("no variant " + std::string(name) + ", expected one of " + expected);
-}
-
-Json with_usual(const Json& object, Json usual, const std::string& what) {
-  if (!object.is_object()) throw InputError(what + " is " + object.dump() + ", not an object");
-  for (const auto& [name, value] : object.items()) {
-    if (!usual.contains(name)) {
-      std::string text = what;
-      text.append(" has ").append(name).append(", expected");
-      for (const auto& item : usual.items()) text.append(" ").append(item.key());
-      throw InputError(text);
-    }
-    const Json& like = usual[name];
-    const bool same_kind = like.is_number_float() ? value.is_number()
-                           : like.is_number()     ? value.is_number_integer()
-                                                  : value.type() == like.type();
-    if (!same_kind) {
-      throw InputError(name + " is " + value.dump() + ", expected a value like " + like.dump());
-    }
-  }
-  usual.update(object);
-  return usual;
-}
-
-int in_range(const std::string& name, int value, int low, int high) {
-  if (low <= value && value <= high) return value;
-  throw InputError(name + " is " + std::to_string(value) + ", expected " + std::to_string(low) +
-                   " to " + std::to_string(high));
 }
 
 }  // namespace raygate

@@ -13,13 +13,6 @@ namespace raygate {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns `object` with missing values filled in from `usual`. Throws InputError, "WHAT has ...",
-/// for an unknown name or a value of another type than in `usual`.
-[[nodiscard]] Json with_usual(const Json& object, Json usual, const std::string& what);
-
-/// Returns `value`. Throws InputError, "NAME is ..., expected LOW to HIGH", if it is out of range.
-int in_range(const std::string& name, int value, int low, int high);
-
 /// An object of variants.json. Defaults are those of binary32:
 ///
 ///   variant          its name; ends in -raw if doubts are ignored

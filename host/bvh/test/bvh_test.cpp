@@ -12,6 +12,7 @@
 
 #include "host/base/test/using_vectors.h"
 #include "host/bvh/sah_builder.h"
+#include "host/bvh/traversal.h"
 #include "host/exact/test/meshes.h"
 #include "host/scene/test/instanced_scene.h"
 
@@ -165,8 +166,13 @@ std::vector<Corners> shrinking(int sizes, int exponent) {
 TEST(Bvh, DepthIsBounded) {
   const std::vector<Corners> mesh = shrinking(240, 120);
   expect_sound(mesh);
-  const Scene scene = test::scene_of(mesh);
-  const BinaryBvh tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, 1);
+  std::vector<Primitive> primitives;
+  for (const auto& [a, b, c] : mesh) {
+    Box box;
+    box_around(a, b, c, box);
+    primitives.push_back(Primitive(box, static_cast<std::uint32_t>(primitives.size())));
+  }
+  const BinaryBvh tree(primitives, Bvh::kMaxDepth, 1);
   const int depth = depth_below(tree, tree.root());
   EXPECT_LE(depth, Bvh::kMaxDepth);
   EXPECT_GT(depth, Bvh::kMaxDepth - 4);  // it would be deeper
@@ -230,7 +236,19 @@ void expect_sound(const Scene& scene) {
     EXPECT_TRUE(bvh.has_instances());
     const TreeWalk walk(bvh);
     std::size_t in_leaves = 0;
-    for (const Bvh::Child& leaf : bvh.leaves()) {
+    std::vector<Bvh::Child> leaves;
+    const auto is_present = [](const Bvh::Node& node) {
+      LaneMask mask = 0;
+      for (int i = 0; i < Bvh::kWidth; ++i) {
+        mask |= node.bounds[0][0][i] <= node.bounds[1][0][i] ? 1u << i : 0;
+      }
+      return mask;
+    };
+    (void)any_leaf(bvh, is_present, [&](const Bvh::Child& leaf) {
+      leaves.push_back(leaf);
+      return false;
+    });
+    for (const Bvh::Child& leaf : leaves) {
       for (std::uint32_t primitive = leaf.first; primitive < leaf.first + leaf.count;
            ++primitive, ++in_leaves) {
         const auto& vertices = flat.triangles[bvh.triangle_of(primitive)].vertices;

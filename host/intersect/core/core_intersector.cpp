@@ -6,7 +6,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/stopwatch.h"
-#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/point_writer.h"
 
 namespace raygate {
 namespace {
@@ -76,36 +76,30 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
       query.work[result.tag].tests += is_doubt ? 0 : result.tests;
       query.work[result.tag].doubts += is_doubt;
     }
-    resolve(rays[result.tag], query, result, hits[result.tag]);
+    resolve(rays[result.tag], query.t_max_of(result.tag), result, hits[result.tag]);
   }
   counters_.traverse += watch.lap();
-  if (query.any_hit_before.empty()) {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (hits[i].primitive == NearestHit::kNone) continue;
-      const UnitPoint unit = plane_point(
-          make_plane(rays[i].origin, bvh_.corners_of(hits[i].primitive)), rays[i].direction);
-      hits[i].point = unit.point;
-      hits[i].point_error = unit.error;
-      ++counters_.hit.plane_tests;
-    }
+  PointWriter points(bvh_, rays, false, hits);
+  for (std::uint32_t i = 0; i < rays.size() && query.any_hit_before.empty(); ++i) {
+    if (points.count() == PointWriter::kMost) points.write();
+    if (hits[i].primitive != NearestHit::kNone) points.add(i, hits[i].primitive);
   }
+  points.write();
+  counters_.hit.plane_tests += points.written();
   counters_.record += watch.lap();
 }
 
 /// Takes a sure hit or resolves a doubt.
-void CoreIntersector::resolve(const Ray& ray, const RayQuery& query, const CoreResult& result,
+void CoreIntersector::resolve(const Ray& ray, float t_max, const CoreResult& result,
                               NearestHit& best) {
+  const bool is_sure = result.kind == CoreResult::Kind::kEnd;
+  if (is_sure && !result.found) return;
   NearestHit hit{.primitive = image_->primitive_at(result.triangle)};
-  const float limit = query.t_max_of(result.tag);
-  if (result.kind == CoreResult::Kind::kDoubt) {
-    resolve_doubt(bvh_, ray, limit, hit, best, counters_);
-  } else if (result.found) {
-    hit.t = hit_distance(ray, bvh_.corners_of(hit.primitive));
-    if (core_->is_exact()) {
-      best = hit;
-    } else {
-      take_if_nearer(bvh_, ray, limit, hit, best, counters_);
-    }
+  if (is_sure) hit.t = hit_distance(ray, bvh_.corners_of(hit.primitive));
+  if (is_sure && core_->is_exact()) {
+    best = hit;
+  } else {
+    take_if_nearest(bvh_, ray, t_max, hit, is_sure, best, counters_);
   }
 }
 

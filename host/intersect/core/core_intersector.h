@@ -21,15 +21,17 @@ class CoreIntersector : public Intersector {
   /// thread can share a core.
   CoreIntersector(const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
                   std::shared_ptr<CoreUnit> core)
-      : bvh_(bvh), image_(std::move(image)), core_(std::move(core)) {}
+      : Intersector({.wants_sources = true}),
+        bvh_(bvh),
+        image_(std::move(image)),
+        core_(std::move(core)) {}
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
-  [[nodiscard]] bool wants_sources() const override { return true; }
   [[nodiscard]] IntersectCounters counters() const override;
 
  private:
-  void resolve(const Ray& ray, const RayQuery& query, const CoreResult& result, NearestHit& best);
+  void resolve(const Ray& ray, float t_max, const CoreResult& result, NearestHit& best);
 
   const Bvh& bvh_;
   std::shared_ptr<const MemoryImage> image_;

@@ -5,6 +5,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -15,6 +16,8 @@
 namespace raygate {
 namespace {
 
+constexpr std::size_t kResultWords = 8;
+
 void send_all(WordLink& link, std::span<const std::uint32_t> words) {
   for (const std::uint32_t word : words) {
     while (!link.send(word)) link.wait();
@@ -23,38 +26,45 @@ void send_all(WordLink& link, std::span<const std::uint32_t> words) {
 
 }  // namespace
 
+std::array<std::uint32_t, 11> ray_message(const CoreRay& ray) {
+  std::array<std::uint32_t, 11> message{};
+  PackedFields fields(message);
+  fields.put((4u | (ray.any_hit ? 1u : 0u) | (ray.no_cull ? 2u : 0u)) << 28);
+  for (const std::uint32_t word : {ray.tag, ray.source_id, ray.skip_id}) fields.put(word);
+  fields.put(std::bit_cast<std::uint32_t>(ray.t_max));
+  fields.put(ray.ray.direction);
+  fields.put(ray.ray.origin);
+  return message;
+}
+
 void LinkedCore::load(std::span<const MemoryLine> lines) {
   const auto same = [](const MemoryLine& a, const MemoryLine& b) { return a.words == b.words; };
   if (!memory_.empty() && std::ranges::equal(lines, memory_, same)) return;
   memory_.assign(lines.begin(), lines.end());
   for (std::uint32_t number = 0; number < lines.size(); ++number) {
-    send_all(*link_, line_message(number, lines[number]));
+    const std::uint32_t head = 1u << 28 | number;
+    send_all(*link_, {&head, 1});
+    send_all(*link_, lines[number].words);
   }
-  const std::uint32_t changed = lines_message(static_cast<std::uint32_t>(lines.size()));
+  // The memory has changed.
+  const std::uint32_t changed = 2u << 28 | static_cast<std::uint32_t>(lines.size());
   send_all(*link_, {&changed, 1});
 }
 
-std::optional<CoreResult> LinkedCore::take_result() {
+std::size_t LinkedCore::take_results(std::vector<CoreResult>& results) {
+  std::size_t ended = 0;
   while (const std::optional<std::uint32_t> word = link_->receive()) {
     words_.push_back(*word);
-    if (words_.size() < std::tuple_size_v<ResultWords>) continue;
-    const CoreResult result = unpack_result(words_);
+    if (words_.size() < kResultWords) continue;
+    const CoreResult& result = results.emplace_back(unpack_result(words_));
     words_.clear();
-    return result;
+    const bool is_end = result.kind == CoreResult::Kind::kEnd;
+    ended += is_end ? 1 : 0;
+    counters_.doubts += is_end ? 0 : 1;
+    counters_.triangles += is_end ? result.tests : 0;
   }
-  return std::nullopt;
-}
-
-void LinkedCore::count(const CoreResult& result) {
-  switch (result.kind) {
-    case CoreResult::Kind::kEnd:
-      ++counters_.rays;
-      counters_.triangles += result.tests;
-      break;
-    case CoreResult::Kind::kDoubt:
-      ++counters_.doubts;
-      break;
-  }
+  counters_.rays += ended;
+  return ended;
 }
 
 void LinkedCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
@@ -64,15 +74,10 @@ void LinkedCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRa
   std::size_t sent = 0, ended = 0;
   std::vector<std::uint32_t> out;  // words of the ray being sent, in reverse
   for (;;) {
-    // Results first: they free capacity for rays.
-    while (const std::optional<CoreResult> result = take_result()) {
-      count(*result);
-      ended += result->kind == CoreResult::Kind::kEnd;
-      results.push_back(*result);
-    }
+    ended += take_results(results);  // first, as they free capacity for rays
     if (ended == rays.size()) break;
     if (out.empty() && sent < rays.size() && sent - ended < most_) {
-      const RayMessage message = ray_message(rays[sent++]);
+      const auto message = ray_message(rays[sent++]);
       out.assign(message.rbegin(), message.rend());
     }
     if (!out.empty() && link_->send(out.back())) out.pop_back();
@@ -112,13 +117,10 @@ bool SerialLink::send(std::uint32_t word) {
 }
 
 std::optional<std::uint32_t> SerialLink::receive() {
-  if (in_.size() - taken_ < 4) return std::nullopt;
+  if (in_.size() < 4) return std::nullopt;
   std::uint32_t word = 0;
-  for (unsigned byte = 0; byte < 4; ++byte) word |= std::uint32_t{in_[taken_++]} << 8 * byte;
-  if (taken_ == in_.size()) {
-    in_.clear();
-    taken_ = 0;
-  }
+  for (unsigned byte = 0; byte < 4; ++byte) word |= std::uint32_t{in_[byte]} << 8 * byte;
+  in_.erase(in_.begin(), in_.begin() + 4);
   return word;
 }
 
@@ -143,20 +145,21 @@ void SerialLink::restart() {
     read_some();
   }
   in_.clear();
-  taken_ = 0;
+}
+
+std::ptrdiff_t SerialLink::checked(std::ptrdiff_t count) const {
+  if (count < 0 && errno != EAGAIN && errno != EINTR) fail(std::strerror(errno));
+  return std::max<std::ptrdiff_t>(count, 0);
 }
 
 void SerialLink::write_some() {
-  const ssize_t count = write(file_, out_.data(), out_.size());
-  if (count < 0 && errno != EAGAIN && errno != EINTR) fail(std::strerror(errno));
-  if (count > 0) out_.erase(out_.begin(), out_.begin() + count);
+  out_.erase(out_.begin(), out_.begin() + checked(write(file_, out_.data(), out_.size())));
 }
 
 void SerialLink::read_some() {
   std::array<unsigned char, 4096> bytes{};
-  const ssize_t count = read(file_, bytes.data(), bytes.size());
-  if (count < 0 && errno != EAGAIN && errno != EINTR) fail(std::strerror(errno));
-  if (count > 0) in_.insert(in_.end(), bytes.begin(), bytes.begin() + count);
+  in_.insert(in_.end(), bytes.begin(),
+             bytes.begin() + checked(read(file_, bytes.data(), bytes.size())));
 }
 
 }  // namespace raygate

@@ -1,12 +1,12 @@
 // Linked core: a ray core with its own memory, behind a word link.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,39 +15,6 @@
 
 namespace raygate {
 
-/// Reads and writes the fields of a packed struct in 32-bit words, lowest bits first: the last
-/// field of the struct comes first. `Words` has an operator [].
-template <class Words>
-class PackedFields {
- public:
-  explicit PackedFields(Words& words) : words_(words) {}
-
-  /// Writes the next field of `width` bits, at most 32. The bits must be 0 before.
-  void put(std::uint32_t value, unsigned width = 32) {
-    const std::uint64_t two = std::uint64_t{value} << at_ % 32;
-    words_[at_ / 32] |= static_cast<std::uint32_t>(two);
-    if (two >> 32 != 0) words_[at_ / 32 + 1] |= static_cast<std::uint32_t>(two >> 32);
-    at_ += width;
-  }
-  void put(const glm::vec3& vector) {
-    for (int k = 0; k < 3; ++k) put(std::bit_cast<std::uint32_t>(vector[k]));
-  }
-
-  /// Reads the next field.
-  std::uint32_t take(unsigned width = 32) {
-    std::uint64_t two = words_[at_ / 32];
-    if (at_ % 32 + width > 32) two |= std::uint64_t{words_[at_ / 32 + 1]} << 32;
-    two >>= at_ % 32;
-    at_ += width;
-    return static_cast<std::uint32_t>(two & ((std::uint64_t{1} << width) - 1));
-  }
-  float take_float() { return std::bit_cast<float>(take()); }
-
- private:
-  Words& words_;
-  unsigned at_ = 0;
-};
-
 /// Decodes ray_core_pkg::result_t.
 template <class Words>
 CoreResult unpack_result(const Words& words) {
@@ -55,7 +22,7 @@ CoreResult unpack_result(const Words& words) {
   CoreResult result;
   result.error = static_cast<CoreResult::Error>(fields.take(3));
   result.tests = fields.take(28);
-  for (int k = 0; k < 3; ++k) result.point[k] = fields.take_float();
+  result.point = fields.take_vector();
   result.t_error = fields.take(5);
   result.t = fields.take_float();
   result.triangle = fields.take();
@@ -65,29 +32,8 @@ CoreResult unpack_result(const Words& words) {
   return result;
 }
 
-/// A result of core_link.
-using ResultWords = std::array<std::uint32_t, 8>;
-
-/// Message formats of core_link.
-using LineMessage = std::array<std::uint32_t, 17>;
-using RayMessage = std::array<std::uint32_t, 11>;
-
-[[nodiscard]] inline LineMessage line_message(std::uint32_t number, const MemoryLine& line) {
-  LineMessage message{1u << 28 | number};
-  std::ranges::copy(line.words, message.begin() + 1);
-  return message;
-}
-/// Returns the message that the memory has changed and has `lines` lines.
-[[nodiscard]] inline std::uint32_t lines_message(std::uint32_t lines) { return 2u << 28 | lines; }
-[[nodiscard]] inline RayMessage ray_message(const CoreRay& ray) {
-  RayMessage message{(4u | (ray.any_hit ? 1u : 0u) | (ray.no_cull ? 2u : 0u)) << 28, ray.tag,
-                     ray.source_id, ray.skip_id, std::bit_cast<std::uint32_t>(ray.t_max)};
-  for (int k = 0; k < 3; ++k) {
-    message[5 + static_cast<unsigned>(k)] = std::bit_cast<std::uint32_t>(ray.ray.direction[k]);
-    message[8 + static_cast<unsigned>(k)] = std::bit_cast<std::uint32_t>(ray.ray.origin[k]);
-  }
-  return message;
-}
+/// Returns the message of core_link that sends a ray.
+[[nodiscard]] std::array<std::uint32_t, 11> ray_message(const CoreRay& ray);
 
 /// An ordered link of words to and from a board (hw/board/core_link.sv).
 class WordLink {
@@ -122,9 +68,8 @@ class LinkedCore : public CoreUnit {
 
  private:
   void load(std::span<const MemoryLine> lines);
-  /// Returns a result if all its words have arrived.
-  std::optional<CoreResult> take_result();
-  void count(const CoreResult& result);
+  /// Appends the results of which all words have arrived. Returns the number of rays that ended.
+  std::size_t take_results(std::vector<CoreResult>& results);
 
   std::unique_ptr<WordLink> link_;
   std::size_t most_;
@@ -153,13 +98,15 @@ class SerialLink : public WordLink {
   static constexpr std::size_t kBuffer = 4096;  ///< bytes to be written
 
   [[noreturn]] void fail(const std::string& what) const;
+  /// Returns the result of a read or write, or 0 if nothing was possible yet.
+  [[nodiscard]] std::ptrdiff_t checked(std::ptrdiff_t count) const;
   void write_some();
   void read_some();
 
   std::filesystem::path port_;
   int file_;
-  std::vector<unsigned char> out_, in_;
-  std::size_t taken_ = 0;  ///< bytes taken from in_
+  std::deque<unsigned char> in_;
+  std::vector<unsigned char> out_;
 };
 
 }  // namespace raygate

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "host/bvh/sah_builder.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 namespace {
@@ -29,20 +29,6 @@ struct Bounds {
   }
 };
 
-/// Returns the triangles of a BVH as a scene, in which triangle i is primitive i.
-Scene scene_of(const Bvh& bvh) {
-  Scene scene;
-  scene.positions.reserve(3 * std::size_t{bvh.primitive_count()});
-  scene.triangles.resize(bvh.primitive_count());
-  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
-    for (std::uint32_t v = 0; v < 3; ++v) {
-      scene.triangles[primitive].vertices[v] = static_cast<std::uint32_t>(scene.positions.size());
-      scene.positions.push_back(bvh.corners_of(primitive)[v]);
-    }
-  }
-  return scene;
-}
-
 double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
 
 /// Return the difference of two floats, rounded up or down (using Knuth's two-sum).
@@ -53,6 +39,48 @@ double above(double a, double b) {
 double below(double a, double b) { return -above(b, a); }
 
 }  // namespace
+
+NodeLine::NodeLine(const MemoryLine& line) {
+  PackedFields fields(line.words);
+  origin = fields.take_vector();
+  for (int& e : exponent) e = static_cast<int>(fields.take(8));
+  base = fields.take(28);
+  for (Child& of : child) of.kind = fields.take(4);
+  for (Child& of : child) {
+    for (auto* const corner : {&of.low, &of.high}) {
+      for (std::uint8_t& q : *corner) q = static_cast<std::uint8_t>(fields.take(8));
+    }
+  }
+}
+
+MemoryLine NodeLine::line() const {
+  MemoryLine line;
+  PackedFields fields(line.words);
+  fields.put(origin);
+  for (const int e : exponent) fields.put(static_cast<std::uint32_t>(e), 8);
+  fields.put(base, 28);
+  for (const Child& of : child) fields.put(of.kind, 4);
+  for (const Child& of : child) {
+    for (const auto& corner : {of.low, of.high}) {
+      for (const std::uint8_t q : corner) fields.put(q, 8);
+    }
+  }
+  return line;
+}
+
+TriangleLine::TriangleLine(const MemoryLine& line) {
+  PackedFields fields(line.words);
+  for (glm::vec3& corner : corners) corner = fields.take_vector();
+  for (auto* const word : {&index, &rank, &primitive}) *word = fields.take();
+}
+
+MemoryLine TriangleLine::line() const {
+  MemoryLine line;
+  PackedFields fields(line.words);
+  for (const glm::vec3& corner : corners) fields.put(corner);
+  for (const std::uint32_t word : {index, rank, primitive}) fields.put(word);
+  return line;
+}
 
 /// Collapses a binary BVH to seven children per node.
 class ImageWriter {
@@ -89,7 +117,7 @@ class ImageWriter {
     return bounds;
   }
   [[nodiscard]] std::uint32_t primitive_at(std::uint32_t number) const {
-    return tree_.primitives[number].triangle;
+    return tree_.primitives[number].number;
   }
 
   /// Computes bounds and decides which nodes are leaves. Returns the sum of the triangles' areas.
@@ -187,8 +215,14 @@ class ImageWriter {
 
 MemoryImage::MemoryImage(const Bvh& bvh, int threads) {
   if (bvh.has_instances()) throw std::invalid_argument("instances, expected them written out");
-  const Scene scene = scene_of(bvh);
-  const BinaryBvh tree({scene.positions, scene.triangles}, Bvh::kMaxDepth, threads);
+  std::vector<Primitive> primitives(bvh.primitive_count());
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+    const auto [a, b, c] = bvh.corners_of(i);
+    Box box;
+    box_around(a, b, c, box);
+    primitives[i] = Primitive(box, i);
+  }
+  const BinaryBvh tree(std::move(primitives), Bvh::kMaxDepth, threads);
   ImageWriter(*this, bvh, tree).write();
 }
 

@@ -14,24 +14,47 @@
 
 namespace raygate {
 
+/// Reads and writes the fields of a packed struct in 32-bit words, lowest bits first: the last
+/// field of the struct comes first. `Words` has an operator [].
+template <class Words>
+class PackedFields {
+ public:
+  explicit PackedFields(Words& words) : words_(words) {}
+
+  /// Writes the next field of `width` bits, at most 32. The bits must be 0 before.
+  void put(std::uint32_t value, unsigned width = 32) {
+    const std::uint64_t two = std::uint64_t{value} << at_ % 32;
+    words_[at_ / 32] |= static_cast<std::uint32_t>(two);
+    if (two >> 32 != 0) words_[at_ / 32 + 1] |= static_cast<std::uint32_t>(two >> 32);
+    at_ += width;
+  }
+  void put(const glm::vec3& vector) {
+    for (int k = 0; k < 3; ++k) put(std::bit_cast<std::uint32_t>(vector[k]));
+  }
+
+  /// Reads the next field.
+  std::uint32_t take(unsigned width = 32) {
+    std::uint64_t two = words_[at_ / 32];
+    if (at_ % 32 + width > 32) two |= std::uint64_t{words_[at_ / 32 + 1]} << 32;
+    two >>= at_ % 32;
+    at_ += width;
+    return static_cast<std::uint32_t>(two & ((std::uint64_t{1} << width) - 1));
+  }
+  float take_float() { return std::bit_cast<float>(take()); }
+  glm::vec3 take_vector() {
+    glm::vec3 vector;
+    for (int k = 0; k < 3; ++k) vector[k] = take_float();
+    return vector;
+  }
+
+ private:
+  Words& words_;
+  unsigned at_ = 0;
+};
+
 /// A 512-bit line; bit 0 is the lowest of words[0].
 struct alignas(64) MemoryLine {
   std::array<std::uint32_t, 16> words{};
-
-  /// Returns bits `first` to `first + width - 1`; width is 1 to 32.
-  [[nodiscard]] std::uint32_t bits(unsigned first, unsigned width) const {
-    std::uint64_t two = words[first / 32];
-    if (first / 32 < 15) two |= std::uint64_t{words[first / 32 + 1]} << 32;
-    return static_cast<std::uint32_t>(two >> first % 32 & ((std::uint64_t{1} << width) - 1));
-  }
-  /// Writes `value` at bit `first`. The bits must be 0 before.
-  void set_bits(unsigned first, std::uint64_t value) {
-    words[first / 32] |= static_cast<std::uint32_t>(value << first % 32);
-    if (first % 32 != 0 && first / 32 < 15) {
-      words[first / 32 + 1] |= static_cast<std::uint32_t>(value >> (32 - first % 32));
-    }
-  }
-  [[nodiscard]] float number(unsigned word) const { return std::bit_cast<float>(words[word]); }
 };
 static_assert(sizeof(MemoryLine) == 64);
 
@@ -39,9 +62,8 @@ static_assert(sizeof(MemoryLine) == 64);
 /// coordinate q stands for exactly origin[k] + q 2^(exponent[k] - 127).
 struct NodeLine {
   static constexpr int kChildren = 7;
-  static constexpr std::uint32_t kAbsent = 0,
-                                 kInner =
-                                     8;  ///< kinds; other values: number of triangles of a leaf
+  /// Kinds of children; other values are the number of triangles of a leaf.
+  static constexpr std::uint32_t kAbsent = 0, kInner = 8;
 
   struct Child {
     std::uint32_t kind = kAbsent;
@@ -57,36 +79,8 @@ struct NodeLine {
   std::array<Child, kChildren> child{};
 
   NodeLine() = default;
-  explicit NodeLine(const MemoryLine& line) : base(line.bits(120, 28)) {
-    for (unsigned k = 0; k < 3; ++k) {
-      origin[static_cast<int>(k)] = line.number(k);
-      exponent[k] = static_cast<int>(line.bits(96 + 8 * k, 8));
-    }
-    for (unsigned i = 0; i < kChildren; ++i) {
-      child[i].kind = line.bits(148 + 4 * i, 4);
-      for (unsigned k = 0; k < 3; ++k) {
-        child[i].low[k] = static_cast<std::uint8_t>(line.bits(176 + 48 * i + 8 * k, 8));
-        child[i].high[k] = static_cast<std::uint8_t>(line.bits(200 + 48 * i + 8 * k, 8));
-      }
-    }
-  }
-
-  [[nodiscard]] MemoryLine line() const {
-    MemoryLine line;
-    for (unsigned k = 0; k < 3; ++k) {
-      line.words[k] = std::bit_cast<std::uint32_t>(origin[static_cast<int>(k)]);
-      line.set_bits(96 + 8 * k, static_cast<std::uint64_t>(exponent[k]));
-    }
-    line.set_bits(120, base);
-    for (unsigned i = 0; i < kChildren; ++i) {
-      line.set_bits(148 + 4 * i, child[i].kind);
-      for (unsigned k = 0; k < 3; ++k) {
-        line.set_bits(176 + 48 * i + 8 * k, child[i].low[k]);
-        line.set_bits(200 + 48 * i + 8 * k, child[i].high[k]);
-      }
-    }
-    return line;
-  }
+  explicit NodeLine(const MemoryLine& line);
+  [[nodiscard]] MemoryLine line() const;
 };
 
 /// A triangle with its indices.
@@ -97,21 +91,8 @@ struct TriangleLine {
   std::uint32_t primitive = 0;  ///< the host's primitive index, not read by the core
 
   TriangleLine() = default;
-  explicit TriangleLine(const MemoryLine& line)
-      : index(line.words[9]), rank(line.words[10]), primitive(line.words[11]) {
-    for (unsigned i = 0; i < 9; ++i) corners[i / 3][static_cast<int>(i % 3)] = line.number(i);
-  }
-
-  [[nodiscard]] MemoryLine line() const {
-    MemoryLine line;
-    for (unsigned i = 0; i < 9; ++i) {
-      line.words[i] = std::bit_cast<std::uint32_t>(corners[i / 3][static_cast<int>(i % 3)]);
-    }
-    line.words[9] = index;
-    line.words[10] = rank;
-    line.words[11] = primitive;
-    return line;
-  }
+  explicit TriangleLine(const MemoryLine& line);
+  [[nodiscard]] MemoryLine line() const;
 };
 
 /// The memory lines of a scene, with the root at kRoot. Triangles are ranked by their index in the

@@ -1,79 +1,377 @@
 #include "host/intersect/core/reference_core.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 
-#include "host/intersect/core/reference_units.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {
 namespace {
 
-/// The nearest of a ray's sure hits, whose distances have an error of fewer than 2^t_error floats.
-///
-/// Keeps the hit with the smallest upper bound. Other hits that are not surely farther than this
-/// bound go to the host. Before the first hit, the limit is the upper bound.
-struct NearestSureHit {
-  std::uint32_t t_max_word;  ///< bits of a float; hits with exact t at or beyond it are irrelevant
-  bool found = false;
-  std::uint32_t triangle = CoreRay::kNoTriangle;
-  std::uint32_t t_word = 0;
-  std::uint32_t t_error = 0;
+// Names and steps are those of hw/ray_core/box_unit.sv, which has the proof.
+constexpr int kFracBits = 22, kEnterBits = 12;
+constexpr std::int64_t kWhole = std::int64_t{1} << kFracBits;  // 2^E, in units
 
-  explicit NearestSureHit(float limit) : t_max_word(std::bit_cast<std::uint32_t>(limit)) {}
+int field(float x) { return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23 & 0xFF); }
 
-  [[nodiscard]] float limit() const { return std::bit_cast<float>(t_max_word); }
+/// Returns the significand with its integer bit, also for zeros and subnormals (below all units).
+std::int64_t significand(float x) {
+  return (std::bit_cast<std::uint32_t>(x) & 0x7FFFFF) | 0x800000;
+}
 
-  /// Takes a hit. Returns the triangle that must go to the host instead, or kNoTriangle.
-  std::uint32_t take(std::uint32_t number, float t, std::uint32_t error) {
-    constexpr std::uint32_t kInfinity = 0x7F800000;
-    const std::uint32_t word = std::bit_cast<std::uint32_t>(t), margin = 1u << error;
-    const std::uint32_t low = word > margin ? word - margin : 0;
-    const std::uint32_t high = word + margin < kInfinity ? word + margin : kInfinity;
-    if (high >= t_max_word) return low <= t_max_word ? number : CoreRay::kNoTriangle;
-    const std::uint32_t old_margin = 1u << t_error;
-    const std::uint32_t old_low = t_word > old_margin ? t_word - old_margin : 0;
-    const std::uint32_t open = found && old_low <= high ? triangle : CoreRay::kNoTriangle;
-    t_max_word = high;
-    found = true;
-    triangle = number;
-    t_word = word;
-    t_error = error;
-    return open;
-  }
+/// Returns x >> amount for any amount: 0 beyond the word size, x if negative.
+std::int64_t shift_right(std::int64_t x, int amount) {
+  if (amount <= 0) return x;
+  return amount > 63 ? 0 : x >> amount;
+}
 
-  /// Sets the hit that exact arithmetic determined, regardless of the kept one.
-  void settle(std::uint32_t number, float t, std::uint32_t error) {
-    found = true;
-    triangle = number;
-    t_word = std::bit_cast<std::uint32_t>(t);
-    t_error = error;
-  }
+/// An axis, seen from the ray. Planes of the grid are at a +- q s / 256, in units.
+struct Axis {
+  bool back;               // the ray goes towards smaller q
+  std::int64_t near, far;  // a without and with the error margin
+  std::int64_t step;       // s
 };
 
-/// Finds the nearest hit among a ray's doubts, as hw/ray_core/exact_resolver.sv does.
-class DoubtResolver {
- public:
-  DoubtResolver(std::span<const MemoryLine> lines, const CoreRay& ray) : lines_(lines), ray_(ray) {}
+}  // namespace
 
-  /// Takes a doubt; `is_hit`: it is known to be a hit.
-  void take(std::uint32_t line, bool is_hit) {
-    if (!is_hit && !hits_triangle(ray_.ray, TriangleLine(lines_[line]).corners)) return;
-    if (candidate_ == CoreRay::kNoTriangle || is_nearer(line, candidate_)) candidate_ = line;
+BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
+  // The ray surely leaves the node before 2^E.
+  float distance[3];
+  int exponent = field(ray.t_max) == 0xFF ? 511 : field(ray.t_max) + 1;
+  for (int k = 0; k < 3; ++k) {
+    distance[k] = node.origin[k] - ray.origin[k];
+    const int inverse = field(ray.inverse[k]);
+    if (inverse == 0xFF) continue;
+    const int reach = std::max(field(distance[k]) + 1, node.exponent[k] + 8);
+    exponent = std::min(exponent, reach + inverse - 125);
   }
-  /// Returns the candidate if it is nearer than the sure hit or the limit, else kNoTriangle.
-  [[nodiscard]] std::uint32_t settle(const NearestSureHit& nearest) const {
-    if (candidate_ == CoreRay::kNoTriangle) return candidate_;
-    const bool nearer =
-        nearest.found ? is_nearer(candidate_, nearest.triangle)
-                      : nearest.limit() == std::numeric_limits<float>::infinity() ||
-                            compare_hit_to_limit(ray_.ray, TriangleLine(lines_[candidate_]).corners,
-                                                 nearest.limit()) < 0;
-    return nearer ? candidate_ : CoreRay::kNoTriangle;
+  exponent = std::clamp(exponent, 27, 511);
+
+  Axis axes[3];
+  for (int k = 0; k < 3; ++k) {
+    const bool back = std::signbit(ray.inverse[k]);
+    const int cap = exponent - node.exponent[k] + 129;  // exponent field of the largest inverse
+    const bool capped = field(ray.inverse[k]) >= cap || field(ray.inverse[k]) == 0xFF;
+    float inverse = ray.inverse[k];
+    if (capped) {
+      inverse = std::bit_cast<float>(static_cast<std::uint32_t>(cap & 0xFF) << 23 |
+                                     (back ? 0x80000000u : 0u));
+    }
+    const float product = distance[k] * inverse;
+    const bool open = (capped && (cap < 1 || cap > 254)) || field(product) == 0xFF;
+    const int amount = exponent + 11 - field(product);
+    const std::int64_t size =
+        amount <= 0 ? std::int64_t{1} << 33 : shift_right(significand(product) << 10, amount);
+    const std::int64_t a = std::signbit(product) ? -size : size;
+    std::int64_t step = shift_right(significand(inverse) << 9, cap - field(inverse));
+    std::int64_t room = (size >> 22) + (step >> 24) + 6;
+    if (capped) room += kWhole;
+    axes[k] = {back, a - room, a + room, step};
+    if (open) axes[k] = {back, -(std::int64_t{1} << 33), std::int64_t{1} << 33, 0};
+  }
+
+  // The limit, rounded up.
+  const int amount = exponent + 1 - field(ray.t_max);
+  const std::int64_t limit = amount <= 1 ? kWhole : shift_right(significand(ray.t_max), amount) + 1;
+
+  std::array<std::int64_t, NodeLine::kChildren> keys;  // {skipped, enter, number}
+  std::array<std::uint32_t, NodeLine::kChildren> offset;
+  std::uint32_t next = 0;
+  int size = 0;
+  for (std::size_t i = 0; i < NodeLine::kChildren; ++i) {
+    const NodeLine::Child& child = node.child[i];
+    offset[i] = next;
+    next += child.size();
+    std::int64_t enter = 0, leave = limit;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Axis& axis = axes[k];
+      const auto at = [&](std::int64_t from, std::uint8_t q) {
+        const std::int64_t way = (q * axis.step) >> 8;
+        return axis.back ? from - way : from + way;
+      };
+      enter = std::max(enter, at(axis.near, axis.back ? child.high[k] : child.low[k]));
+      leave = std::min(leave, at(axis.far, axis.back ? child.low[k] : child.high[k]));
+    }
+    if (ray.no_cull) enter = leave = 0;
+    const bool met = child.kind != NodeLine::kAbsent && enter <= leave;
+    size += met ? 1 : 0;
+    keys[i] = (std::int64_t{!met} << 26) | (met ? enter << 3 : 0) | static_cast<std::int64_t>(i);
+  }
+  std::ranges::sort(keys);
+
+  BoxGroup group{.base = node.base, .exponent = static_cast<std::uint32_t>(exponent), .size = size};
+  for (int n = 0; n < size; ++n) {
+    const auto i = static_cast<std::size_t>(keys[static_cast<std::size_t>(n)] & 7);
+    const auto enter = static_cast<std::uint32_t>(keys[static_cast<std::size_t>(n)] >> 3);
+    const std::uint32_t kind = node.child[i].kind;
+    group.entry[static_cast<std::size_t>(n)] = {
+        std::min(enter >> (kFracBits - kEnterBits), (1u << kEnterBits) - 1), offset[i],
+        kind == NodeLine::kInner ? 0 : kind};
+  }
+  return group;
+}
+
+bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit) {
+  // The limit in the entry's units, rounded down.
+  const int amount = static_cast<int>(group.exponent) + 23 - kEnterBits - field(limit);
+  if (amount <= 0) return false;  // at least 2^23 units
+  return entry.enter > shift_right(significand(limit), amount);
+}
+
+namespace {
+
+// Constants of set_up_pkg.sv; triangle_test.sv explains them.
+constexpr int kLeastField = 27;
+constexpr int kBoundShift = 20;
+constexpr int kBias = 127;
+constexpr int kMostPlaneError = 14;
+constexpr std::uint32_t kTErrorUnit = 8;
+
+float subtract(float a, float b) { return Binary32::add(a, -b); }
+
+glm::vec3 difference(const glm::vec3& a, const glm::vec3& b) {
+  return {subtract(a.x, b.x), subtract(a.y, b.y), subtract(a.z, b.z)};
+}
+
+struct CrossProduct {
+  glm::vec3 product;
+  glm::vec3 terms;  // |a_i b_j| + |a_j b_i|
+};
+
+CrossProduct cross_product(const glm::vec3& a, const glm::vec3& b) {
+  CrossProduct cross;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const float left = Binary32::multiply(a[i], b[j]), right = Binary32::multiply(a[j], b[i]);
+    cross.product[k] = subtract(left, right);
+    cross.terms[k] = Binary32::add(std::abs(left), std::abs(right));
+  }
+  return cross;
+}
+
+float sum(const glm::vec3& v) { return Binary32::add(Binary32::add(v.x, v.y), v.z); }
+
+bool is_in_range(int field) { return field >= kLeastField && field < 255; }
+
+float edge_bound(float terms) {
+  if (!is_in_range(Binary32::exponent_field(terms))) return std::numeric_limits<float>::infinity();
+  return std::bit_cast<float>(Binary32::to_word(terms) - (std::uint32_t{kBoundShift} << 23));
+}
+
+}  // namespace
+
+SetUpRecord set_up(const glm::vec3& origin, const Corners& triangle) {
+  SetUpRecord result;
+  PolygonRecord& record = result.record;
+  Corners corners, edges;
+  for (int k = 0; k < 3; ++k) {
+    corners[k] = difference(triangle[k], origin);
+    edges[k] = difference(triangle[(k + 1) % 3], triangle[k]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    const CrossProduct edge = cross_product(corners[k], edges[k]);
+    record.edges[k] = edge.product;
+    record.bounds[k] = edge_bound(sum(edge.terms));
+  }
+  const CrossProduct normal = cross_product(edges[2], edges[0]);
+  record.normal = normal.product;
+  glm::vec3 shares;
+  for (int k = 0; k < 3; ++k) shares[k] = Binary32::multiply(normal.product[k], corners[0][k]);
+  record.d = sum(shares);
+
+  const int vertex_field = largest_field(corners[0]), terms_field = largest_field(normal.terms);
+  const int d_field = Binary32::exponent_field(record.d);
+  const int normal_error = terms_field - largest_field(normal.product);
+  const int distance_error = std::max(vertex_field + terms_field - d_field - kBias, 0);
+  const bool is_good = is_in_range(terms_field) && vertex_field < 255 && is_in_range(d_field) &&
+                       normal_error <= kMostPlaneError && distance_error <= kMostPlaneError;
+  if (is_good) {
+    result.normal_error = static_cast<std::uint32_t>(normal_error);
+    result.distance_error = static_cast<std::uint32_t>(distance_error);
+  } else {
+    record.d = std::bit_cast<float>(0x7FC00000u);
+  }
+  return result;
+}
+
+bool is_good_hit(const SetUpRecord& set_up, std::uint32_t grazing) {
+  return grazing + set_up.normal_error <= kMostPlaneError;
+}
+
+std::uint32_t t_error_exponent(const SetUpRecord& set_up, std::uint32_t grazing) {
+  return kTErrorUnit + std::max(grazing + set_up.normal_error, set_up.distance_error);
+}
+
+namespace {
+
+/// Takes a ray's sure hit. The kept one has the smallest upper bound of t, which becomes the limit.
+/// Returns the triangle that must go to the host: that of the other hit if it is not surely
+/// farther, or kNoTriangle.
+std::uint32_t take(const CoreResult& hit, CoreResult& nearest, float& limit) {
+  constexpr std::uint32_t kInfinity = 0x7F800000;
+  const auto word = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+  const auto lower = [&](const CoreResult& of) {
+    return word(of.t) - std::min(word(of.t), 1u << of.t_error);
+  };
+  const std::uint32_t high = std::min(word(hit.t) + (1u << hit.t_error), kInfinity);
+  if (high >= word(limit)) return lower(hit) <= word(limit) ? hit.triangle : CoreRay::kNoTriangle;
+  const std::uint32_t open =
+      nearest.found && lower(nearest) <= high ? nearest.triangle : CoreRay::kNoTriangle;
+  limit = std::bit_cast<float>(high);
+  nearest = hit;
+  return open;
+}
+
+/// The model of hw/ray_core for one ray.
+class RayTrace {
+ public:
+  /// See ReferenceCore.
+  RayTrace(std::span<const MemoryLine> lines, const CoreRay& ray, int stack_depth, bool exact,
+           CoreCounters& counters, std::vector<CoreResult>& results)
+      : lines_(lines),
+        ray_(ray),
+        stack_depth_(static_cast<std::size_t>(stack_depth)),
+        exact_(exact),
+        counters_(counters),
+        results_(results),
+        limit_(ray.t_max) {}
+
+  void run() {
+    if (!is_usable(ray_.ray.direction) || !is_scaled(ray_.ray.direction)) {
+      fail(CoreResult::Error::kDirection);
+    }
+    traverse();
+    if (exact_ && !ended_ && is_candidate_nearest()) test(TriangleLine(lines_[candidate_]), true);
+    ++counters_.rays;
+    counters_.triangles += end_.tests;
+    counters_.lines = counters_.nodes + counters_.triangles;
+    results_.push_back(end_);
   }
 
  private:
+  /// Children of a node to visit: leaves at once, inner nodes one by one.
+  struct OpenGroup {
+    BoxGroup group;
+    std::vector<BoxGroup::Entry> entries;  // the next one last
+  };
+
+  void fail(CoreResult::Error error) {
+    end_.error = error;
+    ended_ = true;
+  }
+  bool is_read(std::uint32_t line) {
+    if (line < lines_.size()) return true;
+    fail(CoreResult::Error::kMemory);
+    end_.line = line;
+    return false;
+  }
+
+  void traverse() {
+    std::vector<OpenGroup> stack;
+    std::size_t entered = 0;
+    bool shared = false;  // has groups on the shared stack, see traversal.sv
+    for (std::uint32_t line = MemoryImage::kRoot; is_read(line);) {
+      ++counters_.nodes;
+      ++entered;
+      OpenGroup inside = enter(NodeLine(lines_[line]));
+      if (!inside.entries.empty()) stack.push_back(std::move(inside));
+      if (ended_) return;
+      // Groups on the shared stack are always scheduled.
+      while (!stack.empty() && stack.size() <= stack_depth_ &&
+             is_beyond(stack.back().group, stack.back().entries.back(), limit_)) {
+        stack.pop_back();
+      }
+      if (stack.empty()) return;
+      if (entered == lines_.size() || stack.size() == MemoryImage::kMostDepth) {
+        return fail(CoreResult::Error::kCycle);
+      }
+      OpenGroup& top = stack.back();
+      line = top.group.base + top.entries.back().offset;
+      top.entries.pop_back();
+      if (top.entries.empty()) stack.pop_back();
+      const bool shares = stack.size() >= stack_depth_;
+      counters_.overflows += shares && !shared;
+      shared = shares;
+    }
+  }
+
+  /// Tests the leaves of a node, and returns its inner nodes.
+  OpenGroup enter(const NodeLine& node) {
+    OpenGroup inside{
+        enter_boxes(node, {ray_.ray.origin, 1.0f / ray_.ray.direction, limit_, ray_.no_cull}), {}};
+    const BoxGroup& group = inside.group;
+    for (const auto& entry : std::span(group.entry).first(static_cast<std::size_t>(group.size))) {
+      if (entry.count == 0) inside.entries.push_back(entry);
+      if (ended_ || is_beyond(group, entry, limit_)) continue;
+      for (std::uint32_t k = 0; k < entry.count && end_.error == CoreResult::Error::kNone; ++k) {
+        const std::uint32_t line = group.base + entry.offset + k;
+        if (is_read(line)) test(TriangleLine(lines_[line]), false);
+      }
+    }
+    std::ranges::reverse(inside.entries);
+    return inside;
+  }
+
+  /// Tests a triangle. If it `settles` the ray, exact arithmetic has found it to be the nearest
+  /// hit.
+  void test(const TriangleLine& triangle, bool settles) {
+    const ReferenceBurstUnit unit;
+    const glm::vec3& direction = ray_.ray.direction;
+    ++end_.tests;
+    if (triangle.index == ray_.skip_id || triangle.index == ray_.source_id) {
+      ++counters_.misses;
+      return;
+    }
+    const SetUpRecord set = set_up(ray_.ray.origin, triangle.corners);
+    const UnitVerdict verdict = unit.verdict(set.record, direction);
+    counters_.misses += verdict == UnitVerdict::kMiss;
+    counters_.hits += verdict == UnitVerdict::kHit;
+    counters_.doubts += verdict == UnitVerdict::kDoubt;
+    if (verdict == UnitVerdict::kMiss) return;
+    const HitDistance distance = unit.distance(set.record, direction);
+    const bool is_sure = verdict == UnitVerdict::kHit && is_good_hit(set, distance.error);
+    CoreResult hit = end_;
+    hit.found = true;
+    hit.triangle = triangle.index;
+    hit.t = is_sure ? distance.t : 0.0f;
+    hit.t_error = is_sure ? t_error_exponent(set, distance.error) : CoreResult::kNoT;
+    hit.point = is_sure ? unit.point(set.record, direction) : glm::vec3(0.0f);
+    if (settles) {
+      end_ = hit;
+    } else if (!is_sure) {
+      report(triangle.index, false);
+    } else {
+      const std::uint32_t open = take(hit, end_, limit_);
+      ended_ = ray_.any_hit && end_.found;
+      if (open == CoreRay::kNoTriangle) return;
+      ++counters_.near_ties;
+      report(open, true);
+    }
+  }
+
+  /// Reports a doubt to the host or, if exact, resolves it as hw/ray_core/exact_resolver.sv does.
+  void report(std::uint32_t line, bool is_hit) {
+    if (!exact_) {
+      results_.push_back({.kind = CoreResult::Kind::kDoubt, .tag = ray_.tag, .triangle = line});
+    } else if (!ended_ && (is_hit || hits_triangle(ray_.ray, TriangleLine(lines_[line]).corners)) &&
+               (candidate_ == CoreRay::kNoTriangle || is_nearer(line, candidate_))) {
+      candidate_ = line;
+    }
+  }
+
+  /// Returns whether the nearest hit among the doubts is nearer than the sure hit or the limit.
+  [[nodiscard]] bool is_candidate_nearest() const {
+    if (candidate_ == CoreRay::kNoTriangle) return false;
+    return end_.found ? is_nearer(candidate_, end_.triangle)
+                      : limit_ == std::numeric_limits<float>::infinity() ||
+                            compare_hit_to_limit(ray_.ray, TriangleLine(lines_[candidate_]).corners,
+                                                 limit_) < 0;
+  }
+
   /// Returns whether one of two triangles that are hit is nearer or, at equal t, has the lower
   /// rank.
   [[nodiscard]] bool is_nearer(std::uint32_t line, std::uint32_t other) const {
@@ -82,148 +380,26 @@ class DoubtResolver {
     return order < 0 || (order == 0 && a.rank < b.rank);
   }
 
-  std::span<const MemoryLine> lines_;
+  const std::span<const MemoryLine> lines_;
   const CoreRay& ray_;
-  std::uint32_t candidate_ = CoreRay::kNoTriangle;
-};
+  const std::size_t stack_depth_;
+  const bool exact_;
+  CoreCounters& counters_;
+  std::vector<CoreResult>& results_;
 
-/// A group with inner nodes to visit.
-struct OpenGroup {
-  BoxGroup group;
-  int next = 0;  // index of the next entry
+  CoreResult end_{.tag = ray_.tag};
+  float limit_;  // hits at or beyond it are irrelevant
+  bool ended_ = false;
+  std::uint32_t candidate_ = CoreRay::kNoTriangle;  // the nearest hit among the doubts, if exact
 };
-
-int depth_of(const std::vector<OpenGroup>& stack) { return static_cast<int>(stack.size()); }
 
 }  // namespace
 
 void ReferenceCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
                           std::vector<CoreResult>& results) {
-  for (const CoreRay& ray : rays) trace(lines, ray, results);
-}
-
-void ReferenceCore::trace(std::span<const MemoryLine> lines, const CoreRay& ray,
-                          std::vector<CoreResult>& results) {
-  const ReferenceBurstUnit unit;
-  NearestSureHit nearest(ray.t_max);
-  glm::vec3 point{0.0f};
-  std::uint32_t tests = 0;
-  bool ended = false;
-  DoubtResolver resolver(lines, ray);
-  const auto doubt = [&](std::uint32_t triangle, bool is_hit) {
-    if (exact_) {
-      if (!ended) resolver.take(triangle, is_hit);
-    } else {
-      results.push_back({.kind = CoreResult::Kind::kDoubt, .tag = ray.tag, .triangle = triangle});
-    }
-  };
-  const auto test = [&](const TriangleLine& triangle, bool settles) {
-    ++tests;
-    if (triangle.index == ray.skip_id || triangle.index == ray.source_id) {
-      ++counters_.misses;
-      return;
-    }
-    const SetUpRecord set = set_up(ray.ray.origin, triangle.corners);
-    const UnitVerdict verdict = unit.verdict(set.record, ray.ray.direction);
-    counters_.misses += verdict == UnitVerdict::kMiss;
-    counters_.hits += verdict == UnitVerdict::kHit;
-    counters_.doubts += verdict == UnitVerdict::kDoubt;
-    if (verdict == UnitVerdict::kMiss) return;
-    const HitDistance distance = unit.distance(set.record, ray.ray.direction);
-    const bool is_sure = verdict == UnitVerdict::kHit && is_good_hit(set, distance.error);
-    if (settles) {
-      nearest.settle(triangle.index, is_sure ? distance.t : 0.0f,
-                     is_sure ? t_error_exponent(set, distance.error) : CoreResult::kNoT);
-      point = is_sure ? unit.point(set.record, ray.ray.direction) : glm::vec3(0.0f);
-      return;
-    }
-    if (!is_sure) {
-      doubt(triangle.index, false);
-      return;
-    }
-    const std::uint32_t open =
-        nearest.take(triangle.index, distance.t, t_error_exponent(set, distance.error));
-    if (nearest.triangle == triangle.index) point = unit.point(set.record, ray.ray.direction);
-    ended = ray.any_hit && nearest.found;
-    if (open != CoreRay::kNoTriangle) {
-      ++counters_.near_ties;
-      doubt(open, true);
-    }
-  };
-
-  std::vector<OpenGroup> stack;
-  std::uint32_t line = MemoryImage::kRoot;
-  std::size_t entered = 0;
-  bool shared = false;  // has groups on the shared stack, see traversal.sv
-  CoreResult end{.tag = ray.tag};
-  const auto is_read = [&](std::uint32_t number) {
-    if (number < lines.size()) return true;
-    end.error = CoreResult::Error::kMemory;
-    end.line = number;
-    ended = true;
-    return false;
-  };
-  if (!is_usable(ray.ray.direction) || !is_scaled(ray.ray.direction)) {
-    end.error = CoreResult::Error::kDirection;
-    ended = true;
+  for (const CoreRay& ray : rays) {
+    RayTrace(lines, ray, stack_depth_, exact_, counters_, results).run();
   }
-  while (is_read(line)) {
-    ++counters_.nodes;
-    ++entered;
-    const BoxRay box_ray{ray.ray.origin, 1.0f / ray.ray.direction, nearest.limit(), ray.no_cull};
-    const BoxGroup group = enter_boxes(NodeLine(lines[line]), box_ray);
-    // Leaves first, then inner nodes, as in the core.
-    OpenGroup inside{group};
-    inside.group.size = 0;
-    for (int n = 0; n < group.size; ++n) {
-      const BoxGroup::Entry& entry = group.entry[static_cast<std::size_t>(n)];
-      if (entry.count == 0) {
-        inside.group.entry[static_cast<std::size_t>(inside.group.size++)] = entry;
-        continue;
-      }
-      if (ended || is_beyond(group, entry, nearest.limit())) continue;
-      for (std::uint32_t k = 0; k < entry.count && end.error == CoreResult::Error::kNone; ++k) {
-        const std::uint32_t triangle = group.base + entry.offset + k;
-        if (is_read(triangle)) test(TriangleLine(lines[triangle]), false);
-      }
-    }
-    if (inside.group.size != 0) stack.push_back(inside);
-    const auto is_done = [&](const OpenGroup& top) {
-      return is_beyond(top.group, top.group.entry[static_cast<std::size_t>(top.next)],
-                       nearest.limit());
-    };
-    if (ended) break;
-    // Groups on the shared stack are always scheduled.
-    while (!stack.empty() && depth_of(stack) <= stack_depth_ && is_done(stack.back())) {
-      stack.pop_back();
-    }
-    if (stack.empty()) break;
-    if (entered == lines.size() || depth_of(stack) == MemoryImage::kMostDepth) {
-      end.error = CoreResult::Error::kCycle;
-      break;
-    }
-    OpenGroup& top = stack.back();
-    line = top.group.base + top.group.entry[static_cast<std::size_t>(top.next++)].offset;
-    // A group without further nodes is popped.
-    if (top.next == top.group.size) stack.pop_back();
-    const bool shares = depth_of(stack) >= stack_depth_;
-    counters_.overflows += shares && !shared;
-    shared = shares;
-  }
-  if (exact_ && !ended && end.error == CoreResult::Error::kNone) {
-    const std::uint32_t settled = resolver.settle(nearest);
-    if (settled != CoreRay::kNoTriangle) test(TriangleLine(lines[settled]), true);
-  }
-  ++counters_.rays;
-  counters_.triangles += tests;
-  counters_.lines = counters_.nodes + counters_.triangles;
-  end.found = nearest.found;
-  end.triangle = nearest.triangle;
-  end.t = std::bit_cast<float>(nearest.t_word);
-  end.t_error = nearest.t_error;
-  end.point = point;
-  end.tests = tests;
-  results.push_back(end);
 }
 
 }  // namespace raygate

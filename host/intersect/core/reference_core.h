@@ -1,9 +1,64 @@
-// Reference model of the ray core in C++, without timing: one ray at a time.
+// Reference models of the ray core in C++, without timing, and of its box and set-up units.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "host/exact/exact.h"
 #include "host/intersect/core/core_unit.h"
+#include "host/intersect/core/memory_image.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
+
+/// The fields of a ray that box_unit reads.
+struct BoxRay {
+  glm::vec3 origin{0.0f};
+  glm::vec3 inverse{0.0f};  ///< 1 / I_k, rounded to nearest; infinite if I_k is 0
+  float t_max = 0.0f;       ///< positive or +infinity: hits beyond it do not count
+  bool no_cull = false;     ///< the ray enters all children
+};
+
+/// The children that a ray enters, nearest first (a group in hw/ray_core/ray_core_pkg.sv).
+struct BoxGroup {
+  struct Entry {
+    std::uint32_t enter = 0;   ///< lower bound of t, in units of 2^(exponent - 127 - 12)
+    std::uint32_t offset = 0;  ///< first line of the child, relative to `base`
+    std::uint32_t count = 0;   ///< number of triangles of a leaf; 0: an inner node
+
+    friend bool operator==(const Entry&, const Entry&) = default;
+  };
+
+  std::uint32_t base = 0, exponent = 0;
+  int size = 0;
+  std::array<Entry, NodeLine::kChildren> entry{};
+
+  friend bool operator==(const BoxGroup&, const BoxGroup&) = default;
+};
+
+[[nodiscard]] BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray);
+
+/// Returns whether the entry is surely beyond `limit`, at least 0; +infinity: no limit.
+[[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
+
+/// A record computed in binary32, with larger bounds than those of make_record. d is NaN if its
+/// sign is not sure, or if N or d are too inaccurate for a hit.
+struct SetUpRecord {
+  PolygonRecord record;
+  std::uint32_t normal_error = 0;    ///< number of bits that cancelled in N, unless d is NaN
+  std::uint32_t distance_error = 0;  ///< likewise in d
+};
+
+/// Returns the record of triangle_test, bit for bit, for any floats including NaN and infinities.
+[[nodiscard]] SetUpRecord set_up(const glm::vec3& origin, const Corners& triangle);
+
+/// Returns whether a hit is sure (set_up_pkg::is_good_hit). `grazing` is HitDistance::error.
+[[nodiscard]] bool is_good_hit(const SetUpRecord& set_up, std::uint32_t grazing);
+
+/// Returns e such that fewer than 2^e floats lie between t of a good hit and the exact t
+/// (set_up_pkg::t_error_exponent).
+[[nodiscard]] std::uint32_t t_error_exponent(const SetUpRecord& set_up, std::uint32_t grazing);
 
 /// Boxes, records and tests are bit-exact. Tests are sequential, while the hardware overlaps them,
 /// so it may do more tests and report other doubts. Reading beyond `lines` is a memory error.
@@ -21,9 +76,6 @@ class ReferenceCore : public CoreUnit {
   static constexpr int kStackDepth = 8;
 
  private:
-  void trace(std::span<const MemoryLine> lines, const CoreRay& ray,
-             std::vector<CoreResult>& results);
-
   int stack_depth_;
   bool exact_;
   CoreCounters counters_;

@@ -5,8 +5,8 @@
 #include <cassert>
 
 #include "host/base/stopwatch.h"
-#include "host/intersect/cpu/packet.h"
-#include "host/intersect/cpu/ray_traversal.h"
+#include "host/bvh/traversal.h"
+#include "host/intersect/cpu/quad_test.h"
 
 namespace raygate {
 

@@ -12,17 +12,26 @@ namespace raygate {
 class CpuIntersector : public Intersector {
  public:
   /// `bvh` must outlive this object.
-  explicit CpuIntersector(const Bvh& bvh) : bvh_(bvh) {}
+  explicit CpuIntersector(const Bvh& bvh) : Intersector({.filters_hits = true}), bvh_(bvh) {}
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
-  [[nodiscard]] bool filters_hits() const override { return true; }
   [[nodiscard]] IntersectCounters counters() const override { return counters_; }
 
  private:
   const Bvh& bvh_;
   IntersectCounters counters_;
 };
+
+// The two ways of CpuIntersector. `hits` are initialised to misses; misses are not counted.
+
+/// Intersects rays of one origin in packets. Always culls.
+void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
+                   std::span<NearestHit> hits, IntersectCounters& counters);
+
+/// Intersects rays of any origins one by one.
+void trace_single_rays(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
+                       std::span<NearestHit> hits, IntersectCounters& counters);
 
 /// Replaces `hits` by all hits of `ray` with t < t_max, nearest first, then by triangle index.
 /// `t_max` is positive; +infinity: no limit. The direction must be scaled, or is not usable and

@@ -1,6 +1,7 @@
 // Quad test: one ray against up to four triangles, in float32 with error bounds.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -159,34 +160,26 @@ struct QuadSides {
     size[v] = absolute(x[v]) + absolute(y[v]);
   }
   const FloatQuad sum = (size[0] + size[1]) + size[2];
-  const FloatQuad farthest = maximum(maximum(absolute(z[0]), absolute(z[1])), absolute(z[2]));
-  const FloatQuad m = farthest + sum;
+  sides.farthest = maximum(maximum(absolute(z[0]), absolute(z[1])), absolute(z[2]));
+  const FloatQuad m = sides.m = sides.farthest + sum;
   const IntQuad unsure = (m < kSmallest) | (m > kLargest);
   const FloatQuad bound = float_of(bits_in(m * (kBoundOfSum * sum + kBoundOfSize * m)) | unsure);
   const FloatQuad across[3] = {x[1] * y[2] - y[1] * x[2], x[2] * y[0] - y[2] * x[0],
                                x[0] * y[1] - y[0] * x[1]};
-  const FloatQuad lowest = minimum(minimum(across[0], across[1]), across[2]);
-  const FloatQuad highest = maximum(maximum(across[0], across[1]), across[2]);
-  const IntQuad miss = (lowest < -bound) & (highest > bound);
-  for (int i = 0; i < 3; ++i) sides.across[i] = across[i];
-  sides.lowest = lowest;
-  sides.highest = highest;
-  sides.farthest = farthest;
-  sides.m = m;
+  std::copy_n(across, 3, sides.across);
+  sides.lowest = minimum(minimum(across[0], across[1]), across[2]);
+  sides.highest = maximum(maximum(across[0], across[1]), across[2]);
   sides.bound = bound;
+  const IntQuad miss = (sides.lowest < -bound) & (sides.highest > bound);
   return ~sign_mask(miss) & ((1u << count) - 1);
 }
 
 /// Computes the results of the second half, for the triangles in `open`.
 RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, LaneMask open,
                                 QuadVerdict& verdict) {
-  const FloatQuad(&across)[3] = sides.across;
-  const FloatQuad &lowest = sides.lowest, &highest = sides.highest, &farthest = sides.farthest;
-  const FloatQuad &m = sides.m, &bound = sides.bound;
+  const auto& [of_z, across, lowest, highest, farthest, m, bound] = sides;
   FloatQuad z[3];
-  for (int v = 0; v < 3; ++v) {
-    z[v] = float_of(bits_in(sides.z[v]) ^ ray.sign_ahead());
-  }
+  for (int v = 0; v < 3; ++v) z[v] = float_of(bits_in(of_z[v]) ^ ray.sign_ahead());
   FloatQuad near = minimum(minimum(z[0], z[1]), z[2]), far = maximum(maximum(z[0], z[1]), z[2]);
   const FloatQuad whole = (across[0] + across[1]) + across[2];
   const FloatQuad middle = ((across[0] * z[0] + across[1] * z[1]) + across[2] * z[2]) / whole;

@@ -48,7 +48,7 @@ class CheckIntersectorTest : public testing::Test {
     std::vector<NearestHit> hits(rays_.size());
     try {
       check.intersect(rays_, query, hits);
-    } catch (const IntersectorMismatch& mismatch) {
+    } catch (const EngineMismatch& mismatch) {
       return mismatch.what();
     }
     return "";
@@ -130,11 +130,7 @@ TEST(NearestHit, EveryOrderOfReportsGivesTheSame) {
     for (int kind = 0; kind < 2; ++kind) {
       NearestHit best;
       for (const std::uint32_t primitive : primitives) {
-        if (kind == 0) {
-          take_if_nearer(bvh, kRay, INFINITY, hit_of(primitive), best, counters);
-        } else {
-          resolve_doubt(bvh, kRay, INFINITY, {.primitive = primitive}, best, counters);
-        }
+        take_if_nearest(bvh, kRay, INFINITY, hit_of(primitive), kind == 0, best, counters);
       }
       ASSERT_EQ(bvh.triangle_of(best.primitive), 2u);
     }
@@ -154,10 +150,11 @@ TEST(NearestHit, NothingAtOrBeyondTheLimitCounts) {
   IntersectCounters counters;
   for (std::uint32_t primitive = 0; primitive < 2; ++primitive) {
     const bool expected = bvh.corners_of(primitive)[0].z < limit;
-    NearestHit none, nothing;
-    EXPECT_EQ(take_if_nearer(bvh, kRay, limit, hit_of(primitive), none, counters), expected);
-    EXPECT_EQ(resolve_doubt(bvh, kRay, limit, {.primitive = primitive}, nothing, counters),
-              expected);
+    for (const bool is_sure : {true, false}) {
+      NearestHit best;
+      EXPECT_EQ(take_if_nearest(bvh, kRay, limit, hit_of(primitive), is_sure, best, counters),
+                expected);
+    }
   }
 }
 
@@ -165,7 +162,7 @@ TEST(NearestHit, ADoubtThatIsAMissLeavesNothing) {
   const Bvh bvh(test::scene_of({at_depth(-1)}));
   IntersectCounters counters;
   NearestHit best;
-  EXPECT_FALSE(resolve_doubt(bvh, kRay, INFINITY, {.primitive = 0}, best, counters));
+  EXPECT_FALSE(take_if_nearest(bvh, kRay, INFINITY, {.primitive = 0}, false, best, counters));
   EXPECT_EQ(best.primitive, NearestHit::kNone);
 }
 

@@ -1,8 +1,6 @@
 #include "host/intersect/unit/burst_unit.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <string>
 
 #include "host/intersect/check_intersector.h"
@@ -10,30 +8,28 @@
 namespace raygate {
 namespace {
 
-std::string describe(const BurstHit& hit) {
-  const float words[] = {hit.t, hit.point.x, hit.point.y, hit.point.z};
-  return "nearest is record " + std::to_string(hit.record) + ", t and P" + hex_words(words) +
-         ", error of t " + std::to_string(hit.t_error);
+std::string describe(const BurstResult& result) {
+  const std::string record = "record " + std::to_string(result.record);
+  if (result.kind == BurstResult::Kind::kDoubt) return "doubt of " + record;
+  if (result.kind == BurstResult::Kind::kNearTie) return "near tie of " + record;
+  const float words[] = {result.t, result.point.x, result.point.y, result.point.z};
+  return "nearest is " + record + ", t and P" + hex_words(words) + ", error of t " +
+         std::to_string(result.t_error);
 }
 
-std::string describe(const TestReport& report) {
-  return (report.kind == TestReport::Kind::kDoubt ? "doubt of record " : "near tie of record ") +
-         std::to_string(report.record);
-}
-
-template <class Result>
-bool earlier(const Result& a, const Result& b) {
+bool earlier(const BurstResult& a, const BurstResult& b) {
   return a.bundle != b.bundle ? a.bundle < b.bundle : a.lane < b.lane;
 }
 
-template <class Result>
-void require_same_list(std::span<const RayBundle> batch, std::span<const Result> actual,
-                       std::span<const Result> expected) {
-  const auto [a, e] = std::mismatch(actual.begin(), actual.end(), expected.begin(), expected.end());
+}  // namespace
+
+void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
+                  const BurstResults& expected) {
+  const auto [a, e] = std::ranges::mismatch(actual, expected);
   const bool a_left = a != actual.end(), e_left = e != expected.end();
   if (!a_left && !e_left) return;
   // The burst that differs is that of the earlier result.
-  const Result& culprit = !e_left || (a_left && earlier(*a, *e)) ? *a : *e;
+  const BurstResult& culprit = !e_left || (a_left && earlier(*a, *e)) ? *a : *e;
   const auto part = [&](bool left, auto result) {
     return left && !earlier(culprit, *result) ? describe(*result) : std::string("nothing more");
   };
@@ -45,20 +41,7 @@ void require_same_list(std::span<const RayBundle> batch, std::span<const Result>
   for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
     text += "; record " + std::to_string(i) + hex_words({&bundle.records[i].normal.x, 16});
   }
-  throw BurstUnitMismatch(text);
-}
-
-}  // namespace
-
-bool operator==(const BurstHit& a, const BurstHit& b) {
-  using Words = std::array<std::uint32_t, sizeof(BurstHit) / 4>;
-  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
-}
-
-void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
-                  const BurstResults& expected) {
-  require_same_list<BurstHit>(batch, actual.hits, expected.hits);
-  require_same_list<TestReport>(batch, actual.reports, expected.reports);
+  throw EngineMismatch(text);
 }
 
 }  // namespace raygate

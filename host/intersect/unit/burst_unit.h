@@ -1,50 +1,98 @@
 // Interfaces of the pipelined hit-test unit (bursts in, nearest hits out) and of the paper's unit.
 #pragma once
 
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
-#include <stdexcept>
+#include <utility>
 #include <vector>
 
-#include "host/intersect/unit/hit_tester.h"
+#include "host/base/lanes.h"
+#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 
-/// The nearest sure hit of a burst in binary32; near ties are reported separately.
-struct BurstHit {
+/// Up to eight rays to test against the same records: eight bursts, stored together. The burst of
+/// lane k tests direction k against records [0, record_count), in this order.
+struct alignas(32) RayBundle {
+  float direction[3][kLanes];              ///< x, y, z of each lane; scaled (see is_scaled)
+  const PolygonRecord* records = nullptr;  ///< made for the origin of these rays
+  std::uint32_t record_count = 0;
+  std::uint32_t first_tag = 0;  ///< tag of records[0]; records[i] has tag first_tag + i
+  LaneMask lanes = 0;           ///< bit k: lane k holds a ray
+
+  [[nodiscard]] glm::vec3 lane_direction(int lane) const {
+    return {direction[0][lane], direction[1][lane], direction[2][lane]};
+  }
+};
+
+/// Tests batches of bundles in two steps, so that the unit is busy while the caller prepares the
+/// next batch.
+template <class Result>
+class BatchTester {
+ public:
+  virtual ~BatchTester() = default;
+
+  /// Starts a batch, which must live until its finish(). At most two batches may be started and not
+  /// finished.
+  virtual void start(std::span<const RayBundle> batch) {
+    assert(started_count_ < 2);
+    started_[started_count_++] = batch;
+  }
+  /// Completes the oldest batch and appends its results, in the order of the batch.
+  virtual void finish(std::vector<Result>& results) = 0;
+
+  /// Tests a batch if no other one is started.
+  void run(std::span<const RayBundle> batch, std::vector<Result>& results) {
+    start(batch);
+    finish(results);
+  }
+
+  /// Returns the number of tests below which a batch leaves the unit mostly idle, so that adding
+  /// tests beyond known hits is worthwhile.
+  [[nodiscard]] virtual std::size_t enough_tests() const { return 0; }
+
+ protected:
+  std::span<const RayBundle> pop_started() {
+    assert(started_count_ > 0);
+    --started_count_;
+    return std::exchange(started_[0], started_[1]);
+  }
+
+ private:
+  std::span<const RayBundle> started_[2];
+  int started_count_ = 0;
+};
+
+/// A test that binary32 does not exclude from being the nearest hit of its burst.
+struct BurstResult {
+  enum class Kind : std::uint32_t {
+    kHit = 0,      ///< the nearest sure hit of the burst
+    kDoubt = 1,    ///< neither a sure hit nor a sure miss, or t cannot be computed
+    kNearTie = 2,  ///< a sure hit that may be nearer than the kHit
+  };
+
   std::uint32_t bundle = 0, lane = 0;  ///< index of the bundle in the batch, and lane
   std::uint32_t record = 0;            ///< index into the bundle's records
-  float t = 0.0f;                      ///< d / (I . N), positive and normal
+  Kind kind = Kind::kHit;
+  // The fields below are 0 unless the kind is kHit.
+  float t = 0.0f;             ///< d / (I . N), positive and normal
   std::uint32_t t_error = 0;  ///< at most 2^(6 + t_error) floats lie between t and the exact t
   glm::vec3 point{0.0f};      ///< P = d I / (I . N)
 
-  friend bool operator==(const BurstHit& a, const BurstHit& b);  ///< compares all bits
-};
-
-/// A test that binary32 does not decide.
-struct TestReport {
-  enum class Kind : std::uint8_t {
-    kDoubt = 1,    ///< neither a sure hit nor a sure miss, or t cannot be computed
-    kNearTie = 2,  ///< a sure hit that may be nearer than the one in BurstHit
-  };
-  std::uint32_t bundle = 0, lane = 0, record = 0;
-  Kind kind = Kind::kDoubt;
-
-  friend bool operator==(const TestReport&, const TestReport&) = default;
-};
-
-/// The results of a batch of bursts, in the order of bundles and lanes; the reports of a burst are
-/// in the order of its tests.
-struct BurstResults {
-  std::vector<BurstHit> hits;
-  std::vector<TestReport> reports;
-
-  void clear() {
-    hits.clear();
-    reports.clear();
+  friend bool operator==(const BurstResult& a, const BurstResult& b) {  ///< compares all bits
+    using Words = std::array<std::uint32_t, sizeof(BurstResult) / 4>;
+    return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
   }
 };
+
+/// The results of a batch, in the order of bundles and lanes; those of a burst are in the order of
+/// its tests, except that its kHit comes last.
+using BurstResults = std::vector<BurstResult>;
 
 /// Statistics of a unit since its construction. Clocks are 0 without simulation. Idle clocks and
 /// stalls are counted per lane of the hardware; together they are lanes * clocks - tests.
@@ -79,20 +127,15 @@ struct BurstCounters {
 /// (proof in hw/hit_test/hit_test_pkg.sv). One hit of a burst is kept: the first, which each later
 /// hit with a smaller t replaces. If the distance of two hits, in floats, is at most the sum of
 /// their errors, the one that is not kept is reported as a near tie.
-class BurstUnit : public BatchTester<BurstResults> {
+class BurstUnit : public BatchTester<BurstResult> {
  public:
   /// Must not be called between start and finish.
   [[nodiscard]] virtual BurstCounters counters() const = 0;
 };
 
-/// Thrown by require_same. The text can be replayed: the burst's direction, the 16 words of each
-/// record in hexadecimal, and the results of both units.
-class BurstUnitMismatch : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Throws BurstUnitMismatch at the first burst whose `actual` bits differ from those `expected`.
+/// Throws EngineMismatch at the first burst whose `actual` bits differ from those `expected`. The
+/// text can be replayed: the burst's direction, the 16 words of each record in hexadecimal, and the
+/// results of both units.
 void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
                   const BurstResults& expected);
 

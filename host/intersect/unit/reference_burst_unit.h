@@ -7,9 +7,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <optional>
 
-#include "host/exact/binary32.h"
+#include "host/exact/ieee_floats.h"
 #include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
@@ -33,7 +32,8 @@ class BasicReferenceBurstUnit : public BurstUnit {
  public:
   explicit BasicReferenceBurstUnit(const Math& math = {}) : math_(math) {}
 
-  void run(std::span<const RayBundle> batch, BurstResults& results) override {
+  void finish(BurstResults& results) override {
+    const std::span<const RayBundle> batch = this->pop_started();
     for (std::uint32_t i = 0; i < batch.size(); ++i) {
       for (LaneMask lanes = batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
         run_burst(batch[i], i, static_cast<std::uint32_t>(std::countr_zero(lanes)), results);
@@ -43,7 +43,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
 
   [[nodiscard]] BurstCounters counters() const override { return counters_; }
 
-  /// Returns the verdict on one test, as in `run`.
+  /// Returns the verdict on one test, as in a batch.
   [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction) const {
     const float v = math_.dot(record.normal, direction);
     const UnitVerdict decided = decide(record, direction, v);
@@ -116,7 +116,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
   }
 
   /// Returns whether two positive distances differ by at most the sum of their errors.
-  [[nodiscard]] bool near_tie(const HitDistance& a, const BurstHit& b) const {
+  [[nodiscard]] bool near_tie(const HitDistance& a, const BurstResult& b) const {
     const std::int64_t margin = (std::int64_t{1} << (kTErrorUnit + a.error)) +
                                 (std::int64_t{1} << (kTErrorUnit + b.t_error));
     return std::abs(static_cast<std::int64_t>(math_.to_word(a.t)) -
@@ -125,12 +125,10 @@ class BasicReferenceBurstUnit : public BurstUnit {
 
   void run_burst(const RayBundle& bundle, std::uint32_t index, std::uint32_t lane,
                  BurstResults& results) {
+    using Kind = BurstResult::Kind;
     const glm::vec3 direction = bundle.lane_direction(static_cast<int>(lane));
-    BurstHit best{index, lane, 0, 0.0f, 0, glm::vec3{0.0f}};
+    BurstResult best{index, lane};
     bool found = false;
-    const auto report = [&](std::uint32_t record, TestReport::Kind kind) {
-      results.reports.push_back({index, lane, record, kind});
-    };
     for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
       const PolygonRecord& record = bundle.records[i];
       const float v = math_.dot(record.normal, direction);
@@ -145,24 +143,23 @@ class BasicReferenceBurstUnit : public BurstUnit {
       counters_.misses += verdict == UnitVerdict::kMiss;
       counters_.hits += verdict == UnitVerdict::kHit;
       counters_.doubts += verdict == UnitVerdict::kDoubt;
-      if (verdict == UnitVerdict::kDoubt) report(i, TestReport::Kind::kDoubt);
+      if (verdict == UnitVerdict::kDoubt) results.push_back({index, lane, i, Kind::kDoubt});
       if (verdict != UnitVerdict::kHit) continue;
       const bool nearer = hit.t < best.t;
       if (found && near_tie(hit, best)) {
         ++counters_.near_ties;
-        report(nearer ? best.record : i, TestReport::Kind::kNearTie);
+        results.push_back({index, lane, nearer ? best.record : i, Kind::kNearTie});
       }
-      if (!found || nearer) {
-        best.record = i;
-        best.t = hit.t;
-        best.t_error = hit.error;
-        found = true;
-      }
+      if (found && !nearer) continue;
+      best.record = i;
+      best.t = hit.t;
+      best.t_error = hit.error;
+      found = true;
     }
     if (!found) return;
     best.point = point(bundle.records[best.record], direction);
     counters_.coordinates += 3;
-    results.hits.push_back(best);
+    results.push_back(best);
   }
 
   Math math_;
@@ -170,11 +167,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
 };
 
 /// The reference model in the host's float arithmetic.
-extern template class BasicReferenceBurstUnit<Binary32>;
 using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
-
-/// Computes BasicReferenceBurstUnit::distance in binary32.
-[[nodiscard]] HitDistance hit_distance(const PolygonRecord& record, const glm::vec3& direction);
 
 /// P and its error bound, as in NearestHit.
 struct UnitPoint {
@@ -182,21 +175,31 @@ struct UnitPoint {
   float error;
 };
 
-/// Computes BasicReferenceBurstUnit::point in binary32.
-[[nodiscard]] UnitPoint plane_point(const PolygonRecord& record, const glm::vec3& direction);
-
-/// Returns the error bound of a P of the unit. `grazing` is the value reported by the unit, if any.
-[[nodiscard]] float point_error(const PolygonRecord& record, const glm::vec3& direction,
-                                std::optional<std::uint32_t> grazing = std::nullopt);
+/// Computes BasicReferenceBurstUnit::point in binary32, and its error bound.
+[[nodiscard]] inline UnitPoint plane_point(const PolygonRecord& record,
+                                           const glm::vec3& direction) {
+  const auto d = std::bit_cast<std::int32_t>(record.d),
+             v = std::bit_cast<std::int32_t>(Binary32::dot(record.normal, direction));
+  const std::int32_t error = point_error_of(d, v, grazing_of(largest_field(record.normal), v));
+  return {ReferenceBurstUnit().point(record, direction), std::bit_cast<float>(error)};
+}
 
 /// The reference model of the paper's unit; its points have the same bits as BurstUnit's.
-class ReferencePlaneUnit : public PlaneUnit {
+template <class Math>
+class BasicReferencePlaneUnit : public PlaneUnit {
  public:
+  explicit BasicReferencePlaneUnit(const Math& math = {}) : math_(math) {}
+
   void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override {
-    std::ranges::transform(tests, points.begin(), [](const PlaneTest& test) {
-      return ReferenceBurstUnit().point({.normal = test.normal, .d = test.d}, test.direction);
+    std::ranges::transform(tests, points.begin(), [&](const PlaneTest& test) {
+      const PolygonRecord record{.normal = math_.read(test.normal), .d = math_.read(test.d)};
+      return BasicReferenceBurstUnit<Math>(math_).point(record, math_.read(test.direction));
     });
   }
+
+ private:
+  Math math_;
 };
+using ReferencePlaneUnit = BasicReferencePlaneUnit<Binary32>;
 
 }  // namespace raygate

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cstdlib>
 #include <new>
-#include <thread>
 #include <utility>
 
 #include "host/base/stopwatch.h"
@@ -21,39 +20,19 @@ RecordCache::RecordCache(const Bvh& bvh, const glm::vec3& origin) : bvh_(bvh), o
   records_.reset(static_cast<PolygonRecord*>(
       std::aligned_alloc(alignof(PolygonRecord), primitives * sizeof(PolygonRecord))));
   if (records_ == nullptr) throw std::bad_alloc();
-  states_ = std::make_unique<std::atomic<State>[]>(primitives);
+  is_made_ = std::make_unique<std::atomic<bool>[]>(primitives);
 }
 
 std::uint64_t RecordCache::make(std::uint32_t first, std::uint32_t count) {
-  constexpr std::uint32_t kRecords = 4 * Bvh::kMaxLeafSize;  // made at once
+  const std::scoped_lock lock(mutex_);
   std::uint64_t made = 0;
-  const std::uint32_t end = first + count;
-  for (std::uint32_t primitive = first; primitive < end;) {
-    const std::uint32_t begin = primitive;
-    std::array<Corners, kRecords> corners;
-    for (; primitive < end && primitive - begin < kRecords && claim(primitive); ++primitive) {
-      corners[primitive - begin] = bvh_.corners_of(primitive);
-    }
-    if (const std::uint32_t claimed = primitive - begin; claimed != 0) {
-      make_records(origin_, std::span(corners).first(claimed),
-                   std::span(&records_[begin], claimed));
-      made += claimed;
-      for (std::uint32_t i = begin; i < primitive; ++i) {
-        states_[i].store(State::kMade, std::memory_order_release);
-      }
-    }
-    if (primitive < end && primitive - begin < kRecords) ++primitive;  // made by another thread
-  }
-  for (std::uint32_t primitive = first; primitive < end; ++primitive) {
-    while (states_[primitive].load(std::memory_order_acquire) != State::kMade)
-      std::this_thread::yield();
+  for (std::uint32_t primitive = first; primitive < first + count; ++primitive) {
+    if (is_made_[primitive].load(std::memory_order_relaxed)) continue;
+    records_[primitive] = make_record(origin_, bvh_.corners_of(primitive));
+    is_made_[primitive].store(true, std::memory_order_release);
+    ++made;
   }
   return made;
-}
-
-bool RecordCache::claim(std::uint32_t primitive) {
-  State expected = State::kNone;
-  return states_[primitive].compare_exchange_strong(expected, State::kBusy);
 }
 
 RecordCache& RecordCaches::at(const glm::vec3& origin, std::uint64_t& made) {
@@ -67,15 +46,11 @@ RecordCache& RecordCaches::at(const glm::vec3& origin, std::uint64_t& made) {
 
 UnitIntersector::UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester,
                                  std::shared_ptr<RecordCaches> caches)
-    : bvh_(bvh),
+    // Batches are long relative to the pipeline's fill time, also if several lanes share them.
+    : Intersector({.batch = std::max(EngineTraits{}.batch, 256 * tester->enough_tests())}),
+      bvh_(bvh),
       tester_(std::move(tester)),
       caches_(caches ? std::move(caches) : std::make_shared<RecordCaches>(bvh)) {}
-
-std::size_t UnitIntersector::preferred_batch() const {
-  // Makes batches long relative to the pipeline's fill time.
-  constexpr std::size_t kRaysPerTest = 256;
-  return std::max(kBatch, kRaysPerTest * tester_->enough_tests());
-}
 
 IntersectCounters UnitIntersector::counters() const {
   IntersectCounters counters = counters_;
@@ -115,8 +90,8 @@ void UnitIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
 /// Processes the results of a half's batch.
 void UnitIntersector::finish(Half& half) {
   Stopwatch watch;
-  results_.clear();
-  tester_->finish(results_);
+  reports_.clear();
+  tester_->finish(reports_);
   half.started = false;
   merge(half);
   if (!query_.work.empty()) count_work(half);
@@ -179,31 +154,19 @@ void UnitIntersector::collect(Half& half) {
 
 namespace {
 
-RayBundle make_bundle(std::span<const Ray> rays, std::span<const std::uint32_t> numbers,
-                      const LeafVisit& visit, LaneMask lanes) {
-  RayBundle bundle;
-  for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
-    const glm::vec3& direction = rays[numbers[lane]].direction;
-    for (int k = 0; k < 3; ++k) bundle.direction[k][lane] = direction[k];
-  }
-  bundle.record_count = visit.count;
-  bundle.first_tag = visit.first;
-  bundle.lanes = lanes;
-  return bundle;
-}
-
-/// Adds a bundle for each origin among the visiting rays.
-void add_own_bundles(std::span<const Ray> rays, std::span<const std::uint32_t> numbers,
-                     const LeafVisit& visit, std::vector<RayBundle>& batch) {
-  for (LaneMask left = visit.lanes; left != 0;) {
+/// Adds a bundle for each origin among the visiting rays, whose indices are `numbers`.
+void add_bundles(std::span<const Ray> rays, std::span<const std::uint32_t> numbers,
+                 const LeafVisit& visit, std::vector<RayBundle>& batch) {
+  for (LaneMask left = visit.lanes; left != 0; left &= ~batch.back().lanes) {
     const glm::vec3& origin = rays[numbers[std::countr_zero(left)]].origin;
-    LaneMask lanes = 0;
-    for (LaneMask others = left; others != 0; others &= others - 1) {
-      const int lane = std::countr_zero(others);
-      if (rays[numbers[lane]].origin == origin) lanes |= 1u << lane;
+    RayBundle& bundle = batch.emplace_back();
+    bundle.record_count = visit.count;
+    bundle.first_tag = visit.first;
+    for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
+      const Ray& ray = rays[numbers[lane]];
+      for (int k = 0; k < 3; ++k) bundle.direction[k][lane] = ray.direction[k];
+      if ((left >> lane & 1) != 0 && ray.origin == origin) bundle.lanes |= 1u << lane;
     }
-    batch.push_back(make_bundle(rays, numbers, visit, lanes));
-    left &= ~lanes;
   }
 }
 
@@ -220,13 +183,10 @@ std::size_t UnitIntersector::visit_leaves(Half& half) {
     half.active[kept++] = index;
     for (const LeafVisit& visit : leaf) {
       tests += visit.count * static_cast<std::size_t>(std::popcount(visit.lanes));
+      add_bundles(rays_, packet.rays, visit, half.batch);
       if (common_ != nullptr && !bvh_.is_instanced(visit.first)) {
-        assert(rays_[packet.rays[0]].origin == common_->origin());
-        half.batch.push_back(make_bundle(rays_, packet.rays, visit, visit.lanes));
         half.batch.back().records =
             common_->leaf(visit.first, visit.count, counters_.common_records);
-      } else {
-        add_own_bundles(rays_, packet.rays, visit, half.batch);
       }
     }
     half.owner.resize(half.batch.size(), index);
@@ -248,34 +208,28 @@ void UnitIntersector::make_own_records(Half& half) {
     RayBundle& bundle = half.batch[i];
     if (bundle.records != nullptr) continue;
     const Ray& ray = rays_[packets_[half.owner[i]].rays[std::countr_zero(bundle.lanes)]];
-    std::array<Corners, Bvh::kMaxLeafSize> corners;
-    for (std::uint32_t k = 0; k < bundle.record_count; ++k) {
-      corners[k] = bvh_.corners_of(bundle.first_tag + k);
-    }
-    make_records(ray.origin, std::span(corners).first(bundle.record_count),
-                 std::span(next, bundle.record_count));
     bundle.records = next;
-    next += bundle.record_count;
+    for (std::uint32_t k = 0; k < bundle.record_count; ++k) {
+      *next++ = make_record(ray.origin, bvh_.corners_of(bundle.first_tag + k));
+    }
   }
   counters_.own_records += count;
 }
 
-bool UnitIntersector::take(std::uint32_t number, const SureHit& hit) {
-  return take_if_nearer(bvh_, rays_[number], query_.t_max_of(number),
-                        {hit.tag, hit.point, hit.point_error, hit.t}, hits_[number], counters_);
+std::uint32_t UnitIntersector::ray_of(const Half& half, const HitReport& report) const {
+  return packets_[half.owner[report.bundle]].rays[report.lane];
 }
 
-bool UnitIntersector::take(std::uint32_t number, const Doubt& doubt) {
-  return resolve_doubt(bvh_, rays_[number], query_.t_max_of(number),
-                       {doubt.tag, doubt.point, doubt.point_error, {}}, hits_[number], counters_);
-}
-
-template <class Report>
-void UnitIntersector::offer(const Half& half, const Report& report) {
+/// Resolves a report, and shortens or ends the ray if it is the nearest hit.
+void UnitIntersector::offer(const Half& half, const HitReport& report) {
   Packet& packet = packets_[half.owner[report.bundle]];
-  const std::uint32_t number = packet.rays[report.lane];
+  const std::uint32_t number = ray_of(half, report);
   const LaneMask lane = 1u << report.lane;
-  if ((packet.ended & lane) != 0 || !take(number, report)) return;
+  if ((packet.ended & lane) != 0 ||
+      !take_if_nearest(bvh_, rays_[number], query_.t_max_of(number), report.hit, report.is_sure,
+                       hits_[number], counters_)) {
+    return;
+  }
   const bool ends = !query_.any_hit_before.empty() &&
                     is_before(bvh_, rays_[number], hits_[number], query_.any_hit_before[number]);
   counters_.ended_early += ends;
@@ -283,32 +237,30 @@ void UnitIntersector::offer(const Half& half, const Report& report) {
   packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);
 }
 
-/// Tests all triangles of the bundle exactly if its hit is ignored, since a burst does not report
-/// hits that are surely farther than another one.
-void UnitIntersector::offer_hidden(const Half& half, const SureHit& ignored) {
+/// Tests all other triangles of the bundle exactly if its hit is ignored, since a burst does not
+/// report hits that are surely farther than another one.
+void UnitIntersector::offer_hidden(const Half& half, const HitReport& ignored) {
   const RayBundle& bundle = half.batch[ignored.bundle];
-  const std::uint32_t number = packets_[half.owner[ignored.bundle]].rays[ignored.lane];
-  if (ignored.t.low >= query_.t_max_of(number)) return;
+  if (ignored.hit.t.low >= query_.t_max_of(ray_of(half, ignored))) return;
   for (std::uint32_t tag = bundle.first_tag; tag < bundle.first_tag + bundle.record_count; ++tag) {
-    if (tag == ignored.tag) continue;
-    offer(half, Doubt{ignored.bundle, ignored.lane, tag, glm::vec3(0.0f)});
+    if (tag == ignored.hit.primitive) continue;
+    offer(half, {ignored.bundle, ignored.lane, false, {.primitive = tag}});
   }
 }
 
+/// Takes sure hits first: most doubts are then surely too far away.
 void UnitIntersector::merge(const Half& half) {
-  const auto is_ignored = [&](const auto& report) {
-    return !query_.skip_ids.empty() &&
-           query_.skip_ids[packets_[half.owner[report.bundle]].rays[report.lane]] == report.tag;
-  };
-  for (const SureHit& hit : results_.hits) {
-    if (is_ignored(hit)) {
-      offer_hidden(half, hit);
-    } else {
-      offer(half, hit);
+  for (const bool is_sure : {true, false}) {
+    for (const HitReport& report : reports_) {
+      if (report.is_sure != is_sure) continue;
+      const bool is_ignored =
+          !query_.skip_ids.empty() && query_.skip_ids[ray_of(half, report)] == report.hit.primitive;
+      if (!is_ignored) {
+        offer(half, report);
+      } else if (is_sure) {
+        offer_hidden(half, report);
+      }
     }
-  }
-  for (const Doubt& doubt : results_.doubts) {
-    if (!is_ignored(doubt)) offer(half, doubt);
   }
 }
 
@@ -319,8 +271,8 @@ void UnitIntersector::count_work(const Half& half) {
       query_.work[ray].tests += half.batch[i].record_count;
     }
   }
-  for (const Doubt& doubt : results_.doubts) {
-    ++query_.work[packets_[half.owner[doubt.bundle]].rays[doubt.lane]].doubts;
+  for (const HitReport& report : reports_) {
+    query_.work[ray_of(half, report)].doubts += report.is_sure ? 0 : 1;
   }
 }
 

@@ -14,13 +14,12 @@
 
 #include "host/bvh/packet_traversal.h"
 #include "host/intersect/intersector.h"
-#include "host/intersect/polygon_record.h"
 #include "host/intersect/unit/hit_tester.h"
 
 namespace raygate {
 
-/// One record per primitive of the BVH, made leaf by leaf. Thread-safe: the first thread makes a
-/// record, others wait for it. Takes 65 bytes per primitive; untouched pages take no memory.
+/// One record per primitive of the BVH, made leaf by leaf. Thread-safe. Takes 65 bytes per
+/// primitive; untouched pages take no memory.
 class RecordCache {
  public:
   RecordCache(const Bvh& bvh, const glm::vec3& origin);
@@ -32,7 +31,7 @@ class RecordCache {
   [[nodiscard]] const PolygonRecord* leaf(std::uint32_t first, std::uint32_t count,
                                           std::uint64_t& made) {
     for (std::uint32_t primitive = first; primitive < first + count; ++primitive) {
-      if (states_[primitive].load(std::memory_order_acquire) != State::kMade) {
+      if (!is_made_[primitive].load(std::memory_order_acquire)) {
         made += make(first, count);
         break;
       }
@@ -41,19 +40,17 @@ class RecordCache {
   }
 
  private:
-  enum class State : std::uint8_t { kNone, kBusy, kMade };
-
   struct Free {
     void operator()(void* memory) const;
   };
 
   std::uint64_t make(std::uint32_t first, std::uint32_t count);
-  bool claim(std::uint32_t primitive);
 
   const Bvh& bvh_;
   glm::vec3 origin_;
   std::unique_ptr<PolygonRecord[], Free> records_;
-  std::unique_ptr<std::atomic<State>[]> states_;  // by primitive
+  std::unique_ptr<std::atomic<bool>[]> is_made_;  // by primitive
+  std::mutex mutex_;                              // of the thread that makes records
 };
 
 /// The caches of all common origins of a scene, each made on first use. Thread-safe.
@@ -88,10 +85,6 @@ class UnitIntersector : public Intersector {
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
-
-  /// Returns a larger batch if several lanes share it.
-  [[nodiscard]] std::size_t preferred_batch() const override;
-
   [[nodiscard]] IntersectCounters counters() const override;
 
  private:
@@ -120,11 +113,9 @@ class UnitIntersector : public Intersector {
   void collect(Half& half);
   std::size_t visit_leaves(Half& half);
   void make_own_records(Half& half);
-  template <class Report>
-  void offer(const Half& half, const Report& report);
-  void offer_hidden(const Half& half, const SureHit& ignored);
-  bool take(std::uint32_t number, const SureHit& hit);
-  bool take(std::uint32_t number, const Doubt& doubt);
+  [[nodiscard]] std::uint32_t ray_of(const Half& half, const HitReport& report) const;
+  void offer(const Half& half, const HitReport& report);
+  void offer_hidden(const Half& half, const HitReport& ignored);
   void finish(Half& half);
   void merge(const Half& half);
   void count_work(const Half& half);
@@ -140,7 +131,7 @@ class UnitIntersector : public Intersector {
   // Reused for all queries.
   std::vector<Packet> packets_;
   std::array<Half, 2> halves_;
-  HitResults results_;
+  HitReports reports_;
 };
 
 }  // namespace raygate

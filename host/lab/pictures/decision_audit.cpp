@@ -23,8 +23,9 @@ class AuditTester : public HitTester {
   AuditTester(const Bvh& bvh, const glm::vec3& origin, HitTester& tester, Counts& counts)
       : bvh_(bvh), origin_(origin), tester_(tester), counts_(counts) {}
 
-  void run(std::span<const RayBundle> batch, HitResults& results) override {
-    tester_.run(batch, results);
+  void finish(HitReports& reports) override {
+    const std::span<const RayBundle> batch = pop_started();
+    tester_.run(batch, reports);
     std::vector<RayBundle> alone;
     for (const RayBundle& bundle : batch) {
       for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
@@ -34,11 +35,12 @@ class AuditTester : public HitTester {
         one.first_tag += i;
       }
     }
-    HitResults said;
-    tester_.run(alone, said);
+    HitReports audited;
+    tester_.run(alone, audited);
     std::vector<LaneMask> hits(alone.size()), doubts(alone.size());
-    for (const SureHit& hit : said.hits) hits[hit.bundle] |= LaneMask{1} << hit.lane;
-    for (const Doubt& doubt : said.doubts) doubts[doubt.bundle] |= LaneMask{1} << doubt.lane;
+    for (const HitReport& report : audited) {
+      (report.is_sure ? hits : doubts)[report.bundle] |= LaneMask{1} << report.lane;
+    }
     for (std::size_t i = 0; i < alone.size(); ++i) {
       for (LaneMask lanes = alone[i].lanes; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);

@@ -22,7 +22,7 @@ class RaygatePeer : public Peer {
   void run(Found& found) override {
     CpuIntersector intersector(bvh_);
     const std::span<const Ray> rays(set_->rays);
-    std::vector<NearestHit> hits(intersector.preferred_batch());
+    std::vector<NearestHit> hits(intersector.traits().batch);
     for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
       const std::size_t count = std::min(hits.size(), rays.size() - first);
       intersector.intersect(rays.subspan(first, count), set_->query(first, count),

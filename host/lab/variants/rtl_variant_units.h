@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "host/intersect/unit/burst_unit.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/variants/variant_table.h"
 
 namespace raygate {

@@ -10,7 +10,7 @@
 #include "host/base/test/using_vectors.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/unit_hit_testers.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/light/test/light_scenes.h"
 
 static thread_local bool refuse_large = false;  // memory, to this thread
@@ -23,11 +23,7 @@ using namespace test;  // NOLINT(google-build-using-namespace)
 /// An intersector that prefers larger tiles.
 class ManyAtOnce : public CpuIntersector {
  public:
-  ManyAtOnce(const Bvh& bvh, std::size_t lanes) : CpuIntersector(bvh), lanes_(lanes) {}
-  [[nodiscard]] std::size_t preferred_batch() const override { return lanes_ * kBatch; }
-
- private:
-  std::size_t lanes_;
+  ManyAtOnce(const Bvh& bvh, std::size_t lanes) : CpuIntersector(bvh) { traits_.batch *= lanes; }
 };
 
 class EveryIntegrator : public testing::TestWithParam<IntegratorKind> {
@@ -77,8 +73,9 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
 class SourceGuard : public CpuIntersector {
  public:
   SourceGuard(const Bvh& bvh, std::size_t& named, std::size_t& unnamed)
-      : CpuIntersector(bvh), bvh_(bvh), named_(named), unnamed_(unnamed) {}
-  [[nodiscard]] bool wants_sources() const override { return true; }
+      : CpuIntersector(bvh), bvh_(bvh), named_(named), unnamed_(unnamed) {
+    traits_.wants_sources = true;
+  }
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override {
     for (std::size_t i = 0; i < rays.size() && !query.common_origin; ++i) {

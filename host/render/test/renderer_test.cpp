@@ -13,7 +13,7 @@
 #include "host/exact/test/meshes.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/unit_hit_testers.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/scene/camera.h"
 

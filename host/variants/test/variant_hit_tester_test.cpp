@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "host/exact/exact.h"
-#include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 #include "host/lab/stress/random.h"
 #include "host/scene/camera.h"
 #include "sim/random_bursts.h"
@@ -53,15 +51,15 @@ Case hard_case(Random& random) {
 }
 
 /// One test: a bundle of one ray and one record.
-HitResults test(HitTester& tester, const Case& c, const PolygonRecord& record) {
+HitReports test(HitTester& tester, const Case& c, const PolygonRecord& record) {
   RayBundle bundle;
   for (int k = 0; k < 3; ++k) bundle.direction[k][0] = c.ray.direction[k];
   bundle.records = &record;
   bundle.record_count = 1;
   bundle.lanes = 1;
-  HitResults results;
-  tester.run({&bundle, 1}, results);
-  return results;
+  HitReports reports;
+  tester.run({&bundle, 1}, reports);
+  return reports;
 }
 
 TEST(VariantHitTester, IsNeverWrongWhereDoubtsAreResolved) {
@@ -72,17 +70,17 @@ TEST(VariantHitTester, IsNeverWrongWhereDoubtsAreResolved) {
     int sure_hits = 0, sure_misses = 0, doubts = 0;
     for (int i = 0; i < 10000; ++i) {
       const Case c = hard_case(random);
-      const HitResults results = test(*tester, c, make_record(c.ray.origin, c.triangle));
+      const HitReports reports = test(*tester, c, make_record(c.ray.origin, c.triangle));
       const bool truth = hits_triangle(c.ray, c.triangle);
-      if (!results.doubts.empty()) {
-        ++doubts;
-      } else if (results.hits.empty()) {
+      if (reports.empty()) {
         ++sure_misses;
         ASSERT_FALSE(truth) << variant.name << ", case " << i;
+      } else if (!reports.front().is_sure) {
+        ++doubts;
       } else {
         ++sure_hits;
         ASSERT_TRUE(truth) << variant.name << ", case " << i;
-        const Interval exact = hit_distance(c.ray, c.triangle), t = results.hits.front().t;
+        const Interval exact = hit_distance(c.ray, c.triangle), t = reports.front().hit.t;
         EXPECT_LE(t.low, exact.high) << variant.name << ", case " << i;
         EXPECT_GE(t.high, exact.low) << variant.name << ", case " << i;
       }
@@ -99,9 +97,9 @@ TEST(VariantHitTester, IsOftenWrongWhereTheyAreIgnored) {
   int wrong = 0;
   for (int i = 0; i < 10000; ++i) {
     const Case c = hard_case(random);
-    const HitResults results = test(*tester, c, make_record(c.ray.origin, c.triangle));
-    EXPECT_TRUE(results.doubts.empty());
-    wrong += results.hits.empty() == hits_triangle(c.ray, c.triangle);
+    const HitReports reports = test(*tester, c, make_record(c.ray.origin, c.triangle));
+    EXPECT_TRUE(reports.empty() || reports.front().is_sure);
+    wrong += reports.empty() == hits_triangle(c.ray, c.triangle);
   }
   EXPECT_GT(wrong, 20);
 }
@@ -119,11 +117,11 @@ TEST(VariantHitTester, IgnoringDoubtsKeepsTheNearestOfABurst) {
   bundle.record_count = 3;
   bundle.first_tag = 10;
   bundle.lanes = 1;
-  HitResults results;
-  make_variant_tester(variant_named("e8p12-raw"))->run({&bundle, 1}, results);
-  ASSERT_EQ(results.hits.size(), 1u);
-  EXPECT_EQ(results.hits[0].tag, 11u);
-  EXPECT_EQ(results.hits[0].point, glm::vec3(0, 0, 2));
+  HitReports reports;
+  make_variant_tester(variant_named("e8p12-raw"))->run({&bundle, 1}, reports);
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_EQ(reports[0].hit.primitive, 11u);
+  EXPECT_EQ(reports[0].hit.point, glm::vec3(0, 0, 2));
 }
 
 TEST(VariantRecord, OfFewExponentsIsScaledIntoThem) {

@@ -223,10 +223,10 @@ class BoardAtAPort {
 void leave_a_mess(const std::string& port, std::span<const Ray> rays) {
   SerialLink link(port);
   const auto send = [&](const Ray& ray, std::size_t words) {
-    const RayMessage message = ray_message({.ray = ray, .tag = 7});
+    const auto message = ray_message({.ray = ray, .tag = 7});
     for (const std::uint32_t word : std::span(message).first(words)) EXPECT_TRUE(link.send(word));
   };
-  for (const Ray& ray : rays.first(kBoardRays - 1)) send(ray, RayMessage{}.size());
+  for (const Ray& ray : rays.first(kBoardRays - 1)) send(ray, ray_message({}).size());
   send(rays.back(), 8);
   while (!link.receive()) link.wait();
   const int file = open(port.c_str(), O_RDWR | O_NOCTTY);

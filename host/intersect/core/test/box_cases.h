@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "host/intersect/core/reference_units.h"
+#include "host/intersect/core/reference_core.h"
 
 namespace raygate {
 

@@ -20,7 +20,6 @@
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/core/reference_core.h"
-#include "host/intersect/core/reference_units.h"
 #include "host/intersect/core/test/box_cases.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "host/intersect/cpu/cpu_intersector.h"

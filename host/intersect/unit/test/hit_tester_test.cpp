@@ -1,5 +1,7 @@
 // What a tester calls sure is so, and what it leaves out is no nearest hit; the comparison of burst
 // units, and the reference model of the plane unit.
+#include "host/intersect/unit/hit_tester.h"
+
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -15,9 +17,7 @@
 #include <utility>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/unit_hit_testers.h"
+#include "host/intersect/check_intersector.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
@@ -76,23 +76,25 @@ struct Batch {
 
 using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
 
+Key key_of(const HitReport& report) { return {report.bundle, report.lane, report.hit.primitive}; }
+
 /// Checks the promises of `tester`, which is new, against exact arithmetic.
 void expect_the_truth(HitTester& tester) {
   Random random;
   const Batch batch(random, 20000);
-  HitResults results;
-  tester.run(batch.bundles, results);
+  HitReports reports;
+  tester.run(batch.bundles, reports);
 
   std::set<Key> doubtful, sure;
-  for (const Doubt& doubt : results.doubts) doubtful.insert({doubt.bundle, doubt.lane, doubt.tag});
-  for (const SureHit& hit : results.hits) {
-    sure.insert({hit.bundle, hit.lane, hit.tag});
-    const Corners& t = batch.triangles[hit.bundle][hit.tag - 100 * hit.bundle];
-    const Ray ray = batch.ray(hit.bundle, hit.lane);
+  for (const HitReport& report : reports) {
+    (report.is_sure ? sure : doubtful).insert(key_of(report));
+    if (!report.is_sure) continue;
+    const Corners& t = batch.triangles[report.bundle][report.hit.primitive - 100 * report.bundle];
+    const Ray ray = batch.ray(report.bundle, report.lane);
     ASSERT_TRUE(hits_triangle(ray, t));
     const Interval exact = hit_distance(ray, t);
-    ASSERT_LE(hit.t.low, exact.low);
-    ASSERT_GE(hit.t.high, exact.high);
+    ASSERT_LE(report.hit.t.low, exact.low);
+    ASSERT_GE(report.hit.t.high, exact.high);
   }
   EXPECT_GT(doubtful.size(), 100u);
   EXPECT_GT(sure.size(), 10000u);
@@ -115,7 +117,7 @@ void expect_the_truth(HitTester& tester) {
   }
   const HitCounters counters = tester.counters();
   EXPECT_EQ(counters.tests, counters.misses + counters.hits + counters.edge_doubts);
-  EXPECT_EQ(counters.edge_doubts, results.doubts.size());
+  EXPECT_EQ(counters.edge_doubts, doubtful.size());
   EXPECT_GT(counters.depth_doubts, 0u);
 }
 
@@ -137,21 +139,18 @@ TEST(PipelineHitTester, HasThePointsOfTheSerialUnit) {
   const Batch batch(random, 2000);
   SerialHitTester serial(std::make_unique<ReferencePlaneUnit>());
   PipelineHitTester pipeline(std::make_unique<ReferenceBurstUnit>());
-  HitResults a, b;
+  HitReports a, b;
   serial.run(batch.bundles, a);
   pipeline.run(batch.bundles, b);
   std::map<Key, glm::vec3> points;
-  for (const SureHit& hit : a.hits) points[{hit.bundle, hit.lane, hit.tag}] = hit.point;
-  for (const Doubt& doubt : a.doubts) points[{doubt.bundle, doubt.lane, doubt.tag}] = doubt.point;
+  for (const HitReport& report : a) points[key_of(report)] = report.hit.point;
   std::size_t compared = 0;
-  const auto expect_same = [&](const auto& result) {
-    const auto point = points.find({result.bundle, result.lane, result.tag});
-    if (point == points.end()) return;
-    EXPECT_EQ(std::memcmp(&point->second, &result.point, sizeof(glm::vec3)), 0);
+  for (const HitReport& report : b) {
+    const auto point = points.find(key_of(report));
+    if (point == points.end()) continue;
+    EXPECT_EQ(std::memcmp(&point->second, &report.hit.point, sizeof(glm::vec3)), 0);
     ++compared;
-  };
-  for (const SureHit& hit : b.hits) expect_same(hit);
-  for (const Doubt& doubt : b.doubts) expect_same(doubt);
+  }
   EXPECT_GT(compared, 1000u);
 }
 
@@ -162,15 +161,15 @@ TEST(SerialHitTester, BothOrdersReportTheSame) {
   SerialHitTester first(std::make_unique<ReferencePlaneUnit>());
   SerialHitTester paper(std::make_unique<ReferencePlaneUnit>(),
                         SerialHitTester::Order::kPlanesFirst);
-  HitResults a, b;
+  HitReports a, b;
   first.run(batch.bundles, a);
   paper.run(batch.bundles, b);
-  ASSERT_GT(a.hits.size(), 0u);
-  ASSERT_EQ(a.hits.size(), b.hits.size());
-  ASSERT_EQ(a.doubts.size(), b.doubts.size());
-  for (std::size_t i = 0; i < a.hits.size(); ++i) {
-    EXPECT_EQ(a.hits[i].tag, b.hits[i].tag);
-    EXPECT_EQ(std::memcmp(&a.hits[i].point, &b.hits[i].point, sizeof(glm::vec3)), 0);
+  ASSERT_GT(a.size(), 0u);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(key_of(a[i]), key_of(b[i]));
+    EXPECT_EQ(a[i].is_sure, b[i].is_sure);
+    EXPECT_EQ(std::memcmp(&a[i].hit.point, &b[i].hit.point, sizeof(glm::vec3)), 0);
   }
   EXPECT_EQ(paper.counters().plane_tests, paper.counters().tests);
 }
@@ -187,44 +186,44 @@ TEST(SerialHitTester, ThePlaneOfTheOriginIsAMissAndAnEmptyRunNothing) {
   empty.record_count = 0;
   const RayBundle batch[] = {bundle, empty};
   SerialHitTester tester(std::make_unique<ReferencePlaneUnit>());
-  HitResults results;
-  tester.run(batch, results);
-  EXPECT_TRUE(results.hits.empty() && results.doubts.empty());
+  HitReports reports;
+  tester.run(batch, reports);
+  EXPECT_TRUE(reports.empty());
   EXPECT_EQ(tester.counters().misses, 1u);
 }
 
-/// Says a word of a batch, whatever that is about.
+/// Gives the same result for every batch.
 class WildUnit : public BurstUnit {
  public:
-  explicit WildUnit(BurstResults words) : words_(std::move(words)) {}
-  void run(std::span<const RayBundle>, BurstResults& results) override { results = words_; }
+  explicit WildUnit(const BurstResult& result) : result_(result) {}
+  void finish(BurstResults& results) override { results = {result_}; }
   [[nodiscard]] BurstCounters counters() const override { return {}; }
 
  private:
-  BurstResults words_;
+  BurstResult result_;
 };
 
-TEST(PipelineHitTester, RefusesWordsAboutWhatItDidNotGive) {
+TEST(PipelineHitTester, RefusesResultsAboutWhatItDidNotGive) {
   Random random;
   const Batch batch(random, 3);
   const std::uint32_t records = batch.bundles[1].record_count;
-  const auto outcome = [&](const BurstResults& words) -> std::string {
-    PipelineHitTester tester(std::make_unique<WildUnit>(words));
-    HitResults results;
+  const auto outcome = [&](const BurstResult& result) -> std::string {
+    PipelineHitTester tester(std::make_unique<WildUnit>(result));
+    HitReports reports;
     try {
-      tester.run(batch.bundles, results);
+      tester.run(batch.bundles, reports);
     } catch (const std::runtime_error& error) {
       return error.what();
     }
     return "taken";
   };
-  EXPECT_EQ(outcome({{{1, 7, records - 1, 1.0f}}, {{1, 7, records - 1}}}), "taken");
+  EXPECT_EQ(outcome({1, 7, records - 1}), "taken");
   for (const auto& [bundle, lane, record] :
        {Key{3, 0, 0}, Key{1u << 31, 0, 0}, Key{1, 8, 0}, Key{1, 0, records}, Key{1, 0, ~0u}}) {
-    EXPECT_NE(outcome({{{bundle, lane, record, 1.0f}}, {}}), "taken");
-    EXPECT_NE(outcome({{}, {{bundle, lane, record}}}), "taken");
+    EXPECT_NE(outcome({bundle, lane, record}), "taken");
+    EXPECT_NE(outcome({bundle, lane, record, BurstResult::Kind::kDoubt}), "taken");
   }
-  EXPECT_EQ(outcome({{{1, 8, 0, 1.0f}}, {}}),
+  EXPECT_EQ(outcome({1, 8, 0}),
             "hit-test unit: found record 0 of lane 8 of bundle 1, expected one that it was given");
 }
 
@@ -314,22 +313,19 @@ class SameResultsTest : public testing::Test {
 };
 
 TEST_F(SameResultsTest, SameOnesPass) {
-  ASSERT_EQ(results_.hits.size(), 1u);
-  EXPECT_EQ(results_.hits[0].record, 0u);
-  EXPECT_EQ(results_.hits[0].t, 2.0f);
-  EXPECT_EQ(results_.hits[0].point, glm::vec3(0, 0, 2));
-  ASSERT_EQ(results_.reports.size(), 1u);
-  EXPECT_EQ(results_.reports[0], (TestReport{0, 5, 1, TestReport::Kind::kDoubt}));
+  ASSERT_EQ(results_.size(), 2u);
+  EXPECT_EQ(results_[0], (BurstResult{0, 5, 1, BurstResult::Kind::kDoubt}));
+  EXPECT_EQ(results_[1], (BurstResult{0, 5, 0, BurstResult::Kind::kHit, 2.0f, 0, {0, 0, 2}}));
   EXPECT_NO_THROW(require_same(batch_, results_, results_));
 }
 
 TEST_F(SameResultsTest, OneBitThatDiffersIsThrownWithTheInputs) {
   BurstResults faulty = results_;
-  faulty.hits[0].point.y = std::bit_cast<float>(1u);
+  faulty[1].point.y = std::bit_cast<float>(1u);
   try {
     require_same(batch_, faulty, results_);
     FAIL() << "the difference went unseen";
-  } catch (const BurstUnitMismatch& mismatch) {
+  } catch (const EngineMismatch& mismatch) {
     const std::string what = mismatch.what();
     EXPECT_NE(what.find("direction 00000000 00000000 3F800000"), std::string::npos) << what;
     EXPECT_NE(what.find("P 40000000 00000000 00000001 40000000"), std::string::npos) << what;
@@ -339,9 +335,9 @@ TEST_F(SameResultsTest, OneBitThatDiffersIsThrownWithTheInputs) {
 
 TEST_F(SameResultsTest, AReportThatOnlyOneUnitMakesIsThrown) {
   BurstResults fewer = results_;
-  fewer.reports.pop_back();
-  EXPECT_THROW(require_same(batch_, fewer, results_), BurstUnitMismatch);
-  EXPECT_THROW(require_same(batch_, results_, fewer), BurstUnitMismatch);
+  fewer.erase(fewer.begin());
+  EXPECT_THROW(require_same(batch_, fewer, results_), EngineMismatch);
+  EXPECT_THROW(require_same(batch_, results_, fewer), EngineMismatch);
 }
 
 std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
