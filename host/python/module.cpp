@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "host/app/load.h"
-#include "host/app/render_options.h"
+#include "host/app/options.h"
 #include "host/app/version.h"
 #include "host/base/checkpoint.h"
 #include "host/base/input_error.h"
@@ -50,24 +50,37 @@ using Vectors3 = nb::ndarray<nb::ro, nb::shape<-1, 3>, nb::device::cpu, nb::c_co
 using Numbers = nb::ndarray<nb::ro, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
 using Three = std::array<double, 3>;
 using Texts = nb::typed<nb::list, nb::str>;
-template <class T, std::size_t kAxes>
-using Result = nb::ndarray<nb::numpy, T, nb::ndim<kAxes>>;
 
 /// Keyword arguments and their values as text.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// Options of a function of the module, set by its keyword arguments.
 struct Keywords : OptionTable {
-  Keywords() { number("--threads", "", "", threads, kThreadRange, kInPython); }
-  void add_engine() {
-    choice("--engine", "", "", uses_model, {{"cpu", false}, {"model", true}}, kInPython);
+  Keywords() : OptionTable("", "", "") {
+    number("--threads", "", "", threads, kThreadRange, kInPython);
   }
-  void read(const Settings& settings) const {
-    for (const auto& [name, text] : settings) set(name, text);
+  void add_engine() {
+    choice<bool>("--engine", "", "", uses_model, {{"cpu", false}, {"model", true}}, kInPython);
+  }
+  void read(const Settings& settings) {
+    std::vector<OptionValue> values;
+    for (const auto& [name, text] : settings) {
+      values.push_back({name, text});
+      require(values.back(), kInPython);
+    }
+    OptionTable::read(std::move(values));
   }
 
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool uses_model = false;  // use the reference model of the hit-test unit
+};
+
+struct SceneKeywords : Keywords {
+  explicit SceneKeywords(const Settings& settings) {
+    number("--smooth", "", "", smooth, kSmoothRange, kInPython);
+    read(settings);
+  }
+  std::optional<double> smooth;
 };
 
 /// Read access to an array of float32 or float64, without a copy.
@@ -125,15 +138,10 @@ Texts texts_of(const std::vector<std::string>& texts) {
   return list;
 }
 
-/// Returns an array of data that `owner` keeps alive.
-template <class T>
-nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
-                    std::initializer_list<std::size_t> shape) {
-  auto* const kept = new std::shared_ptr<Film>(owner);
-  const nb::capsule capsule(
-      kept, [](void* p) noexcept { delete static_cast<std::shared_ptr<Film>*>(p); });
-  return nb::cast(
-      nb::ndarray<nb::numpy, T>(const_cast<T*>(static_cast<const T*>(data)), shape, capsule));
+/// Rows of a structured array.
+using Bytes = nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>>;
+Bytes bytes_of(const std::shared_ptr<const void>& owner, const void* data, std::size_t size) {
+  return Bytes(array_of<std::uint8_t>(owner, data, {size}));
 }
 
 /// Returns the result of `encode`, which runs without Python's lock.
@@ -155,17 +163,16 @@ struct PythonFilm {
 class PythonScene {
  public:
   PythonScene(const nb::bytes& file, bool strict, const Settings& settings) {
-    std::optional<double> smooth;
-    Keywords keywords;
-    keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
-    keywords.read(settings);
+    const SceneKeywords keywords(settings);
     const std::filesystem::path path = std::string(file.c_str(), file.size());
     const nb::gil_scoped_release release;
     file_ = read_scene_file(path);
-    scene_ = load(
-        file_,
-        {.strict = strict, .keep_instances = true, .smooth = smooth, .threads = keywords.threads},
-        file_.lights.environment);
+    scene_ = load(file_,
+                  {.strict = strict,
+                   .keep_instances = true,
+                   .smooth = keywords.smooth,
+                   .threads = keywords.threads},
+                  file_.lights.environment);
     resolve_instances(scene_, InstanceMode::kFlatten, path);
     build(keywords.threads);
   }
@@ -173,10 +180,7 @@ class PythonScene {
   /// Makes a scene of triangles from their corners. `name` is the array's name in messages.
   PythonScene(const std::string& name, const Vectors3& corners, bool strict,
               const Settings& settings) {
-    std::optional<double> smooth;
-    Keywords keywords;
-    keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
-    keywords.read(settings);
+    const SceneKeywords keywords(settings);
     const Elements points("triangles", corners);
     const nb::gil_scoped_release release;
     MeshBuilder mesh(name, MeshBuilder::Source::kArray);
@@ -188,7 +192,7 @@ class PythonScene {
       }
       mesh.add_face(face, i / 3 + 1);
     }
-    mesh.build_plain({.strict = strict, .smooth = smooth}, scene_);
+    mesh.build_plain({.strict = strict, .smooth = keywords.smooth}, scene_);
     build(keywords.threads);
   }
 
@@ -201,11 +205,10 @@ class PythonScene {
 
   /// Returns the rows of HitTable as bytes, and the names and types of their fields. There are as
   /// many directions and limits as origins.
-  std::pair<Result<std::uint8_t, 1>, Settings> trace_rays(const Vectors3& origins,
-                                                          const Vectors3& directions,
-                                                          const std::optional<Numbers>& limits,
-                                                          const std::vector<std::string>& columns,
-                                                          const Settings& settings) const {
+  std::pair<Bytes, Settings> trace_rays(const Vectors3& origins, const Vectors3& directions,
+                                        const std::optional<Numbers>& limits,
+                                        const std::vector<std::string>& columns,
+                                        const Settings& settings) const {
     const std::size_t count = origins.shape(0);
     Hits asked = Hits::kNearest;
     Keywords keywords;
@@ -234,7 +237,7 @@ class PythonScene {
       }
       return !block.rays.empty();
     };
-    auto rows = std::make_unique<std::string>();
+    const auto rows = std::make_shared<std::string>();
     rows->reserve(count * answers.fields().size() * 8);
     {
       const nb::gil_scoped_release release;
@@ -248,31 +251,27 @@ class PythonScene {
             return true;
           });
     }
-    std::string* const kept = rows.release();
-    const nb::capsule capsule(kept, [](void* p) noexcept { delete static_cast<std::string*>(p); });
-    return {Result<std::uint8_t, 1>(kept->data(), {kept->size()}, capsule), answers.fields()};
+    return {bytes_of(rows, rows->data(), rows->size()), answers.fields()};
   }
 
-  /// Returns a row for each point: triangle, distance, x, y, z.
-  [[nodiscard]] Result<double, 2> closest_points(const Vectors3& points) const {
+  /// Returns a row for each point, as bytes: triangle, int64; distance, x, y, z.
+  [[nodiscard]] Bytes closest_points(const Vectors3& points) const {
+    struct Row {
+      std::int64_t triangle;
+      double distance, x, y, z;
+    };
     const Elements from("points", points);
-    const std::size_t count = points.shape(0), width = 5;
-    auto rows = std::make_unique<std::vector<double>>();
+    const auto rows = std::make_shared<std::vector<Row>>(points.shape(0));
     {
       const nb::gil_scoped_release release;
-      rows->reserve(count * width);
-      for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t i = 0; i < rows->size(); ++i) {
         checkpoint();
         const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
         const glm::dvec3 at = found.point + scene_.origin;
-        const double triangle = bvh_->triangle_of(found.primitive);
-        rows->insert(rows->end(), {triangle, found.distance, at.x, at.y, at.z});
+        (*rows)[i] = {bvh_->triangle_of(found.primitive), found.distance, at.x, at.y, at.z};
       }
     }
-    std::vector<double>* const kept = rows.release();
-    const nb::capsule capsule(
-        kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-    return Result<double, 2>(kept->data(), {count, width}, capsule);
+    return bytes_of(rows, rows->data(), rows->size() * sizeof(Row));
   }
 
   /// Returns the film's channels by name, and the film.
@@ -289,13 +288,7 @@ class PythonScene {
     keywords.add_engine();
     add_light_options(keywords, chosen);
     keywords.read(settings);
-    const auto given = [&](const char* name) -> std::string {
-      const auto at = std::ranges::find(settings, name, &Settings::value_type::first);
-      return at == settings.end() ? "" : at->second;
-    };
-    chosen.choose_integrator(scene_.environment.has_value(), !given("integrator").empty(),
-                             !given("spp").empty());
-    check_adaptive_samples("", given("spp"), chosen);
+    check_light_options(keywords, scene_.environment.has_value(), chosen);
     chosen.threads = keywords.threads;
     const int width = chosen.width, height = chosen.height;
     if (std::int64_t{width} * height > kMaxPixels) {

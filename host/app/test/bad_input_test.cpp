@@ -236,8 +236,8 @@ TEST_F(BadInput, ImpossibleOptions) {
   refused("--seed", "dice");
   expect_refused(render({"scene.obj", "--frobnicate"}),
                  "--frobnicate: unknown option \\(see --help\\)");
-  expect_refused(render({"scene.obj", "scene.obj"}), "scene\\.obj: a second scene; [^\n]+");
-  expect_refused(render({}), "no scene given; [^\n]+");
+  expect_refused(render({"scene.obj", "scene.obj"}), "expected one scene, got 2; [^\n]+");
+  expect_refused(render({}), "expected one scene, got 0; [^\n]+");
 }
 
 TEST_F(BadInput, SceneFiles) {
