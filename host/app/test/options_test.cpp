@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
+#include <iterator>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 #include "host/base/input_error.h"
@@ -56,29 +58,12 @@ TEST(Options, OnlyASceneMeansTheDefaults) {
 }
 
 TEST(Options, ReadsEveryOption) {
-  const Options options = parse({"--size",
-                                 "320x200",
-                                 "--crop=1,2,30,40",
-                                 "--camera",
-                                 "-1,-.5,1e3,0,0,-2.5,40",
-                                 "--engine",
-                                 "check",
-                                 "--unit",
-                                 "serial",
-                                 "--threads",
-                                 "7",
-                                 "--seed",
-                                 "18446744073709551615",
-                                 "--up",
-                                 "-z",
-                                 "--fov=50",
-                                 "--strict",
-                                 "--stats",
-                                 "run.json",
-                                 "-q",
-                                 "a.obj",
-                                 "-o",
-                                 "b"});
+  std::istringstream line(
+      "--size 320x200 --crop=1,2,30,40 --camera -1,-.5,1e3,0,0,-2.5,40 --engine check --unit "
+      "serial "
+      "--threads 7 --seed 18446744073709551615 --up -z --fov=50 --strict --stats run.json -q a.obj "
+      "-o b");
+  const Options options = parse_options({std::istream_iterator<std::string>(line), {}});
   EXPECT_EQ(options.render.width, 320);
   EXPECT_EQ(options.render.height, 200);
   EXPECT_EQ(options.render.window.x0, 1);
@@ -421,6 +406,7 @@ TEST(OutputOptions, LightByName) {
   EXPECT_FALSE(path.skips.culling || path.skips.records);
   EXPECT_TRUE(path.skips.weightless && path.skips.divisions);
   EXPECT_EQ(parse({"a.obj", "--depth", "0"}).render.depth(), 0);
+  EXPECT_EQ(parse({"a.obj", "--max-depth", "7"}).render.depth(), 7);
   EXPECT_EQ(plain.point_error, 0x1p-16f);
   const auto point_error = [](const char* text) {
     return parse({"a.obj", "--point-error", text}).render.point_error;
@@ -457,28 +443,8 @@ TEST(Options, CausticsOnNeedWhatLightPathsNeed) {
                "--caustics on and --error exclude each other");
 }
 
-TEST(Options, NamesThatPeopleType) {
-  EXPECT_EQ(parse({"a.obj", "--max-depth", "7"}).render.depth(), 7);
-}
-
-TEST(Options, HelpNamesEveryOptionAndFitsATerminal) {
+TEST(Options, HelpFitsATerminal) {
   const std::string help = parse({"--help"}).information;
-  for (const char* option : {"-o, --output",    "--size",        "--crop",
-                             "--camera",        "--view",        "--up AXIS",
-                             "--fov",           "--exposure",    "--ground on|off",
-                             "--smooth",        "--tone",        "--channels",
-                             "--false-colour",  "--save-every",  "--stats",
-                             "--integrator",    "--spp",         "--samples",
-                             "--resume",        "--filter",      "--depth, --max-depth",
-                             "--threshold",     "--ambient",     "--seed",
-                             "--engine",        "--unit",        "--lanes",
-                             "--threads",       "--no-skip",     "--strict",
-                             "--no-scene-file", "-q, --quiet",   "-v, --verbose",
-                             "--arith",         "--point-error", "--cores",
-                             "--dump-image",    "--trace",       "--trace-pixel",
-                             "--caustics",      "-h, --help",    "--version"}) {
-    EXPECT_NE(help.find(option), std::string::npos) << option;
-  }
   EXPECT_LE(std::ranges::count(help, '\n'), 90);
   for (std::size_t start = 0; start < help.size();) {
     const std::size_t end = help.find('\n', start);

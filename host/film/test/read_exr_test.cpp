@@ -1,6 +1,4 @@
 // Reading EXR files, good and bad.
-#include "host/film/exr.h"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -9,6 +7,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
+#include "host/film/exr.h"
 #include "host/film/test/sample_film.h"
 
 namespace raygate {
