@@ -588,7 +588,7 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
                                       {"gauss", ReconstructionFilter::kGauss},
                                       {"blackman-harris", ReconstructionFilter::kBlackmanHarris}},
                                      kInExr | kInPython | kInSceneFile | kInPage);
-  constexpr Range<int> kDepths{0, 1000};
+  static constexpr Range<int> kDepths{0, 1000};
   table.add(
       "--depth,--max-depth", "N", "reflections and refractions in a row (4; path: 64)",
       kDepths.text(),
