@@ -212,9 +212,9 @@ class PythonScene {
     const std::size_t count = origins.shape(0);
     Hits asked = Hits::kNearest;
     Keywords keywords;
-    keywords.choice("--hits", "", "", asked,
-                    {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}},
-                    kInPython);
+    keywords.choice<Hits>("--hits", "", "", asked,
+                          {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}},
+                          kInPython);
     keywords.add_engine();
     keywords.read(settings);
     const Elements from("origins", origins), way("directions", directions);
