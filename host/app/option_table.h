@@ -68,6 +68,23 @@ template <typename T>
   return std::ranges::find(choices, value, &std::pair<std::string, T>::second)->first;
 }
 
+/// Returns the value with this name, or none.
+template <typename T>
+[[nodiscard]] std::optional<T> value_of(const Choices<T>& choices, const std::string& name) {
+  const auto found = std::ranges::find(choices, name, &std::pair<std::string, T>::first);
+  return found == choices.end() ? std::nullopt : std::optional<T>(found->second);
+}
+
+/// Returns the names of choices and `more`.
+template <typename T>
+[[nodiscard]] std::vector<std::string> names_of(const Choices<T>& choices,
+                                                std::vector<std::string> more = {}) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) names.push_back(name);
+  names.insert(names.end(), more.begin(), more.end());
+  return names;
+}
+
 /// The closed range of a number. `expected` describes it in messages; null: "a number from 0 to 1".
 template <typename T>
 struct Range {
@@ -131,47 +148,49 @@ class OptionTable {
   void add(const std::string& names, const char* value, std::string help, std::string expected,
            Read read, Show show = {}, unsigned places = kNowhere);
 
-  /// `target` is a number or an optional one.
+  /// Adds an option whose text `parse` turns into a value, or none if it is not as expected.
+  /// `target`: a T or an optional one. `show` returns the text of a value.
   template <typename T, typename Target>
-  void number(const std::string& names, const char* value, const char* help, Target& target,
-              const Range<T>& range, unsigned places = kNowhere) {
+  void value(const std::string& names, const char* value, const std::string& help,
+             const std::string& expected, Target& target,
+             std::function<std::optional<T>(const std::string&)> parse,
+             std::function<std::string(const T&)> show = {}, unsigned places = kNowhere) {
     add(
-        names, value, help, range.text(),
-        [&target, range](const std::string& text) {
-          const std::optional<T> number = parse_number<T>(text);
-          if (!number || !range.contains(*number)) return false;
-          target = *number;
-          return true;
+        names, value, help, expected,
+        [&target, parse](const std::string& text) {
+          const std::optional<T> parsed = parse(text);
+          if (parsed) target = *parsed;
+          return parsed.has_value();
         },
-        [&target] {
-          if constexpr (std::is_arithmetic_v<Target>)
-            return number_text(target);
-          else
-            return target ? number_text(*target) : "";
+        [&target, show]() -> std::string {
+          if constexpr (std::is_same_v<T, Target>) {
+            return show(target);
+          } else {
+            return target ? show(*target) : "";
+          }
         },
         places);
   }
 
-  /// `target` is a T or an optional one.
   template <typename T, typename Target>
-  void choice(const std::string& names, const char* value, const char* help, Target& target,
+  void number(const std::string& names, const char* placeholder, const char* help, Target& target,
+              const Range<T>& range, unsigned places = kNowhere) {
+    value<T>(
+        names, placeholder, help, range.text(), target,
+        [range](const std::string& text) {
+          const std::optional<T> number = parse_number<T>(text);
+          return number && range.contains(*number) ? number : std::nullopt;
+        },
+        number_text<T>, places);
+  }
+
+  template <typename T, typename Target>
+  void choice(const std::string& names, const char* placeholder, const char* help, Target& target,
               const Choices<T>& choices, unsigned places = kNowhere) {
-    std::vector<std::string> words;
-    for (const auto& [name, ignored] : choices) words.push_back(name);
-    add(
-        names, value, help, listed(words),
-        [&target, choices](const std::string& text) {
-          const auto found = std::ranges::find(choices, text, &std::pair<std::string, T>::first);
-          if (found != choices.end()) target = found->second;
-          return found != choices.end();
-        },
-        [&target, choices] {
-          if constexpr (std::is_same_v<T, Target>)
-            return name_of(choices, target);
-          else
-            return target ? name_of(choices, *target) : "";
-        },
-        places);
+    value<T>(
+        names, placeholder, help, listed(names_of(choices)), target,
+        [choices](const std::string& text) { return value_of(choices, text); },
+        [choices](const T& value) { return name_of(choices, value); }, places);
   }
 
   /// Adds an option whose value is a list of choices, each of which sets a member of `target` to
@@ -179,9 +198,7 @@ class OptionTable {
   template <typename T>
   void names(const std::string& names, const std::string& help, T& target,
              const Choices<bool T::*>& choices, bool on, unsigned places = kNowhere) {
-    std::vector<std::string> words;
-    for (const auto& [name, ignored] : choices) words.push_back(name);
-    words.emplace_back("all");
+    const std::vector<std::string> words = names_of(choices, {"all"});
     add(
         names, "NAMES", help + listed(words),
         "some of " + listed(words, ", ") + " with commas between",

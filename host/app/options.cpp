@@ -61,16 +61,11 @@ const Choices<bool Skips::*> kSkips{
     {"divisions", &Skips::divisions}};
 const Choices<glm::dvec3> kAxes{{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
                                 {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
-const Choices<std::pair<double, double>> kViews{
-    {"front", {0, 0}},   {"back", {180, 0}}, {"left", {-90, 0}},
-    {"right", {90, 0}},  {"top", {0, 90}},   {"iso", {45, 35.264389682754654}},
-    {"bottom", {0, -90}}};  // of iso all three axes look equally long
-
-template <typename T>
-const T* value_of(const Choices<T>& choices, const std::string& name) {
-  const auto found = std::ranges::find(choices, name, &std::pair<std::string, T>::first);
-  return found == choices.end() ? nullptr : &found->second;
-}
+using Angles = std::pair<double, double>;
+const Choices<Angles> kViews{{"front", {0, 0}},   {"back", {180, 0}},
+                             {"left", {-90, 0}},  {"right", {90, 0}},
+                             {"top", {0, 90}},    {"iso", {45, 35.264389682754654}},
+                             {"bottom", {0, -90}}};  // of iso all three axes look equally long
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);
@@ -86,23 +81,21 @@ bool read_size(const std::string& text, RenderSettings& settings) {
   return kSideRange.contains(settings.width) && kSideRange.contains(settings.height);
 }
 
-/// Reads a name of variants.json or a format such as "e8p15".
-bool read_variant(const std::string& text, std::optional<Variant>& target) {
+/// Parses a name of variants.json or a format such as "e8p15".
+std::optional<Variant> parse_variant(const std::string& text) {
   for (const Variant& variant : all_variants_of_arithmetic()) {
-    if (variant.name == text) target = variant;
+    if (variant.name == text) return variant;
   }
-  if (target && target->name == text) return true;
   try {
-    target = variant_of_format(text);
+    return variant_of_format(text);
   } catch (const InputError& error) {
     throw InputError("--variant: " + text + ": " + error.what());
   }
-  return target.has_value();
 }
 
-/// Reads "latency=100,bytes=16,cache=1024"; each part is optional.
-bool read_memory(const std::string& text, MemoryTiming& timing) {
-  timing = {};
+/// Parses "latency=100,bytes=16,cache=1024"; each part is optional.
+std::optional<MemoryTiming> parse_memory(const std::string& text) {
+  MemoryTiming timing;
   for (const std::string& word : split_at_commas(text)) {
     const auto [name, number] = split_at_equals(word);
     const int value = parse_number<int>(number).value_or(-1);
@@ -116,43 +109,46 @@ bool read_memory(const std::string& text, MemoryTiming& timing) {
     } else if (name == "cache" && (value == 0 || is_power(1 << 24))) {
       timing.cache_lines = value;
     } else {
-      return false;
+      return std::nullopt;
     }
   }
-  return true;
+  return timing;
 }
 
-/// Reads a share of the distance; "inf": the unit's point wherever it has one.
-bool read_point_error(const std::string& text, float& target) {
+/// Parses a fraction of the distance; "inf": the unit's point wherever it has one.
+std::optional<float> parse_point_error(const std::string& text) {
   const double error = text == "inf" ? kLargest : parse_number<double>(text).value_or(-1.0);
-  if (!(error >= 0.0 && error <= kLargest)) return false;
-  target = float_below(error);
-  return true;
+  if (!(error >= 0.0 && error <= kLargest)) return std::nullopt;
+  return float_below(error);
 }
 
-bool read_camera(const std::string& text, CameraRequest& request) {
+std::optional<glm::ivec2> parse_pixel(const std::string& text) {
+  const std::vector<int> n = parse_list<int>(text);
+  if (n.size() != 2) return std::nullopt;
+  return glm::ivec2(n[0], n[1]);
+}
+
+std::optional<CameraSetting> parse_camera(const std::string& text) {
   const std::vector<double> n = parse_list<double>(text);
-  if (n.size() != 6 && n.size() != 7) return false;
-  for (const double number : n) {
-    if (!std::isfinite(number)) return false;
-  }
+  if (n.size() != 6 && n.size() != 7) return std::nullopt;
+  const bool are_finite =
+      std::ranges::all_of(n, [](double number) { return std::isfinite(number); });
   CameraSetting camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, std::nullopt, std::nullopt};
   if (n.size() == 7) camera.fov = n[6];
-  request.camera = camera;
-  return camera.eye != camera.target && kFovRange.contains(camera.fov.value_or(1.0));
+  if (!are_finite || camera.eye == camera.target || !kFovRange.contains(camera.fov.value_or(1.0))) {
+    return std::nullopt;
+  }
+  return camera;
 }
 
-bool read_view(const std::string& text, CameraRequest& request) {
-  request.camera.reset();
-  if (const auto* const angles = value_of(kViews, text)) {
-    request.angles = *angles;
-    return true;
-  }
+std::optional<Angles> parse_view(const std::string& text) {
   const std::vector<double> n = parse_list<double>(text);
-  if (n.size() != 2) return false;
-  request.angles = {n[0], n[1]};
-  return std::abs(n[0]) <= 360.0 && std::abs(n[1]) <= 90.0;
+  if (n.size() != 2) return value_of(kViews, text);
+  if (!(std::abs(n[0]) <= 360.0 && std::abs(n[1]) <= 90.0)) return std::nullopt;
+  return Angles(n[0], n[1]);
 }
+
+std::string vector_text(const glm::dvec3& v) { return list_text({v.x, v.y, v.z}); }
 
 /// Names of all channels that a film can have.
 std::vector<std::string> channel_names() {
@@ -193,61 +189,45 @@ void add_core_options(OptionTable& table, Options& options) {
   table.text("--dump-image", "FILE", "dump the ray cores' memory image; render nothing",
              files.image);
   table.text("--trace", "FILE.vcd", "write a pixel's waveform; render nothing", files.wave);
-  table.add("--trace-pixel", "X,Y", "the pixel of --trace", "X,Y, a pixel",
-            [&files](const std::string& text) {
-              const std::vector<int> n = parse_list<int>(text);
-              if (n.size() == 2) files.pixel = {n[0], n[1]};
-              return n.size() == 2;
-            });
-  table.add(
+  table.value<glm::ivec2>("--trace-pixel", "X,Y", "the pixel of --trace", "X,Y, a pixel",
+                          files.pixel, parse_pixel);
+  table.value<float>(
       "--point-error", "X",
       "compute points on the host where the unit's may be off by X of t (2^-16; 0: always; inf: "
       "never)",
-      "a share of the distance, 0 or more, or inf",
-      [&](const std::string& text) { return read_point_error(text, options.render.point_error); },
-      [&] { return number_text(double{options.render.point_error}); }, kInExr | kInPage);
+      "a fraction of the distance, 0 or more, or inf", options.render.point_error,
+      parse_point_error, [](float error) { return number_text(double{error}); }, kInExr | kInPage);
   table.names("--no-skip",
               "disable optimisations that do not change the picture: ", options.render.skips,
               kSkips, false, kInPage);
 }
 
 void add_camera_options(OptionTable& table, CameraRequest& request) {
-  table.add(
+  table.value<CameraSetting>(
       "--camera", "EX,EY,EZ,TX,TY,TZ[,FOV]",
       "eye, target, vertical field of view (the scene's, or a view of it all)",
       "EX,EY,EZ,TX,TY,TZ or EX,EY,EZ,TX,TY,TZ,FOV (an eye and another target, finite numbers; "
       "degrees above 0 and below 180)",
-      [&](const std::string& text) { return read_camera(text, request); },
-      [&]() -> std::string {
-        if (!request.camera) return "";
-        const auto& [eye, target, up, fov, lens] = *request.camera;
-        return list_text(
-            {eye.x, eye.y, eye.z, target.x, target.y, target.z, fov.value_or(Camera::kDefaultFov)});
+      request.camera, parse_camera,
+      [](const CameraSetting& camera) {
+        return vector_text(camera.eye) + "," + vector_text(camera.target) + "," +
+               number_text(camera.fov.value_or(Camera::kDefaultFov));
       },
       kInExr | kInPage);
-  table.add(
+  table.value<Angles>(
       "--view", "NAME|AZ,EL",
-      "the whole scene: front, back, left, right, top, bottom, iso, or azimuth and elevation "
-      "(33,24)",
-      "front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees (from -360 to "
-      "360, and from -90 to 90)",
-      [&](const std::string& text) { return read_view(text, request); },
-      [&] {
-        return request.angles ? list_text({request.angles->first, request.angles->second}) : "";
+      "the whole scene: " + listed(names_of(kViews), ", ") + ", or azimuth and elevation (33,24)",
+      listed(names_of(kViews), ", ") +
+          ", or AZIMUTH,ELEVATION in degrees (from -360 to 360, and from -90 to 90)",
+      request.angles, parse_view,
+      [](const Angles& angles) {
+        return list_text({angles.first, angles.second});
       },
       kInExr | kInPage);
-  table.add(
-      "--up", "AXIS", "up axis: x, -x, y, -y, z or -z (that of the format)",
-      "x, y, z, -x, -y or -z",
-      [&](const std::string& text) {
-        const glm::dvec3* const axis = value_of(kAxes, text);
-        if (axis != nullptr) request.up = *axis;
-        return axis != nullptr;
-      },
-      [&] {
-        return request.up ? list_text({request.up->x, request.up->y, request.up->z}) : "";
-      },
-      kInExr | kInPage);
+  table.value<glm::dvec3>(
+      "--up", "AXIS", "up axis: " + listed(names_of(kAxes)) + " (that of the format)",
+      listed(names_of(kAxes)), request.up,
+      [](const std::string& text) { return value_of(kAxes, text); }, vector_text, kInExr | kInPage);
   table.number("--fov", "DEGREES", "vertical field of view of any camera (35)", request.fov,
                kFovRange, kInExr | kInPage);
   table.choice<Projection>("--projection", "NAME",
@@ -482,7 +462,7 @@ ExtraChannels OutputOptions::needed_channels() const {
   ExtraChannels needed = channels;
   for (const FalseColorOutput& output : false_colors) {
     const std::string layer = output.channel.substr(0, output.channel.find('.'));
-    if (const auto* const extra = value_of(kExtraChannels, layer)) needed.** extra = true;
+    if (const auto extra = value_of(kExtraChannels, layer)) needed.** extra = true;
   }
   return needed;
 }
@@ -507,20 +487,19 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
       kInStats | kInPage);
   std::vector<std::string> variants;
   for (const Variant& variant : all_variants_of_arithmetic()) variants.push_back(variant.name);
-  table.add(
+  table.value<Variant>(
       "--variant", "NAME", "number format of the model: e8p16; e8p16-raw: without error bounds",
-      "exponent bits and digits as in e8p15 or e8p15-raw, " + listed(variants),
-      [&](const std::string& text) { return read_variant(text, options.variant); },
-      [&] { return options.variant ? options.variant->name : ""; }, kInExr | kInPage);
+      "exponent bits and digits as in e8p15 or e8p15-raw, " + listed(variants), options.variant,
+      parse_variant, [](const Variant& variant) { return variant.name; }, kInExr | kInPage);
   table.choice("--arith", "NAME", "structural, or behavioural: + and * ({})", options.arith,
                kAriths, kInStats | kInPage);
   table.choice<int>("--lanes", "1|2|4|8", "pipelined units side by side, per thread ({})",
                     options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats | kInPage);
-  table.add(
+  table.value<MemoryTiming>(
       "--memory", "latency=N,bytes=N,cache=N",
       "ray core: clocks to a line (50), bytes per clock (64), cache lines (0)",
-      "latency=1 to 10000, bytes=1, 2, 4 ... 64, cache=0 or lines, a power of two",
-      [&](const std::string& text) { return read_memory(text, options.memory); }, {}, kInPage);
+      "latency=1 to 10000, bytes=1, 2, 4 ... 64, cache=0 or lines, a power of two", options.memory,
+      parse_memory, {}, kInPage);
   table.number("--cores", "N", "ray cores behind one memory, per thread ({})", options.cores,
                Range{1, 64, "a whole number, 1 to 64"}, kInStats | kInPage);
   table.text("--board-port", "PATH", "the serial port of a real board (--unit board)",
@@ -735,8 +714,11 @@ Options with_values(const Options& scene, std::vector<OptionValue> given) {
   check_light_options(table, options.environment.has_value(), render);
   name_outputs(table, options.scene, options.output);
   check_crop(table, render);
-  if (!table.given("camera").empty() && !table.given("view").empty()) {
-    throw InputError("--view and --camera exclude each other");
+  if (!table.given("view").empty()) {
+    if (!table.given("camera").empty()) {
+      throw InputError("--view and --camera exclude each other");
+    }
+    options.camera.camera.reset();  // the scene file's
   }
   check_engine_options(table, options);
   check_core_files(table, options);

@@ -423,9 +423,10 @@ TEST(OutputOptions, LightByName) {
   expect_error({"a.obj", "--filter", "lanczos"}, "--filter: expected box, tent, gauss");
   expect_error({"a.obj", "--threshold", "2"}, "--threshold: expected a number from 0 to 1");
   expect_error({"a.obj", "--threshold", "nan"}, "--threshold: expected");
-  expect_error({"a.obj", "--point-error", "-1"}, "--point-error: expected a share of the distance");
+  expect_error({"a.obj", "--point-error", "-1"},
+               "--point-error: expected a fraction of the distance");
   expect_error({"a.obj", "--point-error", "nan"},
-               "--point-error: expected a share of the distance");
+               "--point-error: expected a fraction of the distance");
   expect_error({"a.obj", "--ambient", "inf"}, "--ambient: expected a radiance");
   expect_error({"a.obj", "--no-skip", "rays"}, "--no-skip: expected some of culling, records");
 }
