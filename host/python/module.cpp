@@ -347,90 +347,64 @@ class PythonScene {
   std::unique_ptr<PreparedScene> prepared_;
 };
 
-/// Runs Python's signal handlers, at most every 20 ms, during work that does not hold Python's
-/// lock. Throws the exception of a handler, such as KeyboardInterrupt.
-class SignalCheck {
- public:
-  void operator()() {
+/// Calls a Python function with IEEE 754 arithmetic. Its long work runs Python's signal handlers,
+/// every 20 ms, and ends with their exceptions, such as KeyboardInterrupt.
+nb::object call_in_context(const nb::callable& function, const nb::args& arguments,
+                           const nb::kwargs& keywords) {
+  const IeeeFloats floats;
+  auto last = std::chrono::steady_clock::now();
+  const CheckpointScope signals([&] {
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(20)) return;
-    last_ = now;
+    if (now - last < std::chrono::milliseconds(20)) return;
+    last = now;
     const nb::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
-/// A context of Python's `with`: IEEE 754 arithmetic, and signal handlers at the checkpoints of
-/// long work.
-class CallContext {
- public:
-  void enter() {
-    floats_.emplace();
-    signals_.emplace(SignalCheck());
-  }
-  void exit() {
-    signals_.reset();
-    floats_.reset();
-  }
-
- private:
-  std::optional<IeeeFloats> floats_;
-  std::optional<CheckpointScope> signals_;
-};
+  });
+  return function(*arguments, **keywords);
+}
 
 }  // namespace
 }  // namespace raygate
 
 NB_MODULE(_raygate, m) {
   using namespace nb::literals;
-  using raygate::PythonScene;
+  using namespace raygate;
   {
-    const raygate::IeeeFloats floats;
-    raygate::require_ieee_floats();
+    const IeeeFloats floats;
+    require_ieee_floats();
   }
-  using raygate::CallContext;
-  nb::class_<CallContext>(m, "CallContext")
-      .def(nb::init<>())
-      .def("__enter__", &CallContext::enter)
-      .def(
-          "__exit__",
-          [](CallContext& context, nb::handle, nb::handle, nb::handle) { context.exit(); },
-          "kind"_a.none(), "value"_a.none(), "traceback"_a.none());
+  m.def("call_in_context", &call_in_context,
+        nb::sig("def call_in_context(function: object, *arguments: object, **keywords: object) "
+                "-> object"));
   static const nb::object input_error =
-      nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
+      nb::exception<InputError>(m, "InputError", PyExc_ValueError);
   nb::register_exception_translator([](const std::exception_ptr& error, void*) {
     try {
       std::rethrow_exception(error);
-    } catch (const raygate::InputError& unusable) {
-      PyErr_SetObject(input_error.ptr(), raygate::text_of(unusable.what()).ptr());
+    } catch (const InputError& unusable) {
+      PyErr_SetObject(input_error.ptr(), text_of(unusable.what()).ptr());
     }
   });
-  raygate::add_float_reference(m);
-  m.attr("software") = raygate::kSoftware;
-  using raygate::PythonFilm;
+  add_float_reference(m);
+  m.attr("software") = kSoftware;
   nb::class_<PythonFilm>(m, "Film")
       .def("png",
            [](const PythonFilm& f, double exposure) {
-             return raygate::python_bytes([&] {
-               return raygate::encode_png(raygate::to_display(*f.film, {.exposure = exposure}));
-             });
+             return python_bytes(
+                 [&] { return encode_png(to_display(*f.film, {.exposure = exposure})); });
            })
       .def("exr", [](const PythonFilm& f) {
-        return raygate::python_bytes([&] { return raygate::encode_exr(*f.film, f.metadata); });
+        return python_bytes([&] { return encode_exr(*f.film, f.metadata); });
       });
   nb::class_<PythonScene>(m, "Scene")
-      .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())
-      .def(nb::init<const std::string&, const raygate::Vectors3&, bool, const raygate::Settings&>())
+      .def(nb::init<const nb::bytes&, bool, const Settings&>())
+      .def(nb::init<const std::string&, const Vectors3&, bool, const Settings&>())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })
       .def_prop_ro("objects",
-                   [](const PythonScene& s) { return raygate::texts_of(s.scene().objects.all()); })
+                   [](const PythonScene& s) { return texts_of(s.scene().objects.all()); })
       .def_prop_ro("materials", &PythonScene::material_names)
-      .def_prop_ro("warnings",
-                   [](const PythonScene& s) { return raygate::texts_of(s.scene().warnings); })
+      .def_prop_ro("warnings", [](const PythonScene& s) { return texts_of(s.scene().warnings); })
       .def_prop_ro("rounding",
                    [](const PythonScene& s) {
                      return std::pair(s.scene().rounding.corners, s.scene().rounding.most);
@@ -438,7 +412,7 @@ NB_MODULE(_raygate, m) {
       .def_prop_ro("origin",
                    [](const PythonScene& s) {
                      const glm::dvec3& o = s.scene().origin;
-                     return raygate::Three{o.x, o.y, o.z};
+                     return Three{o.x, o.y, o.z};
                    })
       .def("trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
            "columns"_a, "settings"_a)
