@@ -65,7 +65,7 @@ using Angles = std::pair<double, double>;
 const Choices<Angles> kViews{{"front", {0, 0}},   {"back", {180, 0}},
                              {"left", {-90, 0}},  {"right", {90, 0}},
                              {"top", {0, 90}},    {"iso", {45, 35.264389682754654}},
-                             {"bottom", {0, -90}}};  // of iso all three axes look equally long
+                             {"bottom", {0, -90}}};  // iso: all three axes appear equally long
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);
@@ -401,24 +401,14 @@ void check_serve(const OptionTable& table, const Options& options) {
 
 /// Throws InputError if an output would overwrite the scene or another output.
 void require_distinct_outputs(const Options& options) {
-  // Paths that cannot be resolved are refused when they are read or written.
-  const auto resolve = [](const fs::path& path) {
-    std::error_code error;
-    return target_of(path, error);
-  };
   // The next run would read a scene file beside the model.
-  std::vector<fs::path> paths{options.scene, options.scene_file.obj, options.scene_file.file,
-                              fs::path(options.scene_file.obj).replace_extension(".json")};
+  std::vector<fs::path> others{options.scene, options.scene_file.obj, options.scene_file.file,
+                               fs::path(options.scene_file.obj).replace_extension(".json")};
   std::vector<fs::path> outputs = options.output.paths();
   for (const fs::path& path : options.core_files.paths()) outputs.push_back(path);
   for (const fs::path& output : outputs) {
-    const fs::path resolved = resolve(output);
-    for (const fs::path& other : paths) {
-      if (!resolved.empty() && resolved == resolve(other)) {
-        throw InputError(output.string() + ": would overwrite " + other.string());
-      }
-    }
-    paths.push_back(output);
+    require_distinct({&output, 1}, others);
+    others.push_back(output);
   }
 }
 

@@ -29,10 +29,10 @@ namespace {
 
 constexpr const char* kAbout = R"(Usage: ./trace SCENE RAYS [options]
 
-Says what rays hit in a scene (OBJ, glTF, PLY, STL), exactly: which triangle,
-where, and whether binary32 had left it open. RAYS is a CSV table of any length,
-or - for standard input. Its columns, between commas, semicolons or spaces, are
-the origin, the direction and, where wanted, a limit:
+Prints the exact hits of rays in a scene (OBJ, glTF, PLY, STL): the triangle,
+the position, and how often binary32 left a test undecided. RAYS is a CSV table
+of any length, or - for standard input. Its columns, separated by commas,
+semicolons or spaces, are the origin, the direction and, optionally, a limit:
 
   OX,OY,OZ,DX,DY,DZ[,LIMIT]        hits P = O + t D have 0 < t < LIMIT
 
@@ -42,9 +42,9 @@ the origin, the direction and, where wanted, a limit:
 )";
 
 constexpr const char* kFooter =
-    R"(Numbers count from 0. A ray that hits nothing has triangle -1, t inf, the rest
-nan. Positions become binary32 relative to the scene's middle; the summary says
-how many rays and corners that changed.
+    R"(Numbers count from 0. A ray without a hit has triangle -1, t inf, and nan
+elsewhere. Positions are rounded to binary32 relative to the scene's middle; the
+summary reports how many rays and corners that changed.
 
 Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene, the rays or the output cannot be used; 130 interrupted.)";
