@@ -34,11 +34,11 @@ help:
 	done
 	@echo 'An empty value (TOP=) counts as not given.'
 
-cpu: ## use: build ./render, ./trace, ./compare, ./merge without Verilator and the simulated hardware
-	$(call build,cpu,render trace compare merge scenes)
+cpu: ## use: build ./render, ./trace, ./merge without Verilator and the simulated hardware
+	$(call build,cpu,render trace merge scenes)
 
-verilate: ## use: build ./render, ./trace, ./compare, ./merge and the simulated hardware
-	$(call build,build,render trace compare merge scenes)
+verilate: ## use: build ./render, ./trace, ./merge and the simulated hardware
+	$(call build,build,render trace merge scenes)
 
 page: ## use: the paper's unit in one file for a browser: its registers, clock by clock, and gates to break
 	@$(SETUP) page

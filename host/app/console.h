@@ -1,4 +1,4 @@
-// Console: numbers in words, and the progress bar.
+// Console: numbers in words, and the progress of a render.
 #pragma once
 
 #include <chrono>
@@ -23,20 +23,19 @@ namespace raygate {
 /// Returns `value` with at most seven significant digits: "35", "-0.125".
 [[nodiscard]] std::string format_number(double value);
 
-/// Returns "rendering [=========>          ]  45 %, 12 s left" with at most `columns` characters,
-/// without the bar if it does not fit. `fraction`: the completed fraction, in [0, 1]; `elapsed`:
-/// seconds so far.
-[[nodiscard]] std::string progress_line(double fraction, double elapsed, int columns);
+/// Returns "rendering: 45 %, 12.3 s left". `fraction`: the completed fraction, in [0, 1];
+/// `elapsed`: seconds so far.
+[[nodiscard]] std::string progress_text(double fraction, double elapsed);
 
-/// A progress bar on standard error, redrawn in place and erased at the end. Silent if standard
-/// error is not a terminal.
-class ProgressBar {
+/// A line about progress on standard error, redrawn in place and erased at the end. Silent if
+/// standard error is not a terminal.
+class ProgressLine {
  public:
   /// Starts the clock. Prints nothing unless `enabled`.
-  explicit ProgressBar(bool enabled);
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
-  ~ProgressBar() { erase(); }
+  explicit ProgressLine(bool enabled);
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine() { erase(); }
 
   /// Erases the line so that another can be printed.
   void erase();

@@ -2,11 +2,9 @@
 
 #include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <string>
 
 #include "host/app/console.h"
-#include "host/app/option_table.h"
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
 #include "host/film/environment_file.h"
@@ -52,12 +50,6 @@ View chosen_view(const CameraRequest& request, const Scene& scene) {
   const glm::dvec3 up = request.up ? *request.up : usual_up_axis(scene);
   if (!request.angles) return default_view(scene, up);
   return {request.angles->first, request.angles->second, up};
-}
-
-std::string numbers(std::initializer_list<double> values) {
-  std::string text;
-  for (const double value : values) text.append(text.empty() ? "" : ",").append(number_text(value));
-  return text;
 }
 
 /// "--view 33,24 --up y (usual in the format); --camera ...".
@@ -115,34 +107,27 @@ Framing frame_picture(const CameraRequest& request, const Scene& scene, double a
   const auto lights = default_lights(scene, camera, is_view);
   const bool needs_ground = is_view && lights && view.elevation > 0.0 && !is_interior(scene);
   Framing framing{camera, lights, request.ground.value_or(needs_ground), view.up, "", {}};
-
-  const auto add = [&](const char* name, const std::string& value) {
-    framing.options.emplace_back(name, value);
-  };
-  std::optional<glm::dvec3> up = request.up;
+  CameraRequest& same = framing.request;
+  same.up = request.up;
   if (is_view) {
     framing.text = view_text(request, scene, view, setting);
-    add("view", numbers({view.azimuth, view.elevation}));
-    add("fov", numbers({fov}));
-    up = view.up;
+    same.angles = {view.azimuth, view.elevation};
+    same.fov = fov;
+    same.up = view.up;
   } else {
-    const glm::dvec3 eye = request.eye ? *request.eye : given->eye;
-    const glm::dvec3 target = request.target ? *request.target
-                              : given        ? given->target
-                                             : setting.target + scene.origin;
-    add("camera", numbers({eye.x, eye.y, eye.z, target.x, target.y, target.z,
-                           setting.fov.value_or(Camera::kDefaultFov)}));
-    if (!up) up = setting.up;
+    same.camera = setting;
+    same.camera->eye = request.eye ? *request.eye : given->eye;
+    same.camera->target = request.target ? *request.target
+                          : given        ? given->target
+                                         : setting.target + scene.origin;
+    if (!same.up) same.up = setting.up;
   }
-  if (up) add("up", numbers({up->x, up->y, up->z}));
-  if (camera.projection() != Projection::kPerspective) {
-    add("projection", std::string(to_string(camera.projection())));
-  }
+  if (camera.projection() != Projection::kPerspective) same.lens.projection = camera.projection();
   if (camera.aperture() > 0.0) {
-    add("aperture", number_text(camera.aperture()));
-    add("focus", number_text(camera.focus()));
+    same.lens.aperture = camera.aperture();
+    same.lens.focus = camera.focus();
   }
-  if (framing.has_ground || is_view) add("ground", framing.has_ground ? "on" : "off");
+  if (framing.has_ground || is_view) same.ground = framing.has_ground;
   return framing;
 }
 

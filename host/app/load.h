@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "host/light/lights.h"
 #include "host/scene/camera.h"
@@ -45,8 +44,7 @@ struct Framing {
   bool has_ground;   ///< whether the picture has a ground that catches shadows, see add_ground()
   glm::dvec3 up;     ///< up direction of the view, for the ground
   std::string text;  ///< command-line options for the chosen view; "" if a camera was given
-  /// Names and values of the options that give the same framing.
-  std::vector<std::pair<std::string, std::string>> options;
+  CameraRequest request;  ///< that gives the same framing; its members that do not matter are unset
 };
 
 /// Chooses the camera: the requested one, else the scene's, else a view of the whole scene. Scenes

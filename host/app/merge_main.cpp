@@ -1,11 +1,9 @@
 // The program `merge`: joins parts of a picture that were rendered apart.
-#include <algorithm>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "host/app/options.h"
 #include "host/app/output_files.h"
-#include "host/app/output_options.h"
 #include "host/app/process.h"
 #include "host/base/input_error.h"
 #include "host/film/film.h"
@@ -31,46 +29,37 @@ constexpr const char* kFooter =
 Exit status: 0 done; 2 the parts do not make a picture, or the command line or
 an output cannot be used.)";
 
-int run(int argc, char** argv) {
-  std::vector<std::string> parts;
+int run(const std::vector<std::string>& words) {
   OutputOptions options;
   OptionTable table(kAbout, kFooter);
-  table.positionals(parts);
   table.group("Options");
   add_picture_options(table, options);
-  const std::string information = table.parse({argv + 1, argv + argc}, "");
-  if (!information.empty()) {
-    print(information);
+  const CommandLine line = table.parse(words);
+  if (!line.information.empty()) {
+    print(line.information);
     return 0;
   }
-  if (parts.empty() || table.typed("output").empty()) {
+  if (line.plain.empty() || table.given("output").empty()) {
     throw InputError("expected parts of a picture and -o NAME (see --help)");
   }
-  name_outputs(table, parts.front(), options);
-  const std::vector<std::filesystem::path> inputs(parts.begin(), parts.end());
-  require_distinct(options.paths(), inputs);
+  name_outputs(table, line.plain.front(), options);
+  require_distinct(options.paths(),
+                   std::vector<std::filesystem::path>(line.plain.begin(), line.plain.end()));
   for (const auto& path : options.paths()) require_writable(path);
 
   std::vector<NamedFilm> films;
-  films.reserve(parts.size());
-  for (const std::string& part : parts) films.emplace_back(part, read_film(part));
+  for (const std::string& part : line.plain) films.emplace_back(part, read_film(part));
   FilmFile whole = merge(std::move(films));
-  const bool is_part = std::ranges::find(whole.metadata.options, kSamplesAttribute,
-                                         &std::pair<std::string, std::string>::first) !=
-                       whole.metadata.options.end();
-  whole.film.keeps_sums = options.channels.sums || is_part;
+  const bool is_part = whole.film.keeps_sums;
+  whole.film.keeps_sums = is_part || options.channels.sums;
   StagedFiles ready = stage_files(options, whole.film, whole.metadata);
   for (AtomicFile& file : ready.files) file.commit();
-  const SampleRange samples = samples_of(whole.metadata);
-  print("wrote " + listed(ready.paths) + ": samples " + to_string(samples) +
+  print("wrote " + listed(ready.paths) + ": samples " + to_string(samples_of(whole.metadata)) +
         (is_part ? ", of a picture that has more\n" : "\n"));
-  flush_standard_output();
   return 0;
 }
 
 }  // namespace
 }  // namespace raygate
 
-int main(int argc, char** argv) {
-  return raygate::run_guarded([&] { return raygate::run(argc, argv); }, 1);
-}
+int main(int argc, char** argv) { return raygate::run_main(argc, argv, raygate::run); }

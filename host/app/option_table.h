@@ -1,10 +1,11 @@
-// Option table: the options of a program, each declared once with its name, type, range, default,
-// help text, and the places besides the command line where its value appears.
+// Option table: the options of a program, each declared once with its names, range, default, help
+// text, and the places besides the command line where it appears.
 #pragma once
 
 #include <algorithm>
 #include <charconv>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,17 +37,20 @@ template <typename T>
 /// Splits "a,b" into words, which may be empty; returns at least one.
 [[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
 
-/// Parses "0,0,10,20"; returns none if a word is not a number.
+/// Parses "0,0,10,20"; returns no numbers if a word is not a number.
 template <typename T>
-[[nodiscard]] std::optional<std::vector<T>> parse_list(const std::string& text) {
+[[nodiscard]] std::vector<T> parse_list(const std::string& text) {
   std::vector<T> values;
   for (const std::string& word : split_at_commas(text)) {
     const std::optional<T> value = parse_number<T>(word);
-    if (!value) return std::nullopt;
+    if (!value) return {};
     values.push_back(*value);
   }
   return values;
 }
+
+/// Returns the text that parse_list reads as `values`.
+[[nodiscard]] std::string list_text(std::initializer_list<double> values);
 
 /// Splits "name=value"; a missing half is empty.
 [[nodiscard]] std::pair<std::string, std::string> split_at_equals(const std::string& text);
@@ -54,23 +58,9 @@ template <typename T>
 /// Returns "a, b or c".
 [[nodiscard]] std::string listed(std::span<const std::string> words, const char* last = " or ");
 
-/// Returns "; did you mean --size?" if `text` is probably a misspelling of one of `words`, else "".
-[[nodiscard]] std::string did_you_mean(const std::string& text, std::span<const std::string> words);
-
-/// Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'", followed by `hint`.
-[[noreturn]] void fail_value(const std::string& option, const std::string& text,
-                             const std::string& expected, const std::string& hint = "");
-
 /// The words that an option accepts and their values.
 template <typename T>
 using Choices = std::vector<std::pair<std::string, T>>;
-
-template <typename T>
-[[nodiscard]] std::vector<std::string> names_of(const Choices<T>& choices) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : choices) names.push_back(name);
-  return names;
-}
 
 /// Returns the name of `value`, which must be one of the choices.
 template <typename T>
@@ -78,32 +68,22 @@ template <typename T>
   return std::ranges::find(choices, value, &std::pair<std::string, T>::second)->first;
 }
 
-/// Returns the value named `text`. Throws InputError "--tone: expected clip or filmic, got
-/// 'flimic'; did you mean filmic?"
+/// Returns the value with this name, or none.
 template <typename T>
-[[nodiscard]] T choose(const std::string& option, const std::string& text,
-                       const Choices<T>& choices) {
-  for (const auto& [name, value] : choices) {
-    if (text == name) return value;
-  }
-  const std::vector<std::string> names = names_of(choices);
-  fail_value(option, text, listed(names), did_you_mean(text, names));
+[[nodiscard]] std::optional<T> value_of(const Choices<T>& choices, const std::string& name) {
+  const auto found = std::ranges::find(choices, name, &std::pair<std::string, T>::first);
+  return found == choices.end() ? std::nullopt : std::optional<T>(found->second);
 }
 
-/// Splits "a,b" into words. Throws InputError if one is not in `names`.
-[[nodiscard]] std::vector<std::string> choose_some(const std::string& option,
-                                                   const std::string& text,
-                                                   std::span<const std::string> names);
-
-/// Where an option appears besides the command line.
-enum OptionPlaces : unsigned {
-  kNowhere = 0,
-  kInExr = 1,        ///< EXR attribute: --point-error as "pointError"
-  kInStats = 2,      ///< key in the JSON of --stats, under the option's name
-  kInPython = 4,     ///< keyword of the Python module
-  kInSceneFile = 8,  ///< key of "render" in scene files
-  kInPage = 16,      ///< parameter of requests to --serve
-};
+/// Returns the names of choices and `more`.
+template <typename T>
+[[nodiscard]] std::vector<std::string> names_of(const Choices<T>& choices,
+                                                std::vector<std::string> more = {}) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) names.push_back(name);
+  names.insert(names.end(), more.begin(), more.end());
+  return names;
+}
 
 /// The closed range of a number. `expected` describes it in messages; null: "a number from 0 to 1".
 template <typename T>
@@ -119,89 +99,158 @@ struct Range {
   }
 };
 
-/// The options of a program, in the order of --help. Parsed values are stored in the targets that
-/// the rows name, which must outlive the table. "{}" in a help text is replaced by the default: the
-/// target's value when the row is added.
-///
-/// A command line has words "--name VALUE", "--name=VALUE", "-n VALUE", "-nVALUE", flags "--name"
-/// and "-n", and positional words. The last of several values counts. An option's value may begin
-/// with a dash; after "--" every word is positional.
+/// Where an option appears besides the command line.
+enum OptionPlaces : unsigned {
+  kNowhere = 0,
+  kInExr = 1,        ///< EXR attribute: --point-error as "pointError"
+  kInStats = 2,      ///< key in the JSON of --stats, under the option's name
+  kInPython = 4,     ///< keyword of the Python module
+  kInSceneFile = 8,  ///< key of "render" in scene files
+  kInPage = 16,      ///< parameter of requests to --serve
+};
+
+/// A value that was given to an option.
+struct OptionValue {
+  std::string name;     ///< of the option, without dashes
+  std::string text;     ///< "" for a flag
+  std::string where{};  ///< place for messages, "scene.json:3"; "": the command line
+};
+
+/// The words of a command line.
+struct CommandLine {
+  std::string information;  ///< text that --help or --version asks for; the rest is then empty
+  std::vector<OptionValue> values;
+  std::vector<std::string> plain;  ///< words that belong to no option
+};
+
+/// The options of a program, in the order of --help. Values are stored in the targets that the rows
+/// name, which must outlive the table. "{}" in a help text is replaced by the default: the target's
+/// value when the row is added.
 class OptionTable {
  public:
-  /// Takes the option's name as messages show it, and the text of its value. Throws InputError.
-  using Read = std::function<void(const std::string& option, const std::string& text)>;
+  /// Stores a value; returns false if it is not as the row's `expected` says.
+  using Read = std::function<bool(const std::string& text)>;
+  /// Returns the current value as text, "" for none.
   using Show = std::function<std::string()>;
 
-  /// `about` and `footer` enclose the options in --help.
-  explicit OptionTable(std::string about = "", std::string footer = "")
-      : about_(std::move(about)), footer_(std::move(footer)) {}
+  /// `about` and `footer` enclose the options in --help. `dashes` precede names in messages.
+  explicit OptionTable(std::string about = "", std::string footer = "", const char* dashes = "--")
+      : about_(std::move(about)), footer_(std::move(footer)), dashes_(dashes) {}
   OptionTable(const OptionTable&) = delete;
   OptionTable& operator=(const OptionTable&) = delete;
 
   /// Sets the heading in --help of the rows that are added next.
   void group(const char* title) { group_ = title; }
 
-  /// Adds an option. `names`: "-o,--output"; the first long name is the option's name. `value`:
-  /// the placeholder of its value in --help. `read` is called with the last value typed, or with
-  /// each if the option `repeats`. `show` returns the current value as text, "" for none.
-  void add(const std::string& names, const char* value, std::string help, Read read, Show show = {},
-           unsigned places = kNowhere, bool repeats = false);
+  /// Adds an option. `names`: "-o,--output"; the first long name is the option's name. `value`: the
+  /// placeholder of its value in --help; null for a flag. `expected`: what its values are, in
+  /// messages.
+  void add(const std::string& names, const char* value, std::string help, std::string expected,
+           Read read, Show show = {}, unsigned places = kNowhere);
 
+  /// Adds an option whose text `parse` turns into a value, or none if it is not as expected.
+  /// `target`: a T or an optional one. `show` returns the text of a value.
   template <typename T, typename Target>
-  void number(const std::string& names, const char* value, const char* help, Target& target,
-              const Range<T>& range, unsigned places = kNowhere) {
+  void value(const std::string& names, const char* value, const std::string& help,
+             const std::string& expected, Target& target,
+             std::function<std::optional<T>(const std::string&)> parse,
+             std::function<std::string(const T&)> show = {}, unsigned places = kNowhere) {
     add(
-        names, value, help,
-        [&target, range](const std::string& option, const std::string& text) {
-          const std::optional<T> number = parse_number<T>(text);
-          if (!number || !range.contains(*number)) fail_value(option, text, range.text());
-          const T valid = *number;
-          target = valid;
+        names, value, help, expected,
+        [&target, parse](const std::string& text) {
+          const std::optional<T> parsed = parse(text);
+          if (parsed) target = *parsed;
+          return parsed.has_value();
         },
-        [&target] { return text_of(target); }, places);
+        [&target, show]() -> std::string {
+          if constexpr (std::is_same_v<T, Target>) {
+            return show(target);
+          } else {
+            return target ? show(*target) : "";
+          }
+        },
+        places);
   }
 
-  template <typename T>
-  void choice(const std::string& names, const char* value, const char* help, T& target,
-              const Choices<T>& choices, unsigned places = kNowhere) {
-    add(
-        names, value, help,
-        [&target, choices](const std::string& option, const std::string& text) {
-          target = choose(option, text, choices);
+  template <typename T, typename Target>
+  void number(const std::string& names, const char* placeholder, const char* help, Target& target,
+              const Range<T>& range, unsigned places = kNowhere) {
+    value<T>(
+        names, placeholder, help, range.text(), target,
+        [range](const std::string& text) {
+          const std::optional<T> number = parse_number<T>(text);
+          return number && range.contains(*number) ? number : std::nullopt;
         },
-        [&target, choices] { return name_of(choices, target); }, places);
+        number_text<T>, places);
+  }
+
+  template <typename T, typename Target>
+  void choice(const std::string& names, const char* placeholder, const char* help, Target& target,
+              const Choices<T>& choices, unsigned places = kNowhere) {
+    value<T>(
+        names, placeholder, help, listed(names_of(choices)), target,
+        [choices](const std::string& text) { return value_of(choices, text); },
+        [choices](const T& value) { return name_of(choices, value); }, places);
+  }
+
+  /// Adds an option whose value is a list of choices, each of which sets a member of `target` to
+  /// `on`; the other members get their defaults. "all" stands for all of them.
+  template <typename T>
+  void names(const std::string& names, const std::string& help, T& target,
+             const Choices<bool T::*>& choices, bool on, unsigned places = kNowhere) {
+    const std::vector<std::string> words = names_of(choices, {"all"});
+    add(
+        names, "NAMES", help + listed(words),
+        "some of " + listed(words, ", ") + " with commas between",
+        [&target, choices, on, words](const std::string& text) {
+          target = {};
+          for (const std::string& word : split_at_commas(text)) {
+            if (std::ranges::count(words, word) == 0) return false;
+            for (const auto& [name, member] : choices) {
+              if (word == name || word == "all") target.*member = on;
+            }
+          }
+          return true;
+        },
+        {}, places);
   }
 
   /// Adds an option whose value is stored as typed, such as a file name.
   template <typename Target>
   void text(const std::string& names, const char* value, const char* help, Target& target) {
-    add(names, value, help, [&target](const auto&, const std::string& text) { target = text; });
+    add(names, value, help, "a value", [&target](const auto& text) { return target = text, true; });
   }
 
   void flag(const std::string& names, const char* help, bool& on) {
-    add(names, nullptr, help, [&on](const auto&, const auto&) { on = true; });
+    add(names, nullptr, help, "", [&on](const auto&) { return on = true; });
   }
-  /// Adds a positional word, such as a file name. They are filled in order.
-  void positional(std::string& target) { positionals_.push_back(&target); }
-  /// Collects all positional words.
-  void positionals(std::vector<std::string>& targets) { all_positionals_ = &targets; }
 
-  /// Parses a command line without the program's name and stores the values. Returns the text that
-  /// --help or --version asks for; the targets are then incomplete. Throws InputError, one line:
-  /// an unknown option with the likely intended one, an option without its value, or one positional
-  /// word too many, described by `too_many`.
-  [[nodiscard]] std::string parse(const std::vector<std::string>& words,
-                                  const std::string& too_many);
+  /// Splits a command line without the program's name: "--name VALUE", "--name=VALUE", "-n VALUE",
+  /// flags "--name" and "-n", and other words; all words after "--" are plain. A value may begin
+  /// with a dash. Reads no value. Throws InputError, one line, for an unknown option or an option
+  /// without its value.
+  [[nodiscard]] CommandLine split(const std::vector<std::string>& words);
 
-  /// Sets an option that Python shows; messages name it without dashes. Throws InputError.
-  void set(const std::string& name, const std::string& text) const;
+  /// Reads values of known options: row by row, each row's values in their order, so that the last
+  /// one counts. Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'".
+  void read(const std::vector<OptionValue>& values);
 
-  /// Returns the last value typed for an option, named without dashes; "" if there was none.
-  [[nodiscard]] std::string typed(const std::string& name) const;
+  /// Splits a command line and reads its values, unless it asks for information.
+  [[nodiscard]] CommandLine parse(const std::vector<std::string>& words);
 
-  /// Throws InputError "WHERE: unknown key 'colour', expected some of ..." unless the option `name`
-  /// appears at `place`.
-  void require(const std::string& name, OptionPlaces place, const std::string& where) const;
+  /// Returns the last value that was read of an option, named without dashes; "" if there was none.
+  [[nodiscard]] std::string given(const std::string& name) const;
+
+  /// Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'" about the last value given.
+  [[noreturn]] void fail_value(const std::string& name, const std::string& expected) const;
+  /// Throws InputError about the values of the options `names`, after the place of those that are
+  /// not on the command line.
+  [[noreturn]] void fail(const std::string& message,
+                         std::initializer_list<const char*> names) const;
+
+  /// Throws InputError "unknown option 'colour', expected some of ..." unless the option appears at
+  /// `place`.
+  void require(const OptionValue& value, OptionPlaces place) const;
 
   /// Name/value pairs of the options shown at `place`; options without a value are omitted.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> values(OptionPlaces place) const;
@@ -213,31 +262,19 @@ class OptionTable {
     const char* value;               // null: a flag
     std::string help;
     const char* group;
+    std::string expected;
     Read read;
     Show show;
     unsigned places;
-    bool repeats;
-    std::vector<std::string> typed;  // values, in order
+    std::vector<OptionValue> given;
   };
 
   [[nodiscard]] std::string help() const;
-  [[nodiscard]] Row* find(const std::string& name);
-  [[noreturn]] void fail_unknown(const std::string& word) const;
+  [[nodiscard]] const Row& row(const std::string& name) const;
 
-  template <typename Target>
-  [[nodiscard]] static std::string text_of(const Target& target) {
-    if constexpr (std::is_arithmetic_v<Target>) {
-      return number_text(target);
-    } else {
-      return target ? number_text(*target) : "";
-    }
-  }
-
-  std::string about_, footer_;
+  std::string about_, footer_, dashes_;
   std::vector<Row> rows_;
   const char* group_ = "";
-  std::vector<std::string*> positionals_;
-  std::vector<std::string>* all_positionals_ = nullptr;
 };
 
 }  // namespace raygate

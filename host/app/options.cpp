@@ -1,11 +1,28 @@
 #include "host/app/options.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <thread>
+
 #include "host/base/input_error.h"
+#include "host/exact/exact.h"
 #include "host/film/atomic_file.h"
+#include "host/film/merge.h"
 #include "host/render/adaptive_sampling.h"
+#include "sim/simulation.h"
 
 namespace raygate {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLargest = std::numeric_limits<float>::max(),
+                 kFinite = std::numeric_limits<double>::max();
+constexpr const char* kStandardOutput = "/dev/stdout";
 
 constexpr const char* kAbout =
     R"(Usage: ./render SCENE [options]     SCENE.obj, .glb, .gltf, .ply or .stl, or a
@@ -23,142 +40,342 @@ constexpr const char* kFooter =
     R"(Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene or an output cannot be used; 130 interrupted (partial pictures).)";
 
-constexpr Range<int> kPortRange{1, 65535};
+// Values of options.
 
-void require_pixels(const std::string& option, const std::string& text, int width, int height) {
-  if (std::int64_t{width} * height <= kMaxPixels) return;
-  fail_value(option, text,
-             "at most " + std::to_string(kMaxPixels) +
-                 " pixels in one run, for their memory (a larger frame can be rendered in parts "
-                 "with --crop)");
+const Choices<Engine> kEngines{{"rtl", Engine::kRtl},
+                               {"model", Engine::kModel},
+                               {"cpu", Engine::kCpu},
+                               {"check", Engine::kCheck}};
+const Choices<Arith> kAriths{{"structural", Arith::kStructural},
+                             {"behavioural", Arith::kBehavioural}};
+const Choices<Caustics> kCaustics{
+    {"on", Caustics::kOn}, {"off", Caustics::kOff}, {"auto", Caustics::kAuto}};
+const Choices<bool ExtraChannels::*> kExtraChannels{
+    {"P", &ExtraChannels::position},      {"Albedo", &ExtraChannels::albedo},
+    {"objectId", &ExtraChannels::object}, {"tests", &ExtraChannels::tests},
+    {"doubts", &ExtraChannels::doubts},   {"sums", &ExtraChannels::sums}};
+const Choices<bool Skips::*> kSkips{
+    {"culling", &Skips::culling},           {"records", &Skips::records},
+    {"light-behind", &Skips::light_behind}, {"weightless", &Skips::weightless},
+    {"empty-tiles", &Skips::empty_tiles},   {"first-occluder", &Skips::first_occluder},
+    {"divisions", &Skips::divisions}};
+const Choices<glm::dvec3> kAxes{{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
+                                {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
+using Angles = std::pair<double, double>;
+const Choices<Angles> kViews{{"front", {0, 0}},   {"back", {180, 0}},
+                             {"left", {-90, 0}},  {"right", {90, 0}},
+                             {"top", {0, 90}},    {"iso", {45, 35.264389682754654}},
+                             {"bottom", {0, -90}}};  // iso: all three axes appear equally long
+
+std::string size_text(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
 }
 
-std::string size_text(const RenderSettings& options) {
-  return std::to_string(options.width) + "x" + std::to_string(options.height);
-}
-
-void read_size(const std::string& option, const std::string& text, RenderSettings& options) {
-  const std::size_t x = text.find('x');
-  const auto width = parse_number<int>(text.substr(0, x));
+bool read_size(const std::string& text, RenderSettings& settings) {
+  const std::size_t x = std::min(text.find('x'), text.size());
+  const auto width = parse_number<int>(std::string_view(text).substr(0, x));
   const auto height =
-      parse_number<int>(x == std::string::npos ? "" : std::string_view(text).substr(x + 1));
-  if (!kSideRange.contains(width.value_or(0)) || !kSideRange.contains(height.value_or(0))) {
-    fail_value(
-        option, text,
-        "WIDTHxHEIGHT, each from 1 to " + std::to_string(kSideRange.high) + " pixels (640x480)");
-  }
-  options.width = *width;
-  options.height = *height;
+      parse_number<int>(std::string_view(text).substr(std::min(x + 1, text.size())));
+  settings.width = width.value_or(0);
+  settings.height = height.value_or(0);
+  return kSideRange.contains(settings.width) && kSideRange.contains(settings.height);
 }
 
-/// All options of ./render, in the order of --help.
-struct CommandLine {
-  OptionTable table{kAbout, kFooter};
-  std::string scene;
-  bool no_scene_file = false;
+/// Parses a name of variants.json or a format such as "e8p15".
+std::optional<Variant> parse_variant(const std::string& text) {
+  for (const Variant& variant : all_variants_of_arithmetic()) {
+    if (variant.name == text) return variant;
+  }
+  try {
+    return variant_of_format(text);
+  } catch (const InputError& error) {
+    throw InputError("--variant: " + text + ": " + error.what());
+  }
+}
 
-  explicit CommandLine(Options& options) {
-    RenderSettings& render = options.render;
-    table.positional(scene);
-    table.group("Engine");
-    add_engine_options(table, options);
-    add_core_file_options(table, options.core_files);
-    add_skip_options(table, render);
-    table.group("Picture");
-    add_picture_options(table, options.output);
+/// Parses "latency=100,bytes=16,cache=1024"; each part is optional.
+std::optional<MemoryTiming> parse_memory(const std::string& text) {
+  MemoryTiming timing;
+  for (const std::string& word : split_at_commas(text)) {
+    const auto [name, number] = split_at_equals(word);
+    const int value = parse_number<int>(number).value_or(-1);
+    const auto is_power = [&](int most) {
+      return value >= 1 && value <= most && std::has_single_bit(static_cast<unsigned>(value));
+    };
+    if (name == "latency" && value >= 1 && value <= 10'000) {
+      timing.latency = value;
+    } else if (name == "bytes" && is_power(64)) {
+      timing.bytes = value;
+    } else if (name == "cache" && (value == 0 || is_power(1 << 24))) {
+      timing.cache_lines = value;
+    } else {
+      return std::nullopt;
+    }
+  }
+  return timing;
+}
+
+/// Parses a fraction of the distance; "inf": the unit's point wherever it has one.
+std::optional<float> parse_point_error(const std::string& text) {
+  const double error = text == "inf" ? kLargest : parse_number<double>(text).value_or(-1.0);
+  if (!(error >= 0.0 && error <= kLargest)) return std::nullopt;
+  return float_below(error);
+}
+
+std::optional<glm::ivec2> parse_pixel(const std::string& text) {
+  const std::vector<int> n = parse_list<int>(text);
+  if (n.size() != 2) return std::nullopt;
+  return glm::ivec2(n[0], n[1]);
+}
+
+std::optional<CameraSetting> parse_camera(const std::string& text) {
+  const std::vector<double> n = parse_list<double>(text);
+  if (n.size() != 6 && n.size() != 7) return std::nullopt;
+  const bool are_finite =
+      std::ranges::all_of(n, [](double number) { return std::isfinite(number); });
+  CameraSetting camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, std::nullopt, std::nullopt};
+  if (n.size() == 7) camera.fov = n[6];
+  if (!are_finite || camera.eye == camera.target || !kFovRange.contains(camera.fov.value_or(1.0))) {
+    return std::nullopt;
+  }
+  return camera;
+}
+
+std::optional<Angles> parse_view(const std::string& text) {
+  const std::vector<double> n = parse_list<double>(text);
+  if (n.size() != 2) return value_of(kViews, text);
+  if (!(std::abs(n[0]) <= 360.0 && std::abs(n[1]) <= 90.0)) return std::nullopt;
+  return Angles(n[0], n[1]);
+}
+
+std::string vector_text(const glm::dvec3& v) { return list_text({v.x, v.y, v.z}); }
+
+/// Names of all channels that a film can have.
+std::vector<std::string> channel_names() {
+  Film film = make_film(1, 1, {0, 0, 1, 1}, {true, true, true, true, true});
+  add_sums(film, true);
+  std::vector<std::string> names;
+  for (const Channel& channel : channels_of(film)) names.push_back(channel.name);
+  return names;
+}
+
+/// Reads "Z=FILE.png" or "Z:0:10=FILE.png".
+bool read_false_color(const std::string& text, std::vector<FalseColorOutput>& outputs) {
+  const auto [what, file] = split_at_equals(text);
+  std::string words = what;
+  std::ranges::replace(words, ':', ',');
+  const std::size_t name_end = std::min(words.find(','), words.size());
+  FalseColorOutput output{words.substr(0, name_end), std::nullopt, file};
+  const std::vector<std::string> known = channel_names();
+  if (output.path.extension() != ".png" || std::ranges::count(known, output.channel) == 0) {
+    return false;
+  }
+  if (name_end < words.size()) {
+    const std::vector<double> limits = parse_list<double>(words.substr(name_end + 1));
+    if (limits.size() != 2 || !std::isfinite(limits[0]) || !std::isfinite(limits[1]) ||
+        limits[0] >= limits[1]) {
+      return false;
+    }
+    output.scale = Scale{limits[0], limits[1]};
+  }
+  outputs.push_back(output);
+  return true;
+}
+
+// Rows of tables.
+
+void add_core_options(OptionTable& table, Options& options) {
+  CoreFileOptions& files = options.core_files;
+  table.text("--dump-image", "FILE", "dump the ray cores' memory image; render nothing",
+             files.image);
+  table.text("--trace", "FILE.vcd", "write a pixel's waveform; render nothing", files.wave);
+  table.value<glm::ivec2>("--trace-pixel", "X,Y", "the pixel of --trace", "X,Y, a pixel",
+                          files.pixel, parse_pixel);
+  table.value<float>(
+      "--point-error", "X",
+      "compute points on the host where the unit's may be off by X of t (2^-16; 0: always; inf: "
+      "never)",
+      "a fraction of the distance, 0 or more, or inf", options.render.point_error,
+      parse_point_error, [](float error) { return number_text(double{error}); }, kInExr | kInPage);
+  table.names("--no-skip",
+              "disable optimisations that do not change the picture: ", options.render.skips,
+              kSkips, false, kInPage);
+}
+
+void add_camera_options(OptionTable& table, CameraRequest& request) {
+  table.value<CameraSetting>(
+      "--camera", "EX,EY,EZ,TX,TY,TZ[,FOV]",
+      "eye, target, vertical field of view (the scene's, or a view of it all)",
+      "EX,EY,EZ,TX,TY,TZ or EX,EY,EZ,TX,TY,TZ,FOV (an eye and another target, finite numbers; "
+      "degrees above 0 and below 180)",
+      request.camera, parse_camera,
+      [](const CameraSetting& camera) {
+        return vector_text(camera.eye) + "," + vector_text(camera.target) + "," +
+               number_text(camera.fov.value_or(Camera::kDefaultFov));
+      },
+      kInExr | kInPage);
+  table.value<Angles>(
+      "--view", "NAME|AZ,EL",
+      "the whole scene: " + listed(names_of(kViews), ", ") + ", or azimuth and elevation (33,24)",
+      listed(names_of(kViews), ", ") +
+          ", or AZIMUTH,ELEVATION in degrees (from -360 to 360, and from -90 to 90)",
+      request.angles, parse_view,
+      [](const Angles& angles) {
+        return list_text({angles.first, angles.second});
+      },
+      kInExr | kInPage);
+  table.value<glm::dvec3>(
+      "--up", "AXIS", "up axis: " + listed(names_of(kAxes)) + " (that of the format)",
+      listed(names_of(kAxes)), request.up,
+      [](const std::string& text) { return value_of(kAxes, text); }, vector_text, kInExr | kInPage);
+  table.number("--fov", "DEGREES", "vertical field of view of any camera (35)", request.fov,
+               kFovRange, kInExr | kInPage);
+  table.choice<Projection>("--projection", "NAME",
+                           "perspective (default), orthographic or panorama",
+                           request.lens.projection,
+                           {{"perspective", Projection::kPerspective},
+                            {"orthographic", Projection::kOrthographic},
+                            {"panorama", Projection::kPanorama}},
+                           kInExr | kInPage);
+  table.number("--aperture", "R", "lens radius for depth of field; needs --spp (0)",
+               request.lens.aperture, Range{0.0, kLargest, "the radius of a lens, 0 or more"},
+               kInExr | kInPage);
+  table.number(
+      "--focus", "D", "focus distance (the target's)", request.lens.focus,
+      Range<double>{std::numeric_limits<float>::min(), kLargest, "a distance, more than 0"},
+      kInExr | kInPage);
+  table.choice<bool>("--ground", "on|off", "shadow-catcher ground (on in default outdoor views)",
+                     request.ground, {{"on", true}, {"off", false}}, kInExr);
+}
+
+void add_environment_options(OptionTable& table, std::optional<EnvironmentSetting>& environment) {
+  table.add(
+      "--environment", "FILE", "environment map: EXR or HDR, latitude-longitude", "a file",
+      [&](const std::string& text) {
+        environment.emplace().file = text;
+        return true;
+      },
+      [&] { return environment ? environment->file.filename().string() : ""; }, kInExr);
+  const auto add = [&](const char* name, const char* value, const char* help,
+                       double EnvironmentSetting::*target, const Range<double>& range) {
     table.add(
-        "--size", "WxH", "the frame in pixels ({})",
-        [&render](const std::string& option, const std::string& text) {
-          read_size(option, text, render);
+        name, value, help, range.text() + ", with --environment",
+        [&environment, target, range](const std::string& text) {
+          const auto number = parse_number<double>(text);
+          if (!environment || !number || !range.contains(*number)) return false;
+          (*environment).*target = *number;
+          return true;
         },
-        [&render] { return size_text(render); }, kInSceneFile | kInPage);
-    table.add("--crop", "X0,Y0,X1,Y1", "only this part of it; X1 and Y1 are not included",
-              [&render](const std::string& /*option*/, const std::string& text) {
-                const auto n = parse_list<int>(text);
-                const bool are_four = n && n->size() == 4;
-                render.window = are_four ? PixelRect{(*n)[0], (*n)[1], (*n)[2], (*n)[3]}
-                                         : PixelRect{0, 0, -1, -1};  // which check_crop refuses
-              });
-    add_camera_options(table, options.camera);
-    table.number("--smooth", "DEGREES", "smooth edges up to this angle (the OBJ's s, or 30)",
-                 options.smooth, kSmoothRange, kInExr);
-    table.group("Light");
-    add_light_options(table, render);
-    add_environment_options(table, options.environment);
-    table.group("Run");
-    table.text("--resume", "FILE.exr", "resume an unfinished render", options.resume);
-    add_run_output_options(table, options.output);
-    table.flag("--serve", "show the scene in a page of the browser", options.serve);
-    table.number("--port", "N", "of --serve's page (any free one)", options.port, kPortRange);
-    table.flag("--strict", "refuse faces without area (they are left out)", options.strict);
-    table.flag("--no-scene-file", "ignore the .json beside an OBJ", no_scene_file);
-    table.flag("-q,--quiet", "print no statistics and no progress", options.quiet);
-    table.flag("-v,--verbose", "print all statistics", options.verbose);
-  }
-
-  [[nodiscard]] std::string parse(const std::vector<std::string>& words) {
-    return table.parse(words, "a second scene; one run renders one scene");
-  }
-};
-
-void check_crop(const OptionTable& table, RenderSettings& options) {
-  const std::string typed = table.typed("crop");
-  PixelRect& window = options.window;
-  if (typed.empty()) {
-    window = {0, 0, options.width, options.height};
-    require_pixels("--size", size_text(options), options.width, options.height);
-    return;
-  }
-  if (window.x0 < 0 || window.x0 >= window.x1 || window.x1 > options.width || window.y0 < 0 ||
-      window.y0 >= window.y1 || window.y1 > options.height) {
-    fail_value("--crop", typed,
-               "X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1 within the frame of " + size_text(options) +
-                   " (0,0 is the top left corner, X1 and Y1 are not included)");
-  }
-  require_pixels("--crop", typed, window.width(), window.height());
+        [&environment, target] { return environment ? number_text((*environment).*target) : ""; },
+        kInExr);
+  };
+  add("--environment-rotation", "DEG", "counter-clockwise, seen from above (0)",
+      &EnvironmentSetting::rotation, {-360.0, 360.0, "degrees from -360 to 360"});
+  add("--environment-strength", "X", "radiance multiplier (1)", &EnvironmentSetting::strength,
+      {0.0, 1e9, "a factor from 0 to 1e9"});
 }
 
-/// Checks options that --error excludes or changes.
-void check_error(const OptionTable& table, RenderSettings& options) {
-  if (options.error == 0.0) return;
-  check_adaptive_samples("--", table.typed("spp"), options);
-  if (options.end_sample > 0) throw InputError("--samples and --error exclude each other");
-  const PixelRect& window = options.window;
-  const auto is_edge = [](int at, int end) { return at % kErrorBlock == 0 || at == end; };
-  if (!is_edge(window.x0, 0) || !is_edge(window.y0, 0) || !is_edge(window.x1, options.width) ||
-      !is_edge(window.y1, options.height)) {
-    fail_value("--crop", table.typed("crop"), "multiples of 4, or the frame's edge, with --error");
-  }
+void add_run_options(OptionTable& table, Options& options) {
+  table.text("--resume", "FILE.exr", "resume an unfinished render", options.resume);
+  table.number("--save-every", "SECONDS", "save the unfinished picture now and then",
+               options.output.save_seconds, Range{0.1, 1e6, "seconds from 0.1 to 1000000"});
+  table.add("--stats", "FILE.json", "all statistics as JSON; - prints them", "a file or -",
+            [&](const std::string& text) {
+              options.output.stats = text == "-" ? kStandardOutput : text;
+              return true;
+            });
+  table.flag("--serve", "show the scene in a page of the browser", options.serve);
+  table.number("--port", "N", "of --serve's page (any free one)", options.port,
+               Range<int>{1, 65535});
+  table.flag("--strict", "treat faces without area as an error (default: drop them)",
+             options.strict);
+  table.flag("--no-scene-file", "ignore the .json beside an OBJ", options.no_scene_file);
+  table.flag("-q,--quiet", "print no statistics and no progress", options.quiet);
+  table.flag("-v,--verbose", "print all statistics and warnings", options.verbose);
 }
 
-/// Checks options that --caustics on excludes; --caustics auto does without caustics instead.
-void check_caustics(const RenderSettings& options) {
-  if (options.caustics != Caustics::kOn) return;
-  if (options.integrator != IntegratorKind::kPath) {
-    throw InputError("--caustics on: expected --integrator path");
-  }
-  if (options.samples == 1) throw InputError("--caustics on: expected --spp 2 or more");
-  if (options.error > 0.0) throw InputError("--caustics on and --error exclude each other");
-}
-
-/// Checks options against each other and sets defaults that depend on others.
-void check(const OptionTable& table, Options& options) {
+void add_render_options(OptionTable& table, Options& options) {
   RenderSettings& render = options.render;
-  render.choose_integrator(options.environment.has_value(), !table.typed("integrator").empty(),
-                           !table.typed("spp").empty());
-  name_outputs(table, options.scene, options.output);
-  check_crop(table, render);
-  if (!table.typed("camera").empty() && !table.typed("view").empty()) {
-    throw InputError("--view and --camera exclude each other");
+  table.group("Engine");
+  add_engine_options(table, options);
+  add_core_options(table, options);
+  table.group("Picture");
+  add_picture_options(table, options.output);
+  table.add(
+      "--size", "WxH", "the frame in pixels ({})",
+      "WIDTHxHEIGHT, each from 1 to " + std::to_string(kSideRange.high) + " pixels (640x480)",
+      [&](const std::string& text) { return read_size(text, render); },
+      [&] { return size_text(render.width, render.height); }, kInSceneFile | kInPage);
+  table.add("--crop", "X0,Y0,X1,Y1", "only this part of it; X1 and Y1 are not included", "",
+            [&](const std::string& text) {
+              const std::vector<int> n = parse_list<int>(text);
+              render.window = n.size() == 4 ? PixelRect{n[0], n[1], n[2], n[3]}
+                                            : PixelRect{0, 0, -1, -1};  // which check_crop refuses
+              return true;
+            });
+  add_camera_options(table, options.camera);
+  table.number("--smooth", "DEGREES", "smooth edges up to this angle (the OBJ's s, or 30)",
+               options.smooth, kSmoothRange, kInExr);
+  table.group("Light");
+  add_light_options(table, render);
+  add_environment_options(table, options.environment);
+  table.group("Run");
+  add_run_options(table, options);
+}
+
+// Checks of several options.
+
+void check_crop(const OptionTable& table, RenderSettings& settings) {
+  const std::string size = size_text(settings.width, settings.height);
+  const bool is_whole = table.given("crop").empty();
+  PixelRect& w = settings.window;
+  if (is_whole) w = {0, 0, settings.width, settings.height};
+  if (w.x0 < 0 || w.x0 >= w.x1 || w.x1 > settings.width || w.y0 < 0 || w.y0 >= w.y1 ||
+      w.y1 > settings.height) {
+    table.fail_value("crop", "X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1 within the frame of " + size +
+                                 " (0,0 is the top left corner, X1 and Y1 are not included)");
   }
-  check_engine_options(table, options);
-  check_core_file_options(options.core_files, options, {render.width, render.height});
-  check_error(table, render);
-  check_caustics(render);
+  if (std::int64_t{w.width()} * w.height() > kMaxPixels) {
+    table.fail_value(is_whole ? "size" : "crop",
+                     "at most " + std::to_string(kMaxPixels) +
+                         " pixels in one run, for their memory (a larger frame can be rendered in "
+                         "parts with --crop)");
+  }
+  const auto is_edge = [](int at, int end) { return at % kErrorBlock == 0 || at == end; };
+  if (settings.error > 0.0 && (!is_edge(w.x0, 0) || !is_edge(w.y0, 0) ||
+                               !is_edge(w.x1, settings.width) || !is_edge(w.y1, settings.height))) {
+    table.fail_value("crop", "multiples of 4, or the frame's edge, with --error");
+  }
+}
+
+void check_core_files(const OptionTable& table, const Options& options) {
+  const CoreFileOptions& files = options.core_files;
+  if (!files.image.empty() && !options.has_core()) {
+    table.fail_value("dump-image", "with --unit core and no --engine cpu");
+  }
+  if (files.wave.empty() == files.pixel.has_value()) {
+    throw InputError("--trace: expected with --trace-pixel X,Y, and that with --trace FILE");
+  }
+  if (!files.pixel) return;
+  if (!options.has_core() || !options.simulates()) {
+    table.fail_value("trace", "with --unit core and --engine rtl or check");
+  }
+  const RenderSettings& render = options.render;
+  const glm::ivec2& pixel = *files.pixel;
+  if (pixel.x < 0 || pixel.x >= render.width || pixel.y < 0 || pixel.y >= render.height) {
+    table.fail_value("trace-pixel", "X,Y, a pixel of " + size_text(render.width, render.height));
+  }
+}
+
+/// Checks the samples of a part, and the channels that need adaptive sampling.
+void check_samples(const OptionTable& table, Options& options) {
+  const RenderSettings& render = options.render;
   if (render.end_sample > 0) {
+    if (render.error > 0.0) {
+      table.fail("--samples and --error exclude each other", {"samples", "error"});
+    }
     if (render.end_sample > render.samples) {
-      fail_value("--samples", table.typed("samples"),
-                 "some of the " + std::to_string(render.samples) + " of --spp");
+      table.fail_value("samples", "some of the " + std::to_string(render.samples) + " of --spp");
     }
     if (!options.output.exr) throw InputError("--samples: expected an EXR among the outputs");
     options.output.channels.sums = true;
@@ -170,183 +387,358 @@ void check(const OptionTable& table, Options& options) {
   }
 }
 
-/// Reads the scene file that was named, or the one beside a model; returns the model alone if there
-/// is none.
-SceneFile find_scene_file(const CommandLine& line) {
-  const std::filesystem::path scene = line.scene;
-  if (scene.extension() == ".json") {
-    if (line.no_scene_file) throw InputError("--no-scene-file: expected an OBJ, got " + line.scene);
-    return read_scene_file(scene);
-  }
-  const std::filesystem::path beside = std::filesystem::path(scene).replace_extension(".json");
-  std::error_code ignored;
-  if (line.no_scene_file || !std::filesystem::is_regular_file(beside, ignored)) {
-    return {.file = scene, .obj = scene};
-  }
-  SceneFile file = read_scene_file(beside);
-  // The model may be elsewhere, made by a script.
-  if (!std::filesystem::exists(scene, ignored)) return file;
-  if (file.obj.lexically_normal() != scene.lexically_normal()) {
-    throw InputError(beside.string() + ": is about " + file.obj.string() + ", not " + line.scene +
-                     "; --no-scene-file leaves it alone");
-  }
-  return file;
-}
-
-/// Returns the scene file's options as words of a command line, after checking each value.
-std::vector<std::string> words_of(const SceneFile& file) {
-  std::vector<std::string> words;
-  for (const OptionSetting& setting : file.options) {
-    words.push_back("--" + setting.name + "=" + setting.value);
-    try {
-      Options ignored;
-      CommandLine line(ignored);
-      line.table.require(setting.name, kInSceneFile, "render");
-      (void)line.parse({words.back()});
-    } catch (const InputError& error) {
-      throw InputError(file.file.string(), setting.line, error.what());
-    }
-  }
-  return words;
-}
-
-/// Throws InputError for options that exclude --serve.
 void check_serve(const OptionTable& table, const Options& options) {
   if (!options.serve) {
-    if (!table.typed("port").empty()) throw InputError("--port: expected with --serve");
+    if (options.port != 0) throw InputError("--port: expected with --serve");
     return;
   }
   for (const char* name :
        {"crop", "error", "resume", "samples", "stats", "save-every", "trace", "dump-image"}) {
-    if (!table.typed(name).empty()) {
-      throw InputError("--" + std::string(name) + " and --serve exclude each other");
-    }
-  }
-}
-
-/// Parses the scene file's options and then the command line, which overrides them. If an error
-/// would not occur without an option of the file, the message names its line.
-Options read_options(const Options& begin, const std::vector<std::string>& typed) {
-  const auto read = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    Options options = begin;
-    CommandLine line(options);
-    (void)line.parse(words);
-    check(line.table, options);
-    check_serve(line.table, options);
-    return options;
-  };
-  const auto error_of = [&](const auto&... words) -> std::string {
-    try {
-      (void)read(words...);
-      return "";
-    } catch (const InputError& error) {
-      return error.what();
-    }
-  };
-  const SceneFile& file = begin.scene_file;
-  const std::vector<std::string> settings = words_of(file);
-  try {
-    return read(settings, typed);
-  } catch (const InputError& error) {
-    for (std::size_t i = settings.size(); i-- > 0;) {
-      std::vector<std::string> others = settings;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      if (!error_of(others, typed).empty()) continue;
-      const OptionSetting& setting = file.options[i];
-      if (error_of(settings, std::vector<std::string>()) == error.what()) {
-        throw InputError(file.file.string(), setting.line, error.what());
-      }
-      throw InputError(std::string(error.what()) + " (" + file.file.string() + ":" +
-                       std::to_string(setting.line) + " sets " + setting.name + ")");
-    }
-    throw;
+    if (table.given(name).empty()) continue;
+    table.fail("--" + std::string(name) + " and --serve exclude each other", {name, "serve"});
   }
 }
 
 /// Throws InputError if an output would overwrite the scene or another output.
 void require_distinct_outputs(const Options& options) {
-  // Paths that cannot be resolved are refused when they are read or written.
-  const auto resolve = [](const std::filesystem::path& path) {
-    std::error_code error;
-    return target_of(path, error);
-  };
-  std::vector<std::filesystem::path> paths{options.scene, options.scene_file.obj,
-                                           options.scene_file.file};
-  // The next run would read a file of this name with the scene.
-  paths.push_back(std::filesystem::path(options.scene_file.obj).replace_extension(".json"));
-  std::vector<std::filesystem::path> outputs = options.output.paths();
-  for (const auto& path : options.core_files.paths()) outputs.push_back(path);
-  for (const std::filesystem::path& output : outputs) {
-    const std::filesystem::path resolved = resolve(output);
-    for (const auto& other : paths) {
-      if (!resolved.empty() && resolved == resolve(other)) {
-        throw InputError(output.string() + ": would overwrite " + other.string());
-      }
-    }
-    paths.push_back(output);
+  // The next run would read a scene file beside the model.
+  std::vector<fs::path> others{options.scene, options.scene_file.obj, options.scene_file.file,
+                               fs::path(options.scene_file.obj).replace_extension(".json")};
+  std::vector<fs::path> outputs = options.output.paths();
+  for (const fs::path& path : options.core_files.paths()) outputs.push_back(path);
+  for (const fs::path& output : outputs) {
+    require_distinct({&output, 1}, others);
+    others.push_back(output);
   }
+}
+
+/// Reads the scene file that was named, or the one beside a model; returns the model alone if there
+/// is none.
+SceneFile find_scene_file(const fs::path& scene, bool no_scene_file) {
+  if (scene.extension() == ".json") {
+    if (no_scene_file) {
+      throw InputError("--no-scene-file: expected an OBJ, got " + scene.string());
+    }
+    return read_scene_file(scene);
+  }
+  const fs::path beside = fs::path(scene).replace_extension(".json");
+  std::error_code ignored;
+  if (no_scene_file || !fs::is_regular_file(beside, ignored)) return {.file = scene, .obj = scene};
+  SceneFile file = read_scene_file(beside);
+  // The model may be elsewhere, made by a script.
+  if (!fs::exists(scene, ignored)) return file;
+  if (file.obj.lexically_normal() != scene.lexically_normal()) {
+    throw InputError(beside.string() + ": is about " + file.obj.string() + ", not " +
+                     scene.string() + "; --no-scene-file leaves it alone");
+  }
+  return file;
 }
 
 }  // namespace
 
-Options parse_options(const std::vector<std::string>& words) {
-  Options options;
-  Options first;                // to find the scene's name
-  first.environment.emplace();  // the scene file may have one
-  CommandLine line(first);
-  options.information = line.parse(words);
-  if (!options.information.empty()) return options;
-  if (line.scene.empty()) throw InputError("no scene given; try ./render scenes/cornell.obj");
-  options.scene = line.scene;
-  options.scene_file = find_scene_file(line);
-  std::error_code ignored;
-  options.is_bare_model =
-      options.scene_file.file == options.scene_file.obj &&
-      !std::filesystem::exists(std::filesystem::path(line.scene).replace_extension(".json"),
-                               ignored);
-  return with_words(options, words);
+std::string to_string(Engine engine) { return name_of(kEngines, engine); }
+std::string to_string(Arith arith) { return name_of(kAriths, arith); }
+
+std::vector<fs::path> OutputOptions::paths() const {
+  std::vector<fs::path> all;
+  if (exr) all.push_back(*exr);
+  if (png) all.push_back(*png);
+  for (const FalseColorOutput& output : false_colors) all.push_back(output.path);
+  if (stats) all.push_back(*stats);
+  return all;
 }
 
-Options with_words(const Options& given, const std::vector<std::string>& words) {
+ExtraChannels OutputOptions::needed_channels() const {
+  ExtraChannels needed = channels;
+  for (const FalseColorOutput& output : false_colors) {
+    const std::string layer = output.channel.substr(0, output.channel.find('.'));
+    if (const auto extra = value_of(kExtraChannels, layer)) needed.** extra = true;
+  }
+  return needed;
+}
+
+std::vector<fs::path> CoreFileOptions::paths() const {
+  std::vector<fs::path> paths;
+  for (const fs::path& path : {image, wave}) {
+    if (!path.empty()) paths.push_back(path);
+  }
+  return paths;
+}
+
+void add_engine_options(OptionTable& table, EngineOptions& options) {
+  if (!has_simulation()) options.engine = Engine::kCpu;
+  table.choice("--engine", "NAME",
+               "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster; check: "
+               "rtl and cpu ({})",
+               options.engine, kEngines, kInStats | kInPage);
+  table.choice<std::string>(
+      "--unit", "NAME", "pipeline, serial (the paper's), core, board ({})", options.unit,
+      {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}, {"board", "board"}},
+      kInStats | kInPage);
+  std::vector<std::string> variants;
+  for (const Variant& variant : all_variants_of_arithmetic()) variants.push_back(variant.name);
+  table.value<Variant>(
+      "--variant", "NAME", "number format of the model: e8p16; e8p16-raw: without error bounds",
+      "exponent bits and digits as in e8p15 or e8p15-raw, " + listed(variants), options.variant,
+      parse_variant, [](const Variant& variant) { return variant.name; }, kInExr | kInPage);
+  table.choice("--arith", "NAME", "structural, or behavioural: + and * ({})", options.arith,
+               kAriths, kInStats | kInPage);
+  table.choice<int>("--lanes", "1|2|4|8", "pipelined units side by side, per thread ({})",
+                    options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats | kInPage);
+  table.value<MemoryTiming>(
+      "--memory", "latency=N,bytes=N,cache=N",
+      "ray core: clocks to a line (50), bytes per clock (64), cache lines (0)",
+      "latency=1 to 10000, bytes=1, 2, 4 ... 64, cache=0 or lines, a power of two", options.memory,
+      parse_memory, {}, kInPage);
+  table.number("--cores", "N", "ray cores behind one memory, per thread ({})", options.cores,
+               Range{1, 64, "a whole number, 1 to 64"}, kInStats | kInPage);
+  table.text("--board-port", "PATH", "the serial port of a real board (--unit board)",
+             options.board_port);
+  table.number("--threads", "N", "threads (one per processor)", options.threads, kThreadRange,
+               kInStats | kInPage);
+  table.choice<InstanceMode>("--instances", "auto|keep|write",
+                             "share repeated meshes, or expand them ({})", options.instances,
+                             {{"auto", InstanceMode::kAutomatic},
+                              {"keep", InstanceMode::kKeep},
+                              {"write", InstanceMode::kFlatten}});
+}
+
+void add_picture_options(OptionTable& table, OutputOptions& options) {
+  table.add("-o,--output", "NAME", "NAME.exr, NAME.png, or NAME (or a folder) for both", "a name",
+            [](const auto&) { return true; });  // see name_outputs()
+  table.number("--exposure", "STOPS", "PNG exposure in stops: +1 is twice as bright ({})",
+               options.display.exposure,
+               Range{-100.0, 100.0, "a number of stops from -100 to 100 (1 is twice as bright)"},
+               kInSceneFile | kInPage);
+  table.choice<Tone>("--tone", "clip|filmic", "tone curve of the PNG ({})", options.display.tone,
+                     {{"clip", Tone::kClip}, {"filmic", Tone::kFilmic}}, kInSceneFile | kInPage);
+  table.names("--channels",
+              "extra EXR channels (AOVs; sums: for --resume and ./merge): ", options.channels,
+              kExtraChannels, true);
+  table.add(
+      "--false-colour,--false-color", "CHANNEL[:LOW:HIGH]=FILE.png", "a channel in false colours",
+      "CHANNEL=FILE.png or, with numbers LOW < HIGH, CHANNEL:LOW:HIGH=FILE.png; CHANNEL is " +
+          listed(channel_names()),
+      [&](const std::string& text) { return read_false_color(text, options.false_colors); }, {},
+      kInPage);
+}
+
+void add_light_options(OptionTable& table, RenderSettings& settings) {
+  constexpr unsigned kEverywhere = kInExr | kInStats | kInPython | kInSceneFile | kInPage;
+  table.choice<IntegratorKind>("--integrator", "NAME",
+                               "primary: camera rays alone; whitted: shadows, reflection, "
+                               "refraction; path: all global illumination ({}; path with an "
+                               "environment)",
+                               settings.integrator,
+                               {{"primary", IntegratorKind::kPrimary},
+                                {"whitted", IntegratorKind::kWhitted},
+                                {"path", IntegratorKind::kPath}},
+                               kEverywhere);
+  table.number("--spp", "N", "samples per pixel ({}; path by an environment: 16)", settings.samples,
+               Range{1, 1 << 20}, kEverywhere);
+  table.number("--error", "X",
+               "adaptive sampling to error X, in steps of an 8-bit display: stop a pixel after 16 "
+               "samples if its error is X, after n if it is X n / 16",
+               settings.error,
+               Range{std::numeric_limits<double>::min(), 255.0,
+                     "steps of an 8-bit display, above 0 and up to 255"},
+               kInExr | kInStats | kInPython | kInSceneFile);
+  table.add("--samples", "A:B", "render only samples A to B-1, for ./merge",
+            "A:B, from sample A to before sample B of --spp", [&](const std::string& text) {
+              const SampleRange range = parse_sample_range(text).value_or(SampleRange{});
+              settings.first_sample = range.first;
+              settings.end_sample = range.end;
+              return range.end > 0;
+            });
+  table.choice<ReconstructionFilter>("--filter", "NAME", "pixel filter: box, tent, gauss or {}",
+                                     settings.filter,
+                                     {{"box", ReconstructionFilter::kBox},
+                                      {"tent", ReconstructionFilter::kTent},
+                                      {"gauss", ReconstructionFilter::kGauss},
+                                      {"blackman-harris", ReconstructionFilter::kBlackmanHarris}},
+                                     kInExr | kInPython | kInSceneFile | kInPage);
+  static constexpr Range<int> kDepths{0, 1000};
+  table.add(
+      "--depth,--max-depth", "N", "reflections and refractions in a row (4; path: 64)",
+      kDepths.text(),
+      [&](const std::string& text) {
+        settings.max_depth = parse_number<int>(text);
+        return settings.max_depth && kDepths.contains(*settings.max_depth);
+      },
+      [&] { return std::to_string(settings.depth()); }, kEverywhere);
+  table.choice("--caustics", "WHEN", "path: light paths find caustics: on, off or {}",
+               settings.caustics, kCaustics, kInExr | kInPython);
+  table.number("--threshold", "X", "whitted: ignore rays that weigh less ({})", settings.threshold,
+               Range{0.0, 1.0}, kInExr | kInPython | kInSceneFile | kInPage);
+  table.number("--ambient", "X", "whitted: ambient radiance (background or lights)",
+               settings.ambient, Range{0.0, kFinite, "a radiance, 0 or more"},
+               kInExr | kInPython | kInSceneFile | kInPage);
+  table.number("--seed", "N", "seed of the random numbers ({})", settings.seed,
+               Range<std::uint64_t>{0, std::numeric_limits<std::uint64_t>::max()},
+               kInStats | kInPython | kInSceneFile | kInPage);
+}
+
+void check_engine_options(const OptionTable& table, EngineOptions& options) {
+  for (const char* name : {"memory", "cores"}) {
+    if (!table.given(name).empty() && !(options.unit == "core" && options.simulates())) {
+      table.fail_value(name, "with --unit core and --engine rtl or check");
+    }
+  }
+  if (options.variant) {
+    const std::string unit =
+        options.variant->unit == Variant::Unit::kSerial ? "serial" : "pipeline";
+    for (const auto& [name, expected] :
+         {std::pair{"engine", std::string("model")}, {"unit", unit}}) {
+      const std::string given = table.given(name);
+      if (given.empty() || given == expected) continue;
+      table.fail_value(name, expected + " with --variant " + options.variant->name);
+    }
+    options.engine = Engine::kModel;
+    options.unit = unit;
+  }
+  const bool has_board = !options.board_port.empty();
+  if (has_board && !(options.unit == "board" && options.engine == Engine::kRtl)) {
+    table.fail_value("board-port", "with --unit board and --engine rtl");
+  }
+  if (options.unit != "pipeline" && options.lanes != 1) {
+    table.fail_value("lanes", "1 with --unit " + options.unit);
+  }
+  if (table.given("threads").empty()) {
+    options.threads =
+        has_board ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  }
+  if (has_board && options.threads != 1) table.fail_value("threads", "1 with --board-port");
+  if (!options.has_core()) return;
+  if (options.instances == InstanceMode::kKeep) {
+    table.fail_value("instances", "auto or write with --unit " + options.unit);
+  }
+  options.instances = InstanceMode::kFlatten;  // its memory holds one tree
+}
+
+/// "a.exr" or "a.png" names that file alone, "a" both, a folder both named after the scene in it,
+/// and "" both in the current folder.
+void name_outputs(const OptionTable& table, const fs::path& scene, OutputOptions& options) {
+  fs::path name = table.given("output");
+  std::error_code ignored;  // a name that cannot be looked up is no folder
+  if (name.empty()) {
+    name = scene.stem();
+  } else if (!name.has_filename() || fs::is_directory(name, ignored)) {
+    name /= scene.stem();
+  } else if (name.has_extension() && name.extension() != ".exr" && name.extension() != ".png") {
+    table.fail_value("output", "a name that ends in .exr or .png, or one without ending for both");
+  } else if (name.has_extension()) {
+    (name.extension() == ".exr" ? options.exr : options.png) = name;
+  }
+  if (!options.exr && !options.png) {
+    options.exr = name.string() + ".exr";
+    options.png = name.string() + ".png";
+  }
+  if (!table.given("channels").empty() && !options.exr) {
+    throw InputError("--channels: expected an EXR among the outputs");
+  }
+}
+
+void check_light_options(const OptionTable& table, bool has_environment, RenderSettings& settings) {
+  constexpr int kMostSamples = 1024;
+  const bool has_samples = !table.given("spp").empty();
+  settings.choose_integrator(has_environment, !table.given("integrator").empty(), has_samples);
+  if (settings.error > 0.0) {
+    if (!has_samples) settings.samples = kMostSamples;
+    if (settings.samples <= kMinAdaptiveSamples) {
+      table.fail_value("spp", "more than the " + std::to_string(kMinAdaptiveSamples) +
+                                  " that adaptive sampling to an error begins with");
+    }
+  }
+  // With --caustics auto there are none then.
+  if (settings.caustics != Caustics::kOn) return;
+  if (settings.integrator != IntegratorKind::kPath) {
+    table.fail("--caustics on: expected --integrator path", {"caustics", "integrator"});
+  }
+  if (settings.samples == 1) {
+    table.fail("--caustics on: expected --spp 2 or more", {"caustics", "spp"});
+  }
+  if (settings.error > 0.0) {
+    table.fail("--caustics on and --error exclude each other", {"caustics", "error"});
+  }
+}
+
+Options parse_options(const std::vector<std::string>& words) {
   Options options;
-  options.scene = given.scene;
-  options.scene_file = given.scene_file;
-  options.is_bare_model = given.is_bare_model;
+  OptionTable table(kAbout, kFooter);
+  add_render_options(table, options);
+  CommandLine line = table.split(words);
+  options.information = line.information;
+  if (!options.information.empty()) return options;
+  if (line.plain.size() != 1) {
+    throw InputError("expected one scene, got " + std::to_string(line.plain.size()) +
+                     "; try ./render scenes/cornell.obj");
+  }
+  options.scene = line.plain.front();
+  options.scene_file = find_scene_file(
+      options.scene,
+      std::ranges::find(line.values, "no-scene-file", &OptionValue::name) != line.values.end());
+  std::error_code ignored;
+  options.is_bare_model = options.scene_file.file == options.scene_file.obj &&
+                          !fs::exists(fs::path(options.scene).replace_extension(".json"), ignored);
+  std::vector<OptionValue> given;
+  for (const auto& [name, value, number] : options.scene_file.options) {
+    given.push_back({name, value, options.scene_file.file.string() + ":" + std::to_string(number)});
+    table.require(given.back(), kInSceneFile);
+  }
+  given.insert(given.end(), line.values.begin(), line.values.end());
+  return with_values(options, std::move(given));
+}
+
+Options with_values(const Options& scene, std::vector<OptionValue> given) {
+  Options options;
+  options.scene = scene.scene;
+  options.scene_file = scene.scene_file;
+  options.is_bare_model = scene.is_bare_model;
   options.camera = camera_request(options.scene_file);
   options.environment = options.scene_file.environment;
-  options = read_options(options, words);
-  options.words = words;
+  OptionTable table;
+  add_render_options(table, options);
+  table.read(given);
+  options.given = std::move(given);
+  RenderSettings& render = options.render;
+  check_light_options(table, options.environment.has_value(), render);
+  name_outputs(table, options.scene, options.output);
+  check_crop(table, render);
+  if (!table.given("view").empty()) {
+    if (!table.given("camera").empty()) {
+      throw InputError("--view and --camera exclude each other");
+    }
+    options.camera.camera.reset();  // the scene file's
+  }
+  check_engine_options(table, options);
+  check_core_files(table, options);
+  check_samples(table, options);
+  check_serve(table, options);
   require_distinct_outputs(options);
-  options.render.threads = options.threads;
-  options.render.exposure = options.output.display.exposure;
-  options.render.channels = options.output.needed_channels();
+  render.threads = options.threads;
+  render.exposure = options.output.display.exposure;
+  render.channels = options.output.needed_channels();
   return options;
+}
+
+void require_page_option(const OptionValue& value) {
+  Options options;
+  OptionTable table;
+  add_render_options(table, options);
+  table.require(value, kInPage);
 }
 
 std::vector<std::pair<std::string, std::string>> option_values(Options options,
                                                                OptionPlaces place) {
-  return CommandLine(options).table.values(place);
-}
-
-void require_page_option(const std::string& name) {
-  Options ignored;
-  CommandLine(ignored).table.require(name, kInPage, "request");
-}
-
-std::vector<std::pair<std::string, std::string>> picture_options(const Options& options,
-                                                                 const Framing& framing) {
-  auto all = option_values(options, kInExr);
-  if (options.render.error == 0.0) {
-    std::erase(all, std::pair<std::string, std::string>("error", "0"));
-  } else if (options.render.exposure != 0.0) {
+  OptionTable table;
+  add_render_options(table, options);
+  auto all = table.values(place);
+  if (place != kInExr) return all;
+  // Options that do not matter are not written.
+  std::erase(all, std::pair<std::string, std::string>("error", "0"));
+  std::erase(all, std::pair<std::string, std::string>("caustics", "auto"));
+  if (options.render.error > 0.0 && options.render.exposure != 0.0) {
     all.emplace_back("exposure", number_text(options.render.exposure));
-  }
-  all.insert(all.end(), framing.options.begin(), framing.options.end());
-  if (const auto& environment = options.environment) {
-    all.emplace_back("environment", environment->file.filename().string());
-    all.emplace_back("environmentRotation", number_text(environment->rotation));
-    all.emplace_back("environmentStrength", number_text(environment->strength));
   }
   return all;
 }

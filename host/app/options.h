@@ -1,29 +1,100 @@
-// The options of ./render.
+// The options of the programs and of the Python module's pictures: their values, table rows, and
+// the checks of several options against each other.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "host/app/engines.h"
 #include "host/app/load.h"
-#include "host/app/output_options.h"
-#include "host/app/render_options.h"
+#include "host/app/option_table.h"
+#include "host/film/display.h"
+#include "host/film/false_color.h"
+#include "host/film/film.h"
+#include "host/render/render_settings.h"
+#include "host/scene/instances.h"
 #include "host/scene/io/scene_file.h"
+#include "host/variants/variant_table.h"
+#include "sim/arith.h"
+#include "sim/memory_timing.h"
 
 namespace raygate {
 
-/// Checked options: every value is in its range. Files are not checked.
+/// The engine that tests rays against triangles.
+enum class Engine {
+  kRtl,    ///< the simulated hardware
+  kModel,  ///< the hardware's reference model in C++
+  kCpu,    ///< the host's own tests
+  kCheck,  ///< rtl and cpu, compared ray by ray
+};
+
+struct EngineOptions {
+  Engine engine = Engine::kRtl;
+  std::string unit = "pipeline";     ///< "pipeline", "serial", "core" or "board"
+  std::optional<Variant> variant{};  ///< number format of the model; none: binary32
+  Arith arith = Arith::kStructural;
+  int lanes = 1;             ///< lanes of the pipelined unit: 1, 2, 4 or 8; 1 for other units
+  MemoryTiming memory{};     ///< memory of a simulated core
+  std::string board_port{};  ///< serial port of unit "board"; "": the board is simulated
+  int cores = 1;             ///< ray cores behind one memory, per thread; 1 for other units
+  int threads = 1;
+  InstanceMode instances = InstanceMode::kAutomatic;
+
+  /// Whether rays go to ray cores, simulated or modelled.
+  [[nodiscard]] bool has_core() const {
+    return (unit == "core" || unit == "board") && engine != Engine::kCpu;
+  }
+  [[nodiscard]] bool simulates() const {
+    return engine == Engine::kRtl || engine == Engine::kCheck;
+  }
+};
+
+/// A picture of one channel in false colours.
+struct FalseColorOutput {
+  std::string channel;         ///< name in the EXR: "Z", "N.X", "tests"
+  std::optional<Scale> scale;  ///< none: from the smallest to the largest value
+  std::filesystem::path path;
+};
+
+/// The output files of a run.
+struct OutputOptions {
+  std::optional<std::filesystem::path> exr;  ///< at least one of exr and png is set
+  std::optional<std::filesystem::path> png;
+  std::vector<FalseColorOutput> false_colors;
+  std::optional<std::filesystem::path> stats;  ///< run statistics as JSON
+  ExtraChannels channels;                      ///< extra channels of the EXR
+  DisplayOptions display;                      ///< of the PNG
+  double save_seconds = 0.0;                   ///< between saves of the unfinished picture; 0: none
+
+  /// All files, statistics last.
+  [[nodiscard]] std::vector<std::filesystem::path> paths() const;
+  /// The channels that a film needs for these files.
+  [[nodiscard]] ExtraChannels needed_channels() const;
+};
+
+/// Files about a ray core that are written instead of a picture.
+struct CoreFileOptions {
+  std::filesystem::path image;      ///< memory image; "": none
+  std::filesystem::path wave;       ///< waveform of `pixel`'s ray; "": none
+  std::optional<glm::ivec2> pixel;  ///< set if and only if `wave` is
+
+  /// The files that will be written.
+  [[nodiscard]] std::vector<std::filesystem::path> paths() const;
+};
+
+/// The options of ./render. Every value is in its range; files are not checked.
 struct Options : EngineOptions {
   /// Output of --help or --version; if not empty, the other members are not valid.
   std::string information;
 
-  std::vector<std::string> words;  ///< as typed, without the program's name
-  std::filesystem::path scene;     ///< the file that was named: a model or a scene file
-  SceneFile scene_file;            ///< that scene file or the one beside the model; else the model
+  std::filesystem::path scene;  ///< the file that was named: a model or a scene file
+  SceneFile scene_file;         ///< that scene file or the one beside the model; else the model
+  /// Values given in the scene file and then on the command line, which overrides them.
+  std::vector<OptionValue> given;
   RenderSettings render;
   CameraRequest camera;
   std::optional<EnvironmentSetting> environment;
@@ -34,28 +105,52 @@ struct Options : EngineOptions {
   int port = 0;                  ///< of the page; 0: any free port
   bool quiet = false, verbose = false;
   bool strict = false;           ///< refuse faces without area
+  bool no_scene_file = false;    ///< ignore a scene file beside the model
   std::optional<double> smooth;  ///< LoadOptions::smooth, in degrees
   bool is_bare_model = false;    ///< whether there is no scene file, not even an ignored one
 };
+
+/// Ranges of options that the Python module has, too.
+inline constexpr Range<int> kThreadRange{1, 1024}, kSideRange{1, 65536};
+inline constexpr Range<double> kFovRange{0x1p-1022, 180.0 - 0x1p-45,
+                                         "degrees above 0 and below 180"},
+    kSmoothRange{0.0, 180.0, "degrees from 0 to 180"};
+
+/// "rtl", "model", "cpu" or "check".
+[[nodiscard]] std::string to_string(Engine engine);
+/// "structural" or "behavioural".
+[[nodiscard]] std::string to_string(Arith arith);
+
+/// Adds the options of the engine, of ./render and ./trace.
+void add_engine_options(OptionTable& table, EngineOptions& options);
+/// Adds the options of picture files, of ./render and ./merge.
+void add_picture_options(OptionTable& table, OutputOptions& options);
+/// Adds the options of the integrator and of sampling, of ./render and the Python module.
+void add_light_options(OptionTable& table, RenderSettings& settings);
+
+/// Throws InputError for options that exclude each other, and sets defaults that depend on others.
+void check_engine_options(const OptionTable& table, EngineOptions& options);
+/// Sets the names of the pictures, by default `scene`'s name in the current folder. Throws
+/// InputError, also for --channels without an EXR.
+void name_outputs(const OptionTable& table, const std::filesystem::path& scene,
+                  OutputOptions& options);
+/// Chooses the integrator for a scene with or without an environment map, and the samples of
+/// adaptive sampling. Throws InputError for options of light and samples that exclude each other.
+void check_light_options(const OptionTable& table, bool has_environment, RenderSettings& settings);
 
 /// Parses a command line, without the program's name, after the options of the scene file, which it
 /// overrides. Throws InputError, one line that names the option (or file and line), the value and
 /// what was expected.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
-/// Parses another command line for the scene of `given`, without reading the scene file again.
-/// Throws InputError likewise.
-[[nodiscard]] Options with_words(const Options& given, const std::vector<std::string>& words);
+/// Returns the options of a scene, whose file was read, with other values given. Throws InputError.
+[[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given);
+
+/// Throws InputError unless requests to --serve may have this option.
+void require_page_option(const OptionValue& value);
 
 /// Name/value pairs of the options shown at `place`.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> option_values(Options options,
                                                                              OptionPlaces place);
-
-/// Throws InputError unless requests to --serve may have this option.
-void require_page_option(const std::string& name);
-
-/// Name/value pairs, for the EXR, of all options that render the same picture of the same scene.
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> picture_options(
-    const Options& options, const Framing& framing);
 
 }  // namespace raygate

@@ -7,7 +7,6 @@
 
 #include "host/app/console.h"
 #include "host/app/options.h"
-#include "host/app/output_options.h"
 #include "host/film/atomic_file.h"
 #include "host/film/exr.h"
 #include "host/film/film.h"
@@ -26,6 +25,9 @@ struct StagedFiles {
 [[nodiscard]] StagedFiles stage_files(const OutputOptions& options, const Film& film,
                                       const ExrMetadata& metadata, int threads = 1);
 
+/// Returns a channel of the film in false colours. Throws InputError if the film lacks it.
+[[nodiscard]] Image8 false_color_picture(const Film& film, const FalseColorOutput& output);
+
 /// "a.exr, a.png".
 [[nodiscard]] std::string listed(const std::vector<std::filesystem::path>& paths);
 
@@ -35,8 +37,7 @@ class Checkpointer {
  public:
   /// The references must outlive this.
   Checkpointer(const OutputOptions& outputs, const ExrMetadata& metadata, int threads,
-               ProgressBar& bar)
-      : outputs_(outputs), metadata_(metadata), threads_(threads), bar_(bar) {}
+               ProgressLine& line);
 
   /// Writes the unfinished pictures. Failures cost a warning; the next save tries again. `film` is
   /// null if there was no memory for a copy of it.
@@ -48,17 +49,16 @@ class Checkpointer {
  private:
   void write(const Film& film) const;
 
-  const OutputOptions& outputs_;
-  const ExrMetadata& metadata_;
+  OutputOptions outputs_;  // without statistics
+  ExrMetadata metadata_;
   int threads_;
-  ProgressBar& bar_;
+  ProgressLine& line_;
   std::string last_trouble_;
 };
 
 /// Reads a film to resume, with the channels that this run's outputs need. `metadata`: of this
 /// run's picture. Throws InputError if the file cannot be read, has no sums, or is of another
 /// picture; only --spp may be larger.
-[[nodiscard]] Film read_unfinished(const Options& options, const std::filesystem::path& file,
-                                   const ExrMetadata& metadata);
+[[nodiscard]] Film read_unfinished(const Options& options, const ExrMetadata& metadata);
 
 }  // namespace raygate

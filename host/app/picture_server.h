@@ -2,10 +2,7 @@
 // options.
 #pragma once
 
-#include <memory>
-
 #include "host/app/options.h"
-#include "host/intersect/core/memory_image.h"
 #include "host/light/prepared_scene.h"
 #include "host/scene/scene.h"
 
@@ -28,11 +25,10 @@ struct ServedScene {
 ///   GET /pixel?x=X&y=Y&OPTIONS  the camera ray through a pixel's centre and its hits by the chosen
 ///                            engine and by the cpu engine, in decimal and as binary32 words
 ///
-/// OPTIONS are options of ./render that change neither the scene nor files, without dashes:
-/// engine=cpu&size=80x60. They override `options`. `slot=NAME&turn=N` cancels the slot's pictures
-/// with a smaller N (status 204); closing the connection cancels its picture. Pictures have at most
-/// 2^24 pixels of 2^16 samples. A bad option gets one line of text, status 400. Throws InputError
-/// if the port is not available.
+/// OPTIONS are options of ./render at kInPage, without dashes: engine=cpu&size=80x60. They override
+/// `options`. Closing the connection cancels its picture. Pictures have at most 2^24 pixels of 2^16
+/// samples. A bad option gets one line of text, status 400. Throws InputError if the port is not
+/// available.
 void serve_pictures(const Options& options, const ServedScene& scene);
 
 }  // namespace raygate

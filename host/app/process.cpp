@@ -6,10 +6,12 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <set>
 #include <stdexcept>
 
 #include "host/base/input_error.h"
 #include "host/base/vectors.h"
+#include "host/exact/ieee_floats.h"
 
 namespace raygate {
 namespace {
@@ -101,6 +103,17 @@ void print_warning(std::string_view what) {
   std::fprintf(stderr, "warning: %s\n", printable(what).c_str());
 }
 
+void print_warnings(const std::vector<std::string>& warnings, bool all) {
+  constexpr std::size_t kMost = 10;
+  std::set<std::string> seen;
+  for (const std::string& warning : warnings) {
+    if (seen.insert(warning).second && (all || seen.size() <= kMost)) print_warning(warning);
+  }
+  if (!all && seen.size() > kMost) {
+    print_warning("and " + std::to_string(seen.size() - kMost) + " more; --verbose lists them");
+  }
+}
+
 void flush_standard_output() {
   errno = 0;
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
@@ -112,14 +125,6 @@ void flush_standard_output() {
   }
   const std::string reason = why != 0 ? std::strerror(why) : "an earlier write failed";
   throw InputError("standard output: cannot write: " + reason);
-}
-
-void choose_vectors() {
-  try {
-    use_vectors(wanted_vectors());
-  } catch (const std::runtime_error& error) {
-    throw InputError(error.what());
-  }
 }
 
 int run_guarded(const std::function<int()>& program, int internal_error) {
@@ -144,6 +149,22 @@ int run_guarded(const std::function<int()>& program, int internal_error) {
       return kUserError;
     }
   }
+}
+
+int run_main(int argc, char** argv,
+             const std::function<int(const std::vector<std::string>&)>& program,
+             int internal_error) {
+  return run_guarded(
+      [&] {
+        require_ieee_floats();
+        try {
+          use_vectors(wanted_vectors());
+        } catch (const std::runtime_error& error) {
+          throw InputError(error.what());
+        }
+        return program({argv + 1, argv + argc});
+      },
+      internal_error);
 }
 
 void note_interruptions() {

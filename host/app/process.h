@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace raygate {
 
@@ -19,18 +20,23 @@ void print(std::string_view text, std::FILE* stream = stdout);
 /// Prints "warning: WHAT", one printable line, on standard error.
 void print_warning(std::string_view what);
 
+/// Prints the first warnings, each once, and the number of the others, or `all`.
+void print_warnings(const std::vector<std::string>& warnings, bool all);
+
 /// Flushes standard output. Throws InputError if a write has failed, for example on a full disk. If
 /// standard output is a pipe without a reader, raises SIGPIPE.
 void flush_standard_output();
 
-/// Body of main(): runs `program` and returns its exit status. Exceptions become one line on
-/// standard error, and the status: 2 for InputError and out of memory, 128 + signal for
-/// Interrupted, else `internal_error`.
-int run_guarded(const std::function<int()>& program, int internal_error);
+/// Runs `program` and returns its exit status. Exceptions become one line on standard error, and
+/// the status: 2 for InputError and out of memory, 128 + signal for Interrupted, else
+/// `internal_error`.
+int run_guarded(const std::function<int()>& program, int internal_error = 1);
 
-/// Chooses the vector code to run (host/base/vectors.h). Throws InputError if RAYGATE_VECTORS names
-/// code that this machine cannot run.
-void choose_vectors();
+/// Body of main(): checks the machine's arithmetic, chooses the vector code that RAYGATE_VECTORS
+/// names (host/base/vectors.h), and runs `program`, guarded, with the words of the command line.
+int run_main(int argc, char** argv,
+             const std::function<int(const std::vector<std::string>&)>& program,
+             int internal_error = 1);
 
 /// Installs handlers that note SIGINT, SIGTERM and SIGHUP; a second signal ends the program at
 /// once. Signals that are ignored stay ignored.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,7 +14,6 @@ namespace raygate {
 
 /// Statistics of a finished run. Times are elapsed seconds.
 struct Report {
-  Options options;
   std::size_t triangles = 0;
   CornerRounding rounding;
   RenderStats render;
@@ -28,14 +26,11 @@ struct Report {
   std::vector<std::string> legends;  ///< scales of the false-colour pictures
 };
 
-/// Returns the simulated clocks per hit test of the unit; 0 without simulation.
-[[nodiscard]] double clocks_per_test(const HitCounters& counters);
-
 /// Returns the summary of a run: four lines, more for --engine check, --error, legends, views and
 /// rounded corners; all statistics with --verbose. Ends with a newline.
-[[nodiscard]] std::string to_text(const Report& report);
+[[nodiscard]] std::string to_text(const Report& report, const Options& options);
 
-/// Returns all statistics as a JSON object, for --stats. statistics.csv lists the keys.
-[[nodiscard]] std::string to_json(const Report& report);
+/// Returns all statistics as a JSON object, for --stats.
+[[nodiscard]] std::string to_json(const Report& report, const Options& options);
 
 }  // namespace raygate

@@ -4,7 +4,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -18,8 +17,8 @@
 #include "host/app/load.h"
 #include "host/app/process.h"
 #include "host/base/input_error.h"
+#include "host/base/stopwatch.h"
 #include "host/bvh/bvh.h"
-#include "host/exact/ieee_floats.h"
 #include "host/film/atomic_file.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table.h"
@@ -30,10 +29,10 @@ namespace {
 
 constexpr const char* kAbout = R"(Usage: ./trace SCENE RAYS [options]
 
-Says what rays hit in a scene (OBJ, glTF, PLY, STL), exactly: which triangle,
-where, and whether binary32 had left it open. RAYS is a CSV table of any length,
-or - for standard input. Its columns, between commas, semicolons or spaces, are
-the origin, the direction and, where wanted, a limit:
+Prints the exact hits of rays in a scene (OBJ, glTF, PLY, STL): the triangle,
+the position, and how often binary32 left a test undecided. RAYS is a CSV table
+of any length, or - for standard input. Its columns, separated by commas,
+semicolons or spaces, are the origin, the direction and, optionally, a limit:
 
   OX,OY,OZ,DX,DY,DZ[,LIMIT]        hits P = O + t D have 0 < t < LIMIT
 
@@ -43,75 +42,37 @@ the origin, the direction and, where wanted, a limit:
 )";
 
 constexpr const char* kFooter =
-    R"(Numbers count from 0. A ray that hits nothing has triangle -1, t inf, the rest
-nan. Positions become binary32 relative to the scene's middle; the summary says
-how many rays and corners that changed.
+    R"(Numbers count from 0. A ray without a hit has triangle -1, t inf, and nan
+elsewhere. Positions are rounded to binary32 relative to the scene's middle; the
+summary reports how many rays and corners that changed.
 
 Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene, the rays or the output cannot be used; 130 interrupted.)";
 
 struct TraceOptions {
-  std::string information;
   std::filesystem::path scene, rays, output = "-";
   Hits hits = Hits::kNearest;
   std::vector<HitColumn> columns;
   EngineOptions engine{.engine = Engine::kCpu};
   bool strict = false, quiet = false;
-
-  [[nodiscard]] bool is_to_standard_output() const { return output == "-"; }
 };
 
-TraceOptions parse(const std::vector<std::string>& words) {
-  TraceOptions options;
-  std::string scene, rays, columns;
-  OptionTable table(kAbout, kFooter);
-  table.positional(scene);
-  table.positional(rays);
-  table.group("Options");
-  table.text("-o,--output", "FILE", "CSV; - is standard output (default)", options.output);
-  table.choice<Hits>("--hits", "nearest|any|all",
-                     "nearest: a row for each ray; any: whether there is a hit, sooner; all: a row "
-                     "for each hit of each ray, near before far ({})",
-                     options.hits,
-                     {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
-  table.text(
-      "--columns", "NAMES",
-      "ray,hit,triangle,object,material,t,point,uv,normal,side,doubts, unit-point,unit-error (all "
-      "but material, side and the last two; of any: ray,hit)",
-      columns);
-  add_engine_options(table, options.engine);
-  table.flag("--strict", "refuse faces without area (they are left out)", options.strict);
-  table.flag("-q,--quiet", "print no summary (on standard error)", options.quiet);
-  options.information = table.parse(words, "a third file; expected SCENE and RAYS");
-  if (!options.information.empty()) return options;
-  if (rays.empty()) throw InputError("expected SCENE and RAYS (see --help)");
-  options.scene = scene;
-  options.rays = rays;
-  if (!options.is_to_standard_output() && options.output.extension() != ".csv") {
-    fail_value("--output", options.output.string(), "FILE.csv or -");
-  }
-  check_engine_options(table, options.engine);
-  for (const char* name : {"unit", "arith", "lanes"}) {
-    const std::string typed = table.typed(name);
-    if (options.engine.engine == Engine::kCpu && !typed.empty()) {
-      fail_value("--" + std::string(name), typed, "--engine rtl, model or check beside it");
-    }
-  }
-  const auto names = columns.empty() ? std::vector<std::string>() : split_at_commas(columns);
-  options.columns = columns_of(names, options.hits, options.engine.engine == Engine::kCpu, "--");
-  return options;
-}
-
-/// The output file or standard output.
-class Table {
+/// The output file or standard output. Ends the program soon after a signal, whatever the threads
+/// do.
+class Output {
  public:
-  Table(const TraceOptions& options, const HitTable& answers) {
-    if (options.is_to_standard_output()) {
+  explicit Output(const std::filesystem::path& file) {
+    if (file == "-") {
       std::signal(SIGPIPE, SIG_DFL);  // `| head` ends it without a word
     } else {
-      file_.emplace(options.output);
+      file_.emplace(file);
     }
-    write(answers.header());
+    note_interruptions();
+    try {
+      watcher_ = std::jthread([this](const std::stop_token& is_over) { watch(is_over); });
+    } catch (const std::system_error&) {
+      print_warning("no thread could be started that ends the program soon after a signal");
+    }
   }
   void write(std::string_view bytes) {
     const std::lock_guard lock(mutex_);
@@ -122,43 +83,41 @@ class Table {
       flush_standard_output();
     }
   }
+  /// Completes the file. A later signal changes nothing.
   void finish() {
+    watcher_ = {};
     if (file_) file_->commit();
   }
-  /// Removes the unfinished file before the program ends; later writes block. Streams are left
-  /// alone, because a write to them may never end.
-  void abandon() {
-    if (!file_ || file_->is_stream()) return;
-    mutex_.lock();
-    file_.reset();
+  /// Removes the unfinished file and ends the program. Streams are left alone, because a write to
+  /// them may never end.
+  [[noreturn]] void abandon() {
+    const bool is_stream = !file_ || file_->is_stream();
+    if (!is_stream) {
+      mutex_.lock();
+      file_.reset();
+    }
+    std::_Exit(run_guarded([&]() -> int {
+      throw Interrupted(interruption(),
+                        is_stream ? "the table is not whole" : "no file was changed");
+    }));
   }
 
  private:
+  void watch(const std::stop_token& is_over) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any never;
+    while (interruption() == 0) {
+      never.wait_for(lock, is_over, std::chrono::milliseconds(20), [] { return false; });
+      if (is_over.stop_requested()) return;
+    }
+    abandon();
+  }
+
   std::mutex mutex_;
   std::optional<AtomicFile> file_;
+  std::jthread watcher_;
 };
-
-[[noreturn]] void end_interrupted(const TraceOptions& options) {
-  throw Interrupted(interruption(), options.is_to_standard_output() ? "the table is not whole"
-                                                                    : "no file was changed");
-}
-
-/// Ends the program if the threads have not stopped half a second after a signal.
-void watch(const std::stop_token& is_over, const TraceOptions& options, Table& table) {
-  std::mutex mutex;
-  std::unique_lock lock(mutex);
-  std::condition_variable_any never;
-  const auto is_over_after = [&](std::chrono::milliseconds time) {
-    never.wait_for(lock, is_over, time, [] { return false; });
-    return is_over.stop_requested();
-  };
-  while (interruption() == 0) {
-    if (is_over_after(std::chrono::milliseconds(50))) return;
-  }
-  if (is_over_after(std::chrono::milliseconds(500))) return;
-  table.abandon();
-  std::_Exit(run_guarded([&]() -> int { end_interrupted(options); }, 1));
-}
 
 std::string summary(const TraceOptions& options, const CornerRounding& rounding,
                     const TraceCounts& counts, double seconds) {
@@ -180,56 +139,81 @@ std::string summary(const TraceOptions& options, const CornerRounding& rounding,
   return text;
 }
 
-int run(const TraceOptions& options) {
-  if (!options.is_to_standard_output()) require_writable(options.output);
-  Scene scene = load(read_scene_file(options.scene),
-                     {.strict = options.strict, .keep_instances = true, .textures = false});
+void trace_rays(const TraceOptions& options) {
+  const bool has_file = options.output != "-";
+  if (has_file) require_writable(options.output);
+  Scene scene = load(read_scene_file(options.scene), {.strict = options.strict,
+                                                      .keep_instances = true,
+                                                      .textures = false});
   resolve_instances(scene, options.engine.instances, options.scene);
-  for (const std::string& warning : scene.warnings) print_warning(warning);
+  print_warnings(scene.warnings, false);
   prepare_engine(options.engine);
   const Bvh bvh(scene, options.engine.threads);
-  if (!options.is_to_standard_output()) {
+  if (has_file) {
     std::vector<std::filesystem::path> inputs = scene.files;
-    inputs.push_back(options.scene);
-    inputs.push_back(options.rays);
+    inputs.insert(inputs.end(), {options.scene, options.rays});
     const std::filesystem::path outputs[] = {options.output};
     require_distinct(outputs, inputs);
   }
   RayTableReader rays(options.rays, scene.origin);
   const HitTable answers(scene, bvh, options.columns, TableFormat::kCsv);
-  Table table(options, answers);
-  note_interruptions();
-  std::jthread watcher;
-  try {
-    watcher = std::jthread(watch, std::cref(options), std::ref(table));
-  } catch (const std::system_error&) {
-    print_warning("no thread could be started that ends the program soon after a signal");
-  }
-  const auto start = std::chrono::steady_clock::now();
+  Output output(options.output);
+  output.write(answers.header());
+  Stopwatch stopwatch;
   const TraceCounts counts =
       trace([&](std::size_t most, RayTable& block) { return rays.read(most, block); }, options.hits,
             bvh, answers, make_intersector_factory(options.engine, bvh), options.engine.threads,
-            [&](std::string_view rows) { table.write(rows); }, [] { return interruption() == 0; });
-  watcher = {};
-  if (interruption() != 0) end_interrupted(options);
-  table.finish();
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  if (!options.quiet) print(summary(options, scene.rounding, counts, took.count()), stderr);
+            [&](std::string_view rows) { output.write(rows); }, [] { return interruption() == 0; });
+  if (interruption() != 0) output.abandon();
+  output.finish();
+  const double seconds = stopwatch.lap();
+  if (!options.quiet) print(summary(options, scene.rounding, counts, seconds), stderr);
+}
+
+int run(const std::vector<std::string>& words) {
+  TraceOptions options;
+  std::string columns;
+  OptionTable table(kAbout, kFooter);
+  table.group("Options");
+  table.text("-o,--output", "FILE", "CSV; - is standard output (default)", options.output);
+  table.choice<Hits>("--hits", "nearest|any|all",
+                     "nearest: a row for each ray; any: whether there is a hit, sooner; all: a row "
+                     "for each hit of each ray, near before far ({})",
+                     options.hits,
+                     {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
+  table.text(
+      "--columns", "NAMES",
+      "ray,hit,triangle,object,material,t,point,uv,normal,side,doubts, unit-point,unit-error (all "
+      "but material, side and the last two; of any: ray,hit)",
+      columns);
+  add_engine_options(table, options.engine);
+  table.flag("--strict", "treat faces without area as an error (default: drop them)",
+             options.strict);
+  table.flag("-q,--quiet", "print no summary (on standard error)", options.quiet);
+  const CommandLine line = table.parse(words);
+  if (!line.information.empty()) {
+    print(line.information);
+    return 0;
+  }
+  if (line.plain.size() != 2) throw InputError("expected SCENE and RAYS (see --help)");
+  options.scene = line.plain[0];
+  options.rays = line.plain[1];
+  if (options.output != "-" && options.output.extension() != ".csv") {
+    table.fail_value("output", "FILE.csv or -");
+  }
+  check_engine_options(table, options.engine);
+  for (const char* name : {"unit", "arith", "lanes"}) {
+    if (options.engine.engine == Engine::kCpu && !table.given(name).empty()) {
+      table.fail_value(name, "with --engine rtl, model or check");
+    }
+  }
+  const auto names = columns.empty() ? std::vector<std::string>() : split_at_commas(columns);
+  options.columns = columns_of(names, options.hits, options.engine.engine == Engine::kCpu, "--");
+  trace_rays(options);
   return 0;
 }
 
 }  // namespace
 }  // namespace raygate
 
-int main(int argc, char** argv) {
-  return raygate::run_guarded(
-      [&] {
-        raygate::require_ieee_floats();
-        raygate::choose_vectors();
-        const raygate::TraceOptions options = raygate::parse({argv + 1, argv + argc});
-        if (options.information.empty()) return raygate::run(options);
-        raygate::print(options.information);
-        return 0;
-      },
-      1);
-}
+int main(int argc, char** argv) { return raygate::run_main(argc, argv, raygate::run); }

@@ -17,8 +17,8 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ["host/docs/hardware.md", "host/docs/pictures.md", "host/docs/python.md", "README.md"]  # README.md needs python.md
-QUICK = ("./render", "./trace", "./compare", "./merge", "echo", "mkdir", "cat", '"$PYTHON"')
-PROGRAMS = ("render", "trace", "compare", "merge")
+QUICK = ("./render", "./trace", "./merge", "echo", "mkdir", "cat", '"$PYTHON"')
+PROGRAMS = ("render", "trace", "merge")
 SERVED = 20  # seconds until a page of --serve is closed, as by Ctrl-C
 
 
@@ -57,8 +57,6 @@ def prepare(folder: pathlib.Path) -> None:
     for name in ("cornell.obj", "cornell.mtl"):
         shutil.copy(ROOT / "scenes" / name, folder / name.replace("cornell.obj", "model.obj"))
     shutil.copy(ROOT / "host/film/fuzz/seeds/flat.hdr", folder / "sky.hdr")
-    shutil.copy(ROOT / "host/film/fuzz/seeds/sums.exr", folder / "good.exr")
-    shutil.copy(ROOT / "host/film/fuzz/seeds/sums.exr", folder / "fast.exr")
     (folder / "rays.csv").write_text("0,1,5,0,0,-1\n")
 
 

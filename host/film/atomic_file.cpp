@@ -147,10 +147,16 @@ bool is_standard_output(const fs::path& file) {
 }
 
 void require_distinct(std::span<const fs::path> outputs, std::span<const fs::path> inputs) {
+  const auto resolved = [](const fs::path& path) {
+    std::error_code error;  // such paths are refused when they are read or written
+    return target_of(path, error);
+  };
   for (const fs::path& output : outputs) {
+    const fs::path target = resolved(output);
     for (const fs::path& input : inputs) {
       std::error_code ignored;  // missing files are distinct
-      if (fs::equivalent(output, input, ignored)) {
+      if (fs::equivalent(output, input, ignored) ||
+          (!target.empty() && target == resolved(input))) {
         throw InputError(output.string() + ": would overwrite " + input.string());
       }
     }

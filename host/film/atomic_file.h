@@ -58,8 +58,8 @@ class AtomicFile {
 [[nodiscard]] std::filesystem::path target_of(const std::filesystem::path& name,
                                               std::error_code& error);
 
-/// Throws InputError if one of `outputs` is the same file as one of `inputs`, under any name:
-/// "a.png: would overwrite scene.mtl".
+/// Throws InputError if one of `outputs` is, or will be, the same file as one of `inputs`, under
+/// any name: "a.png: would overwrite scene.mtl".
 void require_distinct(std::span<const std::filesystem::path> outputs,
                       std::span<const std::filesystem::path> inputs);
 

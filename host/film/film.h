@@ -100,6 +100,7 @@ struct PixelRect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   [[nodiscard]] int width() const { return x1 - x0; }
   [[nodiscard]] int height() const { return y1 - y0; }
+  friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
 /// Sums and sample counts of a film, by pixel.

@@ -30,18 +30,19 @@ inline constexpr const char* kSceneAttribute = "sceneDigest";
 /// Sets kSamplesAttribute, or removes it if `range` is all of "spp".
 void set_samples(ExrMetadata& metadata, const SampleRange& range);
 
-/// Returns why two files are not parts of the same image: "spp 8, expected spp 16" or "another
-/// geometry, material or light"; nullopt if they are.
-[[nodiscard]] std::optional<std::string> different_picture(const ExrMetadata& found,
-                                                           const ExrMetadata& expected);
+/// Returns why a file is no part of an image of `width` x `height` pixels with the attributes
+/// `expected`: "spp 8, expected spp 16" or "another camera, expected that"; nullopt if it is.
+[[nodiscard]] std::optional<std::string> different_picture(const FilmFile& found,
+                                                           const ExrMetadata& expected, int width,
+                                                           int height);
 
 /// The name of a file, for messages, and its film.
 using NamedFilm = std::pair<std::string, FilmFile>;
 
-/// Merges parts of a picture; the result is bit for bit that of one render. Parts of one window
-/// must have consecutive sample ranges; windows must have the same samples and form a rectangle.
-/// Throws InputError, one line, for parts of different pictures, unfinished parts, gaps and
-/// overlaps.
+/// Merges parts of a picture: ranges of samples, crops or both; the result is bit for bit that of
+/// one render, and keeps its sums if it lacks samples. The parts must give all pixels of a
+/// rectangle the same consecutive samples. Throws InputError, one line, for parts of different
+/// pictures, unfinished parts, gaps and overlaps.
 [[nodiscard]] FilmFile merge(std::vector<NamedFilm> parts);
 
 }  // namespace raygate

@@ -47,7 +47,7 @@ card:
 	$(measure) $(if $(WIRES),--wires) --variant $(variant_words)
 
 peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [QUICK=1 SCENES=cornell]
-	$(call build,peers,render compare scenes)
+	$(call build,peers,render scenes)
 	$(measure)
 
 speed: ## measure: rays per second next to Embree: make speed [QUICK=1]

@@ -2,15 +2,12 @@
 #include <CLI/CLI.hpp>
 
 #include "host/app/process.h"
-#include "host/exact/ieee_floats.h"
 #include "host/lab/commands.h"
 
 namespace {
 
 int run(int argc, char** argv) {
   using namespace raygate;
-  require_ieee_floats();
-  choose_vectors();
   CLI::App app("Measures raygate: how wrong, how fast, at what cost. make targets call it.", "lab");
   std::filesystem::path file;
   app.add_option("--results", file, "keep all that is found in this file: a JSON object a line");
@@ -33,5 +30,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return raygate::run_guarded([&] { return run(argc, argv); }, 1);
+  return raygate::run_main(argc, argv, [&](const auto&) { return run(argc, argv); });
 }

@@ -54,26 +54,10 @@ void require_room(std::size_t rays, std::size_t room) {
   if (rays != room) throw std::invalid_argument("expected room for as many answers as rays");
 }
 
-constexpr std::size_t kMostTriangles = (std::size_t{1} << 31) - 1;
-
-std::span<const Tracer::Triangle> checked(std::span<const Tracer::Triangle> triangles) {
-  require_ieee_floats();
-  if (triangles.size() > kMostTriangles / 3) {
-    throw std::invalid_argument("found " + std::to_string(triangles.size()) +
-                                " triangles, expected at most 715,827,882");
-  }
-  return triangles;
-}
-
 }  // namespace
 
 struct Tracer::Tree {
-  static std::unique_ptr<const Tree> of(std::span<const Triangle> triangles, int threads) {
-    const IeeeFloats guard;
-    return std::make_unique<const Tree>(triangles, threads);
-  }
-  Tree(std::span<const Triangle> triangles, int threads)
-      : bvh(scene_of(checked(triangles)), threads) {}
+  Tree(const Scene& scene, int threads) : bvh(scene, threads) {}
 
   [[nodiscard]] Hit answer(const RayTable& block, std::size_t i, const NearestHit& hit) const {
     if (hit.primitive == NearestHit::kNone) return {};
@@ -93,8 +77,16 @@ struct Tracer::Tree {
   Bvh bvh;
 };
 
-Tracer::Tracer(std::span<const Triangle> triangles, int threads)
-    : tree_(Tree::of(triangles, threads)) {}
+Tracer::Tracer(std::span<const Triangle> triangles, int threads) {
+  constexpr std::size_t kMost = ((std::size_t{1} << 31) - 1) / 3;
+  const IeeeFloats guard;
+  require_ieee_floats();
+  if (triangles.size() > kMost) {
+    throw std::invalid_argument("found " + std::to_string(triangles.size()) +
+                                " triangles, expected at most " + std::to_string(kMost));
+  }
+  tree_ = std::make_unique<const Tree>(scene_of(triangles), threads);
+}
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
 Tracer& Tracer::operator=(Tracer&&) noexcept = default;

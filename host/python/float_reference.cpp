@@ -1,12 +1,9 @@
 #include "host/python/float_reference.h"
 
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -26,53 +23,40 @@ template <class T>
 using Owned = nb::ndarray<nb::numpy, T, nb::ndim<1>>;
 using Columns = std::pair<Owned<std::uint32_t>, Owned<std::uint8_t>>;
 
-constexpr std::size_t kCheckpointOperations = 1 << 12;
-
-/// Arrays of results and their flags.
-class Results {
- public:
-  explicit Results(std::size_t count) : bits_(count), flags_(count) {}
-
-  void put(std::size_t i, FloatResult result) {
-    bits_[i] = result.bits;
-    flags_[i] = result.flags;
+/// Returns the bits and the flags of compute(0), compute(1) and so on.
+template <class Compute>
+Columns columns_of(std::size_t count, const Compute& compute) {
+  constexpr std::size_t kCheckpointOperations = 1 << 12;
+  const auto bits = std::make_shared<std::vector<std::uint32_t>>(count);
+  const auto flags = std::make_shared<std::vector<std::uint8_t>>(count);
+  {
+    const nb::gil_scoped_release release;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i % kCheckpointOperations == 0) checkpoint();
+      const FloatResult result = compute(i);
+      (*bits)[i] = result.bits;
+      (*flags)[i] = result.flags;
+    }
   }
-  /// Returns the bits and the flags, arrays that own their elements.
-  Columns release() { return {array_of(std::move(bits_)), array_of(std::move(flags_))}; }
+  return {Owned<std::uint32_t>(array_of<std::uint32_t>(bits, bits->data(), {count})),
+          Owned<std::uint8_t>(array_of<std::uint8_t>(flags, flags->data(), {count}))};
+}
 
- private:
-  template <class T>
-  static Owned<T> array_of(std::vector<T> values) {
-    auto owner = std::make_unique<std::vector<T>>(std::move(values));
-    std::vector<T>& kept = *owner;
-    const nb::capsule capsule(owner.release(),
-                              [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    return Owned<T>(kept.data(), {kept.size()}, capsule);
-  }
-
-  std::vector<std::uint32_t> bits_;
-  std::vector<std::uint8_t> flags_;
-};
+Tininess tininess(bool before) {
+  return before ? Tininess::kBeforeRounding : Tininess::kAfterRounding;
+}
 
 /// Both columns have the same length, and all words fit the format; float.py checks that.
 Columns run(int op, const Column<std::uint32_t>& a, const Column<std::uint32_t>& b, int exp_bits,
             int frac_bits, int rounding, bool before) {
   const FloatFormat format{exp_bits, frac_bits};
   const auto operation = static_cast<FloatOp>(op);
-  const Tininess tininess = before ? Tininess::kBeforeRounding : Tininess::kAfterRounding;
-  Results results(a.shape(0));
-  {
-    const nb::gil_scoped_release release;
-    for (std::size_t i = 0; i < a.shape(0); ++i) {
-      if (i % kCheckpointOperations == 0) checkpoint();
-      const std::uint32_t x = a.data()[i], y = b.data()[i];
-      results.put(i, is_comparison(operation)
-                         ? oracle_compare(format, operation, x, y)
-                         : round_exact(format, exact_result(format, operation, x, y),
-                                       rounding_of(rounding), tininess));
-    }
-  }
-  return results.release();
+  return columns_of(a.shape(0), [&](std::size_t i) {
+    const std::uint32_t x = a.data()[i], y = b.data()[i];
+    return is_comparison(operation) ? oracle_compare(format, operation, x, y)
+                                    : round_exact(format, exact_result(format, operation, x, y),
+                                                  rounding_of(rounding), tininess(before));
+  });
 }
 
 /// Returns x in the form of exact_result.
@@ -95,17 +79,10 @@ ExactValue exact_value(double x) {
 
 Columns encode(const Column<double>& values, int exp_bits, int frac_bits, int rounding,
                bool before) {
-  Results results(values.shape(0));
-  {
-    const nb::gil_scoped_release release;
-    for (std::size_t i = 0; i < values.shape(0); ++i) {
-      if (i % kCheckpointOperations == 0) checkpoint();
-      results.put(i, round_exact({exp_bits, frac_bits}, exact_value(values.data()[i]),
-                                 rounding_of(rounding),
-                                 before ? Tininess::kBeforeRounding : Tininess::kAfterRounding));
-    }
-  }
-  return results.release();
+  return columns_of(values.shape(0), [&](std::size_t i) {
+    return round_exact({exp_bits, frac_bits}, exact_value(values.data()[i]), rounding_of(rounding),
+                       tininess(before));
+  });
 }
 
 }  // namespace

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "host/app/load.h"
-#include "host/app/render_options.h"
+#include "host/app/options.h"
 #include "host/app/version.h"
 #include "host/base/input_error.h"
 #include "host/base/threads.h"
@@ -50,24 +50,37 @@ using Vectors3 = nb::ndarray<nb::ro, nb::shape<-1, 3>, nb::device::cpu, nb::c_co
 using Numbers = nb::ndarray<nb::ro, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
 using Three = std::array<double, 3>;
 using Texts = nb::typed<nb::list, nb::str>;
-template <class T, std::size_t kAxes>
-using Result = nb::ndarray<nb::numpy, T, nb::ndim<kAxes>>;
 
 /// Keyword arguments and their values as text.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// Options of a function of the module, set by its keyword arguments.
 struct Keywords : OptionTable {
-  Keywords() { number("--threads", "", "", threads, kThreadRange, kInPython); }
-  void add_engine() {
-    choice("--engine", "", "", uses_model, {{"cpu", false}, {"model", true}}, kInPython);
+  Keywords() : OptionTable("", "", "") {
+    number("--threads", "", "", threads, kThreadRange, kInPython);
   }
-  void read(const Settings& settings) const {
-    for (const auto& [name, text] : settings) set(name, text);
+  void add_engine() {
+    choice<bool>("--engine", "", "", uses_model, {{"cpu", false}, {"model", true}}, kInPython);
+  }
+  void read(const Settings& settings) {
+    std::vector<OptionValue> values;
+    for (const auto& [name, text] : settings) {
+      values.push_back({name, text});
+      require(values.back(), kInPython);
+    }
+    OptionTable::read(std::move(values));
   }
 
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool uses_model = false;  // use the reference model of the hit-test unit
+};
+
+struct SceneKeywords : Keywords {
+  explicit SceneKeywords(const Settings& settings) {
+    number("--smooth", "", "", smooth, kSmoothRange, kInPython);
+    read(settings);
+  }
+  std::optional<double> smooth;
 };
 
 /// Read access to an array of float32 or float64, without a copy.
@@ -125,15 +138,10 @@ Texts texts_of(const std::vector<std::string>& texts) {
   return list;
 }
 
-/// Returns an array of data that `owner` keeps alive.
-template <class T>
-nb::object array_of(const std::shared_ptr<Film>& owner, const void* data,
-                    std::initializer_list<std::size_t> shape) {
-  auto* const kept = new std::shared_ptr<Film>(owner);
-  const nb::capsule capsule(
-      kept, [](void* p) noexcept { delete static_cast<std::shared_ptr<Film>*>(p); });
-  return nb::cast(
-      nb::ndarray<nb::numpy, T>(const_cast<T*>(static_cast<const T*>(data)), shape, capsule));
+/// Rows of a structured array.
+using Bytes = nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>>;
+Bytes bytes_of(const std::shared_ptr<const void>& owner, const void* data, std::size_t size) {
+  return Bytes(array_of<std::uint8_t>(owner, data, {size}));
 }
 
 /// Returns the result of `encode`, which runs without Python's lock.
@@ -155,14 +163,14 @@ struct PythonFilm {
 class PythonScene {
  public:
   PythonScene(const nb::bytes& file, bool strict, const Settings& settings) {
-    std::optional<double> smooth;
-    Keywords keywords;
-    keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
-    keywords.read(settings);
+    const SceneKeywords keywords(settings);
     const std::filesystem::path path = std::string(file.c_str(), file.size());
     const nb::gil_scoped_release release;
     file_ = read_scene_file(path);
-    scene_ = load(file_, {.strict = strict, .keep_instances = true, .smooth = smooth},
+    scene_ = load(file_,
+                  {.strict = strict,
+                   .keep_instances = true,
+                   .smooth = keywords.smooth},
                   file_.environment);
     resolve_instances(scene_, InstanceMode::kFlatten, path);
     build(keywords.threads);
@@ -171,10 +179,7 @@ class PythonScene {
   /// Makes a scene of triangles from their corners. `name` is the array's name in messages.
   PythonScene(const std::string& name, const Vectors3& corners, bool strict,
               const Settings& settings) {
-    std::optional<double> smooth;
-    Keywords keywords;
-    keywords.number("--smooth", "", "", smooth, kSmoothRange, kInPython);
-    keywords.read(settings);
+    const SceneKeywords keywords(settings);
     const Elements points("triangles", corners);
     const nb::gil_scoped_release release;
     MeshBuilder mesh(name, MeshBuilder::Source::kArray);
@@ -186,7 +191,7 @@ class PythonScene {
       }
       mesh.add_face(face, i / 3 + 1);
     }
-    mesh.build_plain({.strict = strict, .smooth = smooth}, scene_);
+    mesh.build_plain({.strict = strict, .smooth = keywords.smooth}, scene_);
     build(keywords.threads);
   }
 
@@ -199,17 +204,16 @@ class PythonScene {
 
   /// Returns the rows of HitTable as bytes, and the names and types of their fields. There are as
   /// many directions and limits as origins.
-  std::pair<Result<std::uint8_t, 1>, Settings> trace_rays(const Vectors3& origins,
-                                                          const Vectors3& directions,
-                                                          const std::optional<Numbers>& limits,
-                                                          const std::vector<std::string>& columns,
-                                                          const Settings& settings) const {
+  std::pair<Bytes, Settings> trace_rays(const Vectors3& origins, const Vectors3& directions,
+                                        const std::optional<Numbers>& limits,
+                                        const std::vector<std::string>& columns,
+                                        const Settings& settings) const {
     const std::size_t count = origins.shape(0);
     Hits asked = Hits::kNearest;
     Keywords keywords;
-    keywords.choice("--hits", "", "", asked,
-                    {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}},
-                    kInPython);
+    keywords.choice<Hits>("--hits", "", "", asked,
+                          {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}},
+                          kInPython);
     keywords.add_engine();
     keywords.read(settings);
     const Elements from("origins", origins), way("directions", directions);
@@ -232,7 +236,7 @@ class PythonScene {
       }
       return !block.rays.empty();
     };
-    auto rows = std::make_unique<std::string>();
+    const auto rows = std::make_shared<std::string>();
     rows->reserve(count * answers.fields().size() * 8);
     {
       const nb::gil_scoped_release release;
@@ -246,31 +250,27 @@ class PythonScene {
             return true;
           });
     }
-    std::string* const kept = rows.release();
-    const nb::capsule capsule(kept, [](void* p) noexcept { delete static_cast<std::string*>(p); });
-    return {Result<std::uint8_t, 1>(kept->data(), {kept->size()}, capsule), answers.fields()};
+    return {bytes_of(rows, rows->data(), rows->size()), answers.fields()};
   }
 
-  /// Returns a row for each point: triangle, distance, x, y, z.
-  [[nodiscard]] Result<double, 2> closest_points(const Vectors3& points) const {
+  /// Returns a row for each point, as bytes: triangle, int64; distance, x, y, z.
+  [[nodiscard]] Bytes closest_points(const Vectors3& points) const {
+    struct Row {
+      std::int64_t triangle;
+      double distance, x, y, z;
+    };
     const Elements from("points", points);
-    const std::size_t count = points.shape(0), width = 5;
-    auto rows = std::make_unique<std::vector<double>>();
+    const auto rows = std::make_shared<std::vector<Row>>(points.shape(0));
     {
       const nb::gil_scoped_release release;
-      rows->reserve(count * width);
-      for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t i = 0; i < rows->size(); ++i) {
         checkpoint();
         const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
         const glm::dvec3 at = found.point + scene_.origin;
-        const double triangle = bvh_->triangle_of(found.primitive);
-        rows->insert(rows->end(), {triangle, found.distance, at.x, at.y, at.z});
+        (*rows)[i] = {bvh_->triangle_of(found.primitive), found.distance, at.x, at.y, at.z};
       }
     }
-    std::vector<double>* const kept = rows.release();
-    const nb::capsule capsule(
-        kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-    return Result<double, 2>(kept->data(), {count, width}, capsule);
+    return bytes_of(rows, rows->data(), rows->size() * sizeof(Row));
   }
 
   /// Returns the film's channels by name, and the film.
@@ -287,13 +287,7 @@ class PythonScene {
     keywords.add_engine();
     add_light_options(keywords, chosen);
     keywords.read(settings);
-    const auto given = [&](const char* name) -> std::string {
-      const auto at = std::ranges::find(settings, name, &Settings::value_type::first);
-      return at == settings.end() ? "" : at->second;
-    };
-    chosen.choose_integrator(scene_.environment.has_value(), !given("integrator").empty(),
-                             !given("spp").empty());
-    check_adaptive_samples("", given("spp"), chosen);
+    check_light_options(keywords, scene_.environment.has_value(), chosen);
     chosen.threads = keywords.threads;
     const int width = chosen.width, height = chosen.height;
     if (std::int64_t{width} * height > kMaxPixels) {
@@ -352,90 +346,64 @@ class PythonScene {
   std::unique_ptr<PreparedScene> prepared_;
 };
 
-/// Runs Python's signal handlers, at most every 20 ms, during work that does not hold Python's
-/// lock. Throws the exception of a handler, such as KeyboardInterrupt.
-class SignalCheck {
- public:
-  void operator()() {
+/// Calls a Python function with IEEE 754 arithmetic. Its long work runs Python's signal handlers,
+/// every 20 ms, and ends with their exceptions, such as KeyboardInterrupt.
+nb::object call_in_context(const nb::callable& function, const nb::args& arguments,
+                           const nb::kwargs& keywords) {
+  const IeeeFloats floats;
+  auto last = std::chrono::steady_clock::now();
+  const CheckpointScope signals([&] {
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(20)) return;
-    last_ = now;
+    if (now - last < std::chrono::milliseconds(20)) return;
+    last = now;
     const nb::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
-/// A context of Python's `with`: IEEE 754 arithmetic, and signal handlers at the checkpoints of
-/// long work.
-class CallContext {
- public:
-  void enter() {
-    floats_.emplace();
-    signals_.emplace(SignalCheck());
-  }
-  void exit() {
-    signals_.reset();
-    floats_.reset();
-  }
-
- private:
-  std::optional<IeeeFloats> floats_;
-  std::optional<CheckpointScope> signals_;
-};
+  });
+  return function(*arguments, **keywords);
+}
 
 }  // namespace
 }  // namespace raygate
 
 NB_MODULE(_raygate, m) {
   using namespace nb::literals;
-  using raygate::PythonScene;
+  using namespace raygate;
   {
-    const raygate::IeeeFloats floats;
-    raygate::require_ieee_floats();
+    const IeeeFloats floats;
+    require_ieee_floats();
   }
-  using raygate::CallContext;
-  nb::class_<CallContext>(m, "CallContext")
-      .def(nb::init<>())
-      .def("__enter__", &CallContext::enter)
-      .def(
-          "__exit__",
-          [](CallContext& context, nb::handle, nb::handle, nb::handle) { context.exit(); },
-          "kind"_a.none(), "value"_a.none(), "traceback"_a.none());
+  m.def("call_in_context", &call_in_context,
+        nb::sig("def call_in_context(function: object, *arguments: object, **keywords: object) "
+                "-> object"));
   static const nb::object input_error =
-      nb::exception<raygate::InputError>(m, "InputError", PyExc_ValueError);
+      nb::exception<InputError>(m, "InputError", PyExc_ValueError);
   nb::register_exception_translator([](const std::exception_ptr& error, void*) {
     try {
       std::rethrow_exception(error);
-    } catch (const raygate::InputError& unusable) {
-      PyErr_SetObject(input_error.ptr(), raygate::text_of(unusable.what()).ptr());
+    } catch (const InputError& unusable) {
+      PyErr_SetObject(input_error.ptr(), text_of(unusable.what()).ptr());
     }
   });
-  raygate::add_float_reference(m);
-  m.attr("software") = raygate::kSoftware;
-  using raygate::PythonFilm;
+  add_float_reference(m);
+  m.attr("software") = kSoftware;
   nb::class_<PythonFilm>(m, "Film")
       .def("png",
            [](const PythonFilm& f, double exposure) {
-             return raygate::python_bytes([&] {
-               return raygate::encode_png(raygate::to_display(*f.film, {.exposure = exposure}));
-             });
+             return python_bytes(
+                 [&] { return encode_png(to_display(*f.film, {.exposure = exposure})); });
            })
       .def("exr", [](const PythonFilm& f) {
-        return raygate::python_bytes([&] { return raygate::encode_exr(*f.film, f.metadata); });
+        return python_bytes([&] { return encode_exr(*f.film, f.metadata); });
       });
   nb::class_<PythonScene>(m, "Scene")
-      .def(nb::init<const nb::bytes&, bool, const raygate::Settings&>())
-      .def(nb::init<const std::string&, const raygate::Vectors3&, bool, const raygate::Settings&>())
+      .def(nb::init<const nb::bytes&, bool, const Settings&>())
+      .def(nb::init<const std::string&, const Vectors3&, bool, const Settings&>())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })
       .def_prop_ro("objects",
-                   [](const PythonScene& s) { return raygate::texts_of(s.scene().objects.all()); })
+                   [](const PythonScene& s) { return texts_of(s.scene().objects.all()); })
       .def_prop_ro("materials", &PythonScene::material_names)
-      .def_prop_ro("warnings",
-                   [](const PythonScene& s) { return raygate::texts_of(s.scene().warnings); })
+      .def_prop_ro("warnings", [](const PythonScene& s) { return texts_of(s.scene().warnings); })
       .def_prop_ro("rounding",
                    [](const PythonScene& s) {
                      return std::pair(s.scene().rounding.corners, s.scene().rounding.most);
@@ -443,7 +411,7 @@ NB_MODULE(_raygate, m) {
       .def_prop_ro("origin",
                    [](const PythonScene& s) {
                      const glm::dvec3& o = s.scene().origin;
-                     return raygate::Three{o.x, o.y, o.z};
+                     return Three{o.x, o.y, o.z};
                    })
       .def("trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
            "columns"_a, "settings"_a)

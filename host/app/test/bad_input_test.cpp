@@ -121,16 +121,6 @@ TEST_F(BadInput, UnreadableFolder) {
       << outcome.err;
 }
 
-TEST_F(BadInput, EmptyFile) {
-  folder_.write("scene.obj", "");
-  expect_refused(render({"scene.obj"}), "scene\\.obj(:1)?: [^\n]+");
-}
-
-TEST_F(BadInput, SceneWithoutFaces) {
-  folder_.write("scene.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
-  expect_refused(render({"scene.obj"}), "scene\\.obj(:[0-9]+)?: [^\n]+");
-}
-
 TEST_F(BadInput, KindsOfFilesThatAreNotRead) {
   folder_.write("scene.fbx", "Kaydara FBX Binary");
   expect_refused(render({"scene.fbx"}),
@@ -141,31 +131,11 @@ TEST_F(BadInput, KindsOfFilesThatAreNotRead) {
   }
 }
 
-TEST_F(BadInput, TextThatIsNoObj) {
-  expect_refused_scene("Dear reader,\nthis is a letter.\n", 1);
-  expect_refused_scene("{\"a\": 1}\n", 1);
+TEST_F(BadInput, LinesThatCannotBeRead) {
   expect_refused_scene(std::string("\0\1\2\3\n", 5), 1);
   expect_refused_scene(std::string(kGoodScene) + "fish and chips\n", 7);
-}
-
-TEST_F(BadInput, IndexOutOfRange) {
   expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", 4);
-  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", 4);
-  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", 4);
-  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n", 4);
-}
-
-TEST_F(BadInput, NumbersThatAreNotFinite) {
-  for (const char* number : {"nan", "NaN", "inf", "-inf", "1e999", "infinity"}) {
-    expect_refused_scene(std::string("v 0 0 0\nv 1 0 ") + number + "\nv 0 1 0\nf 1 2 3\n", 2);
-  }
-}
-
-TEST_F(BadInput, NumbersThatAreNone) {
-  expect_refused_scene("v 0 0 0\nv 1 0 zero\nv 0 1 0\nf 1 2 3\n", 2);
-  expect_refused_scene("v 0 0 0\nv 1 0\nv 0 1 0\nf 1 2 3\n", 2);
-  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3x\n", 4);
-  expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", 4);
+  expect_refused_scene("v 0 0 0\nv 1 0 1e999\nv 0 1 0\nf 1 2 3\n", 2);
 }
 
 TEST_F(BadInput, FacesWithoutArea) {
@@ -226,18 +196,12 @@ TEST_F(BadInput, ImpossibleOptions) {
     expect_refused(render({"scene.obj", option, value}), option + ": expected [^\n]+");
   };
   refused("--size", "0x0");
-  refused("--size", "1000000000x1000000000");
-  refused("--size", "-5x5");
   refused("--crop", "0,0,9,6");
   refused("--engine", "gpu");
-  refused("--unit", "warp");
-  refused("--threads", "0");
-  refused("--camera", "0,0,0,0,0,0");
-  refused("--seed", "dice");
   expect_refused(render({"scene.obj", "--frobnicate"}),
                  "--frobnicate: unknown option \\(see --help\\)");
-  expect_refused(render({"scene.obj", "scene.obj"}), "scene\\.obj: a second scene; [^\n]+");
-  expect_refused(render({}), "no scene given; [^\n]+");
+  expect_refused(render({"scene.obj", "scene.obj"}), "expected one scene, got 2; [^\n]+");
+  expect_refused(render({}), "expected one scene, got 0; [^\n]+");
 }
 
 TEST_F(BadInput, SceneFiles) {

@@ -51,7 +51,7 @@ double seconds_to_answer(const fs::path& folder, std::vector<std::string> argume
       run_program({.arguments = std::move(arguments),
                    .folder = folder,
                    .terminal = true,
-                   .when_said = {{"rendering [", [&](int process) {
+                   .when_said = {{"rendering: ", [&](int process) {
                                     std::this_thread::sleep_for(std::chrono::milliseconds(500));
                                     sent = Clock::now();
                                     ::kill(process, SIGINT);
@@ -96,7 +96,7 @@ TEST_F(Render, AFailedSaveIsTriedAgain) {
                      "--save-every", "0.1", "-o", "out/a.png"},
        .folder = folder_.path(),
        .terminal = true,
-       .when_said = {{"rendering [", [&](int) { rename("out", "away"); }},
+       .when_said = {{"rendering: ", [&](int) { rename("out", "away"); }},
                      {"warning: out/a.png: cannot write: No such file or directory; the render "
                       "goes on",
                       [&](int process) {

@@ -57,7 +57,7 @@ class Parts : public Render {
           run_program({.arguments = arguments,
                        .folder = folder_.path(),
                        .terminal = true,
-                       .when_said = {{"rendering [", [&](int process) {
+                       .when_said = {{"rendering: ", [&](int process) {
                                         std::this_thread::sleep_for(
                                             std::chrono::milliseconds(150 + random() % 300));
                                         ::kill(process, SIGKILL);
@@ -229,7 +229,7 @@ TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
                  "--crop: expected multiples of 4, or the frame's edge, with --error");
   expect_refused(part({"--spp", "20", "--error", "2", "--samples", "0:18"}),
                  "--samples and --error exclude each other");
-  expect_refused(part({"--error", "2"}), "--spp: expected more than the 16 that --error begins");
+  expect_refused(part({"--error", "2"}), "--spp: expected more than the 16 that adaptive sampling");
   for (const char* error : {"0", "-1", "256", "nan", "few"}) {
     expect_refused(part({"--error", error}), "--error: expected steps of an 8-bit display");
   }
@@ -312,20 +312,19 @@ TEST_F(Parts, OfDifferentPicturesAreRefused) {
   expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
                  "b.exr: found seed 3, expected seed 0 as in a.exr");
   make({"-o", "b.exr", "--samples", "6:12"});
-  expect_refused(
-      merge({"a.exr", "b.exr", "-o", "merged"}),
-      "b.exr: found samples 6:12 beside 0:5 of the same pixels, expected some from 5 on");
+  expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
+                 "b.exr: found samples 6:12 of pixel 0,0, expected some from 5 on");
   make({"-o", "b.exr", "--samples", "0:5", "--crop", "0,0,9,9"});
   expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
-                 "a.exr: found pixels 0,0,60,44, some of which are in b.exr, expected others");
+                 "b.exr: found samples 0:5 of pixel 0,0, expected some from 5 on");
   make({"-o", "a.exr", "--samples", "0:5", "--crop", "9,9,60,44"});
   expect_refused(merge({"a.exr", "b.exr", "-o", "merged"}),
-                 "b.exr: found that all parts together lack some pixels of 0,0,60,44");
+                 "the parts together lack samples from 0 on of pixel 9,0");
   make({"-o", "c.exr"});
   expect_refused(merge({"a.exr", "c.exr", "-o", "merged"}), "c.exr: found no sums of samples");
   expect_refused(merge({"a.exr", "none.exr", "-o", "merged"}), "none.exr: cannot read");
   expect_refused(merge({"a.exr"}), "expected parts of a picture and -o NAME");
-  expect_refused(part({"--resume", "a.exr"}), "a.exr: found another frame or crop");
+  expect_refused(part({"--resume", "a.exr"}), "a.exr: found another crop");
   expect_refused(part({"--resume", "c.exr"}), "c.exr: found no sums of samples");
   make({"-o", "b.exr", "--samples", "0:5"});
   expect_refused(part({"--resume", "b.exr", "--seed", "1"}),

@@ -127,7 +127,7 @@ Outcome run_program(const Invocation& invocation) {
       ++said;
       react(child);
     }
-    if (!signalled && outcome.err.find("[=") != std::string::npos) {
+    if (!signalled && outcome.err.find(" left") != std::string::npos) {
       ::kill(child, invocation.signal_when_busy);
       signalled = true;
     }

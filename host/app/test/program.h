@@ -14,7 +14,7 @@ struct Invocation {
   std::vector<std::string> arguments;
   std::filesystem::path folder;  ///< the current folder; also what file names are relative to
   bool terminal = false;         ///< standard error is a terminal of 80 columns, not a pipe
-  int signal_when_busy = 0;      ///< with a terminal: sent when the progress bar has begun to fill
+  int signal_when_busy = 0;      ///< with a terminal: sent when 1 % is done
   /// Called with the program's process id, one after the other, each when standard error has its
   /// text in what came since the last one's.
   std::vector<std::pair<std::string, std::function<void(int)>>> when_said{};

@@ -1,4 +1,4 @@
-// libFuzzer target: arbitrary bytes as an OpenEXR image, for `compare`, `merge` and `--resume`.
+// libFuzzer target: arbitrary bytes as an OpenEXR image, for `merge` and `--resume`.
 #include <unistd.h>
 
 #include <cstdint>

@@ -7,10 +7,10 @@
 
 #include "host/bvh/bvh.h"
 #include "host/film/atomic_file.h"
-#include "host/film/compare.h"
 #include "host/film/display.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/commands.h"
+#include "host/lab/pictures/compare.h"
 #include "host/lab/pictures/decision_audit.h"
 #include "host/lab/variants/rtl_variant_units.h"
 #include "host/light/lights.h"
@@ -33,16 +33,6 @@ constexpr std::pair<const char*, IntegratorKind> kIntegrators[] = {
     {"primary", IntegratorKind::kPrimary},
     {"whitted", IntegratorKind::kWhitted},
     {"path", IntegratorKind::kPath}};
-
-/// Returns red, green and blue, for comparison.
-ChannelPicture light_of(const Film& film) {
-  ChannelPicture picture{film.width, film.height, film.window, {"R", "G", "B"}, {}};
-  for (int k = 0; k < 3; ++k) {
-    std::vector<double>& channel = picture.channels.emplace_back();
-    for (const glm::vec4& color : film.color) channel.push_back(color[k]);
-  }
-  return picture;
-}
 
 /// Renders one scene, as seen by a camera that shows all of it, with the default lights.
 class Pictures {
@@ -69,7 +59,7 @@ class Pictures {
       first_ = film;
       against_ = row["picture"].get<std::string>();
     }
-    const Comparison comparison = compare(light_of(film), light_of(*first_));
+    const Comparison comparison = compare(film, *first_);
     row.update(Row{{"against", against_},
                    {"differing_pixels", comparison.differing},
                    {"rmse", comparison.rmse},

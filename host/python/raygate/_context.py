@@ -16,6 +16,5 @@ def in_context(function: _Function) -> _Function:
     times per 100 ms; their exceptions, such as KeyboardInterrupt, end the call."""
     @functools.wraps(function)
     def guarded(*arguments: Any, **keywords: Any) -> Any:
-        with _raygate.CallContext():
-            return function(*arguments, **keywords)
+        return _raygate.call_in_context(function, *arguments, **keywords)
     return cast(_Function, guarded)

@@ -202,11 +202,8 @@ class Scene:
         names the point, for inf, NaN and coordinates beyond 2^1000."""
         points = _arrays.vectors("points", points)
         _arrays.check_finite("points", points, "point", 1000)
-        rows = np.empty(len(points), [("triangle", "<i8"), *((name, "<f8") for name in ("distance", "x", "y", "z"))])
-        numbers = self._scene.closest(points)
-        for k, name in enumerate(("triangle", "distance", "x", "y", "z")):
-            rows[name] = numbers[:, k]
-        return rows
+        fields = [("triangle", "<i8"), *((name, "<f8") for name in ("distance", "x", "y", "z"))]
+        return self._scene.closest(points).view(np.dtype(fields))
 
 
 def _settings(**options: object) -> list[tuple[str, str]]:

@@ -21,14 +21,14 @@ class Commands(unittest.TestCase):
         hit = raygate.Scene(SCENES / "teapot.obj").trace([0, 1, 5], [[0.0, 0.0, -1.0]])
         self.assertEqual((int(triangle), float(t)), (hit["triangle"][0], hit["t"][0]))
 
-    def test_render_merge_and_compare(self):
+    def test_render_and_merge(self):
         with tempfile.TemporaryDirectory() as folder:
             for part in ("0:1", "1:2"):
                 self.run_command("render", SCENES / "cornell.json", "--quiet", "--size", "16x12", "--spp", "2", "--samples", part,
                                  "-o", f"part-{part[0]}.exr", cwd=folder)
             self.run_command("merge", "part-0.exr", "part-1.exr", "-o", "merged", cwd=folder)
             self.run_command("render", SCENES / "cornell.json", "--quiet", "--size", "16x12", "--spp", "2", "-o", "whole", cwd=folder)
-            self.assertIn(b"differing     0\n", self.run_command("compare", "merged.exr", "whole.exr", cwd=folder))
+            self.assertEqual(*((pathlib.Path(folder) / name).read_bytes() for name in ("merged.exr", "whole.exr")))
 
 
 if __name__ == "__main__":

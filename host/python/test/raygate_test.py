@@ -332,7 +332,7 @@ class Render(unittest.TestCase):
         scene = raygate.Scene(SCENES / "cornell.json")
         coarse, fine = (scene.render(16, 12, integrator="path", error=error)["color"] for error in (200, 8))
         self.assertFalse((coarse == fine).all())
-        with self.assertRaisesRegex(raygate.InputError, "spp: expected more than the 16 that error begins with, got '4'"):
+        with self.assertRaisesRegex(raygate.InputError, "spp: expected more than the 16 that adaptive sampling to an error begins with, got '4'"):
             scene.render(16, 12, spp=4, error=2)
 
     def test_threads_render_by_their_own_lights(self):
