@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "host/base/lanes.h"
 #include "host/exact/expansion.h"
@@ -57,15 +58,15 @@ Estimate dot(const glm::dvec3& u, const Cross& cross) {
   return {value, 10.0 * kU * magnitude};
 }
 
-glm::dvec3 rounded(const ExactVector& v) {
+glm::dvec3 rounded(const ExactVector<16>& v) {
   return {v[0].approximate(), v[1].approximate(), v[2].approximate()};
 }
 
-ExactVector exact_normal(const Corners& t) {
+ExactVector<16> exact_normal(const Corners& t) {
   return exact_cross(exact_difference(t[1], t[0]), exact_difference(t[2], t[0]));
 }
 
-Expansion exact_plane(const glm::vec3& origin, const Corners& t) {
+Expansion<192> exact_plane(const glm::vec3& origin, const Corners& t) {
   return exact_dot(exact_difference(t[0], origin), exact_normal(t));
 }
 
@@ -82,7 +83,7 @@ int exact_edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {
   return 0;
 }
 
-Expansion exact_slope(const glm::vec3& direction, const Corners& t) {
+Expansion<96> exact_slope(const glm::vec3& direction, const Corners& t) {
   return exact_dot(direction, exact_normal(t));
 }
 
@@ -105,16 +106,27 @@ Estimate product(const Estimate& a, const Estimate& b) {
                      2.0 * kU * std::abs(value)};
 }
 
+/// Computes order_of_planes exactly. Products of this size are not allocated on the stack.
+int exact_order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
+  using Product = Expansion<2 * 192 * 96>;
+  const auto left = std::make_unique_for_overwrite<Product>();
+  const auto right = std::make_unique_for_overwrite<Product>();
+  const auto scratch = std::make_unique_for_overwrite<Product>();
+  multiply(exact_plane(ray.origin, first), exact_slope(ray.direction, second), *left, *scratch);
+  multiply(exact_plane(ray.origin, second), exact_slope(ray.direction, first), *right, *scratch);
+  const auto result = std::make_unique_for_overwrite<Expansion<4 * 192 * 96>>();
+  for (int i = 0; i < right->size; ++i) right->parts[i] = -right->parts[i];
+  add(*left, *right, *result);
+  return result->sign();
+}
+
 /// Returns the sign of D1 (I . N2) - D2 (I . N1): that of t1 - t2, times the signs of both I . N.
 int order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
   const Fraction t1(ray, first), t2(ray, second);
   const Estimate left = product(t1.numerator, t2.denominator);
   const Estimate right = product(t2.numerator, t1.denominator);
   const Estimate gap = {left.value - right.value, 1.000001 * (left.error + right.error)};
-  if (gap.sure()) return gap.sign();
-  return (exact_plane(ray.origin, first) * exact_slope(ray.direction, second) -
-          exact_plane(ray.origin, second) * exact_slope(ray.direction, first))
-      .sign();
+  return gap.sure() ? gap.sign() : exact_order_of_planes(ray, first, second);
 }
 
 }  // namespace
@@ -281,19 +293,12 @@ glm::dvec3 triangle_normal(const Corners& t) {
 
 namespace {
 
+constexpr double kUnitRoundoff = 0x1p-53;
+
 // A product of two floats has at most 48 bits and an exponent of -298 to 256: exact in a double.
 double exact_product(float a, float b) { return static_cast<double>(a) * static_cast<double>(b); }
 
 int sign_of(double x) { return (x > 0.0) - (x < 0.0); }
-
-int exact_area_sign(std::span<const glm::vec2> polygon) {
-  Expansion sum;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::vec2 &p = polygon[i], &q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    sum = sum + exact_difference(exact_product(p.x, q.y), exact_product(p.y, q.x));
-  }
-  return sum.sign();
-}
 
 }  // namespace
 
@@ -304,12 +309,18 @@ int orient2d(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
   const double right = from_c_to_a.y * from_c_to_b.x;
   const double determinant = left - right;
   // Shewchuk's bound A for the rounding of the two differences, two products and their difference.
-  constexpr double kBound = (3.0 + 16.0 * kU) * kU;
+  constexpr double kBound = (3.0 + 16.0 * kUnitRoundoff) * kUnitRoundoff;
   if (std::abs(determinant) > kBound * (std::abs(left) + std::abs(right))) {
     return sign_of(determinant);
   }
-  const glm::vec2 corners[] = {a, b, c};
-  return exact_area_sign(corners);
+  ExactSum sum;
+  sum.add(exact_product(a.x, b.y));
+  sum.add(-exact_product(a.y, b.x));
+  sum.add(exact_product(b.x, c.y));
+  sum.add(-exact_product(b.y, c.x));
+  sum.add(exact_product(c.x, a.y));
+  sum.add(-exact_product(c.y, a.x));
+  return sum.sign();
 }
 
 int area_sign(std::span<const glm::vec2> polygon, double& area) {
@@ -325,9 +336,17 @@ int area_sign(std::span<const glm::vec2> polygon, double& area) {
   }
   area = 0.5 * twice_area;
   // n differences and n additions, each with an error of at most u times the magnitudes.
-  const double bound = 2.0 * static_cast<double>(polygon.size() + 1) * kU * magnitude;
+  const double bound = 2.0 * static_cast<double>(polygon.size() + 1) * kUnitRoundoff * magnitude;
   if (std::abs(twice_area) > bound) return sign_of(twice_area);
-  return exact_area_sign(polygon);
+
+  ExactSum sum;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::vec2& p = polygon[i];
+    const glm::vec2& q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    sum.add(exact_product(p.x, q.y));
+    sum.add(-exact_product(p.y, q.x));
+  }
+  return sum.sign();
 }
 
 bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {

@@ -4,11 +4,34 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <glm/glm.hpp>
 #include <vector>
 
 namespace raygate {
+
+/// An exact real number: the sum of `size` non-zero doubles that do not overlap, of increasing
+/// magnitude; 0 has none. `Capacity` bounds the size and follows from the operations.
+///
+/// Every operation is exact as long as no product of two components underflows or overflows in
+/// double. Here all numbers are polynomials of degree at most 6 in floats, so multiples of 2^-894
+/// and, with coordinates up to 2^126, below 2^800.
+template <int Capacity>
+struct Expansion {
+  int size = 0;
+  double parts[Capacity];  // the first `size` are set
+
+  void append(double part) {
+    if (part != 0.0) parts[size++] = part;
+  }
+  /// Returns -1, 0 or 1: the sign of the largest part, which exceeds the sum of all others.
+  [[nodiscard]] int sign() const { return size == 0 ? 0 : (parts[size - 1] > 0.0 ? 1 : -1); }
+  /// Returns the nearest double, or a neighbour of it.
+  [[nodiscard]] double approximate() const {
+    double sum = 0.0;
+    for (int i = 0; i < size; ++i) sum += parts[i];
+    return sum;
+  }
+};
 
 /// An exact result as a sum, value + error.
 struct ExactPair {
@@ -41,65 +64,60 @@ struct ExactPair {
   return {product, a_low * b_low - rest};
 }
 
-/// An exact real number: the sum of non-zero doubles that do not overlap, of increasing magnitude;
-/// 0 has none.
-///
-/// Every operation is exact as long as no product of two parts underflows or overflows in double.
-/// Here all numbers are polynomials of degree at most 6 in floats, so multiples of 2^-894 and, with
-/// coordinates up to 2^126, below 2^800.
-struct Expansion {
-  std::vector<double> parts;
+[[nodiscard]] inline Expansion<2> exact_difference(double a, double b) {
+  const ExactPair pair = two_sum(a, -b);
+  Expansion<2> result;
+  result.append(pair.error);
+  result.append(pair.value);
+  return result;
+}
 
-  void append(double part) {
-    if (part != 0.0) parts.push_back(part);
-  }
-  void append(const ExactPair& pair) {
-    append(pair.error);
-    append(pair.value);
-  }
-  /// Returns -1, 0 or 1: the sign of the largest part, which exceeds the sum of all others.
-  [[nodiscard]] int sign() const { return parts.empty() ? 0 : (parts.back() > 0.0 ? 1 : -1); }
-  /// Returns the nearest double, or a neighbour of it.
-  [[nodiscard]] double approximate() const {
-    double sum = 0.0;
-    for (const double part : parts) sum += part;
-    return sum;
-  }
-};
-
-[[nodiscard]] inline Expansion operator+(const Expansion& e, const Expansion& f) {
-  Expansion result;
-  const std::size_t size = e.parts.size() + f.parts.size();
-  if (size == 0) return result;
-  result.parts.reserve(size);
-  auto from_e = e.parts.begin(), from_f = f.parts.begin();
+/// Computes `result` = `e` + `f`. `result` must be a separate object.
+template <int N, int M, int C>
+void add(const Expansion<N>& e, const Expansion<M>& f, Expansion<C>& result) {
+  result.size = 0;
+  int i = 0, j = 0;
   const auto next_smallest = [&] {
-    const bool is_e = from_f == f.parts.end() ||
-                      (from_e != e.parts.end() && std::abs(*from_e) < std::abs(*from_f));
-    return is_e ? *from_e++ : *from_f++;
+    const bool from_e = j == f.size || (i < e.size && std::abs(e.parts[i]) < std::abs(f.parts[j]));
+    return from_e ? e.parts[i++] : f.parts[j++];
   };
+  if (e.size + f.size == 0) return;
   double carry = next_smallest();
-  for (std::size_t i = 1; i < size; ++i) {
+  while (i < e.size || j < f.size) {
     const ExactPair pair = two_sum(carry, next_smallest());
     result.append(pair.error);
     carry = pair.value;
   }
   result.append(carry);
+}
+
+template <int N, int M>
+[[nodiscard]] Expansion<N + M> operator+(const Expansion<N>& e, const Expansion<M>& f) {
+  Expansion<N + M> result;
+  add(e, f, result);
   return result;
 }
 
-[[nodiscard]] inline Expansion operator-(const Expansion& e, Expansion f) {
-  for (double& part : f.parts) part = -part;
-  return e + f;
+template <int N>
+[[nodiscard]] Expansion<N> operator-(const Expansion<N>& e) {
+  Expansion<N> result;
+  result.size = e.size;
+  for (int i = 0; i < e.size; ++i) result.parts[i] = -e.parts[i];
+  return result;
 }
 
-[[nodiscard]] inline Expansion operator*(const Expansion& e, double factor) {
-  Expansion result;
-  if (e.parts.empty() || factor == 0.0) return result;
-  result.parts.reserve(2 * e.parts.size());
+template <int N, int M>
+[[nodiscard]] Expansion<N + M> operator-(const Expansion<N>& e, const Expansion<M>& f) {
+  return e + -f;
+}
+
+template <int N>
+[[nodiscard]] Expansion<2 * N> operator*(const Expansion<N>& e, double factor) {
+  Expansion<2 * N> result;
+  if (e.size == 0 || factor == 0.0) return result;
   ExactPair carry = two_product(e.parts[0], factor);
   result.append(carry.error);
-  for (std::size_t i = 1; i < e.parts.size(); ++i) {
+  for (int i = 1; i < e.size; ++i) {
     const ExactPair product = two_product(e.parts[i], factor);
     const ExactPair low = two_sum(carry.value, product.error);
     result.append(low.error);
@@ -110,35 +128,64 @@ struct Expansion {
   return result;
 }
 
-[[nodiscard]] inline Expansion operator*(const Expansion& e, const Expansion& f) {
-  Expansion result;
-  for (const double part : f.parts) result = e * part + result;
+/// Computes `result` = `e` * `f`; uses `scratch` for intermediate results.
+template <int N, int M>
+void multiply(const Expansion<N>& e, const Expansion<M>& f, Expansion<2 * N * M>& result,
+              Expansion<2 * N * M>& scratch) {
+  result.size = 0;
+  for (int i = 0; i < f.size; ++i) {
+    add(e * f.parts[i], result, scratch);
+    result.size = scratch.size;
+    for (int k = 0; k < scratch.size; ++k) result.parts[k] = scratch.parts[k];
+  }
+}
+
+template <int N, int M>
+[[nodiscard]] Expansion<2 * N * M> operator*(const Expansion<N>& e, const Expansion<M>& f) {
+  Expansion<2 * N * M> result, scratch;
+  multiply(e, f, result, scratch);
   return result;
 }
 
-[[nodiscard]] inline Expansion exact_difference(double a, double b) {
-  Expansion result;
-  result.append(two_sum(a, -b));
-  return result;
-}
-
-using ExactVector = std::array<Expansion, 3>;
+template <int N>
+using ExactVector = std::array<Expansion<N>, 3>;
 
 /// Returns a - b.
-[[nodiscard]] inline ExactVector exact_difference(const glm::vec3& a, const glm::vec3& b) {
+[[nodiscard]] inline ExactVector<2> exact_difference(const glm::vec3& a, const glm::vec3& b) {
   return {exact_difference(a.x, b.x), exact_difference(a.y, b.y), exact_difference(a.z, b.z)};
 }
 
-[[nodiscard]] inline ExactVector exact_cross(const ExactVector& u, const ExactVector& v) {
+[[nodiscard]] inline ExactVector<16> exact_cross(const ExactVector<2>& u, const ExactVector<2>& v) {
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
-[[nodiscard]] inline Expansion exact_dot(const ExactVector& u, const ExactVector& v) {
+[[nodiscard]] inline Expansion<192> exact_dot(const ExactVector<2>& u, const ExactVector<16>& v) {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-[[nodiscard]] inline Expansion exact_dot(const glm::vec3& u, const ExactVector& v) {
-  return v[0] * double{u.x} + v[1] * double{u.y} + v[2] * double{u.z};
+[[nodiscard]] inline Expansion<96> exact_dot(const glm::vec3& u, const ExactVector<16>& v) {
+  return v[0] * static_cast<double>(u.x) + v[1] * static_cast<double>(u.y) +
+         v[2] * static_cast<double>(u.z);
 }
+
+/// A sum of doubles without rounding: an Expansion without a bound of its size (Shewchuk's
+/// GROW-EXPANSION with zero elimination). Terms and sums must not overflow.
+class ExactSum {
+ public:
+  void add(double term) {
+    std::size_t kept = 0;
+    for (const double part : parts_) {
+      const ExactPair pair = two_sum(term, part);
+      if (pair.error != 0.0) parts_[kept++] = pair.error;
+      term = pair.value;
+    }
+    parts_.resize(kept);
+    if (term != 0.0) parts_.push_back(term);
+  }
+  [[nodiscard]] int sign() const { return parts_.empty() ? 0 : (parts_.back() > 0.0 ? 1 : -1); }
+
+ private:
+  std::vector<double> parts_;  // not overlapping, of increasing magnitude
+};
 
 }  // namespace raygate

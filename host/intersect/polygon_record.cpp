@@ -1,6 +1,8 @@
 #include "host/intersect/polygon_record.h"
 
+#include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -116,57 +118,152 @@ PolygonRecord make_record(const glm::vec3& origin, const Corners& t) {
   return record;
 }
 
-// Operations and their order are those of exact.cpp, so all bits are equal, as long as double is
-// accurate enough and all exponents are ordinary. For other triangles make_plane computes the
-// plane.
+// Operations and their order are those of exact.cpp and polygon_record.cpp, so all bits are equal,
+// as long as double is accurate enough and all exponents are ordinary. For other triangles
+// make_record computes the record.
 
 namespace {
 
-using Points = DoubleQuad[3];
+constexpr int kBatch = kPlanes;
 
-RAYGATE_INLINE DoubleQuad largest_of(const Points& p) { return maximum(maximum(p[0], p[1]), p[2]); }
+using Doubles = DoubleQuad;
+using Longs = LongQuad;
+using Floats = FloatQuad;
+using Ints = IntQuad;
 
-/// Returns the lanes whose value is 0 or has an exponent in [-60, 60].
-RAYGATE_INLINE LongQuad are_ordinary(const DoubleQuad& size) {
-  return ((size >= kSmallest) & (size < kLargest)) | (size == 0.0);
+constexpr double kU = 0x1p-53;  // as in exact.cpp
+
+using Points = Doubles[3];
+
+RAYGATE_INLINE void subtract(const Points& a, const Points& b, Points& result) {
+  for (int k = 0; k < 3; ++k) result[k] = a[k] - b[k];
 }
 
-/// Computes the planes in each lane. Bit i of the result is set if plane i is accurate.
-LaneMask make_four_planes(const PlaneViews& views, Planes& planes) {
-  constexpr double kU = 0x1p-53;  // as in exact.cpp
+RAYGATE_INLINE Doubles largest_of(const Points& p) { return maximum(maximum(p[0], p[1]), p[2]); }
+
+/// Clears `good` in lanes whose value is neither 0 nor has an exponent in [-60, 60].
+RAYGATE_INLINE void require_ordinary(const Doubles& size, Longs& good) {
+  good &= ((size >= 0x1p-60) & (size < 0x1p61)) | (size == 0.0);
+}
+
+/// Computes u x v; clears `good` in lanes in which it is not accurate enough or not ordinary.
+RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& value, Points& size,
+                                   Longs& good) {
+  cross(u, v, value, size);
+  Points s;
+  for (int k = 0; k < 3; ++k) s[k] = absolute(value[k]);
+  good &= 8.0 * kU * largest_of(size) <= 0x1p-34 * (s[0] + s[1] + s[2]);
+  require_ordinary(largest_of(s), good);
+}
+
+/// Stores four words of each of four records, from four vectors with one word of each record;
+/// words[i] begins record i.
+template <std::size_t kWords>
+RAYGATE_INLINE void store_words(const Floats& a, const Floats& b, const Floats& c, const Floats& d,
+                                float (&words)[kBatch][kWords], std::size_t first = 0) {
+  Floats record[kBatch] = {a, b, c, d};
+  transpose(record);
+  for (int i = 0; i < kBatch; ++i) std::memcpy(&words[i][first], &record[i], 16);
+}
+
+RAYGATE_INLINE void to_floats(const Points& p, Floats (&words)[3]) {
+  for (int k = 0; k < 3; ++k) words[k] = narrow(p[k]);
+}
+
+/// Returns the bound of an edge: its sum of magnitudes times a constant, rounded up.
+RAYGATE_INLINE Floats edge_bound(const Floats (&words)[3]) {
+  Doubles e[3];
+  for (int k = 0; k < 3; ++k) e[k] = absolute(wide(words[k]));
+  const Doubles exact = kEdgeBound * 0x1p-24 * (e[0] + e[1] + e[2]);
+  const Floats nearest = narrow(exact);
+  return float_of(bits_in(nearest) - whole(wide(nearest) < exact));
+}
+
+/// Loads the corners of four triangles by lane, as vector loads after single stores would stall.
+RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
+  const Corners(&of)[kBatch] = views.triangles;
+  for (int v = 0; v < 3; ++v) {
+    for (int k = 0; k < 3; ++k) {
+      t[v][k] = wide(Floats{of[0][v][k], of[1][v][k], of[2][v][k], of[3][v][k]});
+    }
+  }
+}
+
+/// Computes N and d from the corners and the first corner relative to the origin; clears `good` in
+/// lanes in which they are not accurate.
+RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal, Doubles& d,
+                                Longs& good) {
+  Points to_b, to_c, size, far;
+  subtract(t[1], t[0], to_b);
+  subtract(t[2], t[0], to_c);
+  accurate_cross(to_b, to_c, normal, size, good);
+  d = a[0] * normal[0] + a[1] * normal[1] + a[2] * normal[2];
+  for (int k = 0; k < 3; ++k) far[k] = absolute(a[k]);
+  const Doubles error = 10.0 * kU * (far[0] * size[0] + far[1] * size[1] + far[2] * size[2]);
+  const Doubles distance = absolute(d);
+  good &= (error <= 0x1p-32 * distance) & (distance > error);
+  require_ordinary(distance, good);
+}
+
+}  // namespace
+
+/// Computes the 16 words of four records. Bit i of the result is set if record i is valid.
+LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&words)[kBatch][16]) {
   return in_vectors([&](auto) RAYGATE_BODY {
-    // The corners by lane, as vector loads after single stores would stall.
-    const auto& t = views.triangles;
-    const auto& o = views.origins;
-    Points a, to_b, to_c, normal, size, magnitude, far;
+    Points t[3], from_o[3];
+    load_corners(views, t);
+    const Points o = {Doubles{} + origin.x, Doubles{} + origin.y, Doubles{} + origin.z};
+    for (int v = 0; v < 3; ++v) subtract(t[v], o, from_o[v]);
+    Longs good = Longs{} - 1;
+    Points normal, size;
+    Doubles d;
+    find_planes(t, from_o[0], normal, d, good);
+    Floats n[3], edges[3][3], bounds[3];
+    to_floats(normal, n);
+
     for (int k = 0; k < 3; ++k) {
-      const auto corner = [&](std::size_t v) RAYGATE_BODY {
-        return wide(FloatQuad{t[0][v][k], t[1][v][k], t[2][v][k], t[3][v][k]});
-      };
-      const DoubleQuad first = corner(0);
-      a[k] = first - wide(FloatQuad{o[0][k], o[1][k], o[2][k], o[3][k]});
-      to_b[k] = corner(1) - first;
-      to_c[k] = corner(2) - first;
+      const Points &p = t[k], &q = t[(k + 1) % 3];
+      const Longs lower =
+          (p[0] < q[0]) | ((p[0] == q[0]) & ((p[1] < q[1]) | ((p[1] == q[1]) & (p[2] < q[2]))));
+      const Points &pf = from_o[k], &qf = from_o[(k + 1) % 3];
+      Points start, way, edge;
+      for (int i = 0; i < 3; ++i) {
+        start[i] = lower ? pf[i] : qf[i];
+        way[i] = lower ? q[i] - p[i] : p[i] - q[i];
+      }
+      accurate_cross(start, way, edge, size, good);
+      for (int i = 0; i < 3; ++i) edge[i] = lower ? edge[i] : -edge[i];
+      to_floats(edge, edges[k]);
+      bounds[k] = edge_bound(edges[k]);
     }
-    cross(to_b, to_c, normal, size);
-    for (int k = 0; k < 3; ++k) {
-      magnitude[k] = absolute(normal[k]);
-      far[k] = absolute(a[k]);
-    }
-    const DoubleQuad d = a[0] * normal[0] + a[1] * normal[1] + a[2] * normal[2];
-    const DoubleQuad error = 10.0 * kU * (far[0] * size[0] + far[1] * size[1] + far[2] * size[2]);
-    const DoubleQuad distance = absolute(d);
-    const LongQuad good =
-        (8.0 * kU * largest_of(size) <= 0x1p-34 * (magnitude[0] + magnitude[1] + magnitude[2])) &
-        are_ordinary(largest_of(magnitude)) & (error <= 0x1p-32 * distance) & (distance > error) &
-        are_ordinary(distance);
-    for (int k = 0; k < 3; ++k) store(planes.words[k], narrow(normal[k]));
-    store(planes.words[3], narrow(d));
+    store_words(n[0], n[1], n[2], narrow(d), words);
+    store_words(edges[0][0], edges[0][1], edges[0][2], edges[1][0], words, 4);
+    store_words(edges[1][1], edges[1][2], edges[2][0], edges[2][1], words, 8);
+    store_words(edges[2][2], bounds[0], bounds[1], bounds[2], words, 12);
     return sign_mask(whole(good));
   });
 }
 
-}  // namespace
+/// Computes four planes. Bit i of the result is set if plane i is valid.
+LaneMask make_four_planes(const PlaneViews& views, Planes& planes) {
+  return in_vectors([&](auto) RAYGATE_BODY {
+    Points t[3], a, normal;
+    load_corners(views, t);
+    for (int k = 0; k < 3; ++k) {
+      const glm::vec3(&from)[kBatch] = views.origins;
+      a[k] = t[0][k] - wide(Floats{from[0][k], from[1][k], from[2][k], from[3][k]});
+    }
+    Longs good = Longs{} - 1;
+    Doubles d;
+    find_planes(t, a, normal, d, good);
+    Floats words[4];
+    for (int k = 0; k < 3; ++k) words[k] = narrow(normal[k]);
+    words[3] = narrow(d);
+    static_assert(sizeof words == sizeof planes.words);
+    std::memcpy(planes.words, words, sizeof words);
+    return sign_mask(whole(good));
+  });
+}
 
 void make_planes(const PlaneViews& views, Planes& planes) {
   const LaneMask good = make_four_planes(views, planes);
@@ -175,6 +272,29 @@ void make_planes(const PlaneViews& views, Planes& planes) {
     const PolygonRecord plane = make_plane(views.origins[i], views.triangles[i]);
     for (int k = 0; k < 3; ++k) planes.words[k][i] = plane.normal[k];
     planes.words[3][i] = plane.d;
+  }
+}
+
+void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
+                  std::span<PolygonRecord> records) {
+  assert(triangles.size() == records.size());
+  for (std::size_t first = 0; first < triangles.size(); first += kBatch) {
+    const std::size_t count = std::min<std::size_t>(kBatch, triangles.size() - first);
+    PlaneViews batch;
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      batch.triangles[i] = triangles[first + std::min(i, count - 1)];
+    }
+    float words[kBatch][16];
+    const LaneMask good = make_four(origin, batch, words);
+    for (std::size_t i = 0; i < count; ++i) {
+      PolygonRecord& record = records[first + i];
+      if ((good >> i & 1) != 0) {
+        static_assert(sizeof record == sizeof words[i]);
+        std::memcpy(static_cast<void*>(&record), words[i], sizeof record);
+      } else {
+        record = make_record(origin, triangles[first + i]);
+      }
+    }
   }
 }
 

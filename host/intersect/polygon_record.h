@@ -42,6 +42,10 @@ inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
 /// Returns only the plane: words 0-3 of that record; the others are 0.
 [[nodiscard]] PolygonRecord make_plane(const glm::vec3& origin, const Corners& triangle);
 
+/// Sets records[i] to make_record(origin, triangles[i]), bit for bit. The spans have the same size.
+void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
+                  std::span<PolygonRecord> records);
+
 /// Number of planes that make_planes makes at once.
 inline constexpr int kPlanes = 4;
 

@@ -14,9 +14,10 @@
 namespace raygate {
 namespace {
 
-mpq_class exact(const Expansion& e) {
+template <int N>
+mpq_class exact(const Expansion<N>& e) {
   mpq_class sum = 0;
-  for (const double part : e.parts) sum += part;
+  for (int i = 0; i < e.size; ++i) sum += e.parts[i];
   return sum;
 }
 
@@ -43,8 +44,9 @@ class Floats {
   std::uint32_t last_ = 0;
 };
 
-void expect_well_formed(const Expansion& e) {
-  for (std::size_t i = 0; i < e.parts.size(); ++i) {
+template <int N>
+void expect_well_formed(const Expansion<N>& e) {
+  for (int i = 0; i < e.size; ++i) {
     ASSERT_NE(e.parts[i], 0.0);
     if (i > 0) {
       ASSERT_LT(std::abs(e.parts[i - 1]), std::abs(e.parts[i]));
@@ -74,6 +76,36 @@ TEST(Expansion, AgreesWithRationals) {
     zeros += expected == 0 ? 1 : 0;
   }
   EXPECT_GT(zeros, 10);
+}
+
+using test::sign_of;
+
+TEST(ExactSum, KeepsWhatADoubleLoses) {
+  ExactSum sum;
+  EXPECT_EQ(sum.sign(), 0);
+  sum.add(0x1p100);
+  sum.add(0x1p-100);
+  sum.add(-0x1p100);
+  EXPECT_EQ(sum.sign(), 1);
+  sum.add(-0x1p-99);
+  EXPECT_EQ(sum.sign(), -1);
+  sum.add(0x1p-100);
+  EXPECT_EQ(sum.sign(), 0);
+}
+
+TEST(ExactSum, AgreesWithIntegers) {
+  std::mt19937_64 random(1);
+  for (int round = 0; round < 20000; ++round) {
+    ExactSum sum;
+    __int128 expected = 0;
+    for (int term = 0; term < 12; ++term) {
+      const auto mantissa = static_cast<std::int64_t>(random() % 2001) - 1000;
+      const int exponent = static_cast<int>(random() % 100);
+      sum.add(std::ldexp(static_cast<double>(mantissa), exponent));
+      expected += static_cast<__int128>(mantissa) << exponent;
+      ASSERT_EQ(sum.sign(), sign_of(expected)) << "round " << round;
+    }
+  }
 }
 
 }  // namespace

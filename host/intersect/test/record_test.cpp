@@ -1,5 +1,5 @@
 // The words of records, made in double and in binary32, and the bounds that make their sure answers
-// sure; four planes at a time are what they are one by one.
+// sure; four records at a time are what they are one by one.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -200,8 +200,11 @@ TEST(SetUp, DistancesAreAsNearAsTheySay) {
 }
 
 void expect_same(const glm::vec3& origin, const std::vector<Corners>& triangles) {
+  std::vector<PolygonRecord> records(triangles.size());
+  make_records(origin, triangles, records);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const PolygonRecord expected = make_record(origin, triangles[i]);
+    ASSERT_EQ(std::memcmp(&records[i], &expected, sizeof expected), 0) << "triangle " << i;
     const PolygonRecord plane = make_plane(origin, triangles[i]);
     ASSERT_EQ(std::memcmp(&plane, &expected, 16), 0) << "triangle " << i;
     PlaneViews views;  // four origins, four triangles
@@ -220,7 +223,7 @@ void expect_same(const glm::vec3& origin, const std::vector<Corners>& triangles)
   }
 }
 
-TEST(Planes, HaveTheBitsOfRecords) {
+TEST(RecordBatch, HasTheBitsOfSingleRecordsAndPlanes) {
   Random random;
   for (int round = 0; round < 2000; ++round) {
     const float size = std::ldexp(1.0f, random.below(5) == 0 ? random.below(240) - 120 : 0);

@@ -208,10 +208,14 @@ void UnitIntersector::make_own_records(Half& half) {
     RayBundle& bundle = half.batch[i];
     if (bundle.records != nullptr) continue;
     const Ray& ray = rays_[packets_[half.owner[i]].rays[std::countr_zero(bundle.lanes)]];
-    bundle.records = next;
+    std::array<Corners, Bvh::kMaxLeafSize> corners;
     for (std::uint32_t k = 0; k < bundle.record_count; ++k) {
-      *next++ = make_record(ray.origin, bvh_.corners_of(bundle.first_tag + k));
+      corners[k] = bvh_.corners_of(bundle.first_tag + k);
     }
+    make_records(ray.origin, std::span(corners).first(bundle.record_count),
+                 std::span(next, bundle.record_count));
+    bundle.records = next;
+    next += bundle.record_count;
   }
   counters_.own_records += count;
 }
