@@ -24,7 +24,6 @@
 #include <exception>
 #include <fstream>
 #include <new>
-#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -221,77 +220,98 @@ ExrMetadata metadata_of(const Imf::Header& header) {
   return metadata;
 }
 
-/// A file in memory. The library's own stream hides failures to allocate memory.
-class MemoryFile : public Imf::OStream {
- public:
-  explicit MemoryFile(std::string& bytes) : OStream("memory"), bytes_(bytes) {}
-  void write(const char* from, int count) override {
-    const auto size = static_cast<std::size_t>(count);
-    bytes_.resize(std::max(bytes_.size(), place_ + size));
-    std::memcpy(&bytes_[place_], from, size);
-    place_ += size;
-  }
-  std::uint64_t tellp() override { return place_; }
-  void seekp(std::uint64_t place) override { place_ = place; }
-
- private:
-  std::string& bytes_;
-  std::size_t place_ = 0;
-};
-
-constexpr int kBlockRows = 16;  // compressed together by ZIP
-
-/// A file with some rows of a film.
-struct Part {
-  int blocks;
-  std::string bytes{};
-  std::size_t data = 0;  // begin of the first block; the blocks' offsets precede it
-
-  /// Encodes the rows; without `has_pixels`, only up to the first block.
-  Part(const Film& film, const ExrMetadata& metadata, const PixelRect& rows, bool has_pixels = true)
-      : blocks((rows.height() + kBlockRows - 1) / kBlockRows) {
-    MemoryFile memory(bytes);
-    try {
-      Imf::OutputFile file(memory, make_header(film, metadata, rows), 0);
-      data = bytes.size();
-      file.setFrameBuffer(slices_of(film));
-      if (has_pixels) file.writePixels(rows.height());
-    } catch (const Iex::BaseExc&) {
-      throw std::bad_alloc();  // no file is in it to fail
+/// Returns whether the file in `bytes` contains these rows of `film`, bit for bit.
+bool holds_rows(const std::string& bytes, const Film& film, const PixelRect& window) {
+  constexpr int kRows = 64;  // per read
+  Imf::StdISStream stream;
+  stream.str(bytes);
+  Imf::InputFile file(stream, 0);
+  const std::vector<Channel> channels = channels_of(film);
+  const auto width = static_cast<std::size_t>(window.width());
+  std::vector<std::uint32_t> numbers(channels.size() * width * kRows);
+  PixelRect block = window;
+  for (; block.y0 < window.y1; block.y0 = block.y1) {
+    block.y1 = std::min(block.y0 + kRows, window.y1);
+    const std::size_t count = width * static_cast<std::size_t>(block.height());
+    Imf::FrameBuffer slices;
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      slices.insert(channels[k].name,
+                    slice_of(type_of(channels[k]), &numbers[k * count], sizeof numbers[0], block));
+    }
+    file.setFrameBuffer(slices);
+    file.readPixels(block.y0, block.y1 - 1);
+    const std::size_t first = film.index_of(block.x0, block.y0);
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      const char* at = static_cast<const char*>(channels[k].first) + first * channels[k].stride;
+      for (std::size_t i = 0; i < count; ++i, at += channels[k].stride) {
+        if (std::memcmp(at, &numbers[k * count + i], sizeof numbers[0]) != 0) return false;
+      }
     }
   }
-  [[nodiscard]] char* offset(int block) {
-    return &bytes[data - sizeof(std::uint64_t) * static_cast<std::size_t>(blocks - block)];
+  return true;
+}
+
+/// Encodes these rows of the film as a file; without `has_pixels`, only up to the first row.
+std::string encode_rows(const Film& film, const ExrMetadata& metadata, const PixelRect& window,
+                        bool has_pixels = true) {
+  try {
+    (void)Imf::globalThreadCount();  // as in with_file()
+    Imf::StdOSStream stream;
+    {
+      Imf::OutputFile file(stream, make_header(film, metadata, window), 0);
+      file.setFrameBuffer(slices_of(film));
+      if (has_pixels) file.writePixels(window.height());
+    }  // the destructor completes the file
+    std::string bytes = stream.str();
+    // If memory runs out, the library and the stream may omit a block silently.
+    if (!has_pixels || holds_rows(bytes, film, window)) return bytes;
+  } catch (const Iex::BaseExc&) {  // NOLINT(bugprone-empty-catch): no file is in it to fail
   }
-};
+  throw std::bad_alloc();
+}
+
+constexpr int kBlockRows = 16;  // compressed together by ZIP
+constexpr std::size_t kOffsetBytes = 8;
+
+int blocks_of(const PixelRect& window) { return (window.height() + kBlockRows - 1) / kBlockRows; }
 
 }  // namespace
 
+// The library's threads deadlock if a block cannot be allocated, so they are not used. Threads
+// encode files of several blocks each, which are then joined into one file (header, block offsets,
+// blocks: "OpenEXR File Layout"). The bytes of a block do not depend on its file.
 std::string encode_exr(const Film& film, const ExrMetadata& metadata, int threads) {
-  (void)Imf::globalThreadCount();  // as in with_file()
-  constexpr int kPerThread = 4;    // for load balance
-  const PixelRect& window = film.window;
-  const int rows =
-      std::max(kBlockRows, window.height() / (kPerThread * threads) / kBlockRows * kBlockRows);
-  std::vector<std::optional<Part>> parts(threads == 1 ? 1 : (window.height() + rows - 1) / rows);
-  if (parts.size() == 1) return std::move(Part(film, metadata, window).bytes);
-  for_each_on_threads(threads, parts.size(), [&](std::size_t i) {
-    const int y0 = window.y0 + static_cast<int>(i) * rows;
-    parts[i].emplace(film, metadata,
-                     PixelRect{window.x0, y0, window.x1, std::min(y0 + rows, window.y1)});
+  constexpr int kPerThread = 4;  // for load balance
+  const int blocks = blocks_of(film.window);
+  const int rows = kBlockRows * std::max(1, blocks / (kPerThread * threads));
+  const int count = (film.window.height() + rows - 1) / rows;
+  if (threads == 1 || count == 1) return encode_rows(film, metadata, film.window);
+  const auto window = [&](std::size_t part) {
+    PixelRect rect = film.window;
+    rect.y0 += static_cast<int>(part) * rows;
+    rect.y1 = std::min(rect.y0 + rows, film.window.y1);
+    return rect;
+  };
+  std::vector<std::string> parts(static_cast<std::size_t>(count));
+  for_each_on_threads(threads, parts.size(), [&](std::size_t part) {
+    parts[part] = encode_rows(film, metadata, window(part));
   });
-  Part whole(film, metadata, window, false);
-  int block = 0;
-  for (std::optional<Part>& part : parts) {
-    for (int i = 0; i < part->blocks; ++i, ++block) {
+  std::string bytes = encode_rows(film, metadata, film.window, false);
+  // All headers have the same length.
+  const std::size_t header = bytes.size() - kOffsetBytes * static_cast<std::size_t>(blocks);
+  std::size_t entry = header;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const std::string file = std::exchange(parts[part], {});
+    const auto there = static_cast<std::size_t>(blocks_of(window(part)));
+    const std::size_t first = header + kOffsetBytes * there;
+    for (std::size_t i = 0; i < there; ++i, entry += kOffsetBytes) {
       const std::uint64_t offset =
-          number_at<std::uint64_t>(part->offset(i)) - part->data + whole.bytes.size();
-      std::memcpy(whole.offset(block), &offset, sizeof offset);
+          number_at<std::uint64_t>(&file[header + kOffsetBytes * i]) - first + bytes.size();
+      std::memcpy(&bytes[entry], &offset, sizeof offset);
     }
-    whole.bytes.append(part->bytes, part->data);
-    part.reset();
+    bytes.append(file, first);
   }
-  return std::move(whole.bytes);
+  return bytes;
 }
 
 ChannelPicture read_exr(const std::filesystem::path& path, std::span<const std::string> names) {
