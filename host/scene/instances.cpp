@@ -21,6 +21,15 @@ std::uint32_t append(std::vector<T>& all, std::vector<T>&& more) {
   return first;
 }
 
+/// Appends attributes that are parallel to another list, which has `count` elements so far.
+template <class T>
+void append_parallel(std::vector<T>& all, std::size_t count, std::vector<T>&& more,
+                     const T& missing = T(0.0f)) {
+  if (more.empty()) return;
+  all.resize(count, missing);
+  (void)append(all, std::move(more));
+}
+
 /// Sets the tangent of the scene's last normal.
 void add_tangent(Scene& scene, const glm::vec4& tangent) {
   scene.tangents.resize(scene.normals.size(), glm::vec4(0.0f));
@@ -88,8 +97,9 @@ void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3&
 
 std::uint32_t add_mesh(Scene& scene, Scene&& part) {
   const bool has_materials = !part.materials.empty();
-  if (!part.tangents.empty()) scene.tangents.resize(scene.normals.size(), glm::vec4(0.0f));
-  (void)append(scene.tangents, std::move(part.tangents));
+  append_parallel(scene.tangents, scene.normals.size(), std::move(part.tangents));
+  append_parallel(scene.second_texcoords, scene.texcoords.size(), std::move(part.second_texcoords));
+  append_parallel(scene.opacities, scene.texcoords.size(), std::move(part.opacities), 1.0f);
   const std::uint32_t normals = append(scene.normals, std::move(part.normals));
   const std::uint32_t texcoords = append(scene.texcoords, std::move(part.texcoords));
   const std::uint32_t textures = append(scene.textures, std::move(part.textures));

@@ -1,5 +1,6 @@
 #include "host/scene/material_lookup.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/scene/instances.h"
@@ -8,8 +9,11 @@ namespace raygate {
 namespace {
 
 /// Returns the texture coordinates of a vertex. The triangle must have texture coordinates.
-glm::dvec2 texcoord(const Scene& scene, const Triangle& triangle, int vertex) {
-  return glm::dvec2(scene.texcoords[triangle.texcoords[static_cast<std::size_t>(vertex)]]);
+glm::dvec2 texcoord(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
+                    int vertex) {
+  const std::uint32_t at = triangle.texcoords[static_cast<std::size_t>(vertex)];
+  const bool is_second = mapping.is_second && at < scene.second_texcoords.size();
+  return glm::dvec2(is_second ? scene.second_texcoords[at] : scene.texcoords[at]);
 }
 
 /// Returns texture coordinates, or differences of them, scaled and rotated.
@@ -23,7 +27,7 @@ glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Tri
                     const glm::dvec3& weights) {
   glm::dvec2 uv(0.0);
   for (int k = 0; k < 3; ++k) {
-    uv += weights[k] * texcoord(scene, triangle, k);
+    uv += weights[k] * texcoord(mapping, scene, triangle, k);
   }
   return turned(mapping, uv) + glm::dvec2(mapping.offset);
 }
@@ -48,11 +52,26 @@ glm::vec3 color_of(const MaterialMap& map, const Scene& scene, const Triangle& t
                                         map.mapping.sampling);
 }
 
-/// Returns the map that hides points of a triangle, or nullptr.
-const MaterialMap* mask_of(const Scene& scene, const Triangle& triangle) {
+bool has_mask(const Scene& scene, const Triangle& triangle) {
   const Material& material = scene.materials[triangle.material];
-  if (material.opacity_blends || is_missing(material.opacity_map, triangle)) return nullptr;
-  return &material.opacity_map;
+  return (material.opacity_map.texture != kNoIndex || material.has_vertex_opacity) &&
+         !material.opacity_blends && triangle.texcoords[0] != kNoIndex;
+}
+
+/// Returns the opacity of a vertex. The triangle must have texture coordinates.
+double vertex_opacity(const Scene& scene, const Triangle& triangle, int vertex) {
+  const std::uint32_t at = triangle.texcoords[static_cast<std::size_t>(vertex)];
+  return at < scene.opacities.size() ? scene.opacities[at] : 1.0;
+}
+
+/// Returns opacity map times vertex opacity. The triangle must have texture coordinates.
+float opacity_of(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  const Material& material = scene.materials[triangle.material];
+  const float mapped = codes_of(material.opacity_map, scene, triangle, weights).r;
+  if (!material.has_vertex_opacity) return mapped;
+  double between = 0.0;
+  for (int k = 0; k < 3; ++k) between += weights[k] * vertex_opacity(scene, triangle, k);
+  return mapped * static_cast<float>(between);
 }
 
 /// Returns the tangent at a point: a direction, and the sign of y; 0 if the file has none.
@@ -88,29 +107,35 @@ glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors, const Triangle& 
 }
 
 bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
-  const MaterialMap* const mask = mask_of(scene, triangle);
-  return mask != nullptr && codes_of(*mask, scene, triangle, weights).r <
-                                scene.materials[triangle.material].opacity_cutoff;
+  return has_mask(scene, triangle) &&
+         opacity_of(scene, triangle, weights) < scene.materials[triangle.material].opacity_cutoff;
 }
 
 bool is_nowhere_masked(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights,
                        const glm::dvec3& change) {
-  const MaterialMap* const mask = mask_of(scene, triangle);
-  if (mask == nullptr) return true;
-  const auto uv = [&](int vertex) { return texcoord(scene, triangle, vertex); };
-  // The changes of the three coordinates sum to 0.
-  const glm::dvec2 reach = change.y * glm::abs(turned(mask->mapping, uv(1) - uv(0))) +
-                           change.z * glm::abs(turned(mask->mapping, uv(2) - uv(0)));
-  const double least = scene.textures[mask->texture].min_code_near(
-      place_on(mask->mapping, scene, triangle, weights), reach, mask->mapping.sampling);
+  if (!has_mask(scene, triangle)) return true;
+  const Material& material = scene.materials[triangle.material];
+  double least = 1.0;
+  if (const MaterialMap& map = material.opacity_map; map.texture != kNoIndex) {
+    const auto uv = [&](int k) { return texcoord(map.mapping, scene, triangle, k); };
+    // The changes of the three coordinates sum to 0.
+    const glm::dvec2 reach = change.y * glm::abs(turned(map.mapping, uv(1) - uv(0))) +
+                             change.z * glm::abs(turned(map.mapping, uv(2) - uv(0)));
+    least = scene.textures[map.texture].min_code_near(
+        place_on(map.mapping, scene, triangle, weights), reach, map.mapping.sampling);
+  }
+  if (material.has_vertex_opacity) {
+    least *= std::min({vertex_opacity(scene, triangle, 0), vertex_opacity(scene, triangle, 1),
+                       vertex_opacity(scene, triangle, 2)});
+  }
   constexpr double kRounding = 1e-6;
-  return least > scene.materials[triangle.material].opacity_cutoff + kRounding;
+  return least > material.opacity_cutoff + kRounding;
 }
 
 float opacity_factor_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
-  return material.opacity_blends ? codes_of(material.opacity_map, scene, triangle, weights).r
-                                 : 1.0f;
+  if (!material.opacity_blends || triangle.texcoords[0] == kNoIndex) return 1.0f;
+  return opacity_of(scene, triangle, weights);
 }
 
 glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
@@ -120,7 +145,7 @@ glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
   const MaterialMap& map = material.normal_map;
   if (is_missing(map, triangle)) return normal;
   const auto uv = [&](int vertex) {
-    return turned(map.mapping, texcoord(scene, triangle, vertex));
+    return turned(map.mapping, texcoord(map.mapping, scene, triangle, vertex));
   };
   const glm::dvec2 to_1 = uv(1) - uv(0), to_2 = uv(2) - uv(0);
   const glm::dvec3 a(corners[0]), edge_1 = glm::dvec3(corners[1]) - a,

@@ -150,6 +150,15 @@ def material(picture=None, more=None, texture=None, sampler=None, **attributes):
     return gltf
 
 
+def before_blue(mode, cutoff=0.5, alpha=0.):
+    """A square of vertex alpha before a blue one."""
+    gltf = material(more={"alphaMode": mode, "alphaCutoff": cutoff}, COLOR_0=[(1., 0., 0., alpha)] * 4)
+    back = {"attributes": {"POSITION": gltf.add([(3 * x, 3 * y, -1.) for x, y, _ in CORNERS])}, "indices": gltf.mesh["indices"], "material": 1}
+    gltf.json["materials"].append({"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0, 0, 1, 1]}})
+    gltf.json["meshes"][0]["primitives"].append(back)
+    return gltf.text()
+
+
 def normal_mapped(**attributes):
     out = io.BytesIO()
     PIL.Image.new("RGB", (2, 2), (222, 128, 213)).save(out, "png")
@@ -306,8 +315,9 @@ ROWS = [
      {"warns": ["'KHR_materials_pbrSpecularGlossiness' is not read"]}),
     ("mesh-viewer#56", {"a.gltf": extension("KHR_materials_pbrSpecularGlossiness", required=True)},
      {"error": "'KHR_materials_pbrSpecularGlossiness', which is not read"}),
-    ("three.js#21466, glTF#1293", {"a.gltf": material(more={"alphaMode": "MASK"}, COLOR_0=[(1., 0., 0., 0.)] * 4).text()},
-     {"colours": "RR/RR", "warns": ["opacity of vertices"]}),
+    *((f"three.js#21466, {mode}", {"a.gltf": before_blue(mode)}, {"colours": colours}) for mode, colours in (("MASK", "BB/BB"), ("OPAQUE", "RR/RR"))),
+    ("glTF#1293", {"a.gltf": before_blue("MASK", 0.25, 0.25)}, {"colours": "RR/RR"}),
+    ("glTF#1293", {"a.gltf": before_blue("MASK", 1.5, 1.)}, {"colours": "BB/BB"}),
     *((f"psz-godot#576, {s} {t}", {"a.gltf": material(image(), sampler={"wrapS": s, "wrapT": t}, TEXCOORD_0=[(2 * u, 2 - 2 * v) for u, v in UV]).text()}, {"colours": colours})
       for s, t, colours in ((33648, 10497, "RGGR/BYYB/RGGR/BYYB"), (10497, 33648, "RGRG/BYBY/BYBY/RGRG"), (33648, 33648, "RGGR/BYYB/BYYB/RGGR"))),
     ("QGIS#54183", {"a.gltf": material(image(), sampler={"wrapS": 10242}).text()}, {"colours": "RG/BY", "warns": ["wrap mode 10242"]}),

@@ -131,18 +131,22 @@ void GltfMeshes::read_primitive(const Json& primitive, const GltfPlacement& plac
   if (!normals.empty()) tangents = read("TANGENT", 4);
   const int color = index_in(attributes, "COLOR_0");
   const bool has_alpha = color >= 0 && text_in(file_.accessor(color), "type") == "VEC4";
-  const std::vector<double> colors = read("COLOR_0", 3);
+  const int channels = has_alpha ? 4 : 3;
+  const std::vector<double> colors = read("COLOR_0", channels);
   const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
   count(corners.size());
   if (corners.size() % 3 != 0) {
     file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
   }
-  const auto [material, set] = materials_.convert(number);
-  if (has_alpha && materials_.has_opacity(number)) {
-    file_.warn_once("the opacity of vertices (COLOR_0) is not read");
-  }
-  std::vector<double> texcoords;
-  if (set >= 0) texcoords = read("TEXCOORD_" + std::to_string(set), 2);
+  const auto [material, sets] = materials_.convert(number);
+  const auto read_set = [&](int set) {
+    return set < 0 ? std::vector<double>() : read("TEXCOORD_" + std::to_string(set), 2);
+  };
+  std::vector<double> texcoords = read_set(sets[0]);
+  const std::vector<double> seconds = read_set(sets[1]);
+  const bool is_clear = has_alpha && !colors.empty() && materials_.has_opacity(number);
+  if (is_clear && sets[0] < 0) texcoords.resize(2 * vertices);  // opacities need them
+  if (is_clear) materials_.use_vertex_opacity(number);
   if (!colors.empty()) to.colors_are_linear();
   if (number < 0 && !colors.empty()) scene_.materials[material].diffuse = glm::vec3(1.0f);
 
@@ -161,7 +165,8 @@ void GltfMeshes::read_primitive(const Json& primitive, const GltfPlacement& plac
       file_.fail("a vertex is beyond the range of float");
     }
     to.add_position(at);
-    if (!colors.empty()) to.add_color(glm::vec3(glm::make_vec3(&colors[3 * i])));
+    const std::size_t own_color = static_cast<std::size_t>(channels) * i;
+    if (!colors.empty()) to.add_color(glm::vec3(glm::make_vec3(&colors[own_color])));
     if (!normals.empty()) {
       // The inverse transpose up to a factor; cofactors also exist for a singular matrix.
       const glm::dmat3 cofactors(glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]),
@@ -174,7 +179,13 @@ void GltfMeshes::read_primitive(const Json& primitive, const GltfPlacement& plac
       const bool is_direction = size > 0.0 && std::isfinite(size);
       to.add_tangent(is_direction ? glm::vec4(along / size, side) : glm::vec4(0.0f));
     }
-    if (!texcoords.empty()) to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
+    if (texcoords.empty()) continue;
+    to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
+    if (!seconds.empty()) to.add_second_texcoord({seconds[2 * i], 1.0 - seconds[2 * i + 1]});
+    if (is_clear) {
+      const double alpha = colors[own_color + 3];
+      to.add_opacity(std::isfinite(alpha) ? static_cast<float>(std::clamp(alpha, 0.0, 1.0)) : 1.0f);
+    }
   }
 
   for (std::size_t i = 0; i < corners.size(); i += 3) {

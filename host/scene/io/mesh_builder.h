@@ -44,6 +44,9 @@ class MeshBuilder {
   void add_color(const glm::vec3& color);
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
+  /// Add attributes of the last texture coordinates; the second ones, and the opacity, in [0, 1].
+  void add_second_texcoord(const glm::vec2& texcoord);
+  void add_opacity(float opacity);
   void add_normal(const glm::dvec3& normal);
   /// Sets the tangent of the last normal, in the format of Scene::tangents.
   void add_tangent(const glm::vec4& tangent);
@@ -97,6 +100,8 @@ class MeshBuilder {
   [[nodiscard]] std::size_t line_of(std::size_t corner) const;
   void recentre(Scene& scene);
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
+  /// Returns whether a face has no area in the file's own numbers, before they are rounded.
+  [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
   /// Returns the smoothing groups of the triangles; empty: all are flat.
   [[nodiscard]] std::vector<std::uint32_t> triangulate(const LoadOptions& options,
                                                        Scene& scene) const;
@@ -112,6 +117,8 @@ class MeshBuilder {
   std::vector<glm::vec3> normals_;
   std::vector<glm::vec4> tangents_;  // of the first normals
   std::vector<glm::vec2> texcoords_;
+  std::vector<glm::vec2> second_texcoords_;  // of the first texture coordinates
+  std::vector<float> opacities_;             // likewise
   std::vector<FaceCorner> corners_;
   std::vector<Face> faces_;
 };

@@ -471,6 +471,24 @@ TEST_F(LoadGltf, SkinsAtRest) {
   EXPECT_EQ(corner(scene, 0, 2), glm::dvec3(3, 2, 4)) << "by both";
 }
 
+TEST_F(LoadGltf, OpacityOfVertices) {
+  for (const auto& [mode, opacity, is_hole] :
+       {std::tuple{"OPAQUE", 1.0f, false}, {"BLEND", 0.25f, false}, {"MASK", 1.0f, true}}) {
+    std::string buffer = square_buffer();
+    std::string json =
+        square_json(kOneNode, R"(, "materials": [{"alphaMode": ")" + std::string(mode) + "\"}]",
+                    R"(, "material": 0)");
+    add({{"COLOR_0", {1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1}}}, json, buffer);
+    const Scene scene = load(json, buffer);
+    const Triangle& face = scene.triangles[0];
+    EXPECT_EQ(opacity_factor_at(scene, face, {0.25, 0.5, 0.25}), opacity) << mode;
+    EXPECT_EQ(is_masked_out(scene, face, {0.25, 0.5, 0.25}), is_hole) << mode;
+    EXPECT_FALSE(is_masked_out(scene, face, {0.0, 0.25, 0.75})) << mode;
+    EXPECT_EQ(is_nowhere_masked(scene, face, {0.25, 0.5, 0.25}, glm::dvec3(0.0)), !is_hole) << mode;
+    EXPECT_EQ(vertex_color_at(scene.colors, face, {0.25, 0.5, 0.25}), glm::vec3(1.0f));
+  }
+}
+
 TEST_F(LoadGltf, Tangents) {
   std::string buffer = square_buffer();
   std::string json = square_json(
@@ -520,22 +538,25 @@ TEST_F(LoadGltfPicture, SamplersAndTransforms) {
   EXPECT_EQ(diffuse_at(scene, scene.triangles[1], {0.375, 0.25, 0.375}), glm::vec3(0, 0, 1));
 }
 
-TEST_F(LoadGltf, AMaterialHasTheTextureCoordinatesOfItsBaseColor) {
+TEST_F(LoadGltf, TwoSetsOfTextureCoordinates) {
   std::string buffer = square_buffer();
-  std::string json =
-      square_json(kOneNode,
-                  R"(, "materials": [{"emissiveTexture": {"index": 0}, "emissiveFactor": [1, 1, 1],
-           "pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}}}],
+  std::string json = square_json(
+      R"([{"children": [1, 2]}, {"mesh": 0}, {"mesh": 0}])",
+      R"(, "materials": [{"emissiveTexture": {"index": 0, "texCoord": 1}, "emissiveFactor": [1, 1, 1],
+           "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
          "textures": [{"source": 0}], "images": [{"uri": "two.tga"}])",
-                  R"(, "material": 0)");
+      R"(, "material": 0)");
   add({{"TEXCOORD_1", {0.75, 0.5, 0, 0, 0.75, 0.5, 0, 0, 0.75, 0.5, 0, 0, 0.75, 0.5}}}, json,
       buffer);
   (void)folder_.write("two.tga", test::tga(2, 1, {{255, 0, 0}, {0, 0, 255}}));
   const Scene scene = load(json, buffer);
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("different sets of coordinates"), std::string::npos);
-  EXPECT_EQ(diffuse_at(scene, scene.triangles[1], {0.375, 0.25, 0.375}), glm::vec3(0, 0, 1));
-  EXPECT_EQ(scene.materials[0].emission_map.texture, kNoIndex);
+  EXPECT_EQ(scene.warnings, std::vector<std::string>());
+  ASSERT_EQ(scene.triangles.size(), 4u);
+  for (const std::size_t face : {1u, 3u}) {
+    const Triangle& triangle = scene.triangles[face];
+    EXPECT_EQ(diffuse_at(scene, triangle, {0.375, 0.25, 0.375}), glm::vec3(1, 0, 0));
+    EXPECT_EQ(emission_factor_at(scene, triangle, {0.375, 0.25, 0.375}), glm::vec3(0, 0, 1));
+  }
 }
 
 TEST_F(LoadGltf, UnknownAttributesAreWarnedOf) {
