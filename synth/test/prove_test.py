@@ -18,7 +18,7 @@ FAULTS = {
     ]),
     "queues.binary16": ("hit_test_pipeline", [
         ("assign {report_o, closed_o, found_o", "assign {report_o, found_o, closed_o"),
-        ("push   = report != hit_test_pkg::ReportNone | closed", "push   = closed"),
+        ("push   = report != ReportNone | closed", "push   = closed"),
     ]),
     "hits": ("closest_hit", [
         ("(low_q <= {1'b0, old_t_max_q})", "(low_q < {1'b0, old_t_max_q})"),
