@@ -15,6 +15,9 @@ FUNCTIONS: dict[str, dict[str, Callable[[dict[str, int]], int]]] = {
     "$shl": {"Y": lambda x: x["A"] << x["B"]},
     "$shr": {"Y": lambda x: x["A"] >> x["B"]},
     "$ge": {"Y": lambda x: int(x["A"] >= x["B"])},
+    "$lt": {"Y": lambda x: int(x["A"] < x["B"])},
+    "$add": {"Y": lambda x: x["A"] + x["B"]},
+    "$sub": {"Y": lambda x: x["A"] - x["B"]},
 }
 FUNCTIONS["CARRY_SAVE"] = FUNCTIONS["FULL_ADDER"]
 
