@@ -1,9 +1,12 @@
 #include "host/light/lights.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "host/exact/exact.h"
@@ -80,6 +83,9 @@ std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& 
   }
   return std::nullopt;
 }
+
+/// Weight of the inner side of a closed light: small, but positive.
+constexpr double kInnerSide = 1.0 / 16.0;
 
 /// Returns bounds with lengths in units of `unit`.
 LightBounds light_bounds(const PointLight& light, double unit) {
@@ -250,13 +256,15 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
 }
 
 /// Returns bounds with lengths in units of `unit`.
-LightBounds Lights::light_bounds(const Patch& patch, const AreaLight& light, double unit) {
+LightBounds Lights::light_bounds(const Patch& patch, const AreaLight& light, double unit,
+                                 OuterSide side) {
   const glm::dvec3 corner(patch.corner), u(patch.u), v(patch.v);
   LightBounds source;
   source.axis = glm::dvec3(patch.normal);
   source.spread = 1.0;
   source.reach = 0.0;
-  source.back = 1.0;
+  source.back = side == OuterSide::kBoth ? 1.0 : kInnerSide;
+  if (side == OuterSide::kAgainstNormal) source.axis = -source.axis;
   source.middle = (corner + (u + v) * (patch.is_triangle ? 1.0 / 3.0 : 0.5)) / unit;
   for (const glm::dvec3& other : {corner, corner + u, corner + v, corner + u + v}) {
     if (patch.is_triangle && other == corner + u + v) continue;
@@ -281,12 +289,15 @@ void Lights::add_sources(double unit) {
   }
   if (!areas_.empty()) source_of_primitive_.assign(bvh_.primitive_count(), kNoIndex);
   for (const AreaLight& light : areas_) {
+    const std::vector<OuterSide> sides = outer_sides(bvh_, light.primitives);
     const std::uint32_t first = lights_[number].first_patch;
+    std::size_t triangle = 0;
     for (std::uint32_t i = first; i < first + lights_[number].patches; ++i) {
       const Patch& patch = patches_[i];
       source_of_primitive_[patch.primitive] = source_of_primitive_[patch.primitive_beyond] =
           static_cast<std::uint32_t>(sources.size());
-      add(light_bounds(patch, light, unit), i, patch.area);
+      add(light_bounds(patch, light, unit, sides[triangle]), i, patch.area);
+      triangle += patch.is_triangle ? 1 : 2;
     }
     ++number;
   }
@@ -303,6 +314,56 @@ void Lights::add_sources(double unit) {
   }
   any_power_ = std::ranges::any_of(sources, [](const auto& source) { return source.power > 0.0; });
   tree_ = LightTree(sources);
+}
+
+std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t> primitives) {
+  struct Edge {
+    std::array<float, 6> ends;  // the smaller one first
+    std::uint32_t triangle;
+    bool is_reversed;
+  };
+  std::vector<Edge> edges;
+  std::vector<std::uint32_t> parents(primitives.size());  // union-find
+  std::iota(parents.begin(), parents.end(), 0u);
+  const auto part_of = [&](std::uint32_t i) {
+    while (parents[i] != i) i = parents[i] = parents[parents[i]];
+    return i;
+  };
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+    const Corners corners = bvh.corners_of(primitives[i]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::vec3 &a = corners[k], &b = corners[(k + 1) % 3];
+      const std::array<float, 6> ends{a.x, a.y, a.z, b.x, b.y, b.z},
+          back{b.x, b.y, b.z, a.x, a.y, a.z};
+      edges.push_back({std::min(ends, back), i, back < ends});
+    }
+  }
+  std::ranges::sort(edges, {}, &Edge::ends);
+  std::vector<std::uint32_t> at_borders;
+  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+    for (end = i + 1; end < edges.size() && edges[end].ends == edges[i].ends; ++end) {
+      parents[part_of(edges[end].triangle)] = part_of(edges[i].triangle);
+    }
+    if (end - i != 2 || edges[i].is_reversed == edges[i + 1].is_reversed) {
+      at_borders.push_back(edges[i].triangle);
+    }
+  }
+  std::vector<bool> is_open(primitives.size());
+  for (const std::uint32_t triangle : at_borders) is_open[part_of(triangle)] = true;
+
+  std::vector<double> volumes(primitives.size());  // times six; negative: triangles face inwards
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+    const Corners t = bvh.corners_of(primitives[i]);
+    const glm::dvec3 origin(bvh.corners_of(primitives[part_of(i)])[0]);
+    volumes[part_of(i)] += glm::dot(glm::dvec3(t[0]) - origin, triangle_normal(t));
+  }
+  std::vector<OuterSide> sides(primitives.size());
+  for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+    const double volume = volumes[part_of(i)];
+    if (is_open[part_of(i)] || volume == 0.0) continue;
+    sides[i] = volume > 0.0 ? OuterSide::kAlongNormal : OuterSide::kAgainstNormal;
+  }
+  return sides;
 }
 
 }  // namespace raygate

@@ -73,6 +73,19 @@ RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) 
   return ramp * ramp;
 }
 
+/// Side of a triangle that is outside of the closed surface to which the triangle belongs.
+enum class OuterSide : std::uint8_t {
+  kBoth,           ///< the triangle does not belong to a closed surface
+  kAlongNormal,    ///< the side of its normal
+  kAgainstNormal,  ///< the opposite side
+};
+
+/// Returns the outer side of each of the primitives. A closed surface is a set of these triangles,
+/// connected by edges, in which each edge belongs to exactly two triangles that traverse it in
+/// opposite directions.
+[[nodiscard]] std::vector<OuterSide> outer_sides(const Bvh& bvh,
+                                                 std::span<const std::uint32_t> primitives);
+
 /// The emitting faces of one object and material: one light that emits from both sides of each
 /// face.
 struct AreaLight {
@@ -239,7 +252,7 @@ class Lights {
   void add_patches(const AreaLight& light, Light& record);
   void add_sources(double unit);
   [[nodiscard]] static LightBounds light_bounds(const Patch& patch, const AreaLight& light,
-                                                double unit);
+                                                double unit, OuterSide side);
 
   const Scene& scene_;
   const Bvh& bvh_;
