@@ -48,6 +48,7 @@ int run(const std::vector<std::string>& words) {
   for (const auto& path : options.paths()) require_writable(path);
 
   std::vector<NamedFilm> films;
+  films.reserve(line.plain.size());
   for (const std::string& part : line.plain) films.emplace_back(part, read_film(part));
   FilmFile whole = merge(std::move(films));
   const bool is_part = whole.film.keeps_sums;

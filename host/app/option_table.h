@@ -153,14 +153,19 @@ class OptionTable {
   template <typename T, typename Target>
   void value(const std::string& names, const char* value, const std::string& help,
              const std::string& expected, Target& target,
-             std::function<std::optional<T>(const std::string&)> parse,
-             std::function<std::string(const T&)> show = {}, unsigned places = kNowhere) {
+             const std::function<std::optional<T>(const std::string&)>& parse,
+             const std::function<std::string(const T&)>& show = {}, unsigned places = kNowhere) {
     add(
         names, value, help, expected,
         [&target, parse](const std::string& text) {
           const std::optional<T> parsed = parse(text);
-          if (parsed) target = *parsed;
-          return parsed.has_value();
+          if (!parsed) return false;
+          if constexpr (std::is_same_v<T, Target>) {
+            target = *parsed;
+          } else {
+            target = parsed;
+          }
+          return true;
         },
         [&target, show]() -> std::string {
           if constexpr (std::is_same_v<T, Target>) {

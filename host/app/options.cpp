@@ -40,7 +40,8 @@ constexpr const char* kFooter =
     R"(Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene or an output cannot be used; 130 interrupted (partial pictures).)";
 
-// Values of options.
+// Values of options. Only a lack of memory at the start could make them throw.
+// NOLINTBEGIN(bugprone-throwing-static-initialization)
 
 const Choices<Engine> kEngines{{"rtl", Engine::kRtl},
                                {"model", Engine::kModel},
@@ -66,6 +67,7 @@ const Choices<Angles> kViews{{"front", {0, 0}},   {"back", {180, 0}},
                              {"left", {-90, 0}},  {"right", {90, 0}},
                              {"top", {0, 90}},    {"iso", {45, 35.264389682754654}},
                              {"bottom", {0, -90}}};  // iso: all three axes appear equally long
+// NOLINTEND(bugprone-throwing-static-initialization)
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);

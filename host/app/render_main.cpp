@@ -105,7 +105,7 @@ Film render_monitored(const Options& options, const RenderJob& job, const ExrMet
 /// InputError for errors of the user, EngineMismatch, and other exceptions for internal
 /// errors; then no output file has changed. Throws Interrupted after the unfinished pictures were
 /// written.
-void run(Options options) {
+void run(const Options& options) {
   Stopwatch total, lap;
   Report report;
   std::FILE* console = stdout;
@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
   return raygate::run_main(argc, argv, [](const std::vector<std::string>& words) {
     raygate::Options options = raygate::parse_options(words);
     if (options.information.empty()) {
-      raygate::run(std::move(options));
+      raygate::run(options);
     } else {
       raygate::print(options.information);
     }

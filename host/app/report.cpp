@@ -29,6 +29,7 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
   const SkipCounters& skipped = render.skipped;
   const PixelRect& window = options.render.window;
   std::vector<std::string> pictures;
+  pictures.reserve(report.pictures.size());
   for (const auto& path : report.pictures) pictures.push_back(path.string());
   return {
       {"software", kSoftware},

@@ -61,7 +61,7 @@ void require_ieee_floats();
 struct Binary32 {
   /// Returns the number or vector, as all its bits fit the format.
   template <class T>
-  static const T& read(const T& x) {
+  static T read(const T& x) {
     return x;
   }
   static float add(float a, float b) { return canonical(a + b); }

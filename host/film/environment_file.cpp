@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -76,10 +76,14 @@ class Reader {
       if (!(exposure_ > 1e-30 && exposure_ < 1e30)) fail("EXPOSURE: expected a positive number");
     }
     const std::string size = line();
-    int end = 0;
-    std::sscanf(size.c_str(), "-Y %9d +X %9d%n", &picture.height, &picture.width, &end);
-    if (end != static_cast<int>(size.size()) || picture.width < 1 || picture.height < 1) {
+    std::smatch sides;
+    if (!std::regex_match(size, sides, std::regex(R"(-Y +(\d{1,9}) +\+X +(\d{1,9}))"))) {
       fail(in_quotes(size) + ", expected -Y HEIGHT +X WIDTH");
+    }
+    picture.height = std::stoi(sides[1]);
+    picture.width = std::stoi(sides[2]);
+    if (picture.width < 1 || picture.height < 1) {
+      fail(in_quotes(size) + ", expected at least one pixel");
     }
   }
 

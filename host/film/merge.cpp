@@ -101,7 +101,8 @@ std::optional<std::string> different_picture(const FilmFile& found, const ExrMet
                                              int width, int height) {
   std::map<std::string, std::pair<std::string, std::string>> facts;  // found, expected
   const auto add_facts = [&](const ExrMetadata& metadata, auto side) {
-    for (const auto& [name, value] : metadata.options) facts[name].*side = name + " " + value;
+    for (const auto& [name, value] : metadata.options)
+      (facts[name].*side = name).append(" ").append(value);
     facts["software"].*side = "software " + metadata.software;
     facts["scene"].*side = "scene " + metadata.scene;
     facts["seed"].*side = "seed " + std::to_string(metadata.seed);

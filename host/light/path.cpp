@@ -180,7 +180,8 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
 template <class T>
 RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits) {
   constexpr int kCount = Hits<T>::kCount;
-  const auto scatters = hits.bsdf.scatters() & !hits.path.is_first();
+  const auto is_first = hits.path.is_first();
+  const auto scatters = hits.bsdf.scatters() & !is_first;
   if (!any(scatters) || hits.bsdf.has_rough_glass()) return;
   const SquarePoint<T> u = hits.random(streams::kLens);
   const auto x = unpack(u.x), y = unpack(u.y);

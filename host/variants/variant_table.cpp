@@ -42,7 +42,7 @@ Json with_defaults(const Json& object) {
   Json row = Variant{}.row();
   row.erase("hardware");  // follows from the other columns
   std::string columns;
-  for (const auto& column : row.items()) columns += " " + column.key();
+  for (const auto& column : row.items()) columns.append(" ").append(column.key());
   if (!object.is_object()) throw InputError("found no object, expected" + columns);
   for (const auto& [name, value] : object.items()) {
     if (!row.contains(name)) throw InputError("a variant has " + name + ", expected" + columns);

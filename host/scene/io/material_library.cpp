@@ -233,7 +233,9 @@ class MtlReader {
       } else if (name == "-bm" && keyword == "norm") {
         normal_scale = static_cast<float>(words.number("norm -bm"));
       } else {
-        warn_once(keyword + " option", words, keyword + " " + name + " is not supported, ignored");
+        std::string option = keyword;
+        option.append(" ").append(name).append(" is not supported, ignored");
+        warn_once(keyword + " option", words, option);
         (void)words.take();
         while (to_number(words.peek())) (void)words.take();
       }
@@ -242,7 +244,7 @@ class MtlReader {
     read.file = find_file(folder_, words.rest(), words.place(), warnings_)
                     .value_or(folder_ / words.rest())
                     .string();
-    map = read;
+    map = std::move(read);
     if (keyword == "norm") draft_.material.normal_scale = normal_scale;
     // A map without its colour is not tinted. (A later Kd or Ke still counts.)
     if (keyword == "map_Ke" && !draft_.has_emission) draft_.material.emission = glm::vec3(1.0f);

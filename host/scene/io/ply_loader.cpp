@@ -218,7 +218,8 @@ class PlyReader {
         fail_row("a list's length: expected a whole number from 0 to 4294967295");
       }
       property.values.clear();
-      for (double k = 0.0; k < count; ++k) property.values.push_back(take_any(property.type));
+      const auto length = static_cast<std::uint32_t>(count);
+      for (std::uint32_t k = 0; k < length; ++k) property.values.push_back(take_any(property.type));
     }
   }
 
