@@ -41,11 +41,11 @@ int in_range(const std::string& column, int value, int low, int high) {
 Json with_defaults(const Json& object) {
   Json row = Variant{}.row();
   row.erase("hardware");  // follows from the other columns
-  std::string columns;
+  std::string columns = ", expected";
   for (const auto& column : row.items()) columns.append(" ").append(column.key());
-  if (!object.is_object()) throw InputError("found no object, expected" + columns);
+  if (!object.is_object()) throw InputError("found no object" + columns);
   for (const auto& [name, value] : object.items()) {
-    if (!row.contains(name)) throw InputError("a variant has " + name + ", expected" + columns);
+    if (!row.contains(name)) throw InputError(("a variant has " + name).append(columns));
     const Json& like = row[name];
     if (like.is_number() ? !value.is_number_integer() : value.type() != like.type()) {
       throw InputError(name + " is " + value.dump() + ", expected a value like " + like.dump());
