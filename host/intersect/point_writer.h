@@ -17,7 +17,7 @@ namespace raygate {
 /// Computes P and its error with the bits of plane_point, and writes them to the hits of a query.
 class PointWriter {
  public:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 256;
 
   /// `is_common`: all rays start at one point, so that hits of one primitive share its plane.
   PointWriter(const Bvh& bvh, std::span<const Ray> rays, bool is_common, std::span<NearestHit> hits)
@@ -30,11 +30,11 @@ class PointWriter {
 
   /// Adds the hit of a ray with a primitive. At most kMost are added before they are written.
   RAYGATE_INLINE void add(std::uint32_t number, std::uint32_t primitive) {
-    std::uint8_t unused = 0xFF;
-    std::uint8_t& plane = is_common_ ? last_[primitive % kMost] : unused;
+    std::uint16_t unused = 0xFFFF;
+    std::uint16_t& plane = is_common_ ? last_[primitive % kMost] : unused;
     // Branchless, as a branch would be unpredictable.
     const bool known = (plane < planes_) & (primitives_[plane % kMost] == primitive);
-    plane = static_cast<std::uint8_t>(known ? plane : planes_);
+    plane = static_cast<std::uint16_t>(known ? plane : planes_);
     primitives_[planes_] = primitive;
     firsts_[planes_] = number;
     planes_ += known ? 0 : 1;
@@ -54,9 +54,10 @@ class PointWriter {
   std::size_t planes_ = 0, count_ = 0;
   std::uint32_t primitives_[kMost + 1] = {};  // by plane, with a ray that hits it
   std::uint32_t firsts_[kMost + 1];
-  std::uint8_t last_[kMost] = {};  // by hash: the last plane of a primitive
-  std::uint32_t numbers_[kMost];   // of rays, with their planes
-  std::uint8_t plane_of_[kMost];
+  // Numbers of planes have 16 bits, as bytes might alias any other variable.
+  std::uint16_t last_[kMost] = {};  // by hash: the last plane of a primitive
+  std::uint32_t numbers_[kMost];    // of rays, with their planes
+  std::uint16_t plane_of_[kMost];
   float words_[4][kMost];  // of planes: N and d
 };
 

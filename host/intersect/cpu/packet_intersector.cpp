@@ -145,6 +145,17 @@ RAYGATE_INLINE int t_scale_axis(const RayPacket& block, const LaneMask* active) 
   return axis;
 }
 
+/// Loads the directions of four rays, transposed. Each load includes the float before the
+/// direction, which belongs to the same ray.
+RAYGATE_INLINE void load_directions(const Ray* const (&rays)[kQuad], FloatQuad (&components)[3]) {
+  static_assert(offsetof(Ray, direction) + sizeof(Ray::direction) == sizeof(Ray));
+  FloatQuad rows[kQuad];
+  for (int i = 0; i < kQuad; ++i)
+    rows[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i] + 1) - kQuad);
+  transpose(rows);
+  for (int k = 0; k < 3; ++k) components[k] = rows[k + 1];
+}
+
 /// Loads up to 64 rays. Returns a mask of the rays that are usable but not scaled.
 std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
   return in_vectors([&](auto) RAYGATE_BODY {
@@ -154,14 +165,17 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
       const std::size_t begin = std::size_t(group) * kLanes;
       const std::size_t count =
           begin < rays.size() ? std::min<std::size_t>(kLanes, rays.size() - begin) : 0;
-      float components[3][kLanes];
-      for (std::size_t i = 0; i < kLanes; ++i) {  // beyond the end: the last ray
-        const Ray& ray = rays[std::min(begin + i, rays.size() - 1)];
-        for (int k = 0; k < 3; ++k) components[k][i] = ray.direction[k];
+      const Ray* of[2][kQuad];  // beyond the end: the last ray
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        of[i / kQuad][i % kQuad] = &rays[std::min(begin + i, rays.size() - 1)];
       }
+      FloatQuad half[2][3];
+      load_directions(of[0], half[0]);
+      load_directions(of[1], half[1]);
       IntLanes largest = {};  // largest magnitude of each ray, as bits of a float
       for (int k = 0; k < 3; ++k) {
-        const auto d = load<FloatLanes>(components[k]);
+        const FloatLanes d =
+            __builtin_shufflevector(half[0][k], half[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
         block.direction[k][group] = d;
         block.negative[k][group] = sign_mask(d < 0.0f);
         const IntLanes size = reinterpret_cast<IntLanes>(d) & 0x7FFFFFFF;
@@ -521,8 +535,9 @@ class PacketIntersector {
         traverse(walk);
         finish(walk);
       }
-      points_.write();
+      if (points_.count() > PointWriter::kMost - RayPacket::kRays) points_.write();
     }
+    points_.write();
     return points_.written();
   }
 
@@ -731,16 +746,20 @@ class PacketIntersector {
 
   /// Writes the nearest hits, and adds them to those whose P is to be computed.
   void finish(const ConeTraversal& walk) {
-    for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
-      const int g = std::countr_zero(groups);
-      for (LaneMask lanes = 0xFF & ~sign_mask(walk.primitive[g]); lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        NearestHit& hit = hits_[walk.number(g, lane)];
-        hit.primitive = static_cast<std::uint32_t>(walk.primitive[g][lane]);
-        hit.t = walk.t(g, lane);
-        if (query_.with_points()) points_.add(walk.number(g, lane), hit.primitive);
+    in_vectors([&](auto) RAYGATE_BODY {
+      const bool with_points = query_.with_points();
+      for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
+        const int g = std::countr_zero(groups);
+        LaneMask lanes = 0xFF & ~sign_mask(walk.primitive[g]);
+        for (; lanes != 0; lanes &= lanes - 1) {
+          const int lane = std::countr_zero(lanes);
+          NearestHit& hit = hits_[walk.number(g, lane)];
+          hit.primitive = static_cast<std::uint32_t>(walk.primitive[g][lane]);
+          hit.t = walk.t(g, lane);
+          if (with_points) points_.add(walk.number(g, lane), hit.primitive);
+        }
       }
-    }
+    });
   }
 
   const Bvh& bvh_;
