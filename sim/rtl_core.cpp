@@ -1,5 +1,7 @@
 #include "sim/rtl_core.h"
 
+#include <cassert>
+
 #include "host/intersect/core/linked_core.h"
 #include "sim/model_loader.h"
 
@@ -9,7 +11,6 @@ namespace {
 constexpr ModelFile kExact{"ray_core_exact", "the simulated exact ray core", 60};
 constexpr ModelFile kExactBehavioural{"ray_core_exact_behavioural",
                                       "the simulated exact ray core of behavioural arithmetic", 60};
-constexpr ModelFile kStructural{"ray_core_structural", "the simulated ray core", 90};
 constexpr ModelFile kBehavioural{"ray_core_behavioural",
                                  "the simulated ray core of behavioural arithmetic", 40};
 constexpr ModelFile kOpen{"ray_core_open", "the simulated ray core that writes waveforms", 40};
@@ -17,13 +18,14 @@ constexpr ModelFile kBoard{"board_core", "the simulated board", 40};
 
 }  // namespace
 
-std::unique_ptr<CoreUnit> make_rtl_core(Arith arith, const MemoryTiming& timing,
-                                        const CoreStalls& stalls, const CoreSet& set) {
-  const bool structural = arith == Arith::kStructural;
+std::unique_ptr<CoreUnit> make_rtl_core(const MemoryTiming& timing, const CoreStalls& stalls,
+                                        const CoreSet& set) {
+  const bool structural = set.arith == Arith::kStructural;
+  assert(set.exact || !structural);
   const auto make = load_model<CoreUnit*(const MemoryTiming&, const CoreStalls&, const CoreSet&)>(
-      set.exact    ? (structural ? kExact : kExactBehavioural)
-      : structural ? kStructural
-                   : kBehavioural);
+      !set.exact   ? kBehavioural
+      : structural ? kExact
+                   : kExactBehavioural);
   return std::unique_ptr<CoreUnit>(make(timing, stalls, set));
 }
 

@@ -22,13 +22,13 @@ inline constexpr int kTableRays = 64, kBoardRays = 16;
 /// Cores behind one port to memory.
 struct CoreSet {
   int cores = 1;
-  bool exact = false;  ///< they settle doubts by themselves
+  bool exact = false;                 ///< they settle doubts by themselves
+  Arith arith = Arith::kBehavioural;  ///< structural: of exact cores alone
 };
 
 /// ray_core, Verilated, and the memory behind it. Not for use by two threads at once: each thread
 /// makes its own. Throws InputError where the model can't be built.
-[[nodiscard]] std::unique_ptr<CoreUnit> make_rtl_core(Arith arith = Arith::kStructural,
-                                                      const MemoryTiming& timing = {},
+[[nodiscard]] std::unique_ptr<CoreUnit> make_rtl_core(const MemoryTiming& timing = {},
                                                       const CoreStalls& stalls = {},
                                                       const CoreSet& set = {});
 

@@ -12,8 +12,8 @@
 #     NETLIST <file>: TOP is in that file, as Yosys wrote it; what it instantiates and lacks is in hw/.
 #     AS <name>: its class is that of model <name>, V<name>, so that a program takes it in that one's place.
 #
-#   raygate_model_file(ray_core_structural ray_core.cpp TOP ray_core ...)
-#     The same, and a target ray_core_structural.so: a file of that name in build/sim/models, which programs
+#   raygate_model_file(ray_core_exact ray_core.cpp TOP ray_core ...)
+#     The same, and a target ray_core_exact.so: a file of that name in build/sim/models, which programs
 #     load (model_loader.h), with the model and what ray_core.cpp of sim/models puts around it.
 #
 #   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...] [RANDOM_RESETS <filter>])

@@ -40,7 +40,7 @@ void RtlPlaneUnit::intersect(std::span<const PlaneTest> /*tests*/,
                              std::span<glm::vec3> /*points*/) {}
 std::uint64_t RtlPlaneUnit::clocks() const { return 0; }
 
-std::unique_ptr<CoreUnit> make_rtl_core(Arith /*arith*/, const MemoryTiming& /*timing*/,
+std::unique_ptr<CoreUnit> make_rtl_core(const MemoryTiming& /*timing*/,
                                         const CoreStalls& /*stalls*/, const CoreSet& /*set*/) {
   fail("the simulated ray core");
 }

@@ -48,7 +48,8 @@ std::unique_ptr<CoreUnit> make_core(const EngineOptions& options) {
                                         kBoardRays);
   }
   if (options.unit == "board") return make_rtl_board();
-  return make_rtl_core(options.arith, options.memory, {}, {.cores = options.cores, .exact = true});
+  return make_rtl_core(options.memory, {},
+                       {.cores = options.cores, .exact = true, .arith = options.arith});
 }
 
 }  // namespace

@@ -3,18 +3,22 @@
 
 #include "Vray_core_behavioural.h"
 #include "Vray_core_behavioural___024root.h"
-#include "Vray_core_structural.h"
-#include "Vray_core_structural___024root.h"
+#include "Vray_core_exact.h"
+#include "Vray_core_exact___024root.h"
+#include "Vray_core_exact_behavioural.h"
+#include "Vray_core_exact_behavioural___024root.h"
 #include "sim/core_model.h"
 #include "sim/rtl_core.h"
 
 namespace raygate {
 
-std::unique_ptr<CoreUnit> make_rtl_core(Arith arith, const MemoryTiming& timing,
-                                        const CoreStalls& stalls, const CoreSet& set) {
-  if (arith == Arith::kStructural) {
-    return std::make_unique<CoreModel<Vray_core_structural>>(timing, stalls, set);
+std::unique_ptr<CoreUnit> make_rtl_core(const MemoryTiming& timing, const CoreStalls& stalls,
+                                        const CoreSet& set) {
+  if (set.exact && set.arith == Arith::kStructural) {
+    return std::make_unique<CoreModel<Vray_core_exact>>(timing, stalls, set);
   }
+  if (set.exact)
+    return std::make_unique<CoreModel<Vray_core_exact_behavioural>>(timing, stalls, set);
   return std::make_unique<CoreModel<Vray_core_behavioural>>(timing, stalls, set);
 }
 

@@ -97,7 +97,7 @@ class CoreBench {
 
   void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const std::string& kind,
            const Trace& trace, const MemoryTiming& timing, const CoreSet& cores) {
-    const std::shared_ptr<CoreUnit> core = make_rtl_core(Arith::kBehavioural, timing, {}, cores);
+    const std::shared_ptr<CoreUnit> core = make_rtl_core(timing, {}, cores);
     const auto count = static_cast<double>(trace([&] {
       return std::make_unique<CheckIntersector>(bvh,
                                                 std::make_unique<CoreIntersector>(bvh, image, core),

@@ -228,24 +228,24 @@ std::string description(const Variant& variant) {
 }  // namespace
 
 std::vector<SubjectKind> engine_subjects() {
-  return {cpu("cpu rays", "the cpu engine, ray by ray", false),
-          cpu("cpu cones", "the cpu engine, rays of one origin in cones", true),
-          unit<PipelineHitTester, ReferenceBurstUnit>("model",
-                                                      "the pipelined unit's reference model", 0.2),
-          unit<PipelineHitTester, RtlBurstUnit>("rtl", "the pipelined unit, simulated", 0.02, 1),
-          unit<SerialHitTester, ReferencePlaneUnit>("model serial",
-                                                    "the paper's unit's reference model", 0.1),
-          unit<SerialHitTester, RtlPlaneUnit>("rtl serial", "the paper's unit, simulated", 0.02),
-          core("model core", "the ray core's reference model", 0.2, false, true,
-               []() -> std::unique_ptr<CoreUnit> { return std::make_unique<ReferenceCore>(); }),
-          core("rtl core", "the ray core, simulated", 0.02, true, true,
-               [] { return make_rtl_core(Arith::kBehavioural); }),
-          core("model exact core", "the exact ray core's reference model", 0.2, false, false,
-               []() -> std::unique_ptr<CoreUnit> {
-                 return std::make_unique<ReferenceCore>(ReferenceCore::kStackDepth, true);
-               }),
-          core("rtl exact core", "the exact ray core, simulated", 0.02, true, false,
-               [] { return make_rtl_core(Arith::kBehavioural, {}, {}, {.exact = true}); })};
+  return {
+      cpu("cpu rays", "the cpu engine, ray by ray", false),
+      cpu("cpu cones", "the cpu engine, rays of one origin in cones", true),
+      unit<PipelineHitTester, ReferenceBurstUnit>("model", "the pipelined unit's reference model",
+                                                  0.2),
+      unit<PipelineHitTester, RtlBurstUnit>("rtl", "the pipelined unit, simulated", 0.02, 1),
+      unit<SerialHitTester, ReferencePlaneUnit>("model serial",
+                                                "the paper's unit's reference model", 0.1),
+      unit<SerialHitTester, RtlPlaneUnit>("rtl serial", "the paper's unit, simulated", 0.02),
+      core("model core", "the ray core's reference model", 0.2, false, true,
+           []() -> std::unique_ptr<CoreUnit> { return std::make_unique<ReferenceCore>(); }),
+      core("rtl core", "the ray core, simulated", 0.02, true, true, [] { return make_rtl_core(); }),
+      core("model exact core", "the exact ray core's reference model", 0.2, false, false,
+           []() -> std::unique_ptr<CoreUnit> {
+             return std::make_unique<ReferenceCore>(ReferenceCore::kStackDepth, true);
+           }),
+      core("rtl exact core", "the exact ray core, simulated", 0.02, true, false,
+           [] { return make_rtl_core({}, {}, {.exact = true}); })};
 }
 
 std::vector<SubjectKind> variant_subjects() {

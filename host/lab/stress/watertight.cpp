@@ -196,8 +196,7 @@ std::vector<Contestant> contestants() {
   all.push_back({"rtl exact core", true, false, kSome, [](const Bvh& bvh) {
                    return count_nearest(std::make_shared<CoreIntersector>(
                        bvh, std::make_shared<const MemoryImage>(bvh),
-                       std::shared_ptr<CoreUnit>(
-                           make_rtl_core(Arith::kBehavioural, {}, {}, {.exact = true}))));
+                       std::shared_ptr<CoreUnit>(make_rtl_core({}, {}, {.exact = true}))));
                  }});
   const std::pair<const char*, TriangleTest*> others[] = {{"Moeller-Trumbore", moeller_trumbore},
                                                           {"Woop 2013", woop}};

@@ -38,11 +38,6 @@ class RayCoreTest : public testing::Test {
     counters_ = unit.counters();
   }
 
-  std::unique_ptr<CoreUnit> core(Arith arith, const MemoryTiming& timing = {},
-                                 const CoreStalls& stalls = {}) {
-    return make_rtl_core(arith, timing, stalls);
-  }
-
   Bvh bvh_{test::scene_of(bodies())};
   std::shared_ptr<const MemoryImage> image_ = std::make_shared<MemoryImage>(bvh_);
   Random random_;
@@ -54,7 +49,7 @@ class EachRayCoreTest : public RayCoreTest, public testing::WithParamInterface<b
  protected:
   std::unique_ptr<CoreUnit> core(const MemoryTiming& timing = {}, const CoreStalls& stalls = {}) {
     if (GetParam()) return std::make_unique<CoreModel<Vray_core_shared>>(timing, stalls);
-    return RayCoreTest::core(Arith::kBehavioural, timing, stalls);
+    return make_rtl_core(timing, stalls);
   }
 };
 
@@ -63,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Arithmetic, EachRayCoreTest, testing::Values(false, tru
 
 TEST_F(RayCoreTest, NearestHitsAreTheCpuIntersectors) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 10'000);
-  check(rays, {}, core(Arith::kBehavioural));
+  check(rays, {}, make_rtl_core());
   EXPECT_GT(counters_.doubts, 50u);
   EXPECT_GT(counters_.near_ties, 50u);
   EXPECT_LT(counters_.lines, (counters_.nodes + counters_.triangles) / 8)
@@ -83,7 +78,7 @@ TEST_F(RayCoreTest, ANodeAndATriangleAreTakenInEachOfTheirTurns) {
 TEST_F(RayCoreTest, CoresShareAMemory) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 1'000);
   const auto clocks = [&](const MemoryTiming& timing, const CoreSet& set) {
-    check(rays, {}, make_rtl_core(Arith::kBehavioural, timing, {}, set));
+    check(rays, {}, make_rtl_core(timing, {}, set));
     EXPECT_GE(counters_.rays, rays.size());
     return static_cast<double>(counters_.clocks);
   };
@@ -149,9 +144,9 @@ TEST_F(RayCoreTest, ScenesFollowEachOther) {
 
 TEST_F(RayCoreTest, ArithmeticsGiveTheSame) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 500);
-  check(rays, {}, core(Arith::kBehavioural));
+  check(rays, {}, make_rtl_core({}, {}, {.exact = true}));
   const CoreCounters behavioural = counters_;
-  check(rays, {}, core(Arith::kStructural));
+  check(rays, {}, make_rtl_core({}, {}, {.exact = true, .arith = Arith::kStructural}));
   EXPECT_EQ(counters_.clocks, behavioural.clocks);
   EXPECT_EQ(counters_.triangles, behavioural.triangles);
 }
@@ -279,8 +274,7 @@ TEST_F(RayCoreTest, EventsAreCounted) {
     sent.push_back({.ray = ray, .tag = static_cast<std::uint32_t>(sent.size())});
   }
   CoreModel<Vray_core_small> small({.latency = 3, .not_taken = 128});
-  const std::unique_ptr<CoreUnit> large =
-      core(Arith::kBehavioural, {.latency = 3, .not_taken = 128});
+  const std::unique_ptr<CoreUnit> large = make_rtl_core({.latency = 3, .not_taken = 128});
   for (CoreUnit* unit : {static_cast<CoreUnit*>(&small), large.get()}) {
     std::vector<CoreResult> results;
     unit->trace(image_->lines(), sent, results);
@@ -313,7 +307,7 @@ TEST_F(RayCoreTest, EveryTestIsCounted) {
   const MemoryImage image(bvh);
   const CoreRay ray{.ray = {glm::vec3(3, 0, 0), glm::vec3(1, 0, 0)}, .no_cull = true};
   std::vector<CoreResult> results;
-  core(Arith::kBehavioural, {.latency = 1})->trace(image.lines(), {&ray, 1}, results);
+  make_rtl_core({.latency = 1})->trace(image.lines(), {&ray, 1}, results);
   EXPECT_EQ(results.back().tests, mesh.size());
 }
 
@@ -347,7 +341,7 @@ TEST_F(RayCoreTest, ANodeBelowItselfIsAnError) {
   ReferenceCore reference;
   CoreModel<Vray_core_small> small({.latency = 3});
   const auto expected = ends_of(reference, lines, rays);
-  const std::unique_ptr<CoreUnit> large = core(Arith::kBehavioural);
+  const std::unique_ptr<CoreUnit> large = make_rtl_core();
   for (CoreUnit* unit : {static_cast<CoreUnit*>(&small), large.get()}) {
     std::size_t cycles = 0;
     const std::uint64_t nodes = reference.counters().nodes;
@@ -367,7 +361,7 @@ TEST_F(RayCoreTest, LinesThatMemoryLacksAreErrors) {
   const std::span<const MemoryLine> lines = image_->lines();
   ReferenceCore reference;
   const auto whole = ends_of(reference, lines, rays);
-  const std::unique_ptr<CoreUnit> unit = core(Arith::kBehavioural);
+  const std::unique_ptr<CoreUnit> unit = make_rtl_core();
   for (const std::size_t part : {2, 3, 4}) {
     const auto some = lines.first(lines.size() * part / 5);
     const auto expected = ends_of(reference, some, rays);
@@ -421,7 +415,7 @@ TEST_F(RayCoreTest, DirectionsThatAreNotScaledAreErrors) {
   }
   ReferenceCore reference;
   const auto expected = ends_of(reference, image_->lines(), rays);
-  const auto ends = ends_of(*core(Arith::kBehavioural), image_->lines(), rays);
+  const auto ends = ends_of(*make_rtl_core(), image_->lines(), rays);
   for (const CoreRay& ray : rays) {
     const bool scaled = ray.tag % 7 == 0 || ray.tag % 7 == 6;
     ASSERT_EQ(ends.at(ray.tag).error,
@@ -471,7 +465,7 @@ TEST_F(RayCoreTest, TreesAreAsDeepAsTheImagesOrAnError) {
     ReferenceCore reference;
     const auto expected = ends_of(reference, lines, rays);
     CoreModel<Vray_core_small> small({.latency = 3});
-    const std::unique_ptr<CoreUnit> large = core(Arith::kBehavioural);
+    const std::unique_ptr<CoreUnit> large = make_rtl_core();
     for (CoreUnit* unit : {static_cast<CoreUnit*>(&small), large.get()}) {
       const auto ends = ends_of(*unit, lines, rays);
       for (const CoreRay& ray : rays) {
