@@ -71,7 +71,7 @@ def package(listed: list[Register]) -> str:
         if register.name != "counters":  # ray_core_pkg::event_e
             lines += [f"  localparam int unsigned {_camel(register.name, name)} = {bit};" for name, bit in register.bits.items()]
     lines += ["", f"  // Bits that can be written of words {PLAIN - 1} to 0, while nothing is traced",
-              f"  localparam logic [{32 * PLAIN - 1}:0] PlainBits = {{"]
+              f"  localparam logic [{PLAIN - 1}:0][31:0] PlainBits = {{"]
     for last in range(PLAIN - 1, 0, -4):
         lines.append("    128'h" + "_".join(f"{masks[word]:08x}" for word in range(last, last - 4, -1)) + ("," if last > 3 else ""))
     return "\n".join([*lines, "  };", "", "  // verilator lint_on UNUSEDPARAM", "", "endpackage"]) + "\n"

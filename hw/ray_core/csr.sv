@@ -100,7 +100,7 @@ module csr
   assign commands     = (write && write_word_q == WordCommand)
                       ? write_data_q[NumCommand-1:0] & mask[NumCommand-1:0] : '0;
   assign plain        = (write_word_q < 10'd32)
-                      && (PlainBits[32*write_word_q[4:0]+:32] != '0);
+                      && (PlainBits[write_word_q[4:0]] != '0);
   assign rebase       = (write_word_q == WordBase)
                       | (write_word_q == WordBaseHigh);
   assign refused      = ((camera_busy_i | core_busy_i)
@@ -116,10 +116,10 @@ module csr
 
   // ---- Plain registers
 
-  logic [32*32-1:0] words;  // by word number
+  logic [31:0][31:0] words;  // by word number
 
   for (genvar n = 0; n < 32; n++) begin : gen_word
-    localparam logic [31:0] Bits = PlainBits[32*n+:32];
+    localparam logic [31:0] Bits = PlainBits[n];
     if (Bits != '0) begin : gen_plain
       logic [31:0] word_q;
       always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -128,20 +128,20 @@ module csr
           word_q <= (write_data_q & mask & Bits) | (word_q & ~mask);
         end
       end
-      assign words[32*n+:32] = word_q;
+      assign words[n] = word_q;
     end else begin : gen_none
-      assign words[32*n+:32] = '0;
+      assign words[n] = '0;
     end
   end
 
-  assign base_o   = words[32*32'(WordBase)+:64];
-  assign lines_o  = words[32*32'(WordLines)+:AddressWidth];
-  assign corner_o = words[32*32'(WordCorner)+:32];
-  assign size_o   = words[32*32'(WordSize)+:32];
-  assign results_o = words[32*32'(WordResults)+:64];
-  assign length_o = words[32*32'(WordLength)+:32];
+  assign base_o    = words[5'(WordBase)+:2];
+  assign lines_o   = words[5'(WordLines)][AddressWidth-1:0];
+  assign corner_o  = words[5'(WordCorner)];
+  assign size_o    = words[5'(WordSize)];
+  assign results_o = words[5'(WordResults)+:2];
+  assign length_o  = words[5'(WordLength)];
   for (genvar v = 0; v < 4; v++) begin : gen_vector
-    assign camera_o[96*v+:96] = words[32*(32'(WordEye)+4*v)+:96];
+    assign camera_o[96*v+:96] = words[32'(WordEye)+4*v+:3];
   end
 
   // ---- Flags
@@ -185,7 +185,7 @@ module csr
 
   // ---- Counters
 
-  logic [NumCounters*CounterWidth-1:0] counters;
+  logic [NumCounters-1:0][CounterWidth-1:0] counters;
   logic [NumCounters-1:0] counted;
 
   assign counted = {events_i, core_busy_i};
@@ -195,7 +195,7 @@ module csr
       if (!rst_ni) count_q <= '0;
       else count_q <= clear ? '0 : count_q + CounterWidth'(counted[n]);
     end
-    assign counters[CounterWidth*n+:CounterWidth] = count_q;
+    assign counters[n] = count_q;
   end
 
   // ---- Reads: with a counter's low word its high one is held for the next read
@@ -215,11 +215,11 @@ module csr
   assign status[StatusWriting]    = writing_i;
 
   always_comb begin
-    value = (read_word < 10'd32) ? words[32*read_word[4:0]+:32] : '0;
+    value = (read_word < 10'd32) ? words[read_word[4:0]] : '0;
     high  = high_q;
     for (int unsigned n = 0; n < NumCounters; n++) begin
       if (read_word == WordCounters + 10'(2 * n)) begin
-        {high, value} = counters[CounterWidth*n+:CounterWidth];
+        {high, value} = counters[n];
       end
       if (read_word == WordCounters + 10'(2 * n + 1)) value = 32'(high_q);
     end

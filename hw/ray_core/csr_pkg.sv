@@ -55,7 +55,7 @@ package csr_pkg;
   localparam int unsigned NumCounters = 12;
 
   // Bits that can be written of words 31 to 0, while nothing is traced
-  localparam logic [1023:0] PlainBits = {
+  localparam logic [31:0][31:0] PlainBits = {
     128'h00000000_ffffffff_ffffffff_ffffffc0,
     128'h00000000_ffffffff_ffffffff_ffffffff,
     128'h00000000_ffffffff_ffffffff_ffffffff,

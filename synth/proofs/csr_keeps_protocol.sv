@@ -129,7 +129,7 @@ module csr_keeps_protocol (
     shown[32*32'(csr_pkg::WordDown)+:96]   = camera[288+:96];
   end
   assign word = words[32*number+:32];
-  assign bits = csr_pkg::PlainBits[32*number+:32];
+  assign bits = csr_pkg::PlainBits[number];
   always_comb assume (bits != '0);
 
   // ---- What it should be: a write is done in the clock before its answer comes
