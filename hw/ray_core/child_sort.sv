@@ -24,7 +24,7 @@ module child_sort
 
   localparam int unsigned SortLatency = 3;
   logic [Children*WordWidth-1:0] words, ordered, sorted;
-  logic [Children*KindWidth-1:0] kinds;
+  logic [Children-1:0][KindWidth-1:0] kinds;
   logic [AddressWidth-1:0] base;
   logic [8:0] last_field;  // of numbers that begin with the highest bit of 12 below 2**E
 
@@ -50,14 +50,14 @@ module child_sort
 
   // ---- The children's first lines follow each other
 
-  logic [Children*OffsetWidth-1:0] next_offsets, offsets;
+  logic [Children-1:0][OffsetWidth-1:0] next_offsets, offsets;
 
   always_comb begin : lines
     logic [OffsetWidth-1:0] next;
     logic [KindWidth-1:0] kind;
     next = '0;
     for (int unsigned i = 0; i < Children; i++) begin
-      next_offsets[OffsetWidth*i +: OffsetWidth] = next;
+      next_offsets[i] = next;
       kind = kinds_i[KindWidth*i +: KindWidth];
       next = next + ((kind == KindInner) ? OffsetWidth'(1)
                                                        : OffsetWidth'(kind[LeafWidth-1:0]));
@@ -89,7 +89,7 @@ module child_sort
     logic [EnterWidth-1:0] enter;
     logic is_inner, left_out, is_zero;
     assign {key, number} = sorted[WordWidth*n +: WordWidth];
-    assign kind     = kinds[KindWidth*number +: KindWidth];
+    assign kind     = kinds[number];
     assign is_inner = kind == KindInner;
     assign left_out = key[KeyWidth-1];
     assign inner[n] = ~left_out & is_inner;
@@ -108,7 +108,7 @@ module child_sort
     assign field    = last_field - 9'(zeros);
     assign enter    = is_zero ? '0 : field[8] ? '1 : {field[7:0], fraction[UnitsWidth-2:0]};
     assign entries[ChildWidth*n +: ChildWidth] = {
-        enter, offsets[OffsetWidth*number +: OffsetWidth],
+        enter, offsets[number],
         is_inner ? LeafWidth'(0) : kind[LeafWidth-1:0]};
     logic unused;  // what is less than an entry's unit
     assign unused = ^{key[UnitBits-UnitsWidth-1:0], fraction[UnitsWidth-1]};

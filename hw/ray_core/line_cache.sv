@@ -70,7 +70,7 @@ module line_cache
   end
 
   logic [Lines-1:0] valid_q, pending_q;  // the line is here, or on its way
-  logic [Sets*WayWidth-1:0] victims_q;  // of each set the way after the one that was used last
+  logic [Sets-1:0][WayWidth-1:0] victims_q;  // of each set the way after the one that was used last
 
   // ---- Ask
 
@@ -80,7 +80,7 @@ module line_cache
   logic [RayWidth-1:0] compare_ray_q, ray_q;
   logic [SetWidth-1:0] asked_set, compare_set_q, set;
   logic [TagWidth-1:0] asked_tag, compare_tag_q, changed_tag_q, tag;
-  logic [Ways*TagWidth-1:0] set_tags;  // the other bits of numbers, by way
+  logic [Ways-1:0][TagWidth-1:0] set_tags;  // the other bits of numbers, by way
   logic [WayWidth-1:0] changed_way_q, way, start_q, victim_way;
   logic [Ways-1:0] same, same_q, valid_ways_q, pending_ways_q, hits, follows;
   logic hit, follow, some_way;
@@ -110,7 +110,7 @@ module line_cache
       {demand_q, ray_q} <= {compare_demand_q, compare_ray_q};
       {tag, set}        <= {compare_tag_q, compare_set_q};
       same_q  <= same;
-      start_q <= victims_q[WayWidth*compare_set_q+:WayWidth];
+      start_q <= victims_q[compare_set_q];
     end
   end
 
@@ -145,7 +145,7 @@ module line_cache
     assign changes = is_changed & (way == WayWidth'(w));
     assign same[w] = changes ? same_as_tag
                    : (changed_q & changed_way_q == WayWidth'(w)) ? same_as_changed
-                   : set_tags[TagWidth*w +: TagWidth] == compare_tag_q;
+                   : set_tags[w] == compare_tag_q;
     assign valid_sets   = valid_q[Sets*w +: Sets];
     assign pending_sets = pending_q[Sets*w +: Sets];
     always_ff @(posedge clk_i) begin
@@ -188,7 +188,7 @@ module line_cache
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) victims_q <= '0;
-    else if (request_q && done) victims_q[WayWidth*set+:WayWidth] <= way + 1'b1;
+    else if (request_q && done) victims_q[set] <= way + 1'b1;
   end
 
   // ---- Targets: lists of requests that wait, one for each entry

@@ -29,7 +29,7 @@ module ray_errors
   output logic [2:0]          end_error_o
 );
 
-  logic [3*Rays-1:0] errors_q;
+  logic [Rays-1:0][2:0] errors_q;
   logic node_q, triangle_q, cycle_q;
   logic [RayWidth-1:0] node_ctx_q, triangle_ctx_q, cycle_ctx_q;
 
@@ -44,10 +44,10 @@ module ray_errors
   for (genvar r = 0; r < Rays; r++) begin : gen_ray
     logic [2:0] error_d;
 
-    assign failed_o[r] = errors_q[3*r+:3] != ErrorNone;
+    assign failed_o[r] = errors_q[r] != ErrorNone;
 
     always_comb begin
-      error_d = errors_q[3*r+:3];
+      error_d = errors_q[r];
       if (!failed_o[r]) begin
         if (cycle_q && cycle_ctx_q == RayWidth'(r)) error_d = ErrorCycle;
         if ((node_q && node_ctx_q == RayWidth'(r))
@@ -61,11 +61,11 @@ module ray_errors
       end
     end
     always_ff @(posedge clk_i or negedge rst_ni) begin
-      if (!rst_ni) errors_q[3*r+:3] <= ErrorNone;
-      else errors_q[3*r+:3] <= error_d;
+      if (!rst_ni) errors_q[r] <= ErrorNone;
+      else errors_q[r] <= error_d;
     end
   end
 
-  assign end_error_o = errors_q[3*end_ctx_i+:3];
+  assign end_error_o = errors_q[end_ctx_i];
 
 endmodule
