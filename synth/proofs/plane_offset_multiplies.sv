@@ -1,8 +1,8 @@
-// A plane of a node's grid is from +- q s / 256, the product cut off: rows and adder give what `*` does. Of steps of 8 bits; a
-// tree is that of 33, but for its width.
+// A plane of a node's grid is from +- q s / 256, the product cut off: rows and adder give what `*` does. Of steps of few
+// bits: the tree is that of 33, but for its width.
 module plane_offset_multiplies #(
-  localparam int unsigned Width = 8,
-  localparam int unsigned PlaneWidth = 11
+  parameter int unsigned Width = 8,
+  parameter int unsigned PlaneWidth = 11
 ) (
   input logic                  clk,
   input logic [7:0]            q,
