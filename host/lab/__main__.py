@@ -1,7 +1,7 @@
 """`python3 -m host.lab TARGET`: measures what `make TARGET` reports and writes build/reports/TARGET/report.md.
 
-A target is a module of host/lab/targets. `PARTS` gives the steps of each part, `values` the values that its template
-host/lab/report/TARGET.md.j2 needs besides the rows, `failures` the errors in the rows (exit status 1), and
+A target is a module of host/lab/targets. `PARTS` gives the steps of each part, `PAGE` the Jinja2 template of its report,
+`values` the values that the template needs besides the rows, `failures` the errors in the rows (exit status 1), and
 `own_folder` the folder of the report if a target has several.
 """
 
@@ -14,9 +14,8 @@ import subprocess
 import sys
 
 from host.lab import rows as kept, steps
-from host.lab.machine import processors
 from host.lab.report import document
-from host.lab.rows import KEPT, ROOT
+from host.lab.rows import KEPT, ROOT, processors
 
 REPORTS = ROOT / "build" / "reports"
 PUBLISHED = ROOT / "host" / "lab" / "results"
@@ -31,25 +30,14 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--only", default="", metavar="PART,PART", help="some of the target's parts")
     parser.add_argument("--quick", action="store_true", help="small pictures, few repeats")
     parser.add_argument("--scenes", default="", metavar="'NAME NAME'", help="peers: some of the scenes; variant: one")
-    parser.add_argument("--render", default=ROOT / "render", metavar="PROGRAM",
-                        type=lambda name: pathlib.Path(name).resolve(), help="peers: measure another ./render")
     parser.add_argument("--tests", type=int, help="stress: tests in each suite")
     parser.add_argument("--seed", type=int, default=1, help="stress (1)")
     parser.add_argument("--jobs", type=int, default=processors(), help="stress: suites at once (all processors)")
     parser.add_argument("--variant", nargs="*", default=[], metavar="FRAC_WIDTH=15", help="variant: what is not as in binary32")
-    parser.add_argument("--wires", action="store_true", help="variant: place the units, and estimate their wires")
+    parser.add_argument("--command", default="", help="the command of make, for the report")
     parser.add_argument("--report-only", action="store_true", help="write the report of the last rows again")
     parser.add_argument("--publish", action="store_true", help="write the report into host/lab/results too")
     return parser.parse_args()
-
-
-def make_command(given: argparse.Namespace) -> str:
-    """Returns the make command that reproduces the rows."""
-    words = {"QUICK": int(given.quick), "ONLY": given.only, "SCENE" if given.target == "variant" else "SCENES": given.scenes, "TESTS": given.tests,
-             "SEED": given.seed if given.seed != 1 else 0, "RENDER": given.render if given.render != ROOT / "render" else "",
-             "WIRES": int(given.wires)}
-    target = "bench ONLY=core" if given.target == "core" else given.target
-    return " ".join(["make", target, *given.variant, *(f"{key}={shlex.quote(str(word))}" for key, word in words.items() if word)])
 
 
 def publish(name: str, folder: pathlib.Path, text: str) -> None:
@@ -70,24 +58,23 @@ def run(given: argparse.Namespace) -> int:
     unknown = set(parts) - set(target.PARTS)
     if unknown:
         raise ValueError(f"{', '.join(sorted(unknown))}: expected parts of {', '.join(target.PARTS)}")
-    if given.publish and (given.only or given.quick or given.scenes):
-        raise ValueError("--publish: expected a whole run, without --only, --quick and --scenes")
+    if given.publish and (given.only or given.quick or given.scenes or given.tests):
+        raise ValueError("--publish: expected a whole run, without --only, --quick, --scenes and --tests")
     file = KEPT / f"{'-'.join([given.target, *(parts if given.only else [])])}.jsonl"
     if not given.report_only:
         found = steps.run(given.target, [step for part in parts for step in target.PARTS[part](given)],
-                          make_command(given), given.jobs if given.target == "stress" else 1)
-        found[0] |= {"quick": given.quick, "command": make_command(given)}
+                          given.command, given.jobs if given.target == "stress" else 1)
+        found[0] |= {"quick": given.quick, "command": given.command}
         kept.write(file, target.finish(found) if hasattr(target, "finish") else found)
     rows = kept.read(file)
     folder = REPORTS / given.target / (target.own_folder(rows) if hasattr(target, "own_folder") else "")
     folder.mkdir(parents=True, exist_ok=True)
     values = target.values(rows, folder)
-    text = document.render(f"{given.target}.md.j2", folder, rows, **values) + document.measured(rows[0])
+    text = document.render(target.PAGE, folder, rows, **values) + document.measured(rows[0])
     (folder / "report.md").write_text(text)
     if given.publish:
         publish(given.target, folder, text)
-    if given.target not in ("bench", "stress"):  # their tables are summarised
-        print(text)
+    print(text)
     print(f"Report: {folder.relative_to(ROOT)}/report.md; rows: {file.relative_to(ROOT)}")
     wrong = target.failures(rows) if hasattr(target, "failures") else []
     print("".join(f"error: {line}\n" for line in wrong), end="", file=sys.stderr)

@@ -2,20 +2,17 @@
 # run continues when it is started again.
 .PHONY: stress bench variant card peers speed
 
+# The command of a report: as it was typed, but for what changes no row.
+typed = make $(MAKECMDGOALS:card=variant) $(foreach name,$(filter-out PUBLISH JOBS SETUP,$(given)),$(name)=$($(name)))
 define measure
 @$(PYTHON) -B -m host.lab $(or $(lab_target),$(@:card=variant) $(if $(ONLY),--only '$(ONLY)')) $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
-  $(if $(SCENES),--scenes '$(SCENES)') $(if $(RENDER),--render '$(RENDER)') \
-  $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS)
+  $(if $(SCENES),--scenes '$(SCENES)') $(if $(TESTS),--tests $(TESTS)) $(if $(SEED),--seed $(SEED)) --jobs $(JOBS) \
+  --command '$(subst ','\'',$(typed))'
 endef
 
 stress: ## measure: try to make hit tests wrong: make stress [QUICK=1 ONLY=core TESTS=10000000 SEED=1]
-ifdef QUICK
-	$(call build,build,lab >/dev/null)
-	@build/lab stress --tests 100000 --threads $(JOBS) --seed $(or $(SEED),1)
-else
 	$(call build,lab,lab)
 	$(measure)
-endif
 
 bench: lab_target = $(filter core,$(ONLY))
 bench: ## measure: run time against error, by arithmetic, engine, lanes: make bench [QUICK=1 ONLY=lanes | ONLY=core: clocks of the simulated ray core]
@@ -26,7 +23,7 @@ bench: ## measure: run time against error, by arithmetic, engine, lanes: make be
 variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),'$(word)=$(subst ','\'',$($(word)))'))
 # With this name, `make -n` does not run it and wait for the lock.
 again := $(MAKE)
-variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial WIRES=1]
+variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial]
 ifneq ($(filter %.sv' %.v',$(variant_words)),)
 	@$(SETUP) lint
 	@$(PYTHON) -B -m synth.brought $(variant_words)
@@ -34,7 +31,6 @@ ifneq ($(filter %.sv' %.v',$(variant_words)),)
 endif
 	@echo 'One card: proofs of files of yours, models, tests and pictures by both, synthesis. The first takes 8 to 10 minutes on two processors, others 3 to 5.' >&2
 	@$(SETUP) bench
-	@$(if $(WIRES),$(SETUP) layout)
 	@$(call alone,build/variant.lock,another make variant) $(again) --no-print-directory card
 
 # The other steps of `make variant`, one run at a time: write its table of variants, build build/lab-variant, print the card.
@@ -44,7 +40,7 @@ card: export RAYGATE_LAB = lab-variant
 card:
 	@$(PYTHON) -B -m host.lab.targets.variant $(if $(KEEP_GOING),--keep-going) $(variant_words)
 	$(call build,bench,lab)
-	$(measure) $(if $(WIRES),--wires) --variant $(variant_words)
+	$(measure) --variant $(variant_words)
 
 peers: ## measure: pictures next to Mitsuba 3, error against time: make peers [QUICK=1 SCENES=cornell]
 	$(call build,peers,render scenes)

@@ -2,26 +2,25 @@
 #include <CLI/CLI.hpp>
 
 #include "host/app/process.h"
-#include "host/lab/commands.h"
+#include "host/lab/lab.h"
 
 namespace {
 
 int run(int argc, char** argv) {
   using namespace raygate;
-  CLI::App app("Measures raygate: how wrong, how fast, at what cost. make targets call it.", "lab");
-  std::filesystem::path file;
-  app.add_option("--results", file, "keep all that is found in this file: a JSON object a line");
+  CLI::App app(
+      "Measures raygate: how wrong, how fast, at what cost. Prints JSON objects, one a line, of "
+      "which `python3 -m host.lab` makes tables.",
+      "lab");
   app.require_subcommand(1);
-  lab::Outcome outcome;
   for (lab::AddCommand* const add :
        {lab::add_stress, lab::add_watertight, lab::add_rays, lab::add_core, lab::add_variants,
         lab::add_check, lab::add_pictures}) {
-    add(app, outcome);
+    add(app);
   }
   try {
     app.parse(argc, argv);
-    if (!file.empty()) outcome.results.write(file);
-    return outcome.status;
+    return 0;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }

@@ -12,7 +12,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 
-from host.lab import machine, rows as kept
+from host.lab import rows as kept
 from host.lab.rows import KEPT, ROOT
 from synth import runner, store
 
@@ -32,21 +32,16 @@ class Step:
         return shlex.join([f"build/{LAB.name}", *map(str, self.words)]) if self.words else f"make {target} ONLY={self.part}"
 
 
-def _measure(step: Step) -> list[dict]:
-    if step.measure:
-        return step.measure()
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "rows.jsonl"
-        done = subprocess.run([LAB, "--results", file, *map(str, step.words)], cwd=ROOT, stdout=sys.stderr, check=False)
-        if done.returncode not in (0, 1):  # 1: the rows report errors
-            raise subprocess.CalledProcessError(done.returncode, [LAB, *step.words])
-        return kept.read(file)
+def run_lab(*words: object) -> list[dict]:
+    """Returns the rows that a command of build/lab prints."""
+    done = subprocess.run([LAB, *map(str, words)], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
+    return [json.loads(line) for line in done.stdout.splitlines()]
 
 
 def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> list[dict]:
     """Returns the rows of all steps. Reuses steps of an interrupted run of the same make command `asked` at the same
     commit."""
-    about = machine.describe(ROOT)
+    about = kept.describe()
     stamp = {"commit": about["commit"], "machine": f"{about['processor']}, {about['processors']} processors"}
     folder = KEPT / "unfinished" / target
 
@@ -55,7 +50,7 @@ def run(target: str, steps: list[Step], asked: str = "", at_once: int = 1) -> li
 
         def measure() -> dict:
             print(f"{step.part}: {step.name}", file=sys.stderr)
-            return {"rows": _measure(step)}
+            return {"rows": step.measure() if step.measure else run_lab(*step.words)}
 
         return store.cached(folder / wanted[:16], wanted, measure)
 

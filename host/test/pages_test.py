@@ -61,7 +61,7 @@ class Pages(unittest.TestCase):
             self.assertIn(target, targets, f"{page.relative_to(ROOT)}: make {target}")
 
     def test_each_target_knows_its_words(self) -> None:
-        for words, said in (("variant FRACWIDTH=15", "FRACWIDTH: `make variant` does not read it"), ("variant FRAC_WIDTH=15 WIRES=1 ONLY=proofs", ""),
+        for words, said in (("variant FRACWIDTH=15", "FRACWIDTH: `make variant` does not read it"), ("variant FRAC_WIDTH=15 ONLY=proofs", ""),
                             ("lecture PIXEL=1,2 ARGS=--a=1", ""), ("cpu CXX=clang++", ""), ("lecture A=1365 B=2731 X=1.5 Y=-0.3", ""),
                             ("lecture Z=1", "Z: `make lecture` does not read it"), ("page TOP=adder", "TOP: `make page` does not read it"),
                             ("synth TOP=adder PARAMS=Width=0", "PARAMS: expected VERILOG=1, too"),

@@ -1,17 +1,17 @@
-"""Writes a scene in two formats into one folder: OBJ, MTL and JSON for raygate; PLY and `mitsuba.json` for Mitsuba.
+"""Reads a scene (JSON, OBJ, MTL) and writes it for Mitsuba: PLY files and `mitsuba.json`.
 
-`mitsuba.json` is the dictionary for mitsuba.load_dict, except for values that JSON cannot represent, which
-`mitsuba_worker` fills in: a camera transform ("look_at") and a texture times a colour ("times").
+Materials are those that both renderers have: matte, perfect mirrors, and clear refractive glass. Others, and textures,
+raise ValueError. `mitsuba.json` is the dictionary for mitsuba.load_dict, except for camera transforms ("look_at"),
+which JSON cannot represent and `mitsuba_worker` fills in.
 """
 
+import dataclasses
 import json
 import pathlib
-import shutil
 
 import numpy
 
-from host.lab.peers.scene import Material, Mesh, Scene, colour
-
+Colour = tuple[float, float, float]
 # Mitsuba's samplers; the first is its default.
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
 # Russian roulette begins after this number of surfaces; DEPTH limits paths. Both are those of raygate.
@@ -19,39 +19,131 @@ SURE_SURFACES = 3
 DEPTH = 64
 
 
+@dataclasses.dataclass
+class Material:
+    """The MTL statements that are used."""
+
+    name: str
+    diffuse: Colour = (0.8, 0.8, 0.8)
+    mirror: Colour = (0.0, 0.0, 0.0)
+    emission: Colour = (0.0, 0.0, 0.0)
+    transmittance: Colour = (1.0, 1.0, 1.0)  # of glass
+    index: float | None = None  # of glass
+
+
+@dataclasses.dataclass
+class Mesh:
+    """All triangles of one material (and of one object, if they emit light)."""
+
+    material: Material
+    positions: numpy.ndarray  # n x 3
+    normals: numpy.ndarray | None  # n x 3; None: flat
+    faces: numpy.ndarray  # m x 3
+
+
+@dataclasses.dataclass
+class Scene:
+    """A scene in the file's coordinates."""
+
+    camera: dict  # eye, target, up, fov (vertical, in degrees)
+    meshes: list[Mesh]
+    point_lights: list[dict]  # position, intensity
+    area_lights: list[dict]  # corner, edges, radiance
+    background: Colour
+
+
+def colour(value: object) -> Colour:
+    """Returns a colour; one number stands for three."""
+    values = [float(word) for word in (value if isinstance(value, list) else [value])]
+    return tuple(values * 3 if len(values) == 1 else values)
+
+
+def read_materials(file: pathlib.Path) -> dict[str, Material]:
+    """Returns the materials of an MTL file, by name."""
+    statements: dict[str, dict[str, list[str]]] = {}
+    for line in file.read_text().splitlines():
+        word, *rest = line.split("#")[0].split() or [""]
+        if word == "newmtl":
+            mine = statements.setdefault(" ".join(rest), {})
+        elif word:
+            mine[word] = rest
+    return {name: material(name, found) for name, found in statements.items()}
+
+
+def material(name: str, found: dict[str, list[str]]) -> Material:
+    """Returns one material from its statements."""
+    made = Material(name, colour(found.get("Kd", ["0.8"])), emission=colour(found.get("Ke", ["0"])))
+    model = int(found.get("illum", ["2"])[0])
+    opacity = float(found.get("d", ["1"])[0])
+    specular = colour(found.get("Ks", ["0"]))
+    if model == 7 and max(made.diffuse) == 0.0:
+        made.index = float(found.get("Ni", ["1"])[0])
+        clear = 1.0 if opacity == 1.0 else 1.0 - opacity
+        made.transmittance = tuple(clear * channel for channel in colour(found.get("Tf", ["1"])))
+    elif model == 3 and opacity == 1.0 and 0.0 in (max(specular), max(made.diffuse)):
+        made.mirror = specular
+    elif model not in (1, 2) or opacity != 1.0 or (model == 2 and max(specular) > 0.0) or "map_Kd" in found:
+        raise ValueError(f"{name}: illum {model} with d {opacity:g}: Mitsuba has no such material")
+    return made
+
+
+def read_meshes(file: pathlib.Path, materials: dict[str, Material]) -> list[Mesh]:
+    """Returns the meshes of an OBJ file, with convex polygons cut into fans."""
+    vertices = {"v": [], "vn": []}
+    corners: dict[tuple[str, str], list] = {}
+    group = made_of = ""
+
+    def index(word: str, kind: str) -> int:
+        number = int(word) if word else 0
+        return number - 1 if number >= 0 else len(vertices[kind]) + number
+
+    for line in file.read_text().splitlines():
+        word, *rest = line.split() or [""]
+        if word in vertices:
+            vertices[word].append([float(number) for number in rest[:3]])
+        elif word in ("o", "g"):
+            group = " ".join(rest)
+        elif word == "usemtl":
+            made_of = " ".join(rest)
+        elif word == "f":
+            fan = []
+            for corner in rest:
+                v, _, vn = (corner.split("/") + ["", ""])[:3]
+                fan.append((index(v, "v"), index(vn, "vn")))
+            shines = max(materials[made_of].emission) > 0.0
+            mine = corners.setdefault((made_of, group if shines else "", fan[0][1] >= 0), [])
+            for second, third in zip(fan[1:], fan[2:]):
+                mine += [fan[0], second, third]
+    arrays = {kind: numpy.array(values, dtype=float) for kind, values in vertices.items()}
+    meshes = []
+    for (name, _, smooth), indices in corners.items():
+        unique, faces = numpy.unique(numpy.array(indices), axis=0, return_inverse=True)
+        meshes.append(Mesh(materials[name], arrays["v"][unique[:, 0]],
+                           arrays["vn"][unique[:, 1]] if smooth else None, faces.reshape(-1, 3)))
+    return meshes
+
+
+def read(file: pathlib.Path) -> Scene:
+    """Returns the scene of a JSON file."""
+    given = json.loads(file.read_text())
+    obj = (file.parent / given.get("obj", file.with_suffix(".obj").name)).resolve()
+    with obj.open() as lines:
+        mtl = obj.parent / next(line.split()[1] for line in lines if line.startswith("mtllib"))
+    camera = {"up": [0, 1, 0], "fov": 35} | {key: value for key, value in given["camera"].items() if key != "path"}
+    return Scene(camera, read_meshes(obj, read_materials(mtl)), given.get("point_lights", []),
+                 given.get("area_lights", []), colour(given.get("background", 0.0)))
+
+
 def rgb(values: object) -> dict:
     """Returns a colour in Mitsuba's format."""
     return {"type": "rgb", "value": [float(value) for value in values]}
 
 
-def write_raygate(scene: Scene, folder: pathlib.Path) -> None:
-    """Writes scene.json, with the OBJ file and an MTL file of the properties that both renderers support."""
-    shutil.copyfile(scene.obj, folder / scene.obj.name)
-    lines = []
-    for material in {mesh.material.name: mesh.material for mesh in scene.meshes}.values():
-        lines += [f"newmtl {material.name}"]
-        for statement, values in (("Kd", material.diffuse), ("Ks", material.mirror), ("Ke", material.emission),
-                                  ("Tf", material.transmittance)):
-            lines += [" ".join([statement, *(f"{value:.9g}" for value in values)])]
-        if material.texture:
-            shutil.copyfile(material.texture, folder / material.texture.name)
-            lines += ["map_Kd -s {:g} {:g} {}".format(*material.texture_scale, material.texture.name)]
-        lines += [f"Ni {material.index:g}", "Ns 1",
-                  f"illum {7 if material.is_glass else 3 if max(material.mirror) else 1}", ""]
-    (folder / scene.mtl.name).write_text("\n".join(lines))
-    (folder / "scene.json").write_text(json.dumps(
-        {"obj": scene.obj.name, "camera": scene.camera, "point_lights": scene.point_lights,
-         "area_lights": scene.area_lights, "background": list(scene.background)}, indent=1))
-
-
 def write_ply(mesh: Mesh, file: pathlib.Path) -> None:
-    """Writes a binary PLY file, with v of texture coordinates downwards, and scaled as in the texture lookup."""
+    """Writes a binary PLY file."""
     columns = [("x", mesh.positions[:, 0]), ("y", mesh.positions[:, 1]), ("z", mesh.positions[:, 2])]
     if mesh.normals is not None:
         columns += [(f"n{axis}", mesh.normals[:, i]) for i, axis in enumerate("xyz")]
-    if mesh.texcoords is not None:
-        u, v = (mesh.texcoords[:, i] * mesh.material.texture_scale[i] for i in range(2))
-        columns += [("u", u), ("v", 1.0 - v)]
     head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(mesh.positions)}",
             *(f"property float {name}" for name, _ in columns), f"element face {len(mesh.faces)}",
             "property list uchar int vertex_indices", "end_header", ""]
@@ -65,14 +157,13 @@ def write_ply(mesh: Mesh, file: pathlib.Path) -> None:
 
 def bsdf(material: Material) -> dict:
     """Returns a Mitsuba material."""
-    if material.is_glass:
+    if material.index is not None:
         return {"type": "dielectric", "int_ior": material.index, "ext_ior": 1.0,
                 "specular_transmittance": rgb(material.transmittance)}
     if max(material.mirror) > 0.0:
         inside = {"type": "conductor", "material": "none", "specular_reflectance": rgb(material.mirror)}
     else:
-        inside = {"type": "diffuse", "reflectance": rgb(material.diffuse) if material.texture is None else
-                  {"type": "bitmap", "filename": material.texture.name, "times": list(material.diffuse)}}
+        inside = {"type": "diffuse", "reflectance": rgb(material.diffuse)}
     return {"type": "twosided", "inside": inside}
 
 
@@ -102,12 +193,12 @@ def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
     normal /= numpy.linalg.norm(normal)
     sides = light_sides(mesh.positions[mesh.faces[0]], normal, everything)
     apart = 1e-5 * float(numpy.ptp(everything, axis=0).max()) if len(sides) == 2 else 0.0
-    return [Mesh(mesh.material, mesh.positions + (apart if front else -apart) * normal, None, mesh.texcoords,
+    return [Mesh(mesh.material, mesh.positions + (apart if front else -apart) * normal, None,
                  mesh.faces if front else mesh.faces[:, ::-1]) for front in sides]
 
 
-def write_mitsuba(scene: Scene, folder: pathlib.Path) -> None:
-    """Writes mitsuba.json, a PLY file for each mesh, and a camera for each sampler."""
+def write_mitsuba(scene: Scene, side: int, folder: pathlib.Path) -> None:
+    """Writes mitsuba.json, a PLY file for each mesh, and a camera of side x side pixels for each sampler."""
     everything = numpy.concatenate([mesh.positions for mesh in scene.meshes])
     found: dict = {"type": "scene", "integrator": {"type": "path", "rr_depth": SURE_SURFACES + 1, "max_depth": DEPTH + 2}}
     for sampler in SAMPLERS:
@@ -115,14 +206,14 @@ def write_mitsuba(scene: Scene, folder: pathlib.Path) -> None:
             "type": "perspective", "fov_axis": "y", "fov": scene.camera["fov"],
             "look_at": {"origin": scene.camera["eye"], "target": scene.camera["target"], "up": scene.camera["up"]},
             "film": {"type": "hdrfilm", "rfilter": {"type": "box"}, "pixel_format": "rgb",
-                     "component_format": "float32"},
+                     "component_format": "float32", "width": side, "height": side},
             "sampler": {"type": sampler}}
     meshes = list(scene.meshes)
     for number, light in enumerate(scene.area_lights):
         corner, (along, across) = numpy.array(light["corner"], float), numpy.array(light["edges"], float)
         light = Material(f"light {number}", diffuse=(0.0, 0.0, 0.0), emission=colour(light["radiance"]))
         meshes.append(Mesh(light, numpy.array([corner, corner + along, corner + along + across, corner + across]),
-                           None, None, numpy.array([[0, 1, 2], [0, 2, 3]])))
+                           None, numpy.array([[0, 1, 2], [0, 2, 3]])))
     for mesh in meshes:
         shines = max(mesh.material.emission) > 0.0
         for part in light_meshes(mesh, everything) if shines else [mesh]:
@@ -138,10 +229,3 @@ def write_mitsuba(scene: Scene, folder: pathlib.Path) -> None:
     if max(scene.background) > 0.0:
         found["background"] = {"type": "constant", "radiance": rgb(scene.background)}
     (folder / "mitsuba.json").write_text(json.dumps(found, indent=1))
-
-
-def write(scene: Scene, folder: pathlib.Path) -> None:
-    """Writes both formats."""
-    folder.mkdir(parents=True, exist_ok=True)
-    write_raygate(scene, folder)
-    write_mitsuba(scene, folder)

@@ -1,23 +1,25 @@
-"""Renders, times and compares images, and returns rows for the report."""
+"""Renders, times and compares images of both renderers, and returns rows for the report."""
 
+import json
 import pathlib
 import statistics
+import subprocess
 import sys
+import tempfile
 
 import numpy
 
-from host.lab.peers import convert, scene as scenes
-from host.lab.machine import processors
-from host.lab.rows import ROOT
+from host.lab.peers import convert
+from host.lab.rows import ROOT, processors
+from host.lab.steps import render
 
-# Width of each scene's image, which is square.
-SCENES = {"cornell": 128, "cornell_spheres": 128, "paper_room": 128, "still_life": 128, "columns": 128,
-          "teapot": 128, "sphereflake": 128, "landscape": 128, "lanterns": 128}
-VARIANTS = ("scalar_rgb", "llvm_ad_rgb")
+# Scenes of materials that both renderers have.
+SCENES = ("cornell", "cornell_spheres", "columns", "landscape", "lanterns")
+SIDE = 128  # pixels
+VARIANT = "llvm_ad_rgb"  # the fastest for every scene
 # The best of Mitsuba's samplers, which are also timed with other numbers of samples.
 BEST = ("multijitter", "orthogonal")
 NO_LIGHT_PATHS = "--caustics off"  # Mitsuba's `path` has no light paths
-ERRORS = (16, 8, 4, 2)  # of --error, for adaptive sampling
 SEEDS = 10  # per image
 COUNT = 32  # samples per pixel in the tables, or the next number that a sampler supports
 REFERENCE_SEED = 1000
@@ -27,6 +29,75 @@ def scene_file(name: str) -> pathlib.Path:
     """Returns a scene file from this folder or from the gallery."""
     mine = pathlib.Path(__file__).parent / "scenes" / f"{name}.json"
     return mine if mine.exists() else ROOT / "scenes" / f"{name}.json"
+
+
+def light_of(picture: pathlib.Path) -> numpy.ndarray:
+    """Returns red, green and blue of an EXR file."""
+    import mitsuba  # not needed by the tests
+
+    mitsuba.set_variant("scalar_rgb")
+    bitmap = mitsuba.Bitmap(str(picture))
+    names = [field.name for field in bitmap.struct_()]
+    return numpy.array(bitmap)[..., [names.index(channel) for channel in "RGB"]]
+
+
+class Raygate:
+    """The program ./render with the cpu engine."""
+
+    name = "raygate"
+
+    def __init__(self, scene: pathlib.Path, side: int, threads: int) -> None:
+        self._command = [ROOT / "render", scene, "--integrator", "path", "--filter", "box", "--depth", str(convert.DEPTH),
+                         "--size", f"{side}x{side}", "--threads", str(threads)]
+
+    def render(self, sampler: str, samples: int, seed: int) -> tuple[dict, numpy.ndarray]:
+        """Returns the timing and the image. `sampler` may hold options of ./render, which has only one sampler."""
+        options = sampler.split() if sampler.startswith("--") else []
+        with tempfile.TemporaryDirectory() as name:
+            picture = pathlib.Path(name) / "picture.exr"
+            found = render(self._command, *options, "--spp", str(samples), "--seed", str(seed), picture=picture)
+            pixels = light_of(picture)
+        seconds = found["seconds"]
+        return {"seconds": seconds["render"], "processor_seconds": seconds.get("processor", seconds["render"]),
+                "samples": samples}, pixels
+
+    def close(self) -> None:
+        """Does nothing, as no process is left running."""
+
+
+class Mitsuba:
+    """A worker process, which loads the scene once and warms up for each new kind of image."""
+
+    name = "Mitsuba"
+
+    def __init__(self, folder: pathlib.Path, threads: int) -> None:
+        self._warm: set[tuple] = set()
+        self._process = subprocess.Popen(
+            [sys.executable, "-B", "-m", "host.lab.peers.mitsuba_worker", folder, VARIANT, str(threads)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT)
+
+    def _ask(self, **asked: object) -> dict:
+        self._process.stdin.write(json.dumps(asked) + "\n")
+        self._process.stdin.flush()
+        answer = self._process.stdout.readline()
+        if not answer:
+            raise ValueError(f"{self.name} ended, expected a picture")
+        return json.loads(answer)
+
+    def render(self, sampler: str, samples: int, seed: int) -> tuple[dict, numpy.ndarray]:
+        """Returns the timing and the image."""
+        asked = {"sampler": sampler, "samples": samples}
+        if (sampler, samples) not in self._warm:  # each kind needs its own kernel
+            self._ask(**asked, seed=seed + 1)
+            self._warm.add((sampler, samples))
+        with tempfile.NamedTemporaryFile(suffix=".npy") as picture:
+            row = self._ask(**asked, seed=seed, picture=picture.name)
+            return row, numpy.load(picture.name)
+
+    def close(self) -> None:
+        """Ends the process."""
+        self._process.stdin.close()
+        self._process.wait()
 
 
 def mse(picture: numpy.ndarray, reference: numpy.ndarray) -> float:
@@ -50,65 +121,47 @@ def standard_error(values: list[float]) -> float:
     return statistics.stdev(values) / len(values) ** 0.5 if len(values) > 1 else 0.0
 
 
-def reference(renderer: object, sampler: str, samples: int, size: dict) -> tuple[numpy.ndarray, float]:
+def reference(renderer: object, sampler: str, samples: int) -> tuple[numpy.ndarray, float]:
     """Returns the mean of two long runs, and its remaining MSE, estimated from their difference."""
-    first, second = (renderer.render(sampler, samples, REFERENCE_SEED + i, **size)[1] for i in range(2))
+    first, second = (renderer.render(sampler, samples, REFERENCE_SEED + i)[1] for i in range(2))
     return (first.astype(float) + second) / 2.0, mse(first, second) / 4.0
 
 
 class Measurement:
     """The measurements of one scene."""
 
-    def __init__(self, name: str, quick: bool, program: pathlib.Path) -> None:
-        self.name, self.quick, self.program = name, quick, program
-        side = SCENES[name] // (2 if quick else 1)
-        self.size = {"width": side, "height": side}
+    def __init__(self, name: str, quick: bool) -> None:
+        self.name, self.quick = name, quick
+        self.side = SIDE // (2 if quick else 1)
         self.folder = ROOT / "build" / "peers" / name
-        found = scenes.read(scene_file(name))
-        convert.write(found, self.folder)
-        self.left_out = found.left_out
+        self.folder.mkdir(parents=True, exist_ok=True)
+        convert.write_mitsuba(convert.read(scene_file(name)), self.side, self.folder)
         self.references: dict[str, numpy.ndarray] = {}
-
-    def progress(self, text: str) -> None:
-        """Prints progress to standard error."""
-        print(f"{self.name}: {text}", file=sys.stderr)
 
     def references_row(self, samples: int) -> dict:
         """Returns a row that compares the references of both renderers."""
-        from host.lab.peers.renderers import Mitsuba, Raygate  # need Mitsuba, which the tests do not use
         found = {}
-        for renderer, sampler in ((Raygate(self.folder, processors(), self.program), ""),
-                                  (Mitsuba(self.folder, processors(), "llvm_ad_rgb"), "multijitter")):
-            self.progress(f"{2 * samples} samples by {renderer.name}")
-            found[renderer.name.split()[0]] = reference(renderer, sampler, samples, self.size)
+        for renderer, sampler in ((Raygate(scene_file(self.name), self.side, processors()), ""),
+                                  (Mitsuba(self.folder, processors()), "multijitter")):
+            found[renderer.name] = reference(renderer, sampler, samples)
             renderer.close()
         self.references = {name: picture for name, (picture, _) in found.items()}
         (ours, our_noise), (theirs, their_noise) = found.values()
-        self.write_side_by_side(ours, theirs)
-        return {"table": "references", "scene": self.name, "samples": 2 * samples, "left_out": self.left_out,
+        return {"table": "references", "scene": self.name, "samples": 2 * samples,
                 "mean_raygate": float(ours.mean()), "mean_mitsuba": float(theirs.mean()),
                 "rmse": mse(ours, theirs) ** 0.5, "noise": (our_noise + their_noise) ** 0.5}
 
-    def write_side_by_side(self, ours: numpy.ndarray, theirs: numpy.ndarray) -> None:
-        """Writes references.png: raygate, Mitsuba, and ten times their difference."""
-        import mitsuba
-        strip = numpy.concatenate([ours, theirs, 10.0 * abs(ours - theirs)], axis=1)
-        mitsuba.util.write_bitmap(str(self.folder / "references.png"), strip.astype(numpy.float32))
-
     def plan(self, threads: int) -> list[tuple[object, str, int]]:
         """Returns the renderer, sampler and samples per pixel of each measurement."""
-        from host.lab.peers.renderers import Mitsuba, Raygate
         one_thread = threads == 1
         counts = ([8, COUNT] if self.quick else [2, 8, COUNT]) if one_thread else [COUNT]
-        raygate = Raygate(self.folder, threads, self.program)
+        raygate = Raygate(scene_file(self.name), self.side, threads)
         found = [(raygate, "Owen-scrambled Sobol", count) for count in counts]
         if one_thread:
-            found += [(raygate, f"--error {error}", COUNT) for error in ERRORS] + [(raygate, NO_LIGHT_PATHS, COUNT)]
-        for variant in VARIANTS:
-            mitsuba = Mitsuba(self.folder, threads, variant)
-            found += [(mitsuba, sampler, count) for count in counts for sampler in convert.SAMPLERS
-                      if count == COUNT and one_thread or sampler in BEST]
-        return found
+            found += [(raygate, NO_LIGHT_PATHS, COUNT)]
+        mitsuba = Mitsuba(self.folder, threads)
+        return found + [(mitsuba, sampler, count) for count in counts for sampler in convert.SAMPLERS
+                        if count == COUNT and one_thread or sampler in BEST]
 
     def rows(self, threads: int, repeats: int) -> list[dict]:
         """Returns a row for each planned measurement. Repeats use other seeds and are interleaved."""
@@ -116,9 +169,8 @@ class Measurement:
         runs: list[list[dict]] = [[] for _ in plan]
         for seed in range(repeats):
             for (renderer, sampler, count), mine in zip(plan, runs, strict=True):
-                self.progress(f"{renderer.name} {sampler}, {count} samples, {threads} threads")
-                row, picture = renderer.render(sampler, count, seed, **self.size)
-                truth = self.references[renderer.name.split()[0]]
+                row, picture = renderer.render(sampler, count, seed)
+                truth = self.references[renderer.name]
                 mine.append(row | {"mse": mse(picture, truth), "display_rmse": display_rmse(picture, truth)})
         for renderer in {id(renderer): renderer for renderer, _, _ in plan}.values():
             renderer.close()
@@ -131,7 +183,7 @@ class Measurement:
         seconds = statistics.median(run[key] for run in runs)
         error = statistics.fmean(run["mse"] for run in runs)
         shown = statistics.fmean(run["display_rmse"] ** 2 for run in runs)
-        return {"table": "peers", "scene": self.name, **self.size, "threads": threads, "renderer": renderer,
+        return {"table": "peers", "scene": self.name, "pixels": self.side ** 2, "threads": threads, "renderer": renderer,
                 "sampler": sampler, "samples": runs[0]["samples"], "seconds": [run["seconds"] for run in runs],
                 "processor_seconds": [run["processor_seconds"] for run in runs], "median_seconds": seconds,
                 "mse": error, "mse_error": standard_error([run["mse"] for run in runs]), "display_rmse": shown ** 0.5,
@@ -139,8 +191,8 @@ class Measurement:
                 "time_mse": seconds * error}
 
 
-def measure(name: str, quick: bool, program: pathlib.Path, threads: set[int]) -> list[dict]:
+def measure(name: str, quick: bool, threads: set[int]) -> list[dict]:
     """Returns the rows of one scene."""
-    mine = Measurement(name, quick, program)
+    mine = Measurement(name, quick)
     return [mine.references_row(128 if quick else 512),
             *(row for count in sorted(threads) for row in mine.rows(count, 2 if quick else SEEDS))]

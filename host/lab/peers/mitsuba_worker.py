@@ -1,7 +1,7 @@
 """Renders with Mitsuba on request: `python3 -m host.lab.peers.mitsuba_worker FOLDER VARIANT THREADS`.
 
-Reads a line for each image from standard input, a JSON object of `sampler`, `samples`, `seed`, `width`, `height` and
-optionally `picture` (a file for its pixels, in numpy's format). Answers with one: the seconds of mitsuba.render alone,
+Reads a line for each image from standard input, a JSON object of `sampler`, `samples`, `seed` and optionally `picture`
+(a file for its pixels, in numpy's format). Answers with one: the seconds of mitsuba.render alone,
 its processor seconds, and the number of samples that the sampler used for `samples`.
 """
 
@@ -35,45 +35,22 @@ def realised(value: object, folder: pathlib.Path) -> object:
         made["to_world"] = mitsuba.ScalarTransform4f().look_at(**made.pop("look_at"))
     if made.get("type") == "ply":
         made["filename"] = str(folder / made["filename"])
-    if made.get("type") == "bitmap":
-        picture = mitsuba.Bitmap(str(folder / made.pop("filename"))).convert(
-            mitsuba.Bitmap.PixelFormat.RGB, mitsuba.Struct.Type.Float32, srgb_gamma=False)
-        made |= {"bitmap": mitsuba.Bitmap(numpy.array(picture) * numpy.float32(made.pop("times"))), "raw": True}
     return made
 
 
-class Worker:
-    """A loaded scene."""
-
-    def __init__(self, folder: pathlib.Path, threads: int) -> None:
-        drjit.set_thread_count(threads)
-        self._text = (folder / "mitsuba.json").read_text()
-        self._folder = folder
-        self._scenes: dict = {}
-
-    def _scene(self, width: int, height: int) -> object:
-        if (width, height) not in self._scenes:
-            asked = json.loads(self._text)
-            for part in asked.values():
-                if isinstance(part, dict) and "film" in part:
-                    part["film"] |= {"width": width, "height": height}
-            self._scenes = {(width, height): mitsuba.load_dict(realised(asked, self._folder))}
-        return self._scenes[width, height]
-
-    def render(self, sampler: str, samples: int, seed: int, width: int, height: int, picture: str = "") -> dict:
-        """Renders one image."""
-        scene = self._scene(width, height)
-        names = [sensor.id() for sensor in scene.sensors()]
-        sensor = scene.sensors()[names.index(f"camera_{sampler}")]
-        wall, busy = time.perf_counter(), time.process_time()
-        image = mitsuba.render(scene, sensor=sensor, spp=samples, seed=seed)
-        drjit.eval(image)
-        drjit.sync_thread()
-        answer = {"seconds": time.perf_counter() - wall, "processor_seconds": time.process_time() - busy,
-                  "samples": sensor.sampler().sample_count()}
-        if picture:
-            numpy.save(picture, numpy.array(image))
-        return answer
+def render(scene: object, sampler: str, samples: int, seed: int, picture: str = "") -> dict:
+    """Renders one image."""
+    names = [sensor.id() for sensor in scene.sensors()]
+    sensor = scene.sensors()[names.index(f"camera_{sampler}")]
+    wall, busy = time.perf_counter(), time.process_time()
+    image = mitsuba.render(scene, sensor=sensor, spp=samples, seed=seed)
+    drjit.eval(image)
+    drjit.sync_thread()
+    answer = {"seconds": time.perf_counter() - wall, "processor_seconds": time.process_time() - busy,
+              "samples": sensor.sampler().sample_count()}
+    if picture:
+        numpy.save(picture, numpy.array(image))
+    return answer
 
 
 def main() -> None:
@@ -82,9 +59,10 @@ def main() -> None:
     find_llvm()
     mitsuba.set_variant(variant)
     mitsuba.set_log_level(mitsuba.LogLevel.Error)
-    worker = Worker(folder, threads)
+    drjit.set_thread_count(threads)
+    scene = mitsuba.load_dict(realised(json.loads((folder / "mitsuba.json").read_text()), folder))
     for line in sys.stdin:
-        print(json.dumps(worker.render(**json.loads(line))), flush=True)
+        print(json.dumps(render(scene, **json.loads(line))), flush=True)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "host/exact/exact.h"
+#include "host/exact/test/meshes.h"
 #include "host/lab/rays/embree_peers.h"
 #include "host/lab/stress/subjects.h"
 
@@ -48,18 +49,38 @@ class Embree3Queries {
 
 /// Context of a query, which stores its hits.
 struct Collector {
-  RTCIntersectContext context;  // must be first: Embree returns a pointer to it
-  Answer* answers;              // answers of the ray, by triangle
-  const glm::vec3* direction;
+  RTCIntersectContext context{};  // must be first: Embree returns a pointer to it
+  std::uint32_t hits = 0;
+  Answer* answers = nullptr;  // answers of the ray, by triangle; null: hits are only counted
+  glm::vec3 direction{0.0f};
 };
 
 void collect(const RTCFilterFunctionNArguments* arguments) {
   auto* collector = reinterpret_cast<Collector*>(arguments->context);
+  ++collector->hits;
+  arguments->valid[0] = 0;  // continue the traversal
+  if (collector->answers == nullptr) return;
   Answer& answer = collector->answers[RTCHitN_primID(arguments->hit, arguments->N, 0)];
   answer.hit = true;
   answer.t = RTCRayN_tfar(arguments->ray, arguments->N, 0);
-  answer.point = answer.t * *collector->direction;
-  arguments->valid[0] = 0;  // continue the traversal
+  answer.point = answer.t * collector->direction;
+}
+
+/// Traces a ray: finds the nearest hit, or, with `collector`, all hits.
+RTCRayHit shoot(RTCScene scene, const Ray& ray, Collector* collector = nullptr) {
+  RTCRayHit query{};
+  query.ray.org_x = ray.origin.x, query.ray.org_y = ray.origin.y, query.ray.org_z = ray.origin.z;
+  query.ray.dir_x = ray.direction.x, query.ray.dir_y = ray.direction.y;
+  query.ray.dir_z = ray.direction.z;
+  query.ray.tfar = std::numeric_limits<float>::infinity();
+  query.ray.mask = ~0u;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  Collector none;
+  Collector& mine = collector != nullptr ? *collector : none;
+  rtcInitIntersectContext(&mine.context);
+  if (collector != nullptr) mine.context.filter = collect;
+  rtcIntersect1(scene, &mine.context, &query);
+  return query;
 }
 
 /// Returns whether a ray and the triangles are within Embree's range (FLT_LARGE in its sources).
@@ -71,30 +92,9 @@ bool accepts(const Shot& shot, const glm::vec3& direction) {
     return std::max({size.x, size.y, size.z}) < kLargest;
   };
   return is_usable(direction) && is_small(shot.origin) &&
-         std::ranges::all_of(shot.mesh->triangles, [&](const Corners& corners) {
+         std::ranges::all_of(*shot.mesh, [&](const Corners& corners) {
            return std::ranges::all_of(corners, is_small);
          });
-}
-
-/// Counts the hits of one ray in a filter function that rejects them.
-struct Counter {
-  RTCIntersectContext context;  // must be first: Embree returns a pointer to it
-  std::uint32_t hits;
-};
-
-void count_hit(const RTCFilterFunctionNArguments* arguments) {
-  ++reinterpret_cast<Counter*>(arguments->context)->hits;
-  arguments->valid[0] = 0;
-}
-
-RTCRayHit query_of(const glm::vec3& origin, const glm::vec3& direction) {
-  RTCRayHit query{};
-  query.ray.org_x = origin.x, query.ray.org_y = origin.y, query.ray.org_z = origin.z;
-  query.ray.dir_x = direction.x, query.ray.dir_y = direction.y, query.ray.dir_z = direction.z;
-  query.ray.tfar = std::numeric_limits<float>::infinity();
-  query.ray.mask = ~0u;
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  return query;
 }
 
 /// Collects every hit of a ray in a filter function that rejects it. Tests the traversal, too.
@@ -112,31 +112,24 @@ class EmbreeSubject : public Subject {
     for (const Shot& shot : shots) {
       if (shot.mesh != mesh_) {
         mesh_ = shot.mesh;
-        scene_ = embree_scene({}, device_, scene_of(*mesh_), flags_);
+        scene_ = embree_scene({}, device_, test::scene_of(*mesh_), flags_);
       }
       for (const glm::vec3& direction : shot.directions) {
         const bool is_accepted = accepts(shot, direction);
         answers.refused.push_back(!is_accepted);
-        if (is_accepted) shoot(shot.origin, direction, next);
-        next += shot.mesh->triangles.size();
+        Collector collector{.answers = next, .direction = direction};
+        if (is_accepted) (void)shoot(scene_.get(), {shot.origin, direction}, &collector);
+        next += shot.mesh->size();
       }
     }
     nearest_by_t(shots, answers);
   }
 
  private:
-  void shoot(const glm::vec3& origin, const glm::vec3& direction, Answer* answers) {
-    Collector collector{{}, answers, &direction};
-    rtcInitIntersectContext(&collector.context);
-    collector.context.filter = collect;
-    RTCRayHit query = query_of(origin, direction);
-    rtcIntersect1(scene_.get(), &collector.context, &query);
-  }
-
   RTCSceneFlags flags_;
   std::shared_ptr<RTCDeviceTy> device_ = embree_device({});
   std::shared_ptr<RTCSceneTy> scene_;
-  std::shared_ptr<const Mesh> mesh_;  // the mesh of the current scene
+  MeshPointer mesh_;  // the mesh of the current scene
 };
 
 SubjectKind kind(const char* name, const char* what, RTCSceneFlags flags) {
@@ -161,18 +154,10 @@ std::vector<std::pair<std::string, std::vector<std::uint32_t>>> embree_hit_count
     std::vector<std::uint32_t>& counts =
         found.emplace_back(name, std::vector<std::uint32_t>()).second;
     for (const Ray& ray : rays) {
-      Counter counter{{}, 0};
-      rtcInitIntersectContext(&counter.context);
-      RTCRayHit nearest = query_of(ray.origin, ray.direction);
-      rtcIntersect1(loaded.get(), &counter.context, &nearest);
-      if (nearest.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-        counts.push_back(0);
-        continue;
-      }
-      counter.context.filter = count_hit;
-      RTCRayHit query = query_of(ray.origin, ray.direction);
-      rtcIntersect1(loaded.get(), &counter.context, &query);
-      counts.push_back(std::max(counter.hits, 1u));
+      Collector collector;
+      const bool is_hit = shoot(loaded.get(), ray).hit.geomID != RTC_INVALID_GEOMETRY_ID;
+      if (is_hit) (void)shoot(loaded.get(), ray, &collector);
+      counts.push_back(is_hit ? std::max(collector.hits, 1u) : 0u);
     }
   }
   return found;

@@ -84,18 +84,9 @@ class Embree4Queries {
 std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene& scene, const std::string& file) {
   const Library library(file);
   EmbreeFunctions embree;
-  library.load(embree.new_device, "rtcNewDevice");
-  library.load(embree.release_device, "rtcReleaseDevice");
-  library.load(embree.new_scene, "rtcNewScene");
-  library.load(embree.release_scene, "rtcReleaseScene");
-  library.load(embree.set_scene_flags, "rtcSetSceneFlags");
-  library.load(embree.set_quality, "rtcSetSceneBuildQuality");
-  library.load(embree.commit_scene, "rtcCommitScene");
-  library.load(embree.new_geometry, "rtcNewGeometry");
-  library.load(embree.release_geometry, "rtcReleaseGeometry");
-  library.load(embree.set_new_buffer, "rtcSetNewGeometryBuffer");
-  library.load(embree.commit_geometry, "rtcCommitGeometry");
-  library.load(embree.attach_geometry, "rtcAttachGeometry");
+#define RAYGATE_LOAD(function) library.load(embree.function, #function);
+  RAYGATE_EMBREE_FUNCTIONS(RAYGATE_LOAD)
+#undef RAYGATE_LOAD
   return make_embree_peers("Embree 4", embree, Embree4Queries(library), scene);
 }
 

@@ -17,24 +17,23 @@
 
 namespace raygate::lab {
 
-/// Functions that build a scene, of Embree 3, which the lab is linked with, or of Embree 4.
+/// Calls X with each function that builds a scene.
+#define RAYGATE_EMBREE_FUNCTIONS(X)                                                        \
+  X(rtcNewDevice)                                                                          \
+  X(rtcReleaseDevice)                                                                      \
+  X(rtcNewScene) X(rtcReleaseScene) X(rtcSetSceneFlags) X(rtcSetSceneBuildQuality)         \
+      X(rtcCommitScene) X(rtcNewGeometry) X(rtcReleaseGeometry) X(rtcSetNewGeometryBuffer) \
+          X(rtcCommitGeometry) X(rtcAttachGeometry)
+
+/// These functions, of Embree 3, which the lab is linked with, or of Embree 4.
 struct EmbreeFunctions {
-  decltype(&rtcNewDevice) new_device = rtcNewDevice;
-  decltype(&rtcReleaseDevice) release_device = rtcReleaseDevice;
-  decltype(&rtcNewScene) new_scene = rtcNewScene;
-  decltype(&rtcReleaseScene) release_scene = rtcReleaseScene;
-  decltype(&rtcSetSceneFlags) set_scene_flags = rtcSetSceneFlags;
-  decltype(&rtcSetSceneBuildQuality) set_quality = rtcSetSceneBuildQuality;
-  decltype(&rtcCommitScene) commit_scene = rtcCommitScene;
-  decltype(&rtcNewGeometry) new_geometry = rtcNewGeometry;
-  decltype(&rtcReleaseGeometry) release_geometry = rtcReleaseGeometry;
-  decltype(&rtcSetNewGeometryBuffer) set_new_buffer = rtcSetNewGeometryBuffer;
-  decltype(&rtcCommitGeometry) commit_geometry = rtcCommitGeometry;
-  decltype(&rtcAttachGeometry) attach_geometry = rtcAttachGeometry;
+#define RAYGATE_MEMBER(function) decltype(&::function) function = ::function;
+  RAYGATE_EMBREE_FUNCTIONS(RAYGATE_MEMBER)
+#undef RAYGATE_MEMBER
 };
 
 inline std::shared_ptr<RTCDeviceTy> embree_device(const EmbreeFunctions& embree) {
-  return {embree.new_device("threads=1"), embree.release_device};
+  return {embree.rtcNewDevice("threads=1"), embree.rtcReleaseDevice};
 }
 
 /// Returns the committed scene, which keeps its device alive. Triangle i is primitive i.
@@ -42,25 +41,25 @@ inline std::shared_ptr<RTCSceneTy> embree_scene(const EmbreeFunctions& embree,
                                                 const std::shared_ptr<RTCDeviceTy>& device,
                                                 const Scene& scene, RTCSceneFlags flags) {
   std::shared_ptr<RTCSceneTy> loaded(
-      embree.new_scene(device.get()),
-      [device, release = embree.release_scene](RTCScene done) { release(done); });
-  embree.set_scene_flags(loaded.get(), flags);
-  embree.set_quality(loaded.get(), RTC_BUILD_QUALITY_HIGH);
-  const RTCGeometry geometry = embree.new_geometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+      embree.rtcNewScene(device.get()),
+      [device, release = embree.rtcReleaseScene](RTCScene done) { release(done); });
+  embree.rtcSetSceneFlags(loaded.get(), flags);
+  embree.rtcSetSceneBuildQuality(loaded.get(), RTC_BUILD_QUALITY_HIGH);
+  const RTCGeometry geometry = embree.rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* positions = static_cast<glm::vec3*>(
-      embree.set_new_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                            sizeof(glm::vec3), scene.positions.size()));
+      embree.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                     sizeof(glm::vec3), scene.positions.size()));
   std::ranges::copy(scene.positions, positions);
   auto* indices = static_cast<std::uint32_t*>(
-      embree.set_new_buffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                            3 * sizeof(std::uint32_t), scene.triangles.size()));
+      embree.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                     3 * sizeof(std::uint32_t), scene.triangles.size()));
   for (const Triangle& triangle : scene.triangles) {
     indices = std::ranges::copy(triangle.vertices, indices).out;
   }
-  embree.commit_geometry(geometry);
-  embree.attach_geometry(loaded.get(), geometry);
-  embree.release_geometry(geometry);
-  embree.commit_scene(loaded.get());
+  embree.rtcCommitGeometry(geometry);
+  embree.rtcAttachGeometry(loaded.get(), geometry);
+  embree.rtcReleaseGeometry(geometry);
+  embree.rtcCommitScene(loaded.get());
   return loaded;
 }
 
@@ -124,8 +123,7 @@ template <class Queries>
 class EmbreePeer : public Peer {
  public:
   EmbreePeer(std::string name, Queries queries, std::shared_ptr<RTCSceneTy> scene)
-      : queries_(queries), name_(std::move(name)), scene_(std::move(scene)) {}
-  [[nodiscard]] const std::string& name() const override { return name_; }
+      : Peer(std::move(name)), queries_(queries), scene_(std::move(scene)) {}
 
  protected:
   [[nodiscard]] RTCScene scene() const { return scene_.get(); }
@@ -134,7 +132,6 @@ class EmbreePeer : public Peer {
   bool any_hit_ = false;
 
  private:
-  std::string name_;
   std::shared_ptr<RTCSceneTy> scene_;
 };
 

@@ -6,13 +6,52 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 
-#include "host/lab/commands.h"
-#include "host/lab/timing.h"
+#include "host/base/vectors.h"
+#include "host/bvh/bvh.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/lab/lab.h"
 #include "host/scene/io/scene_loader.h"
 
 namespace raygate::lab {
 namespace {
+
+/// This project as a peer, used like in the renderer: the rays of a tile at a time, exact
+/// arithmetic for doubts of float32, and P for every nearest hit.
+class RaygatePeer : public Peer {
+ public:
+  explicit RaygatePeer(const Scene& scene) : Peer("raygate"), bvh_(scene) {}
+
+  void prepare(const RaySet& set) override { set_ = &set; }
+
+  void run(Found& found) override {
+    CpuIntersector intersector(bvh_);
+    const std::span<const Ray> rays(set_->rays);
+    std::vector<NearestHit> hits(intersector.traits().batch);
+    for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
+      const std::size_t count = std::min(hits.size(), rays.size() - first);
+      intersector.intersect(rays.subspan(first, count), set_->query(first, count),
+                            std::span(hits).first(count));
+      for (std::size_t i = 0; i < count; ++i) {
+        found.triangle[first + i] = triangle_of(hits[i]);
+        found.t[first + i] = static_cast<float>(hits[i].t.low);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t triangle_of(const NearestHit& hit) const {
+    // Branchless, as a branch on the ray's hit would be unpredictable.
+    const std::uint32_t found = hit.primitive != NearestHit::kNone ? 1 : 0;
+    static_assert(Found::kNone == ~std::uint32_t{0});
+    const std::uint32_t triangle = bvh_.triangle_of(hit.primitive & (0 - found));
+    return (set_->any_hit ? Found::kSome : triangle) | (found - 1);
+  }
+
+  Bvh bvh_;
+  const RaySet* set_ = nullptr;
+};
 
 struct RaysOptions {
   std::vector<std::string> scenes;
@@ -29,7 +68,7 @@ double agreement(const Found& a, const Found& b) {
 
 /// Times all peers on a set, in turns.
 void measure(const RaySet& set, const std::string& scene,
-             const std::vector<std::unique_ptr<Peer>>& peers, int repeats, Results& results) {
+             const std::vector<std::unique_ptr<Peer>>& peers, int repeats) {
   std::vector<Found> found(peers.size(), Found(set.rays.size()));
   std::vector<std::vector<double>> times(peers.size());
   for (const auto& peer : peers) peer->prepare(set);
@@ -40,21 +79,24 @@ void measure(const RaySet& set, const std::string& scene,
       times[i].push_back(seconds_of(CLOCK_THREAD_CPUTIME_ID) - start);
     }
   }
+  const double ours = quantile(times[0], 0.5);
   for (std::size_t i = 0; i < peers.size(); ++i) {
-    Row row = {{"table", "rays"},
-               {"scene", scene},
-               {"rays", set.name},
-               {"by", peers[i]->name()},
-               {"mrays_per_second", static_cast<double>(set.rays.size()) / median(times[i]) * 1e-6},
-               {"spread_percent", 100.0 * spread(times[i])},
-               {"raygate_over_peer", median(times[i]) / median(times[0])},
-               {"agreed_percent", 100.0 * agreement(found[0], found[i])}};
-    row.update(machine_kind());
-    results.add(std::move(row));
+    const double middle = quantile(times[i], 0.5);
+    print(
+        {{"table", "rays"},
+         {"scene", scene},
+         {"rays", set.name},
+         {"by", peers[i]->name},
+         {"mrays_per_second", static_cast<double>(set.rays.size()) / middle * 1e-6},
+         {"spread_percent", 100.0 * (quantile(times[i], 0.75) - quantile(times[i], 0.25)) / middle},
+         {"raygate_over_peer", middle / ours},
+         {"agreed_percent", 100.0 * agreement(found[0], found[i])},
+         {"machine_vectors", name_of(widest_vectors())},
+         {"engine_vectors", name_of(vectors_in_use())}});
   }
 }
 
-void run(const RaysOptions& options, Results& results) {
+void run(const RaysOptions& options) {
   for (const std::filesystem::path file : options.scenes) {
     const Scene scene = load_obj(file);
     std::vector<std::unique_ptr<Peer>> peers;
@@ -64,14 +106,18 @@ void run(const RaysOptions& options, Results& results) {
       std::ranges::move(make_embrees4(scene, options.embree4), std::back_inserter(peers));
     }
     for (const RaySet& set : ray_sets(scene, options.size - options.size % 128)) {
-      measure(set, file.stem().string(), peers, options.repeats, results);
+      measure(set, file.stem().string(), peers, options.repeats);
     }
   }
 }
 
 }  // namespace
 
-void add_rays(CLI::App& lab, Outcome& outcome) {
+std::unique_ptr<Peer> make_raygate(const Scene& scene) {
+  return std::make_unique<RaygatePeer>(scene);
+}
+
+void add_rays(CLI::App& lab) {
   auto* app = lab.add_subcommand("rays", "rays per second of the cpu engine and of Embree");
   const auto options = std::make_shared<RaysOptions>();
   app->add_option("scenes", options->scenes, "OBJ files")->required();
@@ -81,7 +127,7 @@ void add_rays(CLI::App& lab, Outcome& outcome) {
       ->check(CLI::Range(1, 1000));
   app->add_option("--embree4", options->embree4, "the shared library of Embree 4, to compare, too")
       ->check(CLI::ExistingFile);
-  app->callback([options, &outcome] { run(*options, outcome.results); });
+  app->callback([options] { run(*options); });
 }
 
 }  // namespace raygate::lab

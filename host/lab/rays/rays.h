@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/exact/exact.h"
@@ -53,12 +54,14 @@ struct Found {
 /// A ray tracer with a scene loaded.
 class Peer {
  public:
+  explicit Peer(std::string by) : name(std::move(by)) {}
   virtual ~Peer() = default;
-  [[nodiscard]] virtual const std::string& name() const = 0;
   /// Prepares for a set of rays; not timed.
   virtual void prepare(const RaySet& set) = 0;
   /// Traces the prepared set on one thread; timed.
   virtual void run(Found& found) = 0;
+
+  const std::string name;
 };
 
 /// Returns this project's `cpu` engine.

@@ -3,6 +3,7 @@
 import csv
 import pathlib
 import re
+import textwrap
 
 import jinja2
 
@@ -12,8 +13,7 @@ from synth import tables
 # A table column, "HEAD = EXPRESSION :FORMAT". The default expression is the row's value named by HEAD; without a
 # format, cells are text.
 COLUMN = re.compile(r"(?P<head>.*?)(?: = (?P<expression>.*?))?(?: :(?P<form>\S*))?$")
-ENVIRONMENT = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent),
-                                 undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+ENVIRONMENT = jinja2.Environment(undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 
 
 def number(value: object, form: str, dash: str = "-") -> str:
@@ -69,20 +69,32 @@ def rate(count: int, of_all: int) -> str:
     return "-" if not of_all else "0" if not count else f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
 
 
-ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": False}  # keeps the order of variants and figures
 ENVIRONMENT.globals |= {"table": table, "each": each, "rate": rate, "scene_name": scene_name}
 
 
+def wrap(page: str) -> str:
+    """Returns a Markdown page whose paragraphs and items have lines of at most 120 characters, without repeated empty
+    lines."""
+    def filled(paragraph: re.Match) -> str:
+        text = paragraph[0]
+        return textwrap.fill(" ".join(text.split()), 120, subsequent_indent="  " if text.startswith("* ") else "",
+                             break_long_words=False, break_on_hyphens=False)
+
+    # A paragraph or an item: lines that begin neither a table, a heading, an image, nor the next item.
+    page = re.sub(r"^(?:\* |[^|#!*\s]|\*\*).*(?:\n(?!\* |[|#!])[^\n]+)*", filled, page, flags=re.MULTILINE)
+    return re.sub(r"\n{3,}", "\n\n", page)
+
+
 def render(template: str, folder: pathlib.Path, rows: list[dict], **values: object) -> str:
-    """Returns the Markdown of host/lab/report/<template>, in which `of(table, ...)` returns rows."""
+    """Returns the Markdown of a template, in which `of(table, ...)` returns rows."""
     def figure(file: pathlib.Path, caption: str) -> str:
         return f"![{file.stem}]({file.relative_to(folder)})\n\n{caption}\n"
 
     def saved(name: str, rows: list[dict], *columns: str | list[str]) -> str:
         return save(folder / f"{name}.csv", rows, *columns)
 
-    return ENVIRONMENT.get_template(template).render(
-        values, figure=figure, saved=saved, of=lambda name, **wanted: of(rows, name, **wanted), machine=rows[0])
+    return wrap(ENVIRONMENT.from_string(template).render(
+        values, figure=figure, saved=saved, of=lambda name, **wanted: of(rows, name, **wanted), machine=rows[0]))
 
 
 def measured(about: dict) -> str:

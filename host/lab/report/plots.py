@@ -1,20 +1,12 @@
 """Images for reports: galleries, heat maps and plots."""
 
 import io
-import math
 import pathlib
 
 import numpy
 from PIL import Image
 
 from synth.drawing import plt
-
-# Label, colour and marker of a variant, by its unit and whether doubts are resolved.
-KINDS = {("pipeline", True): ("pipelined unit, doubts resolved", "#4477aa", "o"),
-         ("pipeline", False): ("pipelined unit, doubts ignored", "#ee6677", "x"),
-         ("serial", True): ("the paper's unit, software decides", "#228833", "s")}
-# On logarithmic axes, an error of 0 is drawn as the smallest other error divided by this.
-BELOW = 10.0
 
 
 def write_png(drawn: bytes, file: pathlib.Path) -> None:
@@ -67,51 +59,15 @@ def gallery(pictures: list[tuple[str, pathlib.Path]], file: pathlib.Path, column
     return save(figure, file)
 
 
-def front(points: list[tuple[float, float]]) -> list[int]:
-    """Returns the Pareto-optimal points: no other point is at most as large in both coordinates and smaller in one.
-
-    Returns indices, sorted by the first coordinate.
-    """
-    best, kept = math.inf, []
-    for i in sorted(range(len(points)), key=lambda i: points[i]):
-        if points[i][1] < best:
-            kept.append(i)
-            best = points[i][1]
-    return kept
-
-
-def pareto(frames: list[dict], costs: dict[str, str], error: str, label: str, title: str, file: pathlib.Path) -> pathlib.Path:
-    """Plots each cost (key of the frames: label) against the key `error` in a panel. A line connects the
-    Pareto-optimal variants, which are labelled."""
-    floor = min((frame[error] for frame in frames if frame[error] > 0), default=1.0) / BELOW
-    figure, grid = panels(len(costs), 2, (5.5, 4))
-    for axes, (cost, text) in zip(grid, costs.items(), strict=True):
-        known = [frame for frame in frames if frame.get(cost)]
-        drawn = [(frame[cost], max(frame[error], floor)) for frame in known]
-        best = front(drawn)
-        axes.step(*zip(*(drawn[i] for i in best), strict=True), where="post", color="0.6", linewidth=1, zorder=0)
-        for kind, (name, colour, marker) in KINDS.items():
-            mine = [point for frame, point in zip(known, drawn, strict=True) if (frame["unit"], frame["doubts"]) == kind]
-            if mine:
-                axes.scatter(*zip(*mine, strict=True), color=colour, marker=marker, s=25, label=name)
-        for i in best:
-            axes.annotate(known[i]["variant"], drawn[i], xytext=(4, 3), textcoords="offset points", fontsize=7)
-        axes.set(xscale="log", yscale="log", xlabel=text, ylabel=label)
-        axes.grid(True, alpha=0.3)
-        if any(frame[error] <= 0 for frame in known):
-            axes.axhline(floor, color="0.8", linewidth=0.8, zorder=0)
-            axes.text(0.01, floor, "no error", transform=axes.get_yaxis_transform(), fontsize=7, color="0.5", va="bottom")
-    figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
-    figure.suptitle(title)
-    return save(figure, file)
-
-
-def lines(series: dict[str, list[tuple[float, float]]], xlabel: str, ylabel: str, title: str, file: pathlib.Path) -> pathlib.Path:
-    """Plots the points (x, y) of each series on logarithmic axes, connected by lines."""
+def lines(series: dict[str, list[tuple]], xlabel: str, ylabel: str, title: str, file: pathlib.Path) -> pathlib.Path:
+    """Plots the points (x, y) or (x, y, label) of each series on logarithmic axes, connected by lines."""
     figure, axes = plt.subplots(figsize=(7.5, 5), layout="constrained")
     axes.set_prop_cycle(color=plt.get_cmap("tab20" if len(series) > 10 else "tab10").colors)
     for name, points in series.items():
-        axes.loglog(*zip(*sorted(points), strict=True), marker=".", linewidth=1, label=name)
+        points = sorted(points)
+        axes.loglog([point[0] for point in points], [point[1] for point in points], marker=".", linewidth=1, label=name)
+        for x, y, *label in points:
+            axes.annotate("".join(label), (x, y), xytext=(4, 3), textcoords="offset points", fontsize=7)
     axes.set(xlabel=xlabel, ylabel=ylabel, title=title)
     axes.grid(True, which="both", alpha=0.3)
     figure.legend(loc="outside right upper", fontsize="small")

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "host/bvh/bvh.h"
+#include "host/exact/test/meshes.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/core/reference_core.h"
@@ -19,8 +20,6 @@
 
 namespace raygate::lab {
 namespace {
-
-using IntersectorOf = std::function<std::unique_ptr<Intersector>(const Bvh&)>;
 
 /// Properties of a subject.
 struct Way {
@@ -40,20 +39,13 @@ class IntersectorSubject : public Subject {
   void run(std::span<const Shot> shots, Answers& answers) override {
     answers.tests.clear();
     answers.nearest.clear();
-    while (!shots.empty()) {
-      std::size_t together = 1;
-      while (!way_.one_origin && together < shots.size() && shots[together].mesh == shots[0].mesh) {
-        ++together;
-      }
-      ask(shots.first(together), answers);
-      shots = shots.subspan(together);
-    }
+    for_each_mesh(shots, way_.one_origin, [&](std::span<const Shot> mine) { ask(mine, answers); });
   }
 
  private:
   struct Tree {
     Tree(const Mesh& mesh, const IntersectorOf& make)
-        : bvh(scene_of(mesh)), intersector(make(bvh)) {}
+        : bvh(test::scene_of(mesh)), intersector(make(bvh)) {}
 
     Bvh bvh;
     std::unique_ptr<Intersector> intersector;
@@ -67,7 +59,7 @@ class IntersectorSubject : public Subject {
       for (const glm::vec3& direction : shot.directions) rays_.push_back({shot.origin, direction});
     }
     torn_.assign(rays_.size(), false);
-    const auto& triangles = shots[0].mesh->triangles;
+    const Mesh& triangles = *shots[0].mesh;
     const std::size_t first_test = answers.tests.size(), first_ray = answers.nearest.size();
     search(trees_.front());
     for (const NearestHit& hit : hits_) {
@@ -89,13 +81,13 @@ class IntersectorSubject : public Subject {
   }
 
   /// Builds the BVHs of a mesh: one of all triangles and, if there are several, one of each.
-  void plant(const std::shared_ptr<const Mesh>& mesh) {
+  void plant(const MeshPointer& mesh) {
     if (mesh == mesh_) return;
     mesh_ = mesh;
     trees_.clear();
     trees_.emplace_back(*mesh, make_);
-    if (mesh->triangles.size() == 1) return;
-    for (const Corners& triangle : mesh->triangles) trees_.emplace_back(Mesh{{triangle}}, make_);
+    if (mesh->size() == 1) return;
+    for (const Corners& triangle : *mesh) trees_.emplace_back(Mesh{triangle}, make_);
   }
 
   /// Finds the hits of all rays. Rays with one origin are traced again as a full cone, each in
@@ -147,7 +139,7 @@ class IntersectorSubject : public Subject {
 
   IntersectorOf make_;
   Way way_;
-  std::shared_ptr<const Mesh> mesh_;  // mesh of the current BVHs
+  MeshPointer mesh_;  // mesh of the current BVHs
   std::deque<Tree> trees_;
   // Reused buffers: rays, their hits, and whether hits depend on other rays.
   std::vector<Ray> rays_, company_;
@@ -156,73 +148,55 @@ class IntersectorSubject : public Subject {
   std::vector<bool> torn_;
 };
 
-SubjectKind cpu(const char* name, const char* what, bool one_origin) {
-  return {.name = name, .what = what, .exact = true, .binary32 = true, .share = 0.5, .make = [=] {
-            const auto make = [](const Bvh& bvh) { return std::make_unique<CpuIntersector>(bvh); };
-            return std::make_unique<IntersectorSubject>(
-                make, Way{.one_origin = one_origin, .delivers = true});
-          }};
+/// Completes a subject: each of its objects has an engine of its own, of which all BVHs share the
+/// unit.
+SubjectKind with(SubjectKind kind, const std::function<IntersectorOf()>& engine, const Way& way) {
+  kind.make = [=] { return std::make_unique<IntersectorSubject>(engine(), way); };
+  kind.engine = engine;
+  return kind;
 }
 
-/// Returns a subject for the unit of `make_tester`, which all BVHs share.
-template <class MakeTester>
-std::unique_ptr<Subject> unit_subject(const MakeTester& make_tester, const Way& way) {
-  return std::make_unique<IntersectorSubject>(
-      [tester = std::shared_ptr<HitTester>(make_tester())](const Bvh& bvh) {
-        return std::make_unique<UnitIntersector>(bvh, tester);
-      },
-      way);
+SubjectKind cpu(const char* name, const char* what, bool one_origin) {
+  return with({.name = name, .what = what, .exact = true, .binary32 = true, .share = 0.5},
+              [] { return [](const Bvh& bvh) { return std::make_unique<CpuIntersector>(bvh); }; },
+              {.one_origin = one_origin, .delivers = true});
+}
+
+IntersectorOf by_unit(std::shared_ptr<HitTester> tester) {
+  return [tester](const Bvh& bvh) { return std::make_unique<UnitIntersector>(bvh, tester); };
 }
 
 template <class Tester, class Unit, class... Lanes>
 SubjectKind unit(const char* name, const char* what, double share, Lanes... lanes) {
   constexpr bool kSimulated =
       std::is_same_v<Unit, RtlBurstUnit> || std::is_same_v<Unit, RtlPlaneUnit>;
-  return {.name = name,
-          .what = what,
-          .exact = true,
-          .simulated = kSimulated,
-          .binary32 = true,
-          .share = share,
-          .make = [=] {
-            return unit_subject(
-                [=] { return std::make_unique<Tester>(std::make_unique<Unit>(lanes...)); },
-                Way{.delivers = true, .unit = &variant_named("binary32")});
-          }};
+  return with({.name = name,
+               .what = what,
+               .exact = true,
+               .simulated = kSimulated,
+               .binary32 = true,
+               .share = share},
+              [=] { return by_unit(std::make_shared<Tester>(std::make_unique<Unit>(lanes...))); },
+              {.delivers = true, .unit = &variant_named("binary32")});
 }
 
-/// Returns a subject for the ray core of `make_core`, which all BVHs share. A core that resolves
-/// doubts does not report them, so the error bounds of P for `binary32` do not apply to it.
+/// Returns a subject for the ray core of `make_core`. A core that resolves doubts does not report
+/// them, so the error bounds of P for `binary32` do not apply to it.
 SubjectKind core(const char* name, const char* what, double share, bool simulated, bool binary32,
                  std::unique_ptr<CoreUnit> (*make_core)()) {
-  return {.name = name,
-          .what = what,
-          .exact = true,
-          .simulated = simulated,
-          .binary32 = binary32,
-          .share = share,
-          .make = [=] {
-            const auto make = [core = std::shared_ptr<CoreUnit>(make_core())](const Bvh& bvh) {
-              return std::make_unique<CoreIntersector>(
-                  bvh, std::make_shared<const MemoryImage>(bvh), core);
-            };
-            return std::make_unique<IntersectorSubject>(make, Way{.delivers = true});
-          }};
-}
-
-/// Returns a description such as "pipelined unit, 16 digits, doubts ignored".
-std::string description(const Variant& variant) {
-  const Arithmetic& math = variant.math;
-  std::string text = variant.unit == Variant::Unit::kPipeline ? "pipelined unit" : "paper's unit";
-  text += ", " + std::to_string(math.digits) + " digits";
-  if (math.exponent_bits != 8) text += ", " + std::to_string(math.exponent_bits) + " exponent bits";
-  if (math.rounding == Rounding::kTowardZero) text += ", rounding toward zero";
-  if (math.flush) text += ", subnormals are zeros";
-  if (math.fused) text += ", dot products rounded once";
-  if (math.quotient_digits != 0) {
-    text += ", quotients cut off after " + std::to_string(math.quotient_digits) + " bits";
-  }
-  return text + (variant.doubts ? ", doubts resolved" : ", doubts ignored");
+  return with({.name = name,
+               .what = what,
+               .exact = true,
+               .simulated = simulated,
+               .binary32 = binary32,
+               .share = share},
+              [=]() -> IntersectorOf {
+                return [core = std::shared_ptr<CoreUnit>(make_core())](const Bvh& bvh) {
+                  return std::make_unique<CoreIntersector>(
+                      bvh, std::make_shared<const MemoryImage>(bvh), core);
+                };
+              },
+              {.delivers = true});
 }
 
 }  // namespace
@@ -252,14 +226,12 @@ std::vector<SubjectKind> variant_subjects() {
   std::vector<SubjectKind> kinds;
   for (const Variant& variant : all_variants_of_arithmetic()) {
     if (variant.math == Arithmetic{} && variant.doubts) continue;  // tested as an engine
-    kinds.push_back({.name = variant.name,
-                     .what = description(variant),
-                     .exact = variant.doubts,
-                     .share = 0.05,
-                     .make = [&variant] {
-                       return unit_subject([&variant] { return make_variant_tester(variant); },
-                                           Way{.exact = variant.doubts, .unit = &variant});
-                     }});
+    kinds.push_back(with({.name = variant.name,
+                          .what = "a variant of host/variants/variants.json",
+                          .exact = variant.doubts,
+                          .share = 0.05},
+                         [&variant] { return by_unit(make_variant_tester(variant)); },
+                         {.exact = variant.doubts, .unit = &variant}));
   }
   return kinds;
 }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "host/lab/stress/shot.h"
+#include "host/lab/stress/cases.h"
 
 namespace raygate::lab {
 
@@ -34,8 +34,7 @@ struct Truth {
 /// the determinants are integers. With A, B, C the vertices minus the origin, a ray hits if D = A .
 /// (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have its sign. If one of the three
 /// is 0, its sign is that of the first non-zero component of the cross product, as for a direction
-/// tilted by (e, e^2, e^3). A direction that is zero or not finite hits nothing. Uses 128 bits if
-/// sufficient, otherwise GMP integers.
+/// tilted by (e, e^2, e^3). A direction that is zero or not finite hits nothing.
 [[nodiscard]] Truth find_truth(const Shot& shot);
 
 }  // namespace raygate::lab

@@ -1,14 +1,116 @@
+// The list of all subjects, and common float32 intersection tests of ray tracers.
 #include "host/lab/stress/subjects.h"
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace raygate::lab {
+namespace {
+
+/// A hit test in float32.
+using TriangleTest = Answer(const glm::vec3& origin, const glm::vec3& direction,
+                            const Corners& triangle);
+
+/// The test of Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for
+/// both sides, without an epsilon.
+Answer moeller_trumbore(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+  Answer answer;
+  const glm::vec3 ab = t[1] - t[0], ac = t[2] - t[0], from_a = origin - t[0];
+  const glm::vec3 p = glm::cross(direction, ac), q = glm::cross(from_a, ab);
+  const float determinant = glm::dot(ab, p);
+  if (!(std::abs(determinant) > 0.0f)) return answer;
+  const float inverse = 1.0f / determinant;
+  const float u = glm::dot(from_a, p) * inverse, v = glm::dot(direction, q) * inverse;
+  const float distance = glm::dot(ac, q) * inverse;
+  if (!(u >= 0.0f && v >= 0.0f && u + v <= 1.0f && distance > 0.0f)) return answer;
+  answer.hit = true;
+  answer.t = distance;
+  answer.point = distance * direction;
+  return answer;
+}
+
+/// The test of Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013: shears the
+/// triangle so that the ray runs along an axis; recomputes zero edge functions in double.
+Answer woop(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+  Answer answer;
+  const glm::vec3 size = glm::abs(direction);
+  const int z = size.x > size.y && size.x > size.z ? 0 : (size.y > size.z ? 1 : 2);
+  int x = (z + 1) % 3, y = (z + 2) % 3;
+  if (direction[z] < 0.0f) std::swap(x, y);
+  const float shear_x = direction[x] / direction[z], shear_y = direction[y] / direction[z];
+  const float scale_z = 1.0f / direction[z];
+  float px[3], py[3], pz[3];
+  for (int k = 0; k < 3; ++k) {
+    const glm::vec3 v = t[k] - origin;
+    px[k] = v[x] - shear_x * v[z];
+    py[k] = v[y] - shear_y * v[z];
+    pz[k] = scale_z * v[z];
+  }
+  float weight[3];
+  for (int k = 0; k < 3; ++k) {
+    const int b = (k + 1) % 3, c = (k + 2) % 3;
+    weight[k] = px[c] * py[b] - py[c] * px[b];
+  }
+  if (weight[0] == 0.0f || weight[1] == 0.0f || weight[2] == 0.0f) {
+    for (int k = 0; k < 3; ++k) {
+      const int b = (k + 1) % 3, c = (k + 2) % 3;
+      weight[k] = static_cast<float>(static_cast<double>(px[c]) * py[b] -
+                                     static_cast<double>(py[c]) * px[b]);
+    }
+  }
+  const bool negative = weight[0] < 0.0f || weight[1] < 0.0f || weight[2] < 0.0f;
+  const bool positive = weight[0] > 0.0f || weight[1] > 0.0f || weight[2] > 0.0f;
+  const float determinant = weight[0] + weight[1] + weight[2];
+  if ((negative && positive) || !(std::abs(determinant) > 0.0f)) return answer;
+  const float scaled = (weight[0] * pz[0] + weight[1] * pz[1]) + weight[2] * pz[2];
+  const float distance = scaled * (1.0f / determinant);
+  if (!(distance > 0.0f)) return answer;
+  answer.hit = true;
+  answer.t = distance;
+  answer.point = distance * direction;
+  return answer;
+}
+
+class FloatSubject : public Subject {
+ public:
+  explicit FloatSubject(TriangleTest* test) : test_(test) {}
+
+  void run(std::span<const Shot> shots, Answers& answers) override {
+    answers.tests.clear();
+    for (const Shot& shot : shots) {
+      for (const glm::vec3& direction : shot.directions) {
+        for (const Corners& t : *shot.mesh) {
+          answers.tests.push_back(test_(shot.origin, direction, t));
+        }
+      }
+    }
+    nearest_by_t(shots, answers);
+  }
+
+ private:
+  TriangleTest* test_;
+};
+
+SubjectKind kind(const char* name, const char* what, TriangleTest* test) {
+  return {.name = name, .what = what, .share = 0.1, .make = [test] {
+            return std::make_unique<FloatSubject>(test);
+          }};
+}
+
+}  // namespace
 
 std::vector<SubjectKind> all_subjects() {
   std::vector<SubjectKind> all;
-  for (auto part : {engine_subjects(), trace_subjects(), variant_subjects(), float_subjects(),
-                    embree_subjects()}) {
-    std::move(part.begin(), part.end(), std::back_inserter(all));
+  for (auto part :
+       {engine_subjects(),
+        trace_subjects(),
+        variant_subjects(),
+        {kind("Moeller-Trumbore", "the test most ray tracers use, in float32", moeller_trumbore),
+         kind("Woop 2013", "the watertight test, in float32, not fused", woop)},
+        embree_subjects()}) {
+    std::ranges::move(part, std::back_inserter(all));
   }
   return all;
 }
@@ -20,7 +122,7 @@ void nearest_by_t(std::span<const Shot> shots, Answers& answers) {
     for (std::size_t ray = 0; ray < shot.directions.size(); ++ray) {
       std::optional<std::uint32_t> nearest;
       float t = std::numeric_limits<float>::infinity();
-      for (std::uint32_t i = 0; i < shot.mesh->triangles.size(); ++i, ++answer) {
+      for (std::uint32_t i = 0; i < shot.mesh->size(); ++i, ++answer) {
         if (!answer->hit || (nearest && !(answer->t < t))) continue;
         nearest = i;
         t = answer->t;
@@ -28,21 +130,6 @@ void nearest_by_t(std::span<const Shot> shots, Answers& answers) {
       answers.nearest.push_back(nearest);
     }
   }
-}
-
-Scene scene_of(const Mesh& mesh) {
-  Scene scene;
-  scene.materials.emplace_back();
-  scene.objects.push_back("mesh");
-  for (const Corners& corners : mesh.triangles) {
-    Triangle triangle;
-    for (int k = 0; k < 3; ++k) {
-      triangle.vertices[k] = static_cast<std::uint32_t>(scene.positions.size());
-      scene.positions.push_back(corners[k]);
-    }
-    scene.triangles.push_back(triangle);
-  }
-  return scene;
 }
 
 }  // namespace raygate::lab

@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "host/exact/exact.h"
-#include "host/lab/stress/shot.h"
+#include "host/intersect/intersector.h"
+#include "host/lab/stress/cases.h"
 #include "host/scene/scene.h"
 
 namespace raygate::lab {
@@ -49,14 +50,18 @@ class Subject {
   virtual void run(std::span<const Shot> shots, Answers& answers) = 0;
 };
 
+/// Makes intersectors, which share a unit.
+using IntersectorOf = std::function<std::unique_ptr<Intersector>(const Bvh&)>;
+
 struct SubjectKind {
   std::string name{};
-  std::string what{};                                ///< one line for the report
-  bool exact = false;                                ///< any wrong decision fails the run
-  bool simulated = false;                            ///< Verilated hardware
-  bool binary32 = false;                             ///< the bounds of tally.cpp for t and P apply
-  double share = 0.1;                                ///< fraction of the requested number of tests
-  std::function<std::unique_ptr<Subject>()> make{};  ///< called once per thread
+  std::string what{};      ///< one line for the report
+  bool exact = false;      ///< any wrong decision fails the run
+  bool simulated = false;  ///< Verilated hardware
+  bool binary32 = false;   ///< the bounds of tally.cpp for t and P apply
+  double share = 0.1;      ///< fraction of the requested number of tests
+  std::function<std::unique_ptr<Subject>()> make{};
+  std::function<IntersectorOf()> engine{};  ///< of an engine or a variant
 };
 
 /// Returns all subjects of this build, in the order of the report.
@@ -66,28 +71,25 @@ struct SubjectKind {
 [[nodiscard]] std::vector<SubjectKind> engine_subjects();
 [[nodiscard]] std::vector<SubjectKind> trace_subjects();
 [[nodiscard]] std::vector<SubjectKind> variant_subjects();  ///< of variants.json
-[[nodiscard]] std::vector<SubjectKind> float_subjects();    ///< common float32 tests of ray tracers
 [[nodiscard]] std::vector<SubjectKind> embree_subjects();   ///< empty without Embree
-
-/// A hit test in float32.
-using TriangleTest = Answer(const glm::vec3& origin, const glm::vec3& direction,
-                            const Corners& triangle);
-/// The test of Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for
-/// both sides, without an epsilon.
-TriangleTest moeller_trumbore;
-/// The test of Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013: shears the
-/// triangle so that the ray runs along an axis; recomputes zero edge functions in double.
-TriangleTest woop;
 
 /// Returns the number of hits of each ray with Embree, in default and robust mode, by name; empty
 /// without Embree.
 [[nodiscard]] std::vector<std::pair<std::string, std::vector<std::uint32_t>>> embree_hit_counts(
     const Scene& scene, std::span<const Ray> rays);
 
+/// Calls `ask` for each series of shots at one mesh, or for each shot if `alone`.
+template <class Ask>
+void for_each_mesh(std::span<const Shot> shots, bool alone, const Ask& ask) {
+  while (!shots.empty()) {
+    std::size_t together = 1;
+    while (!alone && together < shots.size() && shots[together].mesh == shots[0].mesh) ++together;
+    ask(shots.first(together));
+    shots = shots.subspan(together);
+  }
+}
+
 /// Sets `nearest` to the hit of each ray with the smallest t, the first of equals.
 void nearest_by_t(std::span<const Shot> shots, Answers& answers);
-
-/// Returns a scene of these triangles with one material.
-[[nodiscard]] Scene scene_of(const Mesh& mesh);
 
 }  // namespace raygate::lab

@@ -1,17 +1,73 @@
-#include "host/lab/stress/suites.h"
-
+// Closed meshes, and the suites of hard cases.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "host/bvh/bvh.h"
-#include "host/lab/stress/meshes.h"
-#include "host/lab/stress/subjects.h"
+#include "host/exact/test/meshes.h"
+#include "host/lab/stress/cases.h"
 #include "host/light/spawn_ray.h"
 #include "host/scene/camera.h"
 
 namespace raygate::lab {
+namespace {
+
+MeshPointer placed(const Mesh& mesh, const Placement& placement) {
+  auto result = std::make_shared<Mesh>(mesh);
+  for (Corners& triangle : *result) {
+    for (glm::vec3& p : triangle) {
+      p = glm::vec3(glm::dvec3(p) * placement.scale + placement.shift);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+MeshPointer box(const Placement& placement) {
+  return placed(test::box(glm::vec3(-1.0f), glm::vec3(1.0f)), placement);
+}
+
+MeshPointer sphere(int level, const Placement& placement) {
+  return placed(test::sphere(level), placement);
+}
+
+MeshPointer random_sphere(int points, Random& random, const Placement& placement) {
+  std::vector<glm::dvec3> p;
+  for (int i = 0; i < points; ++i) p.push_back(random.unit());
+  Mesh faces;
+  for (std::size_t a = 0; a < p.size(); ++a) {
+    for (std::size_t b = a + 1; b < p.size(); ++b) {
+      for (std::size_t c = a + 1; c < p.size(); ++c) {
+        if (c == b) continue;
+        const glm::dvec3 normal = glm::cross(p[b] - p[a], p[c] - p[a]);
+        const auto is_below = [&](const glm::dvec3& q) {
+          return glm::dot(normal, q - p[a]) < 0.0 || &q == &p[a] || &q == &p[b] || &q == &p[c];
+        };
+        if (std::ranges::all_of(p, is_below)) {
+          faces.push_back({glm::vec3(p[a]), glm::vec3(p[b]), glm::vec3(p[c])});
+        }
+      }
+    }
+  }
+  return placed(faces, placement);
+}
+
+MeshPointer wedge(double angle, const Placement& placement) {
+  const double y = std::tan(angle);
+  const glm::vec3 p[] = {{0, 0, -1}, {1, 0, -1}, {1, y, -1}, {0, 0, 1}, {1, 0, 1}, {1, y, 1}};
+  return placed({{p[0], p[2], p[1]},
+                 {p[3], p[4], p[5]},
+                 {p[0], p[1], p[4]},
+                 {p[0], p[4], p[3]},
+                 {p[0], p[3], p[5]},
+                 {p[0], p[5], p[2]},
+                 {p[1], p[2], p[5]},
+                 {p[1], p[5], p[4]}},
+                placement);
+}
+
 namespace {
 
 constexpr int kRays = 8;
@@ -22,13 +78,8 @@ glm::vec3 direction_to(const glm::dvec3& aim, const glm::dvec3& origin) {
   return scaled_direction(way);
 }
 
-Shot shot_at(std::vector<Corners> triangles, const glm::dvec3& origin) {
-  Shot shot;
-  auto mesh = std::make_shared<Mesh>();
-  mesh->triangles = std::move(triangles);
-  shot.mesh = std::move(mesh);
-  shot.origin = glm::vec3(origin);
-  return shot;
+Shot shot_at(Mesh triangles, const glm::dvec3& origin) {
+  return {std::make_shared<const Mesh>(std::move(triangles)), glm::vec3(origin), {}};
 }
 
 glm::dvec3 inside_of(const Corners& t, Random& random) {
@@ -47,7 +98,7 @@ glm::dvec3 on_edge(const Corners& t, Random& random) {
 
 /// Aims at the interior, edges, vertices, and points nearby, of any of the triangles.
 void aim_everywhere(Shot& shot, Random& random) {
-  const auto& triangles = shot.mesh->triangles;
+  const Mesh& triangles = *shot.mesh;
   for (int i = 0; i < kRays; ++i) {
     const Corners& t = triangles[random.below(static_cast<int>(triangles.size()))];
     glm::dvec3 aim = random.one_in(2) ? on_edge(t, random) : inside_of(t, random);
@@ -67,7 +118,7 @@ Shot random_shot(Random& random) {
   Shot shot = shot_at({random_triangle(random)}, random.point());
   for (int i = 0; i < kRays; ++i) {
     const bool at_it = random.one_in(2);
-    const glm::dvec3 aim = at_it ? inside_of(shot.mesh->triangles[0], random) : random.point();
+    const glm::dvec3 aim = at_it ? inside_of(shot.mesh->front(), random) : random.point();
     shot.directions.push_back(direction_to(aim, glm::dvec3(shot.origin)));
   }
   return shot;
@@ -121,7 +172,7 @@ Shot coplanar_shot(Random& random) {
   const Corners base = random_triangle(random);
   const glm::dvec3 a(base[0]), u = glm::dvec3(base[1]) - a, v = glm::dvec3(base[2]) - a;
   const double tilt = random.one_in(2) ? 0.0 : random.log_uniform(1e-8, 1e-4);
-  std::vector<Corners> triangles = {base};
+  Mesh triangles = {base};
   for (int i = 0; i < 3; ++i) {
     Corners t;
     for (glm::vec3& vertex : t) {
@@ -139,7 +190,7 @@ Shot coplanar_shot(Random& random) {
 /// Makes copies of a triangle moved by a few float steps, in any order.
 Shot near_tie_shot(Random& random) {
   const Corners base = random_triangle(random);
-  std::vector<Corners> triangles;
+  Mesh triangles;
   for (int i = 0; i < 5; ++i) {
     Corners t = base;
     std::rotate(t.begin(), t.begin() + random.below(3), t.end());
@@ -157,9 +208,8 @@ Shot near_tie_shot(Random& random) {
 
 /// Makes rays (almost) parallel to axes, from points in planes of faces, which must not be culled.
 Shot axis_shot(Random& random, const MeshPointer& mesh) {
-  Shot shot;
-  shot.mesh = mesh;
-  const auto& triangles = mesh->triangles;
+  Shot shot{mesh};
+  const Mesh& triangles = *mesh;
   const int axis = random.below(3);
   const Corners& t = triangles[random.below(static_cast<int>(triangles.size()))];
   // In the planes of a vertex's coordinates, or in none.
@@ -186,7 +236,7 @@ Shot useless_shot(Random& random) {
   for (int i = 0; i < kRays; ++i) {
     if (random.one_in(4)) {
       shot.directions.push_back(
-          direction_to(inside_of(shot.mesh->triangles[0], random), glm::dvec3(shot.origin)));
+          direction_to(inside_of(shot.mesh->front(), random), glm::dvec3(shot.origin)));
       continue;
     }
     glm::vec3 direction;
@@ -234,16 +284,14 @@ Generator closed_mesh(const std::function<MeshPointer(Random&)>& make_mesh, Aim 
       mesh = make_mesh(random);
       left = 200;
     }
-    const auto& triangles = mesh->triangles;
+    const Mesh& triangles = *mesh;
     const auto any_triangle = [&]() -> const Corners& {
       return triangles[random.below(static_cast<int>(triangles.size()))];
     };
     glm::dvec3 center(0.0);
     for (const Corners& t : triangles) center += glm::dvec3(t[0] + t[1] + t[2]) / 3.0;
     center /= static_cast<double>(triangles.size());
-    Shot shot;
-    shot.mesh = mesh;
-    shot.inside = true;
+    Shot shot{.mesh = mesh, .inside = true};
     shot.origin =
         glm::vec3(glm::mix(center, glm::dvec3(any_triangle()[0]), random.uniform(0, 0.5)));
     const Corners& target = any_triangle();
@@ -298,7 +346,7 @@ class Bounces {
   void start_anew(Random& random);
   void bounce(Random& random);
 
-  std::shared_ptr<const Mesh> mesh_;
+  MeshPointer mesh_;
   std::shared_ptr<const Bvh> bvh_;
   glm::vec3 origin_{0.0f};
   std::vector<glm::vec3> directions_;  // directions of the last shot
@@ -312,7 +360,7 @@ void Bounces::start_anew(Random& random) {
   if (angle > 1e-2 && random.one_in(2)) placement.shift = random.point() * 1e3;
   const bool boxed = random.one_in(4);
   mesh_ = boxed ? box(placement) : wedge(angle, placement);
-  bvh_ = std::make_shared<Bvh>(scene_of(*mesh_));
+  bvh_ = std::make_shared<Bvh>(test::scene_of(*mesh_));
   const glm::dvec3 start =
       boxed ? 0.8 * random.point()
             : glm::dvec3(0.7, 0.7 * std::tan(angle) * random.uniform(0.3, 0.7), 0.2);
@@ -346,19 +394,14 @@ Shot Bounces::operator()(Random& random) {
   if (mirrored_ != glm::vec3(0.0f)) directions_.push_back(mirrored_);
   while (directions_.size() < kRays) {
     // Towards edges and points near them, such as the edge between the first two side faces.
-    const Corners& t = mesh_->triangles[random.below(static_cast<int>(mesh_->triangles.size()))];
+    const Corners& t = (*mesh_)[random.below(static_cast<int>(mesh_->size()))];
     const glm::dvec3 aim =
         glm::mix(glm::dvec3(t[0]), glm::dvec3(t[random.below(3)]), random.uniform(0, 1)) +
         random.point() * random.log_uniform(1e-9, 1e-1);
     const glm::dvec3 way = aim - glm::dvec3(origin_);
     if (way != glm::dvec3(0.0)) directions_.push_back(scaled_direction(way));
   }
-  Shot shot;
-  shot.mesh = mesh_;
-  shot.origin = origin_;
-  shot.directions = directions_;
-  shot.inside = true;
-  return shot;
+  return {mesh_, origin_, directions_, true};
 }
 
 std::function<Generator()> plain(Shot (*make)(Random&)) {

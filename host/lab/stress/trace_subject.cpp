@@ -4,6 +4,7 @@
 
 #include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
+#include "host/exact/test/meshes.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/lab/stress/subjects.h"
 #include "host/trace/tracer.h"
@@ -17,12 +18,7 @@ class TraceSubject : public Subject {
     answers.tests.clear();
     answers.nearest.clear();
     answers.orders.clear();
-    while (!shots.empty()) {
-      std::size_t together = 1;
-      while (together < shots.size() && shots[together].mesh == shots[0].mesh) ++together;
-      ask(shots.first(together), answers);
-      shots = shots.subspan(together);
-    }
+    for_each_mesh(shots, false, [&](std::span<const Shot> mine) { ask(mine, answers); });
   }
 
  private:
@@ -35,7 +31,7 @@ class TraceSubject : public Subject {
   /// A mesh prepared for tracing.
   struct Target {
     explicit Target(const Mesh& mesh)
-        : scene(scene_of(mesh)),
+        : scene(test::scene_of(mesh)),
           bvh(scene),
           table(scene, bvh,
                 {raygate::HitColumn::kRay, raygate::HitColumn::kTriangle, raygate::HitColumn::kT,
@@ -84,7 +80,7 @@ class TraceSubject : public Subject {
       mesh_ = shots[0].mesh;
       target_ = std::make_unique<Target>(*mesh_);
     }
-    const std::size_t triangles = mesh_->triangles.size(), first_ray = answers.orders.size(),
+    const std::size_t triangles = mesh_->size(), first_ray = answers.orders.size(),
                       first_test = answers.tests.size();
     const std::vector<RowOfTable> nearest = rows(shots, Hits::kNearest),
                                   any = rows(shots, Hits::kAny);
@@ -123,7 +119,7 @@ class TraceSubject : public Subject {
     return answers.tests[test].hit && all.low == bounds.low && all.high == bounds.high;
   }
 
-  std::shared_ptr<const Mesh> mesh_;  // mesh of the current target
+  MeshPointer mesh_;  // mesh of the current target
   std::unique_ptr<Target> target_;
 };
 

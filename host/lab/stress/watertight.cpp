@@ -1,7 +1,19 @@
-#include "host/lab/stress/watertight.h"
-
+// Public acceptance tests of watertightness, for engines and other ray tracers' hit tests.
+//
+// nomiss: from the Vulkan conformance tests (ray_tracing_pipeline.watertightness.nomiss). A square
+//   of two triangles is refined to N by points in random triangles, at random heights. Every ray of
+//   a grid along -z (256 x 256 for 65,536 triangles) must hit.
+// singlehit: from the same tests. A closed fan of up to 1,024 triangles, and rays from its axis to
+//   its centre and to the middle of every inner edge. The original counts repeated hits of one
+//   triangle as duplicates; here, more than one hit is a duplicate.
+// sphere: from Embree (tutorials/verify, watertight). Random rays from around the centre of a
+//   sphere far from the origin must hit.
+// edges, vertices: as in Woop, Benthin and Wald 2013. Rays from inside a sphere at its edges and
+//   vertices must hit.
+//
+// The random numbers and the sphere's triangles differ from the originals.
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,19 +23,10 @@
 #include <vector>
 
 #include "host/bvh/bvh.h"
-#include "host/bvh/traversal.h"
-#include "host/intersect/core/core_intersector.h"
-#include "host/intersect/core/memory_image.h"
+#include "host/exact/test/meshes.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/reference_burst_unit.h"
-#include "host/intersect/unit/unit_intersector.h"
-#include "host/lab/stress/meshes.h"
-#include "host/lab/stress/random.h"
-#include "host/lab/stress/subjects.h"
+#include "host/lab/stress/stress.h"
 #include "host/scene/camera.h"
-#include "sim/rtl_burst_unit.h"
-#include "sim/rtl_core.h"
 
 namespace raygate::lab {
 namespace {
@@ -57,7 +60,7 @@ Watertight nomiss(int count, Random& random) {
     triangles.push_back({r, p, fresh});
   }
   for (const auto& [a, b, c] : triangles) {
-    test.mesh.triangles.push_back({vertices[a], vertices[b], vertices[c]});
+    test.mesh.push_back({vertices[a], vertices[b], vertices[c]});
   }
   const int side = std::clamp(static_cast<int>(std::sqrt(count)), 16, 256);
   for (int y = 0; y < side; ++y) {
@@ -77,7 +80,7 @@ Watertight singlehit(int count) {
   const glm::dvec3 eye(0, 0, -1);
   test.rays.push_back(ray_from(eye, {0, 0, 1}));
   for (int i = 0; i < count; ++i) {
-    test.mesh.triangles.push_back({glm::vec3(0.0f), rim(i), rim(i + 1)});
+    test.mesh.push_back({glm::vec3(0.0f), rim(i), rim(i + 1)});
     test.rays.push_back(ray_from(eye, 0.5 * glm::dvec3(rim(i)) - eye));
   }
   return test;
@@ -88,7 +91,7 @@ enum class Targets { kAnywhere, kEdges, kVertices };
 Watertight from_inside(const char* name, const Placement& placement, int count, Targets aim,
                        Random& random) {
   Watertight test{name, *sphere(5, placement), {}};
-  const auto& triangles = test.mesh.triangles;
+  const Mesh& triangles = test.mesh;
   for (int i = 0; i < count; ++i) {
     const glm::dvec3 origin = 0.25 * placement.scale * random.point() + placement.shift;
     const Corners& t =
@@ -102,180 +105,113 @@ Watertight from_inside(const char* name, const Placement& placement, int count, 
   return test;
 }
 
-/// Returns the number of hits of each ray; 0 or 1 for hit tests that find only the nearest hit.
-using CountHits = std::function<std::vector<std::uint32_t>(std::span<const Ray>)>;
+/// Numbers of hits of rays.
+using Counts = std::vector<std::uint32_t>;
 
-/// A hit test, such as an engine, and its maximum number of rays, which is small for simulations.
+/// A hit test, such as an engine, and what it found.
 struct Contestant {
   std::string name;
   bool is_exact, finds_all;
-  std::size_t most_rays;
-  std::function<CountHits(const Bvh&)> make;
+  Counts counts{};
 };
 
-CountHits count_nearest(const std::shared_ptr<Intersector>& intersector) {
-  return [intersector](std::span<const Ray> rays) {
-    std::vector<NearestHit> hits(rays.size());
-    intersector->intersect(rays, {}, hits);
-    std::vector<std::uint32_t> counts(rays.size());
-    std::ranges::transform(hits, counts.begin(), [](const NearestHit& hit) {
-      return hit.primitive == NearestHit::kNone ? 0u : 1u;
-    });
-    return counts;
-  };
+/// Counts nearest hits: 0 or 1 per ray.
+Counts count_nearest(Intersector& intersector, std::span<const Ray> rays) {
+  std::vector<NearestHit> hits(rays.size());
+  intersector.intersect(rays, {}, hits);
+  Counts counts;
+  for (const NearestHit& hit : hits) counts.push_back(hit.primitive == NearestHit::kNone ? 0 : 1);
+  return counts;
 }
 
-/// Returns a mask of the children whose boxes a ray may enter, including all rounding.
-LaneMask boxes_entered(const Ray& ray, const Bvh::Node& node) {
-  constexpr double kWide = 1e-6;
-  LaneMask met = 0;
-  for (int i = 0; i < Bvh::kWidth; ++i) {
-    const auto [low, high] = node.box(i);
-    if (low.x > high.x) continue;
-    double first = 0.0, last = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 3; ++k) {
-      const double origin = ray.origin[k], direction = ray.direction[k];
-      const double margin = kWide * (std::abs(origin) + std::abs(low[k]) + std::abs(high[k]));
-      double near = low[k] - margin - origin, far = high[k] + margin - origin;
-      if (direction == 0.0) {
-        if (near > 0.0 || far < 0.0) last = -1.0;
-        continue;
-      }
-      near /= direction;
-      far /= direction;
-      first = std::max(first, std::min(near, far));
-      last = std::min(last, std::max(near, far));
-    }
-    if (first <= last) met |= 1u << i;
+Counts count_all(const Bvh& bvh, std::span<const Ray> rays) {
+  Counts counts;
+  std::vector<NearestHit> hits;
+  RayWork work;
+  for (const Ray& ray : rays) {
+    all_hits(bvh, ray, std::numeric_limits<float>::infinity(), hits, work);
+    counts.push_back(static_cast<std::uint32_t>(hits.size()));
   }
-  return met;
+  return counts;
 }
 
-CountHits count_by(TriangleTest* test, const Bvh& bvh) {
-  return [test, &bvh](std::span<const Ray> rays) {
-    std::vector<std::uint32_t> counts;
-    for (const Ray& ray : rays) {
-      std::uint32_t& count = counts.emplace_back(0);
-      const auto boxes = [&](const Bvh::Node& node) { return boxes_entered(ray, node); };
-      any_leaf(bvh, boxes, [&](const Bvh::Child& leaf) {
-        for (std::uint32_t i = 0; i < leaf.count; ++i) {
-          count += test(ray.origin, ray.direction, bvh.corners_of(leaf.first + i)).hit;
-        }
-        return false;
-      });
-    }
-    return counts;
+/// Adds the counts of all hit tests for one mesh: of the cpu engine, of those that find the nearest
+/// hit only, and of Embree. Simulated hardware takes only the first rays.
+void add_counts(const Watertight& test, std::vector<Contestant>& all) {
+  constexpr std::size_t kSimulated = 8192;
+  const Scene scene = test::scene_of(test.mesh);
+  const Bvh bvh(scene);
+  const auto add = [&](const std::string& name, bool is_exact, bool finds_all, const auto& count,
+                       std::size_t most = std::numeric_limits<std::size_t>::max()) {
+    auto mine = std::ranges::find(all, name, &Contestant::name);
+    if (mine == all.end()) mine = all.insert(mine, {name, is_exact, finds_all});
+    const std::size_t left = most - std::min(most, mine->counts.size());
+    const Counts found = count(std::span(test.rays).first(std::min(test.rays.size(), left)));
+    mine->counts.insert(mine->counts.end(), found.begin(), found.end());
   };
-}
-
-std::vector<Contestant> contestants() {
-  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max(), kSome = 8192;
-  const auto unit = [](auto make_unit) {
-    return [make_unit](const Bvh& bvh) {
-      return count_nearest(
-          std::make_shared<UnitIntersector>(bvh, std::make_shared<PipelineHitTester>(make_unit())));
+  add("cpu", true, true, [&](std::span<const Ray> rays) { return count_all(bvh, rays); });
+  for (const SubjectKind& kind : engine_subjects()) {
+    if (kind.name != "model" && kind.name != "rtl" && kind.name != "rtl exact core") continue;
+    const auto count = [&](std::span<const Ray> rays) {
+      return count_nearest(*kind.engine()(bvh), rays);
     };
-  };
-  std::vector<Contestant> all;
-  all.push_back({"cpu", true, true, kAll, [](const Bvh& bvh) -> CountHits {
-                   return [&bvh](std::span<const Ray> rays) {
-                     std::vector<std::uint32_t> counts;
-                     std::vector<NearestHit> hits;
-                     RayWork work;
-                     for (const Ray& ray : rays) {
-                       all_hits(bvh, ray, std::numeric_limits<float>::infinity(), hits, work);
-                       counts.push_back(static_cast<std::uint32_t>(hits.size()));
-                     }
-                     return counts;
-                   };
-                 }});
-  all.push_back(
-      {"model", true, false, kAll, unit([] { return std::make_unique<ReferenceBurstUnit>(); })});
-  all.push_back(
-      {"rtl", true, false, kSome, unit([] { return std::make_unique<RtlBurstUnit>(1); })});
-  all.push_back({"rtl exact core", true, false, kSome, [](const Bvh& bvh) {
-                   return count_nearest(std::make_shared<CoreIntersector>(
-                       bvh, std::make_shared<const MemoryImage>(bvh),
-                       std::shared_ptr<CoreUnit>(make_rtl_core({}, {}, {.exact = true}))));
-                 }});
-  const std::pair<const char*, TriangleTest*> others[] = {{"Moeller-Trumbore", moeller_trumbore},
-                                                          {"Woop 2013", woop}};
-  for (const auto& [name, test] : others) {
-    all.push_back(
-        {name, false, true, kAll, [test = test](const Bvh& bvh) { return count_by(test, bvh); }});
+    add(kind.name, true, false, count,
+        kind.simulated ? kSimulated : std::numeric_limits<std::size_t>::max());
   }
-  return all;
-}
-
-Row row_of(const std::string& test, const std::string& by, std::size_t triangles, bool is_exact,
-           bool finds_all, std::span<const std::uint32_t> counts) {
-  const auto escapes = std::ranges::count(counts, 0u);
-  const auto doubles = std::ranges::count_if(counts, [](std::uint32_t count) { return count > 1; });
-  return {{"table", "watertight"},  {"test", test},
-          {"triangles", triangles}, {"by", by},
-          {"exact", is_exact},      {"rays", counts.size()},
-          {"escapes", escapes},     {"double_hits", finds_all ? Row(doubles) : Row(nullptr)}};
+  for (const auto& [name, counts] : embree_hit_counts(scene, test.rays)) {
+    add(name, false, true, [&](std::span<const Ray>) { return counts; });
+  }
 }
 
 }  // namespace
 
-std::vector<Row> watertight_rows(const WatertightOptions& asked) {
-  std::vector<Row> rows;
+std::vector<Row> watertight_rows(int triangles, int seeds) {
   std::vector<Watertight> tests;
-  for (int seed = 1; seed <= asked.seeds; ++seed) {
+  for (int seed = 1; seed <= seeds; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
-    tests.push_back(nomiss(asked.triangles, random));
+    tests.push_back(nomiss(triangles, random));
   }
   Random random(1);
   const Placement far{glm::dvec3(2.0), {148376.0, 1234.0, -223423.0}};
   constexpr int kMostInFan = 1024;  // in larger fans, each ray meets most of the long boxes
-  tests.push_back(singlehit(std::min(asked.triangles, kMostInFan)));
-  tests.push_back(from_inside("sphere", far, asked.triangles, Targets::kAnywhere, random));
-  tests.push_back(from_inside("edges", {}, asked.triangles, Targets::kEdges, random));
-  tests.push_back(from_inside("vertices", {}, asked.triangles, Targets::kVertices, random));
-  // Tests with the same name are combined into one row.
-  for (std::size_t first = 0; first < tests.size();) {
-    std::size_t end = first;
-    std::vector<Contestant> all = contestants();
-    std::vector<std::vector<std::uint32_t>> counts(all.size());
-    std::vector<std::string> embrees;
-    std::vector<std::vector<std::uint32_t>> embree_counts;
-    for (; end < tests.size() && tests[end].name == tests[first].name; ++end) {
-      const Watertight& test = tests[end];
-      const Scene scene = scene_of(test.mesh);
-      const Bvh bvh(scene);
-      for (std::size_t i = 0; i < all.size(); ++i) {
-        const std::size_t rest = all[i].most_rays - std::min(all[i].most_rays, counts[i].size());
-        const auto found =
-            all[i].make(bvh)(std::span(test.rays).first(std::min(test.rays.size(), rest)));
-        counts[i].insert(counts[i].end(), found.begin(), found.end());
-      }
-      std::size_t i = 0;
-      for (auto& [name, found] : embree_hit_counts(scene, test.rays)) {
-        if (end == first) embrees.push_back(name), embree_counts.emplace_back();
-        embree_counts[i].insert(embree_counts[i].end(), found.begin(), found.end());
-        ++i;
-      }
+  tests.push_back(singlehit(std::min(triangles, kMostInFan)));
+  tests.push_back(from_inside("sphere", far, triangles, Targets::kAnywhere, random));
+  tests.push_back(from_inside("edges", {}, triangles, Targets::kEdges, random));
+  tests.push_back(from_inside("vertices", {}, triangles, Targets::kVertices, random));
+  std::vector<Row> rows;
+  std::vector<Contestant> all;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    add_counts(tests[i], all);
+    // Tests with the same name share their rows.
+    if (i + 1 < tests.size() && tests[i + 1].name == tests[i].name) continue;
+    for (const Contestant& by : all) {
+      const auto doubles = std::ranges::count_if(by.counts, [](auto n) { return n > 1; });
+      rows.push_back({{"table", "watertight"},
+                      {"test", tests[i].name},
+                      {"triangles", tests[i].mesh.size()},
+                      {"by", by.name},
+                      {"exact", by.is_exact},
+                      {"rays", by.counts.size()},
+                      {"escapes", std::ranges::count(by.counts, 0u)},
+                      {"double_hits", by.finds_all ? Row(doubles) : Row(nullptr)}});
     }
-    const Watertight& test = tests[first];
-    const auto add = [&](const std::string& name, bool is_exact, bool finds_all,
-                         const auto& found) {
-      rows.push_back(
-          row_of(test.name, name, test.mesh.triangles.size(), is_exact, finds_all, found));
-    };
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      add(all[i].name, all[i].is_exact, all[i].finds_all, counts[i]);
-    }
-    for (std::size_t i = 0; i < embrees.size(); ++i) {
-      add(embrees[i], false, true, embree_counts[i]);
-    }
-    first = end;
+    all.clear();
   }
   return rows;
 }
 
-bool is_watertight(const Row& row) {
-  return row["escapes"] == 0 && (row["double_hits"].is_null() || row["double_hits"] == 0);
+void add_watertight(CLI::App& lab) {
+  struct Asked {
+    int triangles = 65536, seeds = 10;
+  };
+  auto* app = lab.add_subcommand("watertight", "public tests of watertightness");
+  const auto asked = std::make_shared<Asked>();
+  app->add_option("--triangles", asked->triangles, "triangles of a mesh, and rays")
+      ->check(CLI::Range(4, 1 << 20));
+  app->add_option("--seeds", asked->seeds, "meshes of nomiss")->check(CLI::Range(1, 100));
+  app->callback([asked] {
+    for (const Row& row : watertight_rows(asked->triangles, asked->seeds)) print(row);
+  });
 }
 
 }  // namespace raygate::lab

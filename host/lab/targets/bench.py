@@ -4,14 +4,11 @@ import argparse
 import functools
 import pathlib
 import statistics
-import subprocess
-import sys
 
-from host.lab.bench import costs
-from host.lab.machine import processors
 from host.lab.report import plots
-from host.lab.rows import KEPT, ROOT, of, read, scene_name
-from host.lab.steps import LAB, Step, render
+from host.lab.rows import ROOT, grouped, of, processors, scene_name
+from host.lab.steps import Step, render, run_lab
+from host.lab.targets import costs
 
 PICTURES = "build/bench/pictures"
 # Scenes of the variants' pictures: integrator, and samples per pixel.
@@ -19,21 +16,15 @@ SCENES = {"cornell": ("path", 4), "paper": ("whitted", 1), "teapot": ("primary",
 ENGINES = ("scenes/cornell.obj", "scenes/paper.obj", "scenes/teapot.obj", "build/scenes/sphere.obj", "build/scenes/sphereflake.obj")
 # Units and the engines that compute them.
 WAYS = (("pipeline", "cpu"), ("pipeline", "rtl"), ("serial", "model"), ("serial", "rtl"))
-# Costs on the axes of the Pareto plots: key of a frame, label.
-COSTS = {"clocks": "clocks per frame", "frame_ms": "ms per frame at the clock of synthesis",
-         "area": "area, um2 in OSU 0.35 um", "area_time": "area x ms per frame"}
-ERRORS = {"point": "error of P, 99th percentile, ulp of binary32",
-          "wrong": "wrong hit decisions per million tests",
-          "rmse": "RMSE of the picture, scene-linear"}
-# Images with smaller differences are omitted, as their maps are black.
-LEAST_FLIP = 0.00005
+# Series of the plot: unit, and whether doubts are resolved.
+KINDS = {("pipeline", True): "pipelined unit, doubts resolved", ("pipeline", False): "pipelined unit, doubts ignored",
+         ("serial", True): "the paper's unit, software decides"}
 
 
 @functools.cache
 def variants() -> list[dict]:
     """Returns the rows of `lab variants`."""
-    subprocess.run([LAB, "--results", KEPT / "variants.jsonl", "variants"], cwd=ROOT, stdout=sys.stderr, check=True)
-    return read(KEPT / "variants.jsonl")
+    return run_lab("variants")
 
 
 def variants_steps(given: argparse.Namespace) -> list[Step]:
@@ -122,27 +113,78 @@ def frames(rows: list[dict]) -> list[dict]:
                  "clocks_modelled": row["variant"] not in clocks_a_test}
         record = costs.unit(synthesis, variant)
         if record:
-            frame |= {"area": record["area"], "period_ns": record["delay_ns"], "wired_ns": record.get("wired_ns"),
-                      "frame_ms": frame["clocks"] * record["delay_ns"] * 1e-6}
+            frame |= {"area": record["area"], "period_ns": record["delay_ns"], "frame_ms": frame["clocks"] * record["delay_ns"] * 1e-6}
             frame["area_time"] = frame["area"] * frame["frame_ms"]
         found.append(frame)
     return found
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Returns frames by scene, Pareto plots of the first scene, and images that differ."""
+    """Returns frames by scene, and for the first scene a plot of the error of P against time."""
     scenes: dict[str, list] = {}
     for frame in frames(rows):
         scenes.setdefault(frame["scene"], []).append(frame)
-    pareto = []
-    for error, label in ERRORS.items() if scenes else ():
-        scene, mine = next(iter(scenes.items()))
-        known = {cost: text for cost, text in COSTS.items() if sum(bool(frame.get(cost)) for frame in mine) > 1}
-        pareto.append((plots.pareto(mine, known, error, label, f"{scene}: {label}", folder / f"pareto-{error}.png"), label))
-    differences = []
-    for scene, mine in scenes.items():
-        shown = [(f"{frame['variant']}: FLIP {frame['flip']:.4f}", ROOT / frame["map"])
-                 for frame in mine if frame["flip"] >= LEAST_FLIP]
-        if shown:
-            differences.append((plots.gallery(shown, folder / f"differences-{scene}.png"), scene))
-    return {"scenes": scenes, "pareto": pareto, "differences": differences}
+    series: dict[str, list] = {}
+    for frame in next(iter(scenes.values()), []):
+        if frame.get("frame_ms"):
+            series.setdefault(KINDS[frame["unit"], frame["doubts"]], []).append((frame["frame_ms"], frame["point"], frame["variant"]))
+    return {"scenes": scenes, "plot": plots.lines(
+        series, "ms per frame at the clock of synthesis", "error of P, 99th percentile, ulp of binary32", next(iter(scenes)),
+        folder / "bench-error.png") if series else None,
+        "ways": [f"{unit} {engine}" for unit, engine in WAYS],
+        "engines": grouped([row | {"way": f"{row['unit']} {row['engine']}"} for row in of(rows, "engines")], ("scene",), "way")}
+
+
+PAGE = """# Run time against error, from the adder to the picture
+
+{% if scenes %}
+
+## Arithmetic
+
+{% set first = scenes.values()|first %}
+Pictures of {{ first[0].width }} x {{ first[0].height }} pixels, each by its variant's reference model. Those called raw ignore doubts, the others resolve them.
+
+* **wrong tests**: camera ray and triangle, decided otherwise than exactly. **P**: error in binary32's ulp, of the rays that are not wrong.
+* **FLIP**: mean difference from binary32's picture; a dash: equal pictures. Raw variants shade their own P, the others where it is within `--point-error`.
+* **area**, **period**: `make synth`, OSU 0.35 um, cells alone; variants without are in the file. **clocks** in the file: tests times the clocks per test of the
+  variant's simulation; a star: no hardware takes its parameters, so binary32's rate is used.
+
+Scene {{ first[0].scene }} ({{ first[0].integrator }}, samples per pixel: {{ first[0].samples }}):
+
+{{ table(first|selectattr("area", "defined")|list or first, "variant", "wrong tests per million = wrong :.0f", "doubts per million = doubtful :.0f", "P, ulp: median = decisions.point_ulp.p50 :.3g",
+         "FLIP = flip if differing_pixels :.4f", "area, mm2 = area / 1e6 :.2f", "period, ns = period_ns :.2f") }}
+{{ saved("bench-variants", scenes.values()|sum(start=[]), "scene", "integrator", "samples :d", "variant", "bits = '1+%d+%d'|format(exponent_bits, digits - 1)",
+         "doubts = 'resolved' if doubts else 'ignored'", "wrong tests per million = wrong :.0f", "doubts per million = doubtful :.0f", "wrong rays = decisions.wrong_rays :d",
+         "P, ulp: median = decisions.point_ulp.p50 :.3g", "99 % = decisions.point_ulp.p99 :.3g", "largest = decisions.point_ulp.max :.3g",
+         "t, ulp: 99 % = decisions.t_ulp.p99 :.3g", "RMSE = rmse if differing_pixels :.3g", "FLIP = flip if differing_pixels :.4f",
+         "clocks = '%.0f'|format(clocks) ~ (' *' if clocks_modelled else '')", "area :d", "period, ns = period_ns :.2f",
+         "ms per frame = frame_ms :.3f", "area x ms = area_time :.3g") }}: all scenes ({{ scenes|join(", ") }}), all measures.
+
+{% if plot %}
+{{ figure(plot, "Scene %s: what accuracy costs." % first[0].scene) }}
+{% endif %}
+{% endif %}
+{% if of("engines") %}
+
+## Engines
+
+One thread, processor seconds: the median of the repeats, and the median distance from it as their spread. The repeats of all rows
+were interleaved.
+
+{{ table(engines, "scene = scene_name(row)", "triangles :,", each(ways, "rays/s, {} = at['{}'].rays / at['{}'].seconds :,.0f")) }}
+{{ saved("bench-engines", of("engines"), "scene = scene_name(row)", "triangles :d", "unit", "engine",
+         "seconds :.4g", "spread, % = spread_percent :.1f", "rays/s = rays / seconds :.0f",
+         "tests per ray = tests / rays :.2f", "clocks per test = clocks / unit_tests if clocks :.2f") }} has seconds, spreads, tests and clocks.
+{% endif %}
+{% if of("lanes") %}
+
+## Lanes
+
+`scenes/paper.obj`, 320 x 200 pixels, with shadows and reflections. The paper counts 5.12 million tests for such a picture (320 x 200
+rays, 20 polygons, 4 reflections), one clock each; its unit takes seven. Its scene is not known, and here rays skip the boxes that they miss, so
+these are other figures. Lane clocks per test: clocks times lanes over tests.
+
+{{ table(of("lanes"), "unit", "lanes :d", "clocks per frame = clocks :,.0f", "lane clocks per test = clocks * lanes / unit_tests :.3f",
+         "simulation, s = seconds :.3g") }}
+{% endif %}
+"""

@@ -12,18 +12,15 @@ ALL = ("scenes/cornell.obj", "scenes/paper.obj", "scenes/teapot.obj",
        *(f"build/scenes/{name}.obj" for name in ("cornell_spheres", "still_life", "columns", "sphereflake")))
 
 
-def part(name: str, scenes: tuple, *words: object, every: int = 1) -> Callable[[argparse.Namespace], list[Step]]:
-    """Returns a function that makes the steps of a part: a run of `lab core` for each scene, with one of `every` rays."""
-    def steps(given: argparse.Namespace) -> list[Step]:
-        return [Step(name, f"{name} {scene}", ("core", scene, *words, "--every", 64 if given.quick else every))
-                for scene in (FEW[:1] if given.quick else scenes)]
-    return steps
+def part(name: str, scenes: tuple, *words: object) -> Callable[[argparse.Namespace], list[Step]]:
+    """Returns a function that makes the steps of a part: a run of `lab core` for each scene."""
+    return lambda given: [Step(name, f"{name} {scene}", ("core", scene, *words)) for scene in (FEW[:1] if given.quick else scenes)]
 
 
 PARTS = {"scenes": part("scenes", ALL),
          "exact": lambda given: [step for way in ((), ("--exact",)) for step in part(
              "exact", ALL, "--kinds", "whitted", "path", "--latency", 50, *way)(given)],
-         "cores": part("cores", FEW, "--kinds", "camera", "scattered", "--latency", 50, "--cores", 1, 2, 4, 8, every=2)}
+         "cores": part("cores", FEW, "--kinds", "camera", "scattered", "--latency", 50, "--cores", 1, 2, 4, 8)}
 
 
 def values(rows: list[dict], _: pathlib.Path) -> dict:
@@ -33,3 +30,46 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
     return {"latencies": latencies, "middle": latencies[len(latencies) // 2] if latencies else None,
             "scenes": grouped(scenes, ("scene", "rays"), "latency"), "exact": grouped(exact, ("scene", "rays"), "exact"),
             "cores": grouped(cores, ("scene", "rays"), "cores"), "numbers": sorted({row["cores"] for row in cores})}
+
+
+PAGE = """# The ray core in simulation
+
+Clocks of `hw/ray_core`, 128x128 pixels, a line of 64 bytes a clock at the port to memory. Latency: clocks from a request to its line.
+Each answer was compared with the cpu engine's.
+{% if scenes %}
+
+## Rays of a picture
+
+{{ table(scenes, "scene", "rays", each(latencies, "clocks/ray, latency {} = at[{}].clocks_per_ray :.2f"),
+         each([middle], "doubts/1000 rays = at[{}].doubts_per_1000 :.2f")) }}
+{{ saved("core-scenes", scenes, "scene", "rays", each(latencies, "clocks/ray, latency {} = at[{}].clocks_per_ray :.2f"),
+         each([middle], "lines/ray = at[{}].lines_per_ray :.2f", "bytes/ray = at[{}].bytes_per_ray :.0f",
+              "boxes busy, % = at[{}].nodes_percent :.1f", "triangles busy, % = at[{}].triangles_percent :.1f",
+              "doubts/1000 rays = at[{}].doubts_per_1000 :.2f")) }} has, at {{ middle }}, lines and bytes per ray, too, and
+the clocks in which `box_unit` takes a node, or `triangle_test` a triangle.
+{% endif %}
+{% if exact %}
+
+## Doubts settled by the core
+
+All rays of a path-traced picture, a sample a pixel, memory 50 clocks away. Doubts sent out: the host settles them, and its time is not
+counted. Busy: clocks in which `exact_unit` has a question.
+
+{{ table(exact|selectattr("rays", "equalto", "path")|list, "scene", "clocks/ray, doubts sent out = at[False].clocks_per_ray :.2f",
+         "clocks/ray, settled = at[True].clocks_per_ray :.2f", "doubts/1000 rays = at[True].doubts_per_1000 :.2f",
+         "exact unit busy, % = at[True].exact_percent :.2f") }}
+{{ saved("core-exact", exact, "scene", "rays", "clocks/ray, doubts sent out = at[False].clocks_per_ray :.2f",
+         "clocks/ray, settled = at[True].clocks_per_ray :.2f", "doubts/1000 rays = at[True].doubts_per_1000 :.2f",
+         "near ties/1000 rays = at[True].near_ties_per_1000 :.2f", "exact unit busy, % = at[True].exact_percent :.2f") }} has Whitted
+pictures, too.
+{% endif %}
+{% if cores %}
+
+## Several cores behind one port
+
+Memory 50 clocks away. Waits: clocks in which a core asks for a line and another core's request, or none, is taken.
+
+{{ table(cores, "scene", "rays", each(numbers, "clocks/ray, {} cores = at[{}].clocks_per_ray :.2f"),
+         each(numbers[1:], "waits, %, {} = at[{}].waits_percent :.1f")) }}
+{% endif %}
+"""

@@ -6,13 +6,11 @@ import os
 import pathlib
 import sys
 
-from host.lab.bench import costs
-from host.lab.machine import processors
 from host.lab.report import plots
 from host.lab.report.document import number
-from host.lab.rows import KEPT, ROOT, of, scene_name, write
+from host.lab.rows import KEPT, ROOT, of, processors, scene_name
 from host.lab.steps import Step
-from host.lab.targets import bench
+from host.lab.targets import bench, costs
 from synth import brought, catalogue, report, store, tools
 
 # The variants that the program `lab` is built with: host/lab/variants/CMakeLists.txt.
@@ -25,12 +23,11 @@ WORDS = {"EXP_WIDTH": ("exponent_bits", range(3, 9)), "FRAC_WIDTH": ("digits", r
 FILES = (".sv", ".v")
 # Rows of a card: name, value of a frame (targets/bench.py), format.
 FIGURES = (("area, um2 in OSU 0.35 um", "area", ",.0f"), ("period, ns", "period_ns", ".2f"),
-           ("period with estimated wires, ns", "wired_ns", ".2f"),
            ("clocks a frame", "clocks", ",.0f"), ("ms a frame", "frame_ms", ".3f"),
            ("wrong tests a million", "wrong", ".1f"), ("doubts a million", "doubtful", ".1f"),
            ("wrong rays", "decisions.wrong_rays", ",d"), ("P, ulp: median", "decisions.point_ulp.p50", ".3g"),
            ("P, ulp: 99 %", "decisions.point_ulp.p99", ".3g"), ("P, ulp: largest", "decisions.point_ulp.max", ".3g"),
-           ("t, ulp: 99 %", "decisions.t_ulp.p99", ".3g"), ("RMSE", "rmse", ".3g"), ("SSIM", "ssim", ".4f"),
+           ("t, ulp: 99 %", "decisions.t_ulp.p99", ".3g"), ("RMSE", "rmse", ".3g"),
            ("FLIP", "flip", ".5f"))
 
 
@@ -112,7 +109,7 @@ PARTS = {
     "checks": lambda given: [Step("checks", "models against hardware", ("check", "--tests", 100_000))],
     "pictures": pictures,
     "synthesis": lambda given: [Step("synthesis", "area and clock", measure=lambda: costs.synthesis(
-        variants(given)[-2:], processors(), measure=True, wires=given.wires))]}  # the two on the card
+        variants(given)[-2:], processors(), measure=True))]}  # the two on the card
 finish = bench.judge_pictures
 
 
@@ -122,40 +119,31 @@ def _value(frame: dict, path: str) -> float | None:
     return frame
 
 
-def figures(usual: dict, mine: dict, made: dict[str, str] = {}) -> list[dict]:
-    """Returns rows of a card: both values as text, or a dash, their ratio, and the file in `made` with the variant's
-    value."""
+def figures(usual: dict, mine: dict) -> list[dict]:
+    """Returns rows of a card: both values as text, or a dash, and their ratio."""
     found = []
     for name, path, form in FIGURES:
         numbers = [_value(usual, path), _value(mine, path)]
         if numbers[1] is not None:
             found.append({"figure": name, "ratio": numbers[1] / numbers[0] if numbers[0] else None,
-                          "from": made.get(path, made.get("", "")),
                           **dict(zip(("usual", "mine"), (number(each, form) for each in numbers), strict=True))})
     return found
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Returns frames of binary32 and the variant, the critical path with its files, images and plots."""
+    """Returns frames of binary32 and the variant, the critical path, the folder of its files, and images."""
     frames = bench.frames(rows)
     usual, mine = frames[max(len(frames) - 2, 0)], frames[-1]
     record = costs.unit(of(rows, "synthesis"), of(rows, "variants")[-1])
     shown = [(usual["variant"], ROOT / f"{usual['picture']}.png"), (mine["variant"], ROOT / f"{mine['picture']}.png"),
              (f"FLIP {mine['flip']:.5f}", ROOT / mine["map"])]
-
-    def link(name: str, file: pathlib.Path) -> str:
-        return f"[{name}]({os.path.relpath(file, folder)})"
-
-    write(folder / "rows.jsonl", rows)
-    made = {"": link("rows", folder / "rows.jsonl")}
+    made = {"path": "", "run": ""}
     if record:
         run = (pathlib.Path(record["brought"], "synth") if record.get("brought") else store.OUT) / "runs" / (
             f"{record['design']}.{record['target']}.{record['flow']}")
-        made |= {"area": link("netlist", run / "netlist.v"), "period_ns": link("timing", run / "timing.txt")}
-        made |= {"frame_ms": f"{made['period_ns']}, {made['']}", "log": link("log of synthesis", run / "yosys.log")}
-    return {"usual": usual, "mine": mine, "figures": figures(usual, mine, made),
-            "pictures": plots.gallery(shown, folder / "pictures.png", 3), "path": report.path_table(record) if record else "",
-            "made": made}
+        made = {"path": report.path_table(record), "run": os.path.relpath(run, folder)}
+    return {"usual": usual, "mine": mine, "figures": figures(usual, mine),
+            "pictures": plots.gallery(shown, folder / "pictures.png", 3), **made}
 
 
 def own_folder(rows: list[dict]) -> str:
@@ -170,6 +158,38 @@ def failures(rows: list[dict]) -> list[str]:
             + [f"{row['variant']}: model and hardware differ: {row['difference'].split('; direction')[0]}"
                for row in of(rows, "checks") if row["difference"] != "none"]
             + ["the unit could not be synthesised"] * missing)
+
+
+PAGE = """# {{ mine.variant }}
+
+{{ usual.scene|capitalize }}, {{ usual.width }} x {{ usual.height }} pixels, Whitted, one sample a pixel.
+
+{% if of("proofs") %}
+{{ table(of("proofs"), "module = file", "claim", "by = how", "outcome = 'holds' if holds else 'REFUTED'", "s = seconds :.1f") }}
+{% for row in of("proofs") if not row.holds %}
+**{{ row.file }} is refuted.** {{ row.counterexample }}.
+
+{% endfor %}
+{% endif %}
+{{ table(figures, "figure", usual.variant ~ " = usual :s", mine.variant ~ " = mine :s", "ratio = ratio :.3f") }}
+Area and period: `make synth`, OSU 0.35 um, cells alone, no wires. Clocks: of this unit's simulation. Wrong: camera rays' tests against exact arithmetic.
+{% if mine.engine == "unit" %}
+The picture and its tests are of the Verilated unit with what was brought along.
+{% endif %}
+{% if of("checks")[-1].difference == "none" %}
+Its reference model and its hardware gave the same words in {{ "{:,}".format(of("checks")[-1].tests) }} tests.
+{% else %}
+Its reference model and its hardware differ: {{ of("checks")[-1].difference.split("; direction")[0] }}.
+{% endif %}
+
+{{ figure(pictures, "Its picture beside " ~ usual.variant ~ "'s, and where they differ (FLIP; black: not at all).") }}
+{% if path %}
+## Critical path
+
+{{ path }}
+From [netlist]({{ run }}/netlist.v), [timing]({{ run }}/timing.txt), [log]({{ run }}/yosys.log).
+{% endif %}
+"""
 
 
 def main() -> int:

@@ -7,7 +7,7 @@
 #include <bit>
 #include <cmath>
 
-#include "host/lab/stress/random.h"
+#include "host/lab/stress/cases.h"
 #include "sim/fp/float_cores.h"
 #include "sim/fp/vectors.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "host/exact/exact.h"
-#include "host/lab/stress/random.h"
+#include "host/lab/stress/cases.h"
 #include "host/scene/camera.h"
 #include "sim/random_bursts.h"
 

@@ -4,19 +4,25 @@ import pathlib
 import tempfile
 import unittest
 
-from host.lab.bench import costs
-from host.lab.report import document, plots
-from host.lab.targets import bench, speed
+from host.lab.report import document
+from host.lab.targets import bench, core, costs, speed, stress
 
 VARIANT = {"table": "variants", "variant": "binary32", "unit": "serial", "exponent_bits": 8,
            "digits": 24, "rounding": "nearest-even", "flush": False, "quotient_digits": 0, "fused": False,
            "doubts": True, "hardware": True}
 
 
-def core(top, area, delay, flow="small", **parameters):
+def unit(top, area, delay, flow="small", **parameters):
     """A row of synthesis."""
     return {"table": "synthesis", "top": top, "design": top, "target": "osu035", "flow": flow,
             "area": area, "delay_ns": delay, "parameters": parameters}
+
+
+def core_row(run, rays, latency, **values):
+    """A row of `lab core`."""
+    return {"table": "core", "part": run, "scene": "a", "rays": rays, "latency": latency, "cores": 1,
+            "clocks_per_ray": latency / 10, "lines_per_ray": 0.5, "bytes_per_ray": 32.0, "nodes_percent": 70.0,
+            "triangles_percent": 80.0, "waits_percent": 1.5, "doubts_per_1000": 0.25, **values}
 
 
 class Document(unittest.TestCase):
@@ -38,6 +44,15 @@ class Document(unittest.TestCase):
             self.assertEqual(document.save(file, [{"n": 1234, "what": "a, b"}, {"what": "none"}], "n :,", "what"), "[long.csv](long.csv)")
             self.assertEqual(file.read_text(), 'n,what\n1234,"a, b"\n,none\n')
 
+
+    def test_lines_are_wrapped_but_for_tables(self):
+        long = " ".join(["word"] * 40)
+        page = document.wrap(f"# A\n\n{long}\nmore\n* {long}\n* b\n\n| {long} |\n\n\n\n![a](b)\n")
+        lines = page.splitlines()
+        self.assertEqual([line[:6] for line in lines], ["# A", "", "word w", "word w", "* word", "  word", "* b", "", "| word", "", "![a](b"])
+        self.assertLessEqual(max(len(line) for line in lines if line[:1] != "|"), 120)
+
+
 class Rows(unittest.TestCase):
     def test_the_best_of_embrees_modes_counts(self):
         rows = [{"table": "rays", "scene": "a", "rays": "light", "by": by, "mrays_per_second": rate, "spread_percent": 5.0}
@@ -47,15 +62,45 @@ class Rows(unittest.TestCase):
         self.assertEqual((found["robust"], found["robust_mode"]), ("1.20 ± 0.12", "Embree 1"))
 
 
-class Plots(unittest.TestCase):
-    def test_front(self):
-        # 1 is worse than 0 in both; 3 equals 0 in x and is worse; 4 is best in y.
-        points = [(1, 5), (2, 6), (3, 2), (1, 7), (9, 1)]
-        self.assertEqual(plots.front(points), [0, 2, 4])
+    def test_stress_fails_where_an_exact_subject_is_wrong(self):
+        row = {"table": "stress", "suite": "a", "subject": "b", "subject_is": "", "suite_is": "", "exact": True, "simulated": False,
+               "spotless": True, "broken_claims": 0, "seconds": 1.0, "failures": []} | dict.fromkeys(
+                   (*stress.COUNTS, *stress.LARGEST), 0) | {"tests": 5, "rays": 5}
+
+        def failures(**changed):
+            return stress.failures([row | changed])
+
+        self.assertEqual(failures(), [])
+        self.assertEqual(failures(exact=False, spotless=False), [])
+        for changed in ({"tests": 0}, {"spotless": False, "failures": ["00000000"]}, {"broken_claims": 1}):
+            self.assertEqual(len(failures(**changed)), 1)
+        self.assertTrue(failures(spotless=False, failures=["00000000"])[0].endswith("\n00000000"))
+        with tempfile.TemporaryDirectory() as name:
+            rows = [{"table": "machine", "command": "make stress"}, row, row | {"subject": "c", "exact": False, "tests": 9, "wrong": 2}]
+            page = document.render(stress.PAGE, pathlib.Path(name), rows, **stress.values(rows, pathlib.Path(name)))
+        self.assertIn("**Passed**: 1 suites, 5 cases, 0 of them by the simulated hardware, by `make stress`", page)
+
+
+class CoreReport(unittest.TestCase):
+    def test_a_row_has_the_clocks_of_all_latencies(self):
+        with tempfile.TemporaryDirectory() as name:
+            rows = (
+                [*(core_row("scenes", "camera", latency) for latency in (1, 50, 200)),
+                 *(core_row("cores", "camera", 50, cores=cores, clocks_per_ray=6 / cores) for cores in (1, 2)),
+                 core_row("exact", "path", 50, exact=False, clocks_per_ray=4.0),
+                 core_row("exact", "path", 50, exact=True, clocks_per_ray=5.0, near_ties_per_1000=2.0, exact_percent=1.25)])
+            text = document.render(core.PAGE, pathlib.Path(name), rows, **core.values(rows, pathlib.Path(name)))
+            saved = (pathlib.Path(name) / "core-scenes.csv").read_text().splitlines()[1]
+        self.assertEqual(saved, "a,camera,0.10,5.00,20.00,0.50,32,70.0,80.0,0.25")
+        rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| a ")]
+        self.assertEqual(rows, [
+            ["a", "camera", "0.10", "5.00", "20.00", "0.25"],
+            ["a", "4.00", "5.00", "0.25", "1.25"],
+            ["a", "camera", "6.00", "3.00", "1.5"]])
 
 
 class Costs(unittest.TestCase):
-    UNITS = [core("hit_test_unit", 50, 20.0), core("hit_test_unit", 7, 6.0, FracWidth="15", flow="parts")]
+    UNITS = [unit("hit_test_unit", 50, 20.0), unit("hit_test_unit", 7, 6.0, FracWidth="15", flow="parts")]
 
     def test_a_unit_in_its_format(self):
         self.assertEqual(costs.unit(self.UNITS, VARIANT)["area"], 50)
@@ -64,7 +109,7 @@ class Costs(unittest.TestCase):
     def test_unknown_formats_cost_nothing_known(self):
         self.assertIsNone(costs.unit(self.UNITS, {**VARIANT, "digits": 12}))
         self.assertIsNone(costs.unit(self.UNITS, {**VARIANT, "fused": True}))
-        self.assertIsNone(costs.unit([core("hit_test_unit", 1, 1.0, Arith="2")], VARIANT))
+        self.assertIsNone(costs.unit([unit("hit_test_unit", 1, 1.0, Arith="2")], VARIANT))
 
 
 class Frames(unittest.TestCase):
@@ -76,7 +121,7 @@ class Frames(unittest.TestCase):
         simulated = {key: value for key, value in row.items() if key != "decisions"}
         simulated |= {"engine": "unit", "unit_tests": 100, "clocks": 700}
         (frame,) = bench.frames([row, simulated, {**VARIANT, "variant": "serial"}, VARIANT,
-                                 core("hit_test_unit", 50, 20.0)])
+                                 unit("hit_test_unit", 50, 20.0)])
         self.assertEqual((frame["scene"], frame["clocks"], frame["wrong"]), ("a", 7000, 4000))
         self.assertFalse(frame["clocks_modelled"])
         self.assertAlmostEqual(frame["frame_ms"], 0.14)

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "host/lab/stress/oracle.h"
-#include "host/lab/stress/suites.h"
 #include "sim/test/exact/reference_exact_unit.h"
 
 namespace raygate::lab {
@@ -43,7 +42,7 @@ class ExactCases {
     using Against = ExactRequest::Against;
     std::vector<ExactCase> cases;
     const Shot shot = generate_(random_);
-    const auto& triangles = shot.mesh->triangles;
+    const Mesh& triangles = *shot.mesh;
     const Truth truth = find_truth(shot);
     for (std::size_t i = 0; i < shot.directions.size(); ++i) {
       if (!is_usable(shot.directions[i])) continue;

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "host/lab/stress/subjects.h"
-#include "host/lab/stress/suites.h"
-#include "host/lab/stress/tally.h"
+#include "host/lab/stress/stress.h"
 #include "host/scene/camera.h"
 
 namespace raygate::lab {
@@ -63,7 +61,7 @@ TEST(InPlaceStacks, TheNearestIsNotCulled) {
       float depth = 1.0f;
       for (int steps = random.below(3); steps > 0; --steps) depth = std::nextafter(depth, 2.0f);
       const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
-      mesh->triangles.push_back(
+      mesh->push_back(
           {at(x - 2.0, y - 2.0, depth), at(x + 2.0, y - 2.0, depth), at(x, y + 2.0, depth)});
     }
     Shot& shot = shots.emplace_back();

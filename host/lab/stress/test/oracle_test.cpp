@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "host/lab/stress/suites.h"
-
 namespace raygate::lab {
 namespace {
 
@@ -61,8 +59,8 @@ TEST(Oracle, AgreesWithRationalsInEverySuite) {
       for (std::size_t ray = 0; ray < shot.directions.size(); ++ray) {
         const glm::vec3& direction = shot.directions[ray];
         std::vector<std::pair<mpq_class, std::uint32_t>> met_here;
-        for (std::uint32_t i = 0; i < shot.mesh->triangles.size(); ++i) {
-          const Corners& t = shot.mesh->triangles[i];
+        for (std::uint32_t i = 0; i < shot.mesh->size(); ++i) {
+          const Corners& t = (*shot.mesh)[i];
           const bool hit = hits(shot.origin, direction, t);
           ASSERT_EQ((verdict++)->hit, hit) << suite.name;
           if (hit) met_here.emplace_back(distance(shot.origin, direction, t), i);
@@ -86,10 +84,9 @@ TEST(Oracle, TellsTheNearestAndItsTies) {
   const auto at_depth = [](float z) {
     return Corners{glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)};
   };
-  auto mesh = std::make_shared<Mesh>();
-  mesh->triangles = {at_depth(2), at_depth(1), at_depth(1), at_depth(-1)};
   Shot shot;
-  shot.mesh = mesh;
+  shot.mesh =
+      std::make_shared<const Mesh>(Mesh{at_depth(2), at_depth(1), at_depth(1), at_depth(-1)});
   shot.directions = {glm::vec3(0, 0, 1), glm::vec3(0, 0, -1), glm::vec3(1, 0, 0), glm::vec3(0)};
   const Truth truth = find_truth(shot);
   EXPECT_EQ(truth.orders[0], (std::vector<std::uint32_t>{1, 2, 0}));

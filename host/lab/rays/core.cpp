@@ -9,7 +9,7 @@
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/lab/commands.h"
+#include "host/lab/lab.h"
 #include "host/lab/rays/rays.h"
 #include "host/light/lights.h"
 #include "host/render/renderer.h"
@@ -25,13 +25,13 @@ struct Options {
   std::vector<std::string> scenes;
   std::vector<int> latencies = {1, 50, 200}, cores = {1};
   std::vector<std::string> kinds = {"camera", "light", "scattered"};
-  int size = 128, every = 1;
+  int size = 128;
   bool exact = false;
 };
 
 class CoreBench {
  public:
-  CoreBench(const Options& options, Results& results) : options_(options), results_(results) {}
+  explicit CoreBench(const Options& options) : options_(options) {}
 
   void scene(const std::filesystem::path& file) {
     const Scene scene = load_obj(file);
@@ -43,10 +43,9 @@ class CoreBench {
     };
     for (const RaySet& set : ray_sets(scene, options_.size - options_.size % 128)) {
       if (!is_asked(set.name)) continue;
-      const RaySet chosen = every(set);
       run(bvh, image, set.name, [&](const IntersectorFactory& make_intersector) {
-        std::vector<NearestHit> hits(chosen.rays.size());
-        make_intersector()->intersect(chosen.rays, chosen.query(0, hits.size()), hits);
+        std::vector<NearestHit> hits(set.rays.size());
+        make_intersector()->intersect(set.rays, set.query(0, hits.size()), hits);
         return hits.size();
       });
     }
@@ -55,7 +54,7 @@ class CoreBench {
       run(bvh, image, kind, [&](const IntersectorFactory& make_intersector) {
         const Camera camera = front_camera(scene, 1.0);
         RenderSettings options;
-        options.width = options.height = options_.size / options_.every;
+        options.width = options.height = options_.size;
         options.samples = 1;
         options.integrator = integrator;
         RenderStats stats;
@@ -72,18 +71,6 @@ class CoreBench {
       {"whitted", IntegratorKind::kWhitted}, {"path", IntegratorKind::kPath}};
   /// Traces rays, and returns their number.
   using Trace = std::function<std::size_t(const IntersectorFactory&)>;
-
-  /// Returns one of every `options_.every` rays.
-  [[nodiscard]] RaySet every(const RaySet& set) const {
-    RaySet some = set;
-    some.rays.clear();
-    some.t_max.clear();
-    for (std::size_t i = 0; i < set.rays.size(); i += static_cast<std::size_t>(options_.every)) {
-      some.rays.push_back(set.rays[i]);
-      if (!set.t_max.empty()) some.t_max.push_back(set.t_max[i]);
-    }
-    return some;
-  }
 
   void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const std::string& kind,
            const Trace& trace) {
@@ -108,31 +95,30 @@ class CoreBench {
     const auto percent = [&](std::uint64_t clocks) {  // of the clocks of all cores
       return 100.0 * a_ray(clocks) / (a_ray(counters.clocks) * cores.cores);
     };
-    results_.add({{"table", "core"},
-                  {"scene", name_},
-                  {"rays", kind},
-                  {"exact", options_.exact},
-                  {"latency", timing.latency},
-                  {"cores", cores.cores},
-                  {"clocks_per_ray", a_ray(counters.clocks)},
-                  {"lines_per_ray", a_ray(counters.lines)},
-                  {"bytes_per_ray", 64.0 * a_ray(counters.lines)},
-                  {"nodes_percent", percent(counters.nodes)},
-                  {"triangles_percent", percent(counters.triangles)},
-                  {"waits_percent", percent(counters.waits)},
-                  {"exact_percent", percent(counters.exact_clocks)},
-                  {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
-                  {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)}});
+    print({{"table", "core"},
+           {"scene", name_},
+           {"rays", kind},
+           {"exact", options_.exact},
+           {"latency", timing.latency},
+           {"cores", cores.cores},
+           {"clocks_per_ray", a_ray(counters.clocks)},
+           {"lines_per_ray", a_ray(counters.lines)},
+           {"bytes_per_ray", 64.0 * a_ray(counters.lines)},
+           {"nodes_percent", percent(counters.nodes)},
+           {"triangles_percent", percent(counters.triangles)},
+           {"waits_percent", percent(counters.waits)},
+           {"exact_percent", percent(counters.exact_clocks)},
+           {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
+           {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)}});
   }
 
   const Options& options_;
-  Results& results_;
   std::string name_;
 };
 
 }  // namespace
 
-void add_core(CLI::App& lab, Outcome& outcome) {
+void add_core(CLI::App& lab) {
   auto* app = lab.add_subcommand("core", "clocks, lines and bytes a ray of the simulated ray core");
   const auto options = std::make_shared<Options>();
   app->add_option("scenes", options->scenes, "OBJ files")->required();
@@ -145,12 +131,9 @@ void add_core(CLI::App& lab, Outcome& outcome) {
   app->add_option("--kinds", options->kinds,
                   "of rays: camera, light, scattered; all of a picture: whitted, path")
       ->check(CLI::IsMember({"camera", "light", "scattered", "whitted", "path"}));
-  app->add_option("--every", options->every,
-                  "of the rays only each so-manieth; of a picture's rows and columns")
-      ->check(CLI::Range(1, 1024));
   app->add_flag("--exact", options->exact, "cores settle doubts; else the host does");
-  app->callback([options, &outcome] {
-    CoreBench bench(*options, outcome.results);
+  app->callback([options] {
+    CoreBench bench(*options);
     for (const std::string& scene : options->scenes) bench.scene(scene);
   });
 }

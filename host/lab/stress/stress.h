@@ -1,12 +1,12 @@
-// Tally: counts of a subject's wrong decisions, and its errors in ulps.
+// The stress test: counts of a subject's wrong decisions, and its errors.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "host/lab/results.h"
+#include "host/lab/lab.h"
 #include "host/lab/stress/oracle.h"
-#include "host/lab/stress/shot.h"
 #include "host/lab/stress/subjects.h"
 
 namespace raygate::lab {
@@ -17,8 +17,7 @@ struct Tally {
   std::uint64_t refused = 0;          ///< rays outside of the subject's range
   /// Tests with a wrong decision, or with an interval that does not contain t, except ties.
   std::uint64_t wrong = 0;
-  std::uint64_t ties = 0;  ///< tests that only the tie-break decides
-  /// Wrong decisions among `ties`; allowed unless the subject is exact.
+  /// Likewise in tests that only the tie-break decides; allowed unless the subject is exact.
   std::uint64_t wrong_ties = 0;
   std::uint64_t escapes = 0;             ///< rays from inside a closed mesh without a hit
   std::uint64_t double_hits = 0;         ///< rays from inside with too many hits
@@ -27,20 +26,15 @@ struct Tally {
   std::uint64_t orders = 0;              ///< rays for which the subject returned all hits in order
   std::uint64_t wrong_order = 0;         ///< rays among `orders` with a wrong order or wrong hits
   std::uint64_t hits = 0, doubts = 0;
-  /// Largest errors of correct hits, in ulps: of t, and of any coordinate of P.
-  double t_ulp = 0.0, point_ulp = 0.0;
-  /// Largest errors of the hits that the host delivers.
+  /// Largest errors of the hits that the host delivers, in ulps: of t, and of any coordinate of P.
   double delivered_t_ulp = 0.0, delivered_point_ulp = 0.0;
   /// Largest errors of sure hits, relative to the bounds of tally.cpp for binary32.
   double t_of_bound = 0.0, point_of_bound = 0.0;
   /// Largest error of P, relative to the reported bound (NearestHit::point_error).
   double point_of_said = 0.0;
-  std::vector<Case> failures;  ///< the first few; ties only for exact subjects
+  /// The first few failures, as lines of test/regressions.txt; ties only for exact subjects.
+  std::vector<std::string> failures;
 
-  /// Returns the number of wrong decisions on hits, nearest and order; ties if `exact`.
-  [[nodiscard]] std::uint64_t wrong_decisions(bool exact) const {
-    return wrong + wrong_nearest + (exact ? wrong_ties + wrong_tied_nearest + wrong_order : 0);
-  }
   /// Returns whether an exact subject passes: no wrong decision, and errors within proven bounds.
   [[nodiscard]] bool spotless() const;
   /// Returns a column for each member.
@@ -50,5 +44,16 @@ struct Tally {
 /// Compares a subject's answers for some shots with the oracle's.
 void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
            const SubjectKind& subject, Tally& tally);
+
+/// Runs a suite with every subject, on its share of `tests` at least, and returns a row for each.
+/// All subjects see prefixes of one sequence of cases.
+[[nodiscard]] std::vector<Row> run(const Suite& suite, const std::vector<SubjectKind>& subjects,
+                                   std::uint64_t tests, std::uint64_t seed);
+
+/// Runs the public acceptance tests of watertightness (watertight.cpp), with `triangles` (at least
+/// 4) in a mesh, as many rays, and `seeds` meshes of nomiss. Returns a row for each test and hit
+/// test: "test", "by", "exact" (whether it claims to be exact), "rays", "escapes" and "double_hits"
+/// (null for hit tests that find only the nearest hit).
+[[nodiscard]] std::vector<Row> watertight_rows(int triangles, int seeds);
 
 }  // namespace raygate::lab

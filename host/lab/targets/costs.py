@@ -9,7 +9,6 @@ import sys
 
 from host.lab.rows import ROOT
 from synth import brought, catalogue, measure as synth, tools
-from synth.layout import flow as placement
 
 LIBRARY = "osu035"  # of the paper's time
 FLOWS = ("parts", "small")  # the first available one is used
@@ -32,19 +31,15 @@ def design(variant: dict) -> catalogue.Design:
                                                        if value != USUAL[name]})
 
 
-def _measured(folder: str, rows: dict, workers: int, wires: bool) -> list[dict]:
+def _measured(folder: str, rows: dict, workers: int) -> list[dict]:
     with brought.in_place(pathlib.Path(folder)) if folder else contextlib.nullcontext():
         made, failures = synth.measure(list(rows.values()), synth.Targets((LIBRARY,), workers))
-        for record in made if wires else ():
-            placed = placement.Job(rows[record["design"]].design, catalogue.library(LIBRARY), FLOWS[0], *placement.SPARSE, routed=False)
-            record["wired_ns"] = placement.make(placed)[0]["guess_ns"]
     print("\n".join(failures), file=sys.stderr)
     return [{**record, "brought": folder} for record in made]
 
 
-def synthesis(variants: list[dict], workers: int, measure: bool, wires: bool = False) -> list[dict]:
+def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
     """Returns rows of the results of `make synth` and, with `measure`, of each unit in each format of the variants.
-    With `wires`, units are also placed: `wired_ns` is the period with the wires estimated by layout/estimate.py.
     Reports failures and missing tools on standard error."""
     file = ROOT / "build" / "synth" / "results.json"
     records = json.loads(file.read_text())["results"] if file.exists() else []
@@ -55,7 +50,7 @@ def synthesis(variants: list[dict], workers: int, measure: bool, wires: bool = F
                 designs[variant["brought"]][design(variant).name] = catalogue.Row("variants", design(variant), {LIBRARY: FLOWS[:1]})
         try:
             with concurrent.futures.ProcessPoolExecutor() as pool:  # the choice of files is per process
-                for made in pool.map(functools.partial(_measured, workers=-(-workers // len(designs)), wires=wires), *zip(*designs.items())):
+                for made in pool.map(functools.partial(_measured, workers=-(-workers // len(designs))), *zip(*designs.items())):
                     records = made + records
         except (tools.MissingTool, tools.ToolFailed) as error:
             print(error, file=sys.stderr)

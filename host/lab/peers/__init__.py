@@ -1,1 +1,0 @@
-"""`make peers`: compares error against time of raygate and Mitsuba 3 on the same scenes."""

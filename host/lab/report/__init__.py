@@ -1,1 +1,0 @@
-"""Report generator: templates, tables, plots."""
