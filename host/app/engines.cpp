@@ -103,7 +103,7 @@ std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& file
   CoreCounters counters;
   {
     const std::shared_ptr<CoreUnit> core = make_core_wave(file.unnamed(), engine.memory);
-    CoreIntersector(bvh, std::move(image), core).intersect({&ray, 1}, {}, {&hit, 1});
+    CoreIntersector(bvh, std::move(image), core).nearest({&ray, 1}, {}, {&hit, 1});
     counters = core->counters();
   }
   file.commit();

@@ -230,7 +230,7 @@ void ShadowRays::trace(bool from_light, float enough) {
   work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;
   hits_.resize(batch_.size());
-  intersector_.intersect(batch_, search, hits_);
+  intersector_.occluded(batch_, search, hits_);
   rays_ += batch_.size();
   for (std::size_t i = 0; i < work_.size(); ++i) (*traced_)(work_[i], segments_[i].index);
 }

@@ -70,7 +70,7 @@ struct Tracer::Tree {
     std::vector<NearestHit> hits(block.rays.size());
     RayQuery query{.t_max = block.limits};
     if (any) query.any_hit_before = block.limits;
-    CpuIntersector(bvh).intersect(block.rays, query, hits);
+    CpuIntersector(bvh).nearest(block.rays, query, hits);
     return hits;
   }
 

@@ -1,6 +1,5 @@
 #include "host/intersect/core/core_intersector.h"
 
-#include <cassert>
 #include <stdexcept>
 #include <string>
 
@@ -48,11 +47,9 @@ IntersectCounters CoreIntersector::counters() const {
   return counters;
 }
 
-void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
-                                std::span<NearestHit> hits) {
-  assert(hits.size() == rays.size());
+void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
+                            std::span<NearestHit> hits) {
   Stopwatch watch;
-  clear(query, hits);
   sent_.clear();
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     if (!is_usable(rays[i].direction)) continue;
@@ -80,7 +77,7 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
   }
   counters_.traverse += watch.lap();
   PointWriter points(bvh_, rays, false, hits);
-  for (std::uint32_t i = 0; i < rays.size() && query.any_hit_before.empty(); ++i) {
+  for (std::uint32_t i = 0; i < rays.size() && query.with_points; ++i) {
     if (points.count() == PointWriter::kMost) points.write();
     if (hits[i].primitive != NearestHit::kNone) points.add(i, hits[i].primitive);
   }

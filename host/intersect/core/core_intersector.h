@@ -26,11 +26,10 @@ class CoreIntersector : public Intersector {
         image_(std::move(image)),
         core_(std::move(core)) {}
 
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override;
   [[nodiscard]] IntersectCounters counters() const override;
 
  private:
+  void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits) override;
   void resolve(const Ray& ray, float t_max, const CoreResult& result, NearestHit& best);
 
   const Bvh& bvh_;

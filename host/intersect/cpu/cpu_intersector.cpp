@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 
 #include "host/base/stopwatch.h"
 #include "host/bvh/traversal.h"
@@ -10,11 +9,9 @@
 
 namespace raygate {
 
-void CpuIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
-                               std::span<NearestHit> hits) {
-  assert(hits.size() == rays.size());
+void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
+                           std::span<NearestHit> hits) {
   Stopwatch watch;
-  clear(query, hits);
   HitCounters& counters = counters_.hit;
   const HitCounters before = counters;
   if (query.common_origin && query.culling && !rays.empty()) {

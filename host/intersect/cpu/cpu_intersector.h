@@ -14,9 +14,10 @@ class CpuIntersector : public Intersector {
   /// `bvh` must outlive this object.
   explicit CpuIntersector(const Bvh& bvh) : Intersector({.filters_hits = true}), bvh_(bvh) {}
 
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override;
   [[nodiscard]] IntersectCounters counters() const override { return counters_; }
+
+ protected:
+  void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits) override;
 
  private:
   const Bvh& bvh_;

@@ -747,7 +747,7 @@ class PacketIntersector {
   /// Writes the nearest hits, and adds them to those whose P is to be computed.
   void finish(const ConeTraversal& walk) {
     in_vectors([&](auto) RAYGATE_BODY {
-      const bool with_points = query_.with_points();
+      const bool with_points = query_.with_points;
       for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
         const int g = std::countr_zero(groups);
         LaneMask lanes = 0xFF & ~sign_mask(walk.primitive[g]);

@@ -408,7 +408,7 @@ class SingleRayIntersector {
     hits_[walk.number].primitive = walk.primitive;
     if (walk.primitive == NearestHit::kNone) return;
     hits_[walk.number].t = walk.t();
-    if (query_.any_hit_before.empty()) points_.add(walk.number, walk.primitive);
+    if (query_.with_points) points_.add(walk.number, walk.primitive);
   }
 
   /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide

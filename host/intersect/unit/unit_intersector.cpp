@@ -58,14 +58,12 @@ IntersectCounters UnitIntersector::counters() const {
   return counters;
 }
 
-void UnitIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
-                                std::span<NearestHit> hits) {
-  assert(hits.size() == rays.size());
+void UnitIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
+                            std::span<NearestHit> hits) {
   Stopwatch watch;
   rays_ = rays;
   query_ = query;
   hits_ = hits;
-  clear(query, hits);
   common_ = nullptr;
   if (query.common_origin && !rays.empty()) {
     common_ = &caches_->at(rays[0].origin, counters_.common_records);

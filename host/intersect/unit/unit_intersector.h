@@ -83,11 +83,10 @@ class UnitIntersector : public Intersector {
   UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester,
                   std::shared_ptr<RecordCaches> caches = nullptr);
 
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override;
   [[nodiscard]] IntersectCounters counters() const override;
 
  private:
+  void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits) override;
   /// Up to eight rays of one octant.
   struct Packet {
     Packet(const Bvh& bvh, int octant) : traversal(bvh, octant) {}

@@ -46,7 +46,7 @@ class CoreBench {
       const RaySet chosen = every(set);
       run(bvh, image, set.name, [&](const IntersectorFactory& make_intersector) {
         std::vector<NearestHit> hits(chosen.rays.size());
-        make_intersector()->intersect(chosen.rays, chosen.query(0, hits.size()), hits);
+        make_intersector()->nearest(chosen.rays, chosen.query(0, hits.size()), hits);
         return hits.size();
       });
     }

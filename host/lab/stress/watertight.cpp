@@ -116,7 +116,7 @@ struct Contestant {
 CountHits count_nearest(const std::shared_ptr<Intersector>& intersector) {
   return [intersector](std::span<const Ray> rays) {
     std::vector<NearestHit> hits(rays.size());
-    intersector->intersect(rays, {}, hits);
+    intersector->nearest(rays, {}, hits);
     std::vector<std::uint32_t> counts(rays.size());
     std::ranges::transform(hits, counts.begin(), [](const NearestHit& hit) {
       return hit.primitive == NearestHit::kNone ? 0u : 1u;

@@ -76,8 +76,8 @@ class SourceGuard : public CpuIntersector {
       : CpuIntersector(bvh), bvh_(bvh), named_(named), unnamed_(unnamed) {
     traits_.wants_sources = true;
   }
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override {
+  void trace(std::span<const Ray> rays, const RayQuery& query,
+             std::span<NearestHit> hits) override {
     for (std::size_t i = 0; i < rays.size() && !query.common_origin; ++i) {
       const std::uint32_t source =
           query.source_ids.empty() ? NearestHit::kNone : query.source_ids[i];
@@ -85,7 +85,7 @@ class SourceGuard : public CpuIntersector {
       if (source == NearestHit::kNone) continue;
       EXPECT_FALSE(hits_triangle(rays[i], bvh_.corners_of(source)));
     }
-    CpuIntersector::intersect(rays, query, hits);
+    CpuIntersector::trace(rays, query, hits);
   }
 
  private:

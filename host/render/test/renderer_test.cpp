@@ -234,9 +234,9 @@ TEST(Renderer, AnIntersectorsExceptionReachesTheCaller) {
 class Counting : public CpuIntersector {
  public:
   using CpuIntersector::CpuIntersector;
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override {
-    CpuIntersector::intersect(rays, query, hits);
+  void trace(std::span<const Ray> rays, const RayQuery& query,
+             std::span<NearestHit> hits) override {
+    CpuIntersector::trace(rays, query, hits);
     for (RayWork& work : query.work) work = {.tests = 3'000'000'000u, .doubts = 1000};
   }
 };

@@ -37,7 +37,7 @@ class UnitIntersectorTest : public testing::Test {
 
   std::vector<NearestHit> find(const std::vector<Ray>& rays, const RayQuery& query = {}) {
     std::vector<NearestHit> hits(rays.size());
-    intersector_->intersect(rays, query, hits);
+    test::find(*intersector_, rays, query, hits);
     return hits;
   }
 };
@@ -151,10 +151,10 @@ TEST(UnitIntersector, IgnoredHitsHideNothing) {
   const auto intersector = test::model_intersector(bvh);
   const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0, 0, 1)}};
   std::vector<NearestHit> hits(1);
-  intersector->intersect(rays, {}, hits);
+  intersector->nearest(rays, {}, hits);
   const std::uint32_t first = hits[0].primitive;
   ASSERT_EQ(bvh.triangle_of(first), 0u);
-  intersector->intersect(rays, {.skip_ids = std::span(&first, 1)}, hits);
+  intersector->occluded(rays, {.skip_ids = std::span(&first, 1)}, hits);
   ASSERT_NE(hits[0].primitive, NearestHit::kNone);
   EXPECT_EQ(bvh.triangle_of(hits[0].primitive), 1u);
 }
