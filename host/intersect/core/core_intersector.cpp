@@ -5,7 +5,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/stopwatch.h"
-#include "host/intersect/point_writer.h"
+#include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {
 namespace {
@@ -76,13 +76,14 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
     resolve(rays[result.tag], query.t_max_of(result.tag), result, hits[result.tag]);
   }
   counters_.traverse += watch.lap();
-  PointWriter points(bvh_, rays, false, hits);
-  for (std::uint32_t i = 0; i < rays.size() && query.with_points; ++i) {
-    if (points.count() == PointWriter::kMost) points.write();
-    if (hits[i].primitive != NearestHit::kNone) points.add(i, hits[i].primitive);
+  for (std::size_t i = 0; i < rays.size() && query.with_points; ++i) {
+    if (hits[i].primitive == NearestHit::kNone) continue;
+    const PolygonRecord plane = make_plane(rays[i].origin, bvh_.corners_of(hits[i].primitive));
+    const auto [point, error] = plane_point(plane, rays[i].direction);
+    hits[i].point = point;
+    hits[i].point_error = error;
+    ++counters_.hit.plane_tests;
   }
-  points.write();
-  counters_.hit.plane_tests += points.written();
   counters_.record += watch.lap();
 }
 

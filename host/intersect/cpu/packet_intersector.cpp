@@ -12,7 +12,6 @@
 #include "host/exact/exact.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/cpu/quad_test.h"
-#include "host/intersect/point_writer.h"
 
 namespace raygate {
 namespace {

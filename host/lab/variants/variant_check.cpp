@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "host/intersect/unit/burst_unit.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/lab/variants/rtl_variant_units.h"
 #include "host/variants/variant_hit_tester.h"
 #include "sim/random_bursts.h"
