@@ -75,9 +75,8 @@ IntersectorFactory make_intersector_factory(const EngineOptions& options, const 
       return std::make_unique<CoreIntersector>(bvh, image, make_core(options));
     };
   } else {
-    make_unit = [options, &bvh, skips,
-                 caches = std::make_shared<RecordCaches>(bvh, skips.records)] {
-      return std::make_unique<UnitIntersector>(bvh, make_tester(options, skips), caches);
+    make_unit = [options, &bvh, skips] {
+      return std::make_unique<UnitIntersector>(bvh, make_tester(options, skips));
     };
   }
   if (options.engine != Engine::kCheck) return make_unit;

@@ -47,8 +47,8 @@ struct RayWork {
 /// Options of a search for many rays. Spans must outlive it, and are empty or have one element per
 /// ray. Those from `skip_ids` on are for Intersector::occluded.
 struct RayQuery {
-  /// All rays start at one point that other queries also use (the camera, a light), so that its
-  /// polygon records are cached. Does not change results.
+  /// All rays start at one point (the camera, a light), which some engines make use of. Does not
+  /// change results.
   bool common_origin = false;
   /// Positive. Only hits with exact t < t_max[i] count; +infinity: no limit.
   std::span<const float> t_max{};
