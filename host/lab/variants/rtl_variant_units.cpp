@@ -94,7 +94,7 @@ std::unique_ptr<HitTester> make_rtl_variant_tester(const Variant& variant) {
     return unit ? make_variant_tester(variant, std::move(unit)) : nullptr;
   }
   auto unit = make_rtl_burst_unit(variant);
-  return unit ? std::make_unique<VariantHitTester>(variant, std::move(unit)) : nullptr;
+  return unit ? make_variant_tester(variant, std::move(unit)) : nullptr;
 }
 
 }  // namespace raygate
