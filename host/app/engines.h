@@ -17,8 +17,8 @@ namespace raygate {
 void prepare_engine(const EngineOptions& options);
 
 /// Returns a factory of intersectors of the engine. Each intersector owns its simulated model. Only
-/// `skips.divisions` is used. The tree must outlive factory and intersectors. `image`: the tree's memory image for ray cores;
-/// null: made if needed.
+/// `skips.divisions` is used. The tree must outlive factory and intersectors. `image`: the tree's
+/// memory image for ray cores; null: made if needed.
 [[nodiscard]] IntersectorFactory make_intersector_factory(
     const EngineOptions& options, const Bvh& bvh, const Skips& skips = {},
     std::shared_ptr<const MemoryImage> image = nullptr);

@@ -1,5 +1,5 @@
-// BVH traversal: the leaves that a query meets, the triangles near a box, and slab tests of rays with
-// one origin.
+// BVH traversal: the leaves that a query meets, the triangles near a box, and slab tests of rays
+// with one origin.
 #pragma once
 
 #include <algorithm>

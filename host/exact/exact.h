@@ -21,20 +21,6 @@ template <class T>
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Returns the exponent of the power of two that scales the largest component of `v` into [1, 2); 0
-/// if `v` is 0 or not finite.
-template <class T>
-[[nodiscard]] int to_unit(const glm::vec<3, T>& v) {
-  const T size = largest(v);
-  return size > T(0) && std::isfinite(size) ? -std::ilogb(size) : 0;
-}
-
-/// Returns v 2^exponent.
-template <class T>
-[[nodiscard]] glm::vec<3, T> scaled_by(const glm::vec<3, T>& v, int exponent) {
-  return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
-}
-
 /// Largest magnitude of coordinates that BVHs and predicates accept.
 inline constexpr double kMostCoordinate = 0x1p126;
 

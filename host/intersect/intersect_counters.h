@@ -45,11 +45,11 @@ struct HitCounters {
 /// Statistics of an intersector since its construction.
 struct IntersectCounters {
   HitCounters hit;
-  std::uint64_t exact_inside = 0;    ///< edge doubts resolved by exact arithmetic, without those
-                                     ///< surely too far away
-  std::uint64_t exact_depth = 0;     ///< exact comparisons of two hits, or of a hit and t_max
-  std::uint64_t ended_early = 0;     ///< rays ended early by RayQuery::any_hit_before
-  std::uint64_t records = 0;         ///< polygon records made
+  std::uint64_t exact_inside = 0;  ///< edge doubts resolved by exact arithmetic, without those
+                                   ///< surely too far away
+  std::uint64_t exact_depth = 0;   ///< exact comparisons of two hits, or of a hit and t_max
+  std::uint64_t ended_early = 0;   ///< rays ended early by RayQuery::any_hit_before
+  std::uint64_t records = 0;       ///< polygon records made
   // Seconds.
   double traverse = 0.0;   ///< boxes
   double record = 0.0;     ///< records

@@ -213,7 +213,8 @@ class VariantHitTester : public PipelineHitTester {
   static void take_as_it_is(float t, HitReport& report, HitReports& reports) {
     if (!(t > 0.0f) || std::isinf(t)) return;
     // Separates equal distances in the order of the tags, far below the precision of float32.
-    const double told_apart = t * (1.0 + std::ldexp(static_cast<double>(report.hit.primitive), -52));
+    const double told_apart =
+        t * (1.0 + std::ldexp(static_cast<double>(report.hit.primitive), -52));
     report.is_sure = true;
     report.hit.t = {told_apart, told_apart};
     report.hit.point_error = 0.0f;  // without bounds, the unit's P is used as it is

@@ -415,8 +415,8 @@ TEST(OutputOptions, LightByName) {
   EXPECT_EQ(point_error("1e-4"), 1e-4f);
   EXPECT_EQ(point_error("inf"), std::numeric_limits<float>::max());
   const Skips none = parse({"a.obj", "--no-skip", "all"}).render.skips;
-  EXPECT_FALSE(none.culling || none.light_behind || none.weightless ||
-               none.empty_tiles || none.first_occluder || none.divisions);
+  EXPECT_FALSE(none.culling || none.light_behind || none.weightless || none.empty_tiles ||
+               none.first_occluder || none.divisions);
   expect_error({"a.obj", "--integrator", "photon"}, "--integrator: expected primary, whitted or");
   expect_error({"a.obj", "--spp", "0"}, "--spp: expected a whole number from 1");
   expect_error({"a.obj", "--depth", "-1"}, "--depth: expected a whole number from 0");

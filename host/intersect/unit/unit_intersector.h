@@ -17,8 +17,8 @@ namespace raygate {
 /// these leaves form a batch for the tester, whose results shorten the rays. Packets are split into
 /// two halves: one traverses while the tester works on the other.
 ///
-/// Polygon records are made when a ray reaches a leaf, once for all rays of its packet with the same
-/// origin.
+/// Polygon records are made when a ray reaches a leaf, once for all rays of its packet with the
+/// same origin.
 class UnitIntersector : public Intersector {
  public:
   /// `bvh` must outlive this object.

@@ -99,9 +99,7 @@ class Pictures {
     const PreparedScene prepared(scene_, bvh_);
     film = render(
         {prepared, camera(asked.width, asked.height), options, lights_},
-        [&] {
-          return std::make_unique<UnitIntersector>(bvh_, tester_of(variant, by_hardware));
-        },
+        [&] { return std::make_unique<UnitIntersector>(bvh_, tester_of(variant, by_hardware)); },
         stats);
     return {{"table", "pictures"},
             {"scene", asked.scene},
