@@ -39,7 +39,7 @@ void PointWriter::write() {
   }
   in_vectors([&](auto) RAYGATE_BODY {
     for (std::size_t first = 0; first < count_; first += kQuad) {
-      FloatQuad rows[kQuad], n[kQuad], point[3];  // n[3]: d of the plane
+      FloatQuad rows[kQuad], n[kQuad] = {}, point[3];  // n[3]: d of the plane
       std::uint32_t number[kQuad];
       for (std::size_t i = 0; i < kQuad; ++i) {
         const std::size_t at = std::min(first + i, count_ - 1);
