@@ -217,9 +217,9 @@ void ShadowRays::trace(bool from_light, float enough) {
   }
   RayQuery search{.common_origin = from_light,
                   .t_max = limits_,
-                  .skip_ids = ignored_,
                   .source_ids = sources_,
-                  .culling = culling_};
+                  .culling = culling_,
+                  .skip_ids = ignored_};
   const std::function is_enough = [this](std::size_t number, std::uint32_t primitive) {
     return ends_at(number, primitive);
   };

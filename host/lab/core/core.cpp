@@ -46,7 +46,7 @@ class CoreBench {
       const RaySet chosen = every(set);
       run(bvh, image, set.name, [&](const IntersectorFactory& make_intersector) {
         std::vector<NearestHit> hits(chosen.rays.size());
-        make_intersector()->nearest(chosen.rays, chosen.query(0, hits.size()), hits);
+        chosen.find(*make_intersector(), 0, hits);
         return hits.size();
       });
     }

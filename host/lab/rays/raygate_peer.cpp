@@ -25,8 +25,7 @@ class RaygatePeer : public Peer {
     std::vector<NearestHit> hits(intersector.traits().batch);
     for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
       const std::size_t count = std::min(hits.size(), rays.size() - first);
-      intersector.nearest(rays.subspan(first, count), set_->query(first, count),
-                          std::span(hits).first(count));
+      set_->find(intersector, first, std::span(hits).first(count));
       for (std::size_t i = 0; i < count; ++i) {
         found.triangle[first + i] = triangle_of(hits[i]);
         found.t[first + i] = static_cast<float>(hits[i].t.low);
