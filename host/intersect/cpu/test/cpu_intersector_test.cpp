@@ -91,7 +91,7 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
         if (found[i].primitive == NearestHit::kNone) continue;
         EXPECT_EQ(found[i].t.low, first[i].t.low) << i << ", " << name_of(vectors);
         EXPECT_EQ(found[i].t.high, first[i].t.high) << i << ", " << name_of(vectors);
-        if (query.with_points()) expect_same_points(found[i], first[i]);
+        if (test::with_points(query)) expect_same_points(found[i], first[i]);
       }
     }
     return hits;
@@ -114,7 +114,7 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
         continue;
       }
       EXPECT_EQ(a.primitive, b.primitive) << i;
-      if (is_hit && query.with_points()) expect_same_points(a, b);
+      if (is_hit && test::with_points(query)) expect_same_points(a, b);
       EXPECT_LE(a.t.low, b.t.high);
       EXPECT_GE(a.t.high, b.t.low);
     }

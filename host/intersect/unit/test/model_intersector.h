@@ -14,10 +14,15 @@ inline std::unique_ptr<Intersector> model_intersector(const Bvh& bvh) {
       bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
 }
 
-/// Calls occluded() if the query has options that only it allows, otherwise nearest().
+/// Returns whether a query is one for nearest().
+inline bool with_points(const RayQuery& query) {
+  return query.any_hit_before.empty() && query.skip_ids.empty();
+}
+
+/// Calls nearest(), or occluded() if the query has options that only it allows.
 inline void find(Intersector& intersector, std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) {
-  if (query.any_hit_before.empty() && query.skip_ids.empty()) {
+  if (with_points(query)) {
     intersector.nearest(rays, query, hits);
   } else {
     intersector.occluded(rays, query, hits);
