@@ -23,6 +23,7 @@
 #include "host/intersect/core/test/box_cases.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/unit/test/model_intersector.h"
 
 namespace raygate {
 namespace {
