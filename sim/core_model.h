@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/intersect/core/core_unit.h"
+#include "host/intersect/core/core_intersector.h"
 #include "sim/core_port.h"
 #include "sim/memory_model.h"
 #include "sim/rtl_core.h"

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstring>
 
-#include "host/intersect/core/core_unit.h"
+#include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/linked_core.h"
 #include "sim/model.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "host/intersect/core/core_unit.h"
+#include "host/intersect/core/core_intersector.h"
 #include "sim/arith.h"
 #include "sim/memory_timing.h"
 

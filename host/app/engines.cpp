@@ -75,9 +75,8 @@ IntersectorFactory make_intersector_factory(const EngineOptions& options, const 
       return std::make_unique<CoreIntersector>(bvh, image, make_core(options));
     };
   } else {
-    make_unit = [options, &bvh, skips,
-                 caches = std::make_shared<RecordCaches>(bvh, skips.records)] {
-      return std::make_unique<UnitIntersector>(bvh, make_tester(options, skips), caches);
+    make_unit = [options, &bvh, skips] {
+      return std::make_unique<UnitIntersector>(bvh, make_tester(options, skips));
     };
   }
   if (options.engine != Engine::kCheck) return make_unit;
@@ -103,7 +102,7 @@ std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& file
   CoreCounters counters;
   {
     const std::shared_ptr<CoreUnit> core = make_core_wave(file.unnamed(), engine.memory);
-    CoreIntersector(bvh, std::move(image), core).intersect({&ray, 1}, {}, {&hit, 1});
+    CoreIntersector(bvh, std::move(image), core).nearest({&ray, 1}, {}, {&hit, 1});
     counters = core->counters();
   }
   file.commit();

@@ -16,10 +16,9 @@ namespace raygate {
 /// for it later. Throws InputError if it cannot be built.
 void prepare_engine(const EngineOptions& options);
 
-/// Returns a factory of intersectors of the engine. Each intersector owns its simulated model; all
-/// share the records of common origins. Only `skips.records` and `skips.divisions` are used. The
-/// tree must outlive factory and intersectors. `image`: the tree's memory image for ray cores;
-/// null: made if needed.
+/// Returns a factory of intersectors of the engine. Each intersector owns its simulated model. Only
+/// `skips.divisions` is used. The tree must outlive factory and intersectors. `image`: the tree's
+/// memory image for ray cores; null: made if needed.
 [[nodiscard]] IntersectorFactory make_intersector_factory(
     const EngineOptions& options, const Bvh& bvh, const Skips& skips = {},
     std::shared_ptr<const MemoryImage> image = nullptr);

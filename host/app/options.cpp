@@ -55,11 +55,12 @@ const Choices<bool ExtraChannels::*> kExtraChannels{
     {"P", &ExtraChannels::position},      {"Albedo", &ExtraChannels::albedo},
     {"objectId", &ExtraChannels::object}, {"tests", &ExtraChannels::tests},
     {"doubts", &ExtraChannels::doubts},   {"sums", &ExtraChannels::sums}};
-const Choices<bool Skips::*> kSkips{
-    {"culling", &Skips::culling},           {"records", &Skips::records},
-    {"light-behind", &Skips::light_behind}, {"weightless", &Skips::weightless},
-    {"empty-tiles", &Skips::empty_tiles},   {"first-occluder", &Skips::first_occluder},
-    {"divisions", &Skips::divisions}};
+const Choices<bool Skips::*> kSkips{{"culling", &Skips::culling},
+                                    {"light-behind", &Skips::light_behind},
+                                    {"weightless", &Skips::weightless},
+                                    {"empty-tiles", &Skips::empty_tiles},
+                                    {"first-occluder", &Skips::first_occluder},
+                                    {"divisions", &Skips::divisions}};
 const Choices<glm::dvec3> kAxes{{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
                                 {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
 using Angles = std::pair<double, double>;

@@ -330,7 +330,7 @@ class PictureServer {
   /// Returns the hit and the statistics of one ray.
   [[nodiscard]] Json found(const Ray& ray, Intersector& intersector) const {
     NearestHit hit;
-    intersector.intersect({&ray, 1}, {}, {&hit, 1});
+    intersector.nearest({&ray, 1}, {}, {&hit, 1});
     const HitCounters counters = intersector.counters().hit;
     Json json{{"tests", counters.tests},
               {"doubts", counters.edge_doubts + counters.depth_doubts},

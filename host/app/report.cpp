@@ -45,8 +45,7 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
       {"rays", render.rays, "rays of all kinds"},
       {"camera_rays", render.camera_rays, "of these, from the camera"},
       {"shadow_rays", render.shadow_rays, "of these, between surfaces and lights"},
-      {"records", work.own_records + work.common_records, "polygon records made"},
-      {"common_records", work.common_records, "of these, for an origin that many rays share"},
+      {"records", work.records, "polygon records made"},
       {"tests", hit.tests, "tests of a ray against a polygon"},
       {"misses", hit.misses, "tests with a sure miss"},
       {"hits", hit.hits, "tests with a sure hit"},
@@ -66,7 +65,6 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
       {"exact_clocks", hit.exact_clocks, "clocks of the ray cores' exact units"},
       {"clocks_per_test", ratio(hit.clocks, hit.unit_tests), "clocks / unit_tests"},
       {"skipped.culled_tests", skipped.culled_tests, "tests in boxes that the ray does not enter"},
-      {"skipped.records", skipped.records, "records of common origins that no ray asked for"},
       {"skipped.lights_behind", skipped.lights_behind, "shadow rays to lights without effect"},
       {"skipped.weightless", skipped.weightless, "secondary rays without weight"},
       {"skipped.dim", skipped.dim, "secondary rays below --threshold"},
@@ -79,8 +77,8 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
       {"seconds.processor", render.processor_seconds, "processor time of all threads meanwhile"},
       {"seconds.write", report.write_seconds, "elapsed: writing the pictures"},
       {"seconds.total", report.total_seconds, "elapsed: the whole run"},
-      {"thread_seconds.boxes", work.traverse, "traversal, and records of common origins"},
-      {"thread_seconds.records", work.record, "records of other rays"},
+      {"thread_seconds.boxes", work.traverse, "traversal"},
+      {"thread_seconds.records", work.record, "making polygon records"},
       {"thread_seconds.hit_tests", work.hit_tests, "tests and exact decisions"},
       {"thread_seconds.shading", render.shade_seconds, "making, shading and spawning rays"}};
 }

@@ -302,27 +302,6 @@ int sign_of(double x) { return (x > 0.0) - (x < 0.0); }
 
 }  // namespace
 
-int orient2d(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
-  const glm::dvec2 from_c_to_a = glm::dvec2(a) - glm::dvec2(c);
-  const glm::dvec2 from_c_to_b = glm::dvec2(b) - glm::dvec2(c);
-  const double left = from_c_to_a.x * from_c_to_b.y;
-  const double right = from_c_to_a.y * from_c_to_b.x;
-  const double determinant = left - right;
-  // Shewchuk's bound A for the rounding of the two differences, two products and their difference.
-  constexpr double kBound = (3.0 + 16.0 * kUnitRoundoff) * kUnitRoundoff;
-  if (std::abs(determinant) > kBound * (std::abs(left) + std::abs(right))) {
-    return sign_of(determinant);
-  }
-  ExactSum sum;
-  sum.add(exact_product(a.x, b.y));
-  sum.add(-exact_product(a.y, b.x));
-  sum.add(exact_product(b.x, c.y));
-  sum.add(-exact_product(b.y, c.x));
-  sum.add(exact_product(c.x, a.y));
-  sum.add(-exact_product(c.y, a.x));
-  return sum.sign();
-}
-
 int area_sign(std::span<const glm::vec2> polygon, double& area) {
   double twice_area = 0.0;
   double magnitude = 0.0;
@@ -347,6 +326,12 @@ int area_sign(std::span<const glm::vec2> polygon, double& area) {
     sum.add(-exact_product(p.y, q.x));
   }
   return sum.sign();
+}
+
+int orient2d(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
+  const glm::vec2 corners[] = {a, b, c};
+  double area = 0.0;
+  return area_sign(corners, area);
 }
 
 bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {

@@ -32,14 +32,14 @@ CheckIntersector::CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> 
   traits_.filters_hits = false;  // which hits are asked about depends on the engine
 }
 
-void CheckIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
-                                 std::span<NearestHit> hits) {
-  intersector_->intersect(rays, query, hits);
+void CheckIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
+                             std::span<NearestHit> hits) {
+  intersector_->trace(rays, query, hits);
   RayQuery same = query;
   same.work = {};
   same.source_ids = {};  // do not affect results
-  expected_.resize(rays.size());
-  reference_->intersect(rays, same, expected_);
+  expected_.assign(rays.size(), {});
+  reference_->trace(rays, same, expected_);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (agree(rays[i], query, i, hits[i], expected_[i])) continue;
     const float limit = query.t_max_of(i);
@@ -58,7 +58,7 @@ bool CheckIntersector::agree(const Ray& ray, const RayQuery& query, std::size_t 
     return is_before(bvh_, ray, a, enough) && is_before(bvh_, ray, b, enough);
   }
   return a.primitive == b.primitive && a.t.low <= b.t.high && b.t.low <= a.t.high &&
-         (!query.with_points() || (same_bits(a.point, b.point) && a.point_error == b.point_error));
+         (!query.with_points || (same_bits(a.point, b.point) && a.point_error == b.point_error));
 }
 
 }  // namespace raygate

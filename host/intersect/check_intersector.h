@@ -30,11 +30,10 @@ class CheckIntersector : public Intersector {
   CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> intersector,
                    std::unique_ptr<Intersector> reference);
 
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override;
   [[nodiscard]] IntersectCounters counters() const override { return intersector_->counters(); }
 
  private:
+  void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits) override;
   [[nodiscard]] bool agree(const Ray& ray, const RayQuery& query, std::size_t number,
                            const NearestHit& a, const NearestHit& b) const;
 

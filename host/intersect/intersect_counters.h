@@ -45,15 +45,14 @@ struct HitCounters {
 /// Statistics of an intersector since its construction.
 struct IntersectCounters {
   HitCounters hit;
-  std::uint64_t exact_inside = 0;    ///< edge doubts resolved by exact arithmetic, without those
-                                     ///< surely too far away
-  std::uint64_t exact_depth = 0;     ///< exact comparisons of two hits, or of a hit and t_max
-  std::uint64_t ended_early = 0;     ///< rays ended early by RayQuery::any_hit_before
-  std::uint64_t own_records = 0;     ///< polygon records made for one packet of rays
-  std::uint64_t common_records = 0;  ///< polygon records made for a common origin
+  std::uint64_t exact_inside = 0;  ///< edge doubts resolved by exact arithmetic, without those
+                                   ///< surely too far away
+  std::uint64_t exact_depth = 0;   ///< exact comparisons of two hits, or of a hit and t_max
+  std::uint64_t ended_early = 0;   ///< rays ended early by RayQuery::any_hit_before
+  std::uint64_t records = 0;       ///< polygon records made
   // Seconds.
-  double traverse = 0.0;   ///< boxes, and records of common origins
-  double record = 0.0;     ///< own records
+  double traverse = 0.0;   ///< boxes
+  double record = 0.0;     ///< records
   double hit_tests = 0.0;  ///< tests and resolving doubts; without a unit: total time
 
   IntersectCounters& operator+=(const IntersectCounters& other) {
@@ -61,8 +60,7 @@ struct IntersectCounters {
     exact_inside += other.exact_inside;
     exact_depth += other.exact_depth;
     ended_early += other.ended_early;
-    own_records += other.own_records;
-    common_records += other.common_records;
+    records += other.records;
     traverse += other.traverse;
     record += other.record;
     hit_tests += other.hit_tests;

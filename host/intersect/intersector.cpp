@@ -1,6 +1,7 @@
 #include "host/intersect/intersector.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdio>
 #include <stdexcept>
 
@@ -14,9 +15,17 @@ bool tells(const Interval& t, float t_max) { return t.high < t_max || t.low >= t
 
 }  // namespace
 
-void Intersector::clear(const RayQuery& query, std::span<NearestHit> hits) {
+void Intersector::nearest(std::span<const Ray> rays, const RayQuery& query,
+                          std::span<NearestHit> hits) {
+  assert(hits.size() == rays.size());
   for (NearestHit& hit : hits) hit.primitive = NearestHit::kNone;  // other members are not valid
   std::ranges::fill(query.work, RayWork{});
+  trace(rays, query, hits);
+}
+
+void Intersector::occluded(std::span<const Ray> rays, RayQuery query, std::span<NearestHit> hits) {
+  query.with_points = false;
+  nearest(rays, query, hits);
 }
 
 void throw_unscaled(const Ray& ray) {

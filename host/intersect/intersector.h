@@ -44,37 +44,36 @@ struct RayWork {
   }
 };
 
-/// Options of a query for many rays. Spans must outlive it, and are empty or have one element per
-/// ray.
+/// Options of a search for many rays. Spans must outlive it, and are empty or have one element per
+/// ray. Those from `skip_ids` on are for Intersector::occluded.
 struct RayQuery {
-  /// All rays start at one point that other queries also use (the camera, a light), so that its
-  /// polygon records are cached. Does not change results.
+  /// All rays start at one point (the camera, a light), which some engines make use of. Does not
+  /// change results.
   bool common_origin = false;
   /// Positive. Only hits with exact t < t_max[i] count; +infinity: no limit.
   std::span<const float> t_max{};
-  /// A primitive whose hits are ignored, or NearestHit::kNone. With skip_ids or any_hit_before,
-  /// NearestHit::point is not valid.
-  std::span<const std::uint32_t> skip_ids{};
   /// The primitive that the ray leaves and surely does not hit, or NearestHit::kNone. Does not
   /// change results, but saves the test that is hardest to decide.
   std::span<const std::uint32_t> source_ids{};
+  /// False: every ray is tested against every polygon, ignoring boxes.
+  bool culling = true;
+  /// Receives the work of each ray.
+  std::span<RayWork> work{};
+  /// A primitive whose hits are ignored, or NearestHit::kNone.
+  std::span<const std::uint32_t> skip_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
   /// With any_hit_before, if the engine filters hits and without common origin: whether a sure hit
   /// of a ray with a primitive ends the ray. If none does, the nearest hit is reported. Null: every
   /// hit does.
   const std::function<bool(std::size_t ray, std::uint32_t primitive)>* is_enough = nullptr;
-  /// False: every ray is tested against every polygon, ignoring boxes.
-  bool culling = true;
-  /// Receives the work of each ray.
-  std::span<RayWork> work{};
+  /// NearestHit::point is computed. Set by nearest() and occluded().
+  bool with_points = true;
 
   /// Returns t_max[i], or +infinity if t_max is empty.
   [[nodiscard]] float t_max_of(std::size_t i) const {
     return t_max.empty() ? std::numeric_limits<float>::infinity() : t_max[i];
   }
-  /// Returns whether NearestHit::point must be computed.
-  [[nodiscard]] bool with_points() const { return skip_ids.empty() && any_hit_before.empty(); }
 };
 
 /// What an engine makes use of.
@@ -97,19 +96,25 @@ class Intersector {
   /// Sets hits[i] to the nearest hit of rays[i]. Neighbouring rays should have similar directions.
   /// Directions that are zero or not finite hit nothing; others must be scaled (is_scaled), or
   /// std::invalid_argument is thrown.
-  virtual void intersect(std::span<const Ray> rays, const RayQuery& query,
-                         std::span<NearestHit> hits) = 0;
+  void nearest(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits);
+
+  /// Sets hits[i] to a hit of rays[i] with t < any_hit_before[i] if there is one, otherwise to the
+  /// nearest hit. Points are not computed. Directions are as in nearest().
+  void occluded(std::span<const Ray> rays, RayQuery query, std::span<NearestHit> hits);
 
   [[nodiscard]] virtual IntersectCounters counters() const = 0;
 
  protected:
-  /// Initialises the results of a query to misses without work.
-  static void clear(const RayQuery& query, std::span<NearestHit> hits);
+  friend class CheckIntersector;
+
+  /// Does the work of nearest() and occluded(); `hits` are initialised to misses, and `work` to 0.
+  virtual void trace(std::span<const Ray> rays, const RayQuery& query,
+                     std::span<NearestHit> hits) = 0;
 
   EngineTraits traits_;
 };
 
-/// Throws the exception of Intersector::intersect for a direction that is not scaled.
+/// Throws the exception of Intersector::nearest for a direction that is not scaled.
 [[noreturn]] void throw_unscaled(const Ray& ray);
 
 /// Makes the intersector of a thread; called on that thread. The factory owns shared data.

@@ -40,16 +40,6 @@ bool ordinary(double x) {
   return size == 0.0 || (size >= kSmallest && size < kLargest);
 }
 
-/// Returns the exponent of the power of two that scales the largest component of `v` into [1, 2).
-int to_unit(const glm::dvec3& v) {
-  const double size = largest(v);
-  return size > 0.0 && std::isfinite(size) ? -std::ilogb(size) : 0;
-}
-
-glm::dvec3 scaled(const glm::dvec3& v, int exponent) {
-  return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
-}
-
 bool lower(const glm::vec3& a, const glm::vec3& b) {
   return std::pair(a.x, std::pair(a.y, a.z)) < std::pair(b.x, std::pair(b.y, b.z));
 }
@@ -59,7 +49,7 @@ bool lower(const glm::vec3& a, const glm::vec3& b) {
 /// distant triangle, avoids cancellation in A x B.
 glm::vec3 edge_words(const glm::vec3& origin, const glm::vec3& a, const glm::vec3& b) {
   glm::dvec3 edge = lower(a, b) ? edge_normal(origin, a, b) : -edge_normal(origin, b, a);
-  if (!ordinary(largest(edge))) edge = scaled(edge, to_unit(edge));
+  if (!ordinary(largest(edge))) edge = scaled_by(edge, to_unit(edge));
   return glm::vec3(edge);
 }
 
@@ -77,7 +67,7 @@ struct Plane {
       : normal(triangle_normal(t)), d(plane_distance(origin, t)) {
     if (ordinary(largest(normal)) && ordinary(d)) return;
     const int exponent = to_unit(normal);
-    normal = scaled(normal, exponent);
+    normal = scaled_by(normal, exponent);
     d = std::ldexp(d, exponent);
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -30,6 +31,20 @@ struct alignas(64) PolygonRecord {
                                      ///< I with components of magnitude under 2
 };
 static_assert(sizeof(PolygonRecord) == 64);
+
+/// Returns the exponent of the power of two that scales the largest component of `v` into [1, 2); 0
+/// if `v` is 0 or not finite.
+template <class T>
+[[nodiscard]] int to_unit(const glm::vec<3, T>& v) {
+  const T size = largest(v);
+  return size > T(0) && std::isfinite(size) ? -std::ilogb(size) : 0;
+}
+
+/// Returns v 2^exponent.
+template <class T>
+[[nodiscard]] glm::vec<3, T> scaled_by(const glm::vec<3, T>& v, int exponent) {
+  return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
+}
 
 /// The bound of an edge E is kEdgeBound 2^-24 |E|_1 (derivation in polygon_record.cpp).
 inline constexpr double kEdgeBound = 8.0 + 0x1p-7;

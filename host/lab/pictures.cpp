@@ -127,8 +127,8 @@ Row audit_decisions(const Bvh& bvh, const Camera& camera, int width, int height,
   const std::vector<Ray> rays = camera_rays(camera, width, height);
   std::vector<NearestHit> seen(rays.size()), exact(rays.size());
   UnitIntersector(bvh, std::make_shared<AuditTester>(bvh, eye, tester, counts))
-      .intersect(rays, {.common_origin = true}, seen);
-  CpuIntersector(bvh).intersect(rays, {.common_origin = true}, exact);
+      .nearest(rays, {.common_origin = true}, seen);
+  CpuIntersector(bvh).nearest(rays, {.common_origin = true}, exact);
   std::vector<double> t_errors, point_errors;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const NearestHit &got = seen[i], &truth = exact[i];

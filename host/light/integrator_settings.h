@@ -29,7 +29,6 @@ enum class Caustics {
 /// Optimisations that do not change any bit of the image.
 struct Skips {
   bool culling = true;  ///< skip polygons in boxes that a ray does not enter
-  bool records = true;  ///< skip records of polygons that no ray from the origin approaches
   /// Skip shadow rays to lights that contribute nothing, such as those behind the surface.
   bool light_behind = true;
   bool weightless = true;      ///< skip reflected and refracted rays that contribute nothing
@@ -41,7 +40,6 @@ struct Skips {
 /// Statistics of skipped work.
 struct SkipCounters {
   std::uint64_t culled_tests = 0;   ///< ray-polygon tests
-  std::uint64_t records = 0;        ///< records not made, among those that fit into the caches
   std::uint64_t lights_behind = 0;  ///< shadow rays
   std::uint64_t weightless = 0;     ///< secondary rays
   std::uint64_t dim = 0;  ///< secondary rays below the threshold, which would contribute slightly

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "host/base/triple.h"
-#include "host/bvh/closest_point.h"
+#include "host/bvh/traversal.h"
 
 // Why c is a bound
 //

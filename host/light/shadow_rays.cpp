@@ -217,9 +217,9 @@ void ShadowRays::trace(bool from_light, float enough) {
   }
   RayQuery search{.common_origin = from_light,
                   .t_max = limits_,
-                  .skip_ids = ignored_,
                   .source_ids = sources_,
-                  .culling = culling_};
+                  .culling = culling_,
+                  .skip_ids = ignored_};
   const std::function is_enough = [this](std::size_t number, std::uint32_t primitive) {
     return ends_at(number, primitive);
   };
@@ -230,7 +230,7 @@ void ShadowRays::trace(bool from_light, float enough) {
   work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;
   hits_.resize(batch_.size());
-  intersector_.intersect(batch_, search, hits_);
+  intersector_.occluded(batch_, search, hits_);
   rays_ += batch_.size();
   for (std::size_t i = 0; i < work_.size(); ++i) (*traced_)(work_[i], segments_[i].index);
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/base/triple.h"
-#include "host/bvh/closest_point.h"
+#include "host/bvh/traversal.h"
 
 // How far O' is from X
 //

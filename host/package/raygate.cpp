@@ -69,8 +69,13 @@ struct Tracer::Tree {
   [[nodiscard]] std::vector<NearestHit> find(const RayTable& block, bool any) const {
     std::vector<NearestHit> hits(block.rays.size());
     RayQuery query{.t_max = block.limits};
-    if (any) query.any_hit_before = block.limits;
-    CpuIntersector(bvh).intersect(block.rays, query, hits);
+    CpuIntersector intersector(bvh);
+    if (any) {
+      query.any_hit_before = block.limits;
+      intersector.occluded(block.rays, query, hits);
+    } else {
+      intersector.nearest(block.rays, query, hits);
+    }
     return hits;
   }
 

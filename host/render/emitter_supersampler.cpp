@@ -70,7 +70,7 @@ void EmitterSupersampler::trace() {
     stats_.rays += rays;
     hits_.resize(rays);
     work_.resize(counts_work_ ? rays : 0);
-    intersector_.intersect(batch_.rays, query_of(context_, batch_, work_), hits_);
+    intersector_.nearest(batch_.rays, query_of(context_, batch_, work_), hits_);
     watch.lap();
     for (std::size_t i = 0; i < work_.size(); ++i) {
       ray_work_[batch_.states[i].sample / kSpecularHistories] += work_[i];

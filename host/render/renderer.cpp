@@ -339,10 +339,6 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
                 emitter_histories, stats)
       .run();
   if (!stats.cancelled) film.keeps_sums = settings.channels.sums;
-  if (stats.intersect.common_records != 0) {
-    const std::size_t origins = (camera.has_common_origin() ? 1 : 0) + lights.points().size();
-    stats.skipped.records = bvh.primitive_count() * origins - stats.intersect.common_records;
-  }
   const std::uint64_t every_test = stats.rays * bvh.triangle_count();
   stats.skipped.culled_tests = every_test - std::min(every_test, stats.intersect.hit.tests);
   if (settings.error > 0.0) {

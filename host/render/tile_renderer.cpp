@@ -147,7 +147,7 @@ void TileRenderer::intersect_batch() {
   stats_.rays += batch_.rays.size();
   hits_.resize(batch_.rays.size());
   work_.resize(is_counting_ ? batch_.rays.size() : 0);
-  intersector_.intersect(batch_.rays, query_of(context_, batch_, work_), hits_);
+  intersector_.nearest(batch_.rays, query_of(context_, batch_, work_), hits_);
 }
 
 /// Traces the rays of one depth, and the shadow rays from their hits: in several batches if there

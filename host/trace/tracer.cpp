@@ -40,8 +40,12 @@ void find_one(Desk& desk, Hits asked, const HitTable& answers) {
   desk.nearest.assign(count, {});
   desk.work.assign(count, {});
   RayQuery query{.t_max = desk.block.limits, .work = desk.work};
-  if (asked == Hits::kAny) query.any_hit_before = desk.block.limits;
-  desk.intersector->intersect(desk.block.rays, query, desk.nearest);
+  if (asked == Hits::kAny) {
+    query.any_hit_before = desk.block.limits;
+    desk.intersector->occluded(desk.block.rays, query, desk.nearest);
+  } else {
+    desk.intersector->nearest(desk.block.rays, query, desk.nearest);
+  }
   for (std::uint32_t i = 0; i < count; ++i) {
     desk.found.push_back({i, desk.nearest[i], desk.work[i].doubts});
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 // The bound of an edge test in a format of u = 2^-digits
 //
@@ -37,13 +38,6 @@ Arithmetic to_nearest(Arithmetic math) {
   math.rounding = Rounding::kNearestEven;
   return math;
 }
-
-glm::vec3 scaled(const glm::vec3& v, int exponent) {
-  return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
-}
-
-/// Returns the exponent of the power of two that scales the largest component into [1, 2).
-int to_unit(const glm::vec3& v) { return largest(v) == 0.0f ? 0 : -std::ilogb(largest(v)); }
 
 float rounded_up(const Arithmetic& math, double x) {
   const float wide = static_cast<float>(x);
@@ -109,7 +103,7 @@ PolygonRecord variant_record(const Variant& variant, const PolygonRecord& wide) 
   PolygonRecord record = wide;
   const bool few_exponents = math.exponent_bits < 8;
   const int shift = few_exponents ? to_unit(wide.normal) : 0;
-  record.normal = math.read(scaled(wide.normal, shift));
+  record.normal = math.read(scaled_by(wide.normal, shift));
   record.d = math.read(std::ldexp(wide.d, shift));
   bool too_far = false;
   if (wide.d != 0.0f && !math.is_normal(record.d)) {
@@ -122,7 +116,7 @@ PolygonRecord variant_record(const Variant& variant, const PolygonRecord& wide) 
   }
   for (int k = 0; k < 3; ++k) {
     const int edge_shift = few_exponents ? to_unit(wide.edges[k]) : 0;
-    record.edges[k] = math.read(scaled(wide.edges[k], edge_shift));
+    record.edges[k] = math.read(scaled_by(wide.edges[k], edge_shift));
     if (!variant.doubts) {
       record.bounds[k] = 0.0f;
     } else if (too_far || std::isinf(wide.bounds[k])) {
@@ -144,80 +138,107 @@ float variant_t(const Variant& variant, const PolygonRecord& record, const glm::
       .t;
 }
 
-/// Converts the batch to the variant's format.
-void VariantHitTester::narrow(std::span<const RayBundle> batch) {
-  const Arithmetic math = to_nearest(variant_.math);
-  std::size_t count = 0;
-  for (const RayBundle& bundle : batch) count += bundle.record_count;
-  records_.clear();
-  records_.reserve(count);  // bundles point into records_
-  batch_.assign(batch.begin(), batch.end());
-  for (RayBundle& bundle : batch_) {
-    const PolygonRecord* wide = bundle.records;
-    bundle.records = records_.data() + records_.size();
-    for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
-      records_.push_back(variant_record(variant_, wide[i]));
-    }
-    for (auto& component : bundle.direction) {
-      for (float& x : component) x = math.read(x);
-    }
-  }
-}
+namespace {
 
-void VariantHitTester::finish(HitReports& reports) {
-  const std::span<const RayBundle> batch = pop_started();
-  narrow(batch);
-  results_.clear();
-  unit_->run(batch_, results_);
-  for (const BurstResult& result : results_) {
-    const RayBundle &wide = batch[result.bundle], &bundle = batch_[result.bundle];
-    const PolygonRecord& record = bundle.records[result.record];
-    const int lane = static_cast<int>(result.lane);
-    const glm::vec3 direction = bundle.lane_direction(lane);
-    const bool is_hit = result.kind == BurstResult::Kind::kHit;
-    const HitDistance distance =
-        is_hit ? HitDistance{result.t, result.t_error} : twin_.distance(record, direction);
-    HitReport report{result.bundle,
-                     result.lane,
-                     result.kind != BurstResult::Kind::kDoubt,
-                     {.primitive = wide.first_tag + result.record,
-                      .point = is_hit ? result.point : twin_.point(record, direction)}};
-    if (!variant_.doubts) {
-      if (result.kind != BurstResult::Kind::kNearTie) take_as_it_is(distance.t, report, reports);
-      continue;
-    }
-    // If a doubt is a hit, its P is as accurate as that of a sure hit, provided that V can be a
-    // divisor and d was not clamped.
-    const float v = variant_.math.dot(record.normal, direction);
-    const bool divisible =
-        variant_.math.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
-        static_cast<int>(distance.error) <= std::max(variant_.math.fraction_bits() - 11, 0) &&
-        !std::isinf(record.bounds[0]);
-    if (report.is_sure || divisible) {
-      report.hit.point_error =
-          format_error(variant_.math, record.d, direction, wide.lane_direction(lane),
-                       report.hit.point, distance.error);
-    }
-    if (report.is_sure) report.hit.t = around(variant_.math, distance.t, distance.error);
-    reports.push_back(report);
-  }
-}
+class VariantHitTester : public PipelineHitTester {
+ public:
+  VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit)
+      : PipelineHitTester(std::move(unit)), variant_(variant), twin_(variant.math) {}
 
-/// Keeps the nearest hit of each burst. A doubt is a hit if its t is positive and finite.
-void VariantHitTester::take_as_it_is(float t, HitReport& report, HitReports& reports) {
-  if (!(t > 0.0f) || std::isinf(t)) return;
-  // Separates equal distances in the order of the tags, far below the precision of float32.
-  const double told_apart = t * (1.0 + std::ldexp(static_cast<double>(report.hit.primitive), -52));
-  report.is_sure = true;
-  report.hit.t = {told_apart, told_apart};
-  report.hit.point_error = 0.0f;  // without bounds, the unit's P is used as it is
-  const bool same_burst = !reports.empty() && reports.back().bundle == report.bundle &&
-                          reports.back().lane == report.lane;
-  if (!same_burst) {
-    reports.push_back(report);
-  } else if (told_apart < reports.back().hit.t.low) {
-    reports.back() = report;
+  // finish() starts the unit, with narrowed records; PipelineHitTester::start() would do it here.
+  // NOLINTNEXTLINE(bugprone-parent-virtual-call)
+  void start(std::span<const RayBundle> batch) override { HitTester::start(batch); }
+
+  void finish(HitReports& reports) override {
+    const std::span<const RayBundle> batch = pop_started();
+    narrow(batch);
+    results_.clear();
+    unit_->run(batch_, results_);
+    for (const BurstResult& result : results_) {
+      const RayBundle &wide = batch[result.bundle], &bundle = batch_[result.bundle];
+      const PolygonRecord& record = bundle.records[result.record];
+      const int lane = static_cast<int>(result.lane);
+      const glm::vec3 direction = bundle.lane_direction(lane);
+      const bool is_hit = result.kind == BurstResult::Kind::kHit;
+      const HitDistance distance =
+          is_hit ? HitDistance{result.t, result.t_error} : twin_.distance(record, direction);
+      HitReport report{result.bundle,
+                       result.lane,
+                       result.kind != BurstResult::Kind::kDoubt,
+                       {.primitive = wide.first_tag + result.record,
+                        .point = is_hit ? result.point : twin_.point(record, direction)}};
+      if (!variant_.doubts) {
+        if (result.kind != BurstResult::Kind::kNearTie) take_as_it_is(distance.t, report, reports);
+        continue;
+      }
+      // If a doubt is a hit, its P is as accurate as that of a sure hit, provided that V can be a
+      // divisor and d was not clamped.
+      const float v = variant_.math.dot(record.normal, direction);
+      const bool divisible =
+          variant_.math.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
+          static_cast<int>(distance.error) <= std::max(variant_.math.fraction_bits() - 11, 0) &&
+          !std::isinf(record.bounds[0]);
+      if (report.is_sure || divisible) {
+        report.hit.point_error =
+            format_error(variant_.math, record.d, direction, wide.lane_direction(lane),
+                         report.hit.point, distance.error);
+      }
+      if (report.is_sure) report.hit.t = around(variant_.math, distance.t, distance.error);
+      reports.push_back(report);
+    }
   }
+
+ private:
+  /// Converts the batch to the variant's format.
+  void narrow(std::span<const RayBundle> batch) {
+    const Arithmetic math = to_nearest(variant_.math);
+    std::size_t count = 0;
+    for (const RayBundle& bundle : batch) count += bundle.record_count;
+    records_.clear();
+    records_.reserve(count);  // bundles point into records_
+    batch_.assign(batch.begin(), batch.end());
+    for (RayBundle& bundle : batch_) {
+      const PolygonRecord* wide = bundle.records;
+      bundle.records = records_.data() + records_.size();
+      for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
+        records_.push_back(variant_record(variant_, wide[i]));
+      }
+      for (auto& component : bundle.direction) {
+        for (float& x : component) x = math.read(x);
+      }
+    }
+  }
+
+  /// Keeps the nearest hit of each burst. A doubt is a hit if its t is positive and finite.
+  static void take_as_it_is(float t, HitReport& report, HitReports& reports) {
+    if (!(t > 0.0f) || std::isinf(t)) return;
+    // Separates equal distances in the order of the tags, far below the precision of float32.
+    const double told_apart =
+        t * (1.0 + std::ldexp(static_cast<double>(report.hit.primitive), -52));
+    report.is_sure = true;
+    report.hit.t = {told_apart, told_apart};
+    report.hit.point_error = 0.0f;  // without bounds, the unit's P is used as it is
+    const bool same_burst = !reports.empty() && reports.back().bundle == report.bundle &&
+                            reports.back().lane == report.lane;
+    if (!same_burst) {
+      reports.push_back(report);
+    } else if (told_apart < reports.back().hit.t.low) {
+      reports.back() = report;
+    }
+  }
+
+  Variant variant_;
+  VariantBurstUnit twin_;  // computes t and P of doubts and near ties
+  // Reused buffers.
+  std::vector<PolygonRecord> records_;
+  std::vector<RayBundle> batch_;
+};
+
+}  // namespace
+
+std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
+                                               std::unique_ptr<BurstUnit> unit) {
+  return std::make_unique<VariantHitTester>(variant, std::move(unit));
 }
 
 std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
@@ -229,8 +250,7 @@ std::unique_ptr<HitTester> make_variant_tester(const Variant& variant) {
   if (variant.unit == Variant::Unit::kSerial) {
     return make_variant_tester(variant, std::make_unique<VariantPlaneUnit>(variant.math));
   }
-  return std::make_unique<VariantHitTester>(variant,
-                                            std::make_unique<VariantBurstUnit>(variant.math));
+  return make_variant_tester(variant, std::make_unique<VariantBurstUnit>(variant.math));
 }
 
 }  // namespace raygate

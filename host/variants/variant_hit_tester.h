@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "host/intersect/unit/hit_tester.h"
 #include "host/variants/arithmetic.h"
@@ -31,8 +30,8 @@ using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 [[nodiscard]] float variant_t(const Variant& variant, const PolygonRecord& record,
                               const glm::vec3& direction);
 
-/// Converts rays and records to the variant's format, runs the unit on them, and resolves doubts if
-/// the variant has them.
+/// Returns a tester for a pipelined variant, whose unit computes in the variant's format. Rays and
+/// records are converted to the format; doubts are resolved if the variant has them.
 ///
 /// With doubts, HitTester's guarantee holds in any format of 11 digits or more, since the bounds
 /// scale with the format; narrower formats have more doubts. P has the unit's bits.
@@ -41,27 +40,8 @@ using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 /// three equal signs and a positive t, and the hit with the smaller t is nearer (the first of
 /// equals). Exact arithmetic is never used: t is reported as exact, and equal values of t are
 /// separated by less than an ulp.
-class VariantHitTester : public PipelineHitTester {
- public:
-  /// `unit` computes in the format of `variant`, which must be a pipelined one.
-  VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit)
-      : PipelineHitTester(std::move(unit)), variant_(variant), twin_(variant.math) {}
-
-  // finish() starts the unit, with narrowed records; PipelineHitTester::start() would do it here.
-  // NOLINTNEXTLINE(bugprone-parent-virtual-call)
-  void start(std::span<const RayBundle> batch) override { HitTester::start(batch); }
-  void finish(HitReports& reports) override;
-
- private:
-  void narrow(std::span<const RayBundle> batch);
-  static void take_as_it_is(float t, HitReport& report, HitReports& reports);
-
-  Variant variant_;
-  VariantBurstUnit twin_;  // computes t and P of doubts and near ties
-  // Reused buffers.
-  std::vector<PolygonRecord> records_;
-  std::vector<RayBundle> batch_;
-};
+[[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
+                                                             std::unique_ptr<BurstUnit> unit);
 
 /// Returns a tester for a serial variant, whose unit (that of the paper) computes P alone.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,

@@ -1,12 +1,11 @@
 #include "host/intersect/core/core_intersector.h"
 
-#include <cassert>
 #include <stdexcept>
 #include <string>
 
 #include "host/base/input_error.h"
 #include "host/base/stopwatch.h"
-#include "host/intersect/point_writer.h"
+#include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {
 namespace {
@@ -48,11 +47,9 @@ IntersectCounters CoreIntersector::counters() const {
   return counters;
 }
 
-void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
-                                std::span<NearestHit> hits) {
-  assert(hits.size() == rays.size());
+void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
+                            std::span<NearestHit> hits) {
   Stopwatch watch;
-  clear(query, hits);
   sent_.clear();
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     if (!is_usable(rays[i].direction)) continue;
@@ -79,13 +76,14 @@ void CoreIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
     resolve(rays[result.tag], query.t_max_of(result.tag), result, hits[result.tag]);
   }
   counters_.traverse += watch.lap();
-  PointWriter points(bvh_, rays, false, hits);
-  for (std::uint32_t i = 0; i < rays.size() && query.any_hit_before.empty(); ++i) {
-    if (points.count() == PointWriter::kMost) points.write();
-    if (hits[i].primitive != NearestHit::kNone) points.add(i, hits[i].primitive);
+  for (std::size_t i = 0; i < rays.size() && query.with_points; ++i) {
+    if (hits[i].primitive == NearestHit::kNone) continue;
+    const PolygonRecord plane = make_plane(rays[i].origin, bvh_.corners_of(hits[i].primitive));
+    const auto [point, error] = plane_point(plane, rays[i].direction);
+    hits[i].point = point;
+    hits[i].point_error = error;
+    ++counters_.hit.plane_tests;
   }
-  points.write();
-  counters_.hit.plane_tests += points.written();
   counters_.record += watch.lap();
 }
 

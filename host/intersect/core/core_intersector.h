@@ -1,15 +1,102 @@
-// Core intersector: sends rays to a ray core, hardware that traverses the BVH.
+// Core intersector: sends rays to a ray core, hardware that traverses the BVH, and the interface of
+// such cores. A core takes rays; it returns hits, and doubts if it is not exact.
 #pragma once
 
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "host/bvh/bvh.h"
-#include "host/intersect/core/core_unit.h"
+#include "host/exact/exact.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/intersector.h"
 
 namespace raygate {
+
+/// A ray for the core.
+struct CoreRay {
+  static constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
+
+  Ray ray;  ///< the direction scaled (see is_scaled)
+  /// Positive. Only hits with exact t < t_max count; +infinity: no limit.
+  float t_max = std::numeric_limits<float>::infinity();
+  std::uint32_t skip_id = kNoTriangle;    ///< index of a triangle whose hits do not count
+  std::uint32_t source_id = kNoTriangle;  ///< index of the triangle that the ray leaves
+  std::uint32_t tag = 0;                  ///< returned with all results of the ray
+  bool any_hit = false;                   ///< the search ends at the first sure hit
+  bool no_cull = false;                   ///< the ray enters all boxes
+};
+
+/// A result of the core. Results of different rays interleave; kEnd is the last result of a ray.
+struct CoreResult {
+  enum class Kind : std::uint8_t {
+    kEnd = 0,  ///< end of traversal, with the nearest sure hit if there is one
+    /// A triangle that may be hit and nearer than the sure hit; exact arithmetic must decide.
+    kDoubt = 1,
+  };
+
+  enum class Error : std::uint8_t {
+    kNone = 0,
+    kMemory = 1,     ///< a memory read returned an error
+    kCycle = 2,      ///< a node below itself, or deeper than MemoryImage::kMostDepth
+    kDirection = 3,  ///< the direction is not scaled
+    kAbort = 4,      ///< aborted by the user
+  };
+
+  static constexpr std::uint32_t kNoT = 31;
+
+  Kind kind = Kind::kEnd;
+  bool found = false;     ///< kEnd: whether there is a sure hit; the fields up to `point` are valid
+  std::uint32_t tag = 0;  ///< CoreRay::tag
+  std::uint32_t triangle = CoreRay::kNoTriangle;  ///< kEnd, kDoubt: its line in memory
+  float t = 0.0f;              ///< kEnd: fewer than 2^t_error floats from the exact t
+  std::uint32_t t_error = 0;   ///< kNoT: t and P are unknown and set to 0
+  glm::vec3 point{0.0f};       ///< kEnd: P in the core's own bits, relative to the origin
+  std::uint32_t tests = 0;     ///< kEnd: triangles tested
+  Error error = Error::kNone;  ///< kEnd: if not kNone, only `tag` and `line` are valid
+  std::uint32_t line = 0;      ///< kEnd with kMemory: the line
+};
+
+/// Statistics of a core since its construction. Clocks are 0 without simulation.
+struct CoreCounters {
+  std::uint64_t rays = 0;
+  std::uint64_t nodes = 0;      ///< node lines processed by the box unit
+  std::uint64_t triangles = 0;  ///< triangle lines processed by the triangle test
+  std::uint64_t hits = 0, misses = 0, doubts = 0;  ///< verdicts of tests
+  std::uint64_t near_ties = 0;                     ///< sure hits reported as doubts
+  std::uint64_t overflows = 0;                     ///< rays that used the shared stack
+  std::uint64_t lines = 0;                         ///< lines read from memory
+  std::uint64_t waits = 0;         ///< clocks in which memory did not accept a request
+  std::uint64_t exact_clocks = 0;  ///< busy clocks of the exact unit
+  std::uint64_t clocks = 0;
+
+  CoreCounters& operator+=(const CoreCounters& other) {
+    add_counters(*this, other);
+    return *this;
+  }
+};
+
+/// Traces rays through a memory image.
+///
+/// Guarantees: the nearest hit of a ray in exact arithmetic is the sure hit of its kEnd or one of
+/// its doubts; with any_hit it can be any hit instead. After an error a ray has no valid hit.
+/// Doubts can differ between cores and, because of memory timing, between runs. A core that
+/// is_exact has no doubts: the nearest hit is that of kEnd.
+class CoreUnit {
+ public:
+  virtual ~CoreUnit() = default;
+
+  /// Traces the rays and appends their results to `results`. `lines` are those of a MemoryImage.
+  virtual void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
+                     std::vector<CoreResult>& results) = 0;
+
+  [[nodiscard]] virtual CoreCounters counters() const = 0;
+  [[nodiscard]] virtual bool is_exact() const { return false; }
+};
 
 /// Resolves the core's doubts by exact arithmetic on the host. A core that is_exact leaves only the
 /// comparison of hits of a ray whose stack overflowed. The host computes P of each nearest hit,
@@ -26,11 +113,10 @@ class CoreIntersector : public Intersector {
         image_(std::move(image)),
         core_(std::move(core)) {}
 
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override;
   [[nodiscard]] IntersectCounters counters() const override;
 
  private:
+  void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits) override;
   void resolve(const Ray& ray, float t_max, const CoreResult& result, NearestHit& best);
 
   const Bvh& bvh_;

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "host/intersect/core/core_unit.h"
+#include "host/intersect/core/core_intersector.h"
 
 namespace raygate {
 

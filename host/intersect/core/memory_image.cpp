@@ -1,27 +1,24 @@
 #include "host/intersect/core/memory_image.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "host/bvh/sah_builder.h"
+#include "host/exact/expansion.h"
 
 namespace raygate {
 namespace {
 
 using Ref = BinaryBvh::Ref;
 
-/// Exact bounds of triangles.
+/// Bounds of triangles.
 struct Bounds {
-  glm::vec3 low{std::numeric_limits<float>::infinity()};
-  glm::vec3 high{-std::numeric_limits<float>::infinity()};
+  glm::vec3 low, high;
 
-  void add(const Bounds& other) {
-    low = glm::min(low, other.low);
-    high = glm::max(high, other.high);
-  }
   /// Returns half the surface area.
   [[nodiscard]] double area() const {
     const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
@@ -29,12 +26,17 @@ struct Bounds {
   }
 };
 
+/// Returns the next float above x, which is not 0.
+float up(float x) {
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  return std::bit_cast<float>(bits + (1 | bits >> 31));
+}
 double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
 
-/// Return the difference of two floats, rounded up or down (using Knuth's two-sum).
+/// Return the difference of two floats, rounded up or down.
 double above(double a, double b) {
-  const double d = a - b, minus_b = d - a, error = (a - (d - minus_b)) + (-b - minus_b);
-  return error > 0.0 ? up(d) : d;
+  const auto [difference, error] = two_sum(a, -b);
+  return error > 0.0 ? up(difference) : difference;
 }
 double below(double a, double b) { return -above(b, a); }
 
@@ -86,7 +88,7 @@ MemoryLine TriangleLine::line() const {
 class ImageWriter {
  public:
   ImageWriter(MemoryImage& image, const Bvh& bvh, const BinaryBvh& tree)
-      : image_(image), bvh_(bvh), tree_(tree), bounds_(tree.size()), leaf_(tree.size()) {}
+      : image_(image), bvh_(bvh), tree_(tree), leaf_(tree.size()) {}
 
   void write() {
     image_.lines_.resize(1);
@@ -108,11 +110,14 @@ class ImageWriter {
 
   [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || leaf_[ref]; }
 
+  /// Returns the exact bounds of a node's triangles. The binary tree's are one float wider.
   [[nodiscard]] Bounds bounds(Ref ref) const {
-    if (!tree_.is_leaf(ref)) return bounds_[ref];
+    Box box;
+    tree_.get_box(ref, box);
     Bounds bounds;
-    for (const glm::vec3& corner : bvh_.corners_of(primitive_at(tree_.first(ref)))) {
-      bounds.add({corner, corner});
+    for (int k = 0; k < 3; ++k) {
+      bounds.low[k] = up(box[k]) + 0.0f;  // -0 becomes 0
+      bounds.high[k] = -up(box[k + 4]);
     }
     return bounds;
   }
@@ -120,13 +125,12 @@ class ImageWriter {
     return tree_.primitives[number].number;
   }
 
-  /// Computes bounds and decides which nodes are leaves. Returns the sum of the triangles' areas.
+  /// Decides which nodes are leaves. Returns the sum of the areas of the triangles' boxes.
   double plan(Ref ref) {
     if (tree_.is_leaf(ref)) return bounds(ref).area();
     const double sum = plan(tree_.nodes[ref].child[0]) + plan(tree_.nodes[ref].child[1]);
-    for (const Ref child : tree_.nodes[ref].child) bounds_[ref].add(bounds(child));
     const std::uint32_t count = tree_.count(ref);
-    leaf_[ref] = count <= kMostInLeaf && sum >= kSameBox * count * bounds_[ref].area();
+    leaf_[ref] = count <= kMostInLeaf && sum >= kSameBox * count * bounds(ref).area();
     return sum;
   }
 
@@ -209,7 +213,6 @@ class ImageWriter {
   MemoryImage& image_;
   const Bvh& bvh_;
   const BinaryBvh& tree_;
-  std::vector<Bounds> bounds_;  // bounds of inner nodes
   std::vector<char> leaf_;
 };
 

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "host/exact/exact.h"
-#include "host/intersect/core/core_unit.h"
+#include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/polygon_record.h"
 

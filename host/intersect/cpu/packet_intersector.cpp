@@ -12,7 +12,6 @@
 #include "host/exact/exact.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/cpu/quad_test.h"
-#include "host/intersect/point_writer.h"
 
 namespace raygate {
 namespace {
@@ -35,14 +34,11 @@ struct RayPacket {
   }
 };
 
-/// Bounding cones of rays in one octant, independent of the lengths of directions. Lane g belongs
-/// to group g; absent groups have radius 0. A ray I is represented by I / t_scale, where t_scale is
-/// the magnitude of one component, the same for all rays, or 1 for all; t then becomes t_scale t.
-/// On each axis |I_k / t_scale - center[k][g]| <= radius[k][g].
+/// Bounding cones of rays in one octant. Lane g belongs to group g; absent groups have radius 0. On
+/// each axis |I_k - center[k][g]| <= radius[k][g].
 struct Cones {
-  LaneMask active[RayPacket::kGroups];     ///< rays of each group
-  LaneMask groups;                         ///< groups with any ray
-  FloatLanes t_scale[RayPacket::kGroups];  ///< of each ray; 1 for absent rays
+  LaneMask active[RayPacket::kGroups];  ///< rays of each group
+  LaneMask groups;                      ///< groups with any ray
   FloatLanes center[3], radius[3];
   PacketBounds8 bounds8;  ///< the caller sets the cutoffs
   PacketBounds whole;     ///< bounds of all groups
@@ -102,47 +98,22 @@ struct ConeTraversal {
   }
 };
 
-/// Computes distances beyond which boxes can be skipped for rays with these t_scales and maximum
-/// distances `high` (see cutoff_beyond).
-RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, const FloatLanes& t_scale, LaneMask active,
-                                   FloatLanes& cutoffs) {
+/// Computes distances beyond which boxes can be skipped for rays with maximum distances `high` (see
+/// cutoff_beyond).
+RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, LaneMask active, FloatLanes& cutoffs) {
   constexpr float kGrow = 1.0f + 0x1p-20f;
   const IntLanes going = lanes_of(active);
-  cutoffs = going ? reinterpret_cast<FloatLanes>(high) * t_scale * kGrow : FloatLanes{} - 1.0f;
+  cutoffs = going ? reinterpret_cast<FloatLanes>(high) * kGrow : FloatLanes{} - 1.0f;
 }
 
 /// Updates the cutoffs of a group after changes of `high` and `cones.active`.
 RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
   Cones& cones = walk.cones;
   FloatLanes cutoffs;
-  cutoffs_beyond(walk.high[group], cones.t_scale[group], cones.active[group], cutoffs);
+  cutoffs_beyond(walk.high[group], cones.active[group], cutoffs);
   cones.bounds8.cutoff[group] = largest_of(cutoffs);
   if ((walk.split >> group & 1) != 0) walk.ray_bounds8[group].cutoff = cutoffs;
   walk.going &= ~(std::uint64_t{0xFF & ~cones.active[group]} << (8 * group));
-}
-
-/// Returns the axis on which the smallest component of the active rays is largest, or -1 if it is
-/// below 1/4 on every axis.
-RAYGATE_INLINE int t_scale_axis(const RayPacket& block, const LaneMask* active) {
-  FloatLanes least[3] = {FloatLanes{} + 4.0f, FloatLanes{} + 4.0f, FloatLanes{} + 4.0f};
-  for (int g = 0; g < RayPacket::kGroups; ++g) {
-    if (active[g] == 0) continue;
-    const IntLanes taken = lanes_of(active[g]);
-    for (int k = 0; k < 3; ++k) {
-      const FloatLanes size = taken ? absolute(block.direction[k][g]) : FloatLanes{} + 4.0f;
-      least[k] = size < least[k] ? size : least[k];
-    }
-  }
-  int axis = -1;
-  float best = 0.25f;
-  for (int k = 0; k < 3; ++k) {
-    const float smallest = -largest_of(-least[k]);
-    if (smallest >= best) {
-      best = smallest;
-      axis = k;
-    }
-  }
-  return axis;
 }
 
 /// Loads the directions of four rays, transposed. Each load includes the float before the
@@ -206,13 +177,10 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
 /// Computes all members for the packet's rays in `cones.active`, which must be in this octant.
 void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones) {
   in_vectors([&](auto) RAYGATE_BODY {
-    // Each rounding changes a value by a factor of at most 1 + 2^-24. Components over a t_scale are
-    // below 8, so after two roundings their error is below kScaleError.
-    constexpr float kScaleError = 0x1p-20f;
+    // Each rounding changes a value by a factor of at most 1 + 2^-24.
     constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
     cones.groups = 0;
     FloatLanes off[3][RayPacket::kGroups];
-    const int axis = t_scale_axis(block, cones.active);
     for (int g = 0; g < RayPacket::kGroups; ++g) {
       const LaneMask active = cones.active[g];
       if (active == 0) {
@@ -225,15 +193,8 @@ void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Con
       cones.groups |= 1u << g;
       const int low = std::countr_zero(active), high = 31 - std::countl_zero(active);
       const IntLanes taken = lanes_of(active);
-      FloatLanes t_scale = FloatLanes{} + 1.0f;
-      if (axis >= 0) {
-        const FloatLanes size = absolute(block.direction[axis][g]);
-        t_scale = taken ? size : t_scale;
-      }
-      cones.t_scale[g] = t_scale;
-      const FloatLanes inverse = 1.0f / t_scale;
       for (int k = 0; k < 3; ++k) {
-        const FloatLanes d = block.direction[k][g] * inverse;
+        const FloatLanes& d = block.direction[k][g];
         const float middle = 0.5f * (d[low] + d[high]);
         cones.center[k][g] = middle;
         const FloatLanes distance = absolute(d - middle);
@@ -245,7 +206,7 @@ void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Con
     for (int k = 0; k < 3; ++k) {
       FloatLanes largest_off;
       for (int g = 0; g < RayPacket::kGroups; ++g) largest_off[g] = largest_of(off[k][g]);
-      cones.radius[k] = present ? kUp * largest_off + kScaleError : FloatLanes{};
+      cones.radius[k] = present ? kUp * largest_off : FloatLanes{};
       const FloatLanes size = absolute(cones.center[k]);
       const FloatLanes largest = (size + cones.radius[k]) * kUp;
       FloatLanes smallest = (size - cones.radius[k]) * kDown;
@@ -267,13 +228,11 @@ void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Con
 RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   PacketBounds8& bounds8 = walk.ray_bounds8[group];
   constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
-  const FloatLanes inverse = 1.0f / walk.cones.t_scale[group];
   for (int k = 0; k < 3; ++k) {
-    const FloatLanes size = absolute(walk.block->direction[k][group] * inverse);
+    const FloatLanes size = absolute(walk.block->direction[k][group]);
     bounds8.set(k, walk.cones.whole.octant, size * kDown, size * kUp);
   }
-  cutoffs_beyond(walk.high[group], walk.cones.t_scale[group], walk.cones.active[group],
-                 bounds8.cutoff);
+  cutoffs_beyond(walk.high[group], walk.cones.active[group], bounds8.cutoff);
   walk.split |= 1u << group;
 }
 
@@ -747,7 +706,7 @@ class PacketIntersector {
   /// Writes the nearest hits, and adds them to those whose P is to be computed.
   void finish(const ConeTraversal& walk) {
     in_vectors([&](auto) RAYGATE_BODY {
-      const bool with_points = query_.with_points();
+      const bool with_points = query_.with_points;
       for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
         const int g = std::countr_zero(groups);
         LaneMask lanes = 0xFF & ~sign_mask(walk.primitive[g]);

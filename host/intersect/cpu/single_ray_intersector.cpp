@@ -15,7 +15,6 @@
 #include "host/exact/exact.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/cpu/quad_test.h"
-#include "host/intersect/point_writer.h"
 
 // Why no true hit is culled
 //
@@ -252,10 +251,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   // Met children come first, or are the only ones that are not negative.
   IntLanes keys = met.keys & ~kNumber;
 #ifdef RAYGATE_AVX2
-  if constexpr (kCode == Vectors::kAvx512) {
-    keys |= kNumbers;
-    avx512_compress(keys, met.mask);
-  } else if constexpr (kCode == Vectors::kAvx2) {
+  if constexpr (kCode != Vectors::kBaseline) {
     const auto lanes = load<IntLanes>(numbers.data());
     avx2_permute(keys, lanes);
     keys |= lanes;
@@ -408,7 +404,7 @@ class SingleRayIntersector {
     hits_[walk.number].primitive = walk.primitive;
     if (walk.primitive == NearestHit::kNone) return;
     hits_[walk.number].t = walk.t();
-    if (query_.any_hit_before.empty()) points_.add(walk.number, walk.primitive);
+    if (query_.with_points) points_.add(walk.number, walk.primitive);
   }
 
   /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide

@@ -38,8 +38,8 @@ class InstancesTest : public testing::Test {
   void expect_same(Intersector& intersector, Intersector& flat_intersector,
                    const std::vector<Ray>& rays, const RayQuery& query) {
     std::vector<NearestHit> hits(rays.size()), expected(rays.size());
-    intersector.intersect(rays, query, hits);
-    flat_intersector.intersect(rays, query, expected);
+    test::find(intersector, rays, query, hits);
+    test::find(flat_intersector, rays, query, expected);
     std::size_t instances = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const NearestHit &hit = hits[i], &other = expected[i];

@@ -22,9 +22,9 @@ class FaultyIntersector : public CpuIntersector {
   using Fault = std::function<void(std::span<NearestHit>)>;
   FaultyIntersector(const Bvh& bvh, Fault fault) : CpuIntersector(bvh), fault_(std::move(fault)) {}
 
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override {
-    CpuIntersector::intersect(rays, query, hits);
+  void trace(std::span<const Ray> rays, const RayQuery& query,
+             std::span<NearestHit> hits) override {
+    CpuIntersector::trace(rays, query, hits);
     fault_(hits);
   }
 
@@ -47,7 +47,7 @@ class CheckIntersectorTest : public testing::Test {
                            test::model_intersector(bvh_));
     std::vector<NearestHit> hits(rays_.size());
     try {
-      check.intersect(rays_, query, hits);
+      test::find(check, rays_, query, hits);
     } catch (const EngineMismatch& mismatch) {
       return mismatch.what();
     }
@@ -102,8 +102,8 @@ TEST_F(CheckIntersectorTest, UnscaledDirectionsAreRefused) {
     std::vector<Ray> rays = rays_;
     rays[41].direction *= scale;
     for (const bool common : {false, true}) {
-      EXPECT_THROW(cpu.intersect(rays, {.common_origin = common}, hits), std::invalid_argument);
-      EXPECT_THROW(unit->intersect(rays, {.common_origin = common}, hits), std::invalid_argument);
+      EXPECT_THROW(cpu.nearest(rays, {.common_origin = common}, hits), std::invalid_argument);
+      EXPECT_THROW(unit->nearest(rays, {.common_origin = common}, hits), std::invalid_argument);
     }
   }
 }

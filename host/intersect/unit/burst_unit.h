@@ -133,12 +133,6 @@ class BurstUnit : public BatchTester<BurstResult> {
   [[nodiscard]] virtual BurstCounters counters() const = 0;
 };
 
-/// Throws EngineMismatch at the first burst whose `actual` bits differ from those `expected`. The
-/// text can be replayed: the burst's direction, the 16 words of each record in hexadecimal, and the
-/// results of both units.
-void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
-                  const BurstResults& expected);
-
 /// One test of the paper's unit (equation 10): its seven input words.
 struct PlaneTest {
   glm::vec3 direction;  ///< I, any finite floats

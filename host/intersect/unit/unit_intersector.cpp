@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
-#include <cstdlib>
-#include <new>
 #include <utility>
 
 #include "host/base/stopwatch.h"
@@ -12,45 +9,11 @@
 
 namespace raygate {
 
-void RecordCache::Free::operator()(void* memory) const { std::free(memory); }
-
-RecordCache::RecordCache(const Bvh& bvh, const glm::vec3& origin) : bvh_(bvh), origin_(origin) {
-  const std::size_t primitives = std::max<std::size_t>(bvh.primitive_count(), 1);
-  // Not initialised on purpose: a page takes no memory until a record is written to it.
-  records_.reset(static_cast<PolygonRecord*>(
-      std::aligned_alloc(alignof(PolygonRecord), primitives * sizeof(PolygonRecord))));
-  if (records_ == nullptr) throw std::bad_alloc();
-  is_made_ = std::make_unique<std::atomic<bool>[]>(primitives);
-}
-
-std::uint64_t RecordCache::make(std::uint32_t first, std::uint32_t count) {
-  const std::scoped_lock lock(mutex_);
-  std::uint64_t made = 0;
-  for (std::uint32_t primitive = first; primitive < first + count; ++primitive) {
-    if (is_made_[primitive].load(std::memory_order_relaxed)) continue;
-    records_[primitive] = make_record(origin_, bvh_.corners_of(primitive));
-    is_made_[primitive].store(true, std::memory_order_release);
-    ++made;
-  }
-  return made;
-}
-
-RecordCache& RecordCaches::at(const glm::vec3& origin, std::uint64_t& made) {
-  const std::scoped_lock lock(mutex_);
-  const auto [at, is_new] =
-      caches_.try_emplace(std::bit_cast<std::array<std::uint32_t, 3>>(origin), bvh_, origin);
-  const std::uint32_t primitives = bvh_.primitive_count();
-  if (is_new && !on_first_touch_ && primitives != 0) (void)at->second.leaf(0, primitives, made);
-  return at->second;
-}
-
-UnitIntersector::UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester,
-                                 std::shared_ptr<RecordCaches> caches)
+UnitIntersector::UnitIntersector(const Bvh& bvh, std::shared_ptr<HitTester> tester)
     // Batches are long relative to the pipeline's fill time, also if several lanes share them.
     : Intersector({.batch = std::max(EngineTraits{}.batch, 256 * tester->enough_tests())}),
       bvh_(bvh),
-      tester_(std::move(tester)),
-      caches_(caches ? std::move(caches) : std::make_shared<RecordCaches>(bvh)) {}
+      tester_(std::move(tester)) {}
 
 IntersectCounters UnitIntersector::counters() const {
   IntersectCounters counters = counters_;
@@ -58,18 +21,12 @@ IntersectCounters UnitIntersector::counters() const {
   return counters;
 }
 
-void UnitIntersector::intersect(std::span<const Ray> rays, const RayQuery& query,
-                                std::span<NearestHit> hits) {
-  assert(hits.size() == rays.size());
+void UnitIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
+                            std::span<NearestHit> hits) {
   Stopwatch watch;
   rays_ = rays;
   query_ = query;
   hits_ = hits;
-  clear(query, hits);
-  common_ = nullptr;
-  if (query.common_origin && !rays.empty()) {
-    common_ = &caches_->at(rays[0].origin, counters_.common_records);
-  }
   make_packets();
   for (bool busy = true; busy;) {
     busy = false;
@@ -79,7 +36,7 @@ void UnitIntersector::intersect(std::span<const Ray> rays, const RayQuery& query
       collect(half);
       counters_.traverse += watch.lap();
       if (half.batch.empty()) continue;
-      if (common_ == nullptr || bvh_.has_instances()) make_own_records(half);
+      make_records_of(half);
       counters_.record += watch.lap();
       tester_->start(half.batch);
       half.started = busy = true;
@@ -184,10 +141,6 @@ std::size_t UnitIntersector::visit_leaves(Half& half) {
     for (const LeafVisit& visit : leaf) {
       tests += visit.count * static_cast<std::size_t>(std::popcount(visit.lanes));
       add_bundles(rays_, packet.rays, visit, half.batch);
-      if (common_ != nullptr && !bvh_.is_instanced(visit.first)) {
-        half.batch.back().records =
-            common_->leaf(visit.first, visit.count, counters_.common_records);
-      }
     }
     half.owner.resize(half.batch.size(), index);
   }
@@ -195,18 +148,14 @@ std::size_t UnitIntersector::visit_leaves(Half& half) {
   return tests;
 }
 
-/// Makes the records that are not cached, all at once, as bundles point to them. Includes those of
-/// instances, even with a common origin, since a cache would reserve memory for each.
-void UnitIntersector::make_own_records(Half& half) {
+/// Makes the records of a batch, all at once, as bundles point to them.
+void UnitIntersector::make_records_of(Half& half) {
   std::size_t count = 0;
-  for (const RayBundle& bundle : half.batch) {
-    if (bundle.records == nullptr) count += bundle.record_count;
-  }
+  for (const RayBundle& bundle : half.batch) count += bundle.record_count;
   if (half.records.size() < count) half.records.resize(count);
   PolygonRecord* next = half.records.data();
   for (std::size_t i = 0; i < half.batch.size(); ++i) {
     RayBundle& bundle = half.batch[i];
-    if (bundle.records != nullptr) continue;
     const Ray& ray = rays_[packets_[half.owner[i]].rays[std::countr_zero(bundle.lanes)]];
     std::array<Corners, Bvh::kMaxLeafSize> corners;
     for (std::uint32_t k = 0; k < bundle.record_count; ++k) {
@@ -217,7 +166,7 @@ void UnitIntersector::make_own_records(Half& half) {
     bundle.records = next;
     next += bundle.record_count;
   }
-  counters_.own_records += count;
+  counters_.records += count;
 }
 
 std::uint32_t UnitIntersector::ray_of(const Half& half, const HitReport& report) const {

@@ -45,7 +45,7 @@ class CoreBench {
       if (!is_asked(set.name)) continue;
       run(bvh, image, set.name, [&](const IntersectorFactory& make_intersector) {
         std::vector<NearestHit> hits(set.rays.size());
-        make_intersector()->intersect(set.rays, set.query(0, hits.size()), hits);
+        set.find(*make_intersector(), 0, hits);
         return hits.size();
       });
     }

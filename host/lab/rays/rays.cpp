@@ -27,12 +27,11 @@ class RaygatePeer : public Peer {
 
   void run(Found& found) override {
     CpuIntersector intersector(bvh_);
-    const std::span<const Ray> rays(set_->rays);
+    const std::size_t rays = set_->rays.size();
     std::vector<NearestHit> hits(intersector.traits().batch);
-    for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
-      const std::size_t count = std::min(hits.size(), rays.size() - first);
-      intersector.intersect(rays.subspan(first, count), set_->query(first, count),
-                            std::span(hits).first(count));
+    for (std::size_t first = 0; first < rays; first += hits.size()) {
+      const std::size_t count = std::min(hits.size(), rays - first);
+      set_->find(intersector, first, std::span(hits).first(count));
       for (std::size_t i = 0; i < count; ++i) {
         found.triangle[first + i] = triangle_of(hits[i]);
         found.t[first + i] = static_cast<float>(hits[i].t.low);

@@ -24,12 +24,17 @@ struct RaySet {
   std::vector<float> t_max;    ///< empty, or one per ray: only hits with t < t_max[i] count
   bool any_hit = false;        ///< the query is only whether there is a hit
 
-  /// Returns the query for `count` rays from `first` on.
-  [[nodiscard]] RayQuery query(std::size_t first, std::size_t count) const {
+  /// Finds the hits of the rays from `first` on.
+  void find(Intersector& intersector, std::size_t first, std::span<NearestHit> hits) const {
+    const std::span found = std::span(rays).subspan(first, hits.size());
     RayQuery query{.common_origin = common_origin};
-    if (!t_max.empty()) query.t_max = std::span(t_max).subspan(first, count);
-    if (any_hit) query.any_hit_before = query.t_max;
-    return query;
+    if (!t_max.empty()) query.t_max = std::span(t_max).subspan(first, hits.size());
+    if (any_hit) {
+      query.any_hit_before = query.t_max;
+      intersector.occluded(found, query, hits);
+    } else {
+      intersector.nearest(found, query, hits);
+    }
   }
 };
 

@@ -96,11 +96,11 @@ class IntersectorSubject : public Subject {
   void search(Tree& tree) {
     hits_.assign(rays_.size(), {});
     work_.assign(rays_.size(), {});
-    tree.intersector->intersect(rays_, {.common_origin = way_.one_origin, .work = work_}, hits_);
+    tree.intersector->nearest(rays_, {.common_origin = way_.one_origin, .work = work_}, hits_);
     if (!way_.one_origin) return;
     const auto again = [&](std::span<const Ray> rays, const auto& number) {
       again_.assign(rays.size(), {});
-      tree.intersector->intersect(rays, {.common_origin = true}, again_);
+      tree.intersector->nearest(rays, {.common_origin = true}, again_);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         if (again_[i].primitive != hits_[number(i)].primitive) torn_[number(i)] = true;
       }

@@ -118,7 +118,7 @@ struct Contestant {
 /// Counts nearest hits: 0 or 1 per ray.
 Counts count_nearest(Intersector& intersector, std::span<const Ray> rays) {
   std::vector<NearestHit> hits(rays.size());
-  intersector.intersect(rays, {}, hits);
+  intersector.nearest(rays, {}, hits);
   Counts counts;
   for (const NearestHit& hit : hits) counts.push_back(hit.primitive == NearestHit::kNone ? 0 : 1);
   return counts;

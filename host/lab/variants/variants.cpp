@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "host/intersect/unit/burst_unit.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/lab/lab.h"
 #include "host/lab/variants/variant_models.h"
 #include "host/variants/variant_hit_tester.h"
@@ -294,7 +294,7 @@ std::unique_ptr<HitTester> lab::make_rtl_variant_tester(const Variant& variant) 
     return unit ? make_variant_tester(variant, std::move(unit)) : nullptr;
   }
   auto unit = make_rtl_burst_unit(variant);
-  return unit ? std::make_unique<VariantHitTester>(variant, std::move(unit)) : nullptr;
+  return unit ? make_variant_tester(variant, std::move(unit)) : nullptr;
 }
 
 void lab::add_check(CLI::App& lab) {

@@ -76,8 +76,8 @@ class SourceGuard : public CpuIntersector {
       : CpuIntersector(bvh), bvh_(bvh), named_(named), unnamed_(unnamed) {
     traits_.wants_sources = true;
   }
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override {
+  void trace(std::span<const Ray> rays, const RayQuery& query,
+             std::span<NearestHit> hits) override {
     for (std::size_t i = 0; i < rays.size() && !query.common_origin; ++i) {
       const std::uint32_t source =
           query.source_ids.empty() ? NearestHit::kNone : query.source_ids[i];
@@ -85,7 +85,7 @@ class SourceGuard : public CpuIntersector {
       if (source == NearestHit::kNone) continue;
       EXPECT_FALSE(hits_triangle(rays[i], bvh_.corners_of(source)));
     }
-    CpuIntersector::intersect(rays, query, hits);
+    CpuIntersector::trace(rays, query, hits);
   }
 
  private:
@@ -178,8 +178,8 @@ TEST(ManyLights, ShadowsAreTheSameFromEitherEnd) {
   EXPECT_LT(different, 10) << "of 9,216: rays from the light end a float away";
 }
 
-constexpr bool Skips::*kSkips[] = {&Skips::culling,    &Skips::records,     &Skips::light_behind,
-                                   &Skips::weightless, &Skips::empty_tiles, &Skips::first_occluder};
+constexpr bool Skips::*kSkips[] = {&Skips::culling, &Skips::light_behind, &Skips::weightless,
+                                   &Skips::empty_tiles, &Skips::first_occluder};
 
 // All on, each off alone, all off; with clear surfaces in the scene and without.
 TEST_P(EveryIntegrator, SkipsChangeNoByteAndSaveWork) {
@@ -258,7 +258,6 @@ TEST(Skips, AreCounted) {
   RenderStats stats;
   const Film film = render(scene, bvh, camera, options, pipeline_model(bvh), stats);
   EXPECT_GT(stats.skipped.culled_tests, 100 * stats.intersect.hit.tests);
-  EXPECT_GT(stats.skipped.records, 0u);
   EXPECT_GT(stats.skipped.lights_behind, 0u);
   EXPECT_GT(stats.skipped.weightless, 0u);
   EXPECT_GT(stats.skipped.empty_tile_rays, 0u);

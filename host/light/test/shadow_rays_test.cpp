@@ -37,7 +37,7 @@ class ShadowRaysTest : public testing::Test {
       rays.push_back({eye, scaled_direction(glm::dvec3(random_.point()) - 1e-9)});
     }
     std::vector<NearestHit> hits(rays.size());
-    intersector_->intersect(rays, {}, hits);
+    intersector_->nearest(rays, {}, hits);
     for (int i = 0; i < count; ++i) {
       const std::uint32_t primitive = hits[i].primitive;
       if (primitive == NearestHit::kNone) continue;

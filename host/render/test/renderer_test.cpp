@@ -23,10 +23,9 @@ namespace {
 using Order = SerialHitTester::Order;
 
 IntersectorFactory serial(const Bvh& bvh, Order order = Order::kEdgesFirst) {
-  return [&bvh, order, caches = std::make_shared<RecordCaches>(bvh)] {
+  return [&bvh, order] {
     return std::make_unique<UnitIntersector>(
-        bvh, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>(), order),
-        caches);
+        bvh, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>(), order));
   };
 }
 
@@ -95,8 +94,7 @@ TEST(Renderer, EveryPixelIsTheExactNearestPolygon) {
   }
   EXPECT_EQ(stats.rays, 65u * 65u);
   EXPECT_GT(stats.intersect.exact_inside, 0u);
-  EXPECT_GT(stats.intersect.common_records, 0u);
-  EXPECT_LE(stats.intersect.common_records, scene.triangles.size());
+  EXPECT_GT(stats.intersect.records, 0u);
   EXPECT_FALSE(stats.cancelled);
 }
 
@@ -109,7 +107,7 @@ TEST(Renderer, FilmDoesNotDependOnThreadsOrOrder) {
     EXPECT_TRUE(
         same(film, render(scene, bvh, kCamera, size(200, 150, threads), serial(bvh), other)));
     EXPECT_EQ(one.intersect.hit.tests, other.intersect.hit.tests);
-    EXPECT_EQ(one.intersect.common_records, other.intersect.common_records);
+    EXPECT_EQ(one.intersect.records, other.intersect.records);
   }
   EXPECT_TRUE(same(
       film, render(scene, bvh, kCamera, size(200, 150), serial(bvh, Order::kPlanesFirst), other)));
@@ -234,9 +232,9 @@ TEST(Renderer, AnIntersectorsExceptionReachesTheCaller) {
 class Counting : public CpuIntersector {
  public:
   using CpuIntersector::CpuIntersector;
-  void intersect(std::span<const Ray> rays, const RayQuery& query,
-                 std::span<NearestHit> hits) override {
-    CpuIntersector::intersect(rays, query, hits);
+  void trace(std::span<const Ray> rays, const RayQuery& query,
+             std::span<NearestHit> hits) override {
+    CpuIntersector::trace(rays, query, hits);
     for (RayWork& work : query.work) work = {.tests = 3'000'000'000u, .doubts = 1000};
   }
 };

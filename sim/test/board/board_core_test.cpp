@@ -60,9 +60,9 @@ TEST(BoardCore, HitsAreTheCpuIntersectors) {
       std::make_unique<CoreIntersector>(bvh, std::make_shared<MemoryImage>(bvh), std::move(board)),
       std::make_unique<CpuIntersector>(bvh));
   std::vector<NearestHit> hits(rays.size());
-  check.intersect(rays, {}, hits);
-  check.intersect(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = limits}, hits);
-  check.intersect(std::span(rays).first(20), {.culling = false}, std::span(hits).first(20));
+  check.nearest(rays, {}, hits);
+  check.occluded(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = limits}, hits);
+  check.nearest(std::span(rays).first(20), {.culling = false}, std::span(hits).first(20));
   EXPECT_GT(unit.counters().doubts, 0u);
   EXPECT_GT(unit.counters().clocks, 11 * unit.counters().triangles);
 }
@@ -154,7 +154,7 @@ TEST(BoardCore, AHostThatHasAllResultsSendsTheNextRays) {
           std::make_unique<LinkedCore>(std::make_unique<BurstLink>(), kBoardRays)),
       std::make_unique<CpuIntersector>(bvh));
   std::vector<NearestHit> hits(rays.size());
-  check.intersect(rays, {}, hits);
+  check.nearest(rays, {}, hits);
 }
 
 /// A simulated board behind a pseudoterminal, as behind a serial port: its bytes are those of
@@ -249,7 +249,7 @@ TEST(SerialLink, HitsAreTheCpuIntersectors) {
             std::make_unique<LinkedCore>(std::make_unique<SerialLink>(board.port()), kBoardRays)),
         std::make_unique<CpuIntersector>(bvh));
     std::vector<NearestHit> hits(rays.size());
-    check.intersect(rays, {}, hits);
+    check.nearest(rays, {}, hits);
   }
 }
 

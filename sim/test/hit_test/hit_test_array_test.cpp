@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "Vhit_test_array_2.h"
-#include "host/intersect/unit/burst_unit.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "sim/array_model.h"
 #include "sim/random_bursts.h"
 

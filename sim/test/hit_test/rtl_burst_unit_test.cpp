@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "host/intersect/unit/burst_unit.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "sim/random_bursts.h"
 

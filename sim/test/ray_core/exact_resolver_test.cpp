@@ -111,7 +111,7 @@ TEST_F(ExactResolverTest, LimitsAndFirstHitsAreTheReferences) {
   std::vector<NearestHit> nearest(rays.size());
   // Half of the limits are within a float of the nearest hit.
   for (std::size_t i = 0; i < rays.size(); i += 2) {
-    CpuIntersector(bvh_).intersect({&rays[i].ray, 1}, {}, {&nearest[i], 1});
+    CpuIntersector(bvh_).nearest({&rays[i].ray, 1}, {}, {&nearest[i], 1});
     if (nearest[i].primitive == NearestHit::kNone) continue;
     rays[i].t_max =
         static_cast<float>(hit_distance(rays[i].ray, bvh_.corners_of(nearest[i].primitive)).low);
@@ -128,8 +128,8 @@ TEST_F(ExactResolverTest, NearestHitsAreTheCpuIntersectors) {
   CoreIntersector intersector(bvh_, image_,
                               std::make_unique<Core>(MemoryTiming{.latency = 20, .disorder = 40},
                                                      CoreStalls{.not_taken = 100}, kExact));
-  intersector.intersect(rays, {}, found);
-  CpuIntersector(bvh_).intersect(rays, {}, expected);
+  intersector.nearest(rays, {}, found);
+  CpuIntersector(bvh_).nearest(rays, {}, expected);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(found[i].primitive, expected[i].primitive) << i;
   }
@@ -164,7 +164,7 @@ TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
   int found = 0;
   for (const CoreResult& result : results) {
     NearestHit expected;
-    CpuIntersector(bvh).intersect({&rays[result.tag].ray, 1}, {}, {&expected, 1});
+    CpuIntersector(bvh).nearest({&rays[result.tag].ray, 1}, {}, {&expected, 1});
     found += result.found && result.triangle == image.line_of(expected.primitive);
   }
   EXPECT_GT(core.counters().doubts, 150u * rays.size());

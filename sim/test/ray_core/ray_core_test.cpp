@@ -34,7 +34,11 @@ class RayCoreTest : public testing::Test {
                                  std::make_unique<CoreIntersector>(bvh_, image_, std::move(core)),
                                  std::make_unique<CpuIntersector>(bvh_));
     std::vector<NearestHit> hits(rays.size());
-    intersector.intersect(rays, query, hits);
+    if (query.any_hit_before.empty() && query.skip_ids.empty()) {
+      intersector.nearest(rays, query, hits);
+    } else {
+      intersector.occluded(rays, query, hits);
+    }
     counters_ = unit.counters();
   }
 

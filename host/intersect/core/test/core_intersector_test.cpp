@@ -23,6 +23,7 @@
 #include "host/intersect/core/test/box_cases.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/unit/test/model_intersector.h"
 
 namespace raygate {
 namespace {
@@ -44,7 +45,7 @@ class CoreIntersectorTest : public testing::Test {
     const CoreIntersector& core_intersector = *tested;
     CheckIntersector intersector(bvh_, std::move(tested), std::make_unique<CpuIntersector>(bvh_));
     std::vector<NearestHit> hits(rays.size());
-    intersector.intersect(rays, query, hits);
+    test::find(intersector, rays, query, hits);
     for (const NearestHit& hit : hits) found_ += hit.primitive != NearestHit::kNone;
     counters_ = core.counters();
     const IntersectCounters host = core_intersector.counters();
@@ -152,7 +153,7 @@ TEST_F(ExactCoreTest, NearestHitsAreTheCpuIntersectors) {
 TEST_F(ExactCoreTest, LimitsSkippedTrianglesFirstHitsAndSourcesCount) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 5'000);
   std::vector<NearestHit> nearest(rays.size());
-  CpuIntersector(bvh_).intersect(rays, {}, nearest);
+  CpuIntersector(bvh_).nearest(rays, {}, nearest);
   std::vector<float> limits;
   std::vector<std::uint32_t> skipped;
   for (const NearestHit& hit : nearest) {
@@ -240,7 +241,7 @@ TEST_F(CoreIntersectorTest, ErrorsOfTheCoreAreInputErrors) {
   const auto said = [&](bool cyclic) {
     CoreIntersector intersector(bvh_, image_, std::make_unique<BrokenMemory>(cyclic));
     try {
-      intersector.intersect(rays, {.culling = false}, hits);
+      intersector.nearest(rays, {.culling = false}, hits);
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -258,7 +259,7 @@ TEST(MemoryImage, OfNothingIsANodeWithoutChildren) {
   CoreIntersector intersector(bvh, image, std::make_unique<ReferenceCore>());
   const Ray ray{glm::vec3(0), glm::vec3(1, 0, 0)};
   NearestHit hit;
-  intersector.intersect({&ray, 1}, {}, {&hit, 1});
+  intersector.nearest({&ray, 1}, {}, {&hit, 1});
   EXPECT_EQ(hit.primitive, NearestHit::kNone);
 }
 
@@ -296,7 +297,7 @@ TEST_F(CoreIntersectorTest, RefusesWordsAboutWhatItDidNotGive) {
   const auto take = [&](const CoreResult& word) {
     CoreIntersector intersector(bvh_, image_, std::make_unique<WildCore>(word));
     std::vector<NearestHit> hits(1);
-    intersector.intersect(rays, {}, hits);
+    intersector.nearest(rays, {}, hits);
   };
   EXPECT_NO_THROW(take({.kind = Kind::kEnd, .tag = 0}));
   EXPECT_THROW(take({.kind = Kind::kEnd, .tag = 1}), std::runtime_error);

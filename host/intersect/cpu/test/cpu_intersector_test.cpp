@@ -69,7 +69,7 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
     query.common_origin = GetParam();
     std::vector<NearestHit> expected(rays.size()), first;
     std::vector<RayWork> first_work;
-    test::model_intersector(bvh)->intersect(rays, query, expected);
+    test::find(*test::model_intersector(bvh), rays, query, expected);
     int hits = 0;
     for (const Vectors vectors : machine_vectors()) {
       const UsingVectors in_use(vectors);
@@ -77,7 +77,7 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
       std::vector<NearestHit> found(rays.size());
       CpuIntersector intersector(bvh);
       query.work = work;
-      intersector.intersect(rays, query, found);
+      test::find(intersector, rays, query, found);
       if (first.empty()) {
         first = found;
         first_work = work;
@@ -91,7 +91,7 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
         if (found[i].primitive == NearestHit::kNone) continue;
         EXPECT_EQ(found[i].t.low, first[i].t.low) << i << ", " << name_of(vectors);
         EXPECT_EQ(found[i].t.high, first[i].t.high) << i << ", " << name_of(vectors);
-        if (query.with_points()) expect_same_points(found[i], first[i]);
+        if (test::with_points(query)) expect_same_points(found[i], first[i]);
       }
     }
     return hits;
@@ -114,7 +114,7 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
         continue;
       }
       EXPECT_EQ(a.primitive, b.primitive) << i;
-      if (is_hit && query.with_points()) expect_same_points(a, b);
+      if (is_hit && test::with_points(query)) expect_same_points(a, b);
       EXPECT_LE(a.t.low, b.t.high);
       EXPECT_GE(a.t.high, b.t.low);
     }
@@ -190,7 +190,7 @@ TEST(CpuIntersector, LimitsAndTiesAreExact) {
   std::vector<NearestHit> hits(3);
   const std::vector<Ray> rays(3, {glm::vec3(0), glm::vec3(0.25f, 0.5f, 1)});
   const std::vector<float> limits = {std::nextafter(3.0f, 0.0f), 3.0f, std::nextafter(3.0f, 4.0f)};
-  CpuIntersector(bvh).intersect(rays, {.t_max = limits}, hits);
+  CpuIntersector(bvh).nearest(rays, {.t_max = limits}, hits);
   EXPECT_EQ(hits[0].primitive, NearestHit::kNone);
   EXPECT_EQ(hits[1].primitive, NearestHit::kNone);
   ASSERT_NE(hits[2].primitive, NearestHit::kNone);

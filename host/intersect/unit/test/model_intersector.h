@@ -1,4 +1,4 @@
-// The pipelined unit's reference model as an intersector.
+// Intersectors of tests: the pipelined unit's reference model, and queries of any kind.
 #pragma once
 
 #include <memory>
@@ -12,6 +12,21 @@ namespace raygate::test {
 inline std::unique_ptr<Intersector> model_intersector(const Bvh& bvh) {
   return std::make_unique<UnitIntersector>(
       bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
+}
+
+/// Returns whether a query is one for nearest().
+inline bool with_points(const RayQuery& query) {
+  return query.any_hit_before.empty() && query.skip_ids.empty();
+}
+
+/// Calls nearest(), or occluded() if the query has options that only it allows.
+inline void find(Intersector& intersector, std::span<const Ray> rays, const RayQuery& query,
+                 std::span<NearestHit> hits) {
+  if (with_points(query)) {
+    intersector.nearest(rays, query, hits);
+  } else {
+    intersector.occluded(rays, query, hits);
+  }
 }
 
 }  // namespace raygate::test

@@ -37,7 +37,7 @@ class UnitIntersectorTest : public testing::Test {
 
   std::vector<NearestHit> find(const std::vector<Ray>& rays, const RayQuery& query = {}) {
     std::vector<NearestHit> hits(rays.size());
-    intersector_->intersect(rays, query, hits);
+    test::find(*intersector_, rays, query, hits);
     return hits;
   }
 };
@@ -59,23 +59,7 @@ TEST_F(UnitIntersectorTest, OwnOriginsFindTheExactNearest) {
   EXPECT_GT(hits, 1000);
   EXPECT_GT(misses, 100);
   EXPECT_GT(intersector_->counters().exact_inside, 0u);
-  EXPECT_GT(intersector_->counters().own_records, 0u);
-}
-
-TEST_F(UnitIntersectorTest, CachedRecordsChangeNothing) {
-  std::vector<Ray> rays = some_rays(mesh_, random_, 2000);
-  for (Ray& ray : rays) ray.origin = rays[0].origin;
-  const auto cached = find(rays, {.common_origin = true});
-  EXPECT_EQ(intersector_->counters().own_records, 0u);
-  EXPECT_GT(intersector_->counters().common_records, 0u);
-  EXPECT_LE(intersector_->counters().common_records, mesh_.size());
-  const auto own = find(rays);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    ASSERT_EQ(own[i].primitive, cached[i].primitive);
-    ASSERT_EQ(own[i].point, cached[i].point);
-  }
-  EXPECT_GT(intersector_->counters().own_records, mesh_.size())
-      << "made once for each packet and leaf";
+  EXPECT_GT(intersector_->counters().records, 0u);
 }
 
 TEST_F(UnitIntersectorTest, WithoutCullingEveryPolygonIsTestedForTheSame) {
@@ -151,10 +135,10 @@ TEST(UnitIntersector, IgnoredHitsHideNothing) {
   const auto intersector = test::model_intersector(bvh);
   const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0, 0, 1)}};
   std::vector<NearestHit> hits(1);
-  intersector->intersect(rays, {}, hits);
+  intersector->nearest(rays, {}, hits);
   const std::uint32_t first = hits[0].primitive;
   ASSERT_EQ(bvh.triangle_of(first), 0u);
-  intersector->intersect(rays, {.skip_ids = std::span(&first, 1)}, hits);
+  intersector->occluded(rays, {.skip_ids = std::span(&first, 1)}, hits);
   ASSERT_NE(hits[0].primitive, NearestHit::kNone);
   EXPECT_EQ(bvh.triangle_of(hits[0].primitive), 1u);
 }
