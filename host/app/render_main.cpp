@@ -16,7 +16,7 @@
 #include "host/app/report.h"
 #include "host/app/version.h"
 #include "host/base/input_error.h"
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/bvh/bvh.h"
 #include "host/film/display.h"
 #include "host/film/film.h"

@@ -11,7 +11,6 @@
 #include <string_view>
 
 #include "host/base/elementary.h"
-#include "host/base/srgb.h"
 #include "host/base/threads.h"
 
 namespace raygate {

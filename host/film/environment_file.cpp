@@ -11,9 +11,8 @@
 #include <system_error>
 
 #include "host/base/elementary.h"
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
-#include "host/base/text.h"
 #include "host/film/exr.h"
 
 namespace raygate {

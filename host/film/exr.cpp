@@ -28,7 +28,7 @@
 #include <system_error>
 #include <utility>
 
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
 #include "host/base/threads.h"
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <span>
 
-#include "host/base/counts.h"
+#include "host/base/measure.h"
 #include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
 #include "host/intersect/intersect_counters.h"

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/light/light_paths.h"
 #include "host/light/lights.h"
 #include "host/render/adaptive_sampling.h"

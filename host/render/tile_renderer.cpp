@@ -4,8 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "host/base/counts.h"
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/film/film.h"
 #include "host/render/tiles.h"
 

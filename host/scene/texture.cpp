@@ -11,9 +11,9 @@
 #include <string>
 #include <string_view>
 
-#include "host/base/file_bytes.h"
+#include "host/base/elementary.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
-#include "host/base/srgb.h"
 
 namespace raygate {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/base/srgb.h"
+#include "host/base/elementary.h"
 #include "host/base/test/temp_folder.h"
 #include "host/film/test/sample_film.h"
 

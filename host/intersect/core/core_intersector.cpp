@@ -5,7 +5,7 @@
 #include <string>
 
 #include "host/base/input_error.h"
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/intersect/point_writer.h"
 
 namespace raygate {

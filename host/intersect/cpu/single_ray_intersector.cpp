@@ -252,10 +252,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   // Met children come first, or are the only ones that are not negative.
   IntLanes keys = met.keys & ~kNumber;
 #ifdef RAYGATE_AVX2
-  if constexpr (kCode == Vectors::kAvx512) {
-    keys |= kNumbers;
-    avx512_compress(keys, met.mask);
-  } else if constexpr (kCode == Vectors::kAvx2) {
+  if constexpr (kCode == Vectors::kAvx2) {
     const auto lanes = load<IntLanes>(numbers.data());
     avx2_permute(keys, lanes);
     keys |= lanes;

@@ -7,7 +7,7 @@
 #include <new>
 #include <utility>
 
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/bvh/traversal.h"
 
 namespace raygate {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "host/base/srgb.h"
+#include "host/base/elementary.h"
 
 namespace raygate::lab {
 namespace {

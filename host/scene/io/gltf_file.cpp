@@ -8,7 +8,7 @@
 #include <map>
 #include <span>
 
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/scene/io/find_file.h"
 #include "host/scene/io/text.h"
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <string_view>
 
+#include "host/base/elementary.h"
 #include "host/base/input_error.h"
-#include "host/base/srgb.h"
 #include "host/scene/io/text.h"
 
 namespace raygate {

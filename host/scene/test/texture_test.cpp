@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "host/base/elementary.h"
 #include "host/base/input_error.h"
-#include "host/base/srgb.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/material_lookup.h"

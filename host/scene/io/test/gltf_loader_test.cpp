@@ -5,7 +5,7 @@
 #include <regex>
 #include <set>
 
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/bounds.h"

@@ -1,0 +1,43 @@
+// Input: contents of files, binary and decimal numbers, and words in quotes for messages.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace raygate {
+
+/// Returns the contents of a file. Throws InputError if it is unreadable, a folder, a device or
+/// empty.
+[[nodiscard]] std::string read_file(const std::filesystem::path& file);
+
+/// Returns the number at `bytes`, in little-endian or big-endian byte order.
+template <class Number>
+[[nodiscard]] Number number_at(const char* bytes, bool highest_first = false) {
+  char ordered[sizeof(Number)];
+  for (std::size_t i = 0; i < sizeof(Number); ++i) {
+    ordered[i] = bytes[highest_first ? sizeof(Number) - 1 - i : i];
+  }
+  Number number;
+  std::memcpy(&number, ordered, sizeof number);
+  return number;
+}
+
+/// Number types selected at run time.
+enum class NumberType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+[[nodiscard]] std::size_t bytes_of(NumberType type);
+[[nodiscard]] double number_at(const char* bytes, NumberType type, bool highest_first = false);
+
+/// Returns the word in quotes for a message: its first 40 characters, with unprintable ones as
+/// \xHH.
+[[nodiscard]] std::string in_quotes(std::string_view word);
+
+/// Returns a decimal number as the nearest double, in any locale, or nullopt if the whole word is
+/// not a number. "nan" and "inf" are numbers; a magnitude too large gives infinity, too small 0.
+[[nodiscard]] std::optional<double> to_number(std::string_view word);
+
+}  // namespace raygate
