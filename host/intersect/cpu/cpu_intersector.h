@@ -12,7 +12,7 @@ namespace raygate {
 class CpuIntersector : public Intersector {
  public:
   /// `bvh` must outlive this object.
-  explicit CpuIntersector(const Bvh& bvh) : Intersector({.filters_hits = true}), bvh_(bvh) {}
+  explicit CpuIntersector(const Bvh& bvh) : Intersector({}), bvh_(bvh) {}
 
   void intersect(std::span<const Ray> rays, const RayQuery& query,
                  std::span<NearestHit> hits) override;
