@@ -166,14 +166,10 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     record.emission = light.irradiance;
     record.position = glm::vec3(-light.direction);
   }
-  if (scene.environment || own_.studio) {
-    environment_.emplace(own_.studio ? *own_.studio : *scene.environment,
-                         sampling == Sampling::kOne);
+  if (scene.environment) {
+    environment_.emplace(*scene.environment, sampling == Sampling::kOne);
     lights_.emplace_back().kind = Kind::kEnvironment;
   }
-  from_above_ = background();
-  if (own_.studio)
-    from_above_ = glm::vec3(mean_before(*own_.studio, floor_normal(scene, bvh, own_.studio->up)));
   if (sampling == Sampling::kOne) {
     add_sources(unit);
   } else {

@@ -24,9 +24,6 @@ class Camera;
 struct CameraLights {
   std::vector<PointLight> points;
   glm::vec3 background{0.0f};
-  /// Environment that lights the scene and is seen in mirrors in place of the background, which
-  /// only the camera sees; it has the same mean radiance.
-  std::optional<EnvironmentMap> studio{};
   /// Radius of spheres that replace the points, for soft shadows; they are outside the scene.
   double radius = 0.0;
 };
@@ -126,10 +123,6 @@ class Lights {
   [[nodiscard]] const Environment* environment() const {
     return environment_ ? &*environment_ : nullptr;
   }
-  /// Returns whether the environment is one of the camera lights, which the camera does not see.
-  [[nodiscard]] bool has_studio() const { return own_.studio.has_value(); }
-  /// Returns the uniform radiance that lights a floor like the background or studio.
-  [[nodiscard]] const glm::vec3& light_from_above() const { return from_above_; }
   /// Returns the radiance of the background; for an environment, its mean.
   [[nodiscard]] glm::vec3 background() const {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : own_.background;
@@ -258,7 +251,6 @@ class Lights {
   const Bvh& bvh_;
   CameraLights own_;
   std::optional<Environment> environment_;
-  glm::vec3 from_above_{0.0f};
   glm::dvec3 ambient_{0.0};
   std::vector<AreaLight> areas_;
   std::vector<Light> lights_;

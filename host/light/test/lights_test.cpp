@@ -234,20 +234,13 @@ Camera camera_from(const glm::dvec3& eye) {
   return Camera::look_at(eye, glm::dvec3(0.0), {0, 1, 0}, 35.0, 1.0);
 }
 
-TEST(DefaultLights, AreOneLightAboveTheCameraAndAStudio) {
+TEST(DefaultLights, AreOneLightAboveTheCamera) {
   const auto lights = default_lights(square(matte(glm::vec3(0.5f))), camera_from({0, 0, 5}));
   ASSERT_TRUE(lights && lights->points.size() == 1);
   EXPECT_LT(lights->points[0].position.x, 0.0f);
   EXPECT_GT(lights->points[0].position.y, 0.0f);
   EXPECT_GT(lights->points[0].position.z, 0.0f);
   EXPECT_NE(lights->background, glm::vec3(0.0f));
-  // What mirrors show of it is not one colour; its mean is what the camera sees.
-  ASSERT_TRUE(lights->studio);
-  const auto [least, most] = std::ranges::minmax(lights->studio->texels, {},
-                                                 [](const glm::vec3& texel) { return texel.g; });
-  EXPECT_GT(most.g, 10.0f * least.g);
-  const glm::dvec3 mean = Environment(*lights->studio, false).mean_radiance();
-  EXPECT_LT(glm::length(mean - glm::dvec3(lights->background)), 1e-3);
 }
 
 // Sixteen times the size of such a scene is beyond the range of float.
