@@ -173,8 +173,6 @@ MetallicRoughnessFactors metallic_roughness_factors_at(const Scene& scene, const
   factors.metallic = is_one_map ? rough.b : codes(model->metallic_map).b;
   factors.transmission = codes(model->transmission_map).r;
   factors.specular = codes(model->specular_map).r;
-  factors.coat = codes(model->coat_map).r;
-  factors.coat_roughness = codes(model->coat_roughness_map).g;
   factors.specular_color = color_of(model->specular_color_map, scene, triangle, weights);
   return factors;
 }

@@ -46,8 +46,7 @@ namespace raygate {
 
 /// Factors from metallic-roughness textures; 1 without a texture or texture coordinates.
 struct MetallicRoughnessFactors {
-  float roughness = 1.0f, metallic = 1.0f, transmission = 1.0f, specular = 1.0f, coat = 1.0f,
-        coat_roughness = 1.0f;
+  float roughness = 1.0f, metallic = 1.0f, transmission = 1.0f, specular = 1.0f;
   glm::vec3 specular_color{1.0f};
 };
 [[nodiscard]] MetallicRoughnessFactors metallic_roughness_factors_at(const Scene& scene,
