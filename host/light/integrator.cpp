@@ -5,7 +5,7 @@
 
 #include "host/base/vectors.h"
 #include "host/light/light_paths.h"
-#include "host/light/sample_scattered_ray.h"
+#include "host/light/shade.h"
 #include "host/scene/instances.h"
 
 namespace raygate {

@@ -46,24 +46,9 @@ struct CameraLights {
   return {finite_float(x.x), finite_float(x.y), finite_float(x.z)};
 }
 
-/// Falloff of a SpotCone: the ramp of KHR_lights_punctual over the cosine of the angle to the axis.
-struct SpotFalloff {
-  glm::vec3 axis{0.0f};
-  float scale = 0.0f, offset = 1.0f;  ///< without a cone: 1 everywhere
-
-  SpotFalloff() = default;
-  explicit SpotFalloff(const SpotCone& cone) : axis(cone.axis) {
-    constexpr double kLeastRamp = 1e-6;
-    const double inner = sine_cosine(cone.inner / 360.0).cosine;
-    const double outer = sine_cosine(cone.outer / 360.0).cosine;
-    const double slope = 1.0 / (inner - outer > kLeastRamp ? inner - outer : kLeastRamp);
-    scale = static_cast<float>(slope);
-    offset = static_cast<float>(-outer * slope);
-  }
-};
-
-/// Returns the fraction of the intensity at an angle to the axis with this cosine: 1 within the
-/// cone's inner angle, 0 beyond the outer one.
+/// Returns the fraction of a spot light's intensity at an angle to its axis with this cosine, by
+/// the ramp of KHR_lights_punctual: 1 within the cone's inner angle, 0 beyond the outer one.
+/// `scale` and `offset` are those of Lights::Light.
 template <class T>
 RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) {
   const T ramp = at_most(at_least(cosine * scale + offset, 0.0f), 1.0f);
@@ -147,19 +132,19 @@ class Lights {
     /// Point light: intensity, in square units. Area light: radiance. Directional light:
     /// irradiance. Environment: unused.
     glm::vec3 emission{0.0f};
-    glm::vec3 position{0.0f};  ///< of a point light, or the direction towards a directional light
-    float radius = 0.0f;       ///< of a point light that is a sphere, outside the scene
-    SpotFalloff spot;
-    float area = 0.0f;  ///< in square units
-    bool is_textured =
-        false;  ///< `emission` is the mean; radiance_at() returns the value at a point
+    glm::vec3 position{0.0f};   ///< of a point light, or the direction towards a directional light
+    float radius = 0.0f;        ///< of a point light that is a sphere, outside the scene
+    glm::vec3 spot_axis{0.0f};  ///< for is_spot, as the arguments of spot_falloff()
+    float spot_scale = 0.0f, spot_offset = 1.0f;
+    float area = 0.0f;         ///< in square units
+    bool is_textured = false;  ///< `emission` is the mean; radiance_at() returns that of a point
     std::uint32_t first_patch = 0, patches = 0;
   };
   [[nodiscard]] const Light& light(std::size_t index) const { return lights_[index]; }
 
-  /// Samples points of area lights, uniform in area, for points of the unit square.
+  /// Samples points of an area light, uniform in area, for points of the unit square.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(const std::uint32_t (&indices)[kLanesOf<T>],
+  [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(const Light& light,
                                                     const SquarePoint<T>& u) const;
   /// Samples points of one patch per lane, uniform in area.
   template <class T>
@@ -265,15 +250,13 @@ class Lights {
 };
 
 template <class T>
-RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&indices)[kLanesOf<T>],
-                                            const SquarePoint<T>& u) const {
+RAYGATE_INLINE LightPoint<T> Lights::sample(const Light& light, const SquarePoint<T>& u) const {
   constexpr int kCount = kLanesOf<T>;
   const auto wanted = unpack(u.x);
   std::uint32_t numbers[kCount];
   const Patch* patches[kCount];
+  const auto first = patch_ends_.begin() + light.first_patch;
   for (int k = 0; k < kCount; ++k) {
-    const Light& light = lights_[indices[k]];
-    const auto first = patch_ends_.begin() + light.first_patch;
     const auto found = std::upper_bound(first, first + light.patches - 1, wanted[k]);
     numbers[k] = static_cast<std::uint32_t>(found - patch_ends_.begin());
     patches[k] = &patches_[numbers[k]];

@@ -21,55 +21,56 @@ RAYGATE_INLINE Triple<T> if_narrow(const Ggx<T>& ggx, const Triple<T>& reflected
   return choose(ggx.squared > kNarrow * kNarrow, zero<T>(), reflected);
 }
 
+/// Returns the light of light `i` at each hit.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits<T>& hits,
                                          std::uint32_t i) {
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
   const Lights::Light& own = lights.light(i);
-  const Triple<T> middle = spread<T>(own.position);
-  Triple<T> emission = spread<T>(own.emission);
+  IncidentLight<T> light;
   if (own.kind == Kind::kArea) {
-    std::uint32_t indices[Hits<T>::kCount];
-    std::ranges::fill(indices, i);
     const auto number = static_cast<std::uint32_t>(i - lights.points().size());
     // Slightly beside the centre of a quadrilateral, whose triangles share an edge there: rays to
     // an edge need exact arithmetic.
     const bool in_middle = shading.settings.samples == 1 && own.patches == 1;
     const SquarePoint<T> centre = {spread<T>(0.5f + 0x1p-11f), spread<T>(0.5f)};
     const LightPoint<T> point =
-        lights.sample<T>(indices, in_middle ? centre : hits.random(kFirstAreaLight + number));
+        lights.sample<T>(own, in_middle ? centre : hits.random(kFirstAreaLight + number));
+    Triple<T> emission = spread<T>(own.emission);
     if (own.is_textured && !in_middle) {
       const Lights::Light* same[Hits<T>::kCount];
       std::ranges::fill(same, &own);
       emission = lights.radiance_at<T>(same, point);
     }
-    IncidentLight<T> light = area_light(lights, hits, point, emission * spread<T>(own.area));
+    light = area_light(lights, hits, point, emission * spread<T>(own.area));
     light.is_asked = hits.bsdf.scatters();
     return light;
   }
-  const bool is_ball = own.radius > 0.0f;
-  const Triple<T> position =
-      is_ball && shading.settings.samples > 1
-          ? Lights::point_on<T>(middle, spread<T>(own.radius), hits.surface.point,
-                                hits.random(kFirstPointLight + i))
-          : middle;
-  IncidentLight<T> light = own.kind == Kind::kPoint ? IncidentLight<T>(lights, hits, position)
-                                                    : IncidentLight<T>(hits, middle);
-  light.is_asked = T{} == 0.0f;
-  light.emission = emission;
-  if (own.is_spot) {
-    light.emission =
-        emission * spot_falloff_at(hits, lights, middle, spread<T>(own.spot.axis),
-                                   spread<T>(own.spot.scale), spread<T>(own.spot.offset));
-  }
+  const Triple<T> middle = spread<T>(own.position);
   if (own.kind == Kind::kPoint) {
-    light.target = position - hits.surface.point;
+    const bool is_ball = own.radius > 0.0f;
+    const Triple<T> position =
+        is_ball && shading.settings.samples > 1
+            ? Lights::point_on<T>(middle, spread<T>(own.radius), hits.surface.point,
+                                  hits.random(kFirstPointLight + i))
+            : middle;
+    light = point_light(lights, hits, position, [&](auto member) RAYGATE_BODY {
+      if constexpr (std::is_same_v<decltype(own.*member), const bool&>) {
+        return own.*member;
+      } else {
+        return spread<T>(own.*member);
+      }
+    });
     if (!is_ball) {
-      light.is_point_light = light.is_asked;
+      light.is_point_light = T{} == 0.0f;
       light.index = WordOf<T>{} + i;
     }
+  } else {
+    light = IncidentLight<T>(hits, middle);
+    light.emission = spread<T>(own.emission);
   }
+  light.is_asked = T{} == 0.0f;
   return light;
 }
 
@@ -117,16 +118,12 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   next.path.pdf = T{};
   next.path.scattered_at = next.path.normal = zero<T>();
   next.path.throughput = hits.path.throughput * bsdf.mirror();
-  Triple<T> facet = surface.normal, mirror_facet = facet, transmitted = bsdf.transmission();
+  Triple<T> facet = surface.normal, transmitted = bsdf.transmission();
   if (has_rough_facets(hits)) {
     // A random facet (Cook, Porter and Carpenter 1984).
     const MetallicRoughnessLobes<T>& facets = bsdf.facets();
-    const SquarePoint<T> u = hits.random(kRoughFacet);
-    const auto cosine_at = [&](const Triple<T>& at) RAYGATE_BODY {
-      return at_most(at_least(dot(surface.view, at), 0.0f), 1.0f);
-    };
-    facet = facets.ggx.sample(surface.view, u);
-    const T cosine = cosine_at(facet);
+    facet = facets.ggx.sample(surface.view, hits.random(kRoughFacet));
+    const T cosine = at_most(at_least(dot(surface.view, facet), 0.0f), 1.0f);
     Triple<T> reflected = if_narrow(facets.ggx, facets.schlick(schlick_weight(cosine)));
     if (bsdf.has_rough_glass()) {
       const T glass = facets.glass * facets.glass_gain,
@@ -143,7 +140,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   next.is_wanted = T{} > 0.0f;
   if (goes_on) next.is_wanted = worthwhile(shading, hits, next.path.throughput);
   if (any(next.is_wanted)) {
-    next.reflect_off(hits, mirror_facet);
+    next.reflect_off(hits, facet);
     next.path.stream = hash(hits.path.stream, kMirror);
     next.send(hits, 0);
   }

@@ -66,7 +66,7 @@ class ManyLights : public testing::TestWithParam<int> {
       const glm::vec3 to = light.position - point;
       const float cosine = -glm::dot(glm::normalize(to), light.spot.axis);
       return glm::dot(to, normal) > 0.0f &&
-             (!light.is_spot || spot_falloff(cosine, light.spot.scale, light.spot.offset) > 0.0f);
+             (!light.is_spot || spot_falloff(cosine, light.spot_scale, light.spot_offset) > 0.0f);
     }
     for (int i = 0; i < 8; ++i) {
       const std::uint32_t patches[] = {source.patch};
@@ -306,7 +306,7 @@ TEST(DefaultLights, CastSoftShadows) {
     RenderSettings options = test::light(integrator, 1, 1, 4096);
     options.ambient = 0.0;
     options.max_depth = 1;
-    const CameraLights lights{{{{0, 101, 0}, glm::dvec3(1e4)}}, glm::vec3(0.0f), {}, 10.0};
+    const CameraLights lights{{{{0, 101, 0}, glm::dvec3(1e4)}}, glm::vec3(0.0f), 10.0};
     return double(test::film_of(scene, camera, options, lights).color[0].r);
   };
   for (const IntegratorKind integrator : {IntegratorKind::kWhitted, IntegratorKind::kPath}) {
