@@ -170,8 +170,6 @@ void run(const Options& options) {
   const Film film = render_monitored(options, job, metadata,
                                      make_intersector_factory(options, bvh, settings.skips, image),
                                      report.render);
-  const std::string blank = why_blank(film, outputs.display);
-  if (!blank.empty()) print_warning(blank);
 
   // All files are staged before the first takes its name: a full disk changes none of them.
   lap.lap();
