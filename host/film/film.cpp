@@ -6,11 +6,11 @@
 #include <string>
 #include <type_traits>
 
-namespace raygate {
 #include "host/base/elementary.h"
 
-Film make_film(int width, int height, const PixelRect& window, const ExtraChannels& extra) {
+namespace raygate {
 
+Film make_film(int width, int height, const PixelRect& window, const ExtraChannels& extra) {
   Film film;
   film.width = width;
   film.height = height;
