@@ -55,9 +55,8 @@ class ShadowRaysTest : public testing::Test {
         ask(scene_.lights[ray.point_light].position);
       }
       ray.point_light = ShadowRay::kNoPoint;
-      const std::uint32_t area_light[] = {2};
       const LightPoint<float> point = lights_.sample<float>(
-          area_light, {float(random_.uniform(0, 1)), float(random_.uniform(0, 1))});
+          lights_.light(2), {float(random_.uniform(0, 1)), float(random_.uniform(0, 1))});
       ray.target = {point.position.x, point.position.y, point.position.z};
       ray.target_primitive = point.primitive;
       ask(ray.target);
