@@ -13,7 +13,6 @@
 #include "host/app/load.h"
 #include "host/app/option_table.h"
 #include "host/film/display.h"
-#include "host/film/false_color.h"
 #include "host/film/film.h"
 #include "host/render/render_settings.h"
 #include "host/scene/instances.h"

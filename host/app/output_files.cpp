@@ -11,7 +11,6 @@
 #include "host/base/input_error.h"
 #include "host/film/display.h"
 #include "host/film/exr.h"
-#include "host/film/false_color.h"
 #include "host/film/film.h"
 #include "host/film/merge.h"
 

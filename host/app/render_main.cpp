@@ -16,7 +16,7 @@
 #include "host/app/report.h"
 #include "host/app/version.h"
 #include "host/base/input_error.h"
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/bvh/bvh.h"
 #include "host/film/display.h"
 #include "host/film/film.h"
@@ -170,8 +170,6 @@ void run(const Options& options) {
   const Film film = render_monitored(options, job, metadata,
                                      make_intersector_factory(options, bvh, settings.skips, image),
                                      report.render);
-  const std::string blank = why_blank(film, outputs.display);
-  if (!blank.empty()) print_warning(blank);
 
   // All files are staged before the first takes its name: a full disk changes none of them.
   lap.lap();

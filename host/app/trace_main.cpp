@@ -17,7 +17,7 @@
 #include "host/app/load.h"
 #include "host/app/process.h"
 #include "host/base/input_error.h"
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/bvh/bvh.h"
 #include "host/film/atomic_file.h"
 #include "host/trace/hit_table.h"

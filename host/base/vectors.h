@@ -1,7 +1,6 @@
 // Selection of vector code at run time: one source, compiled once for each instruction set.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
@@ -13,61 +12,40 @@
 
 namespace raygate {
 
-/// Instruction sets, narrowest first. All give the same bits: none fuses multiply and add.
-enum class Vectors { kBaseline, kAvx2, kAvx512 };
-
-inline constexpr std::array<std::string_view, 3> kVectorNames = {"baseline", "avx2", "avx512"};
+/// Instruction sets, narrower first. Both give the same bits: neither fuses multiply and add.
+enum class Vectors { kBaseline, kAvx2 };
 
 [[nodiscard]] constexpr std::string_view name_of(Vectors vectors) {
-  return kVectorNames[static_cast<std::size_t>(vectors)];
+  return vectors == Vectors::kAvx2 ? "avx2" : "baseline";
 }
 
 /// Argument of the body of in_vectors: the instruction set as a constant.
 template <Vectors kVectors>
 using VectorCode = std::integral_constant<Vectors, kVectors>;
 
-// The widest compiled instruction set, as a number of Vectors. Sanitizer builds use fewer sets.
-#ifndef RAYGATE_WIDEST_VECTORS
-#define RAYGATE_WIDEST_VECTORS 2
-#endif
-
-// With baseline code only, the body is called directly, to compile faster.
-#if RAYGATE_WIDEST_VECTORS > 0
-#define RAYGATE_INLINE inline __attribute__((always_inline))
-#define RAYGATE_BODY __attribute__((always_inline))
-#else
+// With RAYGATE_BASELINE_ONLY, the body is called directly, to compile faster.
+#ifdef RAYGATE_BASELINE_ONLY
 #define RAYGATE_INLINE inline
 #define RAYGATE_BODY
-#endif
-
-// The names of the instruction sets in GCC and Clang.
-#if defined(__x86_64__) && defined(__GNUC__) && RAYGATE_WIDEST_VECTORS > 0
-#define RAYGATE_AVX2 "avx2,bmi,bmi2,lzcnt,popcnt"
-#if RAYGATE_WIDEST_VECTORS > 1
-#define RAYGATE_AVX512 RAYGATE_AVX2 ",avx512f,avx512cd,avx512bw,avx512dq,avx512vl"
+#else
+#define RAYGATE_INLINE inline __attribute__((always_inline))
+#define RAYGATE_BODY __attribute__((always_inline))
+#if defined(__x86_64__) && defined(__GNUC__)
+#define RAYGATE_AVX2 "avx2,bmi,bmi2,lzcnt,popcnt"  // the names of GCC and Clang
 #endif
 #endif
 
 /// Returns the widest instruction set that is compiled and that this machine has.
 [[nodiscard]] inline Vectors widest_vectors() {
 #ifdef RAYGATE_AVX2
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) return Vectors::kBaseline;
-#ifdef RAYGATE_AVX512
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
-      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl")) {
-    return Vectors::kAvx512;
-  }
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) return Vectors::kAvx2;
 #endif
-  return Vectors::kAvx2;
-#else
   return Vectors::kBaseline;
-#endif
 }
 
-/// Returns the instruction sets of this machine, narrowest first, for tests.
+/// Returns the instruction sets of this machine, narrower first, for tests.
 [[nodiscard]] inline std::span<const Vectors> machine_vectors() {
-  static constexpr Vectors kAll[] = {Vectors::kBaseline, Vectors::kAvx2, Vectors::kAvx512};
+  static constexpr Vectors kAll[] = {Vectors::kBaseline, Vectors::kAvx2};
   return std::span(kAll).first(static_cast<std::size_t>(widest_vectors()) + 1);
 }
 
@@ -114,12 +92,6 @@ template <class Body>
   return body(VectorCode<Vectors::kAvx2>{});
 }
 #endif
-#ifdef RAYGATE_AVX512
-template <class Body>
-[[gnu::noinline, gnu::target(RAYGATE_AVX512)]] auto in_avx512(const Body& body) {
-  return body(VectorCode<Vectors::kAvx512>{});
-}
-#endif
 
 }  // namespace detail
 
@@ -130,12 +102,8 @@ template <class Body>
 /// not take or return vectors by value.
 template <class Body>
 auto in_vectors(const Body& body) {
-  [[maybe_unused]] const Vectors vectors = vectors_in_use();
-#ifdef RAYGATE_AVX512
-  if (vectors == Vectors::kAvx512) return detail::in_avx512(body);
-#endif
 #ifdef RAYGATE_AVX2
-  if (vectors == Vectors::kAvx2) return detail::in_avx2(body);
+  if (vectors_in_use() == Vectors::kAvx2) return detail::in_avx2(body);
 #endif
   return detail::in_baseline(body);
 }

@@ -11,9 +11,8 @@
 #include <system_error>
 
 #include "host/base/elementary.h"
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
-#include "host/base/text.h"
 #include "host/film/exr.h"
 
 namespace raygate {
@@ -26,8 +25,8 @@ class Reader {
  public:
   Reader(std::string name, std::string_view bytes) : name_(std::move(name)), rest_(bytes) {}
 
-  HdrImage read() {
-    HdrImage picture;
+  EnvironmentMap read() {
+    EnvironmentMap picture;
     read_header(picture);
     if (std::int64_t{picture.width} * picture.height > kMaxPixels) {
       fail("more than " + std::to_string(kMaxPixels) + " pixels");
@@ -39,7 +38,7 @@ class Reader {
       read_row(row);
       for (const Rgbe& pixel : row) {
         const double unit = pixel[3] == 0 ? 0.0 : std::ldexp(1.0 / exposure_, pixel[3] - 136);
-        picture.pixels.emplace_back(usable(unit * pixel[0]), usable(unit * pixel[1]),
+        picture.texels.emplace_back(usable(unit * pixel[0]), usable(unit * pixel[1]),
                                     usable(unit * pixel[2]));
       }
     }
@@ -60,7 +59,7 @@ class Reader {
     return text;
   }
 
-  void read_header(HdrImage& picture) {
+  void read_header(EnvironmentMap& picture) {
     if (!rest_.starts_with("#?")) {
       fail("found a file of another kind, expected OpenEXR or Radiance HDR");
     }
@@ -135,30 +134,18 @@ glm::dvec3 ahead_of(const glm::dvec3& up) {
 
 }  // namespace
 
-HdrImage read_hdr(const std::filesystem::path& file) {
+EnvironmentMap read_hdr(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
   return Reader(file.string(), bytes).read();
 }
 
 void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, Scene& scene) {
-  EnvironmentMap map;
   std::error_code ignored;  // reading reports the error
-  if (std::filesystem::is_regular_file(setting.file, ignored) && is_exr(setting.file)) {
-    const std::string names[] = {"R", "G", "B"};
-    const ChannelPicture picture = read_exr(setting.file, names);
-    map.width = picture.window.width();
-    map.height = picture.window.height();
-    const auto& channels = picture.channels;
-    for (std::size_t i = 0; i < channels[0].size(); ++i) {
-      map.texels.emplace_back(usable(channels[0][i]), usable(channels[1][i]),
-                              usable(channels[2][i]));
-    }
-  } else {  // a pipe can be read only once
-    HdrImage picture = read_hdr(setting.file);
-    map.width = picture.width;
-    map.height = picture.height;
-    map.texels = std::move(picture.pixels);
-  }
+  // A pipe, which can be read only once, is a Radiance file.
+  const bool has_exr =
+      std::filesystem::is_regular_file(setting.file, ignored) && is_exr(setting.file);
+  EnvironmentMap map = has_exr ? read_exr(setting.file) : read_hdr(setting.file);
+  for (glm::vec3& texel : map.texels) texel = {usable(texel.x), usable(texel.y), usable(texel.z)};
   map.strength = static_cast<float>(setting.strength);
   map.up = glm::normalize(up);
   const glm::dvec3 ahead = ahead_of(map.up);

@@ -3,23 +3,16 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <vector>
 
 #include "host/scene/scene.h"
 
 namespace raygate {
 
-/// A linear RGB picture, row by row from the top.
-struct HdrImage {
-  int width = 0, height = 0;
-  std::vector<glm::vec3> pixels;  ///< finite, none negative
-};
-
 /// Reads a Radiance picture with 32-bit RGBE pixels in standard orientation (Ward, "Real pixels",
 /// 1991): flat, or run-length encoded by component; not in the runs of whole pixels of before 1991.
 /// EXPOSURE lines are undone. Throws InputError if the file cannot be read, is not such a picture,
 /// is damaged, or has more than 2^26 pixels.
-[[nodiscard]] HdrImage read_hdr(const std::filesystem::path& file);
+[[nodiscard]] EnvironmentMap read_hdr(const std::filesystem::path& file);
 
 /// Reads an environment map, OpenEXR (channels R, G, B) or Radiance HDR by its first bytes, into
 /// scene.environment. `up` is the scene's up vector, not zero. The centre of the map points ahead:

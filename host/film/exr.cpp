@@ -28,7 +28,7 @@
 #include <system_error>
 #include <utility>
 
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
 #include "host/base/threads.h"
 
@@ -93,6 +93,12 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const Pix
 
 std::int64_t side(int low, int high) { return std::int64_t{high} - low + 1; }
 
+/// Returns the data window.
+PixelRect window_of(const Imf::Header& header) {
+  const Imath::Box2i& data = header.dataWindow();
+  return {data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};
+}
+
 /// Returns channel names as "R, G, B, Z".
 std::string names_in(const Imf::ChannelList& channels) {
   std::string names;
@@ -117,21 +123,44 @@ void require_channels(const std::filesystem::path& file, const Imf::ChannelList&
   }
 }
 
-template <typename T>
-std::vector<double> read_channel(Imf::InputFile& file, const std::string& name, Imf::PixelType type,
-                                 const PixelRect& window) {
-  std::vector<T> values(std::size_t(window.width()) * std::size_t(window.height()));
-  Imf::FrameBuffer buffer;
-  buffer.insert(name, slice_of(type, values.data(), sizeof(T), window));
-  file.setFrameBuffer(buffer);
-  file.readPixels(window.y0, window.y1 - 1);
-  return {values.begin(), values.end()};
+void require_readable(const std::filesystem::path& file) {
+  const auto fail = [&](const std::string& why) {
+    throw InputError(file.string() + ": cannot read: " + why);
+  };
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (error) fail(error.message());
+  if (std::filesystem::is_directory(status)) fail("it is a folder");
+  if (!std::filesystem::is_regular_file(status)) fail("it is a device, a pipe or a socket");
+  errno = 0;
+  if (!std::ifstream(file).good()) fail(std::generic_category().message(errno));
+  if (!is_exr(file)) throw InputError(file.string() + ": not an OpenEXR file");
+}
+
+/// Throws InputError for any error in the header, such as an attribute that is longer than the file
+/// or of a wrong length for its type: only the library's C functions check before they allocate.
+void require_header(const std::filesystem::path& path) {
+  thread_local exr_result_t problem;  // the C functions recover from some
+  problem = EXR_ERR_SUCCESS;
+  exr_context_initializer_t options = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  options.error_handler_fn = [](exr_const_context_t, exr_result_t code, const char*) {
+    problem = code;
+  };
+  exr_context_t file = nullptr;
+  const exr_result_t result = exr_start_read(&file, path.c_str(), &options);
+  exr_finish(&file);
+  if (result != EXR_ERR_SUCCESS) problem = result;
+  if (problem == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (problem != EXR_ERR_SUCCESS) {
+    throw InputError(path.string() + ": damaged: " + exr_get_default_error_message(problem));
+  }
 }
 
 /// Calls read(file) for an OpenEXR file within the pixel limit.
 template <class Read>
 auto with_file(const std::filesystem::path& path, const Read& read) {
-  require_exr(path);
+  require_readable(path);
+  require_header(path);
   // Initialises the library's threads (none) where failure is harmless.
   (void)Imf::globalThreadCount();
   try {
@@ -155,16 +184,6 @@ auto with_file(const std::filesystem::path& path, const Read& read) {
   }
 }
 
-/// Returns the windows of a file, in the frame's coordinates.
-void read_windows(const Imf::Header& header, int& width, int& height, PixelRect& window) {
-  const Imath::Box2i& data = header.dataWindow();
-  const Imath::Box2i& frame = header.displayWindow();
-  width = static_cast<int>(side(frame.min.x, frame.max.x));
-  height = static_cast<int>(side(frame.min.y, frame.max.y));
-  window = {data.min.x - frame.min.x, data.min.y - frame.min.y, data.max.x + 1 - frame.min.x,
-            data.max.y + 1 - frame.min.y};
-}
-
 /// Returns a film with arrays for the file's channels.
 Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
   const Imf::ChannelList& channels = header.channels();
@@ -173,10 +192,9 @@ Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
     throw InputError(path.string() +
                      ": found no sums of samples, expected a picture of `render --channels sums`");
   }
-  int width = 0, height = 0;
-  PixelRect window;
-  read_windows(header, width, height, window);
-  Film film = make_film(width, height, window,
+  const Imath::Box2i& frame = header.displayWindow();
+  Film film = make_film(static_cast<int>(side(frame.min.x, frame.max.x)),
+                        static_cast<int>(side(frame.min.y, frame.max.y)), window_of(header),
                         {.position = has("P.X"),
                          .albedo = has("Albedo.R"),
                          .object = has("objectId"),
@@ -314,22 +332,23 @@ std::string encode_exr(const Film& film, const ExrMetadata& metadata, int thread
   return bytes;
 }
 
-ChannelPicture read_exr(const std::filesystem::path& path, std::span<const std::string> names) {
+EnvironmentMap read_exr(const std::filesystem::path& path) {
   return with_file(path, [&](Imf::InputFile& file) {
-    const Imf::Header& header = file.header();
-    ChannelPicture picture;
-    read_windows(header, picture.width, picture.height, picture.window);
-    require_channels(path, header.channels(), names);
-    const Imath::Box2i& data = header.dataWindow();
-    const PixelRect window{data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};
-    for (const std::string& name : names) {
-      picture.names.push_back(name);
-      const bool is_uint = header.channels().findChannel(name)->type == Imf::UINT;
-      picture.channels.push_back(is_uint
-                                     ? read_channel<std::uint32_t>(file, name, Imf::UINT, window)
-                                     : read_channel<float>(file, name, Imf::FLOAT, window));
+    const std::string names[] = {"R", "G", "B"};
+    require_channels(path, file.header().channels(), names);
+    const PixelRect window = window_of(file.header());
+    EnvironmentMap map;
+    map.width = window.width();
+    map.height = window.height();
+    map.texels.resize(std::size_t(map.width) * std::size_t(map.height));
+    Imf::FrameBuffer slices;
+    for (int k = 0; k < 3; ++k) {
+      slices.insert(names[k],
+                    slice_of(Imf::FLOAT, &map.texels[0][k], sizeof map.texels[0], window));
     }
-    return picture;
+    file.setFrameBuffer(slices);
+    file.readPixels(window.y0, window.y1 - 1);
+    return map;
   });
 }
 
@@ -348,52 +367,10 @@ FilmFile read_film(const std::filesystem::path& path) {
   });
 }
 
-namespace {
-
-void require_readable(const std::filesystem::path& file) {
-  const auto fail = [&](const std::string& why) {
-    throw InputError(file.string() + ": cannot read: " + why);
-  };
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (error) fail(error.message());
-  if (std::filesystem::is_directory(status)) fail("it is a folder");
-  if (!std::filesystem::is_regular_file(status)) fail("it is a device, a pipe or a socket");
-  errno = 0;
-  if (!std::ifstream(file).good()) fail(std::generic_category().message(errno));
-  if (!is_exr(file)) throw InputError(file.string() + ": not an OpenEXR file");
-}
-
-/// Throws InputError for any error in the header, such as an attribute that is longer than the file
-/// or of a wrong length for its type: only the library's C functions check before they allocate.
-void require_header(const std::filesystem::path& path) {
-  thread_local exr_result_t problem;  // the C functions recover from some
-  problem = EXR_ERR_SUCCESS;
-  exr_context_initializer_t options = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  options.error_handler_fn = [](exr_const_context_t, exr_result_t code, const char*) {
-    problem = code;
-  };
-  exr_context_t file = nullptr;
-  const exr_result_t result = exr_start_read(&file, path.c_str(), &options);
-  exr_finish(&file);
-  if (result != EXR_ERR_SUCCESS) problem = result;
-  if (problem == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (problem != EXR_ERR_SUCCESS) {
-    throw InputError(path.string() + ": damaged: " + exr_get_default_error_message(problem));
-  }
-}
-
-}  // namespace
-
 bool is_exr(const std::filesystem::path& file) {
   char magic[4] = {};
   std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
   return Imf::isImfMagic(magic);
-}
-
-void require_exr(const std::filesystem::path& file) {
-  require_readable(file);
-  require_header(file);
 }
 
 }  // namespace raygate

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "host/film/film.h"
+#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -50,19 +50,10 @@ inline constexpr const char* kPartial = "not finished when it was saved";
 [[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata,
                                      int threads = 1);
 
-/// Channels of a picture file as doubles, which hold float and uint exactly.
-struct ChannelPicture {
-  int width = 0, height = 0;  ///< of the frame (the display window)
-  PixelRect window;           ///< the data window, in the frame's coordinates
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> channels;  ///< values of names[i], row by row from the top
-};
-
-/// Reads the channels `names` of the first part of a scan-line or tiled file. Throws InputError if
-/// the file cannot be read, is not OpenEXR, is damaged, lacks a channel, or has more than 2^26
-/// pixels.
-[[nodiscard]] ChannelPicture read_exr(const std::filesystem::path& file,
-                                      std::span<const std::string> names);
+/// Reads the channels R, G and B of the first part of a scan-line or tiled file: the texels of the
+/// data window, as the file has them. Throws InputError if the file cannot be read, is not OpenEXR,
+/// is damaged, lacks a channel, or has more than 2^26 pixels.
+[[nodiscard]] EnvironmentMap read_exr(const std::filesystem::path& file);
 
 /// A film with its attributes, as read from a file.
 struct FilmFile {
@@ -76,10 +67,5 @@ struct FilmFile {
 
 /// Returns whether the file starts with OpenEXR's magic number.
 [[nodiscard]] bool is_exr(const std::filesystem::path& file);
-
-/// Checks a file before the library reads it. Throws InputError if it cannot be read, is not
-/// OpenEXR, or its header would make the library allocate more memory than the file fills. Files
-/// that pass may still be damaged.
-void require_exr(const std::filesystem::path& file);
 
 }  // namespace raygate

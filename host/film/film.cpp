@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numbers>
 #include <string>
 #include <type_traits>
 
+#include "host/base/elementary.h"
+
 namespace raygate {
+
 Film make_film(int width, int height, const PixelRect& window, const ExtraChannels& extra) {
   Film film;
   film.width = width;
@@ -82,5 +86,95 @@ void copy_region(const Film& from, const PixelRect& rect, Film& to) {
   };
   for_each_field(copy, from, to);
 }
+
+namespace {
+
+constexpr double kRadius = 1.5;  // of Gauss and Blackman-Harris
+
+double gauss(double x) { return binary_power(-2.0 * std::numbers::log2e * x * x); }
+
+/// Returns the minimum 4-term window (Harris 1978, "On the use of windows for harmonic analysis").
+double blackman_harris(double x) {
+  const double turns = 0.5 * (x / kRadius + 1.0);
+  return 0.35875 - 0.48829 * sine_cosine(turns).cosine + 0.14128 * sine_cosine(2.0 * turns).cosine -
+         0.01168 * sine_cosine(3.0 * turns).cosine;
+}
+
+/// Table of the inverse cumulative distribution of a filter.
+class Inverse {
+ public:
+  template <class Weight>
+  explicit Inverse(Weight weight) {
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+      cumulative_[i] = sum;
+      sum += weight(place(i + 0.5));
+    }
+    cumulative_[kSteps] = sum;
+    for (double& value : cumulative_) value /= sum;
+    for (int i = 0, step = 0; i < kStarts; ++i) {
+      while (cumulative_[step + 1] <= static_cast<double>(i) / kStarts) ++step;
+      first_[i] = static_cast<std::uint16_t>(step);
+    }
+  }
+
+  [[nodiscard]] double operator()(double u) const {
+    int step = first_[static_cast<int>(u * kStarts)];
+    while (step < kSteps - 1 && cumulative_[step + 1] <= u) ++step;
+    const double within = (u - cumulative_[step]) / (cumulative_[step + 1] - cumulative_[step]);
+    return place(step + std::clamp(within, 0.0, 1.0));
+  }
+
+  /// Returns the probability density at a position; constant within each step.
+  [[nodiscard]] double density(double at) const {
+    const double step = (at / kRadius + 1.0) * (0.5 * kSteps);
+    if (!(step >= 0.0 && step < kSteps)) return 0.0;
+    const int i = static_cast<int>(step);
+    return (cumulative_[i + 1] - cumulative_[i]) * (0.5 * kSteps / kRadius);
+  }
+
+ private:
+  static constexpr int kSteps = 1024, kStarts = 8 * kSteps;  // many starts shorten searches
+  static double place(double step) { return (2.0 * step / kSteps - 1.0) * kRadius; }
+  std::array<double, kSteps + 1> cumulative_;
+  std::array<std::uint16_t, kStarts> first_;  // the step that contains u = i / kStarts
+};
+
+double tent(double u) {
+  return u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - u));
+}
+
+struct Kernel {
+  double radius;
+  double (*offset)(double u);
+  double (*density)(double at);
+};
+
+const Kernel& kernel_of(ReconstructionFilter filter) {
+  static const Inverse gauss_table(gauss), blackman_harris_table(blackman_harris);
+  static constexpr Kernel kKernels[] = {
+      {0.5, [](double u) { return u - 0.5; },
+       [](double at) { return at >= -0.5 && at < 0.5 ? 1.0 : 0.0; }},
+      {1.0, tent, [](double at) { return std::max(0.0, 1.0 - std::abs(at)); }},
+      {kRadius, [](double u) { return gauss_table(u); },
+       [](double at) { return gauss_table.density(at); }},
+      {kRadius, [](double u) { return blackman_harris_table(u); },
+       [](double at) { return blackman_harris_table.density(at); }}};
+  return kKernels[static_cast<std::size_t>(filter)];
+}
+
+}  // namespace
+
+double filter_density(ReconstructionFilter filter, const glm::dvec2& offset) {
+  const Kernel& kernel = kernel_of(filter);
+  return kernel.density(offset.x) * kernel.density(offset.y);
+}
+
+glm::dvec2 filter_offset(ReconstructionFilter filter, const glm::dvec2& u) {
+  const Kernel& kernel = kernel_of(filter);
+  return {kernel.offset(u.x), kernel.offset(u.y)};
+}
+
+double filter_radius(ReconstructionFilter filter) { return kernel_of(filter).radius; }
 
 }  // namespace raygate

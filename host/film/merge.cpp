@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <map>
 
-#include "host/base/counts.h"
 #include "host/base/input_error.h"
+#include "host/base/measure.h"
 
 namespace raygate {
 namespace {

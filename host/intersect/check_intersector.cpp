@@ -28,9 +28,7 @@ CheckIntersector::CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> 
     : Intersector(intersector->traits()),
       bvh_(bvh),
       intersector_(std::move(intersector)),
-      reference_(std::move(reference)) {
-  traits_.filters_hits = false;  // which hits are asked about depends on the engine
-}
+      reference_(std::move(reference)) {}
 
 void CheckIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
                              std::span<NearestHit> hits) {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <span>
 
-#include "host/base/counts.h"
+#include "host/base/measure.h"
 #include "host/bvh/bvh.h"
 #include "host/exact/exact.h"
 #include "host/intersect/intersect_counters.h"
@@ -63,10 +63,6 @@ struct RayQuery {
   std::span<const std::uint32_t> skip_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
-  /// With any_hit_before, if the engine filters hits and without common origin: whether a sure hit
-  /// of a ray with a primitive ends the ray. If none does, the nearest hit is reported. Null: every
-  /// hit does.
-  const std::function<bool(std::size_t ray, std::uint32_t primitive)>* is_enough = nullptr;
   /// NearestHit::point is computed. Set by nearest() and occluded().
   bool with_points = true;
 
@@ -81,7 +77,6 @@ struct EngineTraits {
   /// Best number of rays per query: about 16,384 for each test done at the same time.
   std::size_t batch = std::size_t{1} << 14;
   bool wants_sources = false;  ///< benefits from RayQuery::source_ids that need exact arithmetic
-  bool filters_hits = false;   ///< calls RayQuery::is_enough
 };
 
 /// Finds nearest hits with exact decisions: results depend only on ray and scene, not on the

@@ -49,46 +49,6 @@ bool is_lit_by_emitters(const Scene& scene, double size) {
 
 constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
 
-/// Returns a photo studio around the camera, for reflections: dark below; soft boxes above, on the
-/// left and right of the view, and one behind the scene. Its mean is `mean_radiance`.
-EnvironmentMap studio(const Camera& camera, const glm::vec3& mean_radiance) {
-  struct Box {
-    double x, y, half_width, half_height, radiance;  // in map coordinates from 0 to 1; radiance
-  };
-  // The centre of the map is ahead of the camera; its edges are behind the camera.
-  constexpr Box kBoxes[] = {{0.5, 0.06, 0.5, 0.07, 6.0},
-                            {0.08, 0.34, 0.07, 0.13, 9.0},
-                            {0.86, 0.42, 0.035, 0.2, 6.0},
-                            {0.55, 0.3, 0.06, 0.05, 5.0}};
-  EnvironmentMap map;
-  map.width = 128;
-  map.height = 64;
-  map.up = camera.up();
-  map.ahead = camera.forward();
-  const auto edge = [](double distance) { return std::clamp(0.5 - distance * 24.0, 0.0, 1.0); };
-  glm::dvec3 sum(0.0);
-  double all = 0.0;
-  std::vector<double> levels;
-  for (int y = 0; y < map.height; ++y) {
-    const double v = (y + 0.5) / map.height, weight = sine_cosine(0.5 * v).sine;
-    for (int x = 0; x < map.width; ++x) {
-      const double u = (x + 0.5) / map.width;
-      double level = 0.35 + 0.9 * std::clamp(0.75 - v, 0.0, 0.75);
-      for (const Box& box : kBoxes) {
-        level += box.radiance * edge(std::abs(u - box.x) - box.half_width) *
-                 edge(std::abs(v - box.y) - box.half_height);
-      }
-      levels.push_back(level);
-      sum += weight * level;
-      all += weight;
-    }
-  }
-  for (const double level : levels) {
-    map.texels.emplace_back(glm::dvec3(mean_radiance) * level / (sum / all));
-  }
-  return map;
-}
-
 }  // namespace
 
 std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
@@ -120,8 +80,6 @@ std::optional<CameraLights> default_lights(const Scene& scene, const Camera& cam
   // Together with the sky and interreflection, white stays below 1.
   add_far(-0.8, 1.2, is_preview ? 0.4 : 0.6);
   if (is_preview) add_far(1.4, 0.3, 0.16);
-  lights.studio = studio(camera, lights.background);
-  lights.radius = 0.5 * size;  // penumbras are 1/8 as wide as the occluder's distance
   return lights;
 }
 

@@ -5,7 +5,7 @@
 
 #include "host/base/vectors.h"
 #include "host/light/light_paths.h"
-#include "host/light/sample_scattered_ray.h"
+#include "host/light/shade.h"
 #include "host/scene/instances.h"
 
 namespace raygate {
@@ -51,7 +51,7 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
                .bvh = prepared.bvh,
                .lights = lights,
                .settings = settings,
-               .ambient = is_path()          ? lights.light_from_above()
+               .ambient = is_path()          ? lights.background()
                           : settings.ambient ? glm::vec3(static_cast<float>(*settings.ambient))
                                              : glm::vec3(lights.ambient()),
                .max_depth = last_depth(kind, settings),
@@ -110,7 +110,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
   const Scene& scene = shading_.scene;
   const glm::vec3 behind = background();
   const bool is_dark = behind == glm::vec3(0.0f);
-  const bool sees_surroundings = sees_environment(block_.batch->depth);
+  const bool sees_surroundings = sees_environment();
   // The first surface behind holes is met by later rays.
   const bool may_be_first = kind_ != IntegratorKind::kLight && !output.first_surface.empty() &&
                             (block_.batch->depth == 0 || has_masks_);

@@ -43,11 +43,9 @@ class Integrator {
   [[nodiscard]] glm::vec3 background() const {
     return sees_background() ? shading_.lights.background() : glm::vec3(0.0f);
   }
-  /// Returns whether such rays of this depth see an environment instead.
-  [[nodiscard]] bool sees_environment(int depth) const {
-    const Lights& lights = shading_.lights;
-    return sees_background() && lights.environment() != nullptr &&
-           (depth > 0 || !lights.has_studio());
+  /// Returns whether such rays see an environment instead.
+  [[nodiscard]] bool sees_environment() const {
+    return sees_background() && shading_.lights.environment() != nullptr;
   }
   /// Returns whether shadow rays pass glass as if it did not refract.
   [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }

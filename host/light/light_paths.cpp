@@ -232,8 +232,8 @@ std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::ui
     direction = direction_from(origin, ball, u);
     density *= meetings(origin, direction, false) / solid_angle(origin);
     if (light->is_spot) {
-      const auto cosine = static_cast<float>(glm::dot(direction, glm::dvec3(light->spot.axis)));
-      flux *= double{spot_falloff(cosine, light->spot.scale, light->spot.offset)};
+      const auto cosine = static_cast<float>(glm::dot(direction, glm::dvec3(light->spot_axis)));
+      flux *= double{spot_falloff(cosine, light->spot_scale, light->spot_offset)};
     }
   } else if (light->kind == Lights::Kind::kArea) {
     const Lights::Source& own = lights_.source(source);

@@ -99,57 +99,28 @@ LightBounds light_bounds(const PointLight& light, double unit) {
   return source;
 }
 
-/// Returns the mean upward normal of shadow catchers, or `up` if there are none.
-glm::dvec3 floor_normal(const Scene& scene, const Bvh& bvh, const glm::dvec3& up) {
-  constexpr int kCatcher = 10;
-  if (std::ranges::find(scene.materials, kCatcher, &Material::illumination_model) ==
-      scene.materials.end()) {
-    return up;
-  }
-  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
-    const Triangle& face = face_at(scene, bvh.face_of(primitive));
-    if (scene.materials[face.material].illumination_model != kCatcher) continue;
-    const glm::dvec3 normal = glm::normalize(triangle_normal(bvh.corners_of(primitive)));
-    return glm::dot(normal, up) < 0.0 ? -normal : normal;
-  }
-  return up;
-}
-
-/// Returns the uniform radiance that lights a surface with this normal as much as the map does.
-glm::dvec3 mean_before(const EnvironmentMap& map, const glm::dvec3& normal) {
-  const glm::dvec3 right = glm::cross(map.ahead, map.up);
-  glm::dvec3 sum(0.0);
-  double all = 0.0;
-  for (int y = 0; y < map.height; ++y) {
-    const auto down = sine_cosine((y + 0.5) / (2.0 * map.height));
-    for (int x = 0; x < map.width; ++x) {
-      const auto turn = sine_cosine((x + 0.5) / map.width - 0.5);
-      const glm::dvec3 direction =
-          map.up * down.cosine + (map.ahead * turn.cosine + right * turn.sine) * down.sine;
-      const double weight = down.sine * std::max(glm::dot(direction, normal), 0.0);
-      sum += weight * glm::dvec3(map.texel(x, y));
-      all += weight;
-    }
-  }
-  return sum * (double{map.strength} / all);
-}
-
 }  // namespace
 
 Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
                const std::optional<CameraLights>& camera_lights)
     : scene_(scene),
       bvh_(bvh),
-      own_(camera_lights.value_or(CameraLights{scene.lights, scene.background, {}})) {
+      own_(camera_lights.value_or(CameraLights{scene.lights, scene.background})) {
   const double unit = unit_of(scene, own_.points);
   per_unit_ = static_cast<float>(1.0 / unit);
   for (const PointLight& light : own_.points) {
     Light& record = lights_.emplace_back();
     record.emission = finite_floats(light.intensity / unit / unit);
     record.position = light.position;
-    record.radius = static_cast<float>(own_.radius);
     record.is_spot = light.spot.has_value();
-    if (record.is_spot) record.spot = SpotFalloff(*light.spot);
+    if (!record.is_spot) continue;
+    constexpr double kLeastRamp = 1e-6;
+    const double inner = sine_cosine(light.spot->inner / 360.0).cosine;
+    const double outer = sine_cosine(light.spot->outer / 360.0).cosine;
+    const double slope = 1.0 / std::max(inner - outer, kLeastRamp);
+    record.spot_axis = light.spot->axis;
+    record.spot_scale = static_cast<float>(slope);
+    record.spot_offset = static_cast<float>(-outer * slope);
   }
   find_areas();
   for (const AreaLight& light : areas_) {
@@ -166,14 +137,10 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     record.emission = light.irradiance;
     record.position = glm::vec3(-light.direction);
   }
-  if (scene.environment || own_.studio) {
-    environment_.emplace(own_.studio ? *own_.studio : *scene.environment,
-                         sampling == Sampling::kOne);
+  if (scene.environment) {
+    environment_.emplace(*scene.environment, sampling == Sampling::kOne);
     lights_.emplace_back().kind = Kind::kEnvironment;
   }
-  from_above_ = background();
-  if (own_.studio)
-    from_above_ = glm::vec3(mean_before(*own_.studio, floor_normal(scene, bvh, own_.studio->up)));
   if (sampling == Sampling::kOne) {
     add_sources(unit);
   } else {

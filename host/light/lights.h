@@ -24,16 +24,11 @@ class Camera;
 struct CameraLights {
   std::vector<PointLight> points;
   glm::vec3 background{0.0f};
-  /// Environment that lights the scene and is seen in mirrors in place of the background, which
-  /// only the camera sees; it has the same mean radiance.
-  std::optional<EnvironmentMap> studio{};
-  /// Radius of spheres that replace the points, for soft shadows; they are outside the scene.
-  double radius = 0.0;
 };
 
 /// Returns lights for a scene without any (no lights, no background, and no emission except
-/// textures that hardly light anything): a light to the upper left of the camera with soft shadows,
-/// or at the camera if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
+/// textures that hardly light anything): a light to the upper left of the camera, or at the camera
+/// if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
 ///
 /// `is_preview`: the user did not choose the camera. Then there is a second, weaker light from the
 /// right, and scenes lit only by a background or by faces whose emission lights nothing get lights,
@@ -49,24 +44,9 @@ struct CameraLights {
   return {finite_float(x.x), finite_float(x.y), finite_float(x.z)};
 }
 
-/// Falloff of a SpotCone: the ramp of KHR_lights_punctual over the cosine of the angle to the axis.
-struct SpotFalloff {
-  glm::vec3 axis{0.0f};
-  float scale = 0.0f, offset = 1.0f;  ///< without a cone: 1 everywhere
-
-  SpotFalloff() = default;
-  explicit SpotFalloff(const SpotCone& cone) : axis(cone.axis) {
-    constexpr double kLeastRamp = 1e-6;
-    const double inner = sine_cosine(cone.inner / 360.0).cosine;
-    const double outer = sine_cosine(cone.outer / 360.0).cosine;
-    const double slope = 1.0 / (inner - outer > kLeastRamp ? inner - outer : kLeastRamp);
-    scale = static_cast<float>(slope);
-    offset = static_cast<float>(-outer * slope);
-  }
-};
-
-/// Returns the fraction of the intensity at an angle to the axis with this cosine: 1 within the
-/// cone's inner angle, 0 beyond the outer one.
+/// Returns the fraction of a spot light's intensity at an angle to its axis with this cosine, by
+/// the ramp of KHR_lights_punctual: 1 within the cone's inner angle, 0 beyond the outer one.
+/// `scale` and `offset` are those of Lights::Light.
 template <class T>
 RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) {
   const T ramp = at_most(at_least(cosine * scale + offset, 0.0f), 1.0f);
@@ -126,10 +106,6 @@ class Lights {
   [[nodiscard]] const Environment* environment() const {
     return environment_ ? &*environment_ : nullptr;
   }
-  /// Returns whether the environment is one of the camera lights, which the camera does not see.
-  [[nodiscard]] bool has_studio() const { return own_.studio.has_value(); }
-  /// Returns the uniform radiance that lights a floor like the background or studio.
-  [[nodiscard]] const glm::vec3& light_from_above() const { return from_above_; }
   /// Returns the radiance of the background; for an environment, its mean.
   [[nodiscard]] glm::vec3 background() const {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : own_.background;
@@ -154,19 +130,18 @@ class Lights {
     /// Point light: intensity, in square units. Area light: radiance. Directional light:
     /// irradiance. Environment: unused.
     glm::vec3 emission{0.0f};
-    glm::vec3 position{0.0f};  ///< of a point light, or the direction towards a directional light
-    float radius = 0.0f;       ///< of a point light that is a sphere, outside the scene
-    SpotFalloff spot;
-    float area = 0.0f;  ///< in square units
-    bool is_textured =
-        false;  ///< `emission` is the mean; radiance_at() returns the value at a point
+    glm::vec3 position{0.0f};   ///< of a point light, or the direction towards a directional light
+    glm::vec3 spot_axis{0.0f};  ///< for is_spot, as the arguments of spot_falloff()
+    float spot_scale = 0.0f, spot_offset = 1.0f;
+    float area = 0.0f;         ///< in square units
+    bool is_textured = false;  ///< `emission` is the mean; radiance_at() returns that of a point
     std::uint32_t first_patch = 0, patches = 0;
   };
   [[nodiscard]] const Light& light(std::size_t index) const { return lights_[index]; }
 
-  /// Samples points of area lights, uniform in area, for points of the unit square.
+  /// Samples points of an area light, uniform in area, for points of the unit square.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(const std::uint32_t (&indices)[kLanesOf<T>],
+  [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(const Light& light,
                                                     const SquarePoint<T>& u) const;
   /// Samples points of one patch per lane, uniform in area.
   template <class T>
@@ -185,17 +160,6 @@ class Lights {
     return gather<T>([&](int k) RAYGATE_BODY {
       return lights[k]->is_textured ? textured_radiance(primitives[k], points[k]) : plain[k];
     });
-  }
-
-  /// Samples the point from which a spherical point light lights `from`: a point of its disc.
-  template <class T>
-  [[nodiscard]] RAYGATE_INLINE static Triple<T> point_on(const Triple<T>& position, const T& radius,
-                                                         const Triple<T>& from,
-                                                         const SquarePoint<T>& u) {
-    const auto turn = sine_cosine(wide(u.y));
-    const Triple<T> towards = normalized(from - position);
-    return position + spherical_direction(towards, T{}, radius * root(u.x), narrow(turn.cosine),
-                                          narrow(turn.sine));
   }
 
   // Sampling one light at a time:
@@ -258,7 +222,6 @@ class Lights {
   const Bvh& bvh_;
   CameraLights own_;
   std::optional<Environment> environment_;
-  glm::vec3 from_above_{0.0f};
   glm::dvec3 ambient_{0.0};
   std::vector<AreaLight> areas_;
   std::vector<Light> lights_;
@@ -273,15 +236,13 @@ class Lights {
 };
 
 template <class T>
-RAYGATE_INLINE LightPoint<T> Lights::sample(const std::uint32_t (&indices)[kLanesOf<T>],
-                                            const SquarePoint<T>& u) const {
+RAYGATE_INLINE LightPoint<T> Lights::sample(const Light& light, const SquarePoint<T>& u) const {
   constexpr int kCount = kLanesOf<T>;
   const auto wanted = unpack(u.x);
   std::uint32_t numbers[kCount];
   const Patch* patches[kCount];
+  const auto first = patch_ends_.begin() + light.first_patch;
   for (int k = 0; k < kCount; ++k) {
-    const Light& light = lights_[indices[k]];
-    const auto first = patch_ends_.begin() + light.first_patch;
     const auto found = std::upper_bound(first, first + light.patches - 1, wanted[k]);
     numbers[k] = static_cast<std::uint32_t>(found - patch_ends_.begin());
     patches[k] = &patches_[numbers[k]];

@@ -1,11 +1,203 @@
 // Path tracing, by next-event estimation and BSDF sampling, combined by multiple importance
 // sampling; light tracing, which connects the surfaces of light paths to the camera.
+#include <optional>
+
 #include "host/light/light_paths.h"
-#include "host/light/sample_scattered_ray.h"
 #include "host/light/shade.h"
 
 namespace raygate {
 namespace {
+
+/// Streams of random numbers used at a surface of a path.
+namespace streams {
+inline constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
+                               kDirection = 5, kFacet = 6, kLens = 9;
+}  // namespace streams
+
+// Russian roulette begins after this many surfaces, for paths with less throughput.
+inline constexpr int kRouletteDepth = 3;
+inline constexpr float kRouletteThroughput = 0.25f;
+// Of a direction; the inverse is within the range of float.
+inline constexpr float kMinPdf = 1e-20f;
+
+/// Probability of sampling each lobe, in proportion to its albedo. Rough glass is in `scatter`.
+template <class T>
+struct LobeProbabilities {
+  T mirror, transmission, scatter, sum;
+
+  RAYGATE_INLINE explicit LobeProbabilities(const Bsdf<T>& bsdf)
+      : mirror(bsdf.has_rough_glass() ? T{} : largest(bsdf.mirror())),
+        transmission(bsdf.has_rough_glass() ? T{} : largest(bsdf.transmission())),
+        scatter(bsdf.scattered_share()),
+        sum(mirror + transmission + scatter) {}
+  /// Excludes diffuse and glossy reflection where `is_specular`.
+  RAYGATE_INLINE LobeProbabilities(const Bsdf<T>& bsdf, const MaskOf<T>& is_specular)
+      : LobeProbabilities(bsdf) {
+    scatter = choose(is_specular, T{}, scatter);
+    sum = mirror + transmission + scatter;
+  }
+
+  /// Returns the probability of diffuse or glossy reflection; 0 if the albedo of all lobes is 0.
+  [[nodiscard]] RAYGATE_INLINE T scatter_probability() const {
+    return choose(sum > 0.0f, scatter / sum, T{});
+  }
+};
+
+/// Returns the cosine of a direction with the surface, clamped, as used in ratios of densities.
+template <class T>
+RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
+  return at_least(absolute(dot(hits.surface.flat_normal, direction)), kLeastCosine);
+}
+
+/// Reverse densities of a hit: the ratio of the densities of light paths and camera paths (see
+/// LightPaths). Light paths carry flux; their throughput has the cosines of the opposite ends of
+/// edges and the adjoint BSDF ("Robust Monte Carlo methods", 5.3).
+template <bool kFromLight, class T>
+struct ReversePdf {
+  T arrived;  ///< PathState::light_over_camera_pdf at the hit
+  T in;       ///< cosine of the incoming edge
+  MaskOf<T> is_first;
+
+  RAYGATE_INLINE ReversePdf(const ShadingScene& shading, const Hits<T>& hits)
+      : in(edge_cosine(hits, hits.surface.view)), is_first(hits.path.is_first()) {
+    T ratio = hits.path.light_over_camera_pdf;
+    if (!kFromLight) {
+      const Triple<T> way =
+          (hits.surface.point - hits.path.scattered_at) * spread<T>(shading.lights.per_unit());
+      const T seen = shading.light_paths->camera_ratio(-hits.surface.view) * dot(way, way);
+      ratio = choose(is_first, seen, ratio);
+    }
+    arrived = ratio / in;
+  }
+
+  /// Updates the ray after diffuse or glossy reflection.
+  RAYGATE_INLINE void scatter(const Hits<T>& hits, const Triple<T>& throughput,
+                              ScatteredRays<T>& next) const {
+    const auto seen = hits.seen_from(next.direction);
+    const T back =
+        seen.bsdf.pdf(hits.surface.view) * LobeProbabilities<T>(seen.bsdf).scatter_probability();
+    const T out = edge_cosine(hits, next.direction);
+    const T known = kFromLight ? back : choose(is_first, spread<T>(1.0f), back);
+    next.path.light_over_camera_pdf = bounded(arrived * known * (out / next.path.pdf));
+    if (!kFromLight) return;
+    const T cosine = at_least(dot(seen.normal, hits.surface.view), 0.0f);
+    const Triple<T> flux =
+        throughput * seen.bsdf.eval(hits.surface.view) * (cosine * out / (in * next.path.pdf));
+    next.path.throughput = choose(largest(next.path.throughput) > 0.0f, bounded(flux), zero<T>());
+  }
+
+  /// Updates the ray after a mirror or refraction, where `is_specular`; `eta` is 1 for mirrors. A
+  /// tilted normal has no reverse path.
+  RAYGATE_INLINE void mirror(const Hits<T>& hits, const MaskOf<T>& is_specular, const T& eta,
+                             ScatteredRays<T>& next) const {
+    const T out = edge_cosine(hits, next.direction);
+    const auto has_back = !hits.surface.is_tilted();
+    const T ratio = choose(has_back & (kFromLight ? has_back : !is_first), arrived * out, T{});
+    next.path.light_over_camera_pdf = choose(is_specular, ratio, next.path.light_over_camera_pdf);
+    if (!kFromLight) return;
+    const T facing = absolute(dot(hits.surface.normal, hits.surface.view));
+    const T leaving = at_least(absolute(dot(hits.surface.normal, next.direction)), kLeastCosine);
+    const T scale = out * facing / (in * leaving * eta * eta);
+    next.path.throughput =
+        choose(is_specular, bounded(next.path.throughput * scale), next.path.throughput);
+    next.has_flat = next.has_flat & !is_specular;
+    next.is_wanted = next.is_wanted & (has_back | !is_specular);
+  }
+};
+
+/// Spawns one ray per hit: samples a lobe of the BSDF by its probability, then a direction.
+template <bool kFromLight, class T>
+RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& hits,
+                                         const LobeProbabilities<T>& lobes) {
+  const Surface<T>& surface = hits.surface;
+  const Bsdf<T>& bsdf = hits.bsdf;
+  const SquarePoint<T> choice = hits.random(streams::kChooseLobe);
+  Triple<T> throughput = hits.path.throughput;
+  ScatteredRays<T> next(hits);
+  next.is_wanted = lobes.sum > 0.0f;
+  // Russian roulette precedes the choice of a lobe, so that terminated rays cost nothing.
+  if (hits.block.batch->depth >= kRouletteDepth) {
+    const T weight =
+        kFromLight ? spread<T>(1.0f) : largest(throughput) * (1.0f / kRouletteThroughput);
+    const T survival = at_most(weight * lobes.sum, 1.0f);
+    next.is_wanted = next.is_wanted & (choice.y < survival);
+    throughput = choose(next.is_wanted, throughput * (1.0f / survival), throughput);
+  }
+  if (!any(next.is_wanted)) return;
+  const T u = choice.x * lobes.sum;
+  const auto is_mirrored = u < lobes.mirror;
+  next.is_transmitted = (!is_mirrored) & (u < lobes.mirror + lobes.transmission);
+  next.has_flat = is_mirrored | next.is_transmitted;
+  next.path.stream = hash(hits.path.stream, streams::kNextRay);
+
+  const bool has_reverse = kFromLight || shading.light_paths != nullptr;
+  std::optional<ReversePdf<kFromLight, T>> reverse;
+  if (has_reverse) reverse.emplace(shading, hits);
+  const bool has_rough_glass = bsdf.has_rough_glass();
+  next.path.scattered_at = surface.point;
+  next.path.normal = hits.lit_normal();
+  const WordOf<T> none{};
+  next.path.specular_history = none;
+  next.path.supersampled = choose(next.has_flat, hits.path.supersampled, none);
+  next.direction = next.flat = zero<T>();
+  if (any(bsdf.scatters())) {
+    next.direction = bsdf.sample(hits.random(streams::kDirection),
+                                 has_rough_glass ? hits.random(streams::kFacet).x : T{});
+    next.flat = next.direction;
+    next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
+    const T cosine = hits.cosine(next.direction);
+    const auto contributes = (next.path.pdf > kMinPdf) & (cosine > 0.0f);
+    next.path.throughput = choose(
+        contributes, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
+        zero<T>());
+    // Light paths do not pass: PathState::light_over_camera_pdf is 0 from here on.
+    if (has_rough_glass) {
+      if (kFromLight) return;
+      next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
+      next.is_wanted = next.is_wanted & contributes;
+      next.path.light_over_camera_pdf = T{};
+      next.send(hits, 0);
+      return;
+    }
+    if (has_reverse) reverse->scatter(hits, throughput, next);
+  }
+  if ((hits.kind & kMirrors) != 0) {
+    const Triple<T> reflected = reflect(surface.view, surface.normal);
+    const Triple<T> reflected_throughput = throughput * bsdf.mirror() * (lobes.sum / lobes.mirror);
+    next.direction = choose(is_mirrored, reflected, next.direction);
+    next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
+    next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
+    next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
+    next.path.specular_history =
+        choose(is_mirrored, hits.path.after_mirror(), next.path.specular_history);
+  }
+  const auto is_bent = next.is_transmitted & bsdf.is_refracting();
+  const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
+  if ((hits.kind & kTransmits) != 0) {
+    ScatteredRays<T> beyond(hits);
+    const MaskOf<T> exists = beyond.pass_through(hits, surface.normal);
+    const auto use_beyond = [&](auto& own, const auto& others)
+                                RAYGATE_BODY { own = choose(next.is_transmitted, others, own); };
+    use_beyond(next.direction, beyond.direction);
+    use_beyond(next.flat, beyond.flat);
+    use_beyond(next.path.specular_history, beyond.path.specular_history);
+    next.has_flat = next.has_flat & ((!next.is_transmitted) | beyond.has_flat);
+    next.is_wanted = next.is_wanted & ((!next.is_transmitted) | exists);
+    const Triple<T> transmitted_throughput =
+        throughput * bsdf.transmission() * (lobes.sum / lobes.transmission);
+    use_beyond(next.path.throughput, transmitted_throughput);
+    use_beyond(next.path.pdf, choose(is_straight, hits.path.pdf, T{}));
+    next.path.scattered_at = choose(is_straight, hits.path.scattered_at, next.path.scattered_at);
+    next.path.normal = choose(is_straight, hits.path.normal, next.path.normal);
+  }
+  if (has_reverse) {
+    const T eta = choose(is_bent, bsdf.eta(), spread<T>(1.0f));
+    reverse->mirror(hits, is_mirrored | is_bent, eta, next);
+    next.path.light_over_camera_pdf =
+        choose(is_straight, hits.path.light_over_camera_pdf, next.path.light_over_camera_pdf);
+  }
+  next.send(hits, 0);
+}
 
 /// Returns the MIS weights, relative to light paths, of emission met after mirrors and glass.
 template <class T>
@@ -60,7 +252,7 @@ struct ChosenLights {
 
   RAYGATE_INLINE ChosenLights(const Lights& all, const Hits<T>& hits) {
     static const Lights::Source no_source{.per_area = 1.0f};
-    static const Lights::Light no_light{.kind = Kind::kNone, .spot = {}};
+    static const Lights::Light no_light{.kind = Kind::kNone};
     const SquarePoint<T> u = hits.random(streams::kChooseLight);
     const auto high = unpack(u.x), low = unpack(u.y);
     const auto points = unpack(hits.surface.point), normals = unpack(hits.lit_normal());
@@ -88,28 +280,11 @@ struct ChosenLights {
 
   [[nodiscard]] RAYGATE_INLINE IncidentLight<T> points(const Lights& all,
                                                        const Hits<T>& hits) const {
-    const Triple<T> middle = get(&Lights::Light::position);
-    const T radius = get(&Lights::Light::radius);
-    const bool any_ball = any(radius > 0.0f);
-    const Triple<T> position = any_ball ? Lights::point_on<T>(middle, radius, hits.surface.point,
-                                                              hits.random(streams::kLightPoint))
-                                        : middle;
-    IncidentLight<T> light(all, hits, position);
-    light.emission = get(&Lights::Light::emission);
-    if (any(get(&Lights::Light::is_spot))) {
-      const auto cone = [&](auto SpotFalloff::*member) RAYGATE_BODY {
-        return gather<T>([&](int k) RAYGATE_BODY { return lights[k]->spot.*member; });
-      };
-      light.emission =
-          light.emission * spot_falloff_at(hits, all, middle, cone(&SpotFalloff::axis),
-                                           cone(&SpotFalloff::scale), cone(&SpotFalloff::offset));
-    }
+    IncidentLight<T> light =
+        point_light(all, hits, [&](auto member) RAYGATE_BODY { return get(member); });
     light.is_asked = are(Kind::kPoint);
     light.pdf = pmf;
-    light.target = position - hits.surface.point;
-    light.is_point_light = !(radius > 0.0f);
-    light.index =
-        choose(light.is_point_light, gather<T>(sources, &Lights::Source::light), light.index);
+    light.index = gather<T>(sources, &Lights::Source::light);
     return light;
   }
   [[nodiscard]] RAYGATE_INLINE IncidentLight<T> directions(const Hits<T>& hits) const {

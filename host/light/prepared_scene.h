@@ -10,7 +10,7 @@
 #include "host/bvh/bvh.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
-#include "host/light/neighbor_clearance.h"
+#include "host/light/spawn_ray.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

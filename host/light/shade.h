@@ -116,6 +116,22 @@ struct IncidentLight {
   }
 };
 
+/// Returns the light from point lights. get(member) returns a member of each lane's Lights::Light.
+template <class T, class Get>
+RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
+                                            const Get& get) {
+  using Light = Lights::Light;
+  IncidentLight<T> light(lights, hits, get(&Light::position));
+  light.emission = get(&Light::emission);
+  if (any(get(&Light::is_spot))) {
+    const T cosine = -dot(light.direction, get(&Light::spot_axis));
+    light.emission =
+        light.emission * spot_falloff(cosine, get(&Light::spot_scale), get(&Light::spot_offset));
+  }
+  light.is_point_light = T{} == 0.0f;
+  return light;
+}
+
 /// Returns the light from points of area lights that were sampled uniformly in area.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> area_light(const Lights& lights, const Hits<T>& hits,
@@ -177,15 +193,6 @@ template <class T>
 RAYGATE_INLINE T power_heuristic(const T& a, const T& b) {
   const T over = b / a;
   return 1.0f / (1.0f + over * over);
-}
-
-/// Returns the fraction of a spot light's intensity in the direction of the hits.
-template <class T>
-RAYGATE_INLINE T spot_falloff_at(const Hits<T>& hits, const Lights& lights,
-                                 const Triple<T>& position, const Triple<T>& axis, const T& scale,
-                                 const T& offset) {
-  return spot_falloff(-dot(IncidentLight<T>(lights, hits, position).direction, axis), scale,
-                      offset);
 }
 
 }  // namespace raygate

@@ -31,57 +31,6 @@ glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const Surface
   return {through.x, through.y, through.z};
 }
 
-// Why a sure occluder blocks all light
-//
-// A shadow ray that meets holes of masks or transmitting surfaces continues behind each as a new
-// ray, from an origin O' moved by rounding and RaySpawner. Let S be the largest coordinate of the
-// first origin O and of the hit X. ShadowRays lets no O' be farther than 2^-16 S from the line of
-// the first ray (strays_from); directions have a relative rounding error of 2^-24, which moves them
-// by less than 2^-22 S at X. So, seen along the first ray, all rays pass within kRoom S = 2^-15 S
-// of X. If no edge of X's triangle is that near, each ray that gets so far hits the triangle,
-// because RaySpawner puts no origin on its wrong side. The triangle is opaque within this distance,
-// so the last ray ends there if none has ended before.
-
-constexpr double kMostStray = 0x1p-16, kRoom = 0x1p-15;
-constexpr double kBeforeLimit = 1.0 - 0x1p-10;
-
-/// Returns whether a hit blocks all light, by the argument above. `place` is a sure hit with t
-/// below t_max (+infinity: no limit) on a triangle that is opaque except for its mask.
-bool is_sure_occluder(const Scene& scene, const Bvh& bvh, const SurfaceHit& place, float t_max) {
-  const Corners corners = bvh.corners_of(place.primitive);
-  const glm::dvec3 origin(place.ray->origin), direction(place.ray->direction);
-  const double length = glm::length(direction);
-  const glm::dvec3 along = direction / length;
-  glm::dvec3 from_origin[3], area, edge;  // area[k]: projected along the ray, opposite corner k
-  for (int k = 0; k < 3; ++k) from_origin[k] = glm::dvec3(corners[k]) - origin;
-  for (int k = 0; k < 3; ++k) {
-    const glm::dvec3 side = from_origin[(k + 2) % 3] - from_origin[(k + 1) % 3];
-    area[k] = glm::dot(along, glm::cross(from_origin[(k + 1) % 3], side));
-    edge[k] = glm::length(glm::cross(along, side));
-  }
-  const double whole = area[0] + area[1] + area[2];
-  const glm::dvec3 weights = area / whole;
-  glm::dvec3 depth;
-  for (int k = 0; k < 3; ++k) depth[k] = glm::dot(along, from_origin[k]);
-  const double way = glm::dot(weights, depth);
-  const double size = std::max(largest(origin), largest(origin + way * along));
-  // The largest change of the weights within kRoom.
-  const glm::dvec3 change = edge * (kRoom * size / std::abs(whole));
-  if (!(weights.x > change.x && weights.y > change.y && weights.z > change.z)) return false;
-  const double slope =
-      change.y * std::abs(depth.y - depth.x) + change.z * std::abs(depth.z - depth.x);
-  if (!(way + slope < kBeforeLimit * (static_cast<double>(t_max) * length))) return false;
-  return is_nowhere_masked(scene, *place.face, weights, change);
-}
-
-/// Returns whether a point is too far from the line through `from` along `way` for that argument.
-bool strays_from(const glm::vec3& from, const glm::dvec3& way, const glm::vec3& point) {
-  const double size = std::max(largest(from), largest(point));
-  const double distance =
-      glm::length(glm::cross(glm::dvec3(point) - glm::dvec3(from), way)) / glm::length(way);
-  return !(distance <= kMostStray * size);
-}
-
 }  // namespace
 
 ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
@@ -94,15 +43,12 @@ ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
       spawner_(prepared.clearances),
       culling_(skips.culling),
       through_refraction_(through_refraction),
-      any_clear_(std::ranges::any_of(materials_, [](const MaterialParameters& material) {
-        return material.has_mask || (material.kind & kTransmits) != 0;
-      })) {
-  // If the first occluder may be clear, only a sure occluder ends the search. For glass alone,
-  // without masks, this search costs more tests than it saves.
-  const bool has_masks = std::ranges::any_of(materials_, &MaterialParameters::has_mask);
-  first_occluder_ =
-      skips.first_occluder && (!any_clear_ || (has_masks && intersector.traits().filters_hits));
-}
+      any_clear_(std::ranges::any_of(materials_,
+                                     [](const MaterialParameters& material) {
+                                       return material.has_mask ||
+                                              (material.kind & kTransmits) != 0;
+                                     })),
+      first_occluder_(skips.first_occluder && !any_clear_) {}
 
 void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced) {
   traced_ = traced ? &traced : nullptr;
@@ -175,11 +121,8 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   spawner_.find(spawn_queries_, origins_);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < next_.size(); ++i) {
-    ShadowRay& ray = rays[next_[i].index];
-    const glm::dvec3 to(next_[i].to), from(ray.surface);
-    if (!origins_[i] ||
-        strays_from(ray.surface, next_[i].share == kNoEnd ? to : to - from, *origins_[i])) {
-      ray.radiance = glm::vec3(0.0f);
+    if (!origins_[i]) {
+      rays[next_[i].index].radiance = glm::vec3(0.0f);
       continue;
     }
     next_[kept] = next_[i];
@@ -220,13 +163,7 @@ void ShadowRays::trace(bool from_light, float enough) {
                   .source_ids = sources_,
                   .culling = culling_,
                   .skip_ids = ignored_};
-  const std::function is_enough = [this](std::size_t number, std::uint32_t primitive) {
-    return ends_at(number, primitive);
-  };
-  if (first_occluder_ && !(any_clear_ && from_light)) {
-    search.any_hit_before = enough_;
-    if (any_clear_) search.is_enough = &is_enough;
-  }
+  if (first_occluder_) search.any_hit_before = enough_;
   work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;
   hits_.resize(batch_.size());
@@ -235,22 +172,11 @@ void ShadowRays::trace(bool from_light, float enough) {
   for (std::size_t i = 0; i < work_.size(); ++i) (*traced_)(work_[i], segments_[i].index);
 }
 
-SurfaceHit ShadowRays::place_of(std::size_t number, std::uint32_t primitive) const {
-  const FaceRef stored = bvh_.face_of(primitive);
-  return {&batch_[number], primitive, &face_at(scene_, stored), nullptr,
-          instance_at(scene_, stored)};
-}
-
-bool ShadowRays::ends_at(std::size_t number, std::uint32_t primitive) const {
-  const SurfaceHit place = place_of(number, primitive);
-  const MaterialParameters& material = materials_[place.face->material];
-  const bool is_opaque =
-      (material.kind & kTransmits) == 0 || (material.refracts && !through_refraction_);
-  return is_opaque && is_sure_occluder(scene_, bvh_, place, limits_[number]);
-}
-
 glm::vec3 ShadowRays::transmittance(std::size_t number) const {
-  const SurfaceHit place = place_of(number, hits_[number].primitive);
+  const std::uint32_t primitive = hits_[number].primitive;
+  const FaceRef stored = bvh_.face_of(primitive);
+  const SurfaceHit place = {&batch_[number], primitive, &face_at(scene_, stored), nullptr,
+                            instance_at(scene_, stored)};
   const MaterialParameters& material = materials_[place.face->material];
   if (material.has_mask && is_masked_out(scene_, bvh_, place)) return glm::vec3(1.0f);
   if ((material.kind & kTransmits) == 0) return glm::vec3(0.0f);

@@ -71,10 +71,6 @@ class ShadowRays {
   void trace_from_surface(std::span<ShadowRay> rays);
   void trace(bool from_light, float enough);
   void next_from_surface(const ShadowRay& ray, std::uint32_t index);
-  /// Returns the hit of ray `number` of the batch with a primitive.
-  [[nodiscard]] SurfaceHit place_of(std::size_t number, std::uint32_t primitive) const;
-  /// Returns whether the hit surely blocks all light (see is_sure_occluder).
-  [[nodiscard]] bool ends_at(std::size_t number, std::uint32_t primitive) const;
   /// Returns the transmittance of the surface that ray `number` of the batch hit.
   [[nodiscard]] glm::vec3 transmittance(std::size_t number) const;
 
@@ -86,7 +82,9 @@ class ShadowRays {
   RaySpawner spawner_;
   std::vector<SpawnQuery> spawn_queries_;  // origins behind transmitting surfaces
   std::vector<SpawnOrigin> origins_;
-  bool first_occluder_, culling_, through_refraction_, any_clear_;
+  bool culling_, through_refraction_;
+  bool any_clear_;       // some material transmits light or has a mask
+  bool first_occluder_;  // any occluder ends a search
   std::uint64_t rays_ = 0;
   // Reused buffers.
   std::vector<Segment> segments_, next_;

@@ -6,8 +6,8 @@ namespace raygate {
 namespace {
 
 // Streams of random numbers.
-constexpr std::uint32_t kMirror = 1, kTransmission = 2, kRoughFacet = 3, kCoat = 4,
-                        kFirstAreaLight = 16, kFirstPointLight = 1u << 16;
+constexpr std::uint32_t kMirror = 1, kTransmission = 2, kRoughFacet = 3, kFirstAreaLight = 16,
+                        kFirstPointLight = 1u << 16;
 constexpr float kNarrow = 0.25f;  // alpha: reflections of wider facets count as ambient light
 
 /// Returns whether rays are spawned for reflections of rough facets.
@@ -21,55 +21,46 @@ RAYGATE_INLINE Triple<T> if_narrow(const Ggx<T>& ggx, const Triple<T>& reflected
   return choose(ggx.squared > kNarrow * kNarrow, zero<T>(), reflected);
 }
 
+/// Returns the light of light `i` at each hit.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits<T>& hits,
                                          std::uint32_t i) {
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
   const Lights::Light& own = lights.light(i);
-  const Triple<T> middle = spread<T>(own.position);
-  Triple<T> emission = spread<T>(own.emission);
+  IncidentLight<T> light;
   if (own.kind == Kind::kArea) {
-    std::uint32_t indices[Hits<T>::kCount];
-    std::ranges::fill(indices, i);
     const auto number = static_cast<std::uint32_t>(i - lights.points().size());
     // Slightly beside the centre of a quadrilateral, whose triangles share an edge there: rays to
     // an edge need exact arithmetic.
     const bool in_middle = shading.settings.samples == 1 && own.patches == 1;
     const SquarePoint<T> centre = {spread<T>(0.5f + 0x1p-11f), spread<T>(0.5f)};
     const LightPoint<T> point =
-        lights.sample<T>(indices, in_middle ? centre : hits.random(kFirstAreaLight + number));
+        lights.sample<T>(own, in_middle ? centre : hits.random(kFirstAreaLight + number));
+    Triple<T> emission = spread<T>(own.emission);
     if (own.is_textured && !in_middle) {
       const Lights::Light* same[Hits<T>::kCount];
       std::ranges::fill(same, &own);
       emission = lights.radiance_at<T>(same, point);
     }
-    IncidentLight<T> light = area_light(lights, hits, point, emission * spread<T>(own.area));
+    light = area_light(lights, hits, point, emission * spread<T>(own.area));
     light.is_asked = hits.bsdf.scatters();
     return light;
   }
-  const bool is_ball = own.radius > 0.0f;
-  const Triple<T> position =
-      is_ball && shading.settings.samples > 1
-          ? Lights::point_on<T>(middle, spread<T>(own.radius), hits.surface.point,
-                                hits.random(kFirstPointLight + i))
-          : middle;
-  IncidentLight<T> light = own.kind == Kind::kPoint ? IncidentLight<T>(lights, hits, position)
-                                                    : IncidentLight<T>(hits, middle);
-  light.is_asked = T{} == 0.0f;
-  light.emission = emission;
-  if (own.is_spot) {
-    light.emission =
-        emission * spot_falloff_at(hits, lights, middle, spread<T>(own.spot.axis),
-                                   spread<T>(own.spot.scale), spread<T>(own.spot.offset));
-  }
   if (own.kind == Kind::kPoint) {
-    light.target = position - hits.surface.point;
-    if (!is_ball) {
-      light.is_point_light = light.is_asked;
-      light.index = WordOf<T>{} + i;
-    }
+    light = point_light(lights, hits, [&](auto member) RAYGATE_BODY {
+      if constexpr (std::is_same_v<decltype(own.*member), const bool&>) {
+        return own.*member;
+      } else {
+        return spread<T>(own.*member);
+      }
+    });
+    light.index = WordOf<T>{} + i;
+  } else {
+    light = IncidentLight<T>(hits, spread<T>(own.position));
+    light.emission = spread<T>(own.emission);
   }
+  light.is_asked = T{} == 0.0f;
   return light;
 }
 
@@ -117,42 +108,21 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   next.path.pdf = T{};
   next.path.scattered_at = next.path.normal = zero<T>();
   next.path.throughput = hits.path.throughput * bsdf.mirror();
-  Triple<T> facet = surface.normal, mirror_facet = facet, transmitted = bsdf.transmission();
+  Triple<T> facet = surface.normal, transmitted = bsdf.transmission();
   if (has_rough_facets(hits)) {
-    // A random facet (Cook, Porter and Carpenter 1984), of the coat or below it.
+    // A random facet (Cook, Porter and Carpenter 1984).
     const MetallicRoughnessLobes<T>& facets = bsdf.facets();
-    const SquarePoint<T> u = hits.random(kRoughFacet);
-    const auto cosine_at = [&](const Triple<T>& at) RAYGATE_BODY {
-      return at_most(at_least(dot(surface.view, at), 0.0f), 1.0f);
-    };
-    facet = facets.ggx.sample(surface.view, u);
-    const T cosine = cosine_at(facet);
+    facet = facets.ggx.sample(surface.view, hits.random(kRoughFacet));
+    const T cosine = at_most(at_least(dot(surface.view, facet), 0.0f), 1.0f);
     Triple<T> reflected = if_narrow(facets.ggx, facets.schlick(schlick_weight(cosine)));
     if (bsdf.has_rough_glass()) {
       const T glass = facets.glass * facets.glass_gain,
               mirrored = glass * fresnel_reflectance(cosine, facets.eta);
       reflected = reflected + facets.grey(mirrored);
       const Refraction<T> bent(surface.view, facet, bsdf.eta());
-      transmitted =
-          facets.tint * ((glass - mirrored) * facets.g1(bent.direction) * facets.under_coat);
+      transmitted = facets.tint * ((glass - mirrored) * facets.g1(bent.direction));
     }
     reflected = reflected * facets.g2_over_g1(reflect(surface.view, facet));
-    mirror_facet = facet;
-    if ((hits.kind & kCoated) != 0) {
-      const Ggx<T>& coat = facets.coat_ggx;
-      const T above = if_narrow(coat, facets.grey(facets.coat_specular)).x;
-      const T below = largest(reflected) * facets.under_coat, sum = above + below;
-      const T chance = choose(sum > 0.0f, above / sum, T{});
-      const auto is_coat = hits.random(kCoat).x < chance;
-      const Triple<T> own = coat.sample(surface.view, u);
-      const T light = dot(surface.normal, reflect(surface.view, own));
-      const T share = (1.0f - facets.clear) * facets.coat *
-                      facets.coat_schlick(schlick_weight(cosine_at(own))) / chance *
-                      choose(light > 0.0f, coat.g2_over_g1(facets.view_cosine, light), T{});
-      reflected =
-          choose(is_coat, facets.grey(share), reflected * (facets.under_coat / (1.0f - chance)));
-      mirror_facet = choose(is_coat, own, facet);
-    }
     next.path.throughput = hits.path.throughput * reflected;
     // Lights are sampled for reflections of these facets.
     next.path.pdf = spread<T>(1.0f);
@@ -160,7 +130,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   next.is_wanted = T{} > 0.0f;
   if (goes_on) next.is_wanted = worthwhile(shading, hits, next.path.throughput);
   if (any(next.is_wanted)) {
-    next.reflect_off(hits, mirror_facet);
+    next.reflect_off(hits, facet);
     next.path.stream = hash(hits.path.stream, kMirror);
     next.send(hits, 0);
   }
@@ -219,11 +189,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     if ((kind & kEmits) != 0) emission = choose(hits.path.pdf > 0.0f, zero<T>(), emission);
     if (goes_on && has_rough_facets(hits)) {
       const MetallicRoughnessLobes<T>& facets = bsdf.facets();
-      const auto rest = [](const Ggx<T>& ggx, const Triple<T>& reflected)
-                            RAYGATE_BODY { return reflected - if_narrow(ggx, reflected); };
-      glossy = rest(facets.ggx, facets.specular * facets.under_coat);
-      if ((kind & kCoated) != 0)
-        glossy = glossy + rest(facets.coat_ggx, facets.grey(facets.coat_specular));
+      glossy = facets.specular - if_narrow(facets.ggx, facets.specular);
     }
     const Triple<T> shown =
         emission + bsdf.unlit() + (bsdf.diffuse() + glossy) * spread<T>(shading.ambient);

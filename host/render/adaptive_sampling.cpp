@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 
 #include "host/film/display.h"
@@ -70,32 +71,6 @@ void update_block_error(Film& film, int x, int y, double exposure) {
   const double pixels = static_cast<double>(block.width()) * block.height();
   const auto error = static_cast<float>(std::sqrt(squares / pixels));
   visit([&](std::size_t i) { sums.error[i] = error; });
-}
-
-double fraction_done(const Film& film, int most, double wanted) {
-  constexpr std::size_t kAsked = 4096;  // number of sampled pixels, approximately
-  const FilmSums& sums = film.sums;
-  const std::size_t step = sums.samples.size() / kAsked | 1;  // odd, to visit all columns
-  double taken = 0.0, left = 0.0, judged = 0.0, expected = 0.0, unknown = 0.0;
-  for (std::size_t i = 0; i < sums.samples.size(); i += step) {
-    const auto samples = static_cast<int>(sums.samples[i]);
-    taken += samples;
-    if (samples < kMinAdaptiveSamples) {
-      ++unknown;
-      left -= samples;
-      continue;
-    }
-    double in_the_end = samples;
-    if (!has_converged(sums.error[i], samples, wanted) && samples < most) {
-      in_the_end = std::min<double>(most, expected_samples(sums.error[i], samples, wanted));
-    }
-    ++judged;
-    expected += in_the_end;
-    left += in_the_end - samples;
-  }
-  // Pixels without an estimate are assumed to be like the others.
-  left += unknown * (judged > 0.0 ? expected / judged : most);
-  return taken + left > 0.0 ? std::clamp(taken / (taken + left), 0.0, 1.0) : 1.0;
 }
 
 std::vector<PixelSamples> samples_to_trace(const RenderSettings& settings, const Film& film,

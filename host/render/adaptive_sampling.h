@@ -1,8 +1,6 @@
 // Adaptive sampling: chooses the next samples of a tile's pixels by their error, for --error.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -43,13 +41,6 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
          error <= wanted * samples / kMinAdaptiveSamples;
 }
 
-/// Returns the expected samples until convergence, at least `samples` + 1, for errors ~ 1 /
-/// sqrt(n).
-[[nodiscard]] inline double expected_samples(float error, int samples, double wanted) {
-  const double noise = double{error} * std::sqrt(samples);
-  return std::max(samples + 1.0, std::cbrt(std::pow(kMinAdaptiveSamples * noise / wanted, 2.0)));
-}
-
 /// Updates FilmSums::error and ::shown of the block whose first pixel is (x, y). All its pixels
 /// must have the same number of samples.
 ///
@@ -60,9 +51,6 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
 /// other, so the change slightly overestimates the error. The 95 % interval is 2.12 errors to each
 /// side (Student's t with 16 degrees of freedom).
 void update_block_error(Film& film, int x, int y, double exposure);
-
-/// Returns the estimated completed fraction of a render. `most` is the maximum samples per pixel.
-[[nodiscard]] double fraction_done(const Film& film, int most, double wanted);
 
 struct PixelSamples {
   int x, y;

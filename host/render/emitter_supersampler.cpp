@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/render/tiles.h"
 
 namespace raygate {

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "host/film/reconstruction_filter.h"
+#include "host/film/film.h"
 #include "host/intersect/intersector.h"
 #include "host/light/light_paths.h"
 #include "host/light/lights.h"

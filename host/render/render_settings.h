@@ -5,7 +5,6 @@
 #include <functional>
 
 #include "host/film/film.h"
-#include "host/film/reconstruction_filter.h"
 #include "host/intersect/intersect_counters.h"
 #include "host/light/integrator_settings.h"
 
@@ -41,7 +40,8 @@ struct RenderSettings : IntegratorSettings {
 
 /// Callbacks of a render, called on the thread that called render(). Empty ones are skipped.
 struct RenderMonitor {
-  /// Receives the completed fraction, in [0, 1], periodically. Returning false stops the render.
+  /// Receives the fraction of passes over tiles that are complete, in [0, 1], periodically. With an
+  /// error limit, the last passes may be short. Returning false stops the render.
   std::function<bool(double)> progress{};
   /// Receives a copy of the current film every `snapshot_seconds`, or null if there is no memory
   /// for a copy. The threads continue meanwhile.

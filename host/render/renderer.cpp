@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/light/light_paths.h"
 #include "host/light/lights.h"
 #include "host/render/adaptive_sampling.h"
@@ -76,9 +76,8 @@ class RenderThreads {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kReport{50};     // maximum interval between reports
-  static constexpr std::chrono::milliseconds kEstimate{500};  // between estimates of remaining work
-  static constexpr std::chrono::milliseconds kGrace{500};     // for threads to stop
+  static constexpr std::chrono::milliseconds kReport{50};  // maximum interval between reports
+  static constexpr std::chrono::milliseconds kGrace{500};  // for threads to stop
 
   /// Starts up to `count` threads, or fewer if the system cannot start as many.
   void start(int count) {
@@ -182,7 +181,7 @@ class RenderThreads {
         }
         return;
       }
-      const double fraction = completed_fraction();
+      const double fraction = queue_.fraction();
       lock.unlock();
       if (monitor_.progress && !monitor_.progress(fraction)) {
         stop();
@@ -232,18 +231,6 @@ class RenderThreads {
     return copy;
   }
 
-  /// Returns the completed fraction. With an error limit, estimates it periodically from the film.
-  double completed_fraction() {
-    const double wanted = context_.settings.error;
-    if (wanted == 0.0) return queue_.fraction();
-    const Clock::time_point now = Clock::now();
-    if (now >= next_estimate_) {
-      fraction_ = fraction_done(film_, context_.settings.samples, wanted);
-      next_estimate_ = now + kEstimate;
-    }
-    return fraction_;
-  }
-
   const RenderContext& context_;
   const Tiles& tiles_;
   std::unique_ptr<Intersector> first_intersector_;  // for the first thread
@@ -264,8 +251,6 @@ class RenderThreads {
   bool is_alone_ = false;
   Stopwatch watch_;
   double since_snapshot_ = 0.0;
-  double fraction_ = 0.0;
-  Clock::time_point next_estimate_;
   std::vector<std::jthread> threads_;
 };
 

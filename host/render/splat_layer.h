@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "host/film/film.h"
-#include "host/film/reconstruction_filter.h"
 
 namespace raygate {
 

@@ -4,8 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "host/base/counts.h"
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/film/film.h"
 #include "host/render/tiles.h"
 
@@ -77,7 +76,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
 bool TileRenderer::is_empty_tile() const {
   const RenderSettings& settings = context_.settings;
   const double margin = 1.0 + (settings.samples > 1 ? filter_radius(settings.filter) : 0.0);
-  return settings.skips.empty_tiles && !integrator_.sees_environment(0) &&
+  return settings.skips.empty_tiles && !integrator_.sees_environment() &&
          !may_see_anything(context_.prepared.bvh, context_.camera, film_, tile_, margin);
 }
 

@@ -111,27 +111,6 @@ bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec
          opacity_of(scene, triangle, weights) < scene.materials[triangle.material].opacity_cutoff;
 }
 
-bool is_nowhere_masked(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights,
-                       const glm::dvec3& change) {
-  if (!has_mask(scene, triangle)) return true;
-  const Material& material = scene.materials[triangle.material];
-  double least = 1.0;
-  if (const MaterialMap& map = material.opacity_map; map.texture != kNoIndex) {
-    const auto uv = [&](int k) { return texcoord(map.mapping, scene, triangle, k); };
-    // The changes of the three coordinates sum to 0.
-    const glm::dvec2 reach = change.y * glm::abs(turned(map.mapping, uv(1) - uv(0))) +
-                             change.z * glm::abs(turned(map.mapping, uv(2) - uv(0)));
-    least = scene.textures[map.texture].min_code_near(
-        place_on(map.mapping, scene, triangle, weights), reach, map.mapping.sampling);
-  }
-  if (material.has_vertex_opacity) {
-    least *= std::min({vertex_opacity(scene, triangle, 0), vertex_opacity(scene, triangle, 1),
-                       vertex_opacity(scene, triangle, 2)});
-  }
-  constexpr double kRounding = 1e-6;
-  return least > material.opacity_cutoff + kRounding;
-}
-
 float opacity_factor_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
   if (!material.opacity_blends || triangle.texcoords[0] == kNoIndex) return 1.0f;
@@ -194,8 +173,6 @@ MetallicRoughnessFactors metallic_roughness_factors_at(const Scene& scene, const
   factors.metallic = is_one_map ? rough.b : codes(model->metallic_map).b;
   factors.transmission = codes(model->transmission_map).r;
   factors.specular = codes(model->specular_map).r;
-  factors.coat = codes(model->coat_map).r;
-  factors.coat_roughness = codes(model->coat_roughness_map).g;
   factors.specular_color = color_of(model->specular_color_map, scene, triangle, weights);
   return factors;
 }

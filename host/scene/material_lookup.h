@@ -23,11 +23,6 @@ namespace raygate {
 [[nodiscard]] bool is_masked_out(const Scene& scene, const Triangle& triangle,
                                  const glm::dvec3& weights);
 
-/// Returns whether the mask hides no point whose barycentric coordinates differ from `weights` by
-/// at most `change`. Conservative: may return false if that region covers many texels.
-[[nodiscard]] bool is_nowhere_masked(const Scene& scene, const Triangle& triangle,
-                                     const glm::dvec3& weights, const glm::dvec3& change);
-
 /// Returns the normal map's shading normal at a point. `normal` is the unit normal on the side from
 /// which `corners` are counter-clockwise. The map's x and y axes are the directions in which u and
 /// v increase, projected onto the tangent plane, or the file's tangents, transformed by `instance`
@@ -51,8 +46,7 @@ namespace raygate {
 
 /// Factors from metallic-roughness textures; 1 without a texture or texture coordinates.
 struct MetallicRoughnessFactors {
-  float roughness = 1.0f, metallic = 1.0f, transmission = 1.0f, specular = 1.0f, coat = 1.0f,
-        coat_roughness = 1.0f;
+  float roughness = 1.0f, metallic = 1.0f, transmission = 1.0f, specular = 1.0f;
   glm::vec3 specular_color{1.0f};
 };
 [[nodiscard]] MetallicRoughnessFactors metallic_roughness_factors_at(const Scene& scene,

@@ -11,9 +11,9 @@
 #include <string>
 #include <string_view>
 
-#include "host/base/file_bytes.h"
+#include "host/base/elementary.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
-#include "host/base/srgb.h"
 
 namespace raygate {
 namespace {
@@ -135,29 +135,6 @@ Texture Texture::decode(std::string_view bytes, const std::string& file, Content
 double Texture::min_code() const {
   std::uint8_t least = 255;
   for (const Texel& codes : texels_) least = std::min(least, codes[0]);
-  return least / 255.0;
-}
-
-double Texture::min_code_near(const glm::dvec2& uv, const glm::dvec2& reach,
-                              const Sampling& sampling) const {
-  constexpr double kMany = 4.0;  // texels to each side
-  const double across = reach.x * width_, up = reach.y * height_;
-  if (!(across < std::min(kMany, 0.5 * width_) && up < std::min(kMany, 0.5 * height_))) return 0.0;
-  const double x = place_along(uv.x, width_, sampling.u),
-               y = place_along(1.0 - uv.y, height_, sampling.v);
-  const auto first_column = static_cast<int>(std::floor(x - across)),
-             last_column = static_cast<int>(std::floor(x + across)) + 1;
-  const auto first_row = static_cast<int>(std::floor(y - up)),
-             last_row = static_cast<int>(std::floor(y + up)) + 1;
-  std::uint8_t least = 255;
-  for (int row = first_row; row <= last_row; ++row) {
-    const Texel* const texels =
-        &texels_[static_cast<std::size_t>(wrapped(row, height_, sampling.v)) *
-                 static_cast<std::size_t>(width_)];
-    for (int column = first_column; column <= last_column; ++column) {
-      least = std::min(least, texels[wrapped(column, width_, sampling.u)][0]);
-    }
-  }
   return least / 255.0;
 }
 

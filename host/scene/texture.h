@@ -48,11 +48,6 @@ class Texture {
   /// Returns the smallest red code, from 0 to 1.
   [[nodiscard]] double min_code() const;
 
-  /// Returns the smallest red code that codes_at() can read within `reach` of a point on both axes,
-  /// or 0 if that region has many texels.
-  [[nodiscard]] double min_code_near(const glm::dvec2& uv, const glm::dvec2& reach,
-                                     const Sampling& sampling) const;
-
   /// Returns the mean scene-linear colour of all texels.
   [[nodiscard]] glm::dvec3 mean_color() const;
 

@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "host/base/input.h"
 #include "host/base/input_error.h"
-#include "host/base/text.h"
 
 namespace raygate {
 

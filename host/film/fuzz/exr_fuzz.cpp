@@ -32,8 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                             ("raygate_fuzz_" + std::to_string(getpid()) + ".exr");
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
-  static const std::string names[] = {"R", "G", "B"};
-  refusable([&] { (void)read_exr(file, names); });
+  refusable([&] { (void)read_exr(file); });
   refusable([&] {
     const FilmFile whole = merge({{"a.exr", read_film(file)}});
     // A film that was read can be written; encode_exr reads it back.

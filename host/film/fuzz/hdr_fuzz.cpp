@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
-    for (const glm::vec3& pixel : raygate::read_hdr(file).pixels) {
+    for (const glm::vec3& pixel : raygate::read_hdr(file).texels) {
       for (int k = 0; k < 3; ++k) {
         if (!(std::isfinite(pixel[k]) && pixel[k] >= 0.0f)) std::abort();
       }

@@ -22,7 +22,7 @@ const std::string kHeader = "#?RADIANCE\n# made by hand\nFORMAT=32-bit_rle_rgbe\
 
 class EnvironmentFile : public testing::Test {
  protected:
-  [[nodiscard]] HdrImage hdr(const std::string& rest) const {
+  [[nodiscard]] EnvironmentMap hdr(const std::string& rest) const {
     return read_hdr(folder_.write("a.hdr", kHeader + rest));
   }
   void expect_refused(const std::string& bytes, const std::string& why) const {
@@ -38,21 +38,21 @@ class EnvironmentFile : public testing::Test {
 
 TEST_F(EnvironmentFile, PixelsOneByOne) {
   // 128 * 2^(136 - 136) / 2
-  const HdrImage picture = hdr("-Y 1 +X 2\n\x80\x40\x20\x88"s + "\0\0\0\0"s);
+  const EnvironmentMap picture = hdr("-Y 1 +X 2\n\x80\x40\x20\x88"s + "\0\0\0\0"s);
   EXPECT_EQ(picture.width, 2);
-  ASSERT_EQ(picture.pixels.size(), 2u);
-  EXPECT_EQ(picture.pixels[0], glm::vec3(64, 32, 16));
-  EXPECT_EQ(picture.pixels[1], glm::vec3(0.0f));
+  ASSERT_EQ(picture.texels.size(), 2u);
+  EXPECT_EQ(picture.texels[0], glm::vec3(64, 32, 16));
+  EXPECT_EQ(picture.texels[1], glm::vec3(0.0f));
 }
 
 TEST_F(EnvironmentFile, RunsOfComponents) {
   const std::string row =
       "\x02\x02\0\x08"s + "\x88\x10"s + "\x03\x01\x02\x03\x85\x04"s + "\x88\0"s + "\x88\x88"s;
-  const HdrImage picture = hdr("-Y 1 +X 8\n" + row);
-  ASSERT_EQ(picture.pixels.size(), 8u);
-  EXPECT_EQ(picture.pixels[0], glm::vec3(8, 0.5, 0));
-  EXPECT_EQ(picture.pixels[2], glm::vec3(8, 1.5, 0));
-  EXPECT_EQ(picture.pixels[7], glm::vec3(8, 2, 0));
+  const EnvironmentMap picture = hdr("-Y 1 +X 8\n" + row);
+  ASSERT_EQ(picture.texels.size(), 8u);
+  EXPECT_EQ(picture.texels[0], glm::vec3(8, 0.5, 0));
+  EXPECT_EQ(picture.texels[2], glm::vec3(8, 1.5, 0));
+  EXPECT_EQ(picture.texels[7], glm::vec3(8, 2, 0));
   // Any part of it is refused, whatever is missing.
   const std::string whole = kHeader + "-Y 1 +X 8\n" + row;
   for (std::size_t size = 1; size < whole.size(); ++size) {

@@ -1,12 +1,11 @@
-#include "host/film/false_color.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <set>
 
-#include "host/base/srgb.h"
+#include "host/base/elementary.h"
+#include "host/film/display.h"
 #include "host/film/test/sample_film.h"
 
 namespace raygate {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "host/base/input_error.h"
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstring>
 
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/bvh/traversal.h"
 #include "host/intersect/cpu/quad_test.h"
 

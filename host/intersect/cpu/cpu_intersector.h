@@ -19,7 +19,7 @@ namespace raygate {
 class CpuIntersector : public Intersector {
  public:
   /// `bvh` must outlive this object.
-  explicit CpuIntersector(const Bvh& bvh) : Intersector({.filters_hits = true}), bvh_(bvh) {}
+  explicit CpuIntersector(const Bvh& bvh) : Intersector({}), bvh_(bvh) {}
 
   [[nodiscard]] IntersectCounters counters() const override { return counters_; }
 

@@ -251,7 +251,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   // Met children come first, or are the only ones that are not negative.
   IntLanes keys = met.keys & ~kNumber;
 #ifdef RAYGATE_AVX2
-  if constexpr (kCode != Vectors::kBaseline) {
+  if constexpr (kCode == Vectors::kAvx2) {
     const auto lanes = load<IntLanes>(numbers.data());
     avx2_permute(keys, lanes);
     keys |= lanes;
@@ -318,15 +318,7 @@ class SingleRayIntersector {
       const std::uint32_t primitive = leaf.first + static_cast<std::uint32_t>(i);
       const float low = verdict.low[i], high = verdict.high[i];
       if (primitive == walk.skip_id || primitive == walk.source_id) continue;
-      if (query_.is_enough != nullptr && (verdict.hit >> i & 1) != 0 && high < walk.enough &&
-          (*query_.is_enough)(walk.number, primitive)) {
-        walk.primitive = primitive;
-        walk.end_at(std::max(low, 0.0f), high);
-        ++counters_.ended_early;
-        return false;
-      }
       if (low > walk.high) continue;
-      const float cutoff = walk.cutoff;
       if ((verdict.level >> i & 1) != 0) {
         if (!is_ahead(rays_[walk.number], bvh_.corners_of(primitive))) continue;
         ++counters.hits;
@@ -339,9 +331,7 @@ class SingleRayIntersector {
       } else if (!resolve(walk, primitive, true)) {
         continue;
       }
-      if (query_.is_enough != nullptr) {
-        walk.cutoff = cutoff;
-      } else if (walk.high < walk.enough) {
+      if (walk.high < walk.enough) {
         ++counters_.ended_early;
         return false;
       }

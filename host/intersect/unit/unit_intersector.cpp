@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "host/base/stopwatch.h"
+#include "host/base/measure.h"
 #include "host/bvh/traversal.h"
 
 namespace raygate {

@@ -1,12 +1,11 @@
 // NeighborClearances against distances found by brute force.
-#include "host/light/neighbor_clearance.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "host/exact/test/meshes.h"
+#include "host/light/spawn_ray.h"
 
 namespace raygate {
 namespace {

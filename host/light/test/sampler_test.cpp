@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "host/film/reconstruction_filter.h"
+#include "host/film/film.h"
 
 namespace raygate {
 namespace {

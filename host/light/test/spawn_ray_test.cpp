@@ -204,44 +204,6 @@ TEST(RaySpawner, ManyAtOnceAreTheSame) {
   }
 }
 
-// As where a file has a stray corner far away: thousands of triangles within some float steps.
-TEST(RaySpawner, IsSoonDoneAmongManyTriangles) {
-  constexpr int kSide = 60;
-  const auto at = [](int x, int y) {  // a floor of squares, on the grid of floats there
-    const float height = 0.25f * std::round(std::sin(0.1f * static_cast<float>(x + 2 * y)));
-    return glm::vec3(2.7e6f + 0.05f * static_cast<float>(x), 2.7e6f + 0.05f * static_cast<float>(y),
-                     height);
-  };
-  std::vector<Corners> triangles;
-  const auto add = [&](const Corners& t) {
-    if (!collinear(t[0], t[1], t[2])) triangles.push_back(t);
-  };
-  for (int x = 0; x < 4 * kSide; ++x) {
-    for (int y = 0; y < 4 * kSide; ++y) {
-      add({at(x, y), at(x + 5, y), at(x + 5, y + 5)});
-      add({at(x, y), at(x + 5, y + 5), at(x, y + 5)});
-    }
-  }
-  triangles.resize(7000);
-  const Bvh bvh(test::scene_of(triangles));
-  const NeighborClearances clearances(bvh);
-  RaySpawner spawner(clearances);
-  Random random;
-  unsigned hits = 0;
-  for (int i = 0; i < 200; ++i) {
-    const Corners& t = triangles[random.below(7000)];
-    const glm::dvec3 aim = (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0;
-    const glm::vec3 eye = t[0] + glm::vec3(1.0f, -2.0f, 4.0f);
-    const Ray ray{eye, scaled_direction(aim - glm::dvec3(eye))};
-    const auto primitive = nearest(bvh, ray);
-    if (!primitive) continue;
-    ++hits;
-    (void)spawner.find(ray, *primitive, SpawnSide::kIncident);
-  }
-  EXPECT_GT(hits, 100u);
-  EXPECT_LT(spawner.triangle_tests(), hits * 5000u) << "27,000 without refusers that are kept";
-}
-
 TEST(RaySpawner, StaysWithinTheBoundOnBothSides) {
   Random random;
   double farthest = 0.0;

@@ -202,8 +202,6 @@ TEST(AdaptiveSampling, GivesSamplesWhereTheErrorIs) {
   EXPECT_EQ(*counts.rbegin(), 200u);
   EXPECT_GE(counts.size(), 4u);
   EXPECT_EQ(stats.spare_samples, 44u * 34u * 200u - taken);
-  EXPECT_EQ(fraction_done(film, 200, 0.4), 1.0);
-  EXPECT_LT(fraction_done(film, 400, 0.4), 1.0);
 }
 
 TEST(AdaptiveSampling, FilmDoesNotDependOnThreadsTilesOrEngine) {

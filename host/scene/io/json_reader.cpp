@@ -6,7 +6,7 @@
 #include <limits>
 #include <unordered_set>
 
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
 #include "host/scene/io/text.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "host/base/elementary.h"
 #include "host/base/input_error.h"
-#include "host/base/srgb.h"
 #include "host/base/threads.h"
 #include "host/exact/exact.h"
 #include "host/scene/io/ear_clipper.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
 #include "host/scene/io/find_file.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/input_error.h"
 
 namespace raygate {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "host/base/text.h"
+#include "host/base/input.h"
 
 namespace raygate {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "host/base/file_bytes.h"
+#include "host/base/input.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/binary.h"

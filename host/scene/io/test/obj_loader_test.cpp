@@ -3,8 +3,8 @@
 
 #include <clocale>
 
+#include "host/base/elementary.h"
 #include "host/base/input_error.h"
-#include "host/base/srgb.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
 

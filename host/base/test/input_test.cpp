@@ -1,5 +1,5 @@
 // Numbers and quotes.
-#include "host/base/text.h"
+#include "host/base/input.h"
 
 #include <gtest/gtest.h>
 

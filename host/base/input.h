@@ -1,11 +1,13 @@
-// File contents in memory, and binary numbers.
+// Input: contents of files, binary and decimal numbers, and words in quotes for messages.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace raygate {
 
@@ -29,5 +31,13 @@ template <class Number>
 enum class NumberType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 [[nodiscard]] std::size_t bytes_of(NumberType type);
 [[nodiscard]] double number_at(const char* bytes, NumberType type, bool highest_first = false);
+
+/// Returns the word in quotes for a message: its first 40 characters, with unprintable ones as
+/// \xHH.
+[[nodiscard]] std::string in_quotes(std::string_view word);
+
+/// Returns a decimal number as the nearest double, in any locale, or nullopt if the whole word is
+/// not a number. "nan" and "inf" are numbers; a magnitude too large gives infinity, too small 0.
+[[nodiscard]] std::optional<double> to_number(std::string_view word);
 
 }  // namespace raygate

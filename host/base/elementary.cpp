@@ -1,10 +1,8 @@
-#include "host/base/srgb.h"
+#include "host/base/elementary.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "host/base/elementary.h"
 
 namespace raygate {
 namespace {

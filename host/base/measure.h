@@ -1,10 +1,18 @@
-// Stopwatch: elapsed seconds per lap; and the processor time of the process.
+// Measurements: saturating counts, elapsed seconds per lap, and the processor time of the process.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <ctime>
+#include <limits>
 
 namespace raygate {
+
+/// Adds `more`; saturates at the largest number instead of wrapping around.
+inline void add_count(std::uint32_t& count, std::uint32_t more) {
+  count += std::min(more, std::numeric_limits<std::uint32_t>::max() - count);
+}
 
 /// Returns the processor time of all threads of this process so far.
 inline double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
