@@ -242,17 +242,15 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
 
 template <class T>
 RAYGATE_INLINE void Bsdf<T>::set_facets() {
-  diffuse_ = (facets_.diffuse + facets_.multiple) * facets_.under_coat;
-  ((kind_ & kGlossy) != 0 ? glossy_ : mirror_) = facets_.specular * facets_.under_coat;
-  if ((kind_ & kCoated) != 0) glossy_ = glossy_ + facets_.grey(facets_.coat_specular);
+  diffuse_ = facets_.diffuse + facets_.multiple;
+  ((kind_ & kGlossy) != 0 ? glossy_ : mirror_) = facets_.specular;
   transmission_ = facets_.grey(facets_.clear);
   if ((~kind_ & (kMirrors | kTransmits)) != 0) return;
   eta_ = facets_.eta;
   is_refracting_ = facets_.is_glass;
-  const T glass = facets_.glass * facets_.under_coat;
-  const T mirrored = glass * fresnel_reflectance(facets_.view_cosine, eta_);
+  const T mirrored = facets_.glass * fresnel_reflectance(facets_.view_cosine, eta_);
   mirror_ = mirror_ + facets_.grey(mirrored);
-  transmission_ = choose(is_refracting_, facets_.tint * (glass - mirrored), transmission_);
+  transmission_ = choose(is_refracting_, facets_.tint * (facets_.glass - mirrored), transmission_);
 }
 
 template <class T>

@@ -26,8 +26,6 @@ void MaterialParameters::set(const Material& material, const MetallicRoughness& 
   const float root = (index - 1.0f) / (index + 1.0f);
   specular = std::clamp(shares.specular, 0.0f, 1.0f);
   reflectance = root * root * shares.specular_color;
-  coat = std::clamp(shares.coat, 0.0f, 1.0f);
-  coat_roughness = std::clamp(shares.coat_roughness, 0.0f, 1.0f);
   const bool has_map =
       shares.roughness_map.texture != kNoIndex || shares.metallic_map.texture != kNoIndex;
   refracts = transmission > 0.0f && (metallic < 1.0f || has_map);
@@ -36,12 +34,10 @@ void MaterialParameters::set(const Material& material, const MetallicRoughness& 
   transmittance = glm::vec3(1.0f - opacity);
   // Roughness textures may have any value, so such a material is never treated as smooth.
   roughness = std::clamp(shares.roughness, 0.0f, 1.0f);
-  // Surfaces under a coat are always rough, as a coat requires glossy lobes.
-  const bool is_rough = has_map || coat > 0.0f || roughness * roughness >= Ggx<float>::kLeast;
+  const bool is_rough = has_map || roughness * roughness >= Ggx<float>::kLeast;
   kind |= kMetallicRoughness | (is_rough ? kGlossy : kMirrors);
   if (is_rough) facet_albedo = &FacetAlbedo::of_mirrors();
   if (is_rough && refracts) glass_albedo = &FacetAlbedo::of_glass(index);
-  if (coat > 0.0f) kind |= kCoated;
   if (refracts) kind |= kMirrors;
   if (refracts || opacity < 1.0f) kind |= kTransmits;
   for_each_map(shares, [&](const MaterialMap& map) {
@@ -64,8 +60,7 @@ MaterialParameters::MaterialParameters(const Material& material) {
   if (material.diffuse_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.emission_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.normal_map.texture != kNoIndex) kind |= kInterpolates | kIsBumpy;
-  has_mask = (material.opacity_map.texture != kNoIndex || material.has_vertex_opacity) &&
-             !material.opacity_blends;
+  has_mask = material.opacity_map.texture != kNoIndex && !material.opacity_blends;
   if (material.opacity_blends) kind |= kInterpolates | kTransmits;
   if (material.metallic_roughness) {
     set(material, *material.metallic_roughness);

@@ -20,8 +20,7 @@ inline constexpr HitKind kTransmits = 16;          ///< transmission
 inline constexpr HitKind kShadowCatcher = 32;      ///< shows the background and shadows on it
 inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; rough if kGlossy is set
 inline constexpr HitKind kIsBumpy = 128;           ///< a normal map
-inline constexpr HitKind kCoated = 256;  ///< a clear coat; only with kMetallicRoughness and kGlossy
-inline constexpr HitKind kHitKinds = 512;  ///< number of masks
+inline constexpr HitKind kHitKinds = 256;  ///< number of masks
 
 /// Direction-independent parameters of a material: of MTL's illumination models (see Bsdf) or of
 /// the metallic-roughness model.
@@ -44,7 +43,6 @@ struct MaterialParameters {
   float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
   float specular = 1.0f;         ///< of dielectrics: reflectance at grazing angles
   glm::vec3 reflectance{0.04f};  ///< of dielectrics at normal incidence, times specular; at most 1
-  float coat = 0.0f, coat_roughness = 0.0f;
   const FacetAlbedo* facet_albedo = nullptr;  ///< of rough facets, or null
   const FacetAlbedo* glass_albedo = nullptr;  ///< of rough glass, or null
   HitKind kind = 0;                           ///< without bits that depend on the triangle

@@ -62,7 +62,7 @@ struct Surface {
   Triple<T> colour;    ///< Kd times the texture
   T opacity;           ///< factor of the texture; only of kinds that interpolate and transmit
   /// Factors of the textures of a metallic-roughness material; unused for other kinds.
-  T roughness, metallic, transmission, specular, coat, coat_roughness;
+  T roughness, metallic, transmission, specular;
   Triple<T> specular_color;
   Triple<T> glow;  ///< factor of the emission texture; only of kinds that interpolate and emit
   /// Whether the ray arrives from outside: from the side to which the file's normals point or,
@@ -162,8 +162,8 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   });
   surface.opacity = spread<T>(1.0f);
   if ((kind & kMetallicRoughness) != 0) {
-    surface.roughness = surface.metallic = surface.transmission = surface.specular = surface.coat =
-        surface.coat_roughness = surface.opacity;
+    surface.roughness = surface.metallic = surface.transmission = surface.specular =
+        surface.opacity;
     surface.specular_color = spread<T>(glm::vec3(1.0f));
   }
 
@@ -229,8 +229,6 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
       surface.transmission = gather<T>(all, &Factors::transmission);
       surface.specular = gather<T>(all, &Factors::specular);
       surface.specular_color = gather<T>(all, &Factors::specular_color);
-      surface.coat = gather<T>(all, &Factors::coat);
-      surface.coat_roughness = gather<T>(all, &Factors::coat_roughness);
     }
     const Triple<T> own_point = narrow(corners[0] * wide(weights.x) + corners[1] * wide(weights.y) +
                                        corners[2] * wide(weights.z));
@@ -256,7 +254,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
       const auto normals = unpack(surface.normal);
       surface.normal = gather<T>([&](int k) RAYGATE_BODY {
         const Corners& c = own_corners[k];
-        return mapped_normal(scene, *places[k].face, {c[0], c[1], c[2]}, places[k].instance,
+        return mapped_normal(scene, *places[k].face, {c[0], c[1], c[2]},
                              glm::dvec3(weight[k]), normals[k]);
       });
     }
