@@ -52,9 +52,8 @@ struct LoadOptions {
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Loads a PLY file, ASCII or binary: the polygons of the element "face", as one object of one
-/// material. Vertices have x, y, z and may have nx, ny, nz, and red, green, blue. If the header has
-/// a "comment TextureFile NAME", texture coordinates are s, t (or u, v, or texture_u, texture_v) of
-/// vertices, or the list texcoord of faces. Warns about other elements and properties.
+/// material. Vertices have x, y, z and may have nx, ny, nz, and red, green, blue. Warns about other
+/// elements and properties, and about a texture ("comment TextureFile NAME").
 [[nodiscard]] Scene load_ply(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Loads an STL file, binary or ASCII, as one object of a default material. +z is up, as in most
