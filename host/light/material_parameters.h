@@ -20,7 +20,7 @@ inline constexpr HitKind kTransmits = 16;          ///< transmission
 inline constexpr HitKind kShadowCatcher = 32;      ///< shows the background and shadows on it
 inline constexpr HitKind kMetallicRoughness = 64;  ///< metallic-roughness; rough if kGlossy is set
 inline constexpr HitKind kIsBumpy = 128;           ///< a normal map
-inline constexpr HitKind kHitKinds = 256;  ///< number of masks
+inline constexpr HitKind kHitKinds = 256;          ///< number of masks
 
 /// Direction-independent parameters of a material: of MTL's illumination models (see Bsdf) or of
 /// the metallic-roughness model.

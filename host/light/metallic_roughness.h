@@ -1,5 +1,4 @@
-// Metallic-roughness lobes (glTF 2.0): GGX facets over a diffuse base, or rough glass; a clear
-// coat.
+// Metallic-roughness lobes (glTF 2.0): GGX facets over a diffuse base, or rough glass.
 #pragma once
 
 #include "host/base/triple.h"
@@ -34,8 +33,6 @@ RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
 /// * The fraction (1 - m) t is glass with such facets: Fresnel's formula, and c times the
 ///   transmitted light. Both are divided by the albedo of single scattering ("Practical multiple
 ///   scattering compensation for microfacet models", Turquin 2019), which is not reciprocal.
-/// * A clear coat (KHR_materials_clearcoat) has its own facets with reflectance 0.04 + 0.96 s; the
-///   layers below are multiplied by 1 - h of the coat for both directions.
 ///
 /// All lobes but glass are multiplied by the opacity. T is float or FloatLanes.
 template <class T>
@@ -50,19 +47,15 @@ struct MetallicRoughnessLobes {
   T view_cosine;  ///< clamped away from 0
   Triple<T> f0;
   T f90;
-  Triple<T> specular;  ///< single-scattering albedo for the view, without the coat
-  Triple<T> multiple;  ///< multiple-scattering albedo, without the coat
-  Triple<T> diffuse;   ///< albedo of the diffuse base, without the coat
+  Triple<T> specular;  ///< single-scattering albedo for the view
+  Triple<T> multiple;  ///< multiple-scattering albedo
+  Triple<T> diffuse;   ///< albedo of the diffuse base
   /// Fraction of glass; index of refraction behind the interface over that in front of it.
   T glass, eta;
   T glass_gain;  ///< compensation for multiple scattering in glass
   MaskOf<T> is_glass;
-  Triple<T> tint;   ///< c
-  T clear;          ///< 1 - opacity
-  Ggx<T> coat_ggx;  ///< only for kCoated, as coat_alpha
-  T coat_alpha;
-  T coat, coat_specular;  ///< weight of the coat; its albedo for the view
-  T under_coat;           ///< fraction of the view that passes the coat
+  Triple<T> tint;  ///< c
+  T clear;         ///< 1 - opacity
 
   MetallicRoughnessLobes() = default;
   RAYGATE_INLINE MetallicRoughnessLobes(const Surface<T>& surface, HitKind hit_kind,
@@ -105,7 +98,7 @@ struct MetallicRoughnessLobes {
     diffuse = tint * (plastic * (one - reflected(seen)) * opacity);
     per_lost_mean_ = kPerPi / at_least(1.0f - mean.first, 0x1p-20f);
     per_left_mean_ = kPerPi / at_least(1.0f - reflected(mean), 0x1p-20f);
-    glass_gain = under_coat = one;
+    glass_gain = one;
     if (has_rough_glass()) {
       const auto table_of = [&](int k) RAYGATE_BODY -> const FacetAlbedo& {
         return *materials[k]->glass_albedo;
@@ -113,19 +106,9 @@ struct MetallicRoughnessLobes {
       const Shares left = FacetAlbedo::at<T>(table_of, view_cosine, alpha);
       glass_gain = one / choose(surface.outside, left.first, left.second);
     }
-    if (!is_coated()) return;
-    const T coat_roughness =
-        gather<T>(materials, &Material::coat_roughness) * surface.coat_roughness;
-    coat_alpha = at_least(coat_roughness * coat_roughness, Ggx<T>::kLeast);
-    coat_ggx = Ggx<T>(surface.normal, coat_alpha);
-    coat = gather<T>(materials, &Material::coat) * surface.coat;
-    const T share = coat_share(view_cosine);
-    under_coat = one - share;
-    coat_specular = share * opacity;
   }
 
   [[nodiscard]] RAYGATE_INLINE bool is_rough() const { return (kind & kGlossy) != 0; }
-  [[nodiscard]] RAYGATE_INLINE bool is_coated() const { return (kind & kCoated) != 0; }
   [[nodiscard]] RAYGATE_INLINE bool has_rough_glass() const {
     return (~kind & (kGlossy | kMirrors)) == 0;
   }
@@ -134,8 +117,8 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     const T cosine = at_most(at_least(dot(ggx.normal, light), 0.0f), 1.0f);
     const Shares there = shares_at(cosine);
-    Triple<T> sum = diffuse * ((1.0f - reflected(there)) * per_left_mean_) +
-                    multiple * (at_least(1.0f - there.first, 0.0f) * per_lost_mean_);
+    const Triple<T> sum = diffuse * ((1.0f - reflected(there)) * per_left_mean_) +
+                          multiple * (at_least(1.0f - there.first, 0.0f) * per_lost_mean_);
     if (!is_rough()) return sum;
     const auto pair = ggx.pair(view, light);
     Triple<T> mirrored = schlick(schlick_weight(pair.cos_half));
@@ -143,12 +126,7 @@ struct MetallicRoughnessLobes {
       mirrored = mirrored +
                  grey(glass * glass_gain * fresnel_reflectance(at_most(pair.cos_half, 1.0f), eta));
     }
-    sum = sum + mirrored * (pair.d * ggx.visibility(view_cosine, cosine));
-    if (!is_coated()) return sum;
-    const auto coat_pair = coat_ggx.pair(view, light);
-    return sum * (under_coat * (1.0f - coat_share(cosine))) +
-           grey((1.0f - clear) * coat * coat_schlick(schlick_weight(coat_pair.cos_half)) *
-                coat_pair.d * coat_ggx.visibility(view_cosine, cosine));
+    return sum + mirrored * (pair.d * ggx.visibility(view_cosine, cosine));
   }
 
   /// BTDF of rough glass for a direction behind the surface (Walter et al., equation 21), and the
@@ -170,45 +148,28 @@ struct MetallicRoughnessLobes {
     const T facets = 2.0f * ggx.pair(view, light * eta).d * before * beyond *
                      (eta * eta * per_size) / (view_cosine + ggx.stretched(view_cosine));
     const T value = glass * glass_gain * (1.0f - fresnel_reflectance(inner, eta)) * facets *
-                    (2.0f / (cosine + ggx.stretched(cosine))) * under_coat;
+                    (2.0f / (cosine + ggx.stretched(cosine)));
     return {choose(is_any, tint * value, zero<T>()),
-            choose(is_any, facets * (1.0f - coat_chance()) * (1.0f - mirrored_chance(inner)), T{})};
+            choose(is_any, facets * (1.0f - mirrored_chance(inner)), T{})};
   }
 
-  /// Samples a direction of the rough lobes: `u` selects the facet, `choice` in [0, 1) the kind of
-  /// event, which matters only with glass or a coat. Returns 0 where glass would refract to the
-  /// wrong side.
+  /// Samples a direction of the rough lobes: `u` selects the facet; `choice` in [0, 1) selects
+  /// reflection or refraction, if there is glass. Returns 0 where glass would refract to the wrong
+  /// side.
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u, const T& choice) const {
-    if (!is_coated() && !has_rough_glass()) return reflect(view, ggx.sample(view, u));
-    const T of_coat = coat_chance();
-    const auto is_coat = choice < of_coat;
-    Ggx<T> met = ggx;
-    if (is_coated()) met.squared = choose(is_coat, coat_ggx.squared, ggx.squared);
-    const Triple<T> facet = met.sample(view, u), mirrored = reflect(view, facet);
+    const Triple<T> facet = ggx.sample(view, u), mirrored = reflect(view, facet);
     if (!has_rough_glass()) return mirrored;
     const T inner = at_most(at_least(dot(view, facet), 0.0f), 1.0f);
     const Refraction<T> bent(view, facet, eta);
-    const auto is_mirrored =
-        is_coat | (!bent.exists) | ((choice - of_coat) < mirrored_chance(inner) * (1.0f - of_coat));
+    const auto is_mirrored = (!bent.exists) | (choice < mirrored_chance(inner));
     const Triple<T> way = choose(is_mirrored, mirrored, bent.direction);
     return choose((dot(ggx.normal, way) > 0.0f) == is_mirrored, way, zero<T>());
   }
   /// Returns the pdf of sample(), per steradian, for a direction in front of the surface.
   [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
     const auto pair = ggx.pair(view, light);
-    T pdf = ggx.reflection_pdf(view_cosine, pair.d);
-    if (has_rough_glass()) pdf = pdf * mirrored_chance(at_most(pair.cos_half, 1.0f));
-    if (!is_coated()) return pdf;
-    const T of_coat = coat_chance();
-    return (1.0f - of_coat) * pdf +
-           of_coat * coat_ggx.reflection_pdf(view_cosine, coat_ggx.pair(view, light).d);
-  }
-
-  /// Returns the probability that sample() chooses a facet of the coat.
-  [[nodiscard]] RAYGATE_INLINE T coat_chance() const {
-    if (!is_coated()) return T{};
-    const T below = (largest(specular) + glass) * under_coat, sum = coat_specular + below;
-    return choose(sum > 0.0f, coat_specular / sum, T{});
+    const T pdf = ggx.reflection_pdf(view_cosine, pair.d);
+    return has_rough_glass() ? pdf * mirrored_chance(at_most(pair.cos_half, 1.0f)) : pdf;
   }
 
   /// Returns the fraction of light that is not masked after leaving a sampled facet.
@@ -224,14 +185,9 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE Triple<T> schlick(const T& share) const {
     return f0 + (grey(f90) - f0) * share;
   }
-  [[nodiscard]] RAYGATE_INLINE static T coat_schlick(const T& share) {
-    return kCoatReflectance + (1.0f - kCoatReflectance) * share;
-  }
   [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
 
  private:
-  static constexpr float kCoatReflectance = 0.04f;
-
   /// Returns the albedos at a cosine of facets with reflectance 1 and with Schlick's weight.
   [[nodiscard]] RAYGATE_INLINE Shares shares_at(const T& cosine) const {
     if (!is_rough()) return {spread<T>(1.0f), schlick_weight(cosine)};
@@ -252,10 +208,6 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE T reflected(const Shares& shares) const {
     return most_ * (shares.first - shares.second) + weight_ * shares.second +
            at_least(1.0f - shares.first, 0.0f) * plastic_again_;
-  }
-  [[nodiscard]] RAYGATE_INLINE T coat_share(const T& cosine) const {
-    const Shares shares = albedo->at(cosine, coat_alpha);
-    return coat * (kCoatReflectance * (shares.first - shares.second) + shares.second);
   }
   /// Returns the probability that sample() reflects at a facet with this cosine of incidence.
   [[nodiscard]] RAYGATE_INLINE T mirrored_chance(const T& inner) const {

@@ -6,8 +6,8 @@ namespace raygate {
 namespace {
 
 // Streams of random numbers.
-constexpr std::uint32_t kMirror = 1, kTransmission = 2, kRoughFacet = 3, kCoat = 4,
-                        kFirstAreaLight = 16, kFirstPointLight = 1u << 16;
+constexpr std::uint32_t kMirror = 1, kTransmission = 2, kRoughFacet = 3, kFirstAreaLight = 16,
+                        kFirstPointLight = 1u << 16;
 constexpr float kNarrow = 0.25f;  // alpha: reflections of wider facets count as ambient light
 
 /// Returns whether rays are spawned for reflections of rough facets.
@@ -119,7 +119,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   next.path.throughput = hits.path.throughput * bsdf.mirror();
   Triple<T> facet = surface.normal, mirror_facet = facet, transmitted = bsdf.transmission();
   if (has_rough_facets(hits)) {
-    // A random facet (Cook, Porter and Carpenter 1984), of the coat or below it.
+    // A random facet (Cook, Porter and Carpenter 1984).
     const MetallicRoughnessLobes<T>& facets = bsdf.facets();
     const SquarePoint<T> u = hits.random(kRoughFacet);
     const auto cosine_at = [&](const Triple<T>& at) RAYGATE_BODY {
@@ -133,26 +133,9 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
               mirrored = glass * fresnel_reflectance(cosine, facets.eta);
       reflected = reflected + facets.grey(mirrored);
       const Refraction<T> bent(surface.view, facet, bsdf.eta());
-      transmitted =
-          facets.tint * ((glass - mirrored) * facets.g1(bent.direction) * facets.under_coat);
+      transmitted = facets.tint * ((glass - mirrored) * facets.g1(bent.direction));
     }
     reflected = reflected * facets.g2_over_g1(reflect(surface.view, facet));
-    mirror_facet = facet;
-    if ((hits.kind & kCoated) != 0) {
-      const Ggx<T>& coat = facets.coat_ggx;
-      const T above = if_narrow(coat, facets.grey(facets.coat_specular)).x;
-      const T below = largest(reflected) * facets.under_coat, sum = above + below;
-      const T chance = choose(sum > 0.0f, above / sum, T{});
-      const auto is_coat = hits.random(kCoat).x < chance;
-      const Triple<T> own = coat.sample(surface.view, u);
-      const T light = dot(surface.normal, reflect(surface.view, own));
-      const T share = (1.0f - facets.clear) * facets.coat *
-                      facets.coat_schlick(schlick_weight(cosine_at(own))) / chance *
-                      choose(light > 0.0f, coat.g2_over_g1(facets.view_cosine, light), T{});
-      reflected =
-          choose(is_coat, facets.grey(share), reflected * (facets.under_coat / (1.0f - chance)));
-      mirror_facet = choose(is_coat, own, facet);
-    }
     next.path.throughput = hits.path.throughput * reflected;
     // Lights are sampled for reflections of these facets.
     next.path.pdf = spread<T>(1.0f);
@@ -219,11 +202,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     if ((kind & kEmits) != 0) emission = choose(hits.path.pdf > 0.0f, zero<T>(), emission);
     if (goes_on && has_rough_facets(hits)) {
       const MetallicRoughnessLobes<T>& facets = bsdf.facets();
-      const auto rest = [](const Ggx<T>& ggx, const Triple<T>& reflected)
-                            RAYGATE_BODY { return reflected - if_narrow(ggx, reflected); };
-      glossy = rest(facets.ggx, facets.specular * facets.under_coat);
-      if ((kind & kCoated) != 0)
-        glossy = glossy + rest(facets.coat_ggx, facets.grey(facets.coat_specular));
+      glossy = facets.specular - if_narrow(facets.ggx, facets.specular);
     }
     const Triple<T> shown =
         emission + bsdf.unlit() + (bsdf.diffuse() + glossy) * spread<T>(shading.ambient);

@@ -83,12 +83,10 @@ class Digest {
     add(mapping, texture);
   }
   void add(const MetallicRoughness& m) {
-    const auto& [metallic, roughness, transmission, specular, specular_color, coat, coat_roughness,
-                 roughness_map, coat_roughness_map, metallic_map, transmission_map, coat_map,
-                 specular_map, specular_color_map] = m;
+    const auto& [metallic, roughness, transmission, specular, specular_color, roughness_map,
+                 metallic_map, transmission_map, specular_map, specular_color_map] = m;
     add(metallic, roughness, transmission, roughness_map);
     if (specular != 1.0f || specular_color != glm::vec3(1.0f)) add(specular, specular_color);
-    if (coat != 0.0f) add(coat, coat_roughness);
     int number = 0;
     for_each_map(m, [&](const MaterialMap& map) {
       const bool is_same = &map == &m.metallic_map && map.texture == m.roughness_map.texture;

@@ -46,14 +46,12 @@ struct MetallicRoughness {
   float specular = 1.0f;  ///< in [0, 1]: strength of dielectric reflection (KHR_materials_specular)
   /// Colour of dielectric reflection at normal incidence (same extension).
   glm::vec3 specular_color{1.0f};
-  float coat = 0.0f;  ///< in [0, 1]: weight of a clear top layer (KHR_materials_clearcoat)
-  float coat_roughness = 0.0f;  ///< in [0, 1]
   // Maps that multiply these values, each in one channel.
-  MaterialMap roughness_map{}, coat_roughness_map{};  ///< green
-  MaterialMap metallic_map{};                         ///< blue
-  MaterialMap transmission_map{}, coat_map{};         ///< red
-  MaterialMap specular_map{};                         ///< opacity, stored in all three channels
-  MaterialMap specular_color_map{};                   ///< scene-linear RGB
+  MaterialMap roughness_map{};       ///< green
+  MaterialMap metallic_map{};        ///< blue
+  MaterialMap transmission_map{};    ///< red
+  MaterialMap specular_map{};        ///< opacity, stored in all three channels
+  MaterialMap specular_color_map{};  ///< scene-linear RGB
 };
 
 /// A material of an MTL file, or of another format converted to MTL terms. Colours are scene-linear
@@ -83,8 +81,7 @@ struct Material {
 template <class Model, class Visit>
 void for_each_map(Model& model, const Visit& visit) {
   for (auto* const map : {&model.roughness_map, &model.transmission_map, &model.specular_map,
-                          &model.specular_color_map, &model.coat_map, &model.coat_roughness_map,
-                          &model.metallic_map}) {
+                          &model.specular_color_map, &model.metallic_map}) {
     visit(*map);
   }
 }

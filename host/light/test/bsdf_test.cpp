@@ -46,12 +46,6 @@ Material facets(float metallic, float roughness, float transmission = 0.0f) {
   return material;
 }
 
-Material coated(Material material, float coat, float roughness) {
-  material.metallic_roughness->coat = coat;
-  material.metallic_roughness->coat_roughness = roughness;
-  return material;
-}
-
 Material white_facets(float metallic, float roughness, float transmission = 0.0f,
                       float index = 1.0f) {
   Material material = facets(metallic, roughness, transmission);
@@ -148,13 +142,10 @@ TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
     }
   }
   for (const float transmission : {0.0f, 0.5f, 1.0f}) {
-    for (const float coat : {0.0f, 0.8f}) {
-      for (const double angle : {0.2, 1.0}) {
-        for (const bool outside : {true, false}) {
-          const Material mixed = coated(facets(0.3f, 0.7f, transmission), coat, 0.6f);
-          check(balance(seen(mixed, angle, outside)), 0.01, 0.01,
-                std::to_string(transmission) + " " + std::to_string(coat));
-        }
+    for (const double angle : {0.2, 1.0}) {
+      for (const bool outside : {true, false}) {
+        check(balance(seen(facets(0.3f, 0.7f, transmission), angle, outside)), 0.01, 0.01,
+              std::to_string(transmission));
       }
     }
   }
@@ -278,8 +269,7 @@ TEST(MetallicRoughnessLobes, AreTheSameThereAndBack) {
       for (int i = 0; i < 200; ++i) {
         const SquarePoint<float> u = sampler(i, 0);
         const double a = 1.5 * u.x, b = 1.5 * u.y;
-        Material material = facets(metallic, roughness);
-        if (i % 2 != 0) material = coated(material, 0.7f, 0.3f);
+        const Material material = facets(metallic, roughness);
         // Both have their view in the plane of x and z.
         const Bsdf<float> there = seen(material, a), back = seen(material, b);
         const Triple<float> f = there.eval(at_angles(b, 2.0)), g = back.eval(at_angles(a, -2.0));
@@ -346,28 +336,6 @@ TEST(MetallicRoughnessLobes, RoughGlassKeepsAllLight) {
     }
   }
   std::cout << "off by up to " << 100 * worst << " %\n";
-}
-
-// Over anything, a coat makes no light; over black it is what glass of index 1.5 reflects.
-TEST(MetallicRoughnessLobes, ACoatMakesNoLight) {
-  for (const float coat_roughness : {0.0f, 0.3f, 1.0f}) {
-    for (const auto& [metallic, transmission] :
-         {std::pair(0.0f, 0.0f), {1.0f, 0.0f}, {0.0f, 1.0f}}) {
-      for (double angle = 0.0; angle < 1.5; angle += 0.25) {
-        const Material white = white_facets(metallic, 0.4f, transmission);
-        EXPECT_LE(balance(seen(coated(white, 1.0f, coat_roughness), angle)).sampled, 1.01) << angle;
-      }
-    }
-  }
-  for (const double angle : {0.0, 0.8, 1.3}) {
-    Material black = facets(1.0f, 0.4f);
-    black.diffuse = glm::vec3(0.0f);
-    black.metallic_roughness->metallic = 0.0f;
-    black.metallic_roughness->specular = 0.0f;
-    const double glass = 0.04 + 0.96 * std::pow(1 - std::cos(angle), 5);
-    EXPECT_NEAR(balance(seen(coated(black, 0.5f, 0.0f), angle)).sampled, 0.5 * glass, 4e-3)
-        << angle;
-  }
 }
 
 // Smooth surfaces reflect in one direction only, so no light is lost between facets.

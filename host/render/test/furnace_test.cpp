@@ -39,23 +39,19 @@ TEST(Furnace, WhiteThingsInAWhiteWorld) {
 // However rough, with glass or without: nothing is lost but to depth, and nothing is made.
 TEST(Furnace, WhiteFacetsInAWhiteWorld) {
   struct Case {
-    float metallic, roughness, transmission, coat, least;
+    float metallic, roughness, transmission, least;
   };
-  for (const Case& c : {Case{1, 0, 0, 0, 0.999f},
-                        {1, 0.3f, 0, 0, 0.99f},
-                        {1, 1, 0, 0, 0.99f},
-                        {0, 0, 0, 0, 0.999f},
-                        {0, 0.5f, 0, 0, 0.99f},
-                        {0.5f, 0.5f, 0, 0, 0.99f},
-                        {0, 0.2f, 1, 0, 0.98f},
-                        {0, 1, 1, 0, 0.98f},
-                        {0, 0.5f, 0.5f, 0, 0.98f},
-                        {1, 0.4f, 0, 1, 0.8f},
-                        {0, 0.4f, 1, 1, 0.8f}}) {
+  for (const Case& c : {Case{1, 0, 0, 0.999f},
+                        {1, 0.3f, 0, 0.99f},
+                        {1, 1, 0, 0.99f},
+                        {0, 0, 0, 0.999f},
+                        {0, 0.5f, 0, 0.99f},
+                        {0.5f, 0.5f, 0, 0.99f},
+                        {0, 0.2f, 1, 0.98f},
+                        {0, 1, 1, 0.98f},
+                        {0, 0.5f, 0.5f, 0.98f}}) {
     Scene scene;
-    Material material = facets(c.metallic, c.roughness, c.transmission);
-    material.metallic_roughness->coat = c.coat;
-    add(scene, sphere(2), material);
+    add(scene, sphere(2), facets(c.metallic, c.roughness, c.transmission));
     scene.background = glm::vec3(1.0f);
     const Camera camera = camera_at({0, 0, 4}, {0, 0, 0}, 30.0);
     for (const IntegratorKind integrator : {kPath, kWhitted}) {

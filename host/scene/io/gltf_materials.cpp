@@ -36,7 +36,7 @@ glm::vec2 pair_in(const Json& object, const char* key, const glm::vec2& otherwis
   return numbers.size() == 2 ? glm::vec2(numbers[0], numbers[1]) : otherwise;
 }
 
-constexpr const char *kCoat = "KHR_materials_clearcoat", *kSpecular = "KHR_materials_specular",
+constexpr const char *kSpecular = "KHR_materials_specular",
                      *kTransmission = "KHR_materials_transmission",
                      *kTransform = "KHR_texture_transform";
 
@@ -172,8 +172,8 @@ void GltfMaterials::set_opacity(const Json& from, Material& material) {
 }
 
 Material GltfMaterials::translated(const Json& from) {
-  const Json &pbr = member(from, "pbrMetallicRoughness"), &coat = extension(from, kCoat),
-             &specular = extension(from, kSpecular), &transmission = extension(from, kTransmission),
+  const Json &pbr = member(from, "pbrMetallicRoughness"), &specular = extension(from, kSpecular),
+             &transmission = extension(from, kTransmission),
              &normal = member(from, "normalTexture");
   const auto fraction = [](const Json& object, const char* key, double otherwise) {
     return static_cast<float>(in_unit(number_in(object, key, otherwise)));
@@ -212,14 +212,6 @@ Material GltfMaterials::translated(const Json& from) {
   model.specular_color_map = map_of(specular, "specularColorTexture");
   model.transmission = fraction(transmission, "transmissionFactor", 0.0);
   model.transmission_map = map_of(transmission, "transmissionTexture");
-  model.coat = fraction(coat, "clearcoatFactor", 0.0);
-  model.coat_roughness = fraction(coat, "clearcoatRoughnessFactor", 0.0);
-  model.coat_map = map_of(coat, "clearcoatTexture");
-  model.coat_roughness_map = map_of(coat, "clearcoatRoughnessTexture");
-  if (!member(coat, "clearcoatNormalTexture").is_null()) {
-    file_.warn_once(
-        "clearcoatNormalTexture is not read: a coat has the normals of what is under it");
-  }
   material.refraction_index = static_cast<float>(
       std::clamp(number_in(extension(from, "KHR_materials_ior"), "ior", 1.5), 1.0, 4.0));
   if (!extension(from, "KHR_materials_unlit").is_null()) {

@@ -16,7 +16,7 @@ Scene sample() {
   test::Random random;
   Scene scene = test::instanced_scene(random, 3);
   scene.materials.resize(2);
-  scene.materials[1].metallic_roughness.emplace().coat = 0.25f;
+  scene.materials[1].metallic_roughness.emplace();
   scene.colors.assign(1, glm::vec3(0.5f));
   scene.textures.emplace_back(2, 1, std::vector<Texture::Texel>{{1, 2, 3}, {4, 5, 6}});
   scene.lights.push_back({.spot = SpotCone{}});
@@ -55,8 +55,6 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
       [](Scene& s) { s.instances[0].object += 1; },
       [](Scene& s) { s.materials[0].diffuse.g = 0.5f; },
       [](Scene& s) { s.materials[0].opacity_blends = true; },
-      [](Scene& s) { s.materials[1].metallic_roughness->coat = 0.5f; },
-      [](Scene& s) { s.materials[1].metallic_roughness->coat_map.texture = 0; },
       [](Scene& s) { s.materials[1].metallic_roughness->specular_map.texture = 0; },
       [](Scene& s) { s.materials[0].illumination_model = 1; },
       [](Scene& s) { s.materials[0].diffuse_map.texture = 0; },
@@ -116,11 +114,9 @@ TEST(Digest, IsAnotherOfScenesThatDiffer) {
            [](Material& m) { m.metallic_roughness->transmission = 0.5f; },
            [](Material& m) { m.metallic_roughness->specular = 0.5f; },
            [](Material& m) { m.metallic_roughness->specular_color.g = 0.5f; },
-           [](Material& m) { m.metallic_roughness->coat_roughness = 0.5f; },
            [](Material& m) { m.metallic_roughness->roughness_map.mapping.sampling = Wrap::kClamp; },
            [](Material& m) { m.metallic_roughness->transmission_map.texture = 0; },
-           [](Material& m) { m.metallic_roughness->specular_color_map.texture = 0; },
-           [](Material& m) { m.metallic_roughness->coat_roughness_map.texture = 0; }}) {
+           [](Material& m) { m.metallic_roughness->specular_color_map.texture = 0; }}) {
     changes.push_back([change](Scene& s) { change(s.materials[1]); });
   }
   std::set<std::string> seen;

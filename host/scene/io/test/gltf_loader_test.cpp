@@ -331,34 +331,23 @@ TEST_F(LoadGltfPicture, TexturesOfRoughnessNormalsAndOpacity) {
 
 TEST_F(LoadGltfPicture, TexturesOfExtensions) {
   const Scene scene = with_picture(R"("extensions": {
-      "KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.25,
-        "clearcoatTexture": {"index": 0}, "clearcoatRoughnessTexture": {"index": 0}},
       "KHR_materials_transmission": {"transmissionFactor": 0.75, "transmissionTexture": {"index": 0}},
       "KHR_materials_specular": {"specularFactor": 0.5, "specularTexture": {"index": 0},
         "specularColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [1, 0.5]}}}}})");
   const MetallicRoughness& shares = *scene.materials[0].metallic_roughness;
-  EXPECT_EQ(shares.coat, 0.5f);
-  EXPECT_EQ(shares.coat_roughness, 0.25f);
   EXPECT_EQ(shares.transmission, 0.75f);
   EXPECT_EQ(shares.specular_color_map.mapping.scale, glm::vec2(1.0f, 0.5f));
   ASSERT_EQ(scene.textures.size(), 2u) << "colours, and opacity";
   const auto left = metallic_roughness_factors_at(scene, scene.triangles[0], {0.75, 0.0, 0.25});
   const auto right = metallic_roughness_factors_at(scene, scene.triangles[0], {0.25, 0.5, 0.25});
-  EXPECT_EQ(left.coat, 1.0f) << "red";
-  EXPECT_EQ(left.coat_roughness, 0.0f) << "green";
   EXPECT_EQ(left.transmission, 1.0f) << "red";
   EXPECT_EQ(left.specular, 1.0f) << "opacity";
   EXPECT_EQ(left.specular_color, glm::vec3(1, 0, 0));
-  EXPECT_EQ(right.coat, 0.0f);
   EXPECT_EQ(right.transmission, 0.0f);
   EXPECT_NEAR(right.specular, 16 / 255.0, 1e-6);
   EXPECT_EQ(right.specular_color, glm::vec3(0, 0, 1));
   EXPECT_EQ(right.roughness, 1.0f) << "there is no texture of it";
   EXPECT_TRUE(scene.warnings.empty());
-  const Scene bumpy = with_picture(R"("extensions": {"KHR_materials_clearcoat": {
-      "clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0}}})");
-  ASSERT_EQ(bumpy.warnings.size(), 1u);
-  EXPECT_NE(bumpy.warnings[0].find("clearcoatNormalTexture"), std::string::npos);
 }
 
 TEST_F(LoadGltfPicture, BlendedOpacity) {
