@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
 #include "host/scene/io/json_reader.h"
 
@@ -85,10 +86,11 @@ class GltfFile {
   /// Returns the bytes of a buffer view. Throws InputError, which names `place`, if it has none or
   /// is not within its buffer.
   [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;
-  /// Returns the bytes of `count` elements of this size, without gaps. Throws InputError if they
-  /// exceed their buffer view.
-  [[nodiscard]] std::string packed(const Json& part, std::size_t size, std::size_t count,
-                                   const std::string& place) const;
+  /// Returns `count` elements of `width` numbers, without gaps, at an accessor or a part of a
+  /// sparse one. Throws InputError if they exceed their buffer view.
+  [[nodiscard]] std::vector<double> stored_numbers(const Json& part, NumberType type,
+                                                   std::size_t width, std::size_t count,
+                                                   const std::string& place) const;
   [[noreturn]] void fail_extension(const std::string& extension) const;
 
   std::string name_;

@@ -66,17 +66,11 @@ struct MeshInstance {
 /// A node, and its transform to the world.
 using PlacedNode = std::pair<const Json*, glm::dmat4>;
 
-/// Returns the options required by glTF 2.0, 3.7.2.1: primitives without normals are flat.
-LoadOptions as_specified(LoadOptions options) {
-  options.smooth_by_default = false;
-  return options;
-}
-
 class GltfReader {
  public:
   GltfReader(const std::filesystem::path& path, const LoadOptions& options)
       : file_(path, scene_.warnings),
-        options_(as_specified(options)),
+        options_(options),
         builder_(file_.name()),
         materials_(file_, scene_, options.textures) {}
 

@@ -279,16 +279,10 @@ void MaterialLibrary::load_library(const Words& names) {
     warnings_.push_back(place + "mtllib without a file");
     return;
   }
-  std::vector<std::string> words;
+  // One name may have several words.
+  if (const auto file = find_file(folder_, all, place, warnings_)) return load(*file);
   std::istringstream text(all);
-  for (std::string word; text >> std::quoted(word, '"', '\0');) words.push_back(word);
-  // One name may have several words, also if its file has another spelling here.
-  const bool are_several = std::ranges::all_of(
-      words, [&](const std::string& name) { return find_exact_file(folder_, name).has_value(); });
-  if (!are_several || find_exact_file(folder_, all)) {
-    if (const auto file = find_file(folder_, all, place, warnings_)) return load(*file);
-  }
-  for (const std::string& name : words) {
+  for (std::string name; text >> std::quoted(name, '"', '\0');) {
     if (const auto file = find_file(folder_, name, place, warnings_)) {
       load(*file);
     } else {

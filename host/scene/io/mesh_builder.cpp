@@ -254,8 +254,6 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   scene.texcoords = std::move(texcoords_);
   if (options.smooth || !groups.empty()) {
     add_smooth_normals(groups, options.smooth, scene);
-  } else if (options.smooth_by_default && !defines_smoothing_ && scene.normals.empty()) {
-    add_smooth_normals(groups, LoadOptions::kSmoothAngle, scene, FlatFaces::kStayFlat);
   }
 }
 

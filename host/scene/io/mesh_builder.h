@@ -66,8 +66,6 @@ class MeshBuilder {
     others_.expand(box.low);
     others_.expand(box.high);
   }
-  /// Notes that the file defines smoothing, so that none is guessed.
-  void defines_smoothing() { defines_smoothing_ = true; }
   /// Makes build() accept a scene in which no face has an area.
   void allow_empty() { may_be_empty_ = true; }
 
@@ -102,7 +100,7 @@ class MeshBuilder {
   std::string file_name_;
   Source source_;
   Bounds3 others_;
-  bool may_be_empty_ = false, defines_smoothing_ = false;
+  bool may_be_empty_ = false;
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> colors_;  // of the first positions; kNoColor: white
   std::size_t bad_colors_ = 0;     // number of colours that are not finite
@@ -119,9 +117,6 @@ class MeshBuilder {
 /// extent, and no difference exceeds three times the extent.
 [[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
 
-/// Whether triangles get smooth normals that equal their geometric normal.
-enum class FlatFaces { kHaveNormals, kStayFlat };
-
 /// Sets the normals of triangles that have none and have a smooth edge. The normal at a corner is
 /// the weighted mean over the triangles that are connected there by smooth edges (weights of N.
 /// Max, "Weights for computing vertex normals from facet normals", Journal of Graphics Tools 4 (2),
@@ -130,6 +125,6 @@ enum class FlatFaces { kHaveNormals, kStayFlat };
 /// * the angle between their normals is at most `angle`, in degrees up to 180, if that is given;
 /// * otherwise they have the same group in `groups`, other than 0.
 void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<double> angle,
-                        Scene& scene, FlatFaces flat = FlatFaces::kHaveNormals);
+                        Scene& scene);
 
 }  // namespace raygate

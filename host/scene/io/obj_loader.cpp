@@ -182,7 +182,6 @@ class ObjReader {
   }
 
   void set_smoothing(Words& words) {
-    mesh_.defines_smoothing();
     words.drop_comment();
     const std::string_view word = words.peek();
     const char* const end = word.data() + word.size();

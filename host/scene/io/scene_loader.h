@@ -17,10 +17,6 @@ struct LoadOptions {
   /// Largest angle between the normals of two faces without vertex normals that are smoothed over
   /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
   std::optional<double> smooth = {};
-  /// Whether curved surfaces of an OBJ, PLY or STL file without normals and smoothing groups are
-  /// smoothed with kSmoothAngle, unless `smooth` is set.
-  bool smooth_by_default = false;
-  static constexpr double kSmoothAngle = 30.0;
 };
 
 /// Loads a model. The ending of its name gives the format: .obj (or none), .gltf, .glb, .ply or
