@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "host/scene/scene.h"
 
@@ -37,6 +39,11 @@ struct LoadOptions {
 
 /// Loads a Wavefront OBJ file, with its MTL files (relative to its folder) and their textures.
 [[nodiscard]] Scene load_obj(const std::filesystem::path& file, const LoadOptions& options = {});
+
+/// Reads the materials of an MTL file, in its order; of several with one name the first. Textures
+/// are named, relative to its folder, but not loaded. Appends to `warnings`.
+[[nodiscard]] std::vector<Material> read_mtl(const std::filesystem::path& file,
+                                             std::vector<std::string>& warnings);
 
 /// Loads a glTF 2.0 file (.gltf or .glb): the triangles, strips and fans of all nodes in order,
 /// with an object for each node; materials (see GltfMaterials); the first camera; lights
