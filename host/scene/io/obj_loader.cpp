@@ -234,11 +234,11 @@ class ObjReader {
 
   /// Resolves the names of materials at the end of the file, as mtllib may come after usemtl.
   void assign_materials() {
-    // Scanners duplicate the texture's colours at the vertices.
     NameNumbers defined;  // the first of each name
     for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) {
       Material& material = scene_.materials[i];
       defined.emplace(material.name, i);
+      // Scanners duplicate the texture's colours at the vertices.
       material.has_vertex_colors = material.diffuse_map.file.empty();
     }
     std::uint32_t default_material = kNoIndex;
