@@ -8,6 +8,7 @@
 #include <map>
 #include <span>
 
+#include "host/base/file_bytes.h"
 #include "host/scene/io/find_file.h"
 #include "host/scene/io/text.h"
 
@@ -229,11 +230,13 @@ std::string_view GltfFile::stored(int buffer_view, const std::string& place) con
   return data.substr(offset, length);
 }
 
-std::vector<double> GltfFile::stored_numbers(const Json& part, NumberType type, std::size_t width,
-                                             std::size_t count, const std::string& place) const {
+std::vector<double> GltfFile::stored_numbers(const Json& part, const Component& component,
+                                             std::size_t width, std::size_t count,
+                                             const std::string& place) const {
   const int number = index_in(part, "bufferView");
   std::string_view bytes = stored(number, place);
   const Json& view = list("bufferViews").at(static_cast<std::size_t>(number));
+  const NumberType type = component.type;
   const std::size_t size = width * bytes_of(type), offset = size_in(part, "byteOffset"),
                     stride = std::max(size_in(view, "byteStride"), size);
   bytes.remove_prefix(std::min(offset, bytes.size()));
@@ -273,7 +276,7 @@ GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
   const auto& [component, width, ignored] = result;
   const std::size_t count = this->count(accessor);
   if (!member(from, "bufferView").is_null()) {
-    result.numbers = stored_numbers(from, component.type, width, count, place);
+    result.numbers = stored_numbers(from, component, width, count, place);
   } else {  // they are 0, apart from sparse ones
     constexpr std::size_t kMost = 1'000'000;
     if (count > kMost + bytes_) fail(place + "too many elements without a buffer");
@@ -283,9 +286,9 @@ GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
   if (!sparse.is_object()) return result;
   const std::size_t changes = size_in(sparse, "count");
   const Json& indices = member(sparse, "indices");
-  const std::vector<double> places = stored_numbers(indices, component_of(indices, place).type, 1,
+  const std::vector<double> places = stored_numbers(indices, component_of(indices, place), 1,
                                                     changes, place),
-                            values = stored_numbers(member(sparse, "values"), component.type, width,
+                            values = stored_numbers(member(sparse, "values"), component, width,
                                                     changes, place);
   for (std::size_t i = 0; i < changes; ++i) {
     if (!(places[i] >= 0.0 && places[i] < static_cast<double>(count))) {

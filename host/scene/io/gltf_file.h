@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "host/base/file_bytes.h"
 #include "host/base/input_error.h"
 #include "host/scene/io/json_reader.h"
 
@@ -88,7 +87,7 @@ class GltfFile {
   [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;
   /// Returns `count` elements of `width` numbers, without gaps, at an accessor or a part of a
   /// sparse one. Throws InputError if they exceed their buffer view.
-  [[nodiscard]] std::vector<double> stored_numbers(const Json& part, NumberType type,
+  [[nodiscard]] std::vector<double> stored_numbers(const Json& part, const Component& component,
                                                    std::size_t width, std::size_t count,
                                                    const std::string& place) const;
   [[noreturn]] void fail_extension(const std::string& extension) const;
