@@ -273,9 +273,8 @@ class GltfReader {
     const auto [material, set] = materials_.convert(number);
     const std::string opacity =
         number < 0 ? "" : text_in(file_.list("materials")[number], "alphaMode");
-    const int color = index_in(attributes, "COLOR_0");
-    if ((opacity == "MASK" || opacity == "BLEND") && color >= 0 &&
-        text_in(file_.accessor(color), "type") == "VEC4") {
+    if ((opacity == "MASK" || opacity == "BLEND") && !colors.empty() &&
+        text_in(file_.accessor(index_in(attributes, "COLOR_0")), "type") == "VEC4") {
       file_.warn_once("the opacity of vertices is not read");
     }
     std::vector<double> texcoords;
