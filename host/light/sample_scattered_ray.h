@@ -135,7 +135,6 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   std::optional<ReversePdf<kFromLight, T>> reverse;
   if (has_reverse) reverse.emplace(shading, hits);
   const bool has_rough_glass = bsdf.has_rough_glass();
-  const bool has_choice = has_rough_glass || (hits.kind & kCoated) != 0;
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
   const WordOf<T> none{};
@@ -144,7 +143,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   next.direction = next.flat = zero<T>();
   if (any(bsdf.scatters())) {
     next.direction = bsdf.sample(hits.random(streams::kDirection),
-                                 has_choice ? hits.random(streams::kFacet).x : T{});
+                                 has_rough_glass ? hits.random(streams::kFacet).x : T{});
     next.flat = next.direction;
     next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
     const T cosine = hits.cosine(next.direction);
