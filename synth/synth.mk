@@ -48,7 +48,7 @@ ifdef EXAMPLE
 	@echo 'Waveform: gtkwave build/worked_example.vcd sim/worked_example.gtkw'
 else ifdef PIXEL
 	$(call build,build,render)
-	@./render $(SCENE) --unit core --size 128x128 $(ARGS) --trace-pixel $(PIXEL) --trace build/pixel.vcd
+	@./render $(SCENE) --unit core --size 128x128 $(ARGS) --trace $(PIXEL)=build/pixel.vcd
 	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw'
 else
 	@$(SETUP) synth

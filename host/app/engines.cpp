@@ -106,8 +106,8 @@ std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& file
     counters = core->counters();
   }
   file.commit();
-  std::string text = "the ray of pixel " + std::to_string(files.pixel->x) + "," +
-                     std::to_string(files.pixel->y) + " hits ";
+  std::string text = "the ray of pixel " + std::to_string(files.pixel.x) + "," +
+                     std::to_string(files.pixel.y) + " hits ";
   text += hit.primitive == NearestHit::kNone
               ? "nothing"
               : "triangle " + std::to_string(bvh.triangle_of(hit.primitive)) + " at t " +

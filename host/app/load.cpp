@@ -48,7 +48,7 @@ namespace {
 
 View chosen_view(const CameraRequest& request, const Scene& scene) {
   const glm::dvec3 up = request.up ? *request.up : usual_up_axis(scene);
-  if (!request.angles) return default_view(scene, up);
+  if (!request.angles) return {kDefaultAzimuth, kDefaultElevation, up};
   return {request.angles->first, request.angles->second, up};
 }
 
@@ -105,7 +105,7 @@ Framing frame_picture(const CameraRequest& request, const Scene& scene, double a
   if (request.fov) setting.fov = request.fov;
   const Camera camera = Camera::look_at(setting, aspect);
   const auto lights = default_lights(scene, camera, is_view);
-  const bool needs_ground = is_view && lights && view.elevation > 0.0 && !is_interior(scene);
+  const bool needs_ground = is_view && lights && view.elevation > 0.0;
   Framing framing{camera, lights, request.ground.value_or(needs_ground), view.up, "", {}};
   CameraRequest& same = framing.request;
   same.up = request.up;

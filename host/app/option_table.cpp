@@ -106,7 +106,7 @@ void OptionTable::read(const std::vector<OptionValue>& values) {
   for (Row& row : rows_) {
     for (const OptionValue& value : values) {
       if (value.name != row.name) continue;
-      row.given.push_back(value);
+      row.given = value;
       const bool is_valid = (row.value == nullptr || !value.text.empty()) && row.read(value.text);
       if (!is_valid) fail_value(row.name, row.expected);
     }
@@ -124,8 +124,8 @@ const OptionTable::Row& OptionTable::row(const std::string& name) const {
 }
 
 std::string OptionTable::given(const std::string& name) const {
-  const std::vector<OptionValue>& given = row(name).given;
-  return given.empty() ? "" : given.back().text;
+  const std::optional<OptionValue>& given = row(name).given;
+  return given ? given->text : "";
 }
 
 void OptionTable::fail_value(const std::string& name, const std::string& expected) const {
@@ -136,10 +136,10 @@ void OptionTable::fail(const std::string& message, std::initializer_list<const c
   bool is_typed = false;
   const OptionValue* elsewhere = nullptr;
   for (const char* name : names) {
-    const std::vector<OptionValue>& given = row(name).given;
-    if (given.empty()) continue;
-    is_typed = is_typed || given.back().where.empty();
-    if (!given.back().where.empty()) elsewhere = &given.back();
+    const std::optional<OptionValue>& given = row(name).given;
+    if (!given) continue;
+    is_typed = is_typed || given->where.empty();
+    if (!given->where.empty()) elsewhere = &*given;
   }
   if (elsewhere == nullptr) throw InputError(message);
   if (!is_typed) throw InputError(elsewhere->where + ": " + message);

@@ -271,7 +271,7 @@ class OptionTable {
     Read read;
     Show show;
     unsigned places;
-    std::vector<OptionValue> given;
+    std::optional<OptionValue> given;  // the last one
   };
 
   [[nodiscard]] std::string help() const;

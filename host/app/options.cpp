@@ -125,12 +125,6 @@ std::optional<float> parse_point_error(const std::string& text) {
   return float_below(error);
 }
 
-std::optional<glm::ivec2> parse_pixel(const std::string& text) {
-  const std::vector<int> n = parse_list<int>(text);
-  if (n.size() != 2) return std::nullopt;
-  return glm::ivec2(n[0], n[1]);
-}
-
 std::optional<CameraSetting> parse_camera(const std::string& text) {
   const std::vector<double> n = parse_list<double>(text);
   if (n.size() != 6 && n.size() != 7) return std::nullopt;
@@ -191,9 +185,15 @@ void add_core_options(OptionTable& table, Options& options) {
   CoreFileOptions& files = options.core_files;
   table.text("--dump-image", "FILE", "dump the ray cores' memory image; render nothing",
              files.image);
-  table.text("--trace", "FILE.vcd", "write a pixel's waveform; render nothing", files.wave);
-  table.value<glm::ivec2>("--trace-pixel", "X,Y", "the pixel of --trace", "X,Y, a pixel",
-                          files.pixel, parse_pixel);
+  table.add("--trace", "X,Y=FILE.vcd", "write a pixel's waveform; render nothing", "X,Y=FILE.vcd",
+            [&files](const std::string& text) {
+              const auto [pixel, file] = split_at_equals(text);
+              const std::vector<int> xy = parse_list<int>(pixel);
+              if (xy.size() != 2 || file.empty()) return false;
+              files.pixel = {xy[0], xy[1]};
+              files.wave = file;
+              return true;
+            });
   table.value<float>(
       "--point-error", "X",
       "compute points on the host where the unit's may be off by X of t (2^-16; 0: always; inf: "
@@ -317,7 +317,7 @@ void add_render_options(OptionTable& table, Options& options) {
               return true;
             });
   add_camera_options(table, options.camera);
-  table.number("--smooth", "DEGREES", "smooth edges up to this angle (the OBJ's s, or 30)",
+  table.number("--smooth", "DEGREES", "smooth edges up to this angle (those of the OBJ's s)",
                options.smooth, kSmoothRange, kInExr);
   table.group("Light");
   add_light_options(table, render);
@@ -356,17 +356,14 @@ void check_core_files(const OptionTable& table, const Options& options) {
   if (!files.image.empty() && !options.has_core()) {
     table.fail_value("dump-image", "with --unit core and no --engine cpu");
   }
-  if (files.wave.empty() == files.pixel.has_value()) {
-    throw InputError("--trace: expected with --trace-pixel X,Y, and that with --trace FILE");
-  }
-  if (!files.pixel) return;
+  if (files.wave.empty()) return;
   if (!options.has_core() || !options.simulates()) {
     table.fail_value("trace", "with --unit core and --engine rtl or check");
   }
   const RenderSettings& render = options.render;
-  const glm::ivec2& pixel = *files.pixel;
+  const glm::ivec2& pixel = files.pixel;
   if (pixel.x < 0 || pixel.x >= render.width || pixel.y < 0 || pixel.y >= render.height) {
-    table.fail_value("trace-pixel", "X,Y, a pixel of " + size_text(render.width, render.height));
+    table.fail_value("trace", "X,Y=FILE.vcd, a pixel of " + size_text(render.width, render.height));
   }
 }
 
@@ -680,9 +677,6 @@ Options parse_options(const std::vector<std::string>& words) {
   options.scene_file = find_scene_file(
       options.scene,
       std::ranges::find(line.values, "no-scene-file", &OptionValue::name) != line.values.end());
-  std::error_code ignored;
-  options.is_bare_model = options.scene_file.file == options.scene_file.obj &&
-                          !fs::exists(fs::path(options.scene).replace_extension(".json"), ignored);
   std::vector<OptionValue> given;
   for (const auto& [name, value, number] : options.scene_file.options) {
     given.push_back({name, value, options.scene_file.file.string() + ":" + std::to_string(number)});
@@ -696,7 +690,6 @@ Options with_values(const Options& scene, std::vector<OptionValue> given) {
   Options options;
   options.scene = scene.scene;
   options.scene_file = scene.scene_file;
-  options.is_bare_model = scene.is_bare_model;
   options.camera = camera_request(options.scene_file);
   options.environment = options.scene_file.environment;
   OptionTable table;

@@ -77,9 +77,9 @@ struct OutputOptions {
 
 /// Files about a ray core that are written instead of a picture.
 struct CoreFileOptions {
-  std::filesystem::path image;      ///< memory image; "": none
-  std::filesystem::path wave;       ///< waveform of `pixel`'s ray; "": none
-  std::optional<glm::ivec2> pixel;  ///< set if and only if `wave` is
+  std::filesystem::path image;  ///< memory image; "": none
+  std::filesystem::path wave;   ///< waveform of `pixel`'s ray; "": none
+  glm::ivec2 pixel{0};
 
   /// The files that will be written.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
@@ -106,7 +106,6 @@ struct Options : EngineOptions {
   bool strict = false;           ///< refuse faces without area
   bool no_scene_file = false;    ///< ignore a scene file beside the model
   std::optional<double> smooth;  ///< LoadOptions::smooth, in degrees
-  bool is_bare_model = false;    ///< whether there is no scene file, not even an ignored one
 };
 
 /// Ranges of options that the Python module has, too.

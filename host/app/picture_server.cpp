@@ -6,9 +6,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <future>
@@ -29,8 +27,6 @@
 #include "host/app/process.h"
 #include "host/base/input_error.h"
 #include "host/film/display.h"
-#include "host/intersect/check_intersector.h"
-#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/render/renderer.h"
 
 namespace raygate {
@@ -120,12 +116,6 @@ std::string command_of(const Options& options) {
 
 Json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-/// Returns a vector in decimal and as binary32 words.
-Json words(const glm::vec3& v) {
-  const std::array<float, 3> coordinates{v.x, v.y, v.z};
-  return {{"decimal", coordinates}, {"words", hex_words(coordinates).substr(1)}};
-}
-
 class PictureServer {
  public:
   PictureServer(const Options& options, const ServedScene& scene)
@@ -190,8 +180,7 @@ class PictureServer {
       if (path == "/") return {.type = "text/html; charset=utf-8", .body = kPicturePage};
       if (path == "/picture") return picture(request);
       if (path == "/camera") return {.type = "application/json", .body = camera(request).dump()};
-      if (path == "/pixel") return {.type = "application/json", .body = pixel(request).dump()};
-      return {.status = 404, .body = "expected /, /picture, /camera or /pixel\n"};
+      return {.status = 404, .body = "expected /, /picture or /camera\n"};
     } catch (const InputError& error) {
       return {.status = 400, .body = printable(error.what()) + "\n"};
     } catch (const std::exception& error) {
@@ -220,7 +209,6 @@ class PictureServer {
     }
     erase(given, replaced);
     for (const OptionValue& value : request.parameters) {
-      if (value.name == "x" || value.name == "y") continue;
       require_page_option(value);
       given.push_back(value);
     }
@@ -247,12 +235,6 @@ class PictureServer {
     return frame_picture(options.camera, scene_.unframed, aspect);
   }
 
-  [[nodiscard]] IntersectorFactory intersectors_of(const Options& options) {
-    prepare_engine(options);
-    if (!image_) image_ = make_memory_image(options, scene_.prepared.bvh);
-    return make_intersector_factory(options, scene_.prepared.bvh, options.render.skips, image_);
-  }
-
   Reply picture(const Request& request) {
     const Options options = options_of(request);
     const Framing framing = framing_of(options);
@@ -263,9 +245,13 @@ class PictureServer {
       pollfd end{.fd = socket, .events = POLLRDHUP, .revents = 0};
       return interruption() == 0 && ::poll(&end, 1, 0) == 0;
     };
+    prepare_engine(options);
+    const Bvh& bvh = scene_.prepared.bvh;
+    if (!image_) image_ = make_memory_image(options, bvh);
     RenderStats stats;
     const Film film = render({scene_.prepared, framing.camera, options.render, framing.lights},
-                             intersectors_of(options), stats, monitor);
+                             make_intersector_factory(options, bvh, options.render.skips, image_),
+                             stats, monitor);
     if (stats.cancelled) return {.body = "cancelled\n"};
     const auto& channels = options.output.false_colors;
     const HitCounters& hit = stats.intersect.hit;
@@ -298,53 +284,6 @@ class PictureServer {
       json["variants"].push_back(variant.name);
     }
     if (const auto& view = framing.request.angles) json["view"] = {view->first, view->second};
-    return json;
-  }
-
-  [[nodiscard]] Json pixel(const Request& request) {
-    const Options options = options_of(request);
-    const RenderSettings& render = options.render;
-    const auto coordinate = [&](const char* name, int end) {
-      const auto given = std::ranges::find(request.parameters, name, &OptionValue::name);
-      const std::string text = given == request.parameters.end() ? "" : given->text;
-      const auto number = parse_number<int>(text);
-      if (!number || *number < 0 || *number >= end) {
-        throw InputError(std::string(name) + ": expected a pixel of " +
-                         std::to_string(render.width) + "x" + std::to_string(render.height) +
-                         ", got '" + text + "'");
-      }
-      return *number;
-    };
-    const int x = coordinate("x", render.width), y = coordinate("y", render.height);
-    const Ray ray =
-        framing_of(options).camera.ray((x + 0.5) / render.width, (y + 0.5) / render.height, {});
-    const std::lock_guard<std::mutex> one_at_a_time(rendering_);
-    CpuIntersector cpu(scene_.prepared.bvh);
-    return {{"pixel", {x, y}},
-            {"origin", words(ray.origin)},
-            {"direction", words(ray.direction)},
-            {"engine", found(ray, *intersectors_of(options)())},
-            {"cpu", found(ray, cpu)}};
-  }
-
-  /// Returns the hit and the statistics of one ray.
-  [[nodiscard]] Json found(const Ray& ray, Intersector& intersector) const {
-    NearestHit hit;
-    intersector.nearest({&ray, 1}, {}, {&hit, 1});
-    const HitCounters counters = intersector.counters().hit;
-    Json json{{"tests", counters.tests},
-              {"doubts", counters.edge_doubts + counters.depth_doubts},
-              {"clocks", counters.clocks}};
-    if (hit.primitive == NearestHit::kNone) return json;
-    const Bvh& bvh = scene_.prepared.bvh;
-    json["triangle"] = bvh.triangle_of(hit.primitive);
-    json["t"] = {hit.t.low, hit.t.high};
-    json["P"] = words(hit.point);
-    if (std::isfinite(hit.point_error)) json["error of P"] = hit.point_error;
-    json["corners"] = Json::array();
-    for (const glm::vec3& corner : bvh.corners_of(hit.primitive)) {
-      json["corners"].push_back(words(corner));
-    }
     return json;
   }
 

@@ -22,8 +22,6 @@ struct ServedScene {
 ///                            command, X-Statistics its statistics as JSON
 ///   GET /camera?OPTIONS      eye, target, up, field of view and size as JSON; also `view` if the
 ///                            options frame the whole scene
-///   GET /pixel?x=X&y=Y&OPTIONS  the camera ray through a pixel's centre and its hits by the chosen
-///                            engine and by the cpu engine, in decimal and as binary32 words
 ///
 /// OPTIONS are options of ./render at kInPage, without dashes: engine=cpu&size=80x60. They override
 /// `options`. Closing the connection cancels its picture. Pictures have at most 2^24 pixels of 2^16

@@ -120,10 +120,7 @@ void run(const Options& options) {
   }
 
   Scene scene = load(options.scene_file,
-                     {.strict = options.strict,
-                      .keep_instances = true,
-                      .smooth = options.smooth,
-                      .smooth_by_default = options.is_bare_model},
+                     {.strict = options.strict, .keep_instances = true, .smooth = options.smooth},
                      options.environment, options.camera.up);
   report.load_seconds = lap.lap();
   report.triangles = triangle_count(scene);
@@ -155,8 +152,8 @@ void run(const Options& options) {
 
   const auto image = make_memory_image(options, bvh);
   if (!core_files.image.empty()) print(dump_image(core_files, *image), console);
-  if (core_files.pixel) {
-    const glm::dvec2 middle = glm::dvec2(*core_files.pixel) + 0.5;
+  if (!core_files.wave.empty()) {
+    const glm::dvec2 middle = glm::dvec2(core_files.pixel) + 0.5;
     const Ray ray = framing.camera.ray(middle.x / settings.width, middle.y / settings.height, {});
     print(trace_pixel(options, core_files, bvh, image, ray), console);
   }

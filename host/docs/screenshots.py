@@ -10,7 +10,6 @@ import tempfile
 
 from PIL import Image
 from selenium import webdriver
-from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
@@ -28,17 +27,14 @@ def save(browser: webdriver.Chrome, name: str) -> None:
 
 
 def window(browser: webdriver.Chrome) -> None:
-    """Saves the image and its hit tests under the slider, and a pixel's ray."""
+    """Saves the hit tests of an image."""
     with subprocess.Popen(["./render", "scenes/still_life.json", "--engine", "cpu", "--size", "400x260", "--serve"],
                           cwd=ROOT, stdout=subprocess.PIPE, text=True) as server:
         browser.get(re.match(r"http://\S+", server.stdout.readline())[0])
         wait = WebDriverWait(browser, 120)
-        browser.find_element(By.ID, "both").click()
-        Select(browser.find_element(By.CSS_SELECTOR, "[data-side=b] [name=false-colour]")).select_by_value("tests")
-        for side in "ab":
-            wait.until(lambda b, side=side: b.find_element(By.CSS_SELECTOR, f"[data-side={side}] [data-role=said]").text.startswith("400x260"))
-        ActionChains(browser).move_to_element(browser.find_element(By.ID, "frame")).click().perform()
-        wait.until(lambda b: b.find_elements(By.CSS_SELECTOR, "#pixel td"))
+        Select(browser.find_element(By.NAME, "false-colour")).select_by_value("tests")
+        wait.until(lambda b: "--false-colour" in b.find_element(By.ID, "command").text)
+        wait.until(lambda b: b.find_element(By.ID, "said").text.startswith("400x260"))
         save(browser, "window.png")
         server.send_signal(signal.SIGINT)
 

@@ -47,25 +47,6 @@ View front_view(const Scene& scene, const glm::dvec3& up) {
   return {0.0, 3.0 + 27.0 * flatness, up};
 }
 
-// The enclosed volume is negative if triangles face inwards. A closed box without one of its walls
-// has -5/6 of its volume, a sphere turned inside out -0.52.
-bool is_interior(const Scene& scene) {
-  const Bounds3 box = bounding_box(scene);
-  const glm::dvec3 size = box.high - box.low, middle = box.middle();
-  double volume = 0.0;
-  for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
-    const glm::dvec3 a = glm::dvec3(triangle[0]) - middle, b = glm::dvec3(triangle[1]) - middle,
-                     c = glm::dvec3(triangle[2]) - middle;
-    volume += glm::dot(a, glm::cross(b, c)) / 6.0;
-  });
-  return volume < -0.6 * size.x * size.y * size.z;
-}
-
-View default_view(const Scene& scene, const glm::dvec3& up) {
-  if (is_interior(scene)) return front_view(scene, up);
-  return {kDefaultAzimuth, kDefaultElevation, up};
-}
-
 glm::dvec3 usual_up_axis(const Scene& scene) {
   if (scene.up) return *scene.up;
   return scene.is_usually_z_up ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);

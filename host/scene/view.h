@@ -18,15 +18,8 @@ struct View {
 /// The default view, which suits most models: from the front right and above.
 inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
 
-/// Returns a view from the front: level for tall scenes and interiors, higher for flatter ones.
+/// Returns a view from the front: level for tall scenes, higher for flatter ones.
 [[nodiscard]] View front_view(const Scene& scene, const glm::dvec3& up = {0.0, 1.0, 0.0});
-
-/// Returns whether most triangles face inwards, as in a room seen from inside.
-[[nodiscard]] bool is_interior(const Scene& scene);
-
-/// Returns the default view of a scene: kDefaultAzimuth and kDefaultElevation, or front_view() of
-/// an interior.
-[[nodiscard]] View default_view(const Scene& scene, const glm::dvec3& up);
 
 /// Returns +y or +z: Scene::up if the file's format defines it, or else the format's usual axis.
 [[nodiscard]] glm::dvec3 usual_up_axis(const Scene& scene);

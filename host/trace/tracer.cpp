@@ -27,7 +27,6 @@ struct Desk {
 
   void write_found(const HitTable& answers) {
     answers.append(block, found, rows);
-    counts.rows += found.size();
     counts.hits += static_cast<std::uint64_t>(std::ranges::count_if(
         found, [](const RayHit& ray) { return ray.hit.primitive != NearestHit::kNone; }));
     found.clear();
@@ -93,7 +92,6 @@ TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const HitTab
       Desk& desk = desks[first];
       write(desk.rows);
       desk.rows.clear();
-      counts.rows += desk.counts.rows;
       counts.hits += desk.counts.hits;
       desk.counts = {};
       if (desk.next < desk.block.rays.size()) break;

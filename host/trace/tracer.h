@@ -14,7 +14,7 @@ namespace raygate {
 
 /// Statistics of a run.
 struct TraceCounts {
-  std::uint64_t rays = 0, rows = 0, hits = 0;
+  std::uint64_t rays = 0, hits = 0;
   std::uint64_t rounded = 0;  ///< number of rays that were rounded to binary32
 };
 

@@ -66,7 +66,7 @@ TEST_F(CoreFiles, APortThatIsNoneIsAnInputError) {
 TEST_F(CoreFiles, TheWaveOfAPixelsRay) {
   folder_.write("link.vcd.unfinished", "of another program");
   std::filesystem::create_symlink("pixel.vcd", folder_.path() / "link.vcd");
-  const Outcome outcome = run({"--trace-pixel", "8,8", "--trace", "link.vcd"});
+  const Outcome outcome = run({"--trace", "8,8=link.vcd"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("the ray of pixel 8,8 hits triangle "), std::string::npos);
   EXPECT_EQ(folder_.list(), (std::vector{"link.vcd"s, "link.vcd.unfinished"s, "pixel.vcd"s}));

@@ -308,17 +308,15 @@ TEST(Options, FilesOfTheRayCore) {
   EXPECT_EQ(core({"--cores", "4"}).cores, 4);
   EXPECT_TRUE(core({}).core_files.paths().empty());
   EXPECT_EQ(core({"--dump-image", "a.bin"}).core_files.image, "a.bin");
-  EXPECT_EQ(core({"--trace-pixel", "63,47", "--trace", "a.vcd"}).core_files.pixel,
-            glm::ivec2(63, 47));
+  EXPECT_EQ(core({"--trace", "63,47=a.vcd"}).core_files.pixel, glm::ivec2(63, 47));
   for (const char* pixel : {"64,0", "0,48", "-1,0", "1", "1,2,3", "x,y"}) {
-    EXPECT_THROW((void)core({"--trace-pixel", pixel, "--trace", "a.vcd"}), InputError) << pixel;
+    EXPECT_THROW((void)core({"--trace", (std::string(pixel) + "=a.vcd").c_str()}), InputError);
   }
   EXPECT_THROW((void)core({"--trace", "a.vcd"}), InputError);
-  EXPECT_THROW((void)core({"--trace-pixel", "1,1"}), InputError);
+  EXPECT_THROW((void)core({"--trace", "1,1"}), InputError);
   EXPECT_THROW((void)core({"--dump-image", "a.obj"}), InputError);
   expect_error({"a.obj", "--dump-image", "a.bin"}, "--dump-image: expected with --unit core");
-  expect_error({"a.obj", "--trace-pixel", "1,1", "--trace", "a.vcd"},
-               "--trace: expected with --unit core");
+  expect_error({"a.obj", "--trace", "1,1=a.vcd"}, "--trace: expected with --unit core");
 }
 
 TEST(OutputOptions, OutputNames) {

@@ -12,13 +12,12 @@
 Hits are exact: binary32 holds the corners and rays relative to the scene's middle (Scene.origin), and for these numbers
 the nearest triangle and the order of several triangles are always the right ones.
 
-raygate.float is IEEE 754 arithmetic in any small format. raygate.results reads the measurements of this repository's
-benchmarks and synthesis.
+raygate.float is IEEE 754 arithmetic in any small format.
 """
 
-from . import _raygate, float, results, trimesh  # from here on `float` is the module, not Python's class
+from . import _raygate, float, trimesh  # from here on `float` is the module, not Python's class
 from ._raygate import InputError
 from ._scene import Picture, Scene
 
-__all__ = ["InputError", "Picture", "Scene", "float", "results", "trimesh"]
+__all__ = ["InputError", "Picture", "Scene", "float", "trimesh"]
 __version__: str = _raygate.software.split()[-1]

@@ -27,21 +27,15 @@ std::string with_plain_blanks(std::string_view name) {
 
 }  // namespace
 
-std::optional<std::filesystem::path> find_exact_file(const std::filesystem::path& folder,
-                                                     std::string_view name) {
+std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                               std::string_view name, const std::string& place,
+                                               std::vector<std::string>& warnings) {
   for (const std::string& spelling :
        {std::string(name), with_slashes(name), with_plain_blanks(name)}) {
     std::error_code ignored;
     std::filesystem::path file = folder / spelling;
     if (std::filesystem::is_regular_file(file, ignored)) return file;
   }
-  return std::nullopt;
-}
-
-std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
-                                               std::string_view name, const std::string& place,
-                                               std::vector<std::string>& warnings) {
-  if (auto exact = find_exact_file(folder, name)) return exact;
   const std::filesystem::path asked(with_slashes(name));
   const std::string wanted = in_lower_case(asked.filename().string());
   if (wanted.empty()) return std::nullopt;

@@ -11,13 +11,8 @@ namespace raygate {
 
 /// Returns the file that a model in `folder` refers to as `name`: the file of that name or, if
 /// there is none, of the name without quotes and with '/' for '\', or without the '\' before
-/// spaces. Returns nullopt if none of these exists.
-[[nodiscard]] std::optional<std::filesystem::path> find_exact_file(
-    const std::filesystem::path& folder, std::string_view name);
-
-/// Returns the result of find_exact_file() or, if there is none, the file whose name matches the
-/// last part of `name` in any letter case, in the folder of `name` or in `folder`. Warns about the
-/// other spelling; the warning begins with `place`.
+/// spaces; else the file whose name matches the last part of `name` in any letter case, in the
+/// folder of `name` or in `folder`, with a warning that begins with `place`.
 [[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
                                                              std::string_view name,
                                                              const std::string& place,

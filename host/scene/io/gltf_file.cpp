@@ -203,12 +203,11 @@ struct GltfFile::Component {
   double one;
 };
 
-/// The elements of an accessor, without gaps.
+/// The numbers of an accessor.
 struct GltfFile::Elements {
   Component component;
-  int components;
-  std::size_t count;
-  std::string bytes;
+  std::size_t width;  // numbers of an element
+  std::vector<double> numbers;
 };
 
 std::string_view GltfFile::stored(int buffer_view, const std::string& place) const {
@@ -231,22 +230,27 @@ std::string_view GltfFile::stored(int buffer_view, const std::string& place) con
   return data.substr(offset, length);
 }
 
-std::string GltfFile::packed(const Json& part, std::size_t size, std::size_t count,
-                             const std::string& place) const {
+std::vector<double> GltfFile::stored_numbers(const Json& part, const Component& component,
+                                             std::size_t width, std::size_t count,
+                                             const std::string& place) const {
   const int number = index_in(part, "bufferView");
   std::string_view bytes = stored(number, place);
   const Json& view = list("bufferViews").at(static_cast<std::size_t>(number));
-  const std::size_t offset = size_in(part, "byteOffset"),
+  const NumberType type = component.type;
+  const std::size_t size = width * bytes_of(type), offset = size_in(part, "byteOffset"),
                     stride = std::max(size_in(view, "byteStride"), size);
   bytes.remove_prefix(std::min(offset, bytes.size()));
   const bool is_within =
       count > 0 && size <= bytes.size() && count - 1 <= (bytes.size() - size) / stride;
   if (!is_within) fail(place + "beyond its buffer, which ends too soon");
-  if (stride == size) return std::string(bytes.substr(0, count * size));
-  std::string result;
-  result.reserve(count * size);
-  for (std::size_t i = 0; i < count; ++i) result.append(bytes.substr(i * stride, size));
-  return result;
+  std::vector<double> numbers;
+  numbers.reserve(count * width);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < width; ++k) {
+      numbers.push_back(number_at(bytes.data() + i * stride + k * bytes_of(type), type));
+    }
+  }
+  return numbers;
 }
 
 const GltfFile::Component& GltfFile::component_of(const Json& part,
@@ -262,35 +266,36 @@ const GltfFile::Component& GltfFile::component_of(const Json& part,
 }
 
 GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
-  static const std::map<std::string, int> kTypes = {
+  static const std::map<std::string, std::size_t> kTypes = {
       {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
   const std::string place = "accessor " + std::to_string(accessor) + " (" + what + "): ";
   const Json& from = this->accessor(accessor);
   const auto type = kTypes.find(text_in(from, "type"));
   if (type == kTypes.end()) fail(place + "of an unknown type");
-  Elements result{component_of(from, place), type->second, count(accessor), ""};
-  const std::size_t size = bytes_of(result.component.type) * static_cast<std::size_t>(type->second);
+  Elements result{component_of(from, place), type->second, {}};
+  const auto& [component, width, ignored] = result;
+  const std::size_t count = this->count(accessor);
   if (!member(from, "bufferView").is_null()) {
-    result.bytes = packed(from, size, result.count, place);
+    result.numbers = stored_numbers(from, component, width, count, place);
   } else {  // they are 0, apart from sparse ones
     constexpr std::size_t kMost = 1'000'000;
-    if (result.count > kMost + bytes_) fail(place + "too many elements without a buffer");
-    result.bytes.assign(size * result.count, '\0');
+    if (count > kMost + bytes_) fail(place + "too many elements without a buffer");
+    result.numbers.assign(width * count, 0.0);
   }
   const Json& sparse = member(from, "sparse");
   if (!sparse.is_object()) return result;
-  const std::size_t count = size_in(sparse, "count");
+  const std::size_t changes = size_in(sparse, "count");
   const Json& indices = member(sparse, "indices");
-  const NumberType index_type = component_of(indices, place).type;
-  const std::size_t index_size = bytes_of(index_type);
-  const std::string places = packed(indices, index_size, count, place),
-                    values = packed(member(sparse, "values"), size, count, place);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double at = number_at(places.data() + i * index_size, index_type);
-    if (!(at >= 0.0 && at < static_cast<double>(result.count))) {
+  const std::vector<double> places = stored_numbers(indices, component_of(indices, place), 1,
+                                                    changes, place),
+                            values = stored_numbers(member(sparse, "values"), component, width,
+                                                    changes, place);
+  for (std::size_t i = 0; i < changes; ++i) {
+    if (!(places[i] >= 0.0 && places[i] < static_cast<double>(count))) {
       fail(place + "a sparse element beyond its end");
     }
-    result.bytes.replace(static_cast<std::size_t>(at) * size, size, values, i * size, size);
+    const std::size_t at = static_cast<std::size_t>(places[i]) * width;
+    for (std::size_t k = 0; k < width; ++k) result.numbers[at + k] = values[i * width + k];
   }
   return result;
 }
@@ -310,39 +315,36 @@ std::vector<double> GltfFile::optional_numbers(int accessor, int width, const ch
 }
 
 std::vector<double> GltfFile::numbers(int accessor, int width, const char* what) const {
-  const Elements from = elements(accessor, what);
+  const auto [component, components, all] = elements(accessor, what);
   const auto fail_here = [&](const char* found) {
     fail("accessor " + std::to_string(accessor) + " (" + what + "): " + found);
   };
-  if (from.components < width) fail_here("too few components");
-  if (from.component.type == NumberType::kUint32) {
+  const auto wanted = static_cast<std::size_t>(width);
+  if (components < wanted) fail_here("too few components");
+  if (component.type == NumberType::kUint32) {
     fail_here("numbers of a type that is not expected there");
   }
-  const auto [ignored, type, one] = from.component;
   const Json& normalized = member(this->accessor(accessor), "normalized");
   const bool is_normalized = normalized.is_boolean() && normalized.get<bool>();
-  const std::size_t size = bytes_of(type), components = static_cast<std::size_t>(from.components);
   std::vector<double> numbers;
-  numbers.reserve(from.count * static_cast<std::size_t>(width));
-  for (std::size_t i = 0; i < from.count * components; ++i) {
-    if (i % components >= static_cast<std::size_t>(width)) continue;
-    const double number = number_at(from.bytes.data() + i * size, type);
-    numbers.push_back(is_normalized ? std::max(number / one, -1.0) : number);
+  numbers.reserve(all.size() / components * wanted);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i % components >= wanted) continue;
+    numbers.push_back(is_normalized ? std::max(all[i] / component.one, -1.0) : all[i]);
   }
   return numbers;
 }
 
 std::vector<std::uint32_t> GltfFile::indices(int accessor) const {
-  const Elements from = elements(accessor, "indices");
-  const NumberType type = from.component.type;
+  const auto [component, width, all] = elements(accessor, "indices");
+  const NumberType type = component.type;
   if (type != NumberType::kUint8 && type != NumberType::kUint16 && type != NumberType::kUint32) {
     fail("accessor " + std::to_string(accessor) + " (indices): not of whole numbers");
   }
-  const std::size_t stride = from.bytes.size() / std::max<std::size_t>(from.count, 1);
   std::vector<std::uint32_t> numbers;
-  numbers.reserve(from.count);
-  for (std::size_t i = 0; i < from.count; ++i) {
-    numbers.push_back(static_cast<std::uint32_t>(number_at(from.bytes.data() + i * stride, type)));
+  numbers.reserve(all.size() / width);
+  for (std::size_t i = 0; i < all.size(); i += width) {
+    numbers.push_back(static_cast<std::uint32_t>(all[i]));
   }
   return numbers;
 }

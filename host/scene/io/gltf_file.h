@@ -85,10 +85,11 @@ class GltfFile {
   /// Returns the bytes of a buffer view. Throws InputError, which names `place`, if it has none or
   /// is not within its buffer.
   [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;
-  /// Returns the bytes of `count` elements of this size, without gaps. Throws InputError if they
-  /// exceed their buffer view.
-  [[nodiscard]] std::string packed(const Json& part, std::size_t size, std::size_t count,
-                                   const std::string& place) const;
+  /// Returns `count` elements of `width` numbers, without gaps, at an accessor or a part of a
+  /// sparse one. Throws InputError if they exceed their buffer view.
+  [[nodiscard]] std::vector<double> stored_numbers(const Json& part, const Component& component,
+                                                   std::size_t width, std::size_t count,
+                                                   const std::string& place) const;
   [[noreturn]] void fail_extension(const std::string& extension) const;
 
   std::string name_;

@@ -1,14 +1,18 @@
-#include "host/scene/io/material_library.h"
-
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
+#include <filesystem>
 #include <limits>
+#include <optional>
+#include <set>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "host/base/input_error.h"
 #include "host/scene/io/find_file.h"
+#include "host/scene/io/scene_loader.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {
@@ -273,49 +277,9 @@ class MtlReader {
 
 }  // namespace
 
-void MaterialLibrary::load_library(const Words& names) {
-  const std::string place = names.place(), all(names.rest());
-  if (all.empty()) {
-    warnings_.push_back(place + "mtllib without a file");
-    return;
-  }
-  std::vector<std::string> words;
-  std::istringstream text(all);
-  for (std::string word; text >> std::quoted(word, '"', '\0');) words.push_back(word);
-  // One name may have several words, also if its file has another spelling here.
-  const bool are_several = std::ranges::all_of(
-      words, [&](const std::string& name) { return find_exact_file(folder_, name).has_value(); });
-  if (!are_several || find_exact_file(folder_, all)) {
-    if (const auto file = find_file(folder_, all, place, warnings_)) return load(*file);
-  }
-  for (const std::string& name : words) {
-    if (const auto file = find_file(folder_, name, place, warnings_)) {
-      load(*file);
-    } else {
-      std::error_code error;
-      const auto type = std::filesystem::status(folder_ / name, error).type();
-      const bool is_known = type != std::filesystem::file_type::none;
-      warnings_.push_back(place + "material file " + in_quotes(name) +
-                          (is_known ? " is missing" : " cannot be read: " + error.message()) +
-                          ", default materials instead");
-    }
-  }
-}
-
-void MaterialLibrary::load(const std::filesystem::path& file) {
-  if (!loaded_.insert(file.lexically_normal()).second) return;
-  std::vector<Material> read = MtlReader(file, warnings_).read();
-  if (read.empty()) warnings_.push_back(file.string() + ": defines no material");
-  for (Material& material : read) {
-    index_of_name_.emplace(material.name, static_cast<std::uint32_t>(materials_.size()));
-    materials_.push_back(std::move(material));
-  }
-}
-
-std::optional<std::uint32_t> MaterialLibrary::find(const std::string& name) const {
-  const auto found = index_of_name_.find(name);
-  if (found == index_of_name_.end()) return std::nullopt;
-  return found->second;
+std::vector<Material> read_mtl(const std::filesystem::path& file,
+                               std::vector<std::string>& warnings) {
+  return MtlReader(file, warnings).read();
 }
 
 }  // namespace raygate

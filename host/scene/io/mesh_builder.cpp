@@ -22,17 +22,7 @@ constexpr std::size_t kCheckpointFaces = 4096;
 
 /// Counts the faces with each flaw, for one warning that names the first of them.
 struct MeshBuilder::Flaws {
-  enum Flaw {
-    kNoArea,
-    kFlattened,
-    kTooShort,
-    kMoved,
-    kTouching,
-    kNoDirection,
-    kNoNormal,
-    kNoTexcoord,
-    kCount
-  };
+  enum Flaw { kNoArea, kTooShort, kMoved, kTouching, kNoDirection, kNoNormal, kNoTexcoord, kCount };
   std::array<std::size_t, kCount> counts{}, first_lines{};
 
   void note(Flaw flaw, std::size_t line) {
@@ -44,7 +34,6 @@ struct MeshBuilder::Flaws {
     std::snprintf(most, sizeof most, "%.3g", scene.rounding.most);
     const std::string texts[kCount] = {
         "face of zero area, left out",
-        "face flattened by rounding to binary32, left out",
         "face of fewer than 3 corners, left out",
         std::string("corners moved by up to ") + most +
             ", more than a hundredth of their face, by rounding to binary32",
@@ -101,21 +90,6 @@ glm::vec3 MeshBuilder::linear_color(std::size_t position, float white) const {
 void MeshBuilder::add_normal(const glm::dvec3& normal) {
   const bool has_direction = is_finite(normal) && normal != glm::dvec3(0.0);
   normals_.push_back(has_direction ? glm::vec3(unit(normal)) : glm::vec3(0.0f));
-}
-
-void MeshBuilder::add_tangent(const glm::vec4& tangent) {
-  tangents_.resize(normals_.size() - 1, glm::vec4(0.0f));
-  tangents_.push_back(tangent);
-}
-
-void MeshBuilder::add_second_texcoord(const glm::vec2& texcoord) {
-  second_texcoords_.resize(texcoords_.size() - 1, glm::vec2(0.0f));
-  second_texcoords_.push_back(texcoord);
-}
-
-void MeshBuilder::add_opacity(float opacity) {
-  opacities_.resize(texcoords_.size() - 1, 1.0f);
-  opacities_.push_back(opacity);
 }
 
 void MeshBuilder::add_face(std::span<const FaceCorner> corners, std::size_t line,
@@ -180,24 +154,6 @@ void MeshBuilder::recentre(Scene& scene) {
   for (FaceCorner& corner : corners_) corner.position = new_index[corner.position];
 }
 
-// Returns whether a polygon has no area in its file, up to the rounding of decimals to double.
-bool MeshBuilder::was_flat(std::span<const FaceCorner> corners) const {
-  const glm::dvec3& first = positions_[corners[0].position];
-  glm::dvec3 area(0.0), size(0.0), reach = glm::abs(first);
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    const glm::dvec3 &p = positions_[corners[i - 1].position], &q = positions_[corners[i].position];
-    area += glm::cross(p - first, q - first);
-    size = glm::max(size, glm::abs(q - first));
-    reach = glm::max(reach, glm::abs(q));
-  }
-  const auto products = [](const glm::dvec3& a, const glm::dvec3& b) {
-    return glm::dvec3(a.y * b.z, a.z * b.x, a.x * b.y);
-  };
-  const glm::dvec3 bound = products(reach, size) + products(size, reach);
-  return glm::all(
-      glm::lessThanEqual(glm::abs(area), 0x1p-50 * static_cast<double>(corners.size()) * bound));
-}
-
 std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
                                                     Scene& scene) const {
   std::vector<std::uint32_t> groups;
@@ -231,13 +187,8 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
       kind = PolygonKind::kZeroArea;
     }
     if (kind == PolygonKind::kZeroArea) {
-      const bool is_flat = was_flat(corners);
-      if (options.strict) {
-        fail(face.line, std::string("face ") +
-                            (is_flat ? "of zero area" : "flattened by rounding to binary32") +
-                            ", expected one with an area");
-      }
-      flaws.note(is_flat ? Flaws::kNoArea : Flaws::kFlattened, face.line);
+      if (options.strict) fail(face.line, "face of zero area, expected one with an area");
+      flaws.note(Flaws::kNoArea, face.line);
       Triangle left_out{.material = face.attributes.material, .object = face.attributes.object};
       left_out.vertices.fill(corners[0].position);
       scene.triangles.insert(scene.triangles.end(), corners.size() - 2, left_out);
@@ -300,14 +251,9 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
     fail(faces_.empty() ? 0 : faces_[0].line, "no face has an area");
   }
   scene.normals = std::move(normals_);
-  scene.tangents = std::move(tangents_);
   scene.texcoords = std::move(texcoords_);
-  scene.second_texcoords = std::move(second_texcoords_);
-  scene.opacities = std::move(opacities_);
   if (options.smooth || !groups.empty()) {
     add_smooth_normals(groups, options.smooth, scene);
-  } else if (options.smooth_by_default && !defines_smoothing_ && scene.normals.empty()) {
-    add_smooth_normals(groups, LoadOptions::kSmoothAngle, scene, FlatFaces::kStayFlat);
   }
 }
 

@@ -44,12 +44,7 @@ class MeshBuilder {
   void add_color(const glm::vec3& color);
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
-  /// Add attributes of the last texture coordinates; the second ones, and the opacity, in [0, 1].
-  void add_second_texcoord(const glm::vec2& texcoord);
-  void add_opacity(float opacity);
   void add_normal(const glm::dvec3& normal);
-  /// Sets the tangent of the last normal, in the format of Scene::tangents.
-  void add_tangent(const glm::vec4& tangent);
 
   /// Adds a polygon. build() leaves out polygons of fewer than three corners, and the normals or
   /// texture coordinates of a face if one of its corners has none, with a warning. `line` is for
@@ -71,8 +66,6 @@ class MeshBuilder {
     others_.expand(box.low);
     others_.expand(box.high);
   }
-  /// Notes that the file defines smoothing, so that none is guessed.
-  void defines_smoothing() { defines_smoothing_ = true; }
   /// Makes build() accept a scene in which no face has an area.
   void allow_empty() { may_be_empty_ = true; }
 
@@ -100,8 +93,6 @@ class MeshBuilder {
   [[nodiscard]] std::size_t line_of(std::size_t corner) const;
   void recentre(Scene& scene);
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
-  /// Returns whether a face has no area in the file's own numbers, before they are rounded.
-  [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
   /// Returns the smoothing groups of the triangles; empty: all are flat.
   [[nodiscard]] std::vector<std::uint32_t> triangulate(const LoadOptions& options,
                                                        Scene& scene) const;
@@ -109,16 +100,13 @@ class MeshBuilder {
   std::string file_name_;
   Source source_;
   Bounds3 others_;
-  bool may_be_empty_ = false, defines_smoothing_ = false;
+  bool may_be_empty_ = false;
   std::vector<glm::dvec3> positions_;
   std::vector<glm::vec3> colors_;  // of the first positions; kNoColor: white
   std::size_t bad_colors_ = 0;     // number of colours that are not finite
   bool has_linear_colors_ = false;
   std::vector<glm::vec3> normals_;
-  std::vector<glm::vec4> tangents_;  // of the first normals
   std::vector<glm::vec2> texcoords_;
-  std::vector<glm::vec2> second_texcoords_;  // of the first texture coordinates
-  std::vector<float> opacities_;             // likewise
   std::vector<FaceCorner> corners_;
   std::vector<Face> faces_;
 };
@@ -129,9 +117,6 @@ class MeshBuilder {
 /// extent, and no difference exceeds three times the extent.
 [[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
 
-/// Whether triangles get smooth normals that equal their geometric normal.
-enum class FlatFaces { kHaveNormals, kStayFlat };
-
 /// Sets the normals of triangles that have none and have a smooth edge. The normal at a corner is
 /// the weighted mean over the triangles that are connected there by smooth edges (weights of N.
 /// Max, "Weights for computing vertex normals from facet normals", Journal of Graphics Tools 4 (2),
@@ -140,6 +125,6 @@ enum class FlatFaces { kHaveNormals, kStayFlat };
 /// * the angle between their normals is at most `angle`, in degrees up to 180, if that is given;
 /// * otherwise they have the same group in `groups`, other than 0.
 void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<double> angle,
-                        Scene& scene, FlatFaces flat = FlatFaces::kHaveNormals);
+                        Scene& scene);
 
 }  // namespace raygate

@@ -2,14 +2,18 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <filesystem>
+#include <iomanip>
+#include <iterator>
 #include <map>
 #include <set>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "host/scene/io/material_library.h"
+#include "host/scene/io/find_file.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/text.h"
@@ -51,16 +55,13 @@ std::vector<std::string> in_order(const NameNumbers& numbers) {
 class ObjReader {
  public:
   ObjReader(const std::filesystem::path& file, Scene& scene)
-      : lines_(file),
-        mesh_(file.string()),
-        mtl_(file.parent_path(), scene.warnings),
-        scene_(scene) {}
+      : lines_(file), folder_(file.parent_path()), mesh_(file.string()), scene_(scene) {}
 
   void read(const LoadOptions& options) {
     while (auto statement = lines_.next()) read_statement(*statement);
     mesh_.build(options, scene_);
     scene_.objects = NameList(in_order(objects_));
-    scene_.files = {mtl_.files().begin(), mtl_.files().end()};
+    scene_.files = {libraries_.begin(), libraries_.end()};
     scene_.files.emplace_back(mesh_.file_name());
     assign_materials();
     if (options.textures) load_textures(scene_);
@@ -99,7 +100,7 @@ class ObjReader {
       face_.material = number_of(std::string(words.rest()), materials_);
       if (face_.material == first_uses_.size()) first_uses_.push_back(words.place());
     } else if (keyword == "mtllib") {
-      mtl_.load_library(words);
+      load_libraries(words);
     } else if (is_in(kOtherShapes, keyword)) {
       warn_once(keyword, words,
                 std::string(keyword) + " statements are ignored: only polygons are rendered");
@@ -170,6 +171,34 @@ class ObjReader {
     return {};
   }
 
+  /// Loads the files that a mtllib statement names: one file whose name may hold spaces, or several
+  /// names, separated by spaces, some perhaps in quotes.
+  void load_libraries(const Words& statement) {
+    const std::string place = statement.place(), all(statement.rest());
+    if (all.empty()) scene_.warnings.push_back(place + "mtllib without a file");
+    if (const auto file = find_file(folder_, all, place, scene_.warnings)) return load(*file);
+    std::istringstream names(all);
+    for (std::string name; names >> std::quoted(name, '"', '\0');) {
+      if (const auto file = find_file(folder_, name, place, scene_.warnings)) {
+        load(*file);
+        continue;
+      }
+      std::error_code error;
+      const auto type = std::filesystem::status(folder_ / name, error).type();
+      const bool is_known = type != std::filesystem::file_type::none;
+      scene_.warnings.push_back(place + "material file " + in_quotes(name) +
+                                (is_known ? " is missing" : " cannot be read: " + error.message()) +
+                                ", default materials instead");
+    }
+  }
+
+  void load(const std::filesystem::path& file) {
+    if (!libraries_.insert(file.lexically_normal()).second) return;
+    std::vector<Material> read = read_mtl(file, scene_.warnings);
+    if (read.empty()) scene_.warnings.push_back(file.string() + ": defines no material");
+    std::ranges::move(read, std::back_inserter(scene_.materials));
+  }
+
   void warn_once(std::string_view keyword, const Words& words, const std::string& what) {
     if (warned_of_.emplace(keyword).second) scene_.warnings.push_back(words.place() + what);
   }
@@ -182,7 +211,6 @@ class ObjReader {
   }
 
   void set_smoothing(Words& words) {
-    mesh_.defines_smoothing();
     words.drop_comment();
     const std::string_view word = words.peek();
     const char* const end = word.data() + word.size();
@@ -206,16 +234,19 @@ class ObjReader {
 
   /// Resolves the names of materials at the end of the file, as mtllib may come after usemtl.
   void assign_materials() {
-    scene_.materials = mtl_.materials();
-    // Scanners duplicate the texture's colours at the vertices.
-    for (Material& material : scene_.materials) {
+    NameNumbers defined;  // the first of each name
+    for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) {
+      Material& material = scene_.materials[i];
+      defined.emplace(material.name, i);
+      // Scanners duplicate the texture's colours at the vertices.
       material.has_vertex_colors = material.diffuse_map.file.empty();
     }
     std::uint32_t default_material = kNoIndex;
     std::vector<std::uint32_t> materials;
     const std::vector<std::string> names = in_order(materials_);
     for (std::size_t i = 0; i < names.size(); ++i) {
-      materials.push_back(mtl_.find(names[i]).value_or(kNoIndex));
+      const auto found = defined.find(names[i]);
+      materials.push_back(found == defined.end() ? kNoIndex : found->second);
       if (materials[i] == kNoIndex && !names[i].empty()) {
         scene_.warnings.push_back(first_uses_[i] + "material " + in_quotes(names[i]) +
                                   " is defined nowhere, the default instead");
@@ -235,8 +266,9 @@ class ObjReader {
   }
 
   TextLines lines_;
+  std::filesystem::path folder_;
   MeshBuilder mesh_;
-  MaterialLibrary mtl_;
+  std::set<std::filesystem::path> libraries_;  // MTL files that were read
   Scene& scene_;
   NameNumbers objects_, materials_;            // materials: of usemtl; a face has kNoIndex for none
   std::vector<std::string> first_uses_;        // "file:line: " of the first use of each material

@@ -11,7 +11,6 @@
 #include "host/base/input.h"
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
-#include "host/scene/io/find_file.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/text.h"
@@ -94,16 +93,12 @@ class PlyReader {
         for (long long i = 0; i < element.count; ++i) read_row(element);
       }
     }
-    if (!texture_.empty() && !has_texcoords_) {
-      unread_.push_back("texture " + in_quotes(texture_) + " without texture coordinates");
-    }
     if (!unread_.empty()) {
       std::string all;
       for (const std::string& one : unread_) all.append(all.empty() ? "" : ", ").append(one);
       scene.warnings.push_back(name_ + ": not read: " + all);
     }
     mesh_.build_plain(options, scene);
-    if (has_texcoords_) add_texture(options, scene);
     return scene;
   }
 
@@ -135,14 +130,7 @@ class PlyReader {
         if (elements_.empty()) words_.fail("a property before the first element");
         elements_.back().properties.push_back(read_property());
       } else if (word == "comment") {
-        if (words_.take() != "TextureFile") continue;
-        std::string_view file = words_.rest();
-        while (file.ends_with('\r') || file.ends_with(' ')) file.remove_suffix(1);
-        if (texture_.empty()) {
-          texture_ = file;
-        } else {
-          unread_.push_back("texture " + in_quotes(file));
-        }
+        if (words_.take_if("TextureFile")) unread_.push_back("texture " + in_quotes(words_.take()));
       } else if (word != "obj_info" && !word.empty()) {
         warnings.push_back(words_.place() + in_quotes(word) +
                            " is no word of a PLY header, ignored");
@@ -239,14 +227,7 @@ class PlyReader {
                     normal = attribute_of(element, {"nx", "ny", "nz"}),
                     color = attribute_of(element, {"red", "green", "blue"});
     if (position.empty()) words_.fail("vertices without x, y and z");
-    Attribute texcoord;
-    if (!texture_.empty()) texcoord = attribute_of(element, {"s", "t"});
-    if (!texture_.empty() && texcoord.empty()) texcoord = attribute_of(element, {"u", "v"});
-    if (!texture_.empty() && texcoord.empty()) {
-      texcoord = attribute_of(element, {"texture_u", "texture_v"});
-    }
     has_normals_ = !normal.empty();
-    has_texcoords_ = !texcoord.empty();
     note_unread(element);
     glm::dvec3 white(1.0);  // codes of 1
     for (int k = 0; const Property* property : color) {
@@ -266,7 +247,6 @@ class PlyReader {
       mesh_.add_position(at);
       if (!color.empty()) mesh_.add_color(glm::vec3(vector_of(color) / white));
       if (has_normals_) mesh_.add_normal(vector_of(normal));
-      if (has_texcoords_) mesh_.add_texcoord(glm::vec2(vector_of(texcoord)));
     }
   }
 
@@ -274,8 +254,6 @@ class PlyReader {
     const Property* indices = element.use_list("vertex_indices");
     if (indices == nullptr) indices = element.use_list("vertex_index");
     if (indices == nullptr) words_.fail("element face without a list vertex_indices");
-    // The texture coordinates of corners, in pairs, replace those of vertices.
-    const Property* const pairs = texture_.empty() ? nullptr : element.use_list("texcoord");
     note_unread(element);
     std::vector<FaceCorner> corners;
     for (long long i = 0; i < element.count; ++i) {
@@ -286,30 +264,10 @@ class PlyReader {
           fail_row("a vertex index: expected a whole number from 0 to 2147483646");
         }
         const auto at = static_cast<std::uint32_t>(index);
-        FaceCorner& corner = corners.emplace_back();
-        corner = {at, has_texcoords_ ? at : kNoIndex, has_normals_ ? at : kNoIndex};
-        if (pairs == nullptr) continue;
-        const std::size_t u = 2 * corners.size() - 2;
-        const bool has_pair = u + 1 < pairs->values.size();
-        corner.texcoord =
-            has_pair ? static_cast<std::uint32_t>(mesh_.counts().texcoords) : kNoIndex;
-        if (has_pair) mesh_.add_texcoord({pairs->values[u], pairs->values[u + 1]});
+        corners.push_back({at, kNoIndex, has_normals_ ? at : kNoIndex});
       }
       mesh_.add_face(corners, row_line_);
     }
-    has_texcoords_ = has_texcoords_ || pairs != nullptr;
-  }
-
-  /// Sets the texture of the material.
-  void add_texture(const LoadOptions& options, Scene& scene) {
-    const std::filesystem::path folder = std::filesystem::path(name_).parent_path();
-    Material& material = scene.materials[0];
-    material.diffuse = glm::vec3(1.0f);
-    material.has_vertex_colors = false;  // scanners duplicate the image's colours at the vertices
-    material.diffuse_map.file = find_file(folder, texture_, name_ + ": ", scene.warnings)
-                                    .value_or(folder / texture_)
-                                    .string();
-    if (options.textures) load_textures(scene);
   }
 
   std::string name_;
@@ -322,8 +280,7 @@ class PlyReader {
   std::vector<Element> elements_;
   std::vector<std::string> unread_;  // properties and elements to warn about
   MeshBuilder mesh_;
-  std::string_view texture_;  // the file of the header's first "comment TextureFile"
-  bool has_normals_ = false, has_texcoords_ = false;
+  bool has_normals_ = false;
 };
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "host/scene/scene.h"
 
@@ -17,10 +19,6 @@ struct LoadOptions {
   /// Largest angle between the normals of two faces without vertex normals that are smoothed over
   /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
   std::optional<double> smooth = {};
-  /// Whether curved surfaces of an OBJ, PLY or STL file without normals and smoothing groups are
-  /// smoothed with kSmoothAngle, unless `smooth` is set.
-  bool smooth_by_default = false;
-  static constexpr double kSmoothAngle = 30.0;
 };
 
 /// Loads a model. The ending of its name gives the format: .obj (or none), .gltf, .glb, .ply or
@@ -42,18 +40,23 @@ struct LoadOptions {
 /// Loads a Wavefront OBJ file, with its MTL files (relative to its folder) and their textures.
 [[nodiscard]] Scene load_obj(const std::filesystem::path& file, const LoadOptions& options = {});
 
+/// Reads the materials of an MTL file, in its order; of several with one name the first. Textures
+/// are named, relative to its folder, but not loaded. Appends to `warnings`.
+[[nodiscard]] std::vector<Material> read_mtl(const std::filesystem::path& file,
+                                             std::vector<std::string>& warnings);
+
 /// Loads a glTF 2.0 file (.gltf or .glb): the triangles, strips and fans of all nodes in order,
 /// with an object for each node; materials (see GltfMaterials); the first camera; lights
 /// (KHR_lights_punctual; 683 candela are 1 watt per steradian). +y is up. Positions are transformed
-/// in double. Skins and morph targets are applied as posed by the nodes; animations are not read.
+/// in double. Morph targets are applied as posed by the nodes; skins, animations, tangents and the
+/// opacity of vertices are not read.
 /// Throws InputError also for a node with two parents, and if vertices and corners, with flattened
 /// instances, exceed 12 million plus the number of bytes of the file.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Loads a PLY file, ASCII or binary: the polygons of the element "face", as one object of one
-/// material. Vertices have x, y, z and may have nx, ny, nz, and red, green, blue. If the header has
-/// a "comment TextureFile NAME", texture coordinates are s, t (or u, v, or texture_u, texture_v) of
-/// vertices, or the list texcoord of faces. Warns about other elements and properties.
+/// material. Vertices have x, y, z and may have nx, ny, nz, and red, green, blue. Warns about other
+/// elements and properties, and about a texture ("comment TextureFile NAME").
 [[nodiscard]] Scene load_ply(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Loads an STL file, binary or ASCII, as one object of a default material. +z is up, as in most

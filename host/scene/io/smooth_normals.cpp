@@ -22,10 +22,8 @@ struct Edge {
 
 class Smoother {
  public:
-  Smoother(std::span<const std::uint32_t> groups, std::optional<double> angle, Scene& scene,
-           FlatFaces flat)
+  Smoother(std::span<const std::uint32_t> groups, std::optional<double> angle, Scene& scene)
       : groups_(groups),
-        flat_(flat),
         by_angle_(angle.has_value()),
         least_cosine_(angle ? sine_cosine(*angle / 360.0).cosine : 0.0),
         scene_(scene),
@@ -135,17 +133,6 @@ class Smoother {
     return glm::cross(u, v) / (glm::dot(u, u) * glm::dot(v, v));
   }
 
-  /// Returns whether the normals at a triangle's corners equal its own.
-  [[nodiscard]] bool is_flat(Corner first, const std::vector<glm::dvec3>& sums) {
-    constexpr double kFlat = 1.0 - 1e-7;  // 0.03 degrees
-    const glm::dvec3 own = face_normal(first / 3);
-    for (Corner corner = first; corner < first + 3; ++corner) {
-      const glm::dvec3& sum = sums[root(corner)];
-      if (glm::dot(own, sum) < kFlat * glm::length(sum)) return false;
-    }
-    return true;
-  }
-
   void add_normals() {
     if (edges_.empty()) return;
     const auto count = static_cast<Corner>(joined_.size());
@@ -157,7 +144,6 @@ class Smoother {
     for (Corner first = 0; first < count; first += 3) {
       if (!is_wanted(first / 3)) continue;
       if (!is_joined_[first] && !is_joined_[first + 1] && !is_joined_[first + 2]) continue;
-      if (flat_ == FlatFaces::kStayFlat && is_flat(first, sums)) continue;
       for (std::uint32_t k = 0; k < 3; ++k) {
         const Corner kept = root(first + k);
         if (numbers[kept] == kNoIndex) {
@@ -177,7 +163,6 @@ class Smoother {
   }
 
   std::span<const std::uint32_t> groups_;
-  FlatFaces flat_;
   bool by_angle_;
   double least_cosine_;
   Scene& scene_;
@@ -190,8 +175,8 @@ class Smoother {
 }  // namespace
 
 void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<double> angle,
-                        Scene& scene, FlatFaces flat) {
-  Smoother(groups, angle, scene, flat).smooth();
+                        Scene& scene) {
+  Smoother(groups, angle, scene).smooth();
 }
 
 }  // namespace raygate

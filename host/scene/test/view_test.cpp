@@ -15,10 +15,8 @@ namespace {
 
 constexpr glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 
-/// Adds a box, its faces outwards, or inwards; without those whose number is in `without`
-/// (-x, +x, -y, +y, -z, +z).
-void add_box(Scene& scene, const glm::vec3& low, const glm::vec3& high, bool inwards = false,
-             int without = -1) {
+Scene box(const glm::vec3& low, const glm::vec3& high) {
+  Scene scene;
   const auto first = static_cast<std::uint32_t>(scene.positions.size());
   for (int corner = 0; corner < 8; ++corner) {
     scene.positions.emplace_back(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
@@ -26,19 +24,11 @@ void add_box(Scene& scene, const glm::vec3& low, const glm::vec3& high, bool inw
   }
   constexpr std::uint32_t kSides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-  for (int side = 0; side < 6; ++side) {
-    if (side == without) continue;
-    const auto& [a, b, c, d] = kSides[side];
-    for (auto [p, q, r] : {std::array{a, b, c}, std::array{a, c, d}}) {
-      if (inwards) std::swap(q, r);
+  for (const auto& [a, b, c, d] : kSides) {
+    for (const auto& [p, q, r] : {std::array{a, b, c}, std::array{a, c, d}}) {
       scene.triangles.emplace_back().vertices = {first + p, first + q, first + r};
     }
   }
-}
-
-Scene box(const glm::vec3& low, const glm::vec3& high) {
-  Scene scene;
-  add_box(scene, low, high);
   return scene;
 }
 
@@ -103,23 +93,6 @@ TEST(View, FillsThePictureFromAllSides) {
         aspect);
     EXPECT_NEAR(reach(camera, aspect, low, high), 0.96, 1e-4) << "round " << round;
   }
-}
-
-TEST(FirstView, ShowsThreeSidesOfAModel) {
-  const View view = default_view(box({0, 0, 0}, {1, 2, 3}), kZ);
-  EXPECT_EQ(view.azimuth, kDefaultAzimuth);
-  EXPECT_EQ(view.elevation, kDefaultElevation);
-  EXPECT_EQ(view.up, kZ);
-}
-
-TEST(FirstView, LooksIntoARoomFromItsFront) {
-  Scene room;
-  add_box(room, {0, 0, 0}, {1, 1, 1}, true, 5);
-  EXPECT_EQ(default_view(room, kY).azimuth, 0.0);
-  EXPECT_EQ(default_view(room, kY).elevation, 3.0);
-  Scene open_crate;
-  add_box(open_crate, {0, 0, 0}, {1, 1, 1}, false, 3);
-  EXPECT_EQ(default_view(open_crate, kY).azimuth, kDefaultAzimuth);
 }
 
 TEST(UsualUp, IsTheFormats) {

@@ -3,7 +3,6 @@
 
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
-#include "host/scene/io/material_library.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/test/tga.h"
 

@@ -65,24 +65,6 @@ TEST(SmoothNormals, FollowTheAngle) {
   EXPECT_EQ(load(text, 0.0).triangles.size(), 4u);
 }
 
-// What bends a little is smooth; planes and corners stay flat; the file has the first word.
-TEST(SmoothNormals, OfWhatSaysNothing) {
-  const auto has_normals = [](const std::string& text) {
-    const TempFolder folder;
-    const Scene scene = load_scene(folder.write("scene.obj", text), {.smooth_by_default = true});
-    return std::ranges::any_of(
-        scene.triangles, [](const Triangle& triangle) { return triangle.normals[0] != kNoIndex; });
-  };
-  const std::string bent = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 -0.2\nv 2 1 -0.2\n",
-                    faces = "f 1 2 3 4\nf 2 5 6 3\n";
-  EXPECT_TRUE(has_normals(bent + faces));
-  EXPECT_FALSE(has_normals(bent + "s off\n" + faces));
-  EXPECT_FALSE(has_normals(std::string(kCorner) + faces));
-  EXPECT_FALSE(has_normals("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")) << "a plane";
-  const Scene plain = load(bent + faces);
-  EXPECT_EQ(plain.triangles[0].normals[0], kNoIndex) << "only where it is asked for";
-}
-
 TEST(SmoothNormals, JoinVerticesAtOnePlace) {
   // As STL has them: each facet with corners of its own.
   const Scene scene =
