@@ -74,8 +74,7 @@ bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec
 
 float opacity_factor_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
-  return material.opacity_blends ? codes_of(material.opacity_map, scene, triangle, weights).r
-                                 : 1.0f;
+  return material.opacity_blends ? codes_of(material.opacity_map, scene, triangle, weights).r : 1.0f;
 }
 
 glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,

@@ -68,12 +68,12 @@ struct Material {
   int illumination_model = 2;     ///< illum
   MaterialMap diffuse_map;        ///< map_Kd; multiplies `diffuse`
   std::optional<MetallicRoughness> metallic_roughness;
-  MaterialMap normal_map;         ///< codes 0 to 1 are -1 to 1 along tangent, bitangent and normal
-  float normal_scale = 1.0f;      ///< multiplies the map's x and y
-  MaterialMap emission_map;       ///< multiplies emission
-  MaterialMap opacity_map;        ///< hides points where it is below opacity_cutoff
-  float opacity_cutoff = 0.5f;    ///< in [0, 1]
-  bool opacity_blends = false;    ///< the map multiplies the opacity; no cutoff
+  MaterialMap normal_map;       ///< codes 0 to 1 are -1 to 1 along tangent, bitangent and normal
+  float normal_scale = 1.0f;    ///< multiplies the map's x and y
+  MaterialMap emission_map;     ///< multiplies emission
+  MaterialMap opacity_map;      ///< hides points where it is below opacity_cutoff
+  float opacity_cutoff = 0.5f;  ///< in [0, 1]
+  bool opacity_blends = false;  ///< the map multiplies the opacity; no cutoff
   bool has_vertex_colors = true;  ///< vertex colours multiply `diffuse`
 };
 

@@ -132,6 +132,14 @@ def quantised(code, scale):
     return extension("KHR_mesh_quantization", required=True, gltf=gltf)
 
 
+def skinned(joint, own):
+    gltf = Gltf(WEIGHTS_0=[(1., 0., 0., 0.)] * 4)
+    gltf.mesh["attributes"]["JOINTS_0"] = gltf.add([(0, 0, 0, 0)] * 4, "B")
+    inverse = gltf.add([tuple(float(i % 5 == 0) for i in range(16))])
+    return gltf.text(nodes=[{"mesh": 0, "skin": 0, **own}, joint], scenes=[{"nodes": [0, 1]}],
+        skins=[{"joints": [1], "inverseBindMatrices": inverse}])
+
+
 def material(picture=None, more=None, texture=None, sampler=None, **attributes):
     gltf = Gltf(picture, **attributes)
     gltf.material.update(more or {})
@@ -143,9 +151,8 @@ def material(picture=None, more=None, texture=None, sampler=None, **attributes):
 
 
 def before_blue(mode, cutoff=0.5, alpha=0.):
-    """A red square of an alpha before a blue one."""
-    gltf = material(more={"alphaMode": mode, "alphaCutoff": cutoff,
-                          "pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [1, 0, 0, alpha]}})
+    """A square of vertex alpha before a blue one."""
+    gltf = material(more={"alphaMode": mode, "alphaCutoff": cutoff}, COLOR_0=[(1., 0., 0., alpha)] * 4)
     back = {"attributes": {"POSITION": gltf.add([(3 * x, 3 * y, -1.) for x, y, _ in CORNERS])}, "indices": gltf.mesh["indices"], "material": 1}
     gltf.json["materials"].append({"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [0, 0, 1, 1]}})
     gltf.json["meshes"][0]["primitives"].append(back)
@@ -301,7 +308,8 @@ ROWS = [
      {"error": "'EXT_mesh_gpu_instancing', which is not read"}),
     ("nodes that are hidden", {"a.gltf": extension("KHR_node_visibility", {"visible": False}, where=node)},
      {"warns": ["the extension 'KHR_node_visibility' is not read"]}),
-    ("glTF-Sample-Assets#263, Babylon.js#3846", {"a.gltf": nodes({"skin": 0})}, {"warns": ["skins are not read"]}),
+    *(("glTF-Sample-Assets#263, Babylon.js#3846", {"a.gltf": skinned(joint, own)}, {"rays": [(.2, -.3)], "distances": [distance]})
+      for joint, own, distance in (({}, {"translation": [9, 0, 0]}, 5), ({"translation": [0, 0, 3]}, {}, 2), ({"scale": [.5, .5, 1]}, {}, 5))),
     # glTF: materials, lights and pictures.
     ("mesh-viewer#56, godot#38335", {"a.gltf": extension("KHR_materials_pbrSpecularGlossiness")},
      {"warns": ["'KHR_materials_pbrSpecularGlossiness' is not read"]}),
@@ -324,6 +332,7 @@ ROWS = [
      {"colours": "WW/WW", "warns": ["^.{1,250}$"]}),
     ("glTF-Sample-Models#149", {"a.gltf": normal_mapped()}, {"normal": (.74, 0, .67)}),
     ("glTF-Sample-Models#149", {"a.gltf": normal_mapped(TEXCOORD_0=[(1 - u, v) for u, v in UV_DOWN])}, {"normal": (-.74, 0, .67)}),
+    ("DiligentFX#267", {"a.gltf": normal_mapped(TANGENT=[(0., 1., 0., 1.)] * 4)}, {"normal": (0, .74, .67)}),
     *(("cesium-native#609, three.js#20539", {"a.gltf": extension(name, {"source": 0}, where=lambda gltf: gltf.json["textures"][0], gltf=material(image()))},
        {"colours": "RG/BY", "warns": [f"the extension '{name}' is not read"]})
       for name in ("KHR_texture_basisu", "EXT_texture_webp", "MSFT_texture_dds")),

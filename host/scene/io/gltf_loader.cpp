@@ -41,7 +41,7 @@ bool is_unread(std::string_view name) {
          !name.starts_with("WEIGHTS_");
 }
 
-bool are_finite(const glm::dmat4& m) {
+bool is_finite(const glm::dmat4& m) {
   const std::span elements(glm::value_ptr(m), 16);
   return std::ranges::all_of(elements, [](double element) { return std::isfinite(element); });
 }
@@ -136,7 +136,7 @@ class GltfReader {
       }
       seen[static_cast<std::size_t>(step.node)] = true;
       const glm::dmat4 world = step.parent * local_matrix(node);
-      if (!are_finite(world)) {
+      if (!is_finite(world)) {
         file_.fail("node " + std::to_string(step.node) + ": its place is not finite");
       }
       nodes_.emplace_back(&node, world);
@@ -171,7 +171,7 @@ class GltfReader {
       } else {
         read_mesh(shape, world, object, builder_);
       }
-      if (index_in(node, "skin") >= 0) file_.warn_once("skins are not read: its mesh is at rest");
+      if (index_in(node, "skin") >= 0) file_.warn_once("skins are not read: meshes are at rest");
     }
     if (const int camera = index_in(node, "camera"); camera >= 0) {
       file_.optionally("left out", [&] {
@@ -228,7 +228,8 @@ class GltfReader {
   /// Returns the numbers of an attribute plus the weighted sum of its morph targets; an empty list
   /// if there is no such attribute.
   std::vector<double> attribute(const Json& primitive, const std::string& name, int width,
-                                std::size_t vertices, const std::vector<double>& weights) {
+                                            std::size_t vertices,
+                                            const std::vector<double>& weights) {
     const int accessor = index_in(member(primitive, "attributes"), name.c_str());
     const auto optional = [&](int number) {
       return file_.optional_numbers(number, width, name.c_str(), vertices);
@@ -271,12 +272,6 @@ class GltfReader {
       file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
     }
     const auto [material, set] = materials_.convert(number);
-    const std::string opacity =
-        number < 0 ? "" : text_in(file_.list("materials")[number], "alphaMode");
-    if ((opacity == "MASK" || opacity == "BLEND") && !colors.empty() &&
-        text_in(file_.accessor(index_in(attributes, "COLOR_0")), "type") == "VEC4") {
-      file_.warn_once("the opacity of vertices is not read");
-    }
     std::vector<double> texcoords;
     if (set >= 0) texcoords = read("TEXCOORD_" + std::to_string(set), 2);
     if (!colors.empty()) to.colors_are_linear();
@@ -450,7 +445,7 @@ class GltfReader {
   const LoadOptions options_;
   MeshBuilder builder_;  // of meshes with one instance
   GltfMaterials materials_;
-  std::size_t vertices_ = 0;       // vertices and corners counted so far
+  std::size_t vertices_ = 0;  // vertices and corners counted so far
   std::vector<PlacedNode> nodes_;  // depth first
   std::map<Shape, int> uses_;
   std::map<Shape, SharedMesh> shared_;

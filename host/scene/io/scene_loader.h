@@ -48,8 +48,7 @@ struct LoadOptions {
 /// Loads a glTF 2.0 file (.gltf or .glb): the triangles, strips and fans of all nodes in order,
 /// with an object for each node; materials (see GltfMaterials); the first camera; lights
 /// (KHR_lights_punctual; 683 candela are 1 watt per steradian). +y is up. Positions are transformed
-/// in double. Morph targets are applied as posed by the nodes; skins, animations, tangents and the
-/// opacity of vertices are not read.
+/// in double. Skins and morph targets are applied as posed by the nodes; animations are not read.
 /// Throws InputError also for a node with two parents, and if vertices and corners, with flattened
 /// instances, exceed 12 million plus the number of bytes of the file.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});

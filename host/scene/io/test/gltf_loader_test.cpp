@@ -441,6 +441,70 @@ TEST_F(LoadGltf, SparseAccessors) {
                "accessor 0 (POSITION): found no buffer view, expected its number");
 }
 
+TEST_F(LoadGltf, SkinsAtRest) {
+  std::string buffer = square_buffer();
+  std::string json = square_json(
+      R"([{"children": [1, 2]}, {"mesh": 0, "skin": 0, "translation": [7, 7, 7]},
+          {"translation": [0, 0, 4], "scale": [2, 2, 2], "children": [3]}, {"translation": [1, 0, 0]}])",
+      R"(, "skins": [{"joints": [2, 3], "inverseBindMatrices": 6}])");
+  add({{"JOINTS_0", {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1}},
+       {"WEIGHTS_0", {1, 0, 0, 0, 1, 0, 0, 0, 0.5, 0.5, 0, 0, 1}},
+       {"_BIND", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}},
+      json, buffer);
+  json.replace(json.find(R"(, "_BIND": 6)"), 12, "");
+  const Scene scene = load(json, buffer);
+  ASSERT_EQ(scene.triangles.size(), 2u);
+  EXPECT_EQ(corner(scene, 0, 0), glm::dvec3(0, 0, 4)) << "by the first joint, not by the node";
+  EXPECT_EQ(corner(scene, 0, 1), glm::dvec3(4, 0, 4)) << "by the second one";
+  EXPECT_EQ(corner(scene, 0, 2), glm::dvec3(3, 2, 4)) << "by both";
+}
+
+TEST_F(LoadGltf, OpacityOfVertices) {
+  for (const auto& [mode, opacity, is_hole] :
+       {std::tuple{"OPAQUE", 1.0f, false}, {"BLEND", 0.25f, false}, {"MASK", 1.0f, true}}) {
+    std::string buffer = square_buffer();
+    std::string json =
+        square_json(kOneNode, R"(, "materials": [{"alphaMode": ")" + std::string(mode) + "\"}]",
+                    R"(, "material": 0)");
+    add({{"COLOR_0", {1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1}}}, json, buffer);
+    const Scene scene = load(json, buffer);
+    const Triangle& face = scene.triangles[0];
+    EXPECT_EQ(opacity_factor_at(scene, face, {0.25, 0.5, 0.25}), opacity) << mode;
+    EXPECT_EQ(is_masked_out(scene, face, {0.25, 0.5, 0.25}), is_hole) << mode;
+    EXPECT_FALSE(is_masked_out(scene, face, {0.0, 0.25, 0.75})) << mode;
+    EXPECT_EQ(is_nowhere_masked(scene, face, {0.25, 0.5, 0.25}, glm::dvec3(0.0)), !is_hole) << mode;
+    EXPECT_EQ(vertex_color_at(scene.colors, face, {0.25, 0.5, 0.25}), glm::vec3(1.0f));
+  }
+}
+
+TEST_F(LoadGltf, Tangents) {
+  std::string buffer = square_buffer();
+  std::string json = square_json(
+      R"([{"children": [1, 2, 3]}, {"mesh": 0}, {"mesh": 0, "rotation": [0, 0, 1, 0]},
+          {"mesh": 0, "scale": [1, -2, 1]}])",
+      R"(, "materials": [{"normalTexture": {"index": 0}}], "textures": [{"source": 0}],
+         "images": [{"uri": "right.tga"}])",
+      R"(, "material": 0)");
+  add({{"TANGENT", {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1}}}, json, buffer);
+  (void)folder_.write("right.tga", test::tga(1, 1, {{255, 255, 128}}));
+  for (const bool keeps : {false, true}) {
+    const Scene scene = load(json, buffer, {.keep_instances = keeps});
+    int number = 0;
+    for (const glm::vec3& expected :
+         {glm::vec3(-1, 1, 0), glm::vec3(1, -1, 0), glm::vec3(-1, -1, 0)}) {
+      const Instance* const instance = keeps ? &scene.instances[number] : nullptr;
+      const Triangle& face =
+          keeps ? scene.meshes[instance->mesh].triangles[0] : scene.triangles[2 * number];
+      const glm::vec3 normal =
+          mapped_normal(scene, face, {glm::vec3(0, 0, 0), {1, 0, 0}, {1, 1, 0}}, instance,
+                        {0.25, 0.5, 0.25}, {0, 0, 1});
+      EXPECT_LT(glm::length(normal - glm::normalize(expected)), 0.01f)
+          << number << normal.x << normal.y;
+      ++number;
+    }
+  }
+}
+
 TEST_F(LoadGltfPicture, SamplersAndTransforms) {
   const Scene scene = with_picture(R"("alphaMode": "MASK", "alphaCutoff": 1.5,
       "pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": {
@@ -462,18 +526,25 @@ TEST_F(LoadGltfPicture, SamplersAndTransforms) {
   EXPECT_EQ(diffuse_at(scene, scene.triangles[1], {0.375, 0.25, 0.375}), glm::vec3(0, 0, 1));
 }
 
-TEST_F(LoadGltf, SeveralSetsOfTextureCoordinatesAreWarnedOf) {
-  const Scene scene = load(square_json(
-      kOneNode,
+TEST_F(LoadGltf, TwoSetsOfTextureCoordinates) {
+  std::string buffer = square_buffer();
+  std::string json = square_json(
+      R"([{"children": [1, 2]}, {"mesh": 0}, {"mesh": 0}])",
       R"(, "materials": [{"emissiveTexture": {"index": 0, "texCoord": 1}, "emissiveFactor": [1, 1, 1],
            "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
          "textures": [{"source": 0}], "images": [{"uri": "two.tga"}])",
-      R"(, "material": 0)"));
-  ASSERT_EQ(scene.warnings.size(), 2u);
-  EXPECT_TRUE(
-      scene.warnings[1].ends_with("textures of one material with several sets of "
-                                  "coordinates, expected one, its material is plain instead"))
-      << scene.warnings[1];
+      R"(, "material": 0)");
+  add({{"TEXCOORD_1", {0.75, 0.5, 0, 0, 0.75, 0.5, 0, 0, 0.75, 0.5, 0, 0, 0.75, 0.5}}}, json,
+      buffer);
+  (void)folder_.write("two.tga", test::tga(2, 1, {{255, 0, 0}, {0, 0, 255}}));
+  const Scene scene = load(json, buffer);
+  EXPECT_EQ(scene.warnings, std::vector<std::string>());
+  ASSERT_EQ(scene.triangles.size(), 4u);
+  for (const std::size_t face : {1u, 3u}) {
+    const Triangle& triangle = scene.triangles[face];
+    EXPECT_EQ(diffuse_at(scene, triangle, {0.375, 0.25, 0.375}), glm::vec3(1, 0, 0));
+    EXPECT_EQ(emission_factor_at(scene, triangle, {0.375, 0.25, 0.375}), glm::vec3(0, 0, 1));
+  }
 }
 
 TEST_F(LoadGltf, UnknownAttributesAreWarnedOf) {
