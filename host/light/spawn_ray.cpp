@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "host/base/triple.h"
-#include "host/bvh/traversal.h"
+#include "host/bvh/closest_point.h"
 
 // Why c is a bound
 //

@@ -24,6 +24,7 @@
 #include "host/base/input_error.h"
 #include "host/base/threads.h"
 #include "host/bvh/bvh.h"
+#include "host/bvh/closest_point.h"
 #include "host/exact/ieee_floats.h"
 #include "host/film/display.h"
 #include "host/film/exr.h"
@@ -249,6 +250,26 @@ class PythonScene {
     return {bytes_of(rows, rows->data(), rows->size()), answers.fields()};
   }
 
+  /// Returns a row for each point, as bytes: triangle, int64; distance, x, y, z.
+  [[nodiscard]] Bytes closest_points(const Vectors3& points) const {
+    struct Row {
+      std::int64_t triangle;
+      double distance, x, y, z;
+    };
+    const Elements from("points", points);
+    const auto rows = std::make_shared<std::vector<Row>>(points.shape(0));
+    {
+      const nb::gil_scoped_release release;
+      for (std::size_t i = 0; i < rows->size(); ++i) {
+        checkpoint();
+        const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
+        const glm::dvec3 at = found.point + scene_.origin;
+        (*rows)[i] = {bvh_->triangle_of(found.primitive), found.distance, at.x, at.y, at.z};
+      }
+    }
+    return bytes_of(rows, rows->data(), rows->size() * sizeof(Row));
+  }
+
   /// Returns the film's channels by name, and the film.
   std::pair<nb::typed<nb::dict, nb::str, nb::ndarray<nb::numpy>>, PythonFilm> render_film(
       const std::optional<Three>& eye, const std::optional<Three>& target,
@@ -307,9 +328,10 @@ class PythonScene {
 
   [[nodiscard]] IntersectorFactory intersectors(bool uses_model) const {
     if (uses_model) {
-      return [this] {
+      return [this, caches = std::make_shared<RecordCaches>(*bvh_)] {
         return std::make_unique<UnitIntersector>(
-            *bvh_, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
+            *bvh_, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()),
+            caches);
       };
     }
     return [this] { return std::make_unique<CpuIntersector>(*bvh_); };
@@ -390,6 +412,7 @@ NB_MODULE(_raygate, m) {
                    })
       .def("trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
            "columns"_a, "settings"_a)
+      .def("closest", &PythonScene::closest_points, "points"_a)
       .def("render", &PythonScene::render_film, "eye"_a.none(), "target"_a.none(), "up"_a.none(),
            "settings"_a);
 }

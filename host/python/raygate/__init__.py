@@ -4,7 +4,7 @@
     scene = raygate.Scene("scenes/teapot.obj")
     hits = scene.trace(origins, directions)        # arrays of shape (N, 3)
     hits["triangle"], hits["t"]                    # -1 and inf where nothing is hit
-    scene.inside(points)                           # points: an array of shape (N, 3)
+    scene.inside(points), scene.closest(points)    # points: an array of shape (N, 3)
     picture = scene.render(640, 480)               # a notebook shows it
     picture["color"]                               # (480, 640, 4), scene-linear
     picture.save("teapot.png")

@@ -194,6 +194,17 @@ class Scene:
         is_inside: npt.NDArray[np.bool_] = np.bincount(hits["ray"], hits["side"], minlength=len(points)) != 0
         return is_inside
 
+    @in_context
+    def closest(self, points: npt.ArrayLike) -> Array:
+        """Returns the nearest points of the surface to points of shape (N, 3): a structured array of N rows with the
+        fields triangle, int64, and distance, x, y and z, float64, in the scene's unit of length. Errors are those of
+        rounding in float64. Of triangles at the same distance the lowest number is returned. Raises InputError, which
+        names the point, for inf, NaN and coordinates beyond 2^1000."""
+        points = _arrays.vectors("points", points)
+        _arrays.check_finite("points", points, "point", 1000)
+        fields = [("triangle", "<i8"), *((name, "<f8") for name in ("distance", "x", "y", "z"))]
+        return self._scene.closest(points).view(np.dtype(fields))
+
 
 def _settings(**options: object) -> list[tuple[str, str]]:
     """Returns keywords as the options of ./render: names and text, without those that are None."""

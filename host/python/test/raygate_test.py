@@ -138,7 +138,7 @@ class Trace(unittest.TestCase):
         none = np.zeros((0, 3))
         self.assertEqual(len(self.scene.trace(none, none)), 0)
         self.assertEqual(len(self.scene.trace(none, [0, 0, 1], hits="all", columns="t")), 0)
-        self.assertEqual(len(self.scene.inside(none)), 0)
+        self.assertEqual(len(self.scene.inside(none)) + len(self.scene.closest(none)), 0)
         with self.assertRaisesRegex(ValueError, r"^origins: found an array of shape \(0,\), expected \(N, 3\)$"):
             self.scene.trace([], [])
 
@@ -156,6 +156,7 @@ class Trace(unittest.TestCase):
         for name, call in (("origins", lambda: self.scene.trace(masked, self.directions)),
                            ("directions", lambda: self.scene.trace([0, 0, 0], masked)),
                            ("points", lambda: self.scene.inside(masked)),
+                           ("points", lambda: self.scene.closest(masked)),
                            ("eye", lambda: self.scene.render(8, 8, eye=masked[5])),
                            ("vertices", lambda: raygate.Scene(masked, [[0, 1, 2]])),
                            ("faces", lambda: raygate.Scene(self.origins, faces)),
@@ -240,6 +241,22 @@ class Arrays(unittest.TestCase):
             expected = np.all(lefts, axis=0) | ~np.any(lefts, axis=0)
             np.testing.assert_array_equal(raygate.Scene(places[:4], faces).inside(places[4:]), expected)
 
+    def test_closest(self):
+        outside = self.points[(np.abs(self.points) > 1).any(axis=1)]
+        found = self.cube.closest(outside)
+        expected = np.clip(outside, -1, 1)
+        for axis, name in enumerate("xyz"):
+            np.testing.assert_allclose(found[name], expected[:, axis], atol=1e-15)
+        np.testing.assert_allclose(found["distance"], np.linalg.norm(outside - expected, axis=1))
+        self.assertTrue(((found["triangle"] >= 0) & (found["triangle"] < 12)).all())
+
+    def test_closest_of_far_points(self):
+        for far in (1e9, 1e20, 1e200):
+            found = self.cube.closest(far * np.array([[1.0, 0.25, 0.5], [-1, 0, 0]]))
+            self.assertEqual(found[["x", "y", "z"]][0].tolist(), (1, 1, 1))
+            self.assertEqual(found["x"][1], -1)
+            np.testing.assert_allclose(found["distance"], [far * 1.3125 ** 0.5, far], rtol=1e-8)
+
     def test_a_scene_is_pickled(self):
         rays = self.points, np.random.default_rng(3).normal(size=(3000, 3))
         vertices = np.array(self.VERTICES) * 0.3
@@ -266,7 +283,8 @@ class Arrays(unittest.TestCase):
                 ("faces: found None", lambda: raygate.Scene(np.zeros((3, 3)))),
                 ("faces: found an array of float64",
                  lambda: raygate.Scene(self.VERTICES, [[0.0, 1.0, 2.0]])),
-                (r"points: found \[nan, 0.0, 0.0\] in point 1", lambda: self.cube.inside([[0, 0, 0], [np.nan, 0, 0]]))):
+                (r"points: found \[nan, 0.0, 0.0\] in point 1", lambda: self.cube.inside([[0, 0, 0], [np.nan, 0, 0]])),
+                (r"points: found \[inf, 0.0, 0.0\] in point 0", lambda: self.cube.closest([[np.inf, 0, 0]]))):
             with self.assertRaisesRegex(ValueError, expected):
                 call()
 
@@ -394,7 +412,7 @@ class Embedding(unittest.TestCase):
         corners = np.random.default_rng(9).normal(size=(100000, 3, 3))
         words = np.full(1000000, 0x3F800000, np.uint32)
         for work in (lambda: self.scene.render(300, 300, spp=16, threads=1),
-                     lambda: self.scene.inside(points),
+                     lambda: self.scene.closest(points), lambda: self.scene.inside(points),
                      lambda: self.scene.trace(points, [1, 0, 0], engine="model", threads=1),
                      lambda: raygate.Scene.of_triangles(corners),
                      lambda: raygate.float.fp_divide(words, words), picture.png, lambda: picture._film.exr()):
@@ -405,6 +423,14 @@ class Embedding(unittest.TestCase):
                     turns.append(time.monotonic())
                 turns.append(time.monotonic())
             self.assertLess(np.diff(turns).max(), 0.5 * (turns[-1] - turns[0]) + 0.05)
+
+    def test_far_points_are_found_soon(self):
+        directions = np.random.default_rng(8).normal(size=(3000, 3))
+        for far in (1e6, 1e30):
+            start = time.process_time()
+            found = self.scene.closest(far * directions)
+            self.assertLess(time.process_time() - start, 3)  # a look at every triangle: 6 s and more
+            self.assertTrue((found["distance"] > 1e-3 * far).all())
 
     def seconds_until_interrupted(self, call):
         """How much processor time `call` takes after a signal like Ctrl-C's, which comes after 0.1 seconds of it."""
@@ -420,10 +446,16 @@ class Embedding(unittest.TestCase):
         return time.process_time() - start - 0.1
 
     def test_ctrl_c_ends_endless_calls(self):
+        # All points of the sphere are equally near its middle: each search looks at all triangles.
+        u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 300), np.linspace(0.01, 3.1, 300))
+        sphere = np.stack([np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)], axis=-1)
+        quads = [sphere[:-1, :-1], sphere[1:, :-1], sphere[1:, 1:]]
+        closed = raygate.Scene.of_triangles(np.stack(quads, axis=2).reshape(-1, 3, 3))
         layers = np.tile([[[-1, -1, 0], [1, -1, 0], [0, 1, 0]]], (2000, 1, 1)) + np.arange(2000)[:, None, None] * [0, 0, 1]
         stack = raygate.Scene.of_triangles(layers)
         rays = np.zeros((1000000, 3))
-        for call in (lambda: stack.trace([0, 0, -1], rays + [0, 0, 1], hits="all", columns="ray"),
+        for call in (lambda: closed.closest(rays),
+                     lambda: stack.trace([0, 0, -1], rays + [0, 0, 1], hits="all", columns="ray"),
                      lambda: self.scene.trace([0, 1, 9], rays - [0, 0, 1], engine="model"),
                      lambda: self.scene.render(2000, 2000, spp=1000, engine="model")):
             self.assertLess(self.seconds_until_interrupted(call), 20)  # else it never ends
