@@ -60,7 +60,8 @@ MaterialParameters::MaterialParameters(const Material& material) {
   if (material.diffuse_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.emission_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.normal_map.texture != kNoIndex) kind |= kInterpolates | kIsBumpy;
-  has_mask = material.opacity_map.texture != kNoIndex && !material.opacity_blends;
+  has_mask = (material.opacity_map.texture != kNoIndex || material.has_vertex_opacity) &&
+             !material.opacity_blends;
   if (material.opacity_blends) kind |= kInterpolates | kTransmits;
   if (material.metallic_roughness) {
     set(material, *material.metallic_roughness);

@@ -254,7 +254,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
       const auto normals = unpack(surface.normal);
       surface.normal = gather<T>([&](int k) RAYGATE_BODY {
         const Corners& c = own_corners[k];
-        return mapped_normal(scene, *places[k].face, {c[0], c[1], c[2]},
+        return mapped_normal(scene, *places[k].face, {c[0], c[1], c[2]}, places[k].instance,
                              glm::dvec3(weight[k]), normals[k]);
       });
     }

@@ -21,6 +21,21 @@ std::uint32_t append(std::vector<T>& all, std::vector<T>&& more) {
   return first;
 }
 
+/// Appends attributes that are parallel to another list, which has `count` elements so far.
+template <class T>
+void append_parallel(std::vector<T>& all, std::size_t count, std::vector<T>&& more,
+                     const T& missing = T(0.0f)) {
+  if (more.empty()) return;
+  all.resize(count, missing);
+  (void)append(all, std::move(more));
+}
+
+/// Sets the tangent of the scene's last normal.
+void add_tangent(Scene& scene, const glm::vec4& tangent) {
+  scene.tangents.resize(scene.normals.size(), glm::vec4(0.0f));
+  scene.tangents.back() = tangent;
+}
+
 void shift(std::array<std::uint32_t, 3>& indices, std::uint32_t by) {
   for (std::uint32_t& index : indices) {
     if (index != kNoIndex) index += by;
@@ -82,6 +97,9 @@ void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3&
 
 std::uint32_t add_mesh(Scene& scene, Scene&& part) {
   const bool has_materials = !part.materials.empty();
+  append_parallel(scene.tangents, scene.normals.size(), std::move(part.tangents));
+  append_parallel(scene.second_texcoords, scene.texcoords.size(), std::move(part.second_texcoords));
+  append_parallel(scene.opacities, scene.texcoords.size(), std::move(part.opacities), 1.0f);
   const std::uint32_t normals = append(scene.normals, std::move(part.normals));
   const std::uint32_t texcoords = append(scene.texcoords, std::move(part.texcoords));
   const std::uint32_t textures = append(scene.textures, std::move(part.textures));
@@ -114,6 +132,10 @@ std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh) {
   const auto first = static_cast<std::uint32_t>(scene.normals.size());
   for (std::uint32_t i = normals.begin; i < normals.end; ++i) {
     scene.normals.push_back(-glm::vec3(scene.normals[i]));
+    if (i < scene.tangents.size()) {
+      const glm::vec4 tangent = scene.tangents[i];
+      add_tangent(scene, {glm::vec3(tangent), -tangent.w});
+    }
   }
   for (Triangle& triangle : mirrored.triangles) {
     std::swap(triangle.vertices[0], triangle.vertices[2]);
@@ -180,6 +202,9 @@ void flatten(Scene& scene, std::span<const Instance> instances) {
     const auto first_normal = static_cast<std::uint32_t>(scene.normals.size());
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
       scene.normals.push_back(transform_normal(instance, glm::vec3(scene.normals[i])));
+      if (i < scene.tangents.size()) {
+        add_tangent(scene, transform_tangent(instance, scene.tangents[i]));
+      }
     }
     for (Triangle triangle : mesh.triangles) {
       shift(triangle.vertices, first);

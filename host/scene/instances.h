@@ -50,6 +50,19 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   return glm::vec3(glm::normalize(turned / size));
 }
 
+/// Returns the tangent of an instance for a tangent of its mesh, in the format of Scene::tangents.
+[[nodiscard]] inline glm::vec4 transform_tangent(const Instance& instance,
+                                                 const glm::vec4& tangent) {
+  glm::dvec3 turned;
+  for (int k = 0; k < 3; ++k) {
+    const auto& row = instance.rows[k];
+    turned[k] = row[0] * tangent.x + row[1] * tangent.y + row[2] * tangent.z;
+  }
+  const double size = glm::length(turned);
+  if (!(size > 0.0 && std::isfinite(size))) return glm::vec4(0.0f);
+  return {glm::vec3(turned / size), tangent.w};
+}
+
 /// Location of a stored triangle.
 struct FaceRef {
   std::uint32_t instance = kNoIndex;  ///< index into Scene::instances; kNoIndex: none

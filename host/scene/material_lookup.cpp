@@ -1,13 +1,19 @@
 #include "host/scene/material_lookup.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "host/scene/instances.h"
 
 namespace raygate {
 namespace {
 
 /// Returns the texture coordinates of a vertex. The triangle must have texture coordinates.
-glm::dvec2 texcoord(const Scene& scene, const Triangle& triangle, int vertex) {
-  return glm::dvec2(scene.texcoords[triangle.texcoords[static_cast<std::size_t>(vertex)]]);
+glm::dvec2 texcoord(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
+                    int vertex) {
+  const std::uint32_t at = triangle.texcoords[static_cast<std::size_t>(vertex)];
+  const bool is_second = mapping.is_second && at < scene.second_texcoords.size();
+  return glm::dvec2(is_second ? scene.second_texcoords[at] : scene.texcoords[at]);
 }
 
 /// Returns texture coordinates, or differences of them, scaled and rotated.
@@ -20,7 +26,9 @@ glm::dvec2 turned(const TextureMapping& mapping, const glm::dvec2& uv) {
 glm::dvec2 place_on(const TextureMapping& mapping, const Scene& scene, const Triangle& triangle,
                     const glm::dvec3& weights) {
   glm::dvec2 uv(0.0);
-  for (int k = 0; k < 3; ++k) uv += weights[k] * texcoord(scene, triangle, k);
+  for (int k = 0; k < 3; ++k) {
+    uv += weights[k] * texcoord(mapping, scene, triangle, k);
+  }
   return turned(mapping, uv) + glm::dvec2(mapping.offset);
 }
 
@@ -46,7 +54,39 @@ glm::vec3 color_of(const MaterialMap& map, const Scene& scene, const Triangle& t
 
 bool has_mask(const Scene& scene, const Triangle& triangle) {
   const Material& material = scene.materials[triangle.material];
-  return !is_missing(material.opacity_map, triangle) && !material.opacity_blends;
+  return (material.opacity_map.texture != kNoIndex || material.has_vertex_opacity) &&
+         !material.opacity_blends && triangle.texcoords[0] != kNoIndex;
+}
+
+/// Returns the opacity of a vertex. The triangle must have texture coordinates.
+double vertex_opacity(const Scene& scene, const Triangle& triangle, int vertex) {
+  const std::uint32_t at = triangle.texcoords[static_cast<std::size_t>(vertex)];
+  return at < scene.opacities.size() ? scene.opacities[at] : 1.0;
+}
+
+/// Returns opacity map times vertex opacity. The triangle must have texture coordinates.
+float opacity_of(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
+  const Material& material = scene.materials[triangle.material];
+  const float mapped = codes_of(material.opacity_map, scene, triangle, weights).r;
+  if (!material.has_vertex_opacity) return mapped;
+  double between = 0.0;
+  for (int k = 0; k < 3; ++k) between += weights[k] * vertex_opacity(scene, triangle, k);
+  return mapped * static_cast<float>(between);
+}
+
+/// Returns the tangent at a point: a direction, and the sign of y; 0 if the file has none.
+glm::dvec4 tangent_at(const Scene& scene, const Triangle& triangle, const Instance* instance,
+                      const glm::dvec3& weights) {
+  glm::dvec3 sum(0.0);
+  double side = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t at = triangle.normals[static_cast<std::size_t>(k)];
+    if (at >= scene.tangents.size() || scene.tangents[at].w == 0.0f) return glm::dvec4(0.0);
+    const glm::vec4& own = scene.tangents[at];
+    sum += weights[k] * glm::dvec3(instance == nullptr ? own : transform_tangent(*instance, own));
+    side = own.w;
+  }
+  return {sum, side};
 }
 
 }  // namespace
@@ -67,24 +107,24 @@ glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors, const Triangle& 
 }
 
 bool is_masked_out(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
-  const Material& material = scene.materials[triangle.material];
   return has_mask(scene, triangle) &&
-         codes_of(material.opacity_map, scene, triangle, weights).r < material.opacity_cutoff;
+         opacity_of(scene, triangle, weights) < scene.materials[triangle.material].opacity_cutoff;
 }
 
 float opacity_factor_at(const Scene& scene, const Triangle& triangle, const glm::dvec3& weights) {
   const Material& material = scene.materials[triangle.material];
-  return material.opacity_blends ? codes_of(material.opacity_map, scene, triangle, weights).r : 1.0f;
+  if (!material.opacity_blends || triangle.texcoords[0] == kNoIndex) return 1.0f;
+  return opacity_of(scene, triangle, weights);
 }
 
 glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
-                        const std::array<glm::vec3, 3>& corners, const glm::dvec3& weights,
-                        const glm::vec3& normal) {
+                        const std::array<glm::vec3, 3>& corners, const Instance* instance,
+                        const glm::dvec3& weights, const glm::vec3& normal) {
   const Material& material = scene.materials[triangle.material];
   const MaterialMap& map = material.normal_map;
   if (is_missing(map, triangle)) return normal;
   const auto uv = [&](int vertex) {
-    return turned(map.mapping, texcoord(scene, triangle, vertex));
+    return turned(map.mapping, texcoord(map.mapping, scene, triangle, vertex));
   };
   const glm::dvec2 to_1 = uv(1) - uv(0), to_2 = uv(2) - uv(0);
   const glm::dvec3 a(corners[0]), edge_1 = glm::dvec3(corners[1]) - a,
@@ -92,10 +132,12 @@ glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
   const double sign = to_1.x * to_2.y < to_1.y * to_2.x ? -1.0 : 1.0;
   const glm::dvec3 n(normal), along_u = sign * (edge_1 * to_2.y - edge_2 * to_1.y),
                               along_v = sign * (edge_2 * to_1.x - edge_1 * to_2.x);
-  const glm::dvec3 across = along_u - n * glm::dot(n, along_u);
+  const glm::dvec4 given = tangent_at(scene, triangle, instance, weights);
+  const glm::dvec3 along_x = given.w != 0.0 ? glm::dvec3(given) : along_u;
+  const glm::dvec3 across = along_x - n * glm::dot(n, along_x);
   const double length = glm::length(across);
   const glm::dvec3 side = glm::cross(n, across);
-  const double turn = glm::dot(side, along_v);
+  const double turn = given.w != 0.0 ? given.w : glm::dot(side, along_v);
   if (!(length > 0.0) || !std::isfinite(length) || turn == 0.0) return normal;
   const glm::dvec3 x = across / length, y = (turn < 0.0 ? -side : side) / length;
   const glm::dvec3 codes(codes_of(map, scene, triangle, weights));

@@ -25,11 +25,12 @@ namespace raygate {
 
 /// Returns the normal map's shading normal at a point. `normal` is the unit normal on the side from
 /// which `corners` are counter-clockwise. The map's x and y axes are the directions in which u and
-/// v increase, projected onto the tangent plane. Returns `normal` if there is no map or the texture
-/// coordinates are degenerate.
+/// v increase, projected onto the tangent plane, or the file's tangents, transformed by `instance`
+/// (nullptr: none). Returns `normal` if there is no map or the texture coordinates are degenerate.
 [[nodiscard]] glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
                                       const std::array<glm::vec3, 3>& corners,
-                                      const glm::dvec3& weights, const glm::vec3& normal);
+                                      const Instance* instance, const glm::dvec3& weights,
+                                      const glm::vec3& normal);
 
 /// Returns the emission map's colour at a point, or 1 without a map or texture coordinates.
 [[nodiscard]] glm::vec3 emission_factor_at(const Scene& scene, const Triangle& triangle,

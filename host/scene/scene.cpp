@@ -72,11 +72,12 @@ class Digest {
   // Structured bindings name all members: a new one does not compile until it is handled. Rarely
   // used members are skipped at their defaults, which keeps older digests valid.
   void add(const TextureMapping& m) {
-    const auto& [scale, offset, sampling, turn] = m;
+    const auto& [scale, offset, sampling, turn, is_second] = m;
     const bool clamps = sampling == Sampling(Wrap::kClamp);
     add(scale, offset, clamps);
     if (!clamps && sampling != Sampling()) add(sampling.u, sampling.v, sampling.is_nearest);
     if (turn != glm::vec2(1.0f, 0.0f)) add(turn);
+    if (is_second) add(is_second);
   }
   void add(const MaterialMap& m) {
     const auto& [file, mapping, texture] = m;
@@ -97,12 +98,13 @@ class Digest {
     const auto& [name, diffuse, specular, emission, transmittance, shininess, refraction_index,
                  opacity, illumination_model, diffuse_map, metallic_roughness, normal_map,
                  normal_scale, emission_map, opacity_map, opacity_cutoff, opacity_blends,
-                 has_vertex_colors] = m;
+                 has_vertex_opacity, has_vertex_colors] = m;
     add(diffuse, specular, emission, transmittance, shininess, refraction_index, opacity,
         illumination_model, diffuse_map);
     add(metallic_roughness, normal_map, normal_scale, opacity_map, opacity_cutoff);
     if (emission_map.texture != kNoIndex) add(emission_map);
     if (opacity_blends) add(opacity_blends);
+    if (has_vertex_opacity) add(has_vertex_opacity);
   }
   void add(const NameList& names) {
     word(names.size());
@@ -137,12 +139,16 @@ class Digest {
   }
   // `camera`, `up` and `is_usually_z_up` are omitted: images record their own view.
   void add(const Scene& s) {
-    const auto& [positions, colors, normals, texcoords, triangles, meshes, instances, materials,
-                 textures, objects, lights, directional_lights, background, environment, origin,
-                 rounding, camera, up, is_usually_z_up, files, warnings] = s;
+    const auto& [positions, colors, normals, tangents, texcoords, second_texcoords, opacities,
+                 triangles, meshes, instances, materials, textures, objects, lights,
+                 directional_lights, background, environment, origin, rounding, camera, up,
+                 is_usually_z_up, files, warnings] = s;
     add(positions, normals, texcoords, triangles, meshes, instances, materials, textures, objects);
     add(lights, directional_lights, background, environment, origin);
     if (!colors.empty()) add(colors);
+    if (!tangents.empty()) add(tangents);
+    if (!second_texcoords.empty()) add(second_texcoords);
+    if (!opacities.empty()) add(opacities);
     // Indices of materials that ignore vertex colours, if there are vertex colours.
     const auto has_colors = [](const Mesh& mesh) { return !mesh.colors.empty(); };
     if (colors.empty() && std::ranges::none_of(meshes, has_colors)) return;

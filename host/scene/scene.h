@@ -27,6 +27,7 @@ struct TextureMapping {
   glm::vec2 offset{0.0f};      ///< MTL option -o
   Sampling sampling;           ///< MTL's "-clamp on" is Wrap::kClamp
   glm::vec2 turn{1.0f, 0.0f};  ///< cosine and sine of a counter-clockwise rotation
+  bool is_second = false;      ///< uses Scene::second_texcoords
 };
 
 /// A texture of a material, and its mapping.
@@ -74,7 +75,8 @@ struct Material {
   MaterialMap opacity_map;      ///< hides points where it is below opacity_cutoff
   float opacity_cutoff = 0.5f;  ///< in [0, 1]
   bool opacity_blends = false;  ///< the map multiplies the opacity; no cutoff
-  bool has_vertex_colors = true;  ///< vertex colours multiply `diffuse`
+  bool has_vertex_opacity = false;  ///< Scene::opacities multiply the map
+  bool has_vertex_colors = true;    ///< vertex colours multiply `diffuse`
 };
 
 /// Calls visit(map) for each map of a metallic-roughness material.
@@ -210,7 +212,14 @@ struct Scene {
   /// 1.
   std::vector<glm::vec3> colors;
   std::vector<glm::vec3> normals;  ///< unit length if a triangle uses them
+  /// Tangents of the first normals: the normal map's x direction, and the sign of its y axis (1 or
+  /// -1) along cross(normal, x). If missing or 0, texture coordinates define the directions.
+  std::vector<glm::vec4> tangents;
   std::vector<glm::vec2> texcoords;
+  /// Second texture coordinates of the first `texcoords`.
+  std::vector<glm::vec2> second_texcoords;
+  /// Vertex opacities of the first `texcoords`; 1 if missing.
+  std::vector<float> opacities;
   std::vector<Triangle> triangles;
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;  ///< instances that were not flattened; see instances.h

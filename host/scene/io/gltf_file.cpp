@@ -17,9 +17,10 @@ namespace {
 
 /// Extensions that are read. A file that uses another one gets a warning.
 constexpr std::string_view kRead[] = {
-    "KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_specular", "KHR_materials_transmission",      "KHR_materials_unlit",
-    "KHR_mesh_quantization",  "KHR_texture_transform"};
+    "KHR_lights_punctual",        "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_mesh_quantization",      "KHR_texture_transform"};
 
 /// Extensions that are not read but may be required: without them, surfaces are only plainer.
 constexpr std::string_view kDispensable[] = {"KHR_materials_clearcoat", "KHR_materials_sheen",

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
@@ -8,17 +7,14 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/exact/exact.h"
 #include "host/scene/bounds.h"
 #include "host/scene/instances.h"
 #include "host/scene/io/gltf_file.h"
-#include "host/scene/io/gltf_materials.h"
+#include "host/scene/io/gltf_meshes.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/text.h"
@@ -29,17 +25,6 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kLumensPerWatt = 683.0;
 constexpr double kMostFloat = std::numeric_limits<float>::max();
-
-constexpr int kTriangles = 4, kTriangleFan = 6;    // modes of primitives
-constexpr std::size_t kMostVertices = 12'000'000;  // plus the number of bytes of the file
-
-/// Returns whether a picture may miss an attribute. Tangents follow from texture coordinates;
-/// coordinates that no texture uses change no picture.
-bool is_unread(std::string_view name) {
-  return name != "POSITION" && name != "NORMAL" && name != "TANGENT" && name != "COLOR_0" &&
-         !name.starts_with("TEXCOORD_") && !name.starts_with("JOINTS_") &&
-         !name.starts_with("WEIGHTS_");
-}
 
 bool is_finite(const glm::dmat4& m) {
   const std::span elements(glm::value_ptr(m), 16);
@@ -72,7 +57,7 @@ class GltfReader {
       : file_(path, scene_.warnings),
         options_(options),
         builder_(file_.name()),
-        materials_(file_, scene_, options.textures) {}
+        meshes_(file_, scene_, options.textures) {}
 
   Scene read() {
     walk(roots());
@@ -155,7 +140,24 @@ class GltfReader {
   }
 
   void count_uses(const Json& node) {
-    if (index_in(node, "mesh") >= 0) ++uses_[shape_of(node)];
+    if (index_in(node, "mesh") < 0 || index_in(node, "skin") >= 0) return;
+    ++uses_[shape_of(node)];
+  }
+
+  /// Returns the transforms of a skin's joints, from the mesh's coordinates to the world's.
+  [[nodiscard]] std::vector<glm::dmat4> joints_of(int number) {
+    const Json& skin = file_.at(file_.list("skins"), number, "skin");
+    std::vector<glm::dmat4> joints;
+    for (const int joint : indices_in(skin, "joints")) {
+      const auto placed = std::ranges::find(nodes_, &node(joint), &PlacedNode::first);
+      joints.push_back(placed == nodes_.end() ? glm::dmat4(1.0) : placed->second);
+    }
+    if (joints.empty()) file_.warn_once("a skin without joints is left out");
+    const std::vector<double> inverse = file_.optional_numbers(
+        index_in(skin, "inverseBindMatrices"), 16, "inverseBindMatrices", joints.size());
+    for (std::size_t i = 0; i < inverse.size() / 16; ++i)
+      joints[i] *= glm::make_mat4(&inverse[16 * i]);
+    return joints;
   }
 
   void read_node(const Json& node, const glm::dmat4& world) {
@@ -166,12 +168,14 @@ class GltfReader {
                                : !other.empty() ? other
                                                 : "object " + std::to_string(object));
       const Shape shape = shape_of(node);
-      if (uses_[shape] > 1) {
+      const int skin = index_in(node, "skin");
+      if (skin < 0 && uses_[shape] > 1) {
         instances_.push_back({shape, world * glm::dmat4(1.0), object});  // without negative zeros
       } else {
-        read_mesh(shape, world, object, builder_);
+        GltfPlacement placement{world, &shape.second, {}};
+        if (skin >= 0) file_.optionally("left out", [&] { placement.joints = joints_of(skin); });
+        meshes_.read(mesh(number), placement, object, builder_);
       }
-      if (index_in(node, "skin") >= 0) file_.warn_once("skins are not read: meshes are at rest");
     }
     if (const int camera = index_in(node, "camera"); camera >= 0) {
       file_.optionally("left out", [&] {
@@ -186,139 +190,13 @@ class GltfReader {
     }
   }
 
-  // Meshes
-
-  void read_mesh(const Shape& shape, const glm::dmat4& world, std::uint32_t object,
-                 MeshBuilder& to) {
-    for (const Json& primitive : member(mesh(shape.first), "primitives")) {
-      read_primitive(primitive, shape.second, world, object, to);
-    }
-  }
-
-  /// Adds `more` vertices and corners to the count. Throws InputError if there are too many for a
-  /// file of this size, before flattened instances exhaust the memory.
-  void count(std::size_t more) {
-    vertices_ += more;
-    if (more > kMostVertices + file_.bytes() || vertices_ > kMostVertices + file_.bytes()) {
-      file_.fail("more than " + std::to_string(kMostVertices + file_.bytes()) +
-                 " vertices and corners with all instances written out, expected fewer");
-    }
-  }
-
-  /// Returns the corners of the triangles as indices into the primitive's vertices.
-  std::vector<std::uint32_t> corners_of(const Json& primitive, std::size_t vertices) {
-    std::vector<std::uint32_t> order;
-    if (const int indices = index_in(primitive, "indices"); indices >= 0) {
-      count(file_.count(indices));
-      order = file_.indices(indices);
-    } else {
-      for (std::size_t i = 0; i < vertices; ++i) order.push_back(static_cast<std::uint32_t>(i));
-    }
-    const int mode = index_in(primitive, "mode");
-    if (mode == kTriangles || mode == -1) return order;
-    std::vector<std::uint32_t> corners;
-    for (std::size_t i = 2; i < order.size(); ++i) {
-      std::uint32_t first = order[mode == kTriangleFan ? 0 : i - 2], second = order[i - 1];
-      if (mode != kTriangleFan && i % 2 == 1) std::swap(first, second);
-      corners.insert(corners.end(), {first, second, order[i]});
-    }
-    return corners;
-  }
-
-  /// Returns the numbers of an attribute plus the weighted sum of its morph targets; an empty list
-  /// if there is no such attribute.
-  std::vector<double> attribute(const Json& primitive, const std::string& name, int width,
-                                            std::size_t vertices,
-                                            const std::vector<double>& weights) {
-    const int accessor = index_in(member(primitive, "attributes"), name.c_str());
-    const auto optional = [&](int number) {
-      return file_.optional_numbers(number, width, name.c_str(), vertices);
-    };
-    std::vector<double> all =
-        name == "POSITION" ? file_.numbers(accessor, width, "POSITION") : optional(accessor);
-    std::size_t target = 0;
-    for (const Json& targets : member(primitive, "targets")) {
-      const double weight = target < weights.size() ? weights[target++] : 0.0;
-      if (weight == 0.0 || all.empty()) continue;
-      const std::vector<double> by = optional(index_in(targets, name.c_str()));
-      for (std::size_t i = 0; i < by.size(); ++i) all[i] += weight * by[i];
-    }
-    return all;
-  }
-
-  void read_primitive(const Json& primitive, const std::vector<double>& weights,
-                      const glm::dmat4& world, std::uint32_t object, MeshBuilder& to) {
-    const int mode = index_in(primitive, "mode"), number = index_in(primitive, "material");
-    if (mode >= 0 && mode < kTriangles) {
-      return file_.warn_once("points and lines are ignored: only polygons are rendered");
-    }
-    const Json& attributes = member(primitive, "attributes");
-    if (!attributes.contains("POSITION")) {
-      return file_.warn_once("a primitive without positions is left out");
-    }
-    for (const auto& [name, accessor] : attributes.items()) {
-      if (is_unread(name)) file_.warn_once("the attribute " + in_quotes(name) + " is not read");
-    }
-    const std::size_t vertices = file_.count(index_in(attributes, "POSITION"));
-    count(vertices);
-    const auto read = [&](const std::string& name, int width) {
-      return attribute(primitive, name, width, vertices, weights);
-    };
-    const std::vector<double> positions = read("POSITION", 3), normals = read("NORMAL", 3);
-    const std::vector<double> colors = read("COLOR_0", 3);
-    const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
-    count(corners.size());
-    if (corners.size() % 3 != 0) {
-      file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
-    }
-    const auto [material, set] = materials_.convert(number);
-    std::vector<double> texcoords;
-    if (set >= 0) texcoords = read("TEXCOORD_" + std::to_string(set), 2);
-    if (!colors.empty()) to.colors_are_linear();
-    if (number < 0 && !colors.empty()) scene_.materials[material].diffuse = glm::vec3(1.0f);
-
-    const MeshBuilder::Counts before = to.counts();
-    const glm::dmat3 turn(world);
-    const double sign = glm::determinant(turn) < 0.0 ? -1.0 : 1.0;
-    // The inverse transpose up to a factor; cofactors also exist for a singular matrix.
-    const glm::dmat3 cofactors(glm::cross(turn[1], turn[2]), glm::cross(turn[2], turn[0]),
-                               glm::cross(turn[0], turn[1]));
-    for (std::size_t i = 0; i < vertices; ++i) {
-      const glm::dvec3 at(world * glm::dvec4(glm::make_vec3(&positions[3 * i]), 1.0));
-      if (!(is_finite(at) && largest(at) <= std::numeric_limits<float>::max())) {
-        file_.fail("a vertex is beyond the range of float");
-      }
-      to.add_position(at);
-      if (!colors.empty()) to.add_color(glm::vec3(glm::make_vec3(&colors[3 * i])));
-      if (!normals.empty()) to.add_normal(sign * (cofactors * glm::make_vec3(&normals[3 * i])));
-      if (!texcoords.empty()) to.add_texcoord({texcoords[2 * i], 1.0 - texcoords[2 * i + 1]});
-    }
-
-    for (std::size_t i = 0; i < corners.size(); i += 3) {
-      std::array<FaceCorner, 3> face;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = corners[i + (sign < 0.0 ? 2 - k : k)];
-        if (vertex >= vertices) {
-          file_.fail("index " + std::to_string(vertex) + " in a primitive of " +
-                     std::to_string(vertices) + " vertices");
-        }
-        const auto index = [&](std::size_t earlier) {
-          return static_cast<std::uint32_t>(earlier + vertex);
-        };
-        face[k] = {index(before.positions), texcoords.empty() ? kNoIndex : index(before.texcoords),
-                   normals.empty() ? kNoIndex : index(before.normals)};
-      }
-      to.add_face(face, 0, {material, object});
-    }
-  }
-
   /// Returns the mesh of an instance, in its own coordinates, which is read at the first call.
   SharedMesh& shared(const Shape& shape) {
     const auto [at, is_new] = shared_.try_emplace(shape);
     if (!is_new) return at->second;
     MeshBuilder builder(file_.name());
     builder.allow_empty();
-    read_mesh(shape, glm::dmat4(1.0), 0, builder);
+    meshes_.read(mesh(shape.first), {glm::dmat4(1.0), &shape.second, {}}, 0, builder);
     Scene& part = at->second.part;
     builder.build(options_, part);
     at->second.box = bounds_of(part.positions);
@@ -329,7 +207,7 @@ class GltfReader {
   void expand_extent(const MeshInstance& instance) {
     const auto& [part, own_box, ignored] = shared(instance.shape);
     if (is_empty(part)) return;
-    if (!options_.keep_instances) count(part.positions.size() + 3 * part.triangles.size());
+    if (!options_.keep_instances) meshes_.count(part.positions.size() + 3 * part.triangles.size());
     Instance placed;
     set_rows(instance.world, part.origin, glm::dvec3(0.0), placed);
     const Bounds3 box = transform_bounds(placed.rows, own_box);
@@ -444,8 +322,7 @@ class GltfReader {
   GltfFile file_;
   const LoadOptions options_;
   MeshBuilder builder_;  // of meshes with one instance
-  GltfMaterials materials_;
-  std::size_t vertices_ = 0;  // vertices and corners counted so far
+  GltfMeshes meshes_;
   std::vector<PlacedNode> nodes_;  // depth first
   std::map<Shape, int> uses_;
   std::map<Shape, SharedMesh> shared_;

@@ -47,6 +47,16 @@ int set_of(const Json& info) {
   return static_cast<int>(std::clamp(set, -1.0, 1e6));
 }
 
+/// Returns the opacity of a base colour.
+double base_opacity(const std::vector<double>& base_color) {
+  return base_color.size() == 4 ? in_unit(base_color[3]) : 1.0;
+}
+
+/// Returns the cutoff of a mask; above 1 nothing is visible.
+double cutoff_of(const Json& material) {
+  return std::max(number_in(material, "alphaCutoff", 0.5), 0.0);
+}
+
 }  // namespace
 
 const Json& GltfMaterials::material(int index) const {
@@ -57,11 +67,11 @@ const Json& GltfMaterials::material(int index) const {
 GltfMaterials::Converted GltfMaterials::convert(int material) {
   const auto found = converted_.find(material);
   if (found != converted_.end()) return found->second;
-  set_ = -1;
+  sets_ = {-1, -1};
   Material result;
   result.name = "default";
   if (material != -1) result = translated(this->material(material));
-  const Converted converted{static_cast<std::uint32_t>(scene_.materials.size()), set_};
+  const Converted converted{static_cast<std::uint32_t>(scene_.materials.size()), sets_};
   scene_.materials.push_back(std::move(result));
   return converted_.emplace(material, converted).first->second;
 }
@@ -107,10 +117,13 @@ MaterialMap GltfMaterials::map_of(const Json& parent, const char* key, Texture::
 MaterialMap GltfMaterials::read_map(const Json& info, Texture::Content content) {
   MaterialMap map;
   const int set = set_of(info);
-  if (set_ == -1) set_ = set;
-  if (set_ != set) {
-    file_.fail("textures of one material with several sets of coordinates, expected one");
+  auto at = std::ranges::find(sets_, set);
+  if (at == sets_.end()) at = std::ranges::find(sets_, -1);
+  if (at == sets_.end()) {
+    file_.fail("textures of one material with three sets of coordinates, expected two at most");
   }
+  *at = set;
+  map.mapping.is_second = at != sets_.begin();
   const Json& texture = file_.at(file_.list("textures"), index_in(info, "index"), "texture");
   const auto [entry, is_new] =
       texture_of_image_.try_emplace(std::pair(index_in(texture, "source"), content), kNoIndex);
@@ -151,15 +164,31 @@ MaterialMap GltfMaterials::read_map(const Json& info, Texture::Content content) 
   return map;
 }
 
+bool GltfMaterials::has_opacity(int material) const {
+  const std::string mode = text_in(this->material(material), "alphaMode");
+  return mode == "MASK" || mode == "BLEND";
+}
+
+void GltfMaterials::use_vertex_opacity(int material) {
+  const Json &from = this->material(material), &pbr = member(from, "pbrMetallicRoughness");
+  const Converted converted = convert(material);
+  Material& to = scene_.materials[converted.number];
+  sets_ = converted.texcoord_sets;
+  to.has_vertex_opacity = true;
+  to.opacity_blends = text_in(from, "alphaMode") == "BLEND";
+  to.opacity_map = map_of(pbr, "baseColorTexture", Texture::Content::kAlpha);
+  if (to.opacity_blends) return;
+  to.opacity_cutoff =
+      static_cast<float>(cutoff_of(from) / base_opacity(numbers(pbr, "baseColorFactor", 4)));
+}
+
 /// Sets the opacity from the base colour's factor and texture, which blend or are a mask.
 void GltfMaterials::set_opacity(const Json& from, Material& material) {
   const std::string mode = text_in(from, "alphaMode");
   if (mode != "MASK" && mode != "BLEND") return;
   const Json& pbr = member(from, "pbrMetallicRoughness");
   const bool is_mask = mode == "MASK";
-  const std::vector<double> base = numbers(pbr, "baseColorFactor", 4);
-  const double factor = base.size() == 4 ? in_unit(base[3]) : 1.0;
-  const double cutoff = std::max(number_in(from, "alphaCutoff", 0.5), 0.0);  // above 1: invisible
+  const double factor = base_opacity(numbers(pbr, "baseColorFactor", 4)), cutoff = cutoff_of(from);
   if (!is_mask) material.opacity = static_cast<float>(factor);
   if (is_mask && factor < cutoff) material.opacity = 0.0f;
   if (material.opacity == 0.0f) return;
@@ -180,7 +209,7 @@ Material GltfMaterials::translated(const Json& from) {
   };
   Material material;
   const Json& base = member(pbr, "baseColorTexture");
-  if (index_in(base, "index") >= 0) set_ = set_of(base);
+  if (index_in(base, "index") >= 0) sets_[0] = set_of(base);
   material.name = text_in(from, "name");
   if (!pbr.is_object()) (void)numbers(from, "pbrMetallicRoughness", 0);
   material.diffuse = colour_of(numbers(pbr, "baseColorFactor", 4));

@@ -1,6 +1,7 @@
 // GltfMaterials: converts the materials and textures of a glTF file to those of a Scene.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -22,10 +23,15 @@ class GltfMaterials {
 
   struct Converted {
     std::uint32_t number;  ///< index into Scene::materials
-    int texcoord_set;      ///< set of coordinates that its textures use; -1: none
+    std::array<int, 2>
+        texcoord_sets;  ///< sets that its textures use, the base colour's first; -1: none
   };
   /// Returns a material of the file, which is converted at its first use; -1 is the default one.
   Converted convert(int material);
+  /// Returns whether a material has a mask or blends.
+  [[nodiscard]] bool has_opacity(int material) const;
+  /// Lets the opacities of vertices multiply a material's.
+  void use_vertex_opacity(int material);
 
  private:
   /// Returns a member of a list of a material; an empty list, with a warning if the member is not
@@ -48,7 +54,7 @@ class GltfMaterials {
   Scene& scene_;
   const bool textures_;
   std::map<int, Converted> converted_;  // by the material's index in the file
-  int set_ = -1;                        // texcoord_set of the material that is being read
+  std::array<int, 2> sets_{-1, -1};     // texcoord_sets of the material that is being read
   /// Textures of the scene by image of the file; kNoIndex: it could not be read.
   std::map<std::pair<int, Texture::Content>, std::uint32_t> texture_of_image_;
   std::int64_t texels_ = 0;  // decoded so far

@@ -92,6 +92,21 @@ void MeshBuilder::add_normal(const glm::dvec3& normal) {
   normals_.push_back(has_direction ? glm::vec3(unit(normal)) : glm::vec3(0.0f));
 }
 
+void MeshBuilder::add_tangent(const glm::vec4& tangent) {
+  tangents_.resize(normals_.size() - 1, glm::vec4(0.0f));
+  tangents_.push_back(tangent);
+}
+
+void MeshBuilder::add_second_texcoord(const glm::vec2& texcoord) {
+  second_texcoords_.resize(texcoords_.size() - 1, glm::vec2(0.0f));
+  second_texcoords_.push_back(texcoord);
+}
+
+void MeshBuilder::add_opacity(float opacity) {
+  opacities_.resize(texcoords_.size() - 1, 1.0f);
+  opacities_.push_back(opacity);
+}
+
 void MeshBuilder::add_face(std::span<const FaceCorner> corners, std::size_t line,
                            const FaceAttributes& attributes) {
   if (faces_.size() % kCheckpointFaces == 0) checkpoint();
@@ -251,7 +266,10 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
     fail(faces_.empty() ? 0 : faces_[0].line, "no face has an area");
   }
   scene.normals = std::move(normals_);
+  scene.tangents = std::move(tangents_);
   scene.texcoords = std::move(texcoords_);
+  scene.second_texcoords = std::move(second_texcoords_);
+  scene.opacities = std::move(opacities_);
   if (options.smooth || !groups.empty()) {
     add_smooth_normals(groups, options.smooth, scene);
   }

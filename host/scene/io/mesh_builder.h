@@ -44,7 +44,12 @@ class MeshBuilder {
   void add_color(const glm::vec3& color);
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
+  /// Add attributes of the last texture coordinates; the second ones, and the opacity, in [0, 1].
+  void add_second_texcoord(const glm::vec2& texcoord);
+  void add_opacity(float opacity);
   void add_normal(const glm::dvec3& normal);
+  /// Sets the tangent of the last normal, in the format of Scene::tangents.
+  void add_tangent(const glm::vec4& tangent);
 
   /// Adds a polygon. build() leaves out polygons of fewer than three corners, and the normals or
   /// texture coordinates of a face if one of its corners has none, with a warning. `line` is for
@@ -106,7 +111,10 @@ class MeshBuilder {
   std::size_t bad_colors_ = 0;     // number of colours that are not finite
   bool has_linear_colors_ = false;
   std::vector<glm::vec3> normals_;
+  std::vector<glm::vec4> tangents_;  // of the first normals
   std::vector<glm::vec2> texcoords_;
+  std::vector<glm::vec2> second_texcoords_;  // of the first texture coordinates
+  std::vector<float> opacities_;             // likewise
   std::vector<FaceCorner> corners_;
   std::vector<Face> faces_;
 };

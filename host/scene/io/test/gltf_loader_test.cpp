@@ -472,7 +472,6 @@ TEST_F(LoadGltf, OpacityOfVertices) {
     EXPECT_EQ(opacity_factor_at(scene, face, {0.25, 0.5, 0.25}), opacity) << mode;
     EXPECT_EQ(is_masked_out(scene, face, {0.25, 0.5, 0.25}), is_hole) << mode;
     EXPECT_FALSE(is_masked_out(scene, face, {0.0, 0.25, 0.75})) << mode;
-    EXPECT_EQ(is_nowhere_masked(scene, face, {0.25, 0.5, 0.25}, glm::dvec3(0.0)), !is_hole) << mode;
     EXPECT_EQ(vertex_color_at(scene.colors, face, {0.25, 0.5, 0.25}), glm::vec3(1.0f));
   }
 }
