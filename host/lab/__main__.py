@@ -35,7 +35,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--jobs", type=int, default=processors(), help="stress: suites at once (all processors)")
     parser.add_argument("--variant", nargs="*", default=[], metavar="FRAC_WIDTH=15", help="variant: what is not as in binary32")
     parser.add_argument("--command", default="", help="the command of make, for the report")
-    parser.add_argument("--report-only", action="store_true", help="write the report of the last rows again")
     parser.add_argument("--publish", action="store_true", help="write the report into host/lab/results too")
     return parser.parse_args()
 
@@ -61,11 +60,10 @@ def run(given: argparse.Namespace) -> int:
     if given.publish and (given.only or given.quick or given.scenes or given.tests):
         raise ValueError("--publish: expected a whole run, without --only, --quick, --scenes and --tests")
     file = KEPT / f"{'-'.join([given.target, *(parts if given.only else [])])}.jsonl"
-    if not given.report_only:
-        found = steps.run(given.target, [step for part in parts for step in target.PARTS[part](given)],
-                          given.command, given.jobs if given.target == "stress" else 1)
-        found[0] |= {"quick": given.quick, "command": given.command}
-        kept.write(file, target.finish(found) if hasattr(target, "finish") else found)
+    found = steps.run(given.target, [step for part in parts for step in target.PARTS[part](given)],
+                      given.command, given.jobs if given.target == "stress" else 1)
+    found[0] |= {"quick": given.quick, "command": given.command}
+    kept.write(file, target.finish(found) if hasattr(target, "finish") else found)
     rows = kept.read(file)
     folder = REPORTS / given.target / (target.own_folder(rows) if hasattr(target, "own_folder") else "")
     folder.mkdir(parents=True, exist_ok=True)

@@ -18,13 +18,19 @@
 namespace raygate::lab {
 
 /// Calls X with each function that builds a scene.
-#define RAYGATE_EMBREE_FUNCTIONS(X)                                                           \
-  X(rtcNewDevice)                                                                             \
-  X(rtcReleaseDevice)                                                                         \
-  X(rtcNewScene)                                                                              \
-  X(rtcReleaseScene) X(rtcSetSceneFlags) X(rtcSetSceneBuildQuality) X(rtcCommitScene)         \
-      X(rtcNewGeometry) X(rtcReleaseGeometry) X(rtcSetNewGeometryBuffer) X(rtcCommitGeometry) \
-          X(rtcAttachGeometry)
+#define RAYGATE_EMBREE_FUNCTIONS(X) \
+  X(rtcNewDevice)                   \
+  X(rtcReleaseDevice)               \
+  X(rtcNewScene)                    \
+  X(rtcReleaseScene)                \
+  X(rtcSetSceneFlags)               \
+  X(rtcSetSceneBuildQuality)        \
+  X(rtcCommitScene)                 \
+  X(rtcNewGeometry)                 \
+  X(rtcReleaseGeometry)             \
+  X(rtcSetNewGeometryBuffer)        \
+  X(rtcCommitGeometry)              \
+  X(rtcAttachGeometry)
 
 /// These functions, of Embree 3, which the lab is linked with, or of Embree 4.
 struct EmbreeFunctions {
