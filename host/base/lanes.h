@@ -228,9 +228,6 @@ RAYGATE_INLINE auto join(const Quad& low, const Quad& high) {
 [[gnu::target("avx2")]] inline void avx2_permute(IntLanes& x, const IntLanes& lanes) {
   x = __builtin_ia32_permvarsi256(x, lanes);
 }
-[[gnu::target("avx512f,avx512vl")]] inline void avx512_compress(IntLanes& x, LaneMask mask) {
-  x = __builtin_ia32_compresssi256_mask(x, IntLanes{} - 1, static_cast<unsigned char>(mask));
-}
 #endif
 
 /// Returns the lanes whose sign bit is set. kCode is the instruction set of the calling function.
