@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <glm/glm.hpp>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -61,11 +61,9 @@ RAYGATE_INLINE T flag_words(const Masks&... masks) {
   return float_of(flags);
 }
 
-/// Path states, field by field, one path per lane: the words of PathState, in its order.
+/// Path states, field by field, one path per lane.
 template <class T>
 struct PathLanes {
-  static constexpr std::size_t kWords = sizeof(PathState) / sizeof(float);
-
   Triple<T> throughput;
   T pdf;
   Triple<T> scattered_at, normal;
@@ -75,10 +73,18 @@ struct PathLanes {
 
   PathLanes() = default;
   RAYGATE_INLINE explicit PathLanes(const PathState* const (&states)[kLanesOf<T>]) {
-    static_assert(sizeof(PathLanes) == kWords * sizeof(T));
-    T words[kWords];
-    load_records(states, words);
-    std::memcpy(static_cast<void*>(this), words, sizeof words);
+    T w[16];
+    load_records(states, w);
+    throughput = {w[0], w[1], w[2]};
+    pdf = w[3];
+    scattered_at = {w[4], w[5], w[6]};
+    normal = {w[7], w[8], w[9]};
+    sample = words_in(w[10]);
+    stream = words_in(w[11]);
+    index = words_in(w[12]);
+    specular_history = words_in(w[13]);
+    light_over_camera_pdf = w[14];
+    supersampled = words_in(w[15]);
   }
   /// Returns where the ray is its path's first.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return specular_history == 1u; }
@@ -91,7 +97,28 @@ struct PathLanes {
     return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
   }
   /// Stores the words of the records.
-  RAYGATE_INLINE void put(T* words) const { std::memcpy(words, this, sizeof *this); }
+  RAYGATE_INLINE void put(T* w) const {
+    static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
+                  offsetof(PathState, specular_history) == 52 &&
+                  offsetof(PathState, light_over_camera_pdf) == 56 && sizeof(PathState) == 64);
+    const T words[] = {throughput.x,
+                       throughput.y,
+                       throughput.z,
+                       pdf,
+                       scattered_at.x,
+                       scattered_at.y,
+                       scattered_at.z,
+                       normal.x,
+                       normal.y,
+                       normal.z,
+                       float_of(sample),
+                       float_of(stream),
+                       float_of(index),
+                       float_of(specular_history),
+                       light_over_camera_pdf,
+                       float_of(supersampled)};
+    for (int i = 0; i < 16; ++i) w[i] = words[i];
+  }
 
  private:
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_specular(std::uint32_t step) const {
@@ -290,13 +317,17 @@ struct ScatteredRays {
     const auto leaving = hits.surface.leaving(ahead, is_transmitted);
     const auto wanted = is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat);
     static_assert(offsetof(ScatteredRay, direction) == 64 && sizeof(ScatteredRay) == 96);
-    constexpr std::size_t kFirst = PathLanes<T>::kWords;
     T words[24] = {};
     path.put(words);
-    std::memcpy(words + kFirst, &ahead, sizeof ahead);
-    std::memcpy(words + kFirst + 3, &aside, sizeof aside);
-    words[kFirst + 6] =
-        flag_words<T>(wanted, leaving.leaves & leaving.is_sure, has_flat, is_transmitted);
+    const T rest[] = {
+        ahead.x,
+        ahead.y,
+        ahead.z,
+        aside.x,
+        aside.y,
+        aside.z,
+        flag_words<T>(wanted, leaving.leaves & leaving.is_sure, has_flat, is_transmitted)};
+    std::copy(std::begin(rest), std::end(rest), words + 16);
     ScatteredRay* rays[Hits<T>::kCount];
     for (int k = 0; k < hits.count; ++k) rays[k] = &hits.block.scattered_of(hits.place[k])[number];
     store_records(words, rays, hits.count);
