@@ -161,17 +161,6 @@ TEST_F(Render, ManyWarningsAreCounted) {
   EXPECT_EQ(std::ranges::count(all, '\n'), 12) << all;
 }
 
-TEST_F(Render, SaysWhereNothingCanBeSeen) {
-  folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const auto warnings = [&](const char* camera) {
-    return render({"a.obj", "--size", "16x16", "--engine", "cpu", "--quiet", "--camera", camera})
-        .err;
-  };
-  EXPECT_EQ(warnings("0,0,5,0,0,9"),
-            "warning: the camera sees nothing of the scene; --view iso shows all of it\n");
-  EXPECT_EQ(warnings("0,0,5,0,0,0"), "");
-}
-
 TEST_F(Render, HelpAndVersionGoToStandardOutput) {
   for (const char* option : {"--help", "-h", "--version"}) {
     const Outcome outcome = run_program({.arguments = {option}, .folder = folder_.path()});
