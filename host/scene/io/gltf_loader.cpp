@@ -263,13 +263,13 @@ class GltfReader {
     const auto read = [&](const std::string& name, int width) {
       return attribute(primitive, name, width, vertices, weights);
     };
-    const std::vector<double> positions = read("POSITION", 3), normals = read("NORMAL", 3);
-    const std::vector<double> colors = read("COLOR_0", 3);
     const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
     count(corners.size());
     if (corners.size() % 3 != 0) {
       file_.fail("triangles of " + std::to_string(corners.size()) + " corners");
     }
+    const std::vector<double> positions = read("POSITION", 3), normals = read("NORMAL", 3);
+    const std::vector<double> colors = read("COLOR_0", 3);
     const auto [material, set] = materials_.convert(number);
     const std::string opacity =
         number < 0 ? "" : text_in(file_.list("materials")[number], "alphaMode");
