@@ -32,10 +32,6 @@ std::optional<Projection> projection_named(std::string_view name) {
   return static_cast<Projection>(found - std::begin(kProjections));
 }
 
-std::string_view to_string(Projection projection) {
-  return kProjections[static_cast<std::size_t>(projection)];
-}
-
 Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up,
                        double vertical_fov_degrees, double aspect) {
   if (!is_finite(eye) || !is_finite(target) || !is_finite(up)) {

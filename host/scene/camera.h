@@ -45,7 +45,6 @@ struct CameraSetting {
 
 /// Returns the projection named "perspective", "orthographic" or "panorama".
 [[nodiscard]] std::optional<Projection> projection_named(std::string_view name);
-[[nodiscard]] std::string_view to_string(Projection projection);
 
 /// Coordinates are relative to Scene::origin. The camera's frame is right-handed: in the image,
 /// `right` is +x and `up` is +y, and the camera looks along `forward`.

@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-constexpr auto kWhitted = IntegratorKind::kWhitted, kPath = IntegratorKind::kPath;
+using enum IntegratorKind;
 
 // What catches shadows looks like the background, and is darker where something keeps light away.
 TEST(Surface, AShadowCatcherIsSeenWhereItsShadowsAre) {

@@ -7,6 +7,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
 #include <span>
+#include <utility>
 
 #include "host/base/input.h"
 #include "host/scene/io/find_file.h"
@@ -315,7 +316,7 @@ std::vector<double> GltfFile::optional_numbers(int accessor, int width, const ch
 }
 
 std::vector<double> GltfFile::numbers(int accessor, int width, const char* what) const {
-  const auto [component, components, all] = elements(accessor, what);
+  auto [component, components, all] = elements(accessor, what);
   const auto fail_here = [&](const char* found) {
     fail("accessor " + std::to_string(accessor) + " (" + what + "): " + found);
   };
@@ -326,6 +327,7 @@ std::vector<double> GltfFile::numbers(int accessor, int width, const char* what)
   }
   const Json& normalized = member(this->accessor(accessor), "normalized");
   const bool is_normalized = normalized.is_boolean() && normalized.get<bool>();
+  if (components == wanted && !is_normalized) return std::move(all);
   std::vector<double> numbers;
   numbers.reserve(all.size() / components * wanted);
   for (std::size_t i = 0; i < all.size(); ++i) {

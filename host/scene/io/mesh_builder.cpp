@@ -22,7 +22,17 @@ constexpr std::size_t kCheckpointFaces = 4096;
 
 /// Counts the faces with each flaw, for one warning that names the first of them.
 struct MeshBuilder::Flaws {
-  enum Flaw { kNoArea, kTooShort, kMoved, kTouching, kNoDirection, kNoNormal, kNoTexcoord, kCount };
+  enum Flaw {
+    kNoArea,
+    kFlattened,
+    kTooShort,
+    kMoved,
+    kTouching,
+    kNoDirection,
+    kNoNormal,
+    kNoTexcoord,
+    kCount
+  };
   std::array<std::size_t, kCount> counts{}, first_lines{};
 
   void note(Flaw flaw, std::size_t line) {
@@ -34,6 +44,7 @@ struct MeshBuilder::Flaws {
     std::snprintf(most, sizeof most, "%.3g", scene.rounding.most);
     const std::string texts[kCount] = {
         "face of zero area, left out",
+        "face flattened by rounding to binary32, left out",
         "face of fewer than 3 corners, left out",
         std::string("corners moved by up to ") + most +
             ", more than a hundredth of their face, by rounding to binary32",
@@ -169,6 +180,24 @@ void MeshBuilder::recentre(Scene& scene) {
   for (FaceCorner& corner : corners_) corner.position = new_index[corner.position];
 }
 
+// Returns whether a polygon has no area in its file, up to the rounding of decimals to double.
+bool MeshBuilder::was_flat(std::span<const FaceCorner> corners) const {
+  const glm::dvec3& first = positions_[corners[0].position];
+  glm::dvec3 area(0.0), size(0.0), reach = glm::abs(first);
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const glm::dvec3 &p = positions_[corners[i - 1].position], &q = positions_[corners[i].position];
+    area += glm::cross(p - first, q - first);
+    size = glm::max(size, glm::abs(q - first));
+    reach = glm::max(reach, glm::abs(q));
+  }
+  const auto products = [](const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::dvec3(a.y * b.z, a.z * b.x, a.x * b.y);
+  };
+  const glm::dvec3 bound = products(reach, size) + products(size, reach);
+  return glm::all(
+      glm::lessThanEqual(glm::abs(area), 0x1p-50 * static_cast<double>(corners.size()) * bound));
+}
+
 std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
                                                     Scene& scene) const {
   std::vector<std::uint32_t> groups;
@@ -202,8 +231,13 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
       kind = PolygonKind::kZeroArea;
     }
     if (kind == PolygonKind::kZeroArea) {
-      if (options.strict) fail(face.line, "face of zero area, expected one with an area");
-      flaws.note(Flaws::kNoArea, face.line);
+      const bool is_flat = was_flat(corners);
+      if (options.strict) {
+        fail(face.line, std::string("face ") +
+                            (is_flat ? "of zero area" : "flattened by rounding to binary32") +
+                            ", expected one with an area");
+      }
+      flaws.note(is_flat ? Flaws::kNoArea : Flaws::kFlattened, face.line);
       Triangle left_out{.material = face.attributes.material, .object = face.attributes.object};
       left_out.vertices.fill(corners[0].position);
       scene.triangles.insert(scene.triangles.end(), corners.size() - 2, left_out);

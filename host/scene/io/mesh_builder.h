@@ -98,6 +98,8 @@ class MeshBuilder {
   [[nodiscard]] std::size_t line_of(std::size_t corner) const;
   void recentre(Scene& scene);
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
+  /// Returns whether a face has no area in the file's own numbers, before they are rounded.
+  [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
   /// Returns the smoothing groups of the triangles; empty: all are flat.
   [[nodiscard]] std::vector<std::uint32_t> triangulate(const LoadOptions& options,
                                                        Scene& scene) const;

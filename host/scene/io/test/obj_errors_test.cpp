@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "5: face of zero area, expected one with an area"},
         // Distinct as doubles, one point as floats.
         BadFile{"CollapsesInFloat", "v 0 0 0\nv 1 0 0\nv 1 1e-60 0\nf 1 2 3\n",
-                "4: face of zero area, expected one with an area"},
+                "4: face flattened by rounding to binary32, expected one with an area"},
         BadFile{"FarApart", "v 3e38 0 0\nv -3e38 0 0\nv 0 1 0\nv 1 1 0\nf 3 4 3\nf 1 2 3\n",
                 "6: found a corner farther than 2^126 from the scene's middle, expected a nearer "
                 "one"},

@@ -224,7 +224,7 @@ TEST(LoadObj, CornersThatBinary32MovesAreCounted) {
   const Scene scene = load(far + "f 1 2 3\nf 4 5 6\n");
   EXPECT_EQ(scene.rounding.corners, 1u);
   EXPECT_NEAR(scene.rounding.most, 0.2, 1e-9);
-  EXPECT_EQ(only_warning(scene), "scene.obj:7: face of zero area, left out");
+  EXPECT_EQ(only_warning(scene), "scene.obj:7: face flattened by rounding to binary32, left out");
   const Scene moved = load(far + "v 5411988 0 0\nf 7 2 3\nf 4 5 6\n");
   EXPECT_EQ(only_warning(moved),
             "scene.obj:8: corners moved by up to 0.2, more than a hundredth of their face, by "
