@@ -167,13 +167,6 @@ def bsdf(material: Material) -> dict:
     return {"type": "twosided", "inside": inside}
 
 
-def light_sides(corners: numpy.ndarray, normal: numpy.ndarray, everything: numpy.ndarray) -> list[bool]:
-    """Returns the sides of a flat light that face any geometry; True is the side of its normal."""
-    heights = (everything - corners[0]) @ normal
-    flat = 1e-5 * float(numpy.ptp(everything, axis=0).max())
-    return [side for side, lit in ((True, heights.max() > flat), (False, heights.min() < -flat)) if lit]
-
-
 def is_closed(mesh: Mesh) -> bool:
     """Returns whether each edge belongs to two faces that traverse it in opposite directions."""
     places = {tuple(place): number for number, place in enumerate(numpy.unique(mesh.positions, axis=0))}
@@ -191,8 +184,10 @@ def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
     a, b, c = mesh.positions[mesh.faces[0]]
     normal = numpy.cross(b - a, c - a)
     normal /= numpy.linalg.norm(normal)
-    sides = light_sides(mesh.positions[mesh.faces[0]], normal, everything)
-    apart = 1e-5 * float(numpy.ptp(everything, axis=0).max()) if len(sides) == 2 else 0.0
+    heights = (everything - a) @ normal
+    flat = 1e-5 * float(numpy.ptp(everything, axis=0).max())
+    sides = [side for side, lit in ((True, heights.max() > flat), (False, heights.min() < -flat)) if lit]
+    apart = flat if len(sides) == 2 else 0.0
     return [Mesh(mesh.material, mesh.positions + (apart if front else -apart) * normal, None,
                  mesh.faces if front else mesh.faces[:, ::-1]) for front in sides]
 

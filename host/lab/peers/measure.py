@@ -184,8 +184,7 @@ class Measurement:
         error = statistics.fmean(run["mse"] for run in runs)
         shown = statistics.fmean(run["display_rmse"] ** 2 for run in runs)
         return {"table": "peers", "scene": self.name, "pixels": self.side ** 2, "threads": threads, "renderer": renderer,
-                "sampler": sampler, "samples": runs[0]["samples"], "seconds": [run["seconds"] for run in runs],
-                "processor_seconds": [run["processor_seconds"] for run in runs], "median_seconds": seconds,
+                "sampler": sampler, "samples": runs[0]["samples"], "median_seconds": seconds,
                 "mse": error, "mse_error": standard_error([run["mse"] for run in runs]), "display_rmse": shown ** 0.5,
                 "display_mse": shown, "display_mse_error": standard_error([run["display_rmse"] ** 2 for run in runs]),
                 "time_mse": seconds * error}

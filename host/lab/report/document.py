@@ -94,7 +94,7 @@ def render(template: str, folder: pathlib.Path, rows: list[dict], **values: obje
         return save(folder / f"{name}.csv", rows, *columns)
 
     return wrap(ENVIRONMENT.from_string(template).render(
-        values, figure=figure, saved=saved, of=lambda name, **wanted: of(rows, name, **wanted), machine=rows[0]))
+        values, figure=figure, saved=saved, of=lambda name, **wanted: of(rows, name, **wanted), machine=rows[0])).rstrip() + "\n"
 
 
 def measured(about: dict) -> str:
