@@ -328,10 +328,9 @@ class PythonScene {
 
   [[nodiscard]] IntersectorFactory intersectors(bool uses_model) const {
     if (uses_model) {
-      return [this, caches = std::make_shared<RecordCaches>(*bvh_)] {
+      return [this] {
         return std::make_unique<UnitIntersector>(
-            *bvh_, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()),
-            caches);
+            *bvh_, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
       };
     }
     return [this] { return std::make_unique<CpuIntersector>(*bvh_); };
