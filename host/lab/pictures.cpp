@@ -232,14 +232,11 @@ class Pictures {
     options.integrator = std::ranges::find(kIntegrators, asked.integrator, [](const auto& kind) {
                            return std::string(kind.first);
                          })->second;
-    const auto caches = std::make_shared<RecordCaches>(bvh_);
     RenderStats stats;
     const PreparedScene prepared(scene_, bvh_);
     film = render(
         {prepared, camera(asked.width, asked.height), options, lights_},
-        [&] {
-          return std::make_unique<UnitIntersector>(bvh_, tester_of(variant, by_hardware), caches);
-        },
+        [&] { return std::make_unique<UnitIntersector>(bvh_, tester_of(variant, by_hardware)); },
         stats);
     return {{"table", "pictures"},
             {"scene", asked.scene},
