@@ -80,6 +80,7 @@ std::optional<CameraLights> default_lights(const Scene& scene, const Camera& cam
   // Together with the sky and interreflection, white stays below 1.
   add_far(-0.8, 1.2, is_preview ? 0.4 : 0.6);
   if (is_preview) add_far(1.4, 0.3, 0.16);
+  lights.radius = 0.5 * size;  // penumbras are 1/8 as wide as the occluder's distance
   return lights;
 }
 

@@ -112,6 +112,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     Light& record = lights_.emplace_back();
     record.emission = finite_floats(light.intensity / unit / unit);
     record.position = light.position;
+    record.radius = static_cast<float>(own_.radius);
     record.is_spot = light.spot.has_value();
     if (!record.is_spot) continue;
     constexpr double kLeastRamp = 1e-6;

@@ -24,11 +24,13 @@ class Camera;
 struct CameraLights {
   std::vector<PointLight> points;
   glm::vec3 background{0.0f};
+  /// Radius of spheres that replace the points, for soft shadows; they are outside the scene.
+  double radius = 0.0;
 };
 
 /// Returns lights for a scene without any (no lights, no background, and no emission except
-/// textures that hardly light anything): a light to the upper left of the camera, or at the camera
-/// if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
+/// textures that hardly light anything): a light to the upper left of the camera with soft shadows,
+/// or at the camera if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
 ///
 /// `is_preview`: the user did not choose the camera. Then there is a second, weaker light from the
 /// right, and scenes lit only by a background or by faces whose emission lights nothing get lights,
@@ -131,6 +133,7 @@ class Lights {
     /// irradiance. Environment: unused.
     glm::vec3 emission{0.0f};
     glm::vec3 position{0.0f};   ///< of a point light, or the direction towards a directional light
+    float radius = 0.0f;        ///< of a point light that is a sphere, outside the scene
     glm::vec3 spot_axis{0.0f};  ///< for is_spot, as the arguments of spot_falloff()
     float spot_scale = 0.0f, spot_offset = 1.0f;
     float area = 0.0f;         ///< in square units
@@ -160,6 +163,17 @@ class Lights {
     return gather<T>([&](int k) RAYGATE_BODY {
       return lights[k]->is_textured ? textured_radiance(primitives[k], points[k]) : plain[k];
     });
+  }
+
+  /// Samples the point from which a spherical point light lights `from`: a point of its disc.
+  template <class T>
+  [[nodiscard]] RAYGATE_INLINE static Triple<T> point_on(const Triple<T>& position, const T& radius,
+                                                         const Triple<T>& from,
+                                                         const SquarePoint<T>& u) {
+    const auto turn = sine_cosine(wide(u.y));
+    const Triple<T> towards = normalized(from - position);
+    return position + spherical_direction(towards, T{}, radius * root(u.x), narrow(turn.cosine),
+                                          narrow(turn.sine));
   }
 
   // Sampling one light at a time:

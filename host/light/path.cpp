@@ -280,11 +280,19 @@ struct ChosenLights {
 
   [[nodiscard]] RAYGATE_INLINE IncidentLight<T> points(const Lights& all,
                                                        const Hits<T>& hits) const {
+    const Triple<T> middle = get(&Lights::Light::position);
+    const T radius = get(&Lights::Light::radius);
+    const bool any_ball = any(radius > 0.0f);
+    const Triple<T> position = any_ball ? Lights::point_on<T>(middle, radius, hits.surface.point,
+                                                              hits.random(streams::kLightPoint))
+                                        : middle;
     IncidentLight<T> light =
-        point_light(all, hits, [&](auto member) RAYGATE_BODY { return get(member); });
+        point_light(all, hits, position, [&](auto member) RAYGATE_BODY { return get(member); });
     light.is_asked = are(Kind::kPoint);
     light.pdf = pmf;
-    light.index = gather<T>(sources, &Lights::Source::light);
+    light.is_point_light = !(radius > 0.0f);
+    light.index =
+        choose(light.is_point_light, gather<T>(sources, &Lights::Source::light), light.index);
     return light;
   }
   [[nodiscard]] RAYGATE_INLINE IncidentLight<T> directions(const Hits<T>& hits) const {

@@ -116,19 +116,21 @@ struct IncidentLight {
   }
 };
 
-/// Returns the light from point lights. get(member) returns a member of each lane's Lights::Light.
+/// Returns the light from point lights, of which it leaves at `position`. get(member) returns a
+/// member of each lane's Lights::Light.
 template <class T, class Get>
 RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
-                                            const Get& get) {
+                                            const Triple<T>& position, const Get& get) {
   using Light = Lights::Light;
-  IncidentLight<T> light(lights, hits, get(&Light::position));
+  IncidentLight<T> light(lights, hits, position);
   light.emission = get(&Light::emission);
   if (any(get(&Light::is_spot))) {
-    const T cosine = -dot(light.direction, get(&Light::spot_axis));
+    const IncidentLight<T> middle(lights, hits, get(&Light::position));
+    const T cosine = -dot(middle.direction, get(&Light::spot_axis));
     light.emission =
         light.emission * spot_falloff(cosine, get(&Light::spot_scale), get(&Light::spot_offset));
   }
-  light.is_point_light = T{} == 0.0f;
+  light.target = position - hits.surface.point;
   return light;
 }
 

@@ -47,17 +47,27 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
     light.is_asked = hits.bsdf.scatters();
     return light;
   }
+  const Triple<T> middle = spread<T>(own.position);
   if (own.kind == Kind::kPoint) {
-    light = point_light(lights, hits, [&](auto member) RAYGATE_BODY {
+    const bool is_ball = own.radius > 0.0f;
+    const Triple<T> position =
+        is_ball && shading.settings.samples > 1
+            ? Lights::point_on<T>(middle, spread<T>(own.radius), hits.surface.point,
+                                  hits.random(kFirstPointLight + i))
+            : middle;
+    light = point_light(lights, hits, position, [&](auto member) RAYGATE_BODY {
       if constexpr (std::is_same_v<decltype(own.*member), const bool&>) {
         return own.*member;
       } else {
         return spread<T>(own.*member);
       }
     });
-    light.index = WordOf<T>{} + i;
+    if (!is_ball) {
+      light.is_point_light = T{} == 0.0f;
+      light.index = WordOf<T>{} + i;
+    }
   } else {
-    light = IncidentLight<T>(hits, spread<T>(own.position));
+    light = IncidentLight<T>(hits, middle);
     light.emission = spread<T>(own.emission);
   }
   light.is_asked = T{} == 0.0f;

@@ -293,6 +293,34 @@ TEST(PreviewLights, AreTwoLightsAndTheBackground) {
   EXPECT_GT(lights->points[0].intensity.x, lights->points[1].intensity.x);
 }
 
+// Under the edge of a roof, a floor gets as much light as it sees of a ball's disc: a segment.
+TEST(DefaultLights, CastSoftShadows) {
+  const Scene wall = square(matte(glm::vec3(0.5f)));
+  EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
+  EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}), true)->radius, 0.0);
+  const auto floor_at = [](double x, IntegratorKind integrator, bool has_roof) {
+    Scene scene;
+    add(scene, rectangle({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}), matte(glm::vec3(0.5f)));
+    if (has_roof) add(scene, rectangle({0, 1, -9}, {0, 0, 18}, {9, 0, 0}), matte(glm::vec3(0.0f)));
+    const Camera camera = Camera::look_at({x - 1, 0.5, 0.1}, {x, 0, 0}, {0, 1, 0}, 1e-3, 1.0);
+    RenderSettings options = test::light(integrator, 1, 1, 4096);
+    options.ambient = 0.0;
+    options.max_depth = 1;
+    const CameraLights lights{{{{0, 101, 0}, glm::dvec3(1e4)}}, glm::vec3(0.0f), 10.0};
+    return double(test::film_of(scene, camera, options, lights).color[0].r);
+  };
+  for (const IntegratorKind integrator : {IntegratorKind::kWhitted, IntegratorKind::kPath}) {
+    for (const double part : {-0.8, -0.5, 0.0, 0.5}) {
+      // A line from there by the edge, at (0, 1), meets the disc that far from its middle.
+      const double x = -part * 10.0 / 100.0;
+      const double seen =
+          1.0 - (std::acos(part) - part * std::sqrt(1.0 - part * part)) / std::numbers::pi;
+      EXPECT_NEAR(floor_at(x, integrator, true) / floor_at(x, integrator, false), seen, 0.01)
+          << part;
+    }
+  }
+}
+
 // Who gives a camera gives the light of what glows; a picture that glows faintly is no light, one
 // that is bright is.
 TEST(DefaultLights, AreThoseOfScenesThatNothingLights) {
