@@ -28,6 +28,7 @@ def save(browser: webdriver.Chrome, name: str) -> None:
 
 def window(browser: webdriver.Chrome) -> None:
     """Saves the hit tests of an image."""
+    browser.set_window_size(1100, 690)
     with subprocess.Popen(["./render", "scenes/still_life.json", "--engine", "cpu", "--size", "400x260", "--serve"],
                           cwd=ROOT, stdout=subprocess.PIPE, text=True) as server:
         browser.get(re.match(r"http://\S+", server.stdout.readline())[0])
@@ -41,6 +42,7 @@ def window(browser: webdriver.Chrome) -> None:
 
 def unit(browser: webdriver.Chrome) -> None:
     """Saves the paper's unit at one clock, with a broken gate in its adder."""
+    browser.set_window_size(1100, 1000)
     browser.get((ROOT / "build/page/index.html").as_uri())
     WebDriverWait(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "[data-ready]"))
     browser.execute_script("document.getElementById('another').click();"
@@ -52,7 +54,7 @@ def unit(browser: webdriver.Chrome) -> None:
 def main() -> None:
     options = webdriver.ChromeOptions()
     options.binary_location = "/usr/bin/chromium"
-    for word in ("--headless", "--no-sandbox", "--disable-gpu", "--window-size=1100,1000"):
+    for word in ("--headless", "--no-sandbox", "--disable-gpu"):
         options.add_argument(word)
     browser = webdriver.Chrome(options, webdriver.ChromeService("/usr/bin/chromedriver"))
     try:
