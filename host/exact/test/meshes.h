@@ -87,6 +87,7 @@ inline std::vector<Corners> sphere(int level, float radius = 1.0f,
     faces = std::move(finer);
   }
   std::vector<Corners> triangles;
+  triangles.reserve(faces.size());
   const auto place = [&](int i) {
     return glm::vec3(v[i] * static_cast<double>(radius) + glm::dvec3(center));
   };

@@ -34,6 +34,7 @@ namespace raygate::lab {
 
 /// These functions, of Embree 3, which the lab is linked with, or of Embree 4.
 struct EmbreeFunctions {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): the member's name cannot be in parentheses
 #define RAYGATE_MEMBER(function) decltype(&::function) function = ::function;
   RAYGATE_EMBREE_FUNCTIONS(RAYGATE_MEMBER)
 #undef RAYGATE_MEMBER

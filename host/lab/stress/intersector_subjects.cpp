@@ -162,7 +162,7 @@ SubjectKind cpu(const char* name, const char* what, bool one_origin) {
               {.one_origin = one_origin, .delivers = true});
 }
 
-IntersectorOf by_unit(std::shared_ptr<HitTester> tester) {
+IntersectorOf by_unit(const std::shared_ptr<HitTester>& tester) {
   return [tester](const Bvh& bvh) { return std::make_unique<UnitIntersector>(bvh, tester); };
 }
 

@@ -30,6 +30,7 @@ std::uint64_t broken_claims(const Shot& shot, const Truth& truth) {
 template <class List>
 std::vector<std::string> names_of(const List& list) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const auto& item : list) names.push_back(item.name);
   return names;
 }
@@ -42,6 +43,7 @@ std::vector<Row> run(const Suite& suite, const std::vector<SubjectKind>& kinds, 
   std::vector<Tally> tallies(kinds.size());
   std::uint64_t broken = 0;
   std::vector<std::unique_ptr<Subject>> subjects;
+  subjects.reserve(kinds.size());
   for (const SubjectKind& kind : kinds) subjects.push_back(kind.make());
   Random random(seed ^ digest(suite.name));
   const Generator generate = suite.make();

@@ -34,8 +34,8 @@ MeshPointer sphere(int level, const Placement& placement) {
 }
 
 MeshPointer random_sphere(int points, Random& random, const Placement& placement) {
-  std::vector<glm::dvec3> p;
-  for (int i = 0; i < points; ++i) p.push_back(random.unit());
+  std::vector<glm::dvec3> p(static_cast<std::size_t>(points));
+  for (glm::dvec3& point : p) point = random.unit();
   Mesh faces;
   for (std::size_t a = 0; a < p.size(); ++a) {
     for (std::size_t b = a + 1; b < p.size(); ++b) {
