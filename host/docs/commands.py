@@ -76,8 +76,10 @@ def run(name: str, page: list[str], folder: pathlib.Path, environment: dict[str,
                 print(f"{name}: {command}", flush=True)
             elif status != ["0"]:
                 failed.append(f"{name}: {command}: ended with status {status[0]}; see {log.relative_to(ROOT)}")
+                print(failed[-1], file=sys.stderr, flush=True)
         if shell.wait() and not failed:
             failed.append(f"{name}: the shell ended with status {shell.returncode}; see {log.relative_to(ROOT)}")
+            print(failed[-1], file=sys.stderr)
     return failed
 
 
@@ -116,7 +118,6 @@ def main() -> int:
         else:
             failed += run(name, commands(text), clone, os.environ | {
                 "HOME": str(clone / "build/home"), "PYTHON": str(clone / "build/home/raygate-python/bin/python3")})
-    print(*(f"failed: {line}" for line in failed), sep="\n", end="\n" if failed else "", file=sys.stderr)
     return 1 if failed else 0
 
 
