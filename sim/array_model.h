@@ -14,7 +14,7 @@
 
 #include "sim/model.h"
 #include "sim/port_numbers.h"
-#include "sim/rtl_burst_unit.h"
+#include "sim/rtl_units.h"
 
 namespace raygate {
 

@@ -2,9 +2,8 @@
 #include <string>
 
 #include "host/base/input_error.h"
-#include "sim/rtl_burst_unit.h"
 #include "sim/rtl_core.h"
-#include "sim/rtl_plane_unit.h"
+#include "sim/rtl_units.h"
 #include "sim/simulation.h"
 
 namespace raygate {

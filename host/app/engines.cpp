@@ -16,9 +16,8 @@
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/variants/variant_hit_tester.h"
-#include "sim/rtl_burst_unit.h"
 #include "sim/rtl_core.h"
-#include "sim/rtl_plane_unit.h"
+#include "sim/rtl_units.h"
 
 namespace raygate {
 namespace {

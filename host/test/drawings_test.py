@@ -12,7 +12,7 @@ import unittest
 
 # Sources that may include each other, a .h and a .cpp of one name counted as one, and why.
 CIRCLES = {
-    "sim/array_model sim/rtl_burst_unit": "the Verilated array and the unit that it is, which names the array's stalls",
+    "sim/array_model sim/rtl_units": "the Verilated array and the unit that it is, which names the array's stalls",
 }
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]

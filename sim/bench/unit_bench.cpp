@@ -16,8 +16,7 @@
 
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "sim/bench/test_stream.h"
-#include "sim/rtl_burst_unit.h"
-#include "sim/rtl_plane_unit.h"
+#include "sim/rtl_units.h"
 
 namespace raygate {
 namespace {

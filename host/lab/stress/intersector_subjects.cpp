@@ -14,9 +14,8 @@
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/stress/subjects.h"
 #include "host/variants/variant_hit_tester.h"
-#include "sim/rtl_burst_unit.h"
 #include "sim/rtl_core.h"
-#include "sim/rtl_plane_unit.h"
+#include "sim/rtl_units.h"
 
 namespace raygate::lab {
 namespace {

@@ -17,7 +17,7 @@
 #include "sim/array_model.h"
 #include "sim/plane_model.h"
 #include "sim/random_bursts.h"
-#include "sim/rtl_plane_unit.h"
+#include "sim/rtl_units.h"
 
 namespace raygate {
 namespace {

@@ -1,5 +1,3 @@
-#include "sim/rtl_burst_unit.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -11,6 +9,7 @@
 #include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/reference_burst_unit.h"
 #include "sim/random_bursts.h"
+#include "sim/rtl_units.h"
 
 namespace raygate {
 namespace {

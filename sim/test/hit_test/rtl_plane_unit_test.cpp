@@ -1,10 +1,9 @@
 // The simulated unit as the renderer sees it.
-#include "sim/rtl_plane_unit.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "sim/rtl_units.h"
 #include "sim/test/hit_test/float_stream.h"
 
 namespace raygate {

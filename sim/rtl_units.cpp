@@ -1,4 +1,4 @@
-#include "sim/rtl_burst_unit.h"
+#include "sim/rtl_units.h"
 
 #include <cassert>
 #include <utility>
@@ -7,26 +7,50 @@
 #include "Vhit_test_array_structural___024root.h"
 #include "sim/array_model.h"
 #include "sim/model_loader.h"
+#include "sim/plane_model.h"
 
 namespace raygate {
 
 namespace {
 
+constexpr ModelFile kStructuralPlane{"hit_test_unit_structural", "the simulated serial unit", 10};
+constexpr ModelFile kBehaviouralPlane{"hit_test_unit_behavioural",
+                                      "the simulated serial unit of behavioural arithmetic", 10};
+
+std::unique_ptr<PlaneModel> make_plane(Arith arith) {
+  const auto make =
+      load_model<PlaneModel*()>(arith == Arith::kStructural ? kStructuralPlane : kBehaviouralPlane);
+  return std::unique_ptr<PlaneModel>(make());
+}
+
 // The unit runs empty for 46 clocks after a batch if no other one follows. Of 0 to 256 tests a lane
 // this took the fewest clocks on most scenes, for one lane and for eight.
 constexpr std::size_t kEnoughTestsALane = 64;
 
-constexpr ModelFile kBehavioural{"hit_test_array_behavioural",
-                                 "the simulated hit-test unit of behavioural arithmetic", 15};
+constexpr ModelFile kBehaviouralArray{"hit_test_array_behavioural",
+                                      "the simulated hit-test unit of behavioural arithmetic", 15};
 
 std::unique_ptr<BurstModel> make_array(int lanes, Arith arith, const BurstStalls& stalls) {
   if (arith == Arith::kStructural)
     return std::make_unique<ArrayModel<Vhit_test_array_structural>>(lanes, stalls);
-  const auto make = load_model<BurstModel*(int, const BurstStalls&)>(kBehavioural);
+  const auto make = load_model<BurstModel*(int, const BurstStalls&)>(kBehaviouralArray);
   return std::unique_ptr<BurstModel>(make(lanes, stalls));
 }
 
 }  // namespace
+
+RtlPlaneUnit::RtlPlaneUnit(Arith arith) : model_(make_plane(arith)) {}
+
+RtlPlaneUnit::RtlPlaneUnit(std::unique_ptr<PlaneModel> model) : model_(std::move(model)) {}
+
+RtlPlaneUnit::~RtlPlaneUnit() = default;
+
+void RtlPlaneUnit::intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) {
+  assert(tests.size() == points.size());
+  if (!tests.empty()) model_->intersect(tests, points);
+}
+
+std::uint64_t RtlPlaneUnit::clocks() const { return model_->clocks(); }
 
 RtlBurstUnit::RtlBurstUnit(int lanes, Arith arith, const BurstStalls& stalls)
     : model_(make_array(lanes, arith, stalls)),

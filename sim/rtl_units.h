@@ -1,4 +1,5 @@
-// The pipelined hit-test units in simulation, behind the interface of host/intersect/unit.
+// The hit-test units in simulation, behind the interfaces of host/intersect/unit: the paper's,
+// which takes a test after the other, and arrays of pipelined ones.
 #pragma once
 
 #include <memory>
@@ -7,6 +8,25 @@
 #include "sim/arith.h"
 
 namespace raygate {
+
+/// What RtlPlaneUnit needs of a Verilated unit, of either kind of arithmetic.
+class PlaneModel;
+
+/// hw/hit_test/hit_test_unit.sv in binary32, rounded to nearest even. Tests go through it back to
+/// back: 7 clocks each, and 3 more a call for the last one's result. Not for two threads at once;
+/// each may have its own.
+class RtlPlaneUnit final : public PlaneUnit {
+ public:
+  explicit RtlPlaneUnit(Arith arith = Arith::kStructural);
+  explicit RtlPlaneUnit(std::unique_ptr<PlaneModel> model);  ///< of another format
+  ~RtlPlaneUnit() override;
+
+  void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override;
+  [[nodiscard]] std::uint64_t clocks() const override;
+
+ private:
+  std::unique_ptr<PlaneModel> model_;
+};
 
 /// Chances, in 1/256 a clock and lane, that no test is offered and that a result is not taken.
 struct BurstStalls {
