@@ -56,8 +56,8 @@ def is_touched(guard: dict, files: list[str]) -> bool:
 
 
 def room(file: str) -> str:
-    """host/light/lights.h -> host/light; sim/model.h -> sim."""
-    parts = file.split("/")
+    """host/light/lights.h and host/CMakeFiles/raygate_light.dir/Unity/unity_0_cxx.cxx -> host/light; sim/model.h -> sim."""
+    parts = re.sub(r"^host/CMakeFiles/raygate_(\w+)\.dir", r"host/\1", file).split("/")
     return "/".join(parts[:2]) if parts[0] == "host" else parts[0]
 
 
