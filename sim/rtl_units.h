@@ -1,5 +1,5 @@
 // The hit-test units in simulation, behind the interfaces of host/intersect/unit: the paper's,
-// which takes a test after the other, and arrays of pipelined ones.
+// which takes one test at a time, and arrays of pipelined ones.
 #pragma once
 
 #include <memory>

@@ -56,7 +56,7 @@ def run(given: argparse.Namespace) -> int:
     parts = given.only.split(",") if given.only else list(getattr(target, "USUAL", target.PARTS))
     unknown = set(parts) - set(target.PARTS)
     if unknown:
-        raise ValueError(f"{', '.join(sorted(unknown))}: expected parts of {', '.join(target.PARTS)}")
+        raise ValueError(f"ONLY={','.join(sorted(unknown))}: expected some of {', '.join(target.PARTS)}, with commas between")
     if given.publish and (given.only or given.quick or given.scenes or given.tests):
         raise ValueError("--publish: expected a whole run, without --only, --quick, --scenes and --tests")
     file = KEPT / f"{'-'.join([given.target, *(parts if given.only else [])])}.jsonl"

@@ -28,8 +28,8 @@ struct Counts {
   std::uint64_t tests = 0, doubts = 0, wrong_hits = 0, wrong_misses = 0;
 };
 
-/// Forwards batches to a tester, and audits each of their tests: sends each record in its own
-/// burst, too, as the nearest hit alone is reported of several.
+/// Forwards batches to a tester, and audits each of their tests. A burst reports only its nearest
+/// hit, so each record is also sent in a burst of its own.
 class AuditTester : public HitTester {
  public:
   AuditTester(const Bvh& bvh, const glm::vec3& origin, HitTester& tester, Counts& counts)

@@ -75,10 +75,6 @@ class LightPaths {
   /// Returns the density of light paths of a sample from a distant light that go through `point`
   /// against the unit vector `towards`, per area perpendicular to it.
   [[nodiscard]] float environment_density(const glm::vec3& point, const glm::vec3& towards) const;
-  /// Returns whether a mirror or glass may be in the direction of a unit vector.
-  [[nodiscard]] bool may_meet(const glm::vec3& point, const glm::vec3& direction) const {
-    return meetings(glm::dvec3(point), glm::dvec3(direction), false) > 0.0;
-  }
 
   /// Returns PathState::light_over_camera_pdf of camera rays with these unit directions, up to the
   /// squared distance of their hits.

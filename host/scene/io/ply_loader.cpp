@@ -130,7 +130,10 @@ class PlyReader {
         if (elements_.empty()) words_.fail("a property before the first element");
         elements_.back().properties.push_back(read_property());
       } else if (word == "comment") {
-        if (words_.take_if("TextureFile")) unread_.push_back("texture " + in_quotes(words_.take()));
+        if (words_.take() != "TextureFile") continue;
+        std::string_view file = words_.rest();  // may hold spaces
+        while (file.ends_with('\r') || file.ends_with(' ')) file.remove_suffix(1);
+        unread_.push_back("texture " + in_quotes(file));
       } else if (word != "obj_info" && !word.empty()) {
         warnings.push_back(words_.place() + in_quotes(word) +
                            " is no word of a PLY header, ignored");

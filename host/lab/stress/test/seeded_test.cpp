@@ -1,4 +1,4 @@
-// Every suite, the regressions and the public tests, a little: what `make stress` does for longer.
+// A short run of what `make stress` does: every suite, the regressions and the public tests.
 #include <gtest/gtest.h>
 
 #include <bit>

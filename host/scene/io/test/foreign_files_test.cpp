@@ -98,7 +98,7 @@ std::string with_spot(const std::string& light) {
 /// A triangle with a texture, two properties of its vertices and, unless that is empty, a list of
 /// six numbers of its face.
 std::string ply(const std::string& u, const std::string& v, const std::string& list) {
-  return "ply\nformat ascii 1.0\ncomment TextureFile maps/pic.tga\nelement vertex 3\n"
+  return "ply\nformat ascii 1.0\ncomment TextureFile maps/a pic.tga\nelement vertex 3\n"
          "property float x\nproperty float y\nproperty float z\nproperty float " +
          u + "\nproperty float " + v +
          "\nelement face 1\nproperty list uchar int vertex_indices\n" +
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(
         ForeignFile{"NanColourUsed", ".obj", obj("f 1 2 4\n", "v 0 0 1 1 nan x\n"), "2 1 1 0",
                     ": 1 colours of vertices that are not finite numbers, taken as white"},
         ForeignFile{"TexturePly", ".ply", ply("s", "v", ""), "1 0 0 0",
-                    ": not read: texture 'maps/pic.tga', 's' of vertex, 'v' of vertex"},
+                    ": not read: texture 'maps/a pic.tga', 's' of vertex, 'v' of vertex"},
         ForeignFile{"NanNormalGltf", ".glb", gltf("", R"([{"mesh": 0}])", 48, ""), "2 0 0 0",
                     "normal without a direction"},
         ForeignFile{"NanTexcoordGltf", ".glb",
