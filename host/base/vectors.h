@@ -102,8 +102,10 @@ template <class Body>
 /// not take or return vectors by value.
 template <class Body>
 auto in_vectors(const Body& body) {
+  // Asked in baseline builds, too: it refuses a wrong RAYGATE_VECTORS.
+  [[maybe_unused]] const Vectors vectors = vectors_in_use();
 #ifdef RAYGATE_AVX2
-  if (vectors_in_use() == Vectors::kAvx2) return detail::in_avx2(body);
+  if (vectors == Vectors::kAvx2) return detail::in_avx2(body);
 #endif
   return detail::in_baseline(body);
 }
