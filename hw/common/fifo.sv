@@ -1,14 +1,15 @@
-// First-in first-out queue of Depth words.
+// First-in first-out queue of Depth words, in registers or, with Memory, in a memory with a clock (ram).
 //
-// A word pushed at one clock edge is at data_o after it; throughput one word a clock. push_i is the
-// writer's promise that a word is free, pop_i the reader's that valid_o is high. space_o says that more
-// than Reserve words are free: with a Reserve of as many words as a writer may still push after it has
-// seen space_o fall, it is the writer's leave to begin. No combinational path from pop_i to space_o and
-// valid_o, which are registers.
+// A word pushed at one clock edge is at data_o after it; with Memory, where the queue was empty, a clock later: the first word
+// waits at the memory's output, the others in it. Throughput one word a clock. push_i is the writer's promise that a word is
+// free, pop_i the reader's that valid_o is high. space_o says that more than Reserve words are free: with a Reserve of as many
+// words as a writer may still push after it has seen space_o fall, it is the writer's leave to begin. No combinational path
+// from pop_i to space_o and valid_o, which are registers.
 module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 2,
-  parameter int unsigned Reserve = 0   // below Depth
+  parameter int unsigned Reserve = 0,  // below Depth
+  parameter bit          Memory  = 1'b0
 ) (
   input  logic             clk_i,
   input  logic             rst_ni,
@@ -28,9 +29,9 @@ module fifo #(
     $error("fifo: expected a Depth of 2 or more and a Reserve below it");
   end
 
-  logic [Width-1:0] words[Depth];
   logic [IndexWidth-1:0] write_q, read_q;
-  logic [CountWidth-1:0] count_q, count_d;
+  logic [CountWidth-1:0] count_q, count_d;  // with the one at the memory's output
+  logic read, valid_d;
 
   always_comb begin
     count_d = count_q;
@@ -47,15 +48,37 @@ module fifo #(
       space_o <= 1'b1;
     end else begin
       if (push_i) write_q <= (write_q == Last) ? '0 : write_q + 1'b1;
-      if (pop_i) read_q <= (read_q == Last) ? '0 : read_q + 1'b1;
+      if (read) read_q <= (read_q == Last) ? '0 : read_q + 1'b1;
       count_q <= count_d;
-      valid_o <= count_d != '0;
+      valid_o <= valid_d;
       space_o <= count_d < CountWidth'(Depth - Reserve);
     end
   end
 
-  always_ff @(posedge clk_i) if (push_i) words[write_q] <= data_i;
+  if (Memory) begin : gen_memory
+    assign read    = (count_q != CountWidth'(valid_o)) & (~valid_o | pop_i);
+    assign valid_d = read | (valid_o & ~pop_i);
 
-  assign data_o = words[read_q];
+    ram #(
+      .Width(Width),
+      .Depth(Depth)
+    ) u_words (
+      .clk_i,
+      .write_i(push_i),
+      .write_address_i(write_q),
+      .data_i,
+      .read_i(read),
+      .read_address_i(read_q),
+      .data_o
+    );
+  end else begin : gen_registers
+    logic [Width-1:0] words[Depth];
+
+    assign read    = pop_i;
+    assign valid_d = count_d != '0;
+    assign data_o  = words[read_q];
+
+    always_ff @(posedge clk_i) if (push_i) words[write_q] <= data_i;
+  end
 
 endmodule

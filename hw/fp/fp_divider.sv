@@ -55,22 +55,12 @@ module fp_divider #(
   fp_unpack #(
     .ExpWidth(ExpWidth),
     .FracWidth(FracWidth)
-  ) u_unpack_a (
-    .packed_i(a_i),
-    .sign_o(a_sign),
-    .exponent_o(a_exp),
-    .significand_o(a_sig),
-    .class_o(a_class)
-  );
-  fp_unpack #(
-    .ExpWidth(ExpWidth),
-    .FracWidth(FracWidth)
-  ) u_unpack_b (
-    .packed_i(b_i),
-    .sign_o(b_sign),
-    .exponent_o(b_exp),
-    .significand_o(b_sig),
-    .class_o(b_class)
+  ) u_unpack (
+    .packed_i({b_i, a_i}),
+    .sign_o({b_sign, a_sign}),
+    .exponent_o({b_exp, a_exp}),
+    .significand_o({b_sig, a_sig}),
+    .class_o({b_class, a_class})
   );
 
   // ---- Normalise

@@ -1,4 +1,4 @@
-// Takes one IEEE number apart: fields, hidden bit, class.
+// Takes the two operands of an operation apart, IEEE numbers: fields, hidden bits, classes.
 //
 // value = (-1)**sign_o * significand_o / 2**FracWidth * 2**(exponent_o - bias) for every finite
 // number: a subnormal or zero has hidden bit 0 and the exponent of the smallest normal one, and is
@@ -10,35 +10,38 @@ module fp_unpack #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23
 ) (
-  input  logic [ExpWidth+FracWidth:0] packed_i,
-  output logic                        sign_o,
-  output logic [ExpWidth-1:0]         exponent_o,      // biased, 1 or more
-  output logic [FracWidth:0]          significand_o,   // one integer bit
-  output fp_pkg::class_t              class_o
+  input  logic           [1:0][ExpWidth+FracWidth:0] packed_i,
+  output logic           [1:0]                       sign_o,
+  output logic           [1:0][ExpWidth-1:0]         exponent_o,     // biased, 1 or more
+  output logic           [1:0][FracWidth:0]          significand_o,  // one integer bit
+  output fp_pkg::class_t [1:0]                       class_o
 );
 
-  logic [ExpWidth-1:0] field;
-  logic [FracWidth-1:0] fraction;
-  logic field_zero, field_ones, fraction_zero, special;
+  for (genvar n = 0; n < 2; n++) begin : gen_operand
+    logic [ExpWidth-1:0] field;
+    logic [FracWidth-1:0] fraction;
+    logic field_zero, field_ones, fraction_zero;
+    fp_pkg::class_t kind;
 
-  assign {sign_o, field, fraction} = packed_i;
-  assign field_zero = field == '0;
-  assign field_ones = &field;
-  assign fraction_zero = fraction == '0;
+    assign {sign_o[n], field, fraction} = packed_i[n];
+    assign field_zero = field == '0;
+    assign field_ones = &field;
+    assign fraction_zero = fraction == '0;
 
-  assign exponent_o = {field[ExpWidth-1:1], field[0] | field_zero};
-  assign significand_o = {~field_zero, fraction};
-  assign special = field_ones | (packed_i[ExpWidth+FracWidth-1:0] == '0);
+    assign exponent_o[n] = {field[ExpWidth-1:1], field[0] | field_zero};
+    assign significand_o[n] = {~field_zero, fraction};
 
-  always_comb begin
-    class_o = '0;
-    if (special) begin
-      class_o.special = 1'b1;
-      class_o.zero = field_zero;
-      class_o.infinity = field_ones & fraction_zero;
-      class_o.nan = field_ones & ~fraction_zero;
-      class_o.signaling_nan = field_ones & ~fraction_zero & ~fraction[FracWidth-1];
+    always_comb begin
+      kind = '0;
+      kind.special = field_ones | (field_zero & fraction_zero);
+      if (kind.special) begin
+        kind.zero = field_zero;
+        kind.infinity = field_ones & fraction_zero;
+        kind.nan = field_ones & ~fraction_zero;
+        kind.signaling_nan = field_ones & ~fraction_zero & ~fraction[FracWidth-1];
+      end
     end
+    assign class_o[n] = kind;
   end
 
 endmodule

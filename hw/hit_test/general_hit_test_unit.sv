@@ -84,10 +84,6 @@ module general_hit_test_unit #(
   assign coordinate = move ? vector_4_q : vector_6_q;
   assign addend = move ? vector_1_q : accumulator_q;
 
-  fp_pkg::flags_t multiplier_flags, adder_flags, divider_flags;
-  logic unused_flags;
-  assign unused_flags = ^{multiplier_flags, adder_flags, divider_flags};
-
   fp_multiplier #(
     .ExpWidth   (ExpWidth),
     .FracWidth  (FracWidth),
@@ -100,7 +96,7 @@ module general_hit_test_unit #(
     .rounding_mode_i (RoundingMode),
     .tininess_after_i(1'b1),
     .result_o        (product),
-    .flags_o         (multiplier_flags)
+    .flags_o         ()
   );
 
   fp_adder #(
@@ -115,7 +111,7 @@ module general_hit_test_unit #(
     .rounding_mode_i (RoundingMode),
     .tininess_after_i(1'b1),
     .result_o        (sum),
-    .flags_o         (adder_flags)
+    .flags_o         ()
   );
 
   fp_divider #(
@@ -131,7 +127,7 @@ module general_hit_test_unit #(
     .rounding_mode_i (RoundingMode),
     .tininess_after_i(1'b1),
     .result_o        (quotient),
-    .flags_o         (divider_flags)
+    .flags_o         ()
   );
 
   always_ff @(posedge clk_i) begin

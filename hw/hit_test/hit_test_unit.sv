@@ -79,10 +79,6 @@ module hit_test_unit #(
   assign direction_in = accumulate ? direction_1_q : normal_q;
   assign factor = accumulate ? normal_q : d_q;
 
-  fp_pkg::flags_t multiplier_flags, adder_flags, divider_flags;
-  logic unused_flags;
-  assign unused_flags = ^{multiplier_flags, adder_flags, divider_flags};
-
   fp_multiplier #(
     .ExpWidth   (ExpWidth),
     .FracWidth  (FracWidth),
@@ -95,7 +91,7 @@ module hit_test_unit #(
     .rounding_mode_i (RoundingMode),
     .tininess_after_i(1'b1),
     .result_o        (product),
-    .flags_o         (multiplier_flags)
+    .flags_o         ()
   );
 
   fp_adder #(
@@ -110,7 +106,7 @@ module hit_test_unit #(
     .rounding_mode_i (RoundingMode),
     .tininess_after_i(1'b1),
     .result_o        (sum),
-    .flags_o         (adder_flags)
+    .flags_o         ()
   );
 
   fp_divider #(
@@ -126,7 +122,7 @@ module hit_test_unit #(
     .rounding_mode_i (RoundingMode),
     .tininess_after_i(1'b1),
     .result_o        (quotient),
-    .flags_o         (divider_flags)
+    .flags_o         ()
   );
 
   always_ff @(posedge clk_i) begin

@@ -214,9 +214,10 @@ module closest_hit
     end
   end
 
-  ram_fifo #(
+  fifo #(
     .Width(32 + 32),
-    .Depth(Exact ? 2 : Queue)
+    .Depth(Exact ? 2 : Queue),
+    .Memory(1'b1)
   ) u_doubts (
     .clk_i,
     .rst_ni,

@@ -79,9 +79,10 @@ module exact_resolver
   assign push    = open_i.valid;
   assign taken_o = pop;
 
-  ram_fifo #(
+  fifo #(
     .Width(RayWidth + 1 + AddressWidth),
-    .Depth(Queue)
+    .Depth(Queue),
+    .Memory(1'b1)
   ) u_doubts (
     .clk_i,
     .rst_ni,

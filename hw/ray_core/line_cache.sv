@@ -8,14 +8,14 @@
 //   ask      a request is taken; the tags of its set are read
 //   compare  which of them are the line's
 //   look up  a hit's line is read, a miss asks memory
-//   queue    hits wait for a clock in which no line comes from memory
+//   queue    hits wait for a clock in which no line from memory leaves
 //
 // A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken; where its
 // set has no way for it, or memory takes no request, it is forgotten. outstanding_o: one is on its way.
 //
-// A line from memory goes to all targets, one a clock, the latest first; then fill_done_o, and the line, offered
-// until then, may go. Lines leave in any order, one a clock, each with the ray that asked; those from memory
-// first, while hits wait in a queue and requests are looked up as before.
+// A line from memory is offered until fill_done_o. In its first clock it is written and its latest target looked up; from the
+// next one on it goes to all its targets, one a clock, the latest first. Lines leave in any order, one a clock, each with the
+// ray that asked; hits wait in a queue meanwhile, and requests are looked up as before.
 //
 // A line that comes with an error goes to its targets, error_o, and is not kept.
 //
@@ -53,7 +53,7 @@ module line_cache
   input  logic                    fill_error_i,
   // answers
   output logic                    valid_o,
-  input  logic                    ready_i,  // else nothing leaves, and fill_i must be low
+  input  logic                    ready_i,  // else nothing leaves
   output logic [RayWidth-1:0]     ray_o,
   output logic [Width-1:0]        line_o,
   output logic                    error_o
@@ -194,14 +194,13 @@ module line_cache
   // ---- Targets: lists of requests that wait, one for each entry
 
   logic [Targets-1:0] free_q;
-  logic [TargetWidth-1:0] target, current;
-  logic [TargetWidth:0] current_q;
+  logic [TargetWidth-1:0] target, current_q;
   logic [TargetWidth:0] nexts[Targets];  // {another came before that one, the one before}
   logic [TargetWidth:0] heads[Lines];  // {there is one, the latest}
   logic [Lines-1:0] mores_q;  // another came before that one
   logic [TargetWidth:0] head, fill_head;
   logic [RayWidth-1:0] rays[Targets];
-  logic some_free, add_target, draining_q, somebody, more;
+  logic some_free, add_target, draining_q, more_q, give;
   logic room;  // for one more hit, below
 
   rr_arbiter #(
@@ -241,11 +240,9 @@ module line_cache
   // ---- A line comes, and goes to all its targets
 
   assign arrive      = fill_i & ~draining_q;
+  assign give        = draining_q & ready_i;
   assign fill_head   = heads[fill_entry_i];
-  assign somebody    = draining_q | fill_head[TargetWidth];
-  assign {more, current} =
-      draining_q ? current_q : {mores_q[fill_entry_i], fill_head[TargetWidth-1:0]};
-  assign fill_done_o = fill_i & ~more;
+  assign fill_done_o = arrive ? ~fill_head[TargetWidth] : give & ~more_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -257,22 +254,26 @@ module line_cache
       if (arrive) begin
         valid_q[fill_entry_i]   <= ~fill_error_i;
         pending_q[fill_entry_i] <= 1'b0;
+        draining_q              <= fill_head[TargetWidth];
+      end
+      if (give) begin
+        free_q[current_q] <= 1'b1;
+        draining_q        <= more_q;
       end
       if (allocate) begin
         valid_q[entry]   <= 1'b0;
         pending_q[entry] <= 1'b1;
       end
       if (invalidate_i) valid_q <= '0;
-      if (fill_i) draining_q <= more;
-      if (fill_i && somebody) free_q[current] <= 1'b1;
       if (add_target) free_q[target] <= 1'b0;
     end
   end
   always_ff @(posedge clk_i) begin
-    if (fill_i) current_q <= nexts[current];
+    if (arrive) {more_q, current_q} <= {mores_q[fill_entry_i], fill_head[TargetWidth-1:0]};
+    else if (give) {more_q, current_q} <= nexts[current_q];
   end
 
-  // ---- Hits wait for a clock in which no line comes from memory
+  // ---- Hits wait for a clock in which no line from memory leaves
 
   logic read_hit, hit_q, queued, leaves;
   logic [RayWidth-1:0] hit_ray_q, queued_ray;
@@ -298,10 +299,11 @@ module line_cache
     .read_address_i(entry),
     .data_o(hit_line)
   );
-  ram_fifo #(
+  fifo #(
     .Width(RayWidth + Width),
     .Depth(16),
-    .Reserve(1)
+    .Reserve(1),
+    .Memory(1'b1)
   ) u_hits (
     .clk_i,
     .rst_ni,
@@ -313,10 +315,10 @@ module line_cache
     .data_o({queued_ray, queued_line})
   );
 
-  assign leaves  = queued & ready_i & ~fill_i;
-  assign valid_o = (fill_i & somebody) | leaves;
-  assign ray_o   = fill_i ? rays[current] : queued_ray;
-  assign line_o  = fill_i ? fill_line_i : queued_line;
-  assign error_o = fill_i & fill_error_i;
+  assign leaves  = queued & ready_i & ~draining_q;
+  assign valid_o = give | leaves;
+  assign ray_o   = draining_q ? rays[current_q] : queued_ray;
+  assign line_o  = draining_q ? fill_line_i : queued_line;
+  assign error_o = draining_q & fill_error_i;
 
 endmodule

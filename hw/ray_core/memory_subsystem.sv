@@ -69,9 +69,10 @@ module memory_subsystem
   logic prefetch_valid, prefetch_fire, prefetch_space;
   logic [AddressWidth-1:0] prefetch_line;
 
-  ram_fifo #(
+  fifo #(
     .Width(RequestWidth),
-    .Depth(Rays)
+    .Depth(Rays),
+    .Memory(1'b1)
   ) u_nodes (
     .clk_i,
     .rst_ni,
@@ -113,7 +114,7 @@ module memory_subsystem
 
   // ---- Caches
 
-  logic line_valid, line_error, line_done, fill, fill_triangle, node_done, triangle_done;
+  logic line_valid, line_error, line_done, fill_triangle, node_done, triangle_done;
   logic [EntryWidth-1:0] fill_entry;
   logic [LineWidth-1:0] line;
   logic [AddressWidth-1:0] node_number, triangle_number;
@@ -137,7 +138,6 @@ module memory_subsystem
     .data_o({line_error, fill_triangle, fill_entry, line})
   );
   assign prefetch_fire = prefetch_valid & ~node_valid & node_ready;
-  assign fill          = line_valid & step_o;
 
   if (Clocks == 1) begin : gen_always
     assign step_o = 1'b1;
@@ -169,7 +169,7 @@ module memory_subsystem
     .miss_ready_i(node_miss_ready),
     .miss_entry_o(node_entry),
     .miss_number_o(node_number),
-    .fill_i(fill & ~fill_triangle),
+    .fill_i(line_valid & ~fill_triangle),
     .fill_done_o(node_done),
     .fill_entry_i(fill_entry[$clog2(NodeLines)-1:0]),
     .fill_line_i(line),
@@ -199,7 +199,7 @@ module memory_subsystem
     .miss_ready_i(triangle_miss_ready),
     .miss_entry_o(triangle_entry),
     .miss_number_o(triangle_number),
-    .fill_i(fill & fill_triangle),
+    .fill_i(line_valid & fill_triangle),
     .fill_done_o(triangle_done),
     .fill_entry_i(fill_entry[$clog2(TriangleLines)-1:0]),
     .fill_line_i(line[KeptWidth-1:0]),
@@ -229,7 +229,7 @@ module memory_subsystem
   assign node_miss_ready     = out_ready & (~triangle_miss_valid | ~node_last_q);
   assign triangle_miss_ready = out_ready & ~(node_miss_valid & node_miss_ready);
   assign ask                 = out_ready & (node_miss_valid | triangle_miss_valid);
-  assign line_done           = fill & (fill_triangle ? triangle_done : node_done);
+  assign line_done           = node_done | triangle_done;
   assign outstanding_o       = (lines_q != '0) | ask_q | prefetch_valid | node_looking;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin

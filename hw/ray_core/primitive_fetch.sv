@@ -34,9 +34,10 @@ module primitive_fetch
 
   assign push = box_valid_i & (box_leaf_i != '0);
 
-  ram_fifo #(
+  fifo #(
     .Width(RayWidth + GroupWidth + Children),
-    .Depth(Rays)
+    .Depth(Rays),
+    .Memory(1'b1)
   ) u_groups (
     .clk_i,
     .rst_ni,

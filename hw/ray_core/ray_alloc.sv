@@ -124,9 +124,10 @@ module ray_alloc #(
 
   logic inverse_valid;
 
-  ram_fifo #(
+  fifo #(
     .Width(Width),
-    .Depth(Depth)
+    .Depth(Depth),
+    .Memory(1'b1)
   ) u_rays (
     .clk_i,
     .rst_ni,

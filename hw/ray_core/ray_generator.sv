@@ -175,10 +175,11 @@ module ray_generator #(
     .data_i({y_q, x_q}),
     .data_o(pixel)
   );
-  ram_fifo #(
+  fifo #(
     .Width(96 + 32),
     .Depth(2 * Latency),
-    .Reserve(Latency)
+    .Reserve(Latency),
+    .Memory(1'b1)
   ) u_rays (
     .clk_i,
     .rst_ni,

@@ -72,10 +72,11 @@ module ray_retire
     if (!rst_ni) known_q <= 1'b0;
     else known_q <= ending_o;
   end
-  ram_fifo #(
+  fifo #(
     .Width($bits(end_i) + 96),
     .Depth(Depth),
-    .Reserve(1)
+    .Reserve(1),
+    .Memory(1'b1)
   ) u_ends (
     .clk_i,
     .rst_ni,

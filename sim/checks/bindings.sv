@@ -6,19 +6,8 @@
 
 bind fifo fifo_checks #(
   .Depth(Depth),
-  .Reserve(Reserve)
-) u_fifo_checks (
-  .clk_i,
-  .rst_ni,
-  .push_i,
-  .space_o,
-  .pop_i,
-  .valid_o
-);
-bind ram_fifo fifo_checks #(
-  .Depth(Depth),
   .Reserve(Reserve),
-  .Late(1'b1)
+  .Late(Memory)
 ) u_fifo_checks (
   .clk_i,
   .rst_ni,

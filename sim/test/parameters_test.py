@@ -15,7 +15,6 @@ from synth import cores  # noqa: E402
 REFUSED = {
     "fifo": ["Depth=1", "Reserve=2"],
     "ram": ["Depth=1"],
-    "ram_fifo": ["Depth=1", "Reserve=64"],
     "rr_arbiter": ["Width=1"],
     "ray_retire": ["Rays=1", "Rays=48"],
     "line_cache": ["Lines=8", "Lines=48", "Targets=1"],

@@ -48,7 +48,7 @@ module cache_answers_once #(
   logic [Lines-1:0] line_valid, pending, mores;
   logic [1:0] free, rays;
   logic [3:0] nexts;
-  logic draining, draining_more, draining_target, target, current, somebody, leaves, room, queued;
+  logic draining, draining_more, draining_target, give, target, leaves, room, queued;
   logic [3:0] entry, read_q, write_q;
   logic [4:0] count;
   logic [Lines*Width-1:0] words;
@@ -86,10 +86,10 @@ module cache_answers_once #(
     .free_q(free),
     .mores_q(mores),
     .draining_q(draining),
-    .current_q({draining_more, draining_target}),
+    .more_q(draining_more),
+    .current_q(draining_target),
+    .give(give),
     .target(target),
-    .current(current),
-    .somebody(somebody),
     .leaves(leaves),
     .entry(entry),
     .room(room),
@@ -124,7 +124,7 @@ module cache_answers_once #(
     .heads(heads),
     .nexts(nexts),
     .rays(rays),
-    .u_hits_u_words_words(queue)
+    .u_hits_gen_memory_u_words_words(queue)
   );
 
   for (genvar p = 0; p < Lines; p++) begin : gen_tag
@@ -156,7 +156,8 @@ module cache_answers_once #(
   always_ff @(posedge clk) entry_q <= (fill && !draining) ? fill_entry : entry_q;
   always_comb begin
     if (reset_n) begin
-      assume (!fill || (ready && (draining ? fill_entry == entry_q : pending[fill_entry])));
+      assume (!fill || (draining ? fill_entry == entry_q : pending[fill_entry]));
+      assume (!draining || fill);
       assume (!fill || !comes || fill_error || fill_line == content);
       assume (!invalidate || (pending == '0 && !draining && !request_q && !compare_q));
     end else begin
@@ -172,7 +173,7 @@ module cache_answers_once #(
     if (adds_target && target) entry_1 <= entry;
   end
   logic [1:0] coming;  // its line is being given away: it is no longer in its entry's list
-  assign coming = {draining && draining_target, draining && !draining_target};
+  assign coming = {2{draining}} & {draining_target || draining_more, !draining_target || draining_more};
 
   // ---- The watched request
 
@@ -185,7 +186,7 @@ module cache_answers_once #(
 
   assign w_entry  = w_target ? entry_1 : entry_0;
   assign answered = state == Queued ? leaves && ahead == '0
-                  : state == Pending && fill && somebody && current == w_target;
+                  : state == Pending && give && draining_target == w_target;
 
   always_ff @(posedge clk) begin
     if (!reset_n) begin
@@ -284,8 +285,11 @@ module cache_answers_once #(
       if (!free[0]) assert (pending[entry_0] || coming[0]);
       if (!free[1]) assert (pending[entry_1] || coming[1]);
       if (draining) begin
-        assert (!free[draining_target] && !draining_more
-                && (draining_target ? entry_1 : entry_0) == entry_q);
+        assert (!free[draining_target] && (draining_target ? entry_1 : entry_0) == entry_q);
+        if (draining_more) begin
+          assert (!free[!draining_target] && (draining_target ? entry_0 : entry_1) == entry_q);
+          assert (nexts[2*draining_target+:2] == {1'b0, !draining_target});
+        end
       end
       // The queue of hits
       assert (count <= 5'(Depth) && room == (count < 5'(Depth - 1)) && write_q == read_q + count[3:0] - 4'(queued));
@@ -308,8 +312,8 @@ module cache_answers_once #(
       end
 
       cover (state == Queued && answered && count > 5'd2);
-      cover (state == Pending && draining && answered);
-      cover (state == Pending && !draining && answered && fill_done);
+      cover (state == Pending && answered && draining_more);
+      cover (state == Pending && answered && fill_done);
       cover (asked && line_valid[miss_entry]);
     end
   end

@@ -1,11 +1,12 @@
 // The FIFO, whatever is pushed and popped where that is allowed, from reset and for ever: it gives the words
-// in the order in which they came, each once; it never holds more than Depth words, says rightly
-// whether there are words and whether more than Reserve are free; its output, once valid, holds until
+// in the order in which they came, each once, with Memory from the second clock on after they came; it never holds more than
+// Depth words, says rightly whether there are words and whether more than Reserve are free; its output, once valid, holds until
 // it is taken.
 // opened_fifo is the FIFO with its registers as outputs, which the induction needs to know.
 module fifo_keeps_order #(
   parameter int unsigned Depth   = 5,
   parameter int unsigned Reserve = 2,
+  parameter bit          Memory  = 1'b0,
   localparam int unsigned Width      = 2,
   localparam int unsigned IndexWidth = $clog2(Depth),
   localparam int unsigned CountWidth = $clog2(Depth + 1)
@@ -27,25 +28,44 @@ module fifo_keeps_order #(
   logic [CountWidth-1:0] count_q;
   logic [Depth*Width-1:0] words;
 
-  opened_fifo dut (
-    .clk_i(clk),
-    .rst_ni(reset_n),
-    .push_i(push),
-    .data_i(data),
-    .space_o(space),
-    .pop_i(pop),
-    .valid_o(valid),
-    .data_o(word),
-    .write_q(write_q),
-    .read_q(read_q),
-    .count_q(count_q),
-    .words(words)
-  );
+  if (Memory) begin : gen_memory
+    opened_fifo dut (
+      .clk_i(clk),
+      .rst_ni(reset_n),
+      .push_i(push),
+      .data_i(data),
+      .space_o(space),
+      .pop_i(pop),
+      .valid_o(valid),
+      .data_o(word),
+      .write_q(write_q),
+      .read_q(read_q),
+      .count_q(count_q),
+      .gen_memory_u_words_words(words)
+    );
+  end else begin : gen_registers
+    opened_fifo dut (
+      .clk_i(clk),
+      .rst_ni(reset_n),
+      .push_i(push),
+      .data_i(data),
+      .space_o(space),
+      .pop_i(pop),
+      .valid_o(valid),
+      .data_o(word),
+      .write_q(write_q),
+      .read_q(read_q),
+      .count_q(count_q),
+      .gen_registers_words(words)
+    );
+  end
 
   localparam logic [CountWidth-1:0] Full = CountWidth'(Depth);
 
+  logic late;  // the last word was pushed in the clock before, and is not at the memory's output
   logic [CountWidth-1:0] count;  // words pushed and not popped
   always_ff @(posedge clk) begin
+    late <= Memory && reset_n && push;
     count <= reset_n ? count + CountWidth'(push) - CountWidth'(pop) : '0;
   end
 
@@ -82,27 +102,31 @@ module fifo_keeps_order #(
     word_before <= word;
   end
 
-  // Places modulo Depth
+  // Places modulo Depth, of the words that are not at a memory's output
+  logic at_output;
   logic [CountWidth:0] write_unwrapped, place_unwrapped;
-  assign write_unwrapped = (CountWidth + 1)'(read_q) + (CountWidth + 1)'(count);
-  assign place_unwrapped = (CountWidth + 1)'(read_q) + (CountWidth + 1)'(ahead);
+  assign at_output = Memory && valid;
+  assign write_unwrapped = (CountWidth + 1)'(read_q) + (CountWidth + 1)'(count) - (CountWidth + 1)'(at_output);
+  assign place_unwrapped = (CountWidth + 1)'(read_q) + (CountWidth + 1)'(ahead) - (CountWidth + 1)'(at_output);
 
   always_comb begin
     if (reset_n) begin
-      assert (valid == (count != '0));
+      assert (valid == (count != CountWidth'(late)));
       assert (space == (count < CountWidth'(Depth - Reserve)));
       if (waiting) assert (valid && word == word_before);
-      if (watching && ahead == '0) assert (valid && word == watched);
+      if (watching && ahead == '0 && valid) assert (word == watched);
 
       // Invariants
       assert (count <= Full && count_q == count);
       assert (read_q < Depth && write_q < Depth);
       assert (write_unwrapped
-              == (CountWidth + 1)'(write_q) + (write_q < read_q || count == Full ? Depth : 0));
+              == (CountWidth + 1)'(write_q) + (write_q < read_q || (!Memory && count == Full) ? Depth : 0));
       if (watching) begin
         assert (ahead < count && place < Depth);
-        assert (place_unwrapped == (CountWidth + 1)'(place) + (place < read_q ? Depth : 0));
-        assert (words[Width*place+:Width] == watched);
+        if (ahead != '0 || !at_output) begin
+          assert (place_unwrapped == (CountWidth + 1)'(place) + (place < read_q ? Depth : 0));
+          assert (words[Width*place+:Width] == watched);
+        end
       end
 
       cover (!space && pop);

@@ -99,7 +99,7 @@ class Memories(unittest.TestCase):
 
     def test_every_bit_of_a_kept_memory_is_timed(self):
         """A queue around a ram."""
-        self.check(catalogue.design("ram_fifo", Width=48, Depth=64), 64, 48, 6, 1)
+        self.check(catalogue.design("fifo", Width=48, Depth=64, Memory=1), 64, 48, 6, 1)
 
     def test_parts_of_a_word_have_an_enable_each(self):
         """As the tags of a cache's ways."""

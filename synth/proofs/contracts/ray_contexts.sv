@@ -89,11 +89,12 @@ module ray_contexts #(
 
 endmodule
 
-// A queue of which the highest bits of words are kept: unit.ram_fifo has shown that the real one keeps order.
-module ram_fifo #(
+// A queue of which the highest bits of words are kept: unit.fifo has shown that the real one keeps order.
+module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 64,
   parameter int unsigned Reserve = 0,
+  parameter bit          Memory  = 1'b0,
   localparam int unsigned CountWidth = $clog2(Depth + 1)
 ) (
   input  logic             clk_i,
@@ -120,7 +121,7 @@ module ram_fifo #(
       bits_q  <= '0;
     end else begin
       count_q <= count_d;
-      valid_o <= (count_q != CountWidth'(valid_o) & (~valid_o | pop_i)) | (valid_o & ~pop_i);
+      valid_o <= Memory ? (count_q != CountWidth'(valid_o) & (~valid_o | pop_i)) | (valid_o & ~pop_i) : count_d != '0;
       space_o <= count_d < CountWidth'(Depth - Reserve);
       bits_q  <= bits | (Depth'(push_i & data_i[Width-1]) << last);
     end
