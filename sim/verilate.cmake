@@ -157,7 +157,7 @@ function(raygate_sim_test NAME)
       add_test(NAME ${NAME}.random_reset_${seed}
         COMMAND ${NAME} --gtest_filter=${TEST_RANDOM_RESETS} --gtest_brief=1)
       set_tests_properties(${NAME}.random_reset_${seed} PROPERTIES
-        ENVIRONMENT "RAYGATE_RANDOM_RESET=${seed};RAYGATE_STRESS=100000" PASS_REGULAR_EXPRESSION "PASSED  . [1-9]")
+        ENVIRONMENT "RAYGATE_RANDOM_RESET=${seed};RAYGATE_STRESS=30000" PASS_REGULAR_EXPRESSION "PASSED  . [1-9]")
     endforeach()
   endif()
 endfunction()

@@ -13,8 +13,8 @@
 // A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken; where its
 // set has no way for it, or memory takes no request, it is forgotten. outstanding_o: one is on its way.
 //
-// A line from memory is offered until fill_done_o. In its first clock it is written and its latest target looked up; from the
-// next one on it goes to all its targets, one a clock, the latest first. Lines leave in any order, one a clock, each with the
+// A line from memory is taken when the one before has left, or leaves: it is written, and its latest target looked up. From the
+// next clock on it goes to all its targets, one a clock, the latest first. Lines leave in any order, one a clock, each with the
 // ray that asked; hits wait in a queue meanwhile, and requests are looked up as before.
 //
 // A line that comes with an error goes to its targets, error_o, and is not kept.
@@ -47,7 +47,7 @@ module line_cache
   output logic [AddressWidth-1:0] miss_number_o,
   // lines from memory
   input  logic                    fill_i,
-  output logic                    fill_done_o,
+  output logic                    fill_ready_o,
   input  logic [EntryWidth-1:0]   fill_entry_i,
   input  logic [Width-1:0]        fill_line_i,
   input  logic                    fill_error_i,
@@ -200,7 +200,8 @@ module line_cache
   logic [Lines-1:0] mores_q;  // another came before that one
   logic [TargetWidth:0] head, fill_head;
   logic [RayWidth-1:0] rays[Targets];
-  logic some_free, add_target, draining_q, more_q, give;
+  logic some_free, add_target, draining_q, more_q, give, error_q;
+  logic [Width-1:0] line_q;
   logic room;  // for one more hit, below
 
   rr_arbiter #(
@@ -239,10 +240,10 @@ module line_cache
 
   // ---- A line comes, and goes to all its targets
 
-  assign arrive      = fill_i & ~draining_q;
-  assign give        = draining_q & ready_i;
-  assign fill_head   = heads[fill_entry_i];
-  assign fill_done_o = arrive ? ~fill_head[TargetWidth] : give & ~more_q;
+  assign give         = draining_q & ready_i;
+  assign fill_ready_o = ~draining_q | (give & ~more_q);
+  assign arrive       = fill_i & fill_ready_o;
+  assign fill_head    = heads[fill_entry_i];
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -254,12 +255,9 @@ module line_cache
       if (arrive) begin
         valid_q[fill_entry_i]   <= ~fill_error_i;
         pending_q[fill_entry_i] <= 1'b0;
-        draining_q              <= fill_head[TargetWidth];
       end
-      if (give) begin
-        free_q[current_q] <= 1'b1;
-        draining_q        <= more_q;
-      end
+      if (fill_ready_o) draining_q <= arrive & fill_head[TargetWidth];
+      if (give) free_q[current_q] <= 1'b1;
       if (allocate) begin
         valid_q[entry]   <= 1'b0;
         pending_q[entry] <= 1'b1;
@@ -269,8 +267,12 @@ module line_cache
     end
   end
   always_ff @(posedge clk_i) begin
-    if (arrive) {more_q, current_q} <= {mores_q[fill_entry_i], fill_head[TargetWidth-1:0]};
-    else if (give) {more_q, current_q} <= nexts[current_q];
+    if (fill_ready_o) begin
+      {more_q, current_q} <= {mores_q[fill_entry_i], fill_head[TargetWidth-1:0]};
+      {error_q, line_q}   <= {fill_error_i, fill_line_i};
+    end else if (give) begin
+      {more_q, current_q} <= nexts[current_q];
+    end
   end
 
   // ---- Hits wait for a clock in which no line from memory leaves
@@ -318,7 +320,7 @@ module line_cache
   assign leaves  = queued & ready_i & ~draining_q;
   assign valid_o = give | leaves;
   assign ray_o   = draining_q ? rays[current_q] : queued_ray;
-  assign line_o  = draining_q ? fill_line_i : queued_line;
-  assign error_o = draining_q & fill_error_i;
+  assign line_o  = draining_q ? line_q : queued_line;
+  assign error_o = draining_q & error_q;
 
 endmodule

@@ -114,7 +114,8 @@ module memory_subsystem
 
   // ---- Caches
 
-  logic line_valid, line_error, line_done, fill_triangle, node_done, triangle_done;
+  logic line_valid, line_error, line_done, fill_triangle;
+  logic node_fill_ready, triangle_fill_ready;
   logic [EntryWidth-1:0] fill_entry;
   logic [LineWidth-1:0] line;
   logic [AddressWidth-1:0] node_number, triangle_number;
@@ -170,7 +171,7 @@ module memory_subsystem
     .miss_entry_o(node_entry),
     .miss_number_o(node_number),
     .fill_i(line_valid & ~fill_triangle),
-    .fill_done_o(node_done),
+    .fill_ready_o(node_fill_ready),
     .fill_entry_i(fill_entry[$clog2(NodeLines)-1:0]),
     .fill_line_i(line),
     .fill_error_i(line_error),
@@ -200,7 +201,7 @@ module memory_subsystem
     .miss_entry_o(triangle_entry),
     .miss_number_o(triangle_number),
     .fill_i(line_valid & fill_triangle),
-    .fill_done_o(triangle_done),
+    .fill_ready_o(triangle_fill_ready),
     .fill_entry_i(fill_entry[$clog2(TriangleLines)-1:0]),
     .fill_line_i(line[KeptWidth-1:0]),
     .fill_error_i(line_error),
@@ -229,7 +230,7 @@ module memory_subsystem
   assign node_miss_ready     = out_ready & (~triangle_miss_valid | ~node_last_q);
   assign triangle_miss_ready = out_ready & ~(node_miss_valid & node_miss_ready);
   assign ask                 = out_ready & (node_miss_valid | triangle_miss_valid);
-  assign line_done           = node_done | triangle_done;
+  assign line_done           = line_valid & (fill_triangle ? triangle_fill_ready : node_fill_ready);
   assign outstanding_o       = (lines_q != '0) | ask_q | prefetch_valid | node_looking;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin

@@ -41,10 +41,10 @@ module cache_answers_once #(
   logic [TagWidth-1:0] tag, compare_tag, changed_tag;
   logic [Ways*TagWidth-1:0] set_tags;
   logic [Width-1:0] hit_line;
-  logic miss, fill_done, answer, answer_ray, answer_error;
+  logic miss, fill_ready, answer, answer_ray, answer_error, error;
   logic [3:0] miss_entry;
   logic [AddressWidth-1:0] miss_number;
-  logic [Width-1:0] answer_line;
+  logic [Width-1:0] answer_line, line;  // line: that is given away
   logic [Lines-1:0] line_valid, pending, mores;
   logic [1:0] free, rays;
   logic [3:0] nexts;
@@ -72,7 +72,7 @@ module cache_answers_once #(
     .miss_entry_o(miss_entry),
     .miss_number_o(miss_number),
     .fill_i(fill),
-    .fill_done_o(fill_done),
+    .fill_ready_o(fill_ready),
     .fill_entry_i(fill_entry),
     .fill_line_i(fill_line),
     .fill_error_i(fill_error),
@@ -89,6 +89,8 @@ module cache_answers_once #(
     .more_q(draining_more),
     .current_q(draining_target),
     .give(give),
+    .line_q(line),
+    .error_q(error),
     .target(target),
     .leaves(leaves),
     .entry(entry),
@@ -142,23 +144,20 @@ module cache_answers_once #(
   // ---- Which places wait for the line `number`; whether the line that comes is that one
 
   logic [Lines-1:0] is_number;
-  logic came_q, comes;  // of the line that is being given away, and of this clock's
-  assign comes = draining ? came_q : is_number[fill_entry];
+  logic came_q;  // of the line that is being given away
+  logic [3:0] entry_q;  // likewise
 
   always_ff @(posedge clk) begin
     if (asked) is_number[miss_entry] <= miss_number == number;
-    came_q <= comes;
+    if (fill_ready) {came_q, entry_q} <= {is_number[fill_entry], fill_entry};
   end
 
   // ---- What the user promises
 
-  logic [3:0] entry_q;  // of the line that is being given away
-  always_ff @(posedge clk) entry_q <= (fill && !draining) ? fill_entry : entry_q;
   always_comb begin
     if (reset_n) begin
-      assume (!fill || (draining ? fill_entry == entry_q : pending[fill_entry]));
-      assume (!draining || fill);
-      assume (!fill || !comes || fill_error || fill_line == content);
+      assume (!fill || pending[fill_entry]);
+      assume (!fill || !is_number[fill_entry] || fill_error || fill_line == content);
       assume (!invalidate || (pending == '0 && !draining && !request_q && !compare_q));
     end else begin
       assume (!fill && !invalidate && !valid && !ready);
@@ -222,14 +221,13 @@ module cache_answers_once #(
     if (reset_n) begin
       if (state != Nowhere && answered) begin
         assert (answer && answer_ray == w_ray);
-        assert (answer_error ? state == Pending && fill_error : answer_line == content);
+        assert (answer_error ? state == Pending && error : answer_line == content);
       end
       if (answer) assert (outstanding != '0 && ready);
       assert (outstanding == count + 5'(hit_q) + 5'(request_q && demand_q)
                              + 5'(compare_q && compare_demand_q) + 5'(!free[0]) + 5'(!free[1]));
       // Its line does not go without it
-      if (state == Pending && fill_done && fill_entry == w_entry
-          && (draining ? coming[w_target] : !coming[w_target])) assert (answered);
+      if (state == Pending && coming[w_target] && fill_ready) assert (answered);
       if (state == Pending) assert (pending[w_entry] || coming[w_target]);
       if (asked) begin
         assert (!pending[miss_entry] && miss_number == looked_up && miss_entry[0] == set);
@@ -285,6 +283,7 @@ module cache_answers_once #(
       if (!free[0]) assert (pending[entry_0] || coming[0]);
       if (!free[1]) assert (pending[entry_1] || coming[1]);
       if (draining) begin
+        if (came_q && !error) assert (line == content);
         assert (!free[draining_target] && (draining_target ? entry_1 : entry_0) == entry_q);
         if (draining_more) begin
           assert (!free[!draining_target] && (draining_target ? entry_0 : entry_1) == entry_q);
@@ -313,7 +312,7 @@ module cache_answers_once #(
 
       cover (state == Queued && answered && count > 5'd2);
       cover (state == Pending && answered && draining_more);
-      cover (state == Pending && answered && fill_done);
+      cover (state == Pending && answered && fill_ready);
       cover (asked && line_valid[miss_entry]);
     end
   end
