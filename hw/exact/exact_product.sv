@@ -1,9 +1,9 @@
 // Product of two digits for the accumulator: a_i b_i, or its negative, as two words: sum_o + carry_o modulo 2**Width.
 //
-// a_i and b_i are in two's complement. Structural arithmetic is radix-4 Booth recoding of b_i (its upper half alone has no digit above
-// the sign) and a carry-save tree; the accumulator's adder is the only one. A row of DigitWidth + 1 bits, in two's complement,
-// is the same row with its top bit turned, less 2**DigitWidth: all those together are a constant, which shares a
-// row with the ones that complements lack. Combinational.
+// a_i and b_i are in two's complement. Structural arithmetic is radix-4 Booth recoding of b_i (without a digit above
+// the sign, which only an unsigned operand needs) and a carry-save tree; the accumulator has the only adder. A row of
+// DigitWidth + 1 bits in two's complement equals the row with its top bit inverted, less 2**DigitWidth. Together these
+// corrections are a constant, which shares a row with the ones that complete the complements. Combinational.
 module exact_product #(
   parameter int unsigned DigitWidth = 48,
   parameter int unsigned Width = 103,

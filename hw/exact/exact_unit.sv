@@ -7,15 +7,15 @@
 //          of the first component of its cross product that is not (the ray tilted towards +x, less towards +y, then +z)
 //   order  the sign of t - limit or t - t', for t = D / S, D = A . N, S = I . N: that of D S' - D' S, by those of D and D'
 //
-// All are sums of products of floats, and so whole numbers in units that the exponents give: exact_exponents has the
-// units, exact_program_pkg the programs, exact_product and exact_accumulator sum without rounding. Clocks, digits of 48 bits, from the
-// request to the answer, at most: hit 72, limit 56, order 98, hit and order 161, where the exponents are at most 21 apart
-// (one digit holds a difference); 3,686 whatever the words.
+// All are sums of products of floats, so whole numbers in units that the exponents give: exact_exponents has the units,
+// exact_program_pkg the programs; exact_product and exact_accumulator sum without rounding. Clocks from request to
+// answer with digits of 48 bits, at most: hit 72, limit 56, order 98, hit and order 161, if the exponents are at most 21
+// apart (a difference is one digit); 3,686 whatever the words.
 //
-// Coordinates are of magnitude 2**126 at most, the direction is not 0, all are finite; a limit is positive and finite. An
-// order is of hits: for others it is the sign of that formula. hit_i, against_i: what is asked. hit_o is high where it
-// was not asked; order_o is 0 then, and for what is not hit. One request at a time: ready_o is high between an answer
-// and the next request.
+// Coordinates are of magnitude 2**126 at most, the direction is not 0, all are finite; a limit is positive and finite.
+// An order is of hits: for others it is the sign of that formula. hit_i and against_i say what is asked. hit_o is high
+// if it was not asked; order_o is 0 then, and for what is not hit. One request at a time: ready_o is high between an
+// answer and the next request.
 module exact_unit
   import exact_pkg::*;
 #(

@@ -1,20 +1,20 @@
-// Closest hit of each ray: its nearest sure hit and t_max, its doubts, and how many of its tests are in flight.
+// Closest hit of each ray: its nearest certain hit and t_max, its doubts, and how many of its tests are in flight.
 //
-// Of a ray's sure hits the one whose upper bound of t is the smallest is kept; that bound is the ray's t_max. A hit
-// that is surely farther is forgotten. One that is neither nearer nor farther for sure leaves as a doubt, as does
-// the hit that it replaces and a test without a verdict. Distances are positive floats, ordered as integers; a
-// hit's may be off by 2**t_error units (set_up_pkg). At first t_max is the user's, so that a hit that may be
-// beyond it is a doubt. A ray that wants any hit ends with its first sure one.
+// A hit's t may be off by 2**t_error units (set_up_pkg), so it has an upper and a lower bound. Of a ray's certain hits
+// the one with the smallest upper bound is kept, and that bound becomes the ray's t_max; a hit whose lower bound is
+// beyond it is dropped. If the bounds overlap, neither hit is known to be nearer: the other one leaves as a doubt, as
+// does a test without a verdict. Distances are positive floats, which are ordered as integers. At first t_max is the
+// user's, so a hit that may lie beyond it is a doubt. A ray that wants any hit ends with its first certain one.
 //
-// Credits cover tests in flight, from test_i on, and doubts that wait: tests_allowed_o is low while all Queue are used. So tests
-// never wait for doubts to leave, and no line from memory does.
+// Credits count tests in flight, from test_i on, and doubts that wait: tests_allowed_o is low while all Queue are used.
+// So neither a test nor a line from memory ever waits for a doubt to leave.
 //
-// With Exact no doubt leaves: open_o tells exact_resolver of each in the clock in which its test is over. The one that turns
-// out to be the ray's nearest hit is tested again, settle_i: whatever the test says, it is kept, with t and P where that
-// is a sure hit, else with NoT. It is the ray's last test.
+// With Exact no doubt leaves: open_o passes each to exact_resolver in the clock in which its test ends. If one turns
+// out to be the ray's nearest hit, it is tested again with settle_i and kept whatever that test says, with t and P if
+// it is a certain hit, else with NoT. It is the ray's last test.
 //
-// A result is taken in each clock, and compared in the next one; a ray's tests are over when as many results have been
-// compared as test_i was high.
+// A result is taken in each clock and compared in the next one. A ray's tests are over when as many results have been
+// compared as there were clocks with test_i.
 module closest_hit
   import ray_core_pkg::*;
 #(

@@ -1,17 +1,18 @@
-// Resolver of doubts: what closest_hit leaves open of a ray exact_unit decides, so that no doubt leaves the core.
+// Resolver of doubts: asks exact_unit what closest_hit leaves open, so that no doubt leaves the core.
 //
-// Of a ray's doubts the nearest that it hits is kept, its candidate:
+// Of a ray's doubts it keeps the nearest that is hit, the candidate:
 //
-//   a doubt   does the ray hit it, unless that is sure, and if there is a candidate, is it nearer? Then it is the candidate
-//   settling  when nothing else of the ray is to be done: the candidate against closest_hit's nearest sure hit, or, where there is
-//             none, against the user's t_max. Where the candidate is nearer, its triangle is tested once more, for t and P
+//   a doubt   Does the ray hit it, unless that is certain, and is it nearer than the candidate, if there is one? Then
+//             it becomes the candidate.
+//   settling  When nothing else of the ray is left to do: is the candidate nearer than closest_hit's certain hit or, if
+//             there is none, than the user's t_max? Then its triangle is tested once more, for t and P.
 //
-// Of hits at the same t the one of lower rank is nearer. Corners come by line, as for tests. A question takes exact_unit's
-// clocks, eight more, and twice the way to the triangles' cache. Questions of a ray follow each other, those of several rays
-// are asked of Units exact_units. Doubts of a ray that has ended (ended_i) are dropped.
+// Of hits at the same t the one of lower rank is nearer. Corners are read by line, as for tests. A question takes the
+// clocks of exact_unit, eight more, and up to two reads through the triangle cache. A ray's questions follow each
+// other; those of different rays are spread over Units exact_units. Doubts of a ray that has ended are dropped.
 //
-// closest_hit's credits give every doubt room here, so that tests never wait for the resolver: it waits for lines that come
-// behind them.
+// closest_hit's credits give every doubt room here, so that tests never wait for the resolver: it waits for lines that
+// come behind them.
 module exact_resolver
   import ray_core_pkg::*;
 #(

@@ -1,25 +1,24 @@
 // Non-blocking cache of memory lines of one kind, nodes or triangles: eight ways, read only.
 //
-// The lowest bits of a line's number are its set. A hit gives its line in the next clock. A miss takes a way of its
-// set and asks memory for the line; every request for that line, until it has come, waits as a target of the one
-// miss. Where all ways of a set wait for other lines, the request waits. The victim of a set is the next way after
-// the one that was used last.
+// The lowest bits of a line's number are its set. A miss takes a way of its set and asks memory for the line. Until the
+// line comes, further requests for it join the miss as its targets. If all ways of the set wait for other lines, the
+// request waits. The victim is the way after the one that was used last.
 //
 //   ask      a request is taken; the tags of its set are read
 //   compare  which of them are the line's
 //   look up  a hit's line is read, a miss asks memory
 //   queue    hits wait for a clock in which no line from memory leaves
 //
-// A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken; where its
-// set has no way for it, or memory takes no request, it is forgotten. outstanding_o: one is on its way.
+// A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken, and is forgotten
+// if its set has no way for it or memory takes no request. outstanding_o: a prefetch is being looked up.
 //
-// A line from memory is taken when the one before has left, or leaves: it is written, and its latest target looked up. From the
-// next clock on it goes to all its targets, one a clock, the latest first. Lines leave in any order, one a clock, each with the
-// ray that asked; hits wait in a queue meanwhile, and requests are looked up as before.
+// A line from memory is taken when the one before has left or leaves: it is written, and its latest target looked up.
+// From the next clock on it goes to its targets, one a clock, the latest first. Lines leave in any order, one a clock,
+// each with the ray that asked; meanwhile hits wait in their queue, and requests are looked up as before.
 //
-// A line that comes with an error goes to its targets, error_o, and is not kept.
+// A line that comes with an error goes to its targets with error_o, and is not kept.
 //
-// invalidate_i, while no request and no line is on its way, empties the cache.
+// invalidate_i empties the cache; no request and no line may be on its way then.
 module line_cache
   import ray_core_pkg::*;
 #(

@@ -1,15 +1,16 @@
-// Memory port of the ray core: a cache of nodes, a cache of triangles, and the requests that they send to memory.
+// Memory port of the ray core: a cache of nodes, a cache of triangles, and the reads that they send to memory.
 //
-// A request to memory has an id, {is a triangle's, cache entry}; its line may come back at any time and in any
-// order. Both caches give a line in the same clock where both have one.
+// A read has an id, {is a triangle's, cache entry}; its line may come back at any time and in any order. Both caches
+// can give a line in the same clock.
 //
-// A prefetched node (prefetch_i) is looked up in clocks without a request for a node; where too many of them wait,
-// it is forgotten. Its line may come when the last ray has long ended: memory must not change, nor the caches
-// be emptied, while outstanding_o.
+// A node to be prefetched (prefetch_i) is looked up in a clock in which no node is asked for, and forgotten if too many
+// wait. Its line may come after the last ray has ended: while outstanding_o is high, memory must not change and the
+// caches must not be emptied.
 //
-// Lines leave with step_o, which is high in one of Clocks clocks, and wait for nothing else: line_ready_o depends on no result.
+// Lines leave with step_o, which is high in one of Clocks clocks, and wait for nothing else: line_ready_o does not
+// depend on results.
 //
-// A line with an error is given to the rays that wait for it, and read again for the next.
+// A line with an error goes to the rays that wait for it and is not kept.
 module memory_subsystem
   import ray_core_pkg::*;
 #(

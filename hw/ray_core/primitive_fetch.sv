@@ -1,7 +1,7 @@
 // Fetch of primitives: asks for the triangles of the leaves that a ray enters, one a clock, near leaves first.
 //
-// Groups of leaves are served one at a time, in the order in which they came; a ray has at most one. Where a leaf
-// is beyond its ray's t_max by then, it and the leaves behind it are dropped: they are no nearer.
+// Groups of leaves are served one at a time, in the order in which they came; a ray has at most one. If a leaf lies
+// beyond its ray's t_max when its turn comes, it and the leaves behind it are dropped, as they are no nearer.
 module primitive_fetch
   import ray_core_pkg::*;
 #(

@@ -1,18 +1,24 @@
-// Ray core: rays in, nearest hits out, or, without Exact, nearest sure hits and doubts; it traverses a tree in memory.
+// Ray core: traces rays through a tree of boxes in memory. Rays go in; out come their nearest hits or, without Exact,
+// their nearest certain hits and the tests that binary32 could not decide (doubts).
 //
-//   ray_alloc         gives a ray a context, once its reciprocals are there     ray_retire       notices that it has ended
-//   traversal         its stack, and which ray goes to its next node            box_unit         the children that it enters
-//   primitive_fetch   the triangles of the leaves that it enters                triangle_test    hit, miss or doubt
-//   closest_hit       its nearest hit and t_max, its doubts                     exact_resolver   what doubts mean for it
-//   memory_subsystem  the lines of nodes and triangles                          ray_errors       why not to believe its hits
+//   ray_alloc         computes a ray's reciprocals and gives it a context     ray_retire      detects that it has ended
+//   traversal         its stack; picks the ray that visits its next node      box_unit        which children it enters
+//   primitive_fetch   asks for the triangles of the leaves it enters          triangle_test   hit, miss or doubt
+//   closest_hit       its nearest hit and t_max, its doubts                   exact_resolver  decides the doubts
+//   memory_subsystem  the caches of nodes and triangles                       ray_errors      why a ray has failed
 //
-// Rays and results: valid/ready. A ray's direction is scaled: the largest component is in [1, 2). Hits at t >= `t_max`, in exact arithmetic, and on triangles `skip_id`
-// and `source_id`, the one that it leaves, do not count. With `any_hit` it ends at its first sure hit, with `no_cull` it enters all boxes. Words about rays come
-// mixed, by tag, and rays end in any order: see result_e. With an error they say nothing, see error_e.
-// Memory: reads of lines by number, valid/ready, each with an id. Lines come back with it, in any order, valid/ready;
-// with line_error_i, not to be believed: it is read again for the next ray. Some are prefetched: outstanding_o may be high
-// when the last ray has ended. Memory may change, and invalidate_i be high, while no ray is here and outstanding_o is low.
-// Throughput: a node and a triangle in Clocks clocks, out of the caches; a line of what they lack.
+// Rays and results: valid/ready. A ray's direction must be scaled so that its largest component is in [1, 2). Hits at
+// t >= t_max (compared exactly), on triangle skip_id and on source_id, the triangle that the ray leaves, do not count.
+// With any_hit a ray ends at its first certain hit; with no_cull it enters every box. Results of different rays come
+// interleaved, each with its ray's tag, and rays end in any order: see result_e. The end of a ray with an error says
+// nothing else: see error_e.
+//
+// Memory: reads of lines by number, valid/ready, each with an id; lines come back with it in any order, valid/ready.
+// One with line_error_i fails the rays that wait for it, and is read again for the next ray. Nodes are also prefetched,
+// so outstanding_o may be high when the last ray has ended. Memory may change, and invalidate_i be high, only while no
+// ray is in the core and outstanding_o is low.
+//
+// Throughput: a node and a triangle in Clocks clocks if they are in the caches, a line a clock if not.
 module ray_core
   import ray_core_pkg::*;
 #(

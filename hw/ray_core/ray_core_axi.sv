@@ -1,15 +1,15 @@
-// Ray core on AXI: registers by AXI4-Lite, the scene by AXI4, rays as valid/ready, results by AXI4 or AXI4-Stream.
+// Ray core on AXI: registers by AXI4-Lite, the scene by AXI4, rays by valid/ready, results by AXI4 or AXI4-Stream.
 //
 //   csr                what to draw, counters, flags
 //   ray_generator      the rays of a rectangle; the tag of each is its pixel, {y, x}
 //   ray_core
 //   axi_read_manager   its memory port
-//   axi_write_manager  results to memory, where register `length` is not 0; else they leave by the stream
+//   axi_write_manager  results to memory if register `length` is not 0; else they leave by the stream
 //
-// AxPROT and AxCACHE are constant. By default accesses are non-secure, unprivileged, to data; memory is normal, not cacheable,
-// bufferable, so that bridges may merge beats. Writes have ID 0.
-// Rays of the user's (ray_*) wait while a rectangle is drawn or rays are given up. A generated ray has no t_max, skips no triangle,
-// and begins at the root. The rest as in those modules.
+// AxPROT and AxCACHE are constant. By default accesses are non-secure, unprivileged, to data; memory is normal, not
+// cacheable, bufferable, so bridges may merge beats. Writes have ID 0.
+// The user's rays (ray_*) wait while a rectangle is drawn or rays are given up. A generated ray has no t_max, skips no
+// triangle, and begins at the root. For the rest see those modules.
 module ray_core_axi
   import ray_core_pkg::*;
 #(

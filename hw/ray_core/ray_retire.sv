@@ -1,10 +1,10 @@
 // Exit of rays: detects that a ray has ended, and queues results.
 //
-// A ray has ended when it has no node, no leaf and no test left. Its context is free at once: its nearest hit waits
-// in a queue. A ray's doubts leave before its end. Fields of a result that say nothing are zero: a doubt has its tag and
-// triangle alone, an end without a hit no triangle, t, t_error or P.
+// A ray has ended when it has no node, no leaf, no test and no doubt left. Its context is free at once; its nearest hit
+// waits in a queue. A ray's doubts leave before its end. Fields that say nothing are zero: a doubt has only its tag and
+// triangle, an end without a hit no triangle, t, t_error or P.
 //
-// A ray ends a clock at most, a result leaves a clock.
+// Throughput: one ray ends and one result leaves in a clock.
 module ray_retire
   import ray_core_pkg::*;
 #(

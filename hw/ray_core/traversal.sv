@@ -1,24 +1,25 @@
-// Traversal of the tree: a short stack of nodes for each ray, and the choice of the ray that goes to its next node.
+// Traversal of the tree: a short stack of nodes for each ray, and the choice of the ray that visits its next node.
 //
-// A stack holds groups of children that a ray enters, the nearest group last; of a group those not yet visited. Each
-// clock one ray is picked that neither waits for a node nor has leaves pending. Groups whose nearest child is
-// beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for. Rays without
-// tests in flight come first: what they ask for is needed as far as anybody knows.
+// A stack entry is a group: the children of a node that a ray enters and has not visited yet, the nearest on top. In
+// each clock one ray is picked that waits neither for a node nor for its leaves to be asked for. Its groups whose
+// nearest child lies beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for.
+// Rays without tests in flight come first: what they ask for is needed for all that is known so far.
 //
-// A ray has Depth groups of its own. Levels - Depth more are shared: one ray at a time has them, on top of its own, from
-// when it asks for a node with its own stack full until it has room there again; overflow_o tells of each that takes them.
-// A ray that wants them meanwhile waits. The one that has them needs no other ray, so each gets them. Few rays do: of
-// shared groups only the topmost is looked at, and not dropped for t_max (box_unit leaves out what is inside).
+// Each ray has Depth groups of its own. Levels - Depth more are shared by all rays. One ray at a time holds them, on
+// top of its own, from when it asks for a node with its own stack full until there is room in its own again;
+// overflow_o tells of each ray that takes them. Others that need them wait; their holder needs no other ray to go on,
+// so each gets its turn. Few rays overflow, so of the shared groups only the topmost is looked at, and it is not
+// dropped for t_max: box_unit leaves out what lies beyond.
 //
-// A tree's ray enters each node once, and has a group at most for each node above the one that it enters. A ray that is about
-// to enter more than lines_i nodes, or has Levels groups, meets a node again: its stack is dropped, cycle_o says so.
+// In a tree a ray enters each node once, and has at most one group for each level. A ray that is about to enter more
+// than lines_i nodes, or has Levels groups, is in a cycle: its stack is dropped, and cycle_o says so.
 //
 //   gather   the rays that may be picked
 //   pick     one of them
-//   read     what is known of it: its groups, its t_max
-//   choose   its group
-//   fetch    the group
-//   ask      the node's line, out of the group; or, where there is none, a ray that starts (start_*) its first node
+//   read     its groups and its t_max
+//   choose   the group
+//   fetch    the group from memory
+//   ask      for the line of its nearest child; or, in a clock without one, for the root, for a ray that starts
 //
 // A ray that starts goes before those that have tests in flight.
 module traversal
