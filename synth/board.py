@@ -1,4 +1,4 @@
-"""Makes the bitstream of a board: `make fpga TOP=small_core BOARD=ulx3s`; boards/README.md says how to load it.
+"""Makes the bitstream of a board: `make fpga TOP=small_core BOARD=ulx3s`; synth/boards/README.md says how to load it.
 
 Yosys maps, nextpnr places and routes, ecppack packs. Each step is kept in build/synth/boards/BOARD under a hash of all
 that it depends on; what a step does is in its log there. A board that misses its clock has no bitstream.

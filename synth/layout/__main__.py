@@ -1,4 +1,4 @@
-"""`python3 -m synth.layout`: see `--help`, or synth/layout/README.md."""
+"""`python3 -m synth.layout`: see `--help`, or synth/README.md."""
 
 import argparse
 import dataclasses
