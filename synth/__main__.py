@@ -5,7 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import catalogue, chosen, float_peers, grading, measure, prove, report, store, tools, unit_delay
+from synth import catalogue, chosen, float_peers, grading, measure, prove, report, runner, store, tools, unit_delay
 
 
 def arguments() -> argparse.Namespace:
@@ -61,7 +61,7 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
             print("Proof: it adds, for all operands (SAT).")
         except tools.ToolFailed as error:
             failures.append(f"proof that it adds: {error}")
-    return report_failures(failures)
+    return runner.status(failures)
 
 
 def kept_structure(design: catalogue.Design) -> bool:
@@ -77,8 +77,6 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
         rows = [row for row in catalogue.report_rows() if row.design.top == "adder"]
     records, failures, measured = report.measured_tables(rows, targets)
     print(report.legend(records))
-    print("Critical paths of adders:\n")
-    print(*(report.chain(record) for record in records if record["top"] == "adder" and record["flow"] in ("cells", "fast")), "", sep="\n")
     sections = [("Clock rates", report.clock_table(records))]
     if given.top == "adders" or given.all:
         sections.append(("The paper's delay model", grading.model_table()))
@@ -89,36 +87,26 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"Took {used.ru_utime + used.ru_stime:.0f} s of processor time. Report: "
           f"{(store.OUT / 'report.md').relative_to(tools.ROOT)}" + "; ALL=1 measures everything." * (not given.all and not given.top))
-    return report_failures(failures)
+    return runner.status(failures)
 
 
-def report_failures(failures: list[str]) -> int:
-    """Says what failed; the exit status."""
-    for failure in failures:
-        print("failed:", failure, file=sys.stderr)
-    return 1 if failures else 0
-
-
+@tools.command("synth")
 def main() -> int:
-    """Runs the command line; 2 for what the user can mend."""
+    """Runs the command line."""
     given = arguments()
-    try:
-        if given.publish and (given.top or not given.all or given.liberty or given.targets):
-            raise ValueError("PUBLISH=1: expected the whole report, ALL=1 without TOP, LIBERTY and TARGETS")
-        one = chosen.design(given) if given.top and given.top not in ("adders", "float_peers") else None
-        if given.liberty:
-            catalogue.LIBRARIES.append(catalogue.of_user(pathlib.Path(given.liberty)))
-        targets = measure.Targets(
-            measure.available(given.targets.split(",") if given.targets else None, bool(given.all or given.top == "adders"), bool(one)),
-            int(given.jobs))
-        if one:
-            return run_one(one, targets)
-        if given.top == "float_peers":
-            return float_peers.run([library for library in catalogue.LIBRARIES if library.name in targets.names])
-        return run_all(given, targets)
-    except (tools.MissingTool, FileNotFoundError, ValueError) as error:
-        print(f"synth: {error}", file=sys.stderr)
-        return 2
+    if given.publish and (given.top or not given.all or given.liberty or given.targets):
+        raise ValueError("PUBLISH=1: expected the whole report, ALL=1 without TOP, LIBERTY and TARGETS")
+    one = chosen.design(given) if given.top and given.top not in ("adders", "float_peers") else None
+    if given.liberty:
+        catalogue.LIBRARIES.append(catalogue.of_user(pathlib.Path(given.liberty)))
+    targets = measure.Targets(
+        measure.available(given.targets.split(",") if given.targets else None, bool(given.all or given.top == "adders"), bool(one)),
+        int(given.jobs))
+    if one:
+        return run_one(one, targets)
+    if given.top == "float_peers":
+        return float_peers.run([library for library in catalogue.LIBRARIES if library.name in targets.names])
+    return run_all(given, targets)
 
 
 if __name__ == "__main__":

@@ -70,6 +70,7 @@ def placed(board: Board, netlist: dict, folder: pathlib.Path, seed: int) -> dict
     return store.cached(folder, wanted, lambda: fpga.step("placing, routing", folder / "nextpnr.log", work))[0]
 
 
+@tools.command("fpga")
 def main() -> int:
     """1 where a clock is missed or a tool fails, 2 for what the user can mend."""
     parser = argparse.ArgumentParser(prog="synth.board", description="Makes a board's bitstream.")
@@ -77,25 +78,21 @@ def main() -> int:
     parser.add_argument("board")
     parser.add_argument("--seed", type=int, default=1, help="of the placement (%(default)s)")
     given = parser.parse_args()
-    try:
-        board = next((board for board in BOARDS if (board.name, board.holds) == (given.board, given.top)), None)
-        if board is None:
-            raise ValueError(f"TOP={given.top} BOARD={given.board}: expected one of "
-                             + ", ".join(f"TOP={board.holds} BOARD={board.name}" for board in BOARDS))
-        for tool in TOOLS:
-            tools.find(tool)
-        folder = board.out / f"seed-{given.seed}"
-        got = placed(board, mapped(board), folder, given.seed)
-        print(f"{got['mhz']} MHz, {got['luts']} LUTs, from {got['from']} to {got['to']}")
-        if got["mhz"] < board.mhz:
-            raise tools.ToolFailed(f"{board.name}: found {got['mhz']} MHz, expected {board.mhz}: another SEEDS= may do")
-        bitstream = (board.out / f"{board.holds}.bit").relative_to(tools.ROOT)
-        tools.run([TOOLS[1], "--compress", "--freq", "62.0", (folder / "board.config").relative_to(tools.ROOT), bitstream],
-                  folder / "ecppack.log")
-        print(f"bitstream: {bitstream}")
-    except (tools.MissingTool, tools.ToolFailed, ValueError) as error:
-        print(f"fpga: {error}", file=sys.stderr)
-        return 1 if isinstance(error, tools.ToolFailed) else 2
+    board = next((board for board in BOARDS if (board.name, board.holds) == (given.board, given.top)), None)
+    if board is None:
+        raise ValueError(f"TOP={given.top} BOARD={given.board}: expected one of "
+                         + ", ".join(f"TOP={board.holds} BOARD={board.name}" for board in BOARDS))
+    for tool in TOOLS:
+        tools.find(tool)
+    folder = board.out / f"seed-{given.seed}"
+    got = placed(board, mapped(board), folder, given.seed)
+    print(f"{got['mhz']} MHz, {got['luts']} LUTs, from {got['from']} to {got['to']}")
+    if got["mhz"] < board.mhz:
+        raise tools.ToolFailed(f"{board.name}: found {got['mhz']} MHz, expected {board.mhz}: another SEEDS= may do")
+    bitstream = (board.out / f"{board.holds}.bit").relative_to(tools.ROOT)
+    tools.run([TOOLS[1], "--compress", "--freq", "62.0", (folder / "board.config").relative_to(tools.ROOT), bitstream],
+              folder / "ecppack.log")
+    print(f"bitstream: {bitstream}")
     return 0
 
 

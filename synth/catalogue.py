@@ -147,6 +147,11 @@ def library(name: str) -> Library:
     return next(entry for entry in LIBRARIES if entry.name == name)
 
 
+def targets() -> dict[str, Library | Fpga]:
+    """All libraries and FPGAs by name, in the order of the report."""
+    return {target.name: target for target in [*LIBRARIES, *FPGAS]}
+
+
 ECP5_CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
 ICE40 = Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
              ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP", "ICESTORM_RAM"), 300)
@@ -267,10 +272,11 @@ class Row:
     design: Design
     flows: dict[str, tuple[str, ...]]  # by the target's name; an FPGA's only one is PLACED
 
-    def flows_on(self, library: Library) -> tuple[str, ...]:
-        """The flows on a library; a user's takes those of the first one that it has the cells for."""
-        flows = self.flows.get(library.name, self.flows.get("osu035", ()) if library.file else ())
-        return tuple(flow for flow in flows if flow != "cells" or library.structural)
+    def flows_on(self, target: Library | Fpga) -> tuple[str, ...]:
+        """The flows on a target; a user's library takes those of the first one that it has the cells for."""
+        is_users = isinstance(target, Library) and target.file
+        flows = self.flows.get(target.name, self.flows.get("osu035", ()) if is_users else ())
+        return tuple(flow for flow in flows if flow != "cells" or target.structural)
 
 
 PLACED = ("placed",)

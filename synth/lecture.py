@@ -261,8 +261,9 @@ def binary16(text: str) -> str:
     return text
 
 
+@tools.command("synth.lecture")
 def main() -> int:
-    """The command line; 2 for what the user can mend."""
+    """The command line."""
     parser = argparse.ArgumentParser(prog="synth.lecture", description="Draws adders with operands in them, as a page.")
     parser.add_argument("--width", type=chosen.whole(2, MOST_BITS), help="bits of the adders (12)")
     parser.add_argument("--groups", type=chosen.whole_numbers, help="the graded adder's groups, lowest first")
@@ -276,16 +277,11 @@ def main() -> int:
         setattr(given, name, int(getattr(given, name) or usual))
     out = store.OUT / "lecture.html"
     given.x, given.y = float(given.x or 1.5), float(given.y or -0.3)
-    try:
-        if max(given.a, given.b) >> given.width:
-            raise ValueError(f"found operands {given.a} and {given.b}, expected numbers of {given.width} bits")
-        if given.groups and sum(map(int, given.groups.split(","))) != given.width:
-            raise ValueError(f"found groups {given.groups}, expected {given.width} bits together")
-        out.parent.mkdir(parents=True, exist_ok=True)
-        store.replace(out, page(given))
-    except (tools.MissingTool, OSError, ValueError) as error:
-        print(f"synth.lecture: {error}", file=sys.stderr)
-        return 2
+    if max(given.a, given.b) >> given.width:
+        raise ValueError(f"found operands {given.a} and {given.b}, expected numbers of {given.width} bits")
+    if given.groups and sum(map(int, given.groups.split(","))) != given.width:
+        raise ValueError(f"found groups {given.groups}, expected {given.width} bits together")
+    store.replace(out, page(given))
     print(f"The page: {out.relative_to(pathlib.Path.cwd()) if out.is_relative_to(pathlib.Path.cwd()) else out}")
     return 0
 

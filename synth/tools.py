@@ -36,6 +36,20 @@ class ToolFailed(Exception):
     """A tool ended with an error; the message holds its line with ERROR, or else its last lines, and where its log is."""
 
 
+def command(name: str) -> Callable[[Callable[[], int]], Callable[[], int]]:
+    """Makes a `main` tell errors in one line, "NAME: error"; its exit status is then 2 for what the user can mend, 1 where a
+    tool failed."""
+    def wrap(main: Callable[[], int]) -> Callable[[], int]:
+        def run_main() -> int:
+            try:
+                return main()
+            except (MissingTool, ToolFailed, OSError, ValueError) as error:
+                print(f"{name}: {error}", file=sys.stderr)
+                return 1 if isinstance(error, ToolFailed) else 2
+        return run_main
+    return wrap
+
+
 class Refuted(ToolFailed):
     """The claim `claim` does not hold. `values`: the bits of each port in a counterexample, by name."""
 

@@ -8,7 +8,7 @@ import unittest
 from unittest import mock
 
 from synth import __main__ as program
-from synth import catalogue, liberty, mapping, measure, report, store
+from synth import catalogue, liberty, mapping, store
 
 # A library in femtofarads and picoseconds: as many cells as ABC and a register need.
 TABLE = 'values ("10, 100", "20, 110");'
@@ -91,8 +91,7 @@ class OfUser(unittest.TestCase):
         """One design, and of the report's rows the flows of OSU's cells."""
         said, libraries = io.StringIO(), list(catalogue.LIBRARIES)
         with (tempfile.TemporaryDirectory() as name, mock.patch.object(store, "OUT", pathlib.Path(name)),
-              mock.patch.object(catalogue, "LIBRARIES", libraries), mock.patch.object(measure, "LIBRARIES", libraries),
-              mock.patch.object(report, "LIBRARIES", libraries), contextlib.redirect_stdout(said)):
+              mock.patch.object(catalogue, "LIBRARIES", libraries), contextlib.redirect_stdout(said)):
             file = pathlib.Path(name) / "mine.lib"
             file.write_text(LIBRARY)
             with mock.patch("sys.argv", ["synth", "--liberty", str(file), "--top", "leading_zero_counter", "--width", "4"]):
