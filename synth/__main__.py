@@ -5,7 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import catalogue, chosen, float_peers, grading, measure, prove, report, runner, store, tools, unit_delay
+from synth import catalogue, chosen, float_peers, grading, measure, prove, report, runner, store, structure, tools
 
 
 def arguments() -> argparse.Namespace:
@@ -21,7 +21,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--all", help="1: every design on every target; else the first ones, in osu035")
     parser.add_argument("--publish", help="1: with --all, writes the report into synth/results, too")
     parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; of one design its standard cells if not given")
-    parser.add_argument("--jobs", type=chosen.whole(1, 1024), default="2", help="at once (%(default)s)")
+    parser.add_argument("--jobs", type=chosen.whole(1, 1024), default=2, help="at once (%(default)s)")
     return chosen.parse(parser)
 
 
@@ -51,10 +51,9 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
                    key=lambda record: record["delay_ns"])
         print(f"Critical path, {report.title(best['target'])}, {best['flow']}:\n")
         print(report.path_table(best))
-    if cells and kept_structure(design):
+    if cells and structure.hardware(module := structure.netlist(design))["gate"] == 0:  # else the model does not apply
         print("Full-adder delays: " + "; ".join(
-            f"{unit_delay.count(unit_delay.netlist(design), counting)['delay']:g} ({counting.title})"
-            for counting in unit_delay.COUNTINGS))
+            f"{structure.delay(module, counting):g} ({counting.title})" for counting in structure.COUNTINGS))
     if cells:
         try:
             prove.adds(design)
@@ -62,12 +61,6 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
         except tools.ToolFailed as error:
             failures.append(f"proof that it adds: {error}")
     return runner.status(failures)
-
-
-def kept_structure(design: catalogue.Design) -> bool:
-    """Whether the design is full adders and multiplexers alone, so that the model applies."""
-    module = unit_delay.netlist(design)
-    return unit_delay.count(module, unit_delay.COUNTINGS[0])["gates"] == 0
 
 
 def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
@@ -101,7 +94,7 @@ def main() -> int:
         catalogue.LIBRARIES.append(catalogue.of_user(pathlib.Path(given.liberty)))
     targets = measure.Targets(
         measure.available(given.targets.split(",") if given.targets else None, bool(given.all or given.top == "adders"), bool(one)),
-        int(given.jobs))
+        given.jobs)
     if one:
         return run_one(one, targets)
     if given.top == "float_peers":

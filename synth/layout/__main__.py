@@ -61,37 +61,27 @@ def arguments() -> argparse.Namespace:
         "them; the report is build/synth/layouts/report-*.md."))
     parser.add_argument("--top", help=f"{', '.join(SECTIONS)}, or a module of hw/; all sections if none")
     chosen.add_arguments(parser)
-    parser.add_argument("--targets", help="osu035 or osu018 (osu035)")
-    parser.add_argument("--flow", help="of a module (see synth/README.md; fast)")
-    parser.add_argument("--density", help="the share of the rows that cells of a module take (1)")
-    parser.add_argument("--aspect", help="the core's height by its width, of a module (0.75)")
-    parser.add_argument("--seeds", help="placements of each adder, of which the median counts (3)")
-    parser.add_argument("--jobs", help="at once (2)")
+    parser.add_argument("--targets", choices=[library.name for library in catalogue.LIBRARIES], default="osu035", help="(%(default)s)")
+    parser.add_argument("--flow", choices=catalogue.FLOWS, default="fast", help="of a module; see synth/README.md (%(default)s)")
+    parser.add_argument("--density", type=float, default=1, help="the share of the rows that cells of a module take (%(default)s)")
+    parser.add_argument("--aspect", type=float, default=0.75, help="the core's height by its width, of a module (%(default)s)")
+    parser.add_argument("--seeds", type=chosen.whole(1, 1000), help="placements of each adder, of which the median counts (3)")
+    parser.add_argument("--jobs", type=chosen.whole(1, 1024), default=2, help="at once (%(default)s)")
     parser.add_argument("--publish", help="1: all sections, and writes table and pictures into synth/results, too")
     return chosen.parse(parser)
 
 
 def wanted(given: argparse.Namespace) -> list[Row]:
     """The rows that the command line asks for."""
-    library = {entry.name: entry for entry in catalogue.LIBRARIES}.get(given.targets or "osu035")
-    if library is None:
-        raise ValueError(f"no library {given.targets}, expected one of "
-                         f"{', '.join(entry.name for entry in catalogue.LIBRARIES)}")
+    library = catalogue.library(given.targets)
     _ = library.lef, library.liberty  # before anything is made, and first what only some libraries have
-    return [dataclasses.replace(row, library=library) for row in _rows(given)]
-
-
-def _rows(given: argparse.Namespace) -> list[Row]:
-    seeds = int(given.seeds or 3)
+    if not 0 < given.density <= 1 or not 0 < given.aspect:
+        raise ValueError(f"density {given.density:g} and aspect {given.aspect:g}, expected 0 < density <= 1 and 0 < aspect")
     if given.top is None or given.top in SECTIONS:
-        return [row for section in SECTIONS if given.top in (None, section)
-                for row in section_rows(section, seeds)]
-    flow_name, density, aspect = given.flow or "fast", float(given.density or 1), float(given.aspect or 0.75)
-    if flow_name not in catalogue.FLOWS:
-        raise ValueError(f"no flow {flow_name}, expected one of {', '.join(catalogue.FLOWS)}")
-    if not 0 < density <= 1 or not 0 < aspect:
-        raise ValueError(f"density {density:g} and aspect {aspect:g}, expected 0 < density <= 1 and 0 < aspect")
-    return [Row(chosen.design(given), flow_name, density, aspect, int(given.seeds or 1))]
+        rows = [row for section in SECTIONS if given.top in (None, section) for row in section_rows(section, given.seeds or 3)]
+    else:
+        rows = [Row(chosen.design(given), given.flow, given.density, given.aspect, given.seeds or 1)]
+    return [dataclasses.replace(row, library=library) for row in rows]
 
 
 def measure(rows: list[Row], workers: int) -> tuple[list[dict], list[str]]:
@@ -149,15 +139,15 @@ def draw(got: dict) -> str:
 def main() -> int:
     """1 where a layout fails, 2 for what the user can mend."""
     given = arguments()
-    if given.publish and (given.top or given.targets):
+    if given.publish and (given.top or given.targets != "osu035"):
         raise ValueError("PUBLISH=1: expected all layouts, without TOP and TARGETS")
     yosys.folder()
     for tool in ("sta", "coloquinte", "qrouter", "magic"):
         tools.find(tool)
-    records, failures = measure(wanted(given), int(given.jobs or 2))
+    records, failures = measure(wanted(given), given.jobs)
     OUT.mkdir(parents=True, exist_ok=True)
     rows, pictures = table(records), [draw(got) for got in records]
-    report = OUT / f"report-{given.top or 'all'}-{given.targets or 'osu035'}.md"
+    report = OUT / f"report-{given.top or 'all'}-{given.targets}.md"
     text = tables.markdown(HEADS, rows)
     report.write_text("\n".join(["# Layouts\n", text, *(f"![{name}]({name}.png)\n" for name in pictures)]))
     if given.publish:

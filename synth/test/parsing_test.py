@@ -37,11 +37,11 @@ class Options(unittest.TestCase):
     """chosen.whole and chosen.whole_numbers."""
 
     def test_whole(self):
-        """What a Makefile passes as empty counts as not given; all else is looked at before anything runs."""
-        for check, right, wrong in ((chosen.whole(1, 9), ("", "1", "9"), ("0", "10", "nan", "2.5", "x")),
-                                    (chosen.whole_numbers, ("", "4", "4,5,7"), ("abc", "4,,5", "0", "1,-1", "256"))):
-            for text in right:
-                self.assertEqual(check(text), text)
+        """All is looked at before anything runs."""
+        for check, right, wrong in ((chosen.whole(1, 9), {"1": 1, "9": 9}, ("", "0", "10", "nan", "2.5", "x", "-1")),
+                                    (chosen.whole_numbers, {"4": [4], "4,5,7": [4, 5, 7]}, ("", "abc", "4,,5", "0", "1,-1", "256"))):
+            for text, value in right.items():
+                self.assertEqual(check(text), value)
             for text in wrong:
                 with self.assertRaises(argparse.ArgumentTypeError):
                     check(text)

@@ -6,7 +6,7 @@ import time
 import unittest
 from unittest import mock
 
-from synth import __main__ as main, catalogue, mapping, measure, prove, report, tables, tools
+from synth import __main__ as main, catalogue, mapping, measure, prove, report, structure, tables, tools
 
 
 class ClockTable(unittest.TestCase):
@@ -33,7 +33,7 @@ class Others(unittest.TestCase):
     def test_an_adder_has_rows_to_compare_with_on_every_target(self) -> None:
         measured = []
         with (mock.patch.object(measure, "measure", side_effect=lambda rows, *_, **__: measured.append(rows) or []),
-              mock.patch.object(prove, "adds"), mock.patch.object(main, "kept_structure", return_value=False),
+              mock.patch.object(prove, "adds"), mock.patch.object(structure, "netlist"), mock.patch.object(structure, "hardware", return_value={"gate": 1}),
               contextlib.redirect_stdout(io.StringIO())):
             main.run_one(catalogue.design("adder", adder="graded", widths=[4, 5], Width=9), measure.Targets(("osu035", "ice40")))
         self.assertEqual([[sorted(row.flows) for row in rows] for rows in measured], [[["ice40", "osu035"]] * 5] * 2)
