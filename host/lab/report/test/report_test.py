@@ -44,7 +44,6 @@ class Document(unittest.TestCase):
             self.assertEqual(document.save(file, [{"n": 1234, "what": "a, b"}, {"what": "none"}], "n :,", "what"), "[long.csv](long.csv)")
             self.assertEqual(file.read_text(), 'n,what\n1234,"a, b"\n,none\n')
 
-
     def test_lines_are_wrapped_but_for_tables(self):
         long = " ".join(["word"] * 40)
         page = document.wrap(f"# A\n\n{long}\nmore\n* {long}\n* b\n\n| {long} |\n\n\n\n![a](b)\n")
@@ -59,7 +58,6 @@ class Rows(unittest.TestCase):
                 for by, rate in (("raygate", 6.0), ("Embree 8", 10.0), ("Embree 4 16", 12.0), ("Embree 1 robust", 5.0))]
         (found,) = speed.values(rows, pathlib.Path())["over_best"]
         self.assertEqual((found["at"]["light"]["fast"], found["at"]["light"]["robust"]), ("0.50 ± 0.05", "1.20 ± 0.12"))
-
 
     def test_stress_fails_where_an_exact_subject_is_wrong(self):
         row = {"table": "stress", "suite": "a", "subject": "b", "subject_is": "", "suite_is": "", "exact": True, "simulated": False,
