@@ -68,17 +68,12 @@ def measured_figures() -> dict[str, list[str]]:
             for record in records}
 
 
-def example(text: str) -> str:
-    """The module of the text's first block of SystemVerilog."""
-    return re.search(r"```systemverilog\n(module .*?)```", text, re.S)[1]
-
-
 def lint(text: str) -> None:
-    """The example passes Verilator; raises ToolFailed where it doesn't."""
+    """The module of the text's first block of SystemVerilog passes Verilator; raises ToolFailed where it doesn't."""
+    module, top = re.search(r"```systemverilog\n(module (\w+).*?)```", text, re.S).groups()
     file = tools.ROOT / "build" / "datasheet" / "example.sv"
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(example(text))
-    top = re.search(r"module (\w+)", example(text))[1]
+    file.write_text(module)
     tools.run(["verilator", "--lint-only", "-Wall", "-Wno-DECLFILENAME", "-Wno-PINCONNECTEMPTY", "--top-module", top,
                *cores.files("hit_test"), file], file.with_suffix(".log"))
 

@@ -147,7 +147,8 @@ def main() -> int:
     results, failures = runner.run_all(
         [runner.Job(f"{design.name} {fpga.name} seed {seed}",
                     functools.partial(place, design, dataclasses.replace(fpga, seeds=(seed,))),
-                    lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz, from {got['from']} to {got['to']}")
+                    lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz, from {got['from']} to {got['to']}, "
+                               f"{got['wires']} of {got['logic'] + got['wires']:.1f} ns in wires")
          for (design, _, _, fpga), seed in jobs], 1)
     runs = [(unit, [result for (of, _), result in zip(jobs, results, strict=True) if of is unit and result]) for unit in units]
     text = table([(unit, mine) for unit, mine in runs if mine])

@@ -7,51 +7,40 @@ import shutil
 import sys
 
 from synth import catalogue, chosen, runner, store, tables, tools, yosys
-from synth.catalogue import Design, Library
+from synth.catalogue import Library
 from synth.layout import flow, picture
 
 OUT = store.OUT / "layouts"
 
 
-@dataclasses.dataclass(frozen=True)
-class Row:
-    """A design of the table: laid out once for each seed, of which the median counts."""
-
-    design: Design
-    how: str  # the flow
-    density: float
-    aspect: float
-    seeds: int = 1
-    routed: bool = True
-    library: Library = catalogue.library("osu035")
-
-    def jobs(self) -> list[flow.Job]:
-        """One for each seed."""
-        return [flow.Job(self.design, self.library, self.how, self.density, self.aspect, seed, self.routed)
-                for seed in range(1, self.seeds + 1)]
-
-
 SECTIONS = ("adders", "multipliers", "cores", "unit")
 
 
-def section_rows(section: str, seeds: int = 3) -> list[Row]:
+def of_seeds(job: flow.Job, seeds: int) -> list[flow.Job]:
+    """A row of the table: a job for each seed, of which the median counts."""
+    return [dataclasses.replace(job, seed=seed) for seed in range(1, seeds + 1)]
+
+
+def section_rows(section: str, library: Library, seeds: int = 3) -> list[list[flow.Job]]:
     """The rows of one of SECTIONS. `seeds`: of each adder; the others are large."""
     reported = catalogue.report_rows()
     designs = {row.design.name: row.design for row in reported}
     if section == "adders":
-        return [Row(row.design, how, 1.0, 0.75, seeds) for row in reported if row.section == "48-bit adders"
+        return [of_seeds(flow.Job(row.design, library, how), seeds) for row in reported if row.section == "48-bit adders"
                 for how in ("cells", "fast") if how in row.flows["osu035"]]
     if section == "multipliers":
         names = "booth-graded-ripple-groups", "booth-ripple", "booth-uniform", "booth-prefix", "multiplier-behavioural"
-        return [Row(designs[names[0]], "cells", *flow.SPARSE), *(Row(designs[name], "fast", *flow.SPARSE) for name in names)]
-    if section == "cores":
+        rows = [(designs[name], how, flow.SPARSE) for name, how in ((names[0], "cells"), *((name, "fast") for name in names))]
+    elif section == "cores":
         exponent, fraction = catalogue.FORMATS["binary16"]
         sparse = {"fp_adder": flow.SPARSE, "fp_multiplier": flow.SPARSER, "fp_divider": flow.SPARSE}
         small = [catalogue.design(top, f"{top.replace('_', '-')}-binary16", "graded", ExpWidth=exponent, FracWidth=fraction) for top in sparse]
-        return [*(Row(design, "modules", *flow.SPARSE) for design in small),
-                *(Row(designs[top.replace("_", "-")], "modules", *how) for top, how in sparse.items())]
-    # whether qrouter routes 18,000 nets has not been tried
-    return [Row(designs["hit_test_unit"], how, *flow.SPARSE, routed=False) for how in ("parts", "small")]
+        rows = [*((design, "modules", flow.SPARSE) for design in small),
+                *((designs[top.replace("_", "-")], "modules", how) for top, how in sparse.items())]
+    else:
+        rows = [(designs["hit_test_unit"], how, flow.SPARSE) for how in ("parts", "small")]
+    # Whether qrouter routes the unit's 18,000 nets has not been tried.
+    return [[flow.Job(design, library, how, *sparse, routed=section != "unit")] for design, how, sparse in rows]
 
 
 def arguments() -> argparse.Namespace:
@@ -71,27 +60,25 @@ def arguments() -> argparse.Namespace:
     return chosen.parse(parser)
 
 
-def wanted(given: argparse.Namespace) -> list[Row]:
+def wanted(given: argparse.Namespace) -> list[list[flow.Job]]:
     """The rows that the command line asks for."""
     library = catalogue.library(given.targets)
     _ = library.lef, library.liberty  # before anything is made, and first what only some libraries have
     if not 0 < given.density <= 1 or not 0 < given.aspect:
         raise ValueError(f"density {given.density:g} and aspect {given.aspect:g}, expected 0 < density <= 1 and 0 < aspect")
     if given.top is None or given.top in SECTIONS:
-        rows = [row for section in SECTIONS if given.top in (None, section) for row in section_rows(section, given.seeds or 3)]
-    else:
-        rows = [Row(chosen.design(given), given.flow, given.density, given.aspect, given.seeds or 1)]
-    return [dataclasses.replace(row, library=library) for row in rows]
+        return [row for section in SECTIONS if given.top in (None, section) for row in section_rows(section, library, given.seeds or 3)]
+    return [of_seeds(flow.Job(chosen.design(given), library, given.flow, given.density, given.aspect), given.seeds or 1)]
 
 
-def measure(rows: list[Row], workers: int) -> tuple[list[dict], list[str]]:
+def measure(rows: list[list[flow.Job]], workers: int) -> tuple[list[dict], list[str]]:
     """Makes all layouts; one record for each row whose layouts were made, of the median seed."""
-    jobs = [(row, job) for row in rows for job in row.jobs()]
-    results, failures = runner.run_all([runner.Job(
-        f"{job.design.name} {job.flow} seed {job.seed}", functools.partial(flow.make, job), told) for _, job in jobs], workers)
+    failures: list[str] = []
+    results = runner.run([runner.Job(f"{job.design.name} {job.flow} seed {job.seed}", functools.partial(flow.make, job), told)
+                          for row in rows for job in row], workers, failures)
     records = []
     for row in rows:
-        mine = [{"job": job, **result} for (of, job), result in zip(jobs, results, strict=True) if of is row and result]
+        mine = [{"job": job, **result} for job, result in zip(row, results) if result]
         routed = sorted((got for got in mine if got["failed"] == 0), key=lambda got: got["wires_ns"])
         if mine:
             records.append({**(routed[len(routed) // 2] if routed else mine[0]), "spread": [got["wires_ns"] for got in routed],
