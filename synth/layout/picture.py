@@ -5,9 +5,9 @@ import pathlib
 import re
 
 from matplotlib import collections as shapes
+from matplotlib import pyplot as plt
 
 from synth.catalogue import Design
-from synth.drawing import plt
 from synth.layout.netlist import Netlist
 from synth.layout.place import Placement
 from synth.layout.route import Wires
