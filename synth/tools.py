@@ -45,7 +45,8 @@ def command(name: str) -> Callable[[Callable[[], int]], Callable[[], int]]:
             try:
                 return main()
             except (MissingTool, ToolFailed, OSError, ValueError) as error:
-                print(f"{name}: {error}", file=sys.stderr)
+                said = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else error
+                print(f"{name}: {said}", file=sys.stderr)
                 return 1 if isinstance(error, ToolFailed) else 2
         return run_main
     return wrap
