@@ -138,7 +138,10 @@ def main() -> int:
     text = tables.markdown(HEADS, rows)
     report.write_text("\n".join(["# Layouts\n", text, *(f"![{name}]({name}.png)\n" for name in pictures)]))
     if given.publish:
-        (tables.RESULTS / "layout.csv").write_text(tables.comma_separated([dict(zip(HEADS, row)) for row in rows], HEADS))
+        for name, are_adders in (("adders", True), ("cores", False)):
+            mine = [dict(zip(HEADS, (str(cell).replace(",", "") for cell in row))) for got, row in zip(records, rows)
+                    if (got["job"].design.top == "adder") == are_adders]
+            (tables.RESULTS / f"layout-{name}.csv").write_text(tables.comma_separated(mine, HEADS))
         for name in pictures:
             published = tables.RESULTS / f"layout-{name.replace('-osu035', '')}.png"
             if published.exists():  # of the others none is shown
