@@ -54,7 +54,7 @@ def cost(record: dict | None) -> str:
 
 
 def measure(rows: list[Row], targets: Targets, failures: list[str], quiet: bool = False) -> Iterator[tuple[Row, list[dict]]]:
-    """Yields each row, when all of it is measured, with a record for each of its targets and flows that did not fail.
+    """Yields each row with its records, one for each target and flow that did not fail, once all its jobs have ended.
 
     `quiet`: without lines of progress."""
     todo = [(row, target, flow) for row in rows for name, target in catalogue.targets().items() if name in targets.names

@@ -11,8 +11,8 @@ from synth import tools
 
 @dataclasses.dataclass(frozen=True)
 class Job:
-    """Something to run. `work` returns its result and whether that was kept from an earlier run; `tell` makes a few words of
-    the result for the line of progress; without it there is none."""
+    """Something to run. `work` returns its result and whether that was kept from an earlier run. `tell` describes the result
+    in the line of progress; without it there is no line."""
 
     name: str
     work: Callable[[], tuple[dict, bool]]
@@ -20,7 +20,7 @@ class Job:
 
 
 def run(jobs: list[Job], workers: int, failures: list[str]) -> Iterator[dict | None]:
-    """Yields the result of each job, in their order, as soon as it is there; None where one failed, which `failures` then says.
+    """Yields the results in the order of `jobs`; None for a job that failed, whose error is appended to `failures`.
 
     A missing tool stops everything; a design that fails leaves the others running.
     """
@@ -50,7 +50,7 @@ def run_all(jobs: list[Job], workers: int) -> tuple[list[dict | None], list[str]
 
 
 def status(failures: list[str]) -> int:
-    """Says what failed; the exit status."""
+    """Prints the failures and returns the exit status."""
     for failure in failures:
         print("failed:", failure, file=sys.stderr)
     return 1 if failures else 0

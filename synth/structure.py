@@ -80,7 +80,8 @@ def in_order(module: dict, everything: bool = False) -> Iterator[dict]:
 
 
 def arrivals(module: dict, costs: dict[str, float], gate: float = 0) -> tuple[dict[object, float], dict[object, dict]]:
-    """Bit -> when it is there, in full-adder delays, and bit -> the cell that gives it. `costs` of cells by type, of others `gate`."""
+    """Returns the arrival time of each bit, in full-adder delays, and the cell that drives it. `costs`: of cells by type; `gate`: of
+    all other types."""
     arrival: dict[object, float] = {}
     giver: dict[object, dict] = {}
     for cell in in_order(module):

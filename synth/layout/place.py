@@ -30,7 +30,7 @@ class Site:
 
 @dataclasses.dataclass(frozen=True)
 class Placement:
-    """Where the cells and ports of a netlist are, by name; the core's width and height, um. Ports lie around the core."""
+    """The places of a netlist's cells and ports, by name; the core's width and height, um. Ports lie around the core."""
 
     netlist: Netlist
     technology: Technology
