@@ -168,5 +168,5 @@ endef
 space := $(subst x,,x x)
 goals := $(or $(MAKECMDGOALS),help)
 known := $(if $(given),$(shell awk -v RS= -v goals='$(subst $(space),|,$(goals:variant=variant card))' '$(words)' $(MAKEFILE_LIST) | \
-  grep -ohE '\b[A-Z][A-Z_0-9]+\b|\([A-Z]\)' | tr -d '()' | sort -u))
+  grep -ohE '\b[A-Z][A-Z_0-9]+\b|\b[A-Z]=' | tr -d '=' | sort -u))
 $(foreach name,$(filter-out $(known) JOBS SETUP UNITY CC CXX CFLAGS CXXFLAGS LDFLAGS -%,$(given)),$(error $(name): `make $(goals)` does not read it; `make` lists what targets read))

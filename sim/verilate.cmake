@@ -37,7 +37,7 @@ target_include_directories(verilated SYSTEM PUBLIC
   ${VERILATOR_INCLUDE} ${VERILATOR_INCLUDE}/vltstd)
 target_link_libraries(verilated PUBLIC Threads::Threads)
 # The code is Verilator's: no warnings, no sanitizers, and optimised in every kind of build.
-# (gcc's vectorising of neighbouring statements packs and unpacks more than it gains: sim/README.md.)
+# (gcc's vectorising of neighbouring statements packs and unpacks more than it gains.)
 set(RAYGATE_VERILATED_OPTIONS -w -O3 -fno-tree-slp-vectorize -fno-sanitize=all)
 target_compile_options(verilated PRIVATE ${RAYGATE_VERILATED_OPTIONS})
 set_target_properties(verilated PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)

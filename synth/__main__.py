@@ -5,7 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import catalogue, chosen, float_peers, grading, measure, prove, report, store, tools, unit_delay
+from synth import catalogue, chosen, float_peers, grading, measure, prove, report, runner, store, structure, tools
 
 
 def arguments() -> argparse.Namespace:
@@ -21,7 +21,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--all", help="1: every design on every target; else the first ones, in osu035")
     parser.add_argument("--publish", help="1: with --all, writes the report into synth/results, too")
     parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; of one design its standard cells if not given")
-    parser.add_argument("--jobs", type=chosen.whole(1, 1024), default="2", help="at once (%(default)s)")
+    parser.add_argument("--jobs", type=chosen.whole(1, 1024), default=2, help="at once (%(default)s)")
     return chosen.parse(parser)
 
 
@@ -51,23 +51,16 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
                    key=lambda record: record["delay_ns"])
         print(f"Critical path, {report.title(best['target'])}, {best['flow']}:\n")
         print(report.path_table(best))
-    if cells and kept_structure(design):
+    if cells and structure.hardware(module := structure.netlist(design))["gate"] == 0:  # else the model does not apply
         print("Full-adder delays: " + "; ".join(
-            f"{unit_delay.count(unit_delay.netlist(design), counting)['delay']:g} ({counting.title})"
-            for counting in unit_delay.COUNTINGS))
+            f"{structure.delay(module, counting):g} ({counting.title})" for counting in structure.COUNTINGS))
     if cells:
         try:
             prove.adds(design)
             print("Proof: it adds, for all operands (SAT).")
         except tools.ToolFailed as error:
             failures.append(f"proof that it adds: {error}")
-    return report_failures(failures)
-
-
-def kept_structure(design: catalogue.Design) -> bool:
-    """Whether the design is full adders and multiplexers alone, so that the model applies."""
-    module = unit_delay.netlist(design)
-    return unit_delay.count(module, unit_delay.COUNTINGS[0])["gates"] == 0
+    return runner.status(failures)
 
 
 def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
@@ -77,8 +70,6 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
         rows = [row for row in catalogue.report_rows() if row.design.top == "adder"]
     records, failures, measured = report.measured_tables(rows, targets)
     print(report.legend(records))
-    print("Critical paths of adders:\n")
-    print(*(report.chain(record) for record in records if record["top"] == "adder" and record["flow"] in ("cells", "fast")), "", sep="\n")
     sections = [("Clock rates", report.clock_table(records))]
     if given.top == "adders" or given.all:
         sections.append(("The paper's delay model", grading.model_table()))
@@ -89,36 +80,26 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"Took {used.ru_utime + used.ru_stime:.0f} s of processor time. Report: "
           f"{(store.OUT / 'report.md').relative_to(tools.ROOT)}" + "; ALL=1 measures everything." * (not given.all and not given.top))
-    return report_failures(failures)
+    return runner.status(failures)
 
 
-def report_failures(failures: list[str]) -> int:
-    """Says what failed; the exit status."""
-    for failure in failures:
-        print("failed:", failure, file=sys.stderr)
-    return 1 if failures else 0
-
-
+@tools.command("synth")
 def main() -> int:
-    """Runs the command line; 2 for what the user can mend."""
+    """Runs the command line."""
     given = arguments()
-    try:
-        if given.publish and (given.top or not given.all or given.liberty or given.targets):
-            raise ValueError("PUBLISH=1: expected the whole report, ALL=1 without TOP, LIBERTY and TARGETS")
-        one = chosen.design(given) if given.top and given.top not in ("adders", "float_peers") else None
-        if given.liberty:
-            catalogue.LIBRARIES.append(catalogue.of_user(pathlib.Path(given.liberty)))
-        targets = measure.Targets(
-            measure.available(given.targets.split(",") if given.targets else None, bool(given.all or given.top == "adders"), bool(one)),
-            int(given.jobs))
-        if one:
-            return run_one(one, targets)
-        if given.top == "float_peers":
-            return float_peers.run([library for library in catalogue.LIBRARIES if library.name in targets.names])
-        return run_all(given, targets)
-    except (tools.MissingTool, FileNotFoundError, ValueError) as error:
-        print(f"synth: {error}", file=sys.stderr)
-        return 2
+    if given.publish and (given.top or not given.all or given.liberty or given.targets):
+        raise ValueError("PUBLISH=1: expected the whole report, ALL=1 without TOP, LIBERTY and TARGETS")
+    one = chosen.design(given) if given.top and given.top not in ("adders", "float_peers") else None
+    if given.liberty:
+        catalogue.LIBRARIES.append(catalogue.of_user(pathlib.Path(given.liberty)))
+    targets = measure.Targets(
+        measure.available(given.targets.split(",") if given.targets else None, bool(given.all or given.top == "adders"), bool(one)),
+        given.jobs)
+    if one:
+        return run_one(one, targets)
+    if given.top == "float_peers":
+        return float_peers.run([library for library in catalogue.LIBRARIES if library.name in targets.names])
+    return run_all(given, targets)
 
 
 if __name__ == "__main__":

@@ -260,16 +260,13 @@ def judge(files: dict[str, str], unit: catalogue.Design) -> list[dict]:
     return rows
 
 
+@tools.command("error")
 def main() -> int:
     """Checks the files among words such as ADDER=my.sv; 2 where one is refused."""
     files = {word: name for word, _, name in (each.partition("=") for each in sys.argv[1:]) if name.endswith((".sv", ".v"))}
-    try:
-        for word in files.keys() - PLACES.keys():
-            raise ValueError(f"{word}={files[word]}: found a file, expected one of {', '.join(PLACES)} with it")
-        bring(files)
-    except (ValueError, tools.MissingTool) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
+    for word in files.keys() - PLACES.keys():
+        raise ValueError(f"{word}={files[word]}: found a file, expected one of {', '.join(PLACES)} with it")
+    bring(files)
     return 0
 
 

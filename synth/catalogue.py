@@ -76,11 +76,6 @@ class Library:
         return {"FAX1", "MUX2X1"} <= {cell.name for cell in liberty.read(self.liberty).of("cell")}
 
     @property
-    def volts(self) -> float:
-        """The supply that the library is characterised at."""
-        return liberty.read(self.liberty).number("nom_voltage")
-
-    @property
     def lef(self) -> pathlib.Path:
         """The cells' outlines and pins, and the metals."""
         return self._file("lef")
@@ -90,11 +85,6 @@ class Library:
         """magic's start-up file and the technology file that it names."""
         (technology,) = self.lef.parent.glob("*.tech")
         return self.lef.with_name(f"{self.name}.magicrc"), technology
-
-    @property
-    def models(self) -> pathlib.Path:
-        """The cells as Verilog, for simulation and proof."""
-        return self._file("v")
 
     def _file(self, suffix: str) -> pathlib.Path:
         if self.file and suffix == "lib":
@@ -134,6 +124,7 @@ class Fpga:
     wanted_mhz: int  # far above what is reached, so that the placer never rests
     seeds: tuple[int, ...] = (1, 2, 3)
     luts: str = ""  # options of Yosys: which LUTs to take
+    clock: str = ""  # of a board: the net whose rate counts; else the fastest counts
 
 
 LIBRARIES = [
@@ -145,6 +136,11 @@ LIBRARIES = [
 def library(name: str) -> Library:
     """The library of that name."""
     return next(entry for entry in LIBRARIES if entry.name == name)
+
+
+def targets() -> dict[str, Library | Fpga]:
+    """All libraries and FPGAs by name, in the order of the report."""
+    return {target.name: target for target in [*LIBRARIES, *FPGAS]}
 
 
 ECP5_CELLS = ("TRELLIS_COMB", "TRELLIS_FF", "MULT18X18D", "DP16KD")
@@ -267,10 +263,11 @@ class Row:
     design: Design
     flows: dict[str, tuple[str, ...]]  # by the target's name; an FPGA's only one is PLACED
 
-    def flows_on(self, library: Library) -> tuple[str, ...]:
-        """The flows on a library; a user's takes those of the first one that it has the cells for."""
-        flows = self.flows.get(library.name, self.flows.get("osu035", ()) if library.file else ())
-        return tuple(flow for flow in flows if flow != "cells" or library.structural)
+    def flows_on(self, target: Library | Fpga) -> tuple[str, ...]:
+        """The flows on a target; a user's library takes those of the first one that it has the cells for."""
+        is_users = isinstance(target, Library) and target.file
+        flows = self.flows.get(target.name, self.flows.get("osu035", ()) if is_users else ())
+        return tuple(flow for flow in flows if flow != "cells" or target.structural)
 
 
 PLACED = ("placed",)
@@ -307,7 +304,8 @@ def report_rows() -> list[Row]:
                                     ConstantRow="1'b1"), twice))
     rows.append(Row(section, design("multiplier", "multiplier-behavioural", BEHAVIOURAL, Width=24),
                     {**everywhere, "osu035": ("small", "fast", "faster")}))
-    rows += core_rows()
+    rows += [Row("binary32 cores", design(top, top.replace("_", "-"), "graded"), {"osu035": ("area", "small", "fast"), "osu018": ("fast",)})
+             for top in ("fp_multiplier", "fp_adder", "fp_divider")]
     parts = {"osu035": ("parts",), "osu018": ("parts",)}
     rows += [Row("units", design("hit_test_unit"), {**parts, "osu035": ("small", "parts")}),
              Row("units", design("iterative_hit_test_unit"), {"osu035": ("parts",)}),
@@ -342,26 +340,16 @@ SMALL_CORE = {"Rays": 16, "Depth": 4, "NodeLines": 64, "TriangleLines": 64, "Clo
 
 def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
     """The units that are placed and routed: design, format, arithmetic, device."""
-    def unit(top: str, form: str, arithmetic: str, fpga: Fpga,
-             **more: object) -> tuple[Design, str, str, Fpga]:
+    def unit(top: str, form: str, kind: str, fpga: Fpga, **more: object) -> tuple[Design, str, str, Fpga]:
         exponent, fraction = FORMATS[form]
-        return (design(top, f"{top}-{form}-{arithmetic}" + "".join(f"-{key}{value}" for key, value
-                                                                   in more.items()),
-                       ExpWidth=exponent, FracWidth=fraction, Arith=ARITHMETICS[arithmetic], **more),
-                form, arithmetic, fpga)
+        name = "-".join([top, form, kind, *(f"{key}{value}" for key, value in more.items())])
+        return design(top, name, ExpWidth=exponent, FracWidth=fraction, Arith=ARITHMETICS[kind], **more), form, kind, fpga
 
-    rows = [unit("hit_test_unit", "binary32", kind, ECP5) for kind in ARITHMETICS]
-    rows.append(unit("hit_test_unit", "binary32", "behavioural", ECP5, QuotientBits=21))
-    rows.append(unit("general_hit_test_unit", "binary32", "behavioural", ECP5))
-    rows += [unit("iterative_hit_test_unit", "binary32", kind, ECP5) for kind in ARITHMETICS]
-    rows += [unit("hit_test_unit", "binary16", kind, ICE40) for kind in ARITHMETICS]
-    rows.append(unit("hit_test_pipeline", "binary32", "behavioural", ECP5_LUT4S))
-    rows += [unit("hit_test_pipeline", "bfloat16", kind, ECP5) for kind in ARITHMETICS]
-    rows.append((design("ray_core", "small_core", **SMALL_CORE), "binary32", "behavioural", ECP5))
-    return rows
-
-
-def core_rows() -> list[Row]:
-    """The float cores, in binary32."""
-    return [Row("binary32 cores", design(top, top.replace("_", "-"), "graded"), {"osu035": ("area", "small", "fast"), "osu018": ("fast",)})
-            for top in ("fp_multiplier", "fp_adder", "fp_divider")]
+    return [*(unit("hit_test_unit", "binary32", kind, ECP5) for kind in ARITHMETICS),
+            unit("hit_test_unit", "binary32", "behavioural", ECP5, QuotientBits=21),
+            unit("general_hit_test_unit", "binary32", "behavioural", ECP5),
+            *(unit("iterative_hit_test_unit", "binary32", kind, ECP5) for kind in ARITHMETICS),
+            *(unit("hit_test_unit", "binary16", kind, ICE40) for kind in ARITHMETICS),
+            unit("hit_test_pipeline", "binary32", "behavioural", ECP5_LUT4S),
+            *(unit("hit_test_pipeline", "bfloat16", kind, ECP5) for kind in ARITHMETICS),
+            (design("ray_core", "small_core", **SMALL_CORE), "binary32", "behavioural", ECP5)]

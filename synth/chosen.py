@@ -1,34 +1,30 @@
 """One design of hw/, as a command line describes it."""
 
 import argparse
+import re
+import sys
 from collections.abc import Callable
 
 from synth import catalogue
 
 
-def whole(least: int, most: int) -> Callable[[str], str]:
-    """The `type` of an option: nothing, or a whole number, as its text."""
-    def checked(text: str) -> str:
-        try:
-            fits = not text or least <= int(text) <= most
-        except ValueError:
-            fits = False
-        if not fits:
+def whole(least: int, most: int) -> Callable[[str], int]:
+    """The `type` of an option: a whole number."""
+    def checked(text: str) -> int:
+        if not re.fullmatch(r"\d+", text) or not least <= int(text) <= most:
             raise argparse.ArgumentTypeError(f"expected a whole number from {least} to {most}, got {text!r}")
-        return text
+        return int(text)
     return checked
 
 
-def whole_numbers(text: str) -> str:
+def whole_numbers(text: str) -> list[int]:
     """The same of several with commas between."""
-    for number in text.split(",") if text else []:
-        whole(1, 255)(number or "nothing")
-    return text
+    return [whole(1, 255)(number) for number in text.split(",")]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options that `design` reads; an empty value counts as not given, so that a Makefile can pass all."""
-    parser.add_argument("--adder", help="ripple, uniform, graded, prefix or behavioural")
+    """The options that `design` reads."""
+    parser.add_argument("--adder", default="", help="ripple, uniform, graded, prefix or behavioural")
     parser.add_argument("--width", type=whole(1, catalogue.MOST_BITS), help="bits of an adder or a multiplier")
     parser.add_argument("--groups", type=whole_numbers, help="carry-select groups, least significant first: 4,5,7,...")
     parser.add_argument("--look-ahead", type=whole(0, 1), help="1: groups add by carry look-ahead, 0: by ripple carry, as those of an adder do if not given")
@@ -38,27 +34,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
-    """The command line, None in place of what is empty. A wrong value is told in one line, without all options."""
+    """The command line, whose options may be in capitals, as make's variables are. A wrong value is told in one line, without
+    all options."""
     parser.print_usage = lambda *_: None
-    given = parser.parse_args()
-    for name, value in vars(given).items():
-        setattr(given, name, value or None)
-    return given
+    return parser.parse_args([re.sub("^--[A-Z-]+", lambda name: name[0].lower(), word) for word in sys.argv[1:]])
 
 
 def design(given: argparse.Namespace) -> catalogue.Design:
     """The design that `given.top` and the options describe."""
     parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width, "Exact": given.exact}
-    widths = [int(width) for width in given.groups.split(",")] if given.groups else None
-    kind = given.adder or ("graded" if widths else "")
+    kind = given.adder or ("graded" if given.groups else "")
     kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]
     if kind and kind not in kinds:
         raise ValueError(f"no adder {kind}; there are {', '.join(kinds)}")
-    if widths and given.width and given.top == "adder" and sum(widths) != int(given.width):
-        raise ValueError(f"the groups have {sum(widths)} bits together, the adder {given.width}")
-    if widths and not given.width and given.top == "adder":
-        parameters["Width"] = sum(widths)
+    if given.groups and given.top == "adder":
+        if given.width not in (None, sum(given.groups)):
+            raise ValueError(f"the groups have {sum(given.groups)} bits together, the adder {given.width}")
+        parameters["Width"] = sum(given.groups)
     return catalogue.design(
-        given.top, adder=kind, widths=widths,
-        look_ahead=bool(int(given.look_ahead)) if given.look_ahead else None,
-        **{name: int(value) for name, value in parameters.items() if value})
+        given.top, adder=kind, widths=given.groups, look_ahead=None if given.look_ahead is None else bool(given.look_ahead),
+        **{name: value for name, value in parameters.items() if value is not None})

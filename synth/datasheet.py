@@ -60,7 +60,7 @@ def measured_figures() -> dict[str, list[str]]:
     rows = [dataclasses.replace(row, flows={library.name: (SHOWN[row.design.name],)})
             for row in catalogue.report_rows() if row.design.name in SHOWN]
     top = {row.design.name: row.design.top for row in rows}
-    records, failures = measure.measure(rows, measure.Targets((library.name,)))
+    records, failures = measure.records(rows, measure.Targets((library.name,)))
     if failures:
         raise tools.ToolFailed("\n".join(failures))
     return {top[record["design"]]: [f"{record['area'] / 1e6:.3f}", f"{record['delay_ns']:.2f}",
@@ -68,17 +68,12 @@ def measured_figures() -> dict[str, list[str]]:
             for record in records}
 
 
-def example(text: str) -> str:
-    """The module of the text's first block of SystemVerilog."""
-    return re.search(r"```systemverilog\n(module .*?)```", text, re.S)[1]
-
-
 def lint(text: str) -> None:
-    """The example passes Verilator; raises ToolFailed where it doesn't."""
+    """The module of the text's first block of SystemVerilog passes Verilator; raises ToolFailed where it doesn't."""
+    module, top = re.search(r"```systemverilog\n(module (\w+).*?)```", text, re.S).groups()
     file = tools.ROOT / "build" / "datasheet" / "example.sv"
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(example(text))
-    top = re.search(r"module (\w+)", example(text))[1]
+    file.write_text(module)
     tools.run(["verilator", "--lint-only", "-Wall", "-Wno-DECLFILENAME", "-Wno-PINCONNECTEMPTY", "--top-module", top,
                *cores.files("hit_test"), file], file.with_suffix(".log"))
 
@@ -102,15 +97,12 @@ def check() -> list[str]:
     return lines
 
 
+@tools.command("datasheet")
 def main() -> int:
     """Runs the command line."""
-    try:
-        if sys.argv[1:] not in ([], ["--check"]):
-            raise ValueError(f"found {' '.join(sys.argv[1:])}, expected --check or nothing")
-        wrong = check() if sys.argv[1:] else write() or []
-    except (tools.MissingTool, tools.ToolFailed, OSError, ValueError) as error:
-        print(f"datasheet: {error}", file=sys.stderr)
-        return 2
+    if sys.argv[1:] not in ([], ["--check"]):
+        raise ValueError(f"found {' '.join(sys.argv[1:])}, expected --check or nothing")
+    wrong = check() if sys.argv[1:] else write() or []
     if wrong:
         print(*wrong, "Out of date: make synth DATASHEET=1", sep="\n")
     return 1 if wrong else 0

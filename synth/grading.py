@@ -1,8 +1,8 @@
 """The paper's adders under its own delay model, and the best group widths under it, by dynamic programming, which is exact."""
 
-from synth import catalogue, tables, unit_delay
+from synth import catalogue, structure, tables
 from synth.catalogue import Design
-from synth.unit_delay import Counting
+from synth.structure import Counting
 
 WIDTH = 48  # bits of the paper's adders
 MAX_GROUPS = 16  # arith_pkg::MaxGroups
@@ -60,7 +60,7 @@ def graded(groups: Grouping, look_ahead: bool, width: int = WIDTH) -> Design:
 
 def model_table() -> str:
     """The adders' delays under each counting, beside the paper's, and the best there is."""
-    optimum = best_by_model(WIDTH, unit_delay.COUNTINGS[1])[1]
+    optimum = best_by_model(WIDTH, structure.COUNTINGS[1])[1]
     rows = []
     for name, design, paper in [
             ("ripple", catalogue.design("adder", adder="ripple", Width=WIDTH), "48"),
@@ -70,17 +70,17 @@ def model_table() -> str:
             ("graded, the core's own groups",
              catalogue.design("adder", adder="graded", look_ahead=False, Width=WIDTH), "10"),
             (f"graded, {text_of(optimum)}", graded(optimum, False), "10")]:
-        module = unit_delay.netlist(design)
-        hardware = unit_delay.cells(module)
-        delays = [unit_delay.count(module, counting)["delay"] for counting in unit_delay.COUNTINGS]
+        module = structure.netlist(design)
+        hardware = structure.hardware(module)
+        delays = [structure.delay(module, counting) for counting in structure.COUNTINGS]
         rows.append([name, paper, *(f"{delay:g}" for delay in delays),
                      hardware["full_adder"], hardware["multiplexer"]])
-    best = [best_by_model(WIDTH, counting) for counting in unit_delay.COUNTINGS]
-    for (delay, groups), counting in zip(best, unit_delay.COUNTINGS, strict=True):
-        counted = unit_delay.count(unit_delay.netlist(graded(groups, False)), counting)["delay"]
+    best = [best_by_model(WIDTH, counting) for counting in structure.COUNTINGS]
+    for (delay, groups), counting in zip(best, structure.COUNTINGS, strict=True):
+        counted = structure.delay(structure.netlist(graded(groups, False)), counting)
         if counted != delay:
             raise AssertionError(f"the search says {delay}, the netlist of {groups} {counted}")
     rows.append(["least of all groupings", "-", *(f"{delay:g}" for delay, _ in best), "-", "-"])
     header = [f"{WIDTH}-bit adder", "paper",
-              *(counting.title for counting in unit_delay.COUNTINGS), "full adders", "multiplexers"]
+              *(counting.title for counting in structure.COUNTINGS), "full adders", "multiplexers"]
     return tables.markdown(header, rows)

@@ -1,7 +1,7 @@
 """A page for a lecture: each kind of adder, a Booth multiplication and a float addition, drawn from their elaborated netlists with
 chosen operands in them.
 
-`python3 -m synth.lecture`: see `--help`. Every value on the page is the netlist's (netlist_values), none is computed beside it.
+`python3 -m synth.lecture`: see `--help`. Every value on the page is the netlist's (structure), none is computed beside it.
 """
 
 import argparse
@@ -12,8 +12,8 @@ import string
 import struct
 import sys
 
-from synth import catalogue, chosen, netlist_values, store, tools, unit_delay
-from synth.netlist_values import evaluate, word
+from synth import catalogue, chosen, store, structure, tools
+from synth.structure import evaluate, word
 
 MOST_BITS = 16  # wider adders do not fit on a page
 
@@ -37,17 +37,14 @@ class AdderDrawing:
     def __init__(self, module: dict) -> None:
         self.module = module
         self.top = {bit: place for port in ("a_i", "b_i") for place, bit in enumerate(module["ports"][port]["bits"])}
-        self.arrival: dict[object, float] = {}
-        self.slowest: dict[object, dict] = {}  # bit -> the cell that gives it
-        self.cells = list(netlist_values.in_order(module))
+        self.arrival, self.slowest = structure.arrivals(module, DELAYS, GATE)
+        self.cells = list(structure.in_order(module))
         slots = collections.Counter()
         self.at = []  # of each cell: column, row, place in that
         for cell in self.cells:
-            ins = netlist_values.bits_of(netlist_values.pins(cell, "input"))
-            column = max(self.top.get(bit, 0) for bit in ins)
-            arrival = max(self.arrival.get(bit, 0.0) for bit in ins) + DELAYS.get(cell["type"], GATE)
-            for bit in netlist_values.bits_of(netlist_values.pins(cell, "output")):
-                self.top[bit], self.arrival[bit], self.slowest[bit] = column, arrival, cell
+            outs = structure.outputs(cell)
+            column, arrival = max(self.top.get(bit, 0) for bit in structure.inputs(cell)), self.arrival[outs[0]]
+            self.top |= dict.fromkeys(outs, column)
             self.at.append((column, arrival, slots[column, arrival]))
             slots[column, arrival] += 1
         self.rows = {arrival: row for row, arrival in enumerate(sorted({arrival for _, arrival, _ in self.at}))}
@@ -64,7 +61,7 @@ class AdderDrawing:
         while bit in self.slowest:
             cell = self.slowest[bit]
             found.add(id(cell))
-            bit = max(netlist_values.bits_of(netlist_values.pins(cell, "input")), key=lambda bit: self.arrival.get(bit, 0.0))
+            bit = max(structure.inputs(cell), key=lambda bit: self.arrival.get(bit, 0.0))
         return found
 
     def svg(self, values: dict[object, int]) -> str:
@@ -85,8 +82,7 @@ class AdderDrawing:
         for cell, (column, arrival, slot) in zip(self.cells, self.at, strict=True):
             x = self.left[column] + SLOT * slot + SLOT // 2
             y = MARGIN + 40 + ROW * self.rows[arrival]
-            ins = netlist_values.bits_of(netlist_values.pins(cell, "input"))
-            outs = netlist_values.bits_of(netlist_values.pins(cell, "output"))
+            ins, outs = structure.inputs(cell), structure.outputs(cell)
             for place, bit in enumerate(ins):
                 pin = x + 7 * (2 * place - len(ins) + 1) // 2
                 if bit in places:
@@ -97,7 +93,7 @@ class AdderDrawing:
             bold = " slow" if id(cell) in slow else ""
             parts.append(f'<rect class="cell{bold}" x="{x - CELL // 2}" y="{y}" width="{CELL}" height="{CELL}" rx="4"/>')
             parts.append(text(x, y + 12, SYMBOLS.get(cell["type"], cell["type"]), "kind"))
-            found = netlist_values.pins(cell, "output")
+            found = structure.pins(cell, "output")
             order = [bit for port in ("CARRY", "SUM") if port in found for bit in found[port]] or outs
             parts.append(text(x, y + 25, " ".join(str(values[bit]) for bit in order), "value"))
         for place, bit in [*enumerate(ports["sum_o"]["bits"]), (-1, ports["carry_o"]["bits"][0])]:
@@ -135,10 +131,9 @@ def table(header: list[str], rows: list[list[str]]) -> str:
 
 def adder_section(kind: str, given: argparse.Namespace) -> str:
     """One kind of adder with the operands in it."""
-    widths = [int(size) for size in given.groups.split(",")] if given.groups and kind == "graded" else None
-    design = catalogue.design("adder", adder=kind, widths=widths, Width=given.width,
+    design = catalogue.design("adder", adder=kind, widths=given.groups if kind == "graded" else None, Width=given.width,
                               look_ahead=None if kind in ("ripple", "prefix") else False)
-    module = netlist_values.without_constants(unit_delay.netlist(design))
+    module = structure.without_constants(structure.netlist(design))
     values = evaluate(module, {"a_i": given.a, "b_i": given.b, "carry_i": given.carry})
     drawing = AdderDrawing(module)
     ports = module["ports"]
@@ -153,7 +148,7 @@ def adder_section(kind: str, given: argparse.Namespace) -> str:
 def booth_section(given: argparse.Namespace) -> str:
     """The multiplication of the operands: digits, partial products, the tree's rows, the last addition."""
     width = given.width + given.width % 2
-    module = unit_delay.netlist(catalogue.design("booth_multiplier", Width=width))
+    module = structure.netlist(catalogue.design("booth_multiplier", Width=width))
     values = evaluate(module, {"a_i": given.a, "b_i": given.b})
     number = lambda name: word(module["names"][name], values)  # noqa: E731
     digits = width // 2 + 1
@@ -194,7 +189,7 @@ def booth_section(given: argparse.Namespace) -> str:
 def float_section(given: argparse.Namespace) -> str:
     """The sum of two binary16 numbers, step by step."""
     design = catalogue.design("fp_adder", ExpWidth=5, FracWidth=10)
-    module = unit_delay.netlist(design)
+    module = structure.netlist(design)
     packed = [struct.unpack("<H", struct.pack("<e", number))[0] for number in (given.x, given.y)]
     values = evaluate(module, {"a_i": packed[0], "b_i": packed[1], "subtract_i": 0, "rounding_mode_i": 0, "tininess_after_i": 0})
     names = module["names"]
@@ -252,40 +247,34 @@ def page(given: argparse.Namespace) -> str:
                            sections="\n".join(sections))
 
 
-def binary16(text: str) -> str:
-    """The `type` of an option: nothing, or a number that binary16 holds, rounded, as its text."""
+def binary16(text: str) -> float:
+    """The `type` of an option: a number that binary16 holds, rounded."""
     try:
-        struct.pack("<e", float(text or 0))
+        struct.pack("<e", float(text))
     except (OverflowError, ValueError):
         raise argparse.ArgumentTypeError(f"expected a number from -65504 to 65504, got {text!r}") from None
-    return text
+    return float(text)
 
 
+@tools.command("synth.lecture")
 def main() -> int:
-    """The command line; 2 for what the user can mend."""
+    """The command line."""
     parser = argparse.ArgumentParser(prog="synth.lecture", description="Draws adders with operands in them, as a page.")
-    parser.add_argument("--width", type=chosen.whole(2, MOST_BITS), help="bits of the adders (12)")
+    operand = chosen.whole(0, 2**MOST_BITS - 1)
+    parser.add_argument("--width", type=chosen.whole(2, MOST_BITS), default=12, help="bits of the adders (%(default)s)")
     parser.add_argument("--groups", type=chosen.whole_numbers, help="the graded adder's groups, lowest first")
-    parser.add_argument("--a", type=chosen.whole(0, 2**MOST_BITS - 1), help="an operand (1,365)")
-    parser.add_argument("--b", type=chosen.whole(0, 2**MOST_BITS - 1), help="the other (2,731)")
-    parser.add_argument("--carry", type=chosen.whole(0, 1), help="the carry into bit 0 (0)")
-    parser.add_argument("--x", type=binary16, help="a number for the float adder (1.5)")
-    parser.add_argument("--y", type=binary16, help="the other (-0.3)")
+    parser.add_argument("--a", type=operand, default=1365, help="an operand (%(default)s)")
+    parser.add_argument("--b", type=operand, default=2731, help="the other (%(default)s)")
+    parser.add_argument("--carry", type=chosen.whole(0, 1), default=0, help="the carry into bit 0 (%(default)s)")
+    parser.add_argument("--x", type=binary16, default=1.5, help="a number for the float adder (%(default)s)")
+    parser.add_argument("--y", type=binary16, default=-0.3, help="the other (%(default)s)")
     given = chosen.parse(parser)
-    for name, usual in (("width", 12), ("a", 1365), ("b", 2731), ("carry", 0)):
-        setattr(given, name, int(getattr(given, name) or usual))
+    if max(given.a, given.b) >> given.width:
+        raise ValueError(f"found operands {given.a} and {given.b}, expected numbers of {given.width} bits")
+    if given.groups and sum(given.groups) != given.width:
+        raise ValueError(f"found groups {given.groups}, expected {given.width} bits together")
     out = store.OUT / "lecture.html"
-    given.x, given.y = float(given.x or 1.5), float(given.y or -0.3)
-    try:
-        if max(given.a, given.b) >> given.width:
-            raise ValueError(f"found operands {given.a} and {given.b}, expected numbers of {given.width} bits")
-        if given.groups and sum(map(int, given.groups.split(","))) != given.width:
-            raise ValueError(f"found groups {given.groups}, expected {given.width} bits together")
-        out.parent.mkdir(parents=True, exist_ok=True)
-        store.replace(out, page(given))
-    except (tools.MissingTool, OSError, ValueError) as error:
-        print(f"synth.lecture: {error}", file=sys.stderr)
-        return 2
+    store.replace(out, page(given))
     print(f"The page: {out.relative_to(pathlib.Path.cwd()) if out.is_relative_to(pathlib.Path.cwd()) else out}")
     return 0
 

@@ -82,11 +82,6 @@ def read(file: pathlib.Path) -> Group:
     return parse(file.read_text(errors="replace"), str(file))
 
 
-def numbers(text: str) -> list[float]:
-    """Those of an index or of a table."""
-    return [float(number) for number in re.findall(r"[-+\d.eE]+", text)]
-
-
 def inverters(library: Group) -> list[tuple[float, str]]:
     """The input capacitances of the cells of one input whose only output is its inverse, and their names; the least first."""
     found = []

@@ -50,20 +50,13 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
         f"set_driving_cell {library.driver}\nset_load {1000 * library.load_pf:g}\n")
     prefix = folder / "netlist"
     yosys.run(scripts.standard_cells(design, library, flow, blocks(design), constraints, prefix), folder / "yosys.log")
-    area, cells = cell_counts(prefix.with_suffix(".stat.json"))
+    (mapped,) = statistics(prefix.with_suffix(".stat.json")).values()
     timing = sta(design, library, prefix.with_suffix(".timed.v"), folder / "timing.txt")
     delay, path = critical_path(timing)
     clocked = registers(prefix.with_suffix(".timed.v").read_text(), path) if design.clock else {}
     parts = {"blocks": block_costs(statistics(prefix.with_suffix(".blocks.json")), kept_memories(
         prefix.with_suffix(".memories").read_text()))} if flow == "blocks" else {}
-    return {
-        **clocked,
-        **parts,
-        "area": area,
-        "delay_ns": delay,
-        "cells": cells,
-        "path": path,
-    }
+    return {**clocked, **parts, "area": round(mapped["area"]), "delay_ns": delay, "cells": mapped["num_cells_by_type"], "path": path}
 
 
 def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Path,
@@ -121,12 +114,6 @@ def block_costs(modules: dict[str, dict], memories: dict[str, int]) -> dict[str,
         block["area"] += round(count * modules[cell]["area"])
         block["bits"] += count * bits(cell)
     return found
-
-
-def cell_counts(file: pathlib.Path) -> tuple[int, dict[str, int]]:
-    """The area (liberty units) and the number of cells of each type in Yosys's statistics of one module."""
-    (module,) = statistics(file).values()
-    return round(module["area"]), module["num_cells_by_type"]
 
 
 def registers(netlist: str, path: list[dict]) -> dict[str, str]:

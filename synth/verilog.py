@@ -19,18 +19,14 @@ def write(design: catalogue.Design, out: pathlib.Path) -> None:
     yosys.run(scripts.plain_verilog(design, out), out.with_suffix(".log"))
 
 
+@tools.command("verilog")
 def main() -> int:
     """Runs the command line."""
-    try:
-        if len(sys.argv) < 2 or not sys.argv[1]:
-            raise ValueError("expected TOP, a module of hw/: make synth VERILOG=1 TOP=fp_adder "
-                             "[PARAMS='ExpWidth=5 FracWidth=10']")
-        words = [word.partition("=") for word in " ".join(sys.argv[2:]).split()]
-        out = OUT / f"{sys.argv[1]}.v"
-        write(catalogue.design(sys.argv[1], **{name: value for name, _, value in words}), out)
-    except (tools.MissingTool, tools.ToolFailed, FileNotFoundError, ValueError) as error:
-        print(f"verilog: {error}", file=sys.stderr)
-        return 2
+    if len(sys.argv) < 2 or not sys.argv[1]:
+        raise ValueError("expected TOP, a module of hw/: make synth VERILOG=1 TOP=fp_adder [PARAMS='ExpWidth=5 FracWidth=10']")
+    words = [word.partition("=") for word in " ".join(sys.argv[2:]).split()]
+    out = OUT / f"{sys.argv[1]}.v"
+    write(catalogue.design(sys.argv[1], **{name: value for name, _, value in words}), out)
     print(f"{out.relative_to(tools.ROOT)}: {out.read_text().count(chr(10) + 'module ')} modules")
     return 0
 

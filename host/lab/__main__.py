@@ -16,6 +16,7 @@ import sys
 from host.lab import rows as kept, steps
 from host.lab.report import document
 from host.lab.rows import KEPT, ROOT, processors
+from synth import tools
 
 REPORTS = ROOT / "build" / "reports"
 PUBLISHED = ROOT / "host" / "lab" / "results"
@@ -79,21 +80,14 @@ def run(given: argparse.Namespace) -> int:
     return 1 if wrong else 0
 
 
+@tools.command("error")
 def main() -> int:
     """Runs the command line. Returns exit status 2 for user errors."""
     try:
         return run(arguments())
-    except KeyboardInterrupt:
-        print("interrupted; the same command goes on from here", file=sys.stderr)
-        return 130
     except subprocess.CalledProcessError as error:  # it has printed the error, or its standard error was captured
-        print(f"{error.stderr or ''}error: {shlex.join(map(str, error.cmd))}: ended with status {error.returncode}",
-              file=sys.stderr)
-    except FileNotFoundError as error:
-        print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
-    except (OSError, ValueError) as error:
-        print(f"error: {error}", file=sys.stderr)
-    return 2
+        print(error.stderr or "", end="", file=sys.stderr)
+        raise ValueError(f"{shlex.join(map(str, error.cmd))}: ended with status {error.returncode}") from error
 
 
 if __name__ == "__main__":

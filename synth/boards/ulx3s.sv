@@ -142,3 +142,26 @@ module ulx3s (
   assign led = {~ftdi_rxd, ~ftdi_txd, rst_n};
 
 endmodule
+
+// Cells of the ECP5, as far as they are used here: Yosys replaces them by its own.
+(* blackbox *)
+module EHXPLLL #(
+  parameter CLKI_DIV = 1,
+  parameter CLKFB_DIV = 1,
+  parameter CLKOP_DIV = 8,
+  parameter CLKOP_CPHASE = 0,
+  parameter CLKOP_ENABLE = "ENABLED",
+  parameter FEEDBK_PATH = "CLKOP"
+) (
+  input  CLKI, CLKFB, RST, STDBY, PHASESEL0, PHASESEL1, PHASEDIR, PHASESTEP, PHASELOADREG, PLLWAKESYNC, ENCLKOP,
+  output CLKOP, LOCK
+);
+endmodule
+
+(* blackbox *)
+module ODDRX1F (input SCLK, input RST, input D0, input D1, output Q);
+endmodule
+
+(* blackbox *)
+module BB (input I, input T, output O, inout B);
+endmodule

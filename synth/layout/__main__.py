@@ -1,65 +1,46 @@
-"""`python3 -m synth.layout`: see `--help`, or synth/layout/README.md."""
+"""`python3 -m synth.layout`: see `--help`, or synth/README.md."""
 
 import argparse
 import dataclasses
+import functools
 import shutil
 import sys
 
 from synth import catalogue, chosen, runner, store, tables, tools, yosys
-from synth.catalogue import Design, Library
-from synth.layout import flow, parts, picture
+from synth.catalogue import Library
+from synth.layout import flow, picture
 
 OUT = store.OUT / "layouts"
-
-
-@dataclasses.dataclass(frozen=True)
-class Row:
-    """A design of the table: laid out once for each seed, of which the median counts."""
-
-    section: str
-    design: Design
-    how: str  # the flow
-    density: float
-    aspect: float
-    seeds: int = 1
-    routed: bool = True
-    library: Library = catalogue.library("osu035")
-
-    def jobs(self) -> list[flow.Job]:
-        """One for each seed."""
-        return [flow.Job(self.design, self.library, self.how, self.density, self.aspect, seed, self.routed)
-                for seed in range(1, self.seeds + 1)]
 
 
 SECTIONS = ("adders", "multipliers", "cores", "unit")
 
 
-def section_rows(section: str, seeds: int = 3) -> list[Row]:
+def of_seeds(job: flow.Job, seeds: int) -> list[flow.Job]:
+    """A row of the table: a job for each seed, of which the median counts."""
+    return [dataclasses.replace(job, seed=seed) for seed in range(1, seeds + 1)]
+
+
+def section_rows(section: str, library: Library, seeds: int = 3) -> list[list[flow.Job]]:
     """The rows of one of SECTIONS. `seeds`: of each adder; the others are large."""
+    reported = catalogue.report_rows()
+    designs = {row.design.name: row.design for row in reported}
     if section == "adders":
-        return [Row(section, row.design, how, 1.0, 0.75, seeds) for row in catalogue.report_rows()
-                if row.section == "48-bit adders"
+        return [of_seeds(flow.Job(row.design, library, how), seeds) for row in reported if row.section == "48-bit adders"
                 for how in ("cells", "fast") if how in row.flows["osu035"]]
     if section == "multipliers":
-        graded = catalogue.design("booth_multiplier", "booth-graded-ripple-groups", "graded",
-                                  look_ahead=False, Width=24)
-        kinds = [catalogue.design("booth_multiplier", f"booth-{kind}", kind, Width=24)
-                 for kind in ("ripple", "uniform", "prefix")]
-        plain = catalogue.design("multiplier", "multiplier-behavioural", catalogue.BEHAVIOURAL, Width=24)
-        return [Row(section, graded, "cells", *flow.SPARSE),
-                *(Row(section, design, "fast", *flow.SPARSE) for design in (graded, *kinds, plain))]
-    if section == "cores":
-        small = catalogue.FORMATS["binary16"]
-        tops = {"fp_adder": flow.SPARSE, "fp_multiplier": flow.SPARSER, "fp_divider": flow.SPARSE}
-        return [*(Row(section, catalogue.design(top, f"{top.replace('_', '-')}-binary16", "graded",
-                                                ExpWidth=small[0], FracWidth=small[1]), "modules", *flow.SPARSE)
-                  for top in tops),
-                *(Row(section, catalogue.design(top, top.replace("_", "-"), "graded"), "modules", *sparse)
-                  for top, sparse in tops.items())]
-    if section == "unit":  # whether qrouter routes 18,000 nets has not been tried
-        return [Row(section, catalogue.design("hit_test_unit"), how, *flow.SPARSE, routed=False)
-                for how in ("parts", "small")]
-    raise ValueError(f"no section {section}; there are {', '.join(SECTIONS)}")
+        names = "booth-graded-ripple-groups", "booth-ripple", "booth-uniform", "booth-prefix", "multiplier-behavioural"
+        rows = [(designs[name], how, flow.SPARSE) for name, how in ((names[0], "cells"), *((name, "fast") for name in names))]
+    elif section == "cores":
+        exponent, fraction = catalogue.FORMATS["binary16"]
+        sparse = {"fp_adder": flow.SPARSE, "fp_multiplier": flow.SPARSER, "fp_divider": flow.SPARSE}
+        small = [catalogue.design(top, f"{top.replace('_', '-')}-binary16", "graded", ExpWidth=exponent, FracWidth=fraction) for top in sparse]
+        rows = [*((design, "modules", flow.SPARSE) for design in small),
+                *((designs[top.replace("_", "-")], "modules", how) for top, how in sparse.items())]
+    else:
+        rows = [(designs["hit_test_unit"], how, flow.SPARSE) for how in ("parts", "small")]
+    # Whether qrouter routes the unit's 18,000 nets has not been tried.
+    return [[flow.Job(design, library, how, *sparse, routed=section != "unit")] for design, how, sparse in rows]
 
 
 def arguments() -> argparse.Namespace:
@@ -69,57 +50,39 @@ def arguments() -> argparse.Namespace:
         "them; the report is build/synth/layouts/report-*.md."))
     parser.add_argument("--top", help=f"{', '.join(SECTIONS)}, or a module of hw/; all sections if none")
     chosen.add_arguments(parser)
-    parser.add_argument("--targets", help="osu035 or osu018 (osu035)")
-    parser.add_argument("--flow", help="of a module (see synth/README.md; fast)")
-    parser.add_argument("--density", help="the share of the rows that cells of a module take (1)")
-    parser.add_argument("--aspect", help="the core's height by its width, of a module (0.75)")
-    parser.add_argument("--seeds", help="placements of each adder, of which the median counts (3)")
-    parser.add_argument("--jobs", help="at once (2)")
+    parser.add_argument("--targets", choices=[library.name for library in catalogue.LIBRARIES], default="osu035", help="(%(default)s)")
+    parser.add_argument("--flow", choices=catalogue.FLOWS, default="fast", help="of a module; see synth/README.md (%(default)s)")
+    parser.add_argument("--density", type=float, default=1, help="the share of the rows that cells of a module take (%(default)s)")
+    parser.add_argument("--aspect", type=float, default=0.75, help="the core's height by its width, of a module (%(default)s)")
+    parser.add_argument("--seeds", type=chosen.whole(1, 1000), help="placements of each adder, of which the median counts (3)")
+    parser.add_argument("--jobs", type=chosen.whole(1, 1024), default=2, help="at once (%(default)s)")
     parser.add_argument("--publish", help="1: all sections, and writes table and pictures into synth/results, too")
     return chosen.parse(parser)
 
 
-def wanted(given: argparse.Namespace) -> list[Row]:
+def wanted(given: argparse.Namespace) -> list[list[flow.Job]]:
     """The rows that the command line asks for."""
-    library = {entry.name: entry for entry in catalogue.LIBRARIES}.get(given.targets or "osu035")
-    if library is None:
-        raise ValueError(f"no library {given.targets}, expected one of "
-                         f"{', '.join(entry.name for entry in catalogue.LIBRARIES)}")
+    library = catalogue.library(given.targets)
     _ = library.lef, library.liberty  # before anything is made, and first what only some libraries have
-    return [dataclasses.replace(row, library=library) for row in _rows(given)]
-
-
-def _rows(given: argparse.Namespace) -> list[Row]:
-    seeds = int(given.seeds or 3)
+    if not 0 < given.density <= 1 or not 0 < given.aspect:
+        raise ValueError(f"density {given.density:g} and aspect {given.aspect:g}, expected 0 < density <= 1 and 0 < aspect")
     if given.top is None or given.top in SECTIONS:
-        return [row for section in SECTIONS if given.top in (None, section)
-                for row in section_rows(section, seeds)]
-    flow_name, density, aspect = given.flow or "fast", float(given.density or 1), float(given.aspect or 0.75)
-    if flow_name not in catalogue.FLOWS:
-        raise ValueError(f"no flow {flow_name}, expected one of {', '.join(catalogue.FLOWS)}")
-    if not 0 < density <= 1 or not 0 < aspect:
-        raise ValueError(f"density {density:g} and aspect {aspect:g}, expected 0 < density <= 1 and 0 < aspect")
-    return [Row(given.top, chosen.design(given), flow_name, density, aspect, int(given.seeds or 1))]
+        return [row for section in SECTIONS if given.top in (None, section) for row in section_rows(section, library, given.seeds or 3)]
+    return [of_seeds(flow.Job(chosen.design(given), library, given.flow, given.density, given.aspect), given.seeds or 1)]
 
 
-def measure(rows: list[Row], workers: int) -> tuple[list[dict], list[str]]:
+def measure(rows: list[list[flow.Job]], workers: int) -> tuple[list[dict], list[str]]:
     """Makes all layouts; one record for each row whose layouts were made, of the median seed."""
-    all_jobs = [(row, job) for row in rows for job in row.jobs()]
-    results, failures = runner.run_all([runner.Job(
-        f"{job.design.name} {job.flow} seed {job.seed}", lambda j=job: flow.make(j), told)
-        for _, job in all_jobs], workers)
+    failures: list[str] = []
+    results = runner.run([runner.Job(f"{job.design.name} {job.flow} seed {job.seed}", functools.partial(flow.make, job), told)
+                          for row in rows for job in row], workers, failures)
     records = []
     for row in rows:
-        mine = [(job, result) for (of, job), result in zip(all_jobs, results, strict=True)
-                if of is row and result]
-        routed = sorted(((job, result) for job, result in mine if result["failed"] == 0),
-                        key=lambda pair: pair[1]["wires_ns"])
+        mine = [{"job": job, **result} for job, result in zip(row, results) if result]
+        routed = sorted((got for got in mine if got["failed"] == 0), key=lambda got: got["wires_ns"])
         if mine:
-            job, result = routed[len(routed) // 2] if routed else mine[0]
-            records.append({"section": row.section, "design": row.design.name, "flow": row.how,
-                            "seed": job.seed, "job": job, **result,
-                            "spread": [got["wires_ns"] for _, got in routed],
-                            "failed": [got["failed"] for _, got in mine]})
+            records.append({**(routed[len(routed) // 2] if routed else mine[0]), "spread": [got["wires_ns"] for got in routed],
+                            "failed": [got["failed"] for got in mine]})
     return records, failures
 
 
@@ -131,68 +94,61 @@ def told(result: dict) -> str:
     return f"{result['cells_ns']:.2f} ns, {result['guess_ns']:.2f} ns with estimated wires{failed}"
 
 
-def table(records: list[dict]) -> str:
+HEADS = ["design", "flow", "cells", "cells, um2", "core, um2", "density", "wires, mm", "wires, pF", "cells alone, ns",
+         "estimated wires, ns", "with wires, least", "median", "most", "median / alone", "nets failed"]
+
+
+def table(records: list[dict]) -> list[list[object]]:
     """Cells alone, with wires, their ratio, areas and wires; the wires are the estimate's where not all are routed."""
     rows = []
     for got in records:
         spread = got["spread"]
-        delays = ["-", "-", "-", "-"]
-        if spread:
-            delays = [f"{min(spread):.2f}", f"{got['wires_ns']:.2f}", f"{max(spread):.2f}",
-                      f"{got['wires_ns'] / got['cells_ns']:.3f}"]
-        rows.append([got["design"], got["flow"], got["cells"], f"{got['area']:,}", f"{got['core']:,}",
+        delays = [*(f"{ns:.2f}" for ns in (min(spread), got["wires_ns"], max(spread))),
+                  f"{got['wires_ns'] / got['cells_ns']:.3f}"] if spread else ["-"] * 4
+        rows.append([got["job"].design.name, got["job"].flow, got["cells"], f"{got['area']:,}", f"{got['core']:,}",
                      f"{got['area'] / got['core']:.2f}", f"{got['wire_um'] / 1000:.1f}",
                      f"{got['wire_pf']:.2f}", f"{got['cells_ns']:.2f}", f"{got['guess_ns']:.2f}", *delays,
                      " ".join("not routed" if count is None else str(count) for count in got["failed"])])
-    return tables.markdown(
-        ["design", "flow", "cells", "cells, um2", "core, um2", "density", "wires, mm", "wires, pF",
-         "cells alone, ns", "estimated wires, ns", "with wires, least", "median", "most", "median / alone", "nets failed"], rows)
+    return rows
 
 
-def draw(records: list[dict]) -> list[str]:
-    """The median layout of each row; the pictures' names."""
-    names = []
-    for got in records:
-        job = got["job"]
-        made = flow.load(job)
-        name = f"{got['design']}-{job.library.name}-{got['flow']}"
-        picture.draw(made, parts.of(job.design, made.netlist, flow.outputs(job.library)),
-                     got["path"], f"{got['design']}, flow {got['flow']}, {job.library.title}"
-                     + ("" if got["spread"] else ", wires estimated"), OUT / name)
-        names.append(name)
-    return names
+def draw(got: dict) -> str:
+    """Draws a layout; the picture's name."""
+    job = got["job"]
+    placement, wires = flow.load(job)
+    name = f"{job.design.name}-{job.library.name}-{job.flow}"
+    picture.draw(placement, wires, picture.parts_of(job.design, placement.netlist, flow.outputs(job.library)), got["path"],
+                 f"{job.design.name}, flow {job.flow}, {job.library.title}" + ("" if got["spread"] else ", wires estimated"), OUT / name)
+    return name
 
 
+@tools.command("layout")
 def main() -> int:
     """1 where a layout fails, 2 for what the user can mend."""
     given = arguments()
-    try:
-        if given.publish and (given.top or given.targets):
-            raise ValueError("PUBLISH=1: expected all layouts, without TOP and TARGETS")
-        yosys.folder()
-        for tool in ("sta", "coloquinte", "qrouter", "magic"):
-            tools.find(tool)
-        records, failures = measure(wanted(given), int(given.jobs or 2))
-    except (tools.MissingTool, FileNotFoundError, ValueError) as error:
-        print(f"layout: {error}", file=sys.stderr)
-        return 2
+    if given.publish and (given.top or given.targets != "osu035"):
+        raise ValueError("PUBLISH=1: expected all layouts, without TOP and TARGETS")
+    yosys.folder()
+    for tool in ("sta", "coloquinte", "qrouter", "magic"):
+        tools.find(tool)
+    records, failures = measure(wanted(given), given.jobs)
     OUT.mkdir(parents=True, exist_ok=True)
-    text = table(records)
-    pictures = draw(records)
-    report = OUT / f"report-{given.top or 'all'}-{given.targets or 'osu035'}.md"
-    report.write_text("\n".join(
-        ["# Layouts\n", text, *(f"![{name}]({name}.png)\n" for name in pictures)]))
+    rows, pictures = table(records), [draw(got) for got in records]
+    report = OUT / f"report-{given.top or 'all'}-{given.targets}.md"
+    text = tables.markdown(HEADS, rows)
+    report.write_text("\n".join(["# Layouts\n", text, *(f"![{name}]({name}.png)\n" for name in pictures)]))
     if given.publish:
-        (tables.RESULTS / "layout.md").write_text(f"# Layouts\n\n{text}\n{tables.measured('make layout')}")
+        for name, are_adders in (("adders", True), ("cores", False)):
+            mine = [dict(zip(HEADS, (str(cell).replace(",", "") for cell in row))) for got, row in zip(records, rows)
+                    if (got["job"].design.top == "adder") == are_adders]
+            (tables.RESULTS / f"layout-{name}.csv").write_text(tables.comma_separated(mine, HEADS))
         for name in pictures:
             published = tables.RESULTS / f"layout-{name.replace('-osu035', '')}.png"
             if published.exists():  # of the others none is shown
                 shutil.copy(OUT / f"{name}.png", published)
     print(text)
     print(f"Report: {report.relative_to(tools.ROOT)}")
-    for failure in failures:
-        print("failed:", failure, file=sys.stderr)
-    return 1 if failures or any(any(got["failed"]) for got in records) else 0
+    return runner.status(failures) or any(any(got["failed"]) for got in records)
 
 
 if __name__ == "__main__":

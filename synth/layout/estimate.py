@@ -6,31 +6,25 @@ what routing adds is not in it; but the tree may not branch between pins, which 
 
 import numpy as np
 
-from synth.layout.lef import Technology
-from synth.layout.netlist import Netlist
 from synth.layout.parasitics import taps
 from synth.layout.place import Placement
-from synth.layout.route import RAILS, Wire
+from synth.layout.route import RAILS, Wire, Wires
 
 # pF a um of these trees: what magic extracted of the adders' layouts.
 FARADS = {"osu035": 6.4e-5, "osu018": 8e-5}
 TREES = 200  # pins: clock and reset have more; they get trees of buffers, which synthesis does not make
 
 
-def wires(netlist: Netlist, placement: Placement, technology: Technology,
-          ports: dict[str, tuple[float, float, str]]) -> dict[str, list[Wire]]:
+def wires(placement: Placement) -> Wires:
     """Of each net but the rails and those of more than TREES pins; as route.wires gives them, vias included."""
-    layers = list(technology.layers)
-    up = next(name for name in layers if technology.layers[name].vertical)
-    across = next(name for name in layers[layers.index(up):] if not technology.layers[name].vertical)
+    technology = placement.technology
     found = {}
-    for net, ends in netlist.nets().items():
+    for net, ends in placement.netlist.nets().items():
         if net in RAILS or not 1 < len(ends) <= TREES:
             continue
-        pins = [(rects[0].layer, *rects[0].centre) for rects in
-                taps(netlist, placement, technology, ports, ends).values()]
+        pins = [(rects[0].layer, *rects[0].centre) for rects in taps(placement, ends).values()]
         found[net] = [wire for one, other in tree([(x, y) for _, x, y in pins])
-                      for wire in _line(pins[one], pins[other], up, across, layers)]
+                      for wire in _line(pins[one], pins[other], technology.up, technology.across, list(technology.layers))]
     return found
 
 

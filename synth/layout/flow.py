@@ -35,22 +35,11 @@ class Job:
         return store.OUT / "layouts" / f"{name}.{self.density:g}.{self.aspect:g}" / f"seed-{self.seed}"
 
 
-@dataclasses.dataclass(frozen=True)
-class Layout:
-    """What the kept files say: enough to draw it and to simulate it."""
-
-    netlist: netlist.Netlist
-    technology: lef.Technology
-    placement: place.Placement
-    routing: route.Routing
-
-
 def key(job: Job) -> str:
     """Of all that a layout depends on."""
     files = [*job.design.sources(job.flow == "cells"), job.library.liberty, job.library.lef,
              *job.library.magic, *mapping.files(),
-             *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "estimate.py", "route.py", "parasitics.py",
-                                        "magic.tcl"))]
+             *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "estimate.py", "route.py", "parasitics.py"))]
     return store.key(files, mapping.flow_facts(), *(tools.version(tool) for tool in ("qrouter", "magic")),
                      job.design.facts, job.library, job.flow, job.density, job.aspect, job.seed, job.routed)
 
@@ -69,21 +58,18 @@ def _make(job: Job) -> dict:
     (folder / "wires.spef").unlink(missing_ok=True)  # load takes it for a sign that all nets are routed
     (folder / "netlist.json").write_text((run / "netlist.json").read_text())
     nets = netlist.parse(mapping.top_module(folder / "netlist.json"), job.design.top)
-    technology = lef.read(job.library.lef)
-    placement = place.place(nets, technology, job.seed, job.density, job.aspect, folder)
-    (folder / "placement.json").write_text(json.dumps(dataclasses.asdict(placement)))
+    placement = place.place(nets, lef.read(job.library.lef), job.seed, job.density, job.aspect, folder)
+    (folder / "placement.json").write_text(json.dumps({
+        "cells": {name: dataclasses.astuple(site) for name, site in placement.cells.items()}, "ports": placement.ports,
+        "width": placement.width, "height": placement.height}))
     (folder / "placed.v").write_text(nets.verilog())
-    ports = route.pins(placement, technology, nets)
-    routing = route.Routing(estimate.wires(nets, placement, technology, ports), ports, [],
-                            route.outline(placement, technology))
-    ohms = parasitics.contacts(job.library.magic[1], list(technology.layers))
-    farads = {net: estimate.FARADS[job.library.name] * sum(wire.length for wire in pieces)
-              for net, pieces in routing.wires.items()}
+    wires = estimate.wires(placement)
+    ohms = parasitics.contacts(job.library.magic[1], list(placement.technology.layers))
+    farads = {net: estimate.FARADS[job.library.name] * sum(wire.length for wire in pieces) for net, pieces in wires.items()}
     cells_ns, _ = mapping.critical_path(_time(job, nets, "cells"))
 
     def with_wires(name: str) -> tuple[float, list[dict]]:
-        (folder / f"{name}.spef").write_text(parasitics.spef(
-            nets, placement, routing, technology, farads, ohms, outputs(job.library)))
+        (folder / f"{name}.spef").write_text(parasitics.spef(placement, wires, farads, ohms, outputs(job.library)))
         return mapping.critical_path(_time(job, nets, name))
 
     guess_ns, path = with_wires("estimate")
@@ -93,17 +79,14 @@ def _make(job: Job) -> dict:
         "height": placement.height, "failed": None,
     }
     if job.routed:
-        guessed, routing = routing, route.route(nets, placement, technology, job.library.lef, folder,
-                                                tidy=len(nets.cells) <= TIDIED)
-        result["failed"] = len(routing.failed)
-        if routing.failed:
-            routing = guessed
-        else:
-            farads = parasitics.extract(nets, job.library.lef, job.library.magic[0], folder)
+        routed, failed = route.route(placement, job.library.lef, folder, tidy=len(nets.cells) <= TIDIED)
+        result["failed"] = len(failed)
+        if not failed:
+            wires, farads = routed, parasitics.extract(nets, job.library.lef, job.library.magic[0], folder)
             result["wires_ns"], path = with_wires("wires")
-    wires = [wire for pieces in routing.wires.values() for wire in pieces]
-    return {**result, "path": path, "wire_um": round(sum(wire.length for wire in wires)),
-            "vias": sum(bool(wire.to) for wire in wires), "wire_pf": round(sum(farads.values()), 3)}
+    pieces = [wire for net in wires.values() for wire in net]
+    return {**result, "path": path, "wire_um": round(sum(wire.length for wire in pieces)),
+            "vias": sum(bool(wire.to) for wire in pieces), "wire_pf": round(sum(farads.values()), 3)}
 
 
 def _time(job: Job, nets: netlist.Netlist, name: str) -> str:
@@ -120,16 +103,12 @@ def outputs(library: Library) -> dict[str, set[str]]:
             for cell in liberty.read(library.liberty).of("cell")}
 
 
-def load(job: Job) -> Layout:
+def load(job: Job) -> tuple[place.Placement, route.Wires]:
     """A layout that was made: with its routed wires, or where they are not whole with estimated ones."""
-    folder = job.folder
-    nets = netlist.parse(mapping.top_module(folder / "netlist.json"), job.design.top)
-    technology = lef.read(job.library.lef)
-    kept = json.loads((folder / "placement.json").read_text())
-    placement = place.Placement({name: place.Site(**site) for name, site in kept.pop("cells").items()}, **kept)
-    ports = route.pins(placement, technology, nets)
-    if (folder / "wires.spef").exists():
-        wires = route.wires((folder / "routed.def").read_text(), list(technology.layers))
-    else:
-        wires = estimate.wires(nets, placement, technology, ports)
-    return Layout(nets, technology, placement, route.Routing(wires, ports, [], route.outline(placement, technology)))
+    kept = json.loads((job.folder / "placement.json").read_text())
+    placement = place.Placement(netlist.parse(mapping.top_module(job.folder / "netlist.json"), job.design.top),
+                                lef.read(job.library.lef), {name: place.Site(*site) for name, site in kept["cells"].items()},
+                                kept["ports"], kept["width"], kept["height"])
+    if (job.folder / "wires.spef").exists():
+        return placement, route.wires((job.folder / "routed.def").read_text(), list(placement.technology.layers))
+    return placement, estimate.wires(placement)

@@ -48,6 +48,22 @@ class Technology:
     layers: dict[str, Layer]  # lowest first
     macros: dict[str, Macro]
 
+    @property
+    def up(self) -> str:
+        """The lowest layer of vertical wires."""
+        return next(name for name, layer in self.layers.items() if layer.vertical)
+
+    @property
+    def across(self) -> str:
+        """The next layer of horizontal wires above it."""
+        names = list(self.layers)
+        return next(name for name in names[names.index(self.up):] if not self.layers[name].vertical)
+
+    @property
+    def tracks(self) -> tuple[Layer, Layer]:
+        """The lowest layers of vertical and of horizontal wires, whose tracks pins and ports lie on."""
+        return self.layers[self.up], next(layer for layer in self.layers.values() if not layer.vertical)
+
 
 def read(file: pathlib.Path) -> Technology:
     """Raises ValueError where the file has no routing layers or no cells."""

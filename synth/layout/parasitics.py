@@ -14,16 +14,27 @@ from synth import tools
 from synth.layout.lef import Rect, Technology
 from synth.layout.netlist import Netlist
 from synth.layout.place import Placement
-from synth.layout.route import RAILS, Routing, Wire, origin
+from synth.layout.route import RAILS, Wire, Wires
 
+# Reads the routed layout, extracts its capacitances to TOP.ext and writes TOP.gds. In GDS the cells are what LEF says of them:
+# pins and obstructions.
+MAGIC = """drc off
+lef read {lef}
+def read routed.def -labels
+load {top}
+select top cell
+extract all
+gds write {top}.gds
+quit -noprompt
+"""
 Node = tuple[str, float, float]  # layer, x, y
 TOUCH = 0.8  # um: the side of a contact's metal; what is no further apart than that touches
 
 
 def extract(netlist: Netlist, lef: pathlib.Path, rc: pathlib.Path, folder: pathlib.Path) -> dict[str, float]:
     """The capacitance of each net, pF; leaves the layout as GDS in `folder`. `rc`: magic's start-up file."""
-    tools.run(["magic", "-dnull", "-noconsole", "-rcfile", rc, pathlib.Path(__file__).with_name("magic.tcl")],
-              folder / "magic.log", {"LEF": str(lef), "DEF": "routed.def", "TOP": netlist.top}, folder)
+    (folder / "magic.tcl").write_text(MAGIC.format(lef=lef, top=netlist.top))
+    tools.run(["magic", "-dnull", "-noconsole", "-rcfile", rc, "magic.tcl"], folder / "magic.log", folder=folder)
     return capacitances((folder / f"{netlist.top}.ext").read_text(), set(netlist.nets()))
 
 
@@ -134,38 +145,37 @@ def distance(rects: list[Rect], node: Node) -> float:
                 for rect in rects if rect.layer == layer), default=float("inf"))
 
 
-def taps(netlist: Netlist, placement: Placement, technology: Technology,
-         ports: dict[str, tuple[float, float, str]], ends: list[tuple[str, str]]) -> dict[str, list[Rect]]:
+def taps(placement: Placement, ends: list[tuple[str, str]]) -> dict[str, list[Rect]]:
     """The metal of what hangs on a net, by its name in SPEF, in the order of `ends` (Netlist.nets)."""
-    corner, found = origin(technology), {}
+    found = {}
     for cell, pin in ends:
         if cell == "PIN":
-            x, y, layer = ports[pin]
+            x, y, layer = placement.pins[pin]
             found[pin] = [Rect(layer, x, y, x, y)]
             continue
-        site, macro = placement.cells[cell], technology.macros[netlist.cells[cell].kind]
-        found[f"{cell}:{pin}"] = [turned(rect, (macro.width, macro.height), (site.x + corner[0], site.y + corner[1]),
-                                         site.turned) for rect in macro.pins[pin]]
+        site, macro = placement.cells[cell], placement.macro(cell)
+        found[f"{cell}:{pin}"] = [turned(rect, (macro.width, macro.height), placement.corner(site), site.turned)
+                                  for rect in macro.pins[pin]]
     return found
 
 
-def spef(netlist: Netlist, placement: Placement, routing: Routing, technology: Technology,
-         farads: dict[str, float], ohms: dict[str, float], outputs: dict[str, set[str]]) -> str:
+def spef(placement: Placement, wires: Wires, farads: dict[str, float], ohms: dict[str, float],
+         outputs: dict[str, set[str]]) -> str:
     """`farads` of each net, pF; `ohms` of contacts; `outputs`: the output pins of each type of cell."""
+    netlist = placement.netlist
     head = {"DATE": "", "VENDOR": "", "PROGRAM": "magic, qrouter", "VERSION": "", "DESIGN_FLOW": ""}
     lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.top}"',
              *(f'*{name} "{value}"' for name, value in head.items()), "*DIVIDER /", "*DELIMITER :",
              "*BUS_DELIMITER [ ]", "*T_UNIT 1 NS", "*C_UNIT 1 PF", "*R_UNIT 1 OHM", "*L_UNIT 1 HENRY", ""]
     for net, ends in netlist.nets().items():
-        wires = routing.wires.get(net, [])
-        if net in RAILS or not wires:
+        if net in RAILS or not wires.get(net):
             continue
-        metal = taps(netlist, placement, technology, routing.ports, ends)
+        metal = taps(placement, ends)
         body = ["*CONN"]
         for (cell, pin), name in zip(ends, metal, strict=True):
             drives = netlist.ports[pin].output if cell == "PIN" else pin in outputs[netlist.cells[cell].kind]
             body.append(f"*{'P' if cell == 'PIN' else 'I'} {name} {'O' if drives else 'I'}")
-        wired = tree(wires, metal, technology, ohms)
+        wired = tree(wires[net], metal, placement.technology, ohms)
         names = {node: f"{net}:{place}" for place, node in enumerate(wired.length, 1)}
         total = sum(wired.length.values())
         body.append("*CAP")

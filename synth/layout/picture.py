@@ -1,32 +1,72 @@
-"""Draws a layout from its DEF: cells by the part that they belong to, wires, the slowest path."""
+"""Draws a layout: cells by the part of the design that they belong to, wires, the slowest path."""
 
+import graphlib
 import pathlib
+import re
 
 from matplotlib import collections as shapes
+from matplotlib import pyplot as plt
 
-from synth.drawing import plt
-from synth.layout import route
-from synth.layout.flow import Layout
+from synth.catalogue import Design
+from synth.layout.netlist import Netlist
+from synth.layout.place import Placement
+from synth.layout.route import Wires
 
 INCHES = 11  # of the longer side
 METALS = {"metal1": "#203040", "metal2": "#303030", "metal3": "#5a5a5a"}  # higher ones: grey
+BAND = 8  # bits of an adder that share a colour
+REST = "the rest"
 
 
-def draw(layout: Layout, parts: dict[str, str], path: list[dict], title: str, out: pathlib.Path) -> None:
+def parts_of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, str]:
+    """The part of each cell, in the order of the legend.
+
+    Of an adder the band of the highest operand bit that the cell depends on, which holds in any mapping; else the instance in
+    the top that the cell's name begins with, where it has one.
+    """
+    if design.top == "adder":
+        bits = highest_bits(netlist, outputs)
+        return {name: f"bits {bit // BAND * BAND} to {bit // BAND * BAND + BAND - 1}"
+                for name, bit in sorted(bits.items(), key=lambda entry: entry[1])}
+    named = {name: re.search(r"\bu_(\w+)", cell.name) for name, cell in netlist.cells.items()}
+    parts = {name: found[1].replace("_", " ") if found else REST for name, found in named.items()}
+    return dict(sorted(parts.items(), key=lambda entry: (entry[1] == REST, entry[1])))
+
+
+def highest_bits(netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, int]:
+    """The highest bit of an operand that each cell of a combinational netlist depends on; 0 of none."""
+    drivers = {net: name for name, cell in netlist.cells.items() for pin, net in cell.pins.items()
+               if pin in outputs[cell.kind]}
+    found = {name: int((re.findall(r"\[(\d+)\]", port.name) or [0])[0]) for name, port in netlist.ports.items() if not port.output}
+    before = {name: [drivers.get(net, net) for pin, net in cell.pins.items() if pin not in outputs[cell.kind]]
+              for name, cell in netlist.cells.items()}
+    for name in graphlib.TopologicalSorter(before).static_order():
+        if name in before:
+            found[name] = max((found.get(one, 0) for one in before[name]), default=0)
+    return {name: found[name] for name in netlist.cells}
+
+
+def draw(placement: Placement, wires: Wires, parts: dict[str, str], path: list[dict], title: str, out: pathlib.Path) -> None:
     """Writes OUT.png. `path`: the steps of the slowest path; none are drawn where it is empty."""
-    left, bottom, right, top = layout.routing.die
+    left, bottom, right, top = placement.die
     scale = INCHES / max(right - left, top - bottom)
     figure, axes = plt.subplots(figsize=((right - left) * scale + 2.8, (top - bottom) * scale + 0.6),
                                 layout="constrained")
     labels = list(dict.fromkeys(parts.values()))
     colours = dict(zip(labels, _colours(len(labels)), strict=True))
-    _cells(axes, layout, parts, colours)
+    axes.add_collection(shapes.PolyCollection([_box(placement, name) for name in placement.cells], edgecolors="white", linewidths=0.4,
+                                              facecolors=[colours[parts[name]] for name in placement.cells]))
     fine = (right - left) * (top - bottom) / 1e5  # um: the larger the die, the thinner its wires
-    _wires(axes, layout, 0.9 / max(1, fine) ** 0.5)
+    by_layer: dict[str, list] = {}
+    for wire in (wire for pieces in wires.values() for wire in pieces):
+        by_layer.setdefault(wire.layer, []).append([(wire.x0, wire.y0), (wire.x1, wire.y1)])
+    for layer, lines in sorted(by_layer.items()):
+        axes.add_collection(shapes.LineCollection(lines, colors=METALS.get(layer, "#808080"),
+                                                  linewidths=0.9 / max(1, fine) ** 0.5, alpha=0.45))
     if path:
-        _path(axes, layout, path, max(1.2, 3 / max(1, fine) ** 0.25))
-    for port, (x, y, _) in layout.routing.ports.items():
-        axes.plot(x, y, "s", ms=2, color="black" if layout.netlist.ports[port].output else "grey")
+        _path(axes, placement, wires, path, max(1.2, 3 / max(1, fine) ** 0.25))
+    for port, (x, y, _) in placement.pins.items():
+        axes.plot(x, y, "s", ms=2, color="black" if placement.netlist.ports[port].output else "grey")
     for label in labels:
         axes.plot([], [], "s", ms=9, color=colours[label], label=label)
     axes.plot([], [], "s", ms=3, color="grey", label="inputs")
@@ -46,43 +86,18 @@ def _colours(count: int) -> list:
     return [palette[place] for place in (3, 0, 5, 4, 2, 6, 7, 9, 10, 8)[:count]]
 
 
-def _cells(axes: plt.Axes, layout: Layout, parts: dict[str, str], colours: dict) -> None:
-    x0, y0 = route.origin(layout.technology)
-    boxes, faces = [], []
-    for name, site in layout.placement.cells.items():
-        macro = layout.technology.macros[layout.netlist.cells[name].kind]
-        x, y = site.x + x0, site.y + y0
-        boxes.append([(x, y), (x + macro.width, y), (x + macro.width, y + macro.height), (x, y + macro.height)])
-        faces.append(colours[parts[name]])
-    axes.add_collection(shapes.PolyCollection(boxes, facecolors=faces, edgecolors="white", linewidths=0.4))
+def _box(placement: Placement, cell: str) -> list[tuple[float, float]]:
+    """The corners of a cell."""
+    (x, y), macro = placement.corner(placement.cells[cell]), placement.macro(cell)
+    return [(x, y), (x + macro.width, y), (x + macro.width, y + macro.height), (x, y + macro.height)]
 
 
-def _wires(axes: plt.Axes, layout: Layout, width: float) -> None:
-    by_layer: dict[str, list] = {}
-    for pieces in layout.routing.wires.values():
-        for wire in pieces:
-            by_layer.setdefault(wire.layer, []).append([(wire.x0, wire.y0), (wire.x1, wire.y1)])
-    for layer, lines in sorted(by_layer.items()):
-        axes.add_collection(shapes.LineCollection(lines, colors=METALS.get(layer, "#808080"),
-                                                  linewidths=width, alpha=0.45))
-
-
-def _path(axes: plt.Axes, layout: Layout, path: list[dict], width: float) -> None:
+def _path(axes: plt.Axes, placement: Placement, wires: Wires, path: list[dict], width: float) -> None:
     """The nets of the path as they are routed, and its cells outlined."""
-    x0, y0 = route.origin(layout.technology)
-    nets, boxes = [], []
-    for step in path:
-        cell, _, pin = step["pin"].partition("/")
-        if cell in layout.netlist.cells:
-            nets.append(layout.netlist.cells[cell].pins[pin])
-            site = layout.placement.cells[cell]
-            macro = layout.technology.macros[layout.netlist.cells[cell].kind]
-            x, y = site.x + x0, site.y + y0
-            boxes.append([(x, y), (x + macro.width, y), (x + macro.width, y + macro.height),
-                          (x, y + macro.height)])
-    lines = [[(wire.x0, wire.y0), (wire.x1, wire.y1)] for net in dict.fromkeys(nets)
-             for wire in layout.routing.wires.get(net, [])]
-    axes.add_collection(shapes.PolyCollection(boxes, facecolors="none", edgecolors="black", linewidths=width / 2,
-                                              zorder=4))
+    pins = [(cell, pin) for cell, _, pin in (step["pin"].partition("/") for step in path) if cell in placement.cells]
+    nets = dict.fromkeys(placement.netlist.cells[cell].pins[pin] for cell, pin in pins)
+    lines = [[(wire.x0, wire.y0), (wire.x1, wire.y1)] for net in nets for wire in wires.get(net, [])]
+    axes.add_collection(shapes.PolyCollection([_box(placement, cell) for cell, _ in pins], facecolors="none", edgecolors="black",
+                                              linewidths=width / 2, zorder=4))
     axes.add_collection(shapes.LineCollection(lines, colors="crimson", linewidths=width, zorder=5))
     axes.plot([], [], color="crimson", linewidth=2, label="the slowest path")

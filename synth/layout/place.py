@@ -6,11 +6,12 @@ wires across, which have one metal, cost more than those upwards, which have two
 """
 
 import dataclasses
+import functools
 import math
 import pathlib
 
 from synth import tools
-from synth.layout.lef import Technology
+from synth.layout.lef import Macro, Technology
 from synth.layout.netlist import CONSTANTS, Netlist
 
 FULL = 0.97  # of each row, gaps included: cells need some room to be put into rows
@@ -29,12 +30,65 @@ class Site:
 
 @dataclasses.dataclass(frozen=True)
 class Placement:
-    """Cells and ports by their names; the core's width and height, um. Ports lie around the core."""
+    """The places of a netlist's cells and ports, by name; the core's width and height, um. Ports lie around the core."""
 
+    netlist: Netlist
+    technology: Technology
     cells: dict[str, Site]
     ports: dict[str, tuple[float, float]]
     width: float
     height: float
+
+    def macro(self, cell: str) -> Macro:
+        """The outline of a cell."""
+        return self.technology.macros[self.netlist.cells[cell].kind]
+
+    def corner(self, site: Site) -> tuple[float, float]:
+        """A cell's lower left corner in DEF, um, so that its pins are on tracks, which are multiples of a pitch."""
+        across, up = self.technology.tracks
+        return site.x + across.offset, site.y + up.offset
+
+    @functools.cached_property
+    def die(self) -> tuple[float, float, float, float]:
+        """The core and four tracks around it, um: left, bottom, right, top."""
+        across, up = (layer.pitch for layer in self.technology.tracks)
+        return -4 * across, -4 * up, (round(self.width / across) + 4) * across, (round(self.height / up) + 4) * up
+
+    @functools.cached_property
+    def pins(self) -> dict[str, tuple[float, float, str]]:
+        """Each port on a track of its own, at the side where its cells are: x, y, layer."""
+        across, up = (layer.pitch for layer in self.technology.tracks)
+        left, bottom, right, top = self.die
+        # How far beyond each side; the side that it is furthest beyond is its own.
+        sides: dict[str, list[tuple[float, str]]] = {"left": [], "right": [], "bottom": [], "top": []}
+        for name, (x, y) in self.ports.items():
+            beyond = {"left": -x, "right": x - self.width, "bottom": -y, "top": y - self.height}
+            side = max(beyond, key=lambda word: (beyond[word], word))
+            sides[side].append((x if side in ("bottom", "top") else y, name))
+        found = {}
+        for side, here in sides.items():
+            upright = side in ("bottom", "top")
+            step = across if upright else up
+            last = round((self.width if upright else self.height) / step)
+            if len(here) > last:
+                raise tools.ToolFailed(f"{len(here)} ports on the {side} side, which has {last} tracks")
+            for at, name in _spread([(at / step, name) for at, name in sorted(here)], last):
+                if upright:
+                    found[name] = (at * step, bottom + up if side == "bottom" else top - up, self.technology.up)
+                else:
+                    found[name] = (left + across if side == "left" else right - across, at * step, self.technology.across)
+        return {name: found[name] for name in self.netlist.ports if name in found}
+
+
+def _spread(wanted: list[tuple[float, str]], last: int) -> list[tuple[int, str]]:
+    """Whole places of 1 to `last`, one for each, in order, near those wanted."""
+    places, low = [], 1
+    for count, (at, name) in enumerate(wanted):
+        room = last - (len(wanted) - 1 - count)  # so that those that follow find theirs
+        place = min(max(round(at), low), room)
+        places.append((place, name))
+        low = place + 1
+    return places
 
 
 def place(netlist: Netlist, technology: Technology, seed: int, density: float, aspect: float,
@@ -43,7 +97,7 @@ def place(netlist: Netlist, technology: Technology, seed: int, density: float, a
 
     Twice: without ports, which are then put around the core where their nets pull them, and with them.
     """
-    pitch = next(layer.pitch for layer in technology.layers.values() if layer.vertical)
+    pitch = technology.tracks[0].pitch
     macros = {name: technology.macros[cell.kind] for name, cell in netlist.cells.items()}
     beside = gaps(netlist, technology, min(1.0, density / FULL), pitch)
     widths = {name: round((macro.width + beside[name]) / pitch) for name, macro in macros.items()}
@@ -68,7 +122,7 @@ def place(netlist: Netlist, technology: Technology, seed: int, density: float, a
     for name, (x, y) in found.items():
         aside = beside[name] if turned[name] in ("FN", "S") else 0  # the gap has been turned to the left side
         cells[name] = Site(x * pitch + aside, y * step, turned[name])
-    return Placement(cells, {name: (x * pitch, y * step) for name, (x, y) in ports.items()},
+    return Placement(netlist, technology, cells, {name: (x * pitch, y * step) for name, (x, y) in ports.items()},
                      sites * pitch, rows * height)
 
 
@@ -93,7 +147,7 @@ def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], 
               core: tuple[int, int]) -> dict[str, str]:
     """The files by their suffixes. `widths` of the cells, tracks; `core`: its tracks across, its rows."""
     sites, rows = core
-    pitch = next(layer.pitch for layer in technology.layers.values() if layer.vertical)
+    pitch = technology.tracks[0].pitch
     nodes = [f"{name} {widths[name]} {STEPS}" for name in netlist.cells] + [f"{name} terminal" for name in ports]
     at = [f"{name} {sites // 2} {rows * STEPS // 2} : N" for name in netlist.cells]
     at += [f"{name} {x} {y} : N" for name, (x, y) in ports.items()]

@@ -4,7 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
-from synth import catalogue, cores, tools, verilog
+from synth import board, catalogue, cores, scripts, tools, verilog, yosys
 
 
 class Cores(unittest.TestCase):
@@ -63,3 +63,9 @@ class Cores(unittest.TestCase):
             with self.assertRaises(tools.ToolFailed):
                 verilog.write(catalogue.design("exact_unit", DigitWidth=1), out)
             self.assertFalse(out.exists())
+
+    def test_boards_elaborate(self) -> None:
+        """With the cells of their FPGA."""
+        for each in board.BOARDS:
+            with self.subTest(each.name), tempfile.TemporaryDirectory() as folder:
+                yosys.run(scripts.elaborated(each), pathlib.Path(folder) / "yosys.log")

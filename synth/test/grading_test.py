@@ -3,8 +3,8 @@
 import itertools
 import unittest
 
-from synth import catalogue, grading, unit_delay
-from synth.unit_delay import COUNTINGS, Counting
+from synth import catalogue, grading, structure
+from synth.structure import COUNTINGS, Counting
 
 
 def delay(groups: tuple[int, ...], counting: Counting) -> float:
@@ -64,7 +64,7 @@ def cell(kind: str, inputs: dict[str, int], outputs: dict[str, int]) -> dict:
 
 # Two full adders in a chain; the second one's sum through a multiplexer. Bits 2 to 5 are inputs.
 MODULE = {
-    "ports": {"a_i": {"bits": [2, 3]}, "sum_o": {"bits": [10, 12]}},
+    "ports": {"a_i": {"direction": "input", "bits": [2, 3]}, "sum_o": {"direction": "output", "bits": [10, 12]}},
     "cells": [
         cell("FULL_ADDER", {"A": 2, "B": 4, "C": 5}, {"SUM": 10, "CARRY": 11}),
         cell("FULL_ADDER", {"A": 3, "B": 4, "C": 11}, {"SUM": 13, "CARRY": 14}),
@@ -74,14 +74,14 @@ MODULE = {
 
 
 class Count(unittest.TestCase):
-    """unit_delay.count."""
+    """structure.delay."""
 
     def test_countings(self):
         """The last multiplexer counts as the counting says."""
-        every, carries = unit_delay.COUNTINGS[:2]
-        self.assertEqual(unit_delay.count(MODULE, every)["delay"], 3)
-        self.assertEqual(unit_delay.count(MODULE, carries)["delay"], 2)
+        every, carries = COUNTINGS[:2]
+        self.assertEqual(structure.delay(MODULE, every), 3)
+        self.assertEqual(structure.delay(MODULE, carries), 2)
 
     def test_cells(self):
         """Each kind's number."""
-        self.assertEqual(unit_delay.cells(MODULE), {"full_adder": 2, "multiplexer": 1})
+        self.assertEqual(structure.hardware(MODULE), {"full_adder": 2, "multiplexer": 1, "gate": 0})

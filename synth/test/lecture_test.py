@@ -9,7 +9,7 @@ import subprocess
 import sys
 import unittest
 
-from synth import catalogue, lecture, netlist_values, tools, unit_delay
+from synth import catalogue, lecture, structure, tools
 
 
 def given(**changed: object) -> argparse.Namespace:
@@ -22,24 +22,24 @@ class Values(unittest.TestCase):
         """Each kind, as elaborated and without what constants decide; that has fewer gates where there are constants."""
         numbers = random.Random(1)
         for kind, look_ahead in (("ripple", None), ("uniform", False), ("graded", True), ("graded", False), ("prefix", None)):
-            whole = unit_delay.netlist(catalogue.design("adder", adder=kind, look_ahead=look_ahead, Width=9))
-            fewer = netlist_values.without_constants(whole)
+            whole = structure.netlist(catalogue.design("adder", adder=kind, look_ahead=look_ahead, Width=9))
+            fewer = structure.without_constants(whole)
             self.assertEqual(len(fewer["cells"]) < len(whole["cells"]), kind == "prefix" or look_ahead is True)
             for _ in range(100):
                 a, b, carry = numbers.getrandbits(9), numbers.getrandbits(9), numbers.getrandbits(1)
                 for module in (whole, fewer):
-                    values = netlist_values.evaluate(module, {"a_i": a, "b_i": b, "carry_i": carry})
+                    values = structure.evaluate(module, {"a_i": a, "b_i": b, "carry_i": carry})
                     bits = module["ports"]["sum_o"]["bits"] + module["ports"]["carry_o"]["bits"]
-                    self.assertEqual(netlist_values.word(bits, values), a + b + carry)
+                    self.assertEqual(structure.word(bits, values), a + b + carry)
 
     def test_a_float_adder_adds(self) -> None:
-        module = unit_delay.netlist(catalogue.design("fp_adder", ExpWidth=5, FracWidth=10))
+        module = structure.netlist(catalogue.design("fp_adder", ExpWidth=5, FracWidth=10))
         numbers = random.Random(2)
         for _ in range(100):
             a, b = (numbers.getrandbits(16) & 0xbfff for _ in range(2))  # finite, and so is their sum
-            values = netlist_values.evaluate(module, {"a_i": a, "b_i": b, "subtract_i": 0, "rounding_mode_i": 0, "tininess_after_i": 0})
+            values = structure.evaluate(module, {"a_i": a, "b_i": b, "subtract_i": 0, "rounding_mode_i": 0, "tininess_after_i": 0})
             x, y = struct.unpack("<ee", struct.pack("<HH", a, b))
-            result = netlist_values.word(module["ports"]["result_o"]["bits"], values)
+            result = structure.word(module["ports"]["result_o"]["bits"], values)
             self.assertEqual(result, struct.unpack("<H", struct.pack("<e", x + y))[0])
 
 
@@ -89,7 +89,7 @@ class Page(unittest.TestCase):
             def handle_endtag(self, tag: str) -> None:
                 assert opened.pop() == tag
 
-        Reader().feed(lecture.page(given(groups="3,5")))
+        Reader().feed(lecture.page(given(groups=[3, 5])))
         self.assertEqual(opened, [])
 
     def test_lines_of_readme_and_tutorial_draw(self) -> None:

@@ -1,18 +1,13 @@
 """What is read from command lines and from the tools' reports."""
 
 import argparse
-import concurrent.futures
 import contextlib
 import io
-import json
-import os
-import pathlib
 import sys
-import tempfile
 import unittest
 from unittest import mock
 
-from synth import catalogue, chosen, fpga, mapping, netlists, store, tools
+from synth import catalogue, chosen, fpga, mapping, netlists, tools
 from synth.catalogue import Design
 
 
@@ -37,32 +32,14 @@ class Options(unittest.TestCase):
     """chosen.whole and chosen.whole_numbers."""
 
     def test_whole(self):
-        """What a Makefile passes as empty counts as not given; all else is looked at before anything runs."""
-        for check, right, wrong in ((chosen.whole(1, 9), ("", "1", "9"), ("0", "10", "nan", "2.5", "x")),
-                                    (chosen.whole_numbers, ("", "4", "4,5,7"), ("abc", "4,,5", "0", "1,-1", "256"))):
-            for text in right:
-                self.assertEqual(check(text), text)
+        """All is looked at before anything runs."""
+        for check, right, wrong in ((chosen.whole(1, 9), {"1": 1, "9": 9}, ("", "0", "10", "nan", "2.5", "x", "-1")),
+                                    (chosen.whole_numbers, {"4": [4], "4,5,7": [4, 5, 7]}, ("", "abc", "4,,5", "0", "1,-1", "256"))):
+            for text, value in right.items():
+                self.assertEqual(check(text), value)
             for text in wrong:
                 with self.assertRaises(argparse.ArgumentTypeError):
                     check(text)
-
-
-class Libraries(unittest.TestCase):
-    """catalogue.Library.liberty."""
-
-    def test_by_many_at_once(self):
-        """Jobs that run at once all read the whole file, and nothing else is left."""
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            (folder / "tiny").mkdir()
-            (folder / "tiny" / "tiny_stdcells.lib").write_text("library (tiny) {\n" + "cell (INVX1) {\n}\n" * 2000 + "}\n")
-            library = catalogue.Library("tiny", "Tiny")
-            with (mock.patch.dict(os.environ, QFLOW_TECH=name),
-                  mock.patch.object(store, "OUT", folder / "out"),
-                  concurrent.futures.ThreadPoolExecutor(8) as pool):
-                sizes = list(pool.map(lambda _: len(library.liberty.read_text()), range(40)))
-                self.assertEqual(set(sizes), {17 + 17 * 2000 + 2})
-                self.assertEqual(list((folder / "out").iterdir()), [folder / "out" / "tiny.lib"])
 
 
 class Parsing(unittest.TestCase):
@@ -86,13 +63,6 @@ class Parsing(unittest.TestCase):
         """A design that was not timed is a failure, not 0 ns."""
         with self.assertRaises(tools.ToolFailed):
             mapping.critical_path("Error: netlist.v, line 3 syntax error\nNo paths found.\n")
-
-    def test_cell_counts(self):
-        """Area and cells of Yosys's statistics."""
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder) / "stat.json"
-            file.write_text(json.dumps({"modules": {"\\top": {"area": 23040.0, "num_cells_by_type": {"FAX1": 48}}}}))
-            self.assertEqual(mapping.cell_counts(file), (23040, {"FAX1": 48}))
 
 
 # As Yosys states it: a module's area is that of all in it.

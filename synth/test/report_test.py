@@ -6,7 +6,7 @@ import time
 import unittest
 from unittest import mock
 
-from synth import __main__ as main, catalogue, mapping, measure, prove, report, tables, tools
+from synth import __main__ as main, catalogue, mapping, measure, prove, report, structure, tables, tools
 
 
 class ClockTable(unittest.TestCase):
@@ -29,22 +29,11 @@ class Legend(unittest.TestCase):
         self.assertEqual([line.split(":")[0] for line in placed], ["LUTs / MHz"])
 
 
-class Chain(unittest.TestCase):
-    def test_names_the_cells_in_order_and_counts_neighbours(self) -> None:
-        pins = [("a_i[0]", "in"), ("u_sum.gen_bit[0].u_cell/A", "FAX1"), ("u_sum.gen_bit[0].u_cell/YC", "FAX1"),
-                ("u_sum.gen_bit[1].u_cell/C", "FAX1"), ("u_sum.gen_bit[1].u_cell/YS", "FAX1"), ("_7_/A", "INVX1"), ("_7_/Y", "INVX1"), ("sum_o[1]", "out")]
-        record = {"design": "adder", "flow": "cells", "delay_ns": 1.25, "path": [{"pin": pin, "cell": cell} for pin, cell in pins]}
-        self.assertEqual(report.chain(record), "adder, cells, 1.25 ns: a_i[0] > 2 x FAX1 (u_sum) > INVX1 > sum_o[1]")
-        self.assertEqual(report.counted(list("aabcbcbcd")), ["2 x a", "3 x (b > c)", "d"])
-        self.assertEqual(report.counted(list("abab")), ["2 x (a > b)"])
-        self.assertEqual(report.counted(list("abc")), ["a", "b", "c"])
-
-
 class Others(unittest.TestCase):
     def test_an_adder_has_rows_to_compare_with_on_every_target(self) -> None:
         measured = []
-        with (mock.patch.object(measure, "measure", side_effect=lambda rows, *_: measured.append(rows) or ([], [])),
-              mock.patch.object(prove, "adds"), mock.patch.object(main, "kept_structure", return_value=False),
+        with (mock.patch.object(measure, "measure", side_effect=lambda rows, *_, **__: measured.append(rows) or []),
+              mock.patch.object(prove, "adds"), mock.patch.object(structure, "netlist"), mock.patch.object(structure, "hardware", return_value={"gate": 1}),
               contextlib.redirect_stdout(io.StringIO())):
             main.run_one(catalogue.design("adder", adder="graded", widths=[4, 5], Width=9), measure.Targets(("osu035", "ice40")))
         self.assertEqual([[sorted(row.flows) for row in rows] for rows in measured], [[["ice40", "osu035"]] * 5] * 2)

@@ -30,6 +30,17 @@ class Cached(unittest.TestCase):
         self.assertEqual(sorted(kept for _, kept in results), [False, True, True, True])
         self.assertTrue(all(result == {"area": 7} for result, _ in results))
 
+    def test_a_file_that_many_write_is_always_whole(self):
+        with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(8) as pool:
+            file = pathlib.Path(folder) / "tiny.lib"
+
+            def write(number: int) -> str:
+                store.replace(file, str(number % 2) * 30000)
+                return file.read_text()
+
+            self.assertEqual(set(pool.map(write, range(40))), {"0" * 30000, "1" * 30000})
+            self.assertEqual(list(file.parent.iterdir()), [file])
+
     def test_ctrl_c_prints_one_line(self):
         done = subprocess.run([sys.executable, "-c", "import synth\nraise KeyboardInterrupt"], cwd=tools.ROOT, capture_output=True,
                               text=True, check=False)

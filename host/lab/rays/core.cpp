@@ -29,92 +29,78 @@ struct Options {
   bool exact = false;
 };
 
-class CoreBench {
- public:
-  explicit CoreBench(const Options& options) : options_(options) {}
+/// Traces rays, and returns their number.
+using Trace = std::function<std::size_t(const IntersectorFactory&)>;
 
-  void scene(const std::filesystem::path& file) {
-    const Scene scene = load_obj(file);
-    name_ = file.stem().string();
-    const Bvh bvh(scene);
-    const auto image = std::make_shared<const MemoryImage>(bvh);
-    const auto is_asked = [&](const std::string& kind) {
-      return std::ranges::find(options_.kinds, kind) != options_.kinds.end();
-    };
-    for (const RaySet& set : ray_sets(scene, options_.size - options_.size % 128)) {
-      if (!is_asked(set.name)) continue;
-      run(bvh, image, set.name, [&](const IntersectorFactory& make_intersector) {
-        std::vector<NearestHit> hits(set.rays.size());
-        set.find(*make_intersector(), 0, hits);
-        return hits.size();
-      });
-    }
-    for (const auto& [kind, integrator] : kPictures) {
-      if (!is_asked(kind)) continue;
-      run(bvh, image, kind, [&](const IntersectorFactory& make_intersector) {
-        const Camera camera = front_camera(scene, 1.0);
-        RenderSettings options;
-        options.width = options.height = options_.size;
-        options.samples = 1;
-        options.integrator = integrator;
-        RenderStats stats;
-        const PreparedScene prepared(scene, bvh);
-        (void)render({prepared, camera, options, default_lights(scene, camera)}, make_intersector,
-                     stats);
-        return static_cast<std::size_t>(stats.rays);
-      });
-    }
-  }
+constexpr std::pair<const char*, IntegratorKind> kPictures[] = {
+    {"whitted", IntegratorKind::kWhitted}, {"path", IntegratorKind::kPath}};
 
- private:
-  static constexpr std::pair<const char*, IntegratorKind> kPictures[] = {
-      {"whitted", IntegratorKind::kWhitted}, {"path", IntegratorKind::kPath}};
-  /// Traces rays, and returns their number.
-  using Trace = std::function<std::size_t(const IntersectorFactory&)>;
-
-  void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const std::string& kind,
-           const Trace& trace) {
-    for (const int latency : options_.latencies) {
-      for (const int cores : options_.cores) {
-        run(bvh, image, kind, trace, {.latency = latency},
-            {.cores = cores, .exact = options_.exact});
-      }
+/// Measures one kind of rays with every memory and number of cores.
+void measure(const Options& options, const std::string& scene, const std::string& kind,
+             const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const Trace& trace) {
+  for (const int latency : options.latencies) {
+    for (const int cores : options.cores) {
+      const std::shared_ptr<CoreUnit> core =
+          make_rtl_core({.latency = latency}, {}, {.cores = cores, .exact = options.exact});
+      const auto count = static_cast<double>(trace([&] {
+        return std::make_unique<CheckIntersector>(
+            bvh, std::make_unique<CoreIntersector>(bvh, image, core),
+            std::make_unique<CpuIntersector>(bvh));
+      }));
+      const CoreCounters counters = core->counters();
+      const auto a_ray = [&](std::uint64_t of) { return static_cast<double>(of) / count; };
+      const auto percent = [&](std::uint64_t clocks) {  // of the clocks of all cores
+        return 100.0 * a_ray(clocks) / (a_ray(counters.clocks) * cores);
+      };
+      print({{"table", "core"},
+             {"scene", scene},
+             {"rays", kind},
+             {"exact", options.exact},
+             {"latency", latency},
+             {"cores", cores},
+             {"clocks_per_ray", a_ray(counters.clocks)},
+             {"lines_per_ray", a_ray(counters.lines)},
+             {"bytes_per_ray", 64.0 * a_ray(counters.lines)},
+             {"nodes_percent", percent(counters.nodes)},
+             {"triangles_percent", percent(counters.triangles)},
+             {"waits_percent", percent(counters.waits)},
+             {"exact_percent", percent(counters.exact_clocks)},
+             {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
+             {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)}});
     }
   }
+}
 
-  void run(const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const std::string& kind,
-           const Trace& trace, const MemoryTiming& timing, const CoreSet& cores) {
-    const std::shared_ptr<CoreUnit> core = make_rtl_core(timing, {}, cores);
-    const auto count = static_cast<double>(trace([&] {
-      return std::make_unique<CheckIntersector>(bvh,
-                                                std::make_unique<CoreIntersector>(bvh, image, core),
-                                                std::make_unique<CpuIntersector>(bvh));
-    }));
-    const CoreCounters counters = core->counters();
-    const auto a_ray = [&](std::uint64_t of) { return static_cast<double>(of) / count; };
-    const auto percent = [&](std::uint64_t clocks) {  // of the clocks of all cores
-      return 100.0 * a_ray(clocks) / (a_ray(counters.clocks) * cores.cores);
-    };
-    print({{"table", "core"},
-           {"scene", name_},
-           {"rays", kind},
-           {"exact", options_.exact},
-           {"latency", timing.latency},
-           {"cores", cores.cores},
-           {"clocks_per_ray", a_ray(counters.clocks)},
-           {"lines_per_ray", a_ray(counters.lines)},
-           {"bytes_per_ray", 64.0 * a_ray(counters.lines)},
-           {"nodes_percent", percent(counters.nodes)},
-           {"triangles_percent", percent(counters.triangles)},
-           {"waits_percent", percent(counters.waits)},
-           {"exact_percent", percent(counters.exact_clocks)},
-           {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
-           {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)}});
+void run(const Options& options, const std::filesystem::path& file) {
+  const Scene scene = load_obj(file);
+  const Bvh bvh(scene);
+  const auto image = std::make_shared<const MemoryImage>(bvh);
+  const auto measure_kind = [&](const std::string& kind, const Trace& trace) {
+    if (std::ranges::count(options.kinds, kind) == 0) return;
+    measure(options, file.stem().string(), kind, bvh, image, trace);
+  };
+  for (const RaySet& set : ray_sets(scene, options.size - options.size % 128)) {
+    measure_kind(set.name, [&](const IntersectorFactory& make_intersector) {
+      std::vector<NearestHit> hits(set.rays.size());
+      set.find(*make_intersector(), 0, hits);
+      return hits.size();
+    });
   }
-
-  const Options& options_;
-  std::string name_;
-};
+  for (const auto& [kind, integrator] : kPictures) {
+    measure_kind(kind, [&](const IntersectorFactory& make_intersector) {
+      const Camera camera = front_camera(scene, 1.0);
+      RenderSettings settings;
+      settings.width = settings.height = options.size;
+      settings.samples = 1;
+      settings.integrator = integrator;
+      RenderStats stats;
+      const PreparedScene prepared(scene, bvh);
+      (void)render({prepared, camera, settings, default_lights(scene, camera)}, make_intersector,
+                   stats);
+      return static_cast<std::size_t>(stats.rays);
+    });
+  }
+}
 
 }  // namespace
 
@@ -133,8 +119,7 @@ void add_core(CLI::App& lab) {
       ->check(CLI::IsMember({"camera", "light", "scattered", "whitted", "path"}));
   app->add_flag("--exact", options->exact, "cores settle doubts; else the host does");
   app->callback([options] {
-    CoreBench bench(*options);
-    for (const std::string& scene : options->scenes) bench.scene(scene);
+    for (const std::string& scene : options->scenes) run(*options, scene);
   });
 }
 

@@ -69,11 +69,7 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
 /// Traces a ray: finds the nearest hit, or, with `collector`, all hits.
 RTCRayHit shoot(RTCScene scene, const Ray& ray, Collector* collector = nullptr) {
   RTCRayHit query{};
-  query.ray.org_x = ray.origin.x, query.ray.org_y = ray.origin.y, query.ray.org_z = ray.origin.z;
-  query.ray.dir_x = ray.direction.x, query.ray.dir_y = ray.direction.y;
-  query.ray.dir_z = ray.direction.z;
-  query.ray.tfar = std::numeric_limits<float>::infinity();
-  query.ray.mask = ~0u;
+  set_ray(query.ray, 0, ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   Collector none;
   Collector& mine = collector != nullptr ? *collector : none;

@@ -106,16 +106,16 @@ Word& in_lane(Word (&field)[kWidth], std::size_t lane) {
   return field[lane];
 }
 
-/// Sets a lane of `rays` to ray `number` of the set.
+/// Sets a lane of `rays`, which are zero, to a ray.
 template <class Rays>
-void set_ray(Rays& rays, std::size_t lane, const RaySet& set, std::size_t number) {
-  const auto& [origin, direction] = set.rays[number];
+void set_ray(Rays& rays, std::size_t lane, const Ray& ray,
+             float t_max = std::numeric_limits<float>::infinity()) {
+  const auto& [origin, direction] = ray;
   in_lane(rays.org_x, lane) = origin.x, in_lane(rays.org_y, lane) = origin.y;
   in_lane(rays.org_z, lane) = origin.z;
   in_lane(rays.dir_x, lane) = direction.x, in_lane(rays.dir_y, lane) = direction.y;
   in_lane(rays.dir_z, lane) = direction.z;
-  in_lane(rays.tfar, lane) =
-      set.t_max.empty() ? std::numeric_limits<float>::infinity() : set.t_max[number];
+  in_lane(rays.tfar, lane) = t_max;
   in_lane(rays.mask, lane) = ~0u;
 }
 
@@ -126,37 +126,24 @@ void set_no_hit(Hits& hits) {
   std::memset(&hits.instID, 0xFF, sizeof hits.instID);
 }
 
-/// `Queries` calls Embree: set_coherent(), intersect() and occluded() for one ray, 8 or 16.
-template <class Queries>
-class EmbreePeer : public Peer {
+/// Traces rays one by one or in packets, by rtcIntersect1, rtcIntersect8 and the like; packets with
+/// the coherent flag for a common origin. `Queries` calls Embree: set_coherent(), intersect() and
+/// occluded() for one ray, 8 or 16.
+template <std::size_t kWidth, class Queries>
+class RayPackets : public Peer {
  public:
-  EmbreePeer(std::string name, Queries queries, std::shared_ptr<RTCSceneTy> scene)
+  RayPackets(std::string name, Queries queries, std::shared_ptr<RTCSceneTy> scene)
       : Peer(std::move(name)), queries_(queries), scene_(std::move(scene)) {}
 
- protected:
-  [[nodiscard]] RTCScene scene() const { return scene_.get(); }
-
-  Queries queries_;
-  bool any_hit_ = false;
-
- private:
-  std::shared_ptr<RTCSceneTy> scene_;
-};
-
-/// Traces rays one by one or in packets, by rtcIntersect1, rtcIntersect8 and the like; packets with
-/// the coherent flag for a common origin.
-template <std::size_t kWidth, class Queries>
-class RayPackets : public EmbreePeer<Queries> {
- public:
-  using EmbreePeer<Queries>::EmbreePeer;
-
   void prepare(const RaySet& set) override {
-    this->any_hit_ = set.any_hit;
-    this->queries_.set_coherent(kWidth > 1 && set.common_origin);
+    any_hit_ = set.any_hit;
+    queries_.set_coherent(kWidth > 1 && set.common_origin);
     count_ = set.rays.size();
     rays_.assign((count_ + kWidth - 1) / kWidth, {});
     for (std::size_t i = 0; i < rays_.size() * kWidth; ++i) {
-      set_ray(rays_[i / kWidth], i % kWidth, set, std::min(i, count_ - 1));
+      const std::size_t number = std::min(i, count_ - 1);
+      set_ray(rays_[i / kWidth], i % kWidth, set.rays[number]);
+      if (!set.t_max.empty()) in_lane(rays_[i / kWidth].tfar, i % kWidth) = set.t_max[number];
     }
   }
 
@@ -168,48 +155,49 @@ class RayPackets : public EmbreePeer<Queries> {
       for (std::size_t lane = 0; lane < kWidth; ++lane) valid[lane] = lane < lanes ? -1 : 0;
       RoomForHit<typename Packet<kWidth>::Hits, kWidth> query;
       query.ray = rays_[i];
-      if (this->any_hit_) {
-        this->queries_.occluded(valid, this->scene(), &query.ray);
+      if (any_hit_) {
+        queries_.occluded(valid, scene_.get(), &query.ray);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
           found.triangle[first + lane] =
               in_lane(query.ray.tfar, lane) < 0.0f ? Found::kSome : Found::kNone;
         }
       } else {
         set_no_hit(query.hit);
-        this->queries_.intersect(valid, this->scene(), &query);
+        queries_.intersect(valid, scene_.get(), &query);
         std::memcpy(&found.triangle[first], &query.hit.primID, lanes * sizeof(std::uint32_t));
         std::memcpy(&found.t[first], &query.ray.tfar, lanes * sizeof(float));
       }
     }
   }
 
- private:
+ protected:
+  Queries queries_;
+  std::shared_ptr<RTCSceneTy> scene_;
+  bool any_hit_ = false;
   std::vector<typename Packet<kWidth>::Rays> rays_;
   std::size_t count_ = 0;
 };
 
 /// Traces streams of rays with Embree 3 (rtcIntersect1M), with the same flag.
 template <class Queries>
-class RayStreams : public EmbreePeer<Queries> {
+class RayStreams : public RayPackets<1, Queries> {
  public:
-  using EmbreePeer<Queries>::EmbreePeer;
+  using RayPackets<1, Queries>::RayPackets;
 
   void prepare(const RaySet& set) override {
-    this->any_hit_ = set.any_hit;
+    RayPackets<1, Queries>::prepare(set);
     this->queries_.set_coherent(set.common_origin);
-    queries_of_rays_.assign(set.rays.size(), {});
-    for (std::size_t i = 0; i < queries_of_rays_.size(); ++i) {
-      set_ray(queries_of_rays_[i].ray, 0, set, i);
-      set_no_hit(queries_of_rays_[i].hit);
-    }
   }
 
   void run(Found& found) override {
     RTCRayHit stream[kStream];
-    for (std::size_t first = 0; first < queries_of_rays_.size(); first += kStream) {
-      const std::size_t count = std::min(kStream, queries_of_rays_.size() - first);
-      std::copy_n(&queries_of_rays_[first], count, stream);
-      this->queries_.trace_stream(this->scene(), stream, static_cast<unsigned>(count),
+    for (std::size_t first = 0; first < this->count_; first += kStream) {
+      const std::size_t count = std::min(kStream, this->count_ - first);
+      for (std::size_t i = 0; i < count; ++i) {
+        stream[i].ray = this->rays_[first + i];
+        set_no_hit(stream[i].hit);
+      }
+      this->queries_.trace_stream(this->scene_.get(), stream, static_cast<unsigned>(count),
                                   this->any_hit_);
       for (std::size_t i = 0; i < count; ++i) {
         if (this->any_hit_) {
@@ -225,8 +213,6 @@ class RayStreams : public EmbreePeer<Queries> {
  private:
   // Rays per stream, which fit into the first-level cache.
   static constexpr std::size_t kStream = 1024;
-
-  std::vector<RTCRayHit> queries_of_rays_;
 };
 
 /// Returns peers for single rays, packets and, if `Queries` supports them, streams, each in default

@@ -4,9 +4,8 @@ import io
 import pathlib
 
 import numpy
+from matplotlib import pyplot as plt
 from PIL import Image
-
-from synth.drawing import plt
 
 
 def write_png(drawn: bytes, file: pathlib.Path) -> None:

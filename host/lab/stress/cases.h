@@ -1,5 +1,5 @@
-// Cases of the stress test: rays with a common origin at a few triangles, closed meshes, and
-// generators of hard cases.
+// Cases of the stress test: rays with a common origin at a few triangles, their exact results,
+// closed meshes, and generators of hard cases. Shares no code with the renderer.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -60,6 +61,34 @@ struct Shot {
   /// Returns the number of results of each kind, ordered by ray, then by triangle.
   [[nodiscard]] std::size_t tests() const { return directions.size() * mesh->size(); }
 };
+
+/// The exact result for one ray and one triangle.
+struct Verdict {
+  bool hit = false;
+  bool tie = false;   ///< the ray meets the line of an edge exactly: the tie-break decides
+  double t = 0.0;     ///< of a hit; relative error at most 2^-50
+  double sine = 0.0;  ///< of a hit: sine of the angle between ray and plane, as accurate
+};
+
+struct Truth {
+  std::vector<Verdict> verdicts;  ///< by ray, then by triangle
+  /// For each ray the triangles that it hits, nearest first, exactly; then by index.
+  std::vector<std::vector<std::uint32_t>> orders;
+  /// There is another hit at equal distance, or the tie-break was used.
+  std::vector<bool> nearest_tied;
+
+  /// Returns the triangle that a ray hits first.
+  [[nodiscard]] std::optional<std::uint32_t> nearest(std::size_t ray) const {
+    return orders[ray].empty() ? std::nullopt : std::optional(orders[ray].front());
+  }
+};
+
+/// Computes the results by definition: all coordinates are integer multiples of a power of two, so
+/// the determinants are integers. With A, B, C the vertices minus the origin, a ray hits if D = A .
+/// (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have its sign. If one of the three
+/// is 0, its sign is that of the first non-zero component of the cross product, as for a direction
+/// tilted by (e, e^2, e^3). A direction that is zero or not finite hits nothing.
+[[nodiscard]] Truth find_truth(const Shot& shot);
 
 /// Position of a mesh made around the origin at size 1: p becomes p * scale + shift.
 struct Placement {

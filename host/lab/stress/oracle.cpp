@@ -1,8 +1,8 @@
-#include "host/lab/stress/oracle.h"
-
 #include <gmpxx.h>
 
 #include <cmath>
+
+#include "host/lab/stress/cases.h"
 
 namespace raygate::lab {
 namespace {

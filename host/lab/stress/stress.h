@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "host/lab/lab.h"
-#include "host/lab/stress/oracle.h"
 #include "host/lab/stress/subjects.h"
 
 namespace raygate::lab {

@@ -97,7 +97,7 @@ glm::dvec3 on_edge(const Corners& t, Random& random) {
 }
 
 /// Aims at the interior, edges, vertices, and points nearby, of any of the triangles.
-void aim_everywhere(Shot& shot, Random& random) {
+Shot aimed(Shot shot, Random& random) {
   const Mesh& triangles = *shot.mesh;
   for (int i = 0; i < kRays; ++i) {
     const Corners& t = triangles[random.below(static_cast<int>(triangles.size()))];
@@ -105,6 +105,7 @@ void aim_everywhere(Shot& shot, Random& random) {
     if (random.one_in(8)) aim += glm::dvec3(t[1] - t[0]) * random.uniform(-1, 1);
     shot.directions.push_back(direction_to(aim, glm::dvec3(shot.origin)));
   }
+  return shot;
 }
 
 Corners random_triangle(Random& random, const glm::dvec3& scale = glm::dvec3(1),
@@ -132,9 +133,7 @@ Shot grazing_shot(Random& random) {
   const glm::dvec3 aim = inside_of(t, random);
   const glm::dvec3 along = glm::normalize(glm::cross(normal, random.unit()));
   const double distance = random.uniform(0.5, 4), angle = random.log_uniform(1e-7, 1e-1);
-  Shot shot = shot_at({t}, aim + distance * (along + angle * random.sign() * normal));
-  aim_everywhere(shot, random);
-  return shot;
+  return aimed(shot_at({t}, aim + distance * (along + angle * random.sign() * normal)), random);
 }
 
 Corners needle(Random& random) {
@@ -146,25 +145,20 @@ Corners needle(Random& random) {
 }
 
 Shot needle_shot(Random& random) {
-  Shot shot = shot_at({needle(random)}, 2.0 * random.point());
-  aim_everywhere(shot, random);
-  return shot;
+  return aimed(shot_at({needle(random)}, 2.0 * random.point()), random);
 }
 
 /// Makes shots of one random size.
 Shot scaled_shot(Random& random, double least, double most) {
   const glm::dvec3 scale(random.log_uniform(least, most));
-  Shot shot = shot_at({random_triangle(random, scale)}, random.point() * scale);
-  aim_everywhere(shot, random);
-  return shot;
+  return aimed(shot_at({random_triangle(random, scale)}, random.point() * scale), random);
 }
 
 /// Makes shots at distances of 1e3 to 1e7 sizes from the world's origin.
 Shot far_shot(Random& random) {
   const glm::dvec3 shift = random.unit() * random.log_uniform(1e3, 1e7);
-  Shot shot = shot_at({random_triangle(random, glm::dvec3(1), shift)}, random.point() + shift);
-  aim_everywhere(shot, random);
-  return shot;
+  return aimed(shot_at({random_triangle(random, glm::dvec3(1), shift)}, random.point() + shift),
+               random);
 }
 
 /// Makes overlapping triangles in one plane, or in slightly tilted planes.
@@ -182,9 +176,7 @@ Shot coplanar_shot(Random& random) {
     if (random.one_in(3)) t = {base[1], base[2], base[0]};
     triangles.push_back(t);
   }
-  Shot shot = shot_at(std::move(triangles), 2.0 * random.point());
-  aim_everywhere(shot, random);
-  return shot;
+  return aimed(shot_at(std::move(triangles), 2.0 * random.point()), random);
 }
 
 /// Makes copies of a triangle moved by a few float steps, in any order.
@@ -201,9 +193,7 @@ Shot near_tie_shot(Random& random) {
     }
     triangles.push_back(t);
   }
-  Shot shot = shot_at(std::move(triangles), 2.0 * random.point());
-  aim_everywhere(shot, random);
-  return shot;
+  return aimed(shot_at(std::move(triangles), 2.0 * random.point()), random);
 }
 
 /// Makes rays (almost) parallel to axes, from points in planes of faces, which must not be culled.
@@ -270,9 +260,7 @@ Shot degenerate_shot(Random& random) {
       origin.z = t[0].z;
       break;
   }
-  Shot shot = shot_at({t}, origin);
-  aim_everywhere(shot, random);
-  return shot;
+  return aimed(shot_at({t}, origin), random);
 }
 
 enum class Aim { kEdges, kVertices };
@@ -340,11 +328,56 @@ std::optional<std::uint32_t> first_hit(const Bvh& bvh, const Ray& ray) {
 /// claim to start inside; the oracle finds out where the rule for origins fails.
 class Bounces {
  public:
-  Shot operator()(Random& random);
+  Shot operator()(Random& random) {
+    if (bounces_left_-- <= 0) {
+      start_anew(random);
+    } else {
+      bounce(random);
+    }
+    directions_.clear();
+    if (mirrored_ != glm::vec3(0.0f)) directions_.push_back(mirrored_);
+    while (directions_.size() < kRays) {
+      // Towards edges and points near them, such as the edge between the first two side faces.
+      const Corners& t = (*mesh_)[random.below(static_cast<int>(mesh_->size()))];
+      const glm::dvec3 aim =
+          glm::mix(glm::dvec3(t[0]), glm::dvec3(t[random.below(3)]), random.uniform(0, 1)) +
+          random.point() * random.log_uniform(1e-9, 1e-1);
+      const glm::dvec3 way = aim - glm::dvec3(origin_);
+      if (way != glm::dvec3(0.0)) directions_.push_back(scaled_direction(way));
+    }
+    return {mesh_, origin_, directions_, true};
+  }
 
  private:
-  void start_anew(Random& random);
-  void bounce(Random& random);
+  void start_anew(Random& random) {
+    const double angle = random.log_uniform(1e-6, 1);
+    Placement placement;
+    if (angle > 1e-2 && random.one_in(2)) placement.shift = random.point() * 1e3;
+    const bool boxed = random.one_in(4);
+    mesh_ = boxed ? box(placement) : wedge(angle, placement);
+    bvh_ = std::make_shared<Bvh>(test::scene_of(*mesh_));
+    const glm::dvec3 start =
+        boxed ? 0.8 * random.point()
+              : glm::dvec3(0.7, 0.7 * std::tan(angle) * random.uniform(0.3, 0.7), 0.2);
+    origin_ = glm::vec3(start + placement.shift);
+    mirrored_ = glm::vec3(0.0f);
+    bounces_left_ = kBounces;
+  }
+
+  /// Follows one ray of the last shot to its hit and reflects it. Restarts if that is not possible.
+  void bounce(Random& random) {
+    const Ray ray = {origin_, directions_[random.below(kRays)]};
+    const auto primitive = first_hit(*bvh_, ray);
+    const NeighborClearances clearances(*bvh_);
+    RaySpawner spawner(clearances);
+    const auto point =
+        primitive ? spawner.find(ray, *primitive, SpawnSide::kIncident) : std::nullopt;
+    if (!point) return start_anew(random);
+    mirrored_ = mirrored(ray.direction, bvh_->corners_of(*primitive));
+    if (!spawner.leaves(ray, *primitive, SpawnSide::kIncident, mirrored_))
+      mirrored_ = glm::vec3(0.0f);
+    origin_ = *point;
+  }
 
   MeshPointer mesh_;
   std::shared_ptr<const Bvh> bvh_;
@@ -353,56 +386,6 @@ class Bounces {
   glm::vec3 mirrored_{0.0f};           // of the ray that was followed; 0: none
   int bounces_left_ = 0;
 };
-
-void Bounces::start_anew(Random& random) {
-  const double angle = random.log_uniform(1e-6, 1);
-  Placement placement;
-  if (angle > 1e-2 && random.one_in(2)) placement.shift = random.point() * 1e3;
-  const bool boxed = random.one_in(4);
-  mesh_ = boxed ? box(placement) : wedge(angle, placement);
-  bvh_ = std::make_shared<Bvh>(test::scene_of(*mesh_));
-  const glm::dvec3 start =
-      boxed ? 0.8 * random.point()
-            : glm::dvec3(0.7, 0.7 * std::tan(angle) * random.uniform(0.3, 0.7), 0.2);
-  origin_ = glm::vec3(start + placement.shift);
-  directions_.clear();
-  mirrored_ = glm::vec3(0.0f);
-  bounces_left_ = kBounces;
-}
-
-/// Follows one ray of the last shot to its hit and reflects it. Restarts if that is not possible.
-void Bounces::bounce(Random& random) {
-  const Ray ray = {origin_, directions_[random.below(kRays)]};
-  const auto primitive = first_hit(*bvh_, ray);
-  const NeighborClearances clearances(*bvh_);
-  RaySpawner spawner(clearances);
-  const auto point = primitive ? spawner.find(ray, *primitive, SpawnSide::kIncident) : std::nullopt;
-  if (!point) return start_anew(random);
-  mirrored_ = mirrored(ray.direction, bvh_->corners_of(*primitive));
-  if (!spawner.leaves(ray, *primitive, SpawnSide::kIncident, mirrored_))
-    mirrored_ = glm::vec3(0.0f);
-  origin_ = *point;
-}
-
-Shot Bounces::operator()(Random& random) {
-  if (bounces_left_-- <= 0) {
-    start_anew(random);
-  } else {
-    bounce(random);
-  }
-  directions_.clear();
-  if (mirrored_ != glm::vec3(0.0f)) directions_.push_back(mirrored_);
-  while (directions_.size() < kRays) {
-    // Towards edges and points near them, such as the edge between the first two side faces.
-    const Corners& t = (*mesh_)[random.below(static_cast<int>(mesh_->size()))];
-    const glm::dvec3 aim =
-        glm::mix(glm::dvec3(t[0]), glm::dvec3(t[random.below(3)]), random.uniform(0, 1)) +
-        random.point() * random.log_uniform(1e-9, 1e-1);
-    const glm::dvec3 way = aim - glm::dvec3(origin_);
-    if (way != glm::dvec3(0.0)) directions_.push_back(scaled_direction(way));
-  }
-  return {mesh_, origin_, directions_, true};
-}
 
 std::function<Generator()> plain(Shot (*make)(Random&)) {
   return [make] { return Generator(make); };

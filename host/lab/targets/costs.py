@@ -33,7 +33,7 @@ def design(variant: dict) -> catalogue.Design:
 
 def _measured(folder: str, rows: dict, workers: int) -> list[dict]:
     with brought.in_place(pathlib.Path(folder)) if folder else contextlib.nullcontext():
-        made, failures = synth.measure(list(rows.values()), synth.Targets((LIBRARY,), workers))
+        made, failures = synth.records(list(rows.values()), synth.Targets((LIBRARY,), workers))
     print("\n".join(failures), file=sys.stderr)
     return [{**record, "brought": folder} for record in made]
 

@@ -192,17 +192,15 @@ From [netlist]({{ run }}/netlist.v), [timing]({{ run }}/timing.txt), [log]({{ ru
 """
 
 
+@tools.command("error")
 def main() -> int:
     """Parses the options, proves user-supplied modules and prepares the build. Returns 1 if a proof is refuted, 2 for
     invalid options."""
     keep_going = "--keep-going" in sys.argv
     words = [word for word in sys.argv[1:] if word != "--keep-going"]
-    try:
-        brought.bring(brought_files(words))
-        refuted = [f"{row['file']}: {row['counterexample']}" for row in judged(words) if not row["holds"]]
-        prepare(words)
-    except (ValueError, tools.MissingTool, tools.ToolFailed) as error:
-        return print(f"error: {error}", file=sys.stderr) or 2
+    brought.bring(brought_files(words))
+    refuted = [f"{row['file']}: {row['counterexample']}" for row in judged(words) if not row["holds"]]
+    prepare(words)
     for text in refuted:
         print(f"{text}{'' if keep_going else '; KEEP_GOING=1 draws it all the same'}", file=sys.stderr)
     return 1 if refuted and not keep_going else 0

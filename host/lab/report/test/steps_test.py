@@ -1,14 +1,11 @@
 """Steps that are done are not done again; rows say what found them."""
 
-import contextlib
-import io
 import pathlib
-import sys
 import tempfile
 import unittest
 from unittest import mock
 
-from host.lab import __main__, rows, steps
+from host.lab import rows, steps
 
 
 class Steps(unittest.TestCase):
@@ -48,13 +45,6 @@ class Steps(unittest.TestCase):
         self.assertEqual(self.measured, ["a", "b, c"])
         self.run_steps()  # which was whole: anew
         self.assertEqual(self.measured, ["a", "b, c"] * 2)
-
-    def test_ctrl_c_prints_one_line(self) -> None:
-        said = io.StringIO()
-        with (contextlib.redirect_stderr(said), mock.patch.object(sys, "argv", ["host.lab", "speed"]),
-              mock.patch.object(__main__, "run", side_effect=KeyboardInterrupt)):
-            self.assertEqual(__main__.main(), 130)
-        self.assertEqual(said.getvalue(), "interrupted; the same command goes on from here\n")
 
     def test_another_run_does_not(self) -> None:
         self.fails = "b, c"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "host/lab/stress/oracle.h"
+#include "host/lab/stress/cases.h"
 #include "sim/test/exact/reference_exact_unit.h"
 
 namespace raygate::lab {

@@ -1,11 +1,11 @@
 // The oracle's integers against rationals, and what it says about cases anyone can decide.
-#include "host/lab/stress/oracle.h"
-
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <utility>
+
+#include "host/lab/stress/cases.h"
 
 namespace raygate::lab {
 namespace {
