@@ -19,7 +19,7 @@ def arguments() -> argparse.Namespace:
     chosen.add_arguments(parser)
     parser.add_argument("--liberty", help="a Liberty file, measured in place of other targets")
     parser.add_argument("--all", help="1: every design on every target; else the first ones, in osu035")
-    parser.add_argument("--publish", help="1: with --all, writes the report into synth/results, too")
+    parser.add_argument("--publish", help="1: with --all, writes results.csv into synth/results, too")
     parser.add_argument("--targets", help="osu035,osu018,ice40,ecp5; of one design its standard cells if not given")
     parser.add_argument("--jobs", type=chosen.whole(1, 1024), default=2, help="at once (%(default)s)")
     return chosen.parse(parser)
