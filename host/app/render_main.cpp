@@ -120,7 +120,7 @@ void run(const Options& options) {
   }
 
   Scene scene = load(options.scene_file,
-                     {.strict = options.strict, .keep_instances = true, .smooth = options.smooth},
+                     {.strict = options.strict, .smooth = options.smooth},
                      options.environment, options.camera.up);
   report.load_seconds = lap.lap();
   report.triangles = triangle_count(scene);

@@ -143,7 +143,7 @@ void trace_rays(const TraceOptions& options) {
   const bool has_file = options.output != "-";
   if (has_file) require_writable(options.output);
   Scene scene = load(read_scene_file(options.scene),
-                     {.strict = options.strict, .keep_instances = true, .textures = false});
+                     {.strict = options.strict, .textures = false});
   resolve_instances(scene, options.engine.instances, options.scene);
   print_warnings(scene.warnings, false);
   prepare_engine(options.engine);

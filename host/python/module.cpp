@@ -167,7 +167,7 @@ class PythonScene {
     const std::filesystem::path path = std::string(file.c_str(), file.size());
     const nb::gil_scoped_release release;
     file_ = read_scene_file(path);
-    scene_ = load(file_, {.strict = strict, .keep_instances = true, .smooth = keywords.smooth},
+    scene_ = load(file_, {.strict = strict, .smooth = keywords.smooth},
                   file_.environment);
     resolve_instances(scene_, InstanceMode::kFlatten, path);
     build(keywords.threads);

@@ -91,7 +91,6 @@ class GltfReader {
     if (is_empty(scene_)) throw InputError(file_.name() + ": no face has an area");
     for (const WorldPointLight& light : lights_) add_light(scene_, light, file_.name());
     aim_camera();
-    if (!options_.keep_instances) resolve_instances(scene_, InstanceMode::kFlatten, file_.name());
     scene_.up = glm::dvec3(0.0, 1.0, 0.0);
     scene_.files = file_.files();
     if (!file_.list("animations").empty()) file_.warn_once("animations are not read");
@@ -224,11 +223,10 @@ class GltfReader {
     return at->second;
   }
 
-  /// Includes an instance in the bounds for recentring. Counts its vertices if it is flattened.
+  /// Includes an instance in the bounds for recentring.
   void expand_extent(const MeshInstance& instance) {
     const auto& [part, own_box, ignored] = shared(instance.shape);
     if (is_empty(part)) return;
-    if (!options_.keep_instances) count(part.positions.size() + 3 * part.triangles.size());
     Instance placed;
     set_rows(instance.world, part.origin, glm::dvec3(0.0), placed);
     const Bounds3 box = transform_bounds(placed.rows, own_box);
@@ -351,12 +349,12 @@ class GltfReader {
   }
 
   /// Adds `more` vertices and corners to the count. Throws InputError if there are too many for a
-  /// file of this size, before flattened instances exhaust the memory.
+  /// file of this size: nodes with skins repeat their mesh.
   void count(std::size_t more) {
     vertices_ += more;
     if (more > kMostVertices + file_.bytes() || vertices_ > kMostVertices + file_.bytes()) {
       file_.fail("more than " + std::to_string(kMostVertices + file_.bytes()) +
-                 " vertices and corners with all instances written out, expected fewer");
+                 " vertices and corners, expected fewer");
     }
   }
 

@@ -177,12 +177,10 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
 }
 
 Scene load_scene(const SceneFile& file, const LoadOptions& options) {
-  LoadOptions kept = options, flat = options;
-  kept.keep_instances = true;
-  flat.keep_instances = false;
-  Scene scene = load_scene(file.obj, kept);
+  Scene scene = load_scene(file.obj, options);
   for (const InstanceSetting& setting : file.instances) {
-    Scene model = load_scene(setting.model, flat);
+    Scene model = load_scene(setting.model, options);
+    resolve_instances(model, InstanceMode::kFlatten, setting.model);
     const std::vector<std::string> objects = model.objects.all();
     MeshInstancer instancer(scene, std::move(model));
     std::size_t object = scene.objects.size();
@@ -196,7 +194,6 @@ Scene load_scene(const SceneFile& file, const LoadOptions& options) {
     }
   }
   add_lights(file, scene);
-  if (!options.keep_instances) resolve_instances(scene, InstanceMode::kFlatten, file.file);
   return scene;
 }
 

@@ -14,8 +14,7 @@ struct LoadOptions {
   /// Whether a face of exactly zero area, after rounding to float, is an error. Otherwise it is
   /// left out, with one warning for all of them.
   bool strict = false;
-  bool keep_instances = false;  ///< otherwise they are flattened (see host/scene/instances.h)
-  bool textures = true;         ///< whether textures are decoded
+  bool textures = true;  ///< whether textures are decoded
   /// Largest angle between the normals of two faces without vertex normals that are smoothed over
   /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
   std::optional<double> smooth = {};
@@ -49,8 +48,8 @@ struct LoadOptions {
 /// with an object for each node; materials (see GltfMaterials); the first camera; lights
 /// (KHR_lights_punctual; 683 candela are 1 watt per steradian). +y is up. Positions are transformed
 /// in double. Skins and morph targets are applied as posed by the nodes; animations are not read.
-/// Throws InputError also for a node with two parents, and if vertices and corners, with flattened
-/// instances, exceed 12 million plus the number of bytes of the file.
+/// Meshes of several nodes become instances. Throws InputError also for a node with two parents, and
+/// if vertices and corners exceed 12 million plus the number of bytes of the file.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Loads a PLY file, ASCII or binary: the polygons of the element "face", as one object of one

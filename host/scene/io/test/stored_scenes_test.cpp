@@ -90,7 +90,7 @@ TEST(StoredScenes, SceneFilesAndTheirObjsGoTogether) {
     if (file.obj.parent_path() != entry.path().parent_path()) {
       file.obj = RAYGATE_MADE_SCENES / file.obj.filename();
     }
-    const Scene scene = load_scene(file, {.keep_instances = true});
+    const Scene scene = load_scene(file);
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
     EXPECT_TRUE(file.camera);
     const bool shines = std::ranges::any_of(scene.materials, [](const Material& material) {
