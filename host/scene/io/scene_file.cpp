@@ -173,6 +173,7 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
   scene.instances = read_instances(root, folder);
   read_lights(root, folder, scene);
   if (const auto render = root.find("render")) scene.options = read_options(*render);
+  scene.settings = root.text_without({"obj", "camera", "environment", "render"});
   return scene;
 }
 

@@ -51,6 +51,7 @@ struct SceneFile {
   std::optional<glm::vec3> background = {};  ///< radiance, scene-linear RGB, none negative
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionSetting> options = {};
+  std::string settings = {};  ///< lights, background and instances as JSON, for digest_of()
 };
 
 /// Reads a scene file (.json). For a file with another ending, returns a SceneFile with that model
