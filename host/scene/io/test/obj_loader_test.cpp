@@ -200,9 +200,9 @@ TEST(LoadObj, WhatIsNoPolygonIsIgnoredWithOneWarningEach) {
   EXPECT_EQ(vertices_of(scene), kTwoTriangles);
   ASSERT_EQ(scene.warnings.size(), 2u);
   EXPECT_TRUE(scene.warnings[0].ends_with(
-      "scene.obj:5: l statements are ignored: only polygons are rendered"));
+      "scene.obj:5: 'l' statements are ignored: only polygons are rendered"));
   EXPECT_TRUE(scene.warnings[1].ends_with(
-      "scene.obj:7: p statements are ignored: only polygons are rendered"));
+      "scene.obj:7: 'p' statements are ignored: only polygons are rendered"));
 }
 
 TEST(LoadObj, FacesWithoutAreaAreLeftOut) {
