@@ -290,8 +290,6 @@ void add_run_options(OptionTable& table, Options& options) {
   table.flag("--serve", "show the scene in a page of the browser", options.serve);
   table.number("--port", "N", "of --serve's page (any free one)", options.port,
                Range<int>{1, 65535});
-  table.flag("--strict", "treat faces without area as an error (default: drop them)",
-             options.strict);
   table.flag("--no-scene-file", "ignore the .json beside an OBJ", options.no_scene_file);
   table.flag("-q,--quiet", "print no statistics and no progress", options.quiet);
   table.flag("-v,--verbose", "print all statistics and warnings", options.verbose);

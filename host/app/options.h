@@ -103,7 +103,6 @@ struct Options : EngineOptions {
   bool serve = false;            ///< serve a page instead of writing files
   int port = 0;                  ///< of the page; 0: any free port
   bool quiet = false, verbose = false;
-  bool strict = false;           ///< refuse faces without area
   bool no_scene_file = false;    ///< ignore a scene file beside the model
   std::optional<double> smooth;  ///< LoadOptions::smooth, in degrees
 };

@@ -54,7 +54,7 @@ struct TraceOptions {
   Hits hits = Hits::kNearest;
   std::vector<HitColumn> columns;
   EngineOptions engine{.engine = Engine::kCpu};
-  bool strict = false, quiet = false;
+  bool quiet = false;
 };
 
 /// The output file or standard output. Ends the program soon after a signal, whatever the threads
@@ -142,8 +142,7 @@ std::string summary(const TraceOptions& options, const CornerRounding& rounding,
 void trace_rays(const TraceOptions& options) {
   const bool has_file = options.output != "-";
   if (has_file) require_writable(options.output);
-  Scene scene = load(read_scene_file(options.scene),
-                     {.strict = options.strict, .textures = false});
+  Scene scene = load(read_scene_file(options.scene), {.textures = false});
   resolve_instances(scene, options.engine.instances, options.scene);
   print_warnings(scene.warnings, false);
   prepare_engine(options.engine);
@@ -186,8 +185,6 @@ int run(const std::vector<std::string>& words) {
       "but material, side and the last two; of any: ray,hit)",
       columns);
   add_engine_options(table, options.engine);
-  table.flag("--strict", "treat faces without area as an error (default: drop them)",
-             options.strict);
   table.flag("-q,--quiet", "print no summary (on standard error)", options.quiet);
   const CommandLine line = table.parse(words);
   if (!line.information.empty()) {

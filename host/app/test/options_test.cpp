@@ -54,14 +54,13 @@ TEST(Options, OnlyASceneMeansTheDefaults) {
   EXPECT_FALSE(options.camera.camera);
   EXPECT_EQ(options.render.seed, 0u);
   EXPECT_FALSE(options.quiet);
-  EXPECT_FALSE(options.strict);
 }
 
 TEST(Options, ReadsEveryOption) {
   std::istringstream line(
       "--size 320x200 --crop=1,2,30,40 --camera -1,-.5,1e3,0,0,-2.5,40 --engine check --unit "
       "serial "
-      "--threads 7 --seed 18446744073709551615 --up -z --fov=50 --strict --stats run.json -q a.obj "
+      "--threads 7 --seed 18446744073709551615 --up -z --fov=50 --stats run.json -q a.obj "
       "-o b");
   const Options options = parse_options({std::istream_iterator<std::string>(line), {}});
   EXPECT_EQ(options.render.width, 320);
@@ -80,7 +79,6 @@ TEST(Options, ReadsEveryOption) {
   EXPECT_EQ(options.engine, Engine::kCheck);
   EXPECT_EQ(options.threads, 7);
   EXPECT_EQ(options.render.seed, 18446744073709551615u);
-  EXPECT_TRUE(options.strict);
   EXPECT_TRUE(options.quiet);
   EXPECT_EQ(options.output.stats, "run.json");
   EXPECT_EQ(options.output.exr, "b.exr");
@@ -265,8 +263,8 @@ TEST(Options, AnEnvironmentNeedsPaths) {
 TEST(Options, WordsThatMeanNothing) {
   EXPECT_EQ(error_of({"a.obj", "--frobnicate"}), "--frobnicate: unknown option (see --help)");
   EXPECT_EQ(error_of({"-x", "cpu", "a.obj"}), "-x: unknown option (see --help)");
-  EXPECT_EQ(error_of({"a.obj", "--strict=yes"}),
-            "--strict=yes: --strict takes no value (see --help)");
+  EXPECT_EQ(error_of({"a.obj", "--quiet=yes"}),
+            "--quiet=yes: --quiet takes no value (see --help)");
   EXPECT_EQ(error_of({"a.obj", "--engine", "gpgpu"}),
             "--engine: expected rtl, model, cpu or check, got 'gpgpu'");
   expect_error({"a.obj", "b.obj"}, "expected one scene, got 2");

@@ -11,9 +11,6 @@
 namespace raygate {
 
 struct LoadOptions {
-  /// Whether a face of exactly zero area, after rounding to float, is an error. Otherwise it is
-  /// left out, with one warning for all of them.
-  bool strict = false;
   bool textures = true;  ///< whether textures are decoded
   /// Largest angle between the normals of two faces without vertex normals that are smoothed over
   /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
@@ -24,8 +21,9 @@ struct LoadOptions {
 /// .stl, in small or capital letters.
 ///
 /// Triangles have the order of the file's faces. Polygons, which may be concave, are cut into
-/// triangles of non-zero area. Vertices that no face uses are left out. The scene is recentred; see
-/// Scene. Numbers are read to the nearest double, as in the C locale.
+/// triangles of non-zero area. Faces of exactly zero area, after rounding to float, are left out, and
+/// so are vertices that no face uses. The scene is recentred; see Scene. Numbers are read to the
+/// nearest double, as in the C locale.
 ///
 /// Throws InputError, with the line of a text file, for another ending, a file that cannot be read
 /// or breaks its format, a vertex index out of range, a position that is not finite, and a file in
