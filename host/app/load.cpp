@@ -39,7 +39,7 @@ Scene load(const SceneFile& file, const LoadOptions& options,
   Scene scene = load_scene(file, options);
   require_numbers(scene, file.file);
   if (!environment) return scene;
-  const std::optional<glm::dvec3>& known = up ? up : file.up;
+  const std::optional<glm::dvec3>& known = up ? up : file.up();
   load_environment(*environment, known ? *known : usual_up_axis(scene), scene);
   return scene;
 }
@@ -69,17 +69,6 @@ std::string view_text(const CameraRequest& request, const Scene& scene, const Vi
 }
 
 }  // namespace
-
-CameraRequest camera_request(const SceneFile& file) {
-  CameraRequest request;
-  request.camera = file.camera;
-  request.lens = file.lens;
-  if (!file.camera) {
-    request.up = file.up;
-    request.fov = file.fov;
-  }
-  return request;
-}
 
 Framing frame_picture(const CameraRequest& request, const Scene& scene, double aspect) {
   const std::optional<CameraSetting> given = request.camera   ? request.camera

@@ -5,7 +5,6 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "host/light/lights.h"
 #include "host/scene/camera.h"
@@ -20,22 +19,6 @@ namespace raygate {
 [[nodiscard]] Scene load(const SceneFile& file, const LoadOptions& options,
                          const std::optional<EnvironmentSetting>& environment = {},
                          const std::optional<glm::dvec3>& up = {});
-
-/// The user's choice of a camera. Empty fields are chosen by frame_picture(). Positions are in
-/// world coordinates.
-struct CameraRequest {
-  std::optional<CameraSetting> camera;  ///< none: the scene's camera, or a view of the whole scene
-  /// Azimuth and elevation in degrees: a view of the whole scene, even if the scene has a camera.
-  std::optional<std::pair<double, double>> angles;
-  std::optional<glm::dvec3> eye, target;  ///< in place of those of the camera or view
-  std::optional<glm::dvec3> up;           ///< of the camera, or of the view
-  std::optional<double> fov;              ///< vertical, in degrees
-  LensSetting lens;
-  std::optional<bool> ground;  ///< none: with default views that need one
-};
-
-/// Returns the camera, or the up direction, field of view and lens for views, of a scene file.
-[[nodiscard]] CameraRequest camera_request(const SceneFile& file);
 
 /// A camera and what goes with it.
 struct Framing {

@@ -236,10 +236,7 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
   table.choice<Projection>("--projection", "NAME",
                            "perspective (default), orthographic or panorama",
                            request.lens.projection,
-                           {{"perspective", Projection::kPerspective},
-                            {"orthographic", Projection::kOrthographic},
-                            {"panorama", Projection::kPanorama}},
-                           kInExr | kInPage);
+                           {std::begin(kProjections), std::end(kProjections)}, kInExr | kInPage);
   table.number("--aperture", "R", "lens radius for depth of field; needs --spp (0)",
                request.lens.aperture, Range{0.0, kLargest, "the radius of a lens, 0 or more"},
                kInExr | kInPage);
@@ -688,7 +685,7 @@ Options with_values(const Options& scene, std::vector<OptionValue> given) {
   Options options;
   options.scene = scene.scene;
   options.scene_file = scene.scene_file;
-  options.camera = camera_request(options.scene_file);
+  options.camera = options.scene_file.camera;
   options.environment = options.scene_file.environment;
   OptionTable table;
   add_render_options(table, options);

@@ -274,7 +274,7 @@ class PythonScene {
       const std::optional<Three>& up, const Settings& settings) const {
     RenderSettings chosen;
     chosen.channels = {.position = true, .albedo = true, .object = true};
-    CameraRequest camera = camera_request(file_);
+    CameraRequest camera = file_.camera;
     Keywords keywords;
     keywords.number("--width", "", "", chosen.width, kSideRange, kInPython);
     keywords.number("--height", "", "", chosen.height, kSideRange, kInPython);

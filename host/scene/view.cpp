@@ -63,7 +63,7 @@ CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const V
                             ? axes.up
                             : axes.direction(view.azimuth, view.elevation + 90.0);
   const double size = std::max({half.x, half.y, half.z});
-  const Camera at_centre = Camera::look_at(centre + towards_eye * size, centre, up, fov, aspect);
+  const Camera at_centre = Camera::look_at({centre + towards_eye * size, centre, up, fov}, aspect);
 
   // The smallest distance at which all points are within the four sides of the view frustum.
   constexpr double kFilled = 0.96;

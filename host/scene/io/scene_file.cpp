@@ -17,29 +17,35 @@ namespace {
 constexpr double kMost = std::numeric_limits<float>::max();
 constexpr double kLeast = std::numeric_limits<float>::min();
 
-void read_camera(const JsonValue& value, SceneFile& scene) {
+CameraRequest read_camera(const JsonValue& value) {
   value.require_keys({"eye", "target", "up", "fov", "projection", "aperture", "focus"});
+  CameraRequest request;
   const auto up = value.find("up");
   const std::string across = "a direction across the view";
-  if (up) scene.up = up->vector();
-  if (scene.up == glm::dvec3(0.0)) up->fail(across);
-  scene.fov =
+  if (up) request.up = up->vector();
+  if (request.up == glm::dvec3(0.0)) up->fail(across);
+  request.fov =
       value.number_in("fov", kLeast, std::nextafter(180.0, 0.0), "degrees above 0 and below 180");
   if (const auto name = value.find("projection")) {
-    const std::string expected = "perspective, orthographic or panorama";
-    scene.lens.projection = projection_named(name->string(expected));
-    if (!scene.lens.projection) name->fail(expected);
+    const std::string expected = "perspective, orthographic or panorama", found = name->string(expected);
+    for (const auto& [known, projection] : kProjections) {
+      if (found == known) request.lens.projection = projection;
+    }
+    if (!request.lens.projection) name->fail(expected);
   }
-  scene.lens.aperture = value.number_in("aperture", 0.0, kMost, "the radius of a lens, 0 or more");
-  scene.lens.focus = value.number_in("focus", kLeast, kMost, "a distance, more than 0");
-  if (!value.find("eye") && !value.find("target")) return;
+  request.lens.aperture = value.number_in("aperture", 0.0, kMost, "the radius of a lens, 0 or more");
+  request.lens.focus = value.number_in("focus", kLeast, kMost, "a distance, more than 0");
+  if (!value.find("eye") && !value.find("target")) return request;
   const JsonValue target = value.at("target");
-  scene.camera = {value.at("eye").vector(), target.vector(), scene.up, scene.fov, scene.lens};
-  const glm::dvec3 view = scene.camera->target - scene.camera->eye;
+  const CameraSetting& camera = request.camera.emplace(
+      CameraSetting{value.at("eye").vector(), target.vector(), std::exchange(request.up, {}),
+                    std::exchange(request.fov, {})});
+  const glm::dvec3 view = camera.target - camera.eye;
   if (view == glm::dvec3(0.0)) target.fail("another point than the eye");
-  if (!scene.up) return;
-  const double sine_times_lengths = glm::length(glm::cross(view, *scene.up));
-  if (!(sine_times_lengths > 1e-9 * glm::length(view) * glm::length(*scene.up))) up->fail(across);
+  if (!up) return request;
+  const double sine_times_lengths = glm::length(glm::cross(view, *camera.up));
+  if (!(sine_times_lengths > 1e-9 * glm::length(view) * glm::length(*camera.up))) up->fail(across);
+  return request;
 }
 
 std::vector<InstanceSetting> read_instances(const JsonValue& scene,
@@ -169,7 +175,7 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
   scene.file = file;
   scene.obj = find_scene_file(std::filesystem::path(file).replace_extension());
   if (const auto obj = root.find("obj")) scene.obj = folder / obj->string("the name of a scene");
-  if (const auto camera = root.find("camera")) read_camera(*camera, scene);
+  if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera);
   scene.instances = read_instances(root, folder);
   read_lights(root, folder, scene);
   if (const auto render = root.find("render")) scene.options = read_options(*render);

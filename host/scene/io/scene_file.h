@@ -40,10 +40,7 @@ struct OptionSetting {
 struct SceneFile {
   std::filesystem::path file = {};
   std::filesystem::path obj = {};
-  std::optional<CameraSetting> camera = {};
-  std::optional<glm::dvec3> up = {};  ///< "camera.up"; --view uses it even without a camera
-  std::optional<double> fov = {};     ///< "camera.fov", likewise
-  LensSetting lens = {};              ///< lens of "camera", likewise
+  CameraRequest camera = {};
   std::vector<WorldPointLight> point_lights = {};
   std::vector<AreaLightSetting> area_lights = {};
   std::vector<DirectionalLight> directional_lights = {};
@@ -52,6 +49,11 @@ struct SceneFile {
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionSetting> options = {};
   std::string settings = {};  ///< lights, background and instances as JSON, for digest_of()
+
+  /// Returns "camera.up", which may be there without a camera.
+  [[nodiscard]] const std::optional<glm::dvec3>& up() const {
+    return camera.camera ? camera.camera->up : camera.up;
+  }
 };
 
 /// Reads a scene file (.json). For a file with another ending, returns a SceneFile with that model

@@ -38,11 +38,12 @@ class ReadSceneFile : public testing::Test {
 TEST_F(ReadSceneFile, EveryKey) {
   const SceneFile scene = read(kWhole);
   EXPECT_EQ(scene.obj, folder_.path() / "room.obj");
-  ASSERT_TRUE(scene.camera);
-  EXPECT_EQ(scene.camera->eye, glm::dvec3(0, 1, 5));
-  EXPECT_EQ(scene.camera->target, glm::dvec3(0, 1, 0));
-  EXPECT_EQ(scene.camera->up, glm::dvec3(0, 1, 0.5));
-  EXPECT_EQ(scene.camera->fov, 39.5);
+  const std::optional<CameraSetting>& camera = scene.camera.camera;
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(camera->eye, glm::dvec3(0, 1, 5));
+  EXPECT_EQ(camera->target, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(camera->up, glm::dvec3(0, 1, 0.5));
+  EXPECT_EQ(camera->fov, 39.5);
   ASSERT_EQ(scene.point_lights.size(), 1u);
   EXPECT_EQ(scene.point_lights[0].position, glm::dvec3(1, 2, 3));
   EXPECT_EQ(scene.point_lights[0].intensity, glm::dvec3(10, 20, 30));
@@ -62,16 +63,16 @@ TEST_F(ReadSceneFile, EveryKey) {
 TEST_F(ReadSceneFile, NothingIsNeeded) {
   const SceneFile scene = read("{}");
   EXPECT_EQ(scene.obj, folder_.path() / "s.obj") << "the same name";
-  EXPECT_FALSE(scene.camera);
+  EXPECT_FALSE(scene.camera.camera);
   EXPECT_TRUE(scene.point_lights.empty() && scene.area_lights.empty());
   EXPECT_FALSE(scene.background);
 }
 
 TEST_F(ReadSceneFile, UpAndFieldOfViewAreKnownWithoutACamera) {
   const SceneFile scene = read(R"({"camera": {"up": [0, 0, 1], "fov": 50}})");
-  EXPECT_FALSE(scene.camera);
-  EXPECT_EQ(scene.up, glm::dvec3(0, 0, 1));
-  EXPECT_EQ(scene.fov, 50.0);
+  EXPECT_FALSE(scene.camera.camera);
+  EXPECT_EQ(scene.camera.up, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(scene.camera.fov, 50.0);
   EXPECT_EQ(error(R"({"camera": {"up": [0, 0, 0]}})"),
             "s.json:1: camera.up: an array of 3, expected a direction across the view");
   EXPECT_EQ(error(R"({"camera": {"eye": [0, 0, 1], "up": [0, 1, 0]}})"),

@@ -92,7 +92,7 @@ TEST(StoredScenes, SceneFilesAndTheirObjsGoTogether) {
     }
     const Scene scene = load_scene(file);
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
-    EXPECT_TRUE(file.camera);
+    EXPECT_TRUE(file.camera.camera);
     const bool shines = std::ranges::any_of(scene.materials, [](const Material& material) {
       return material.emission != glm::vec3(0.0f);
     });
