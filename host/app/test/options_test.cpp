@@ -263,8 +263,7 @@ TEST(Options, AnEnvironmentNeedsPaths) {
 TEST(Options, WordsThatMeanNothing) {
   EXPECT_EQ(error_of({"a.obj", "--frobnicate"}), "--frobnicate: unknown option (see --help)");
   EXPECT_EQ(error_of({"-x", "cpu", "a.obj"}), "-x: unknown option (see --help)");
-  EXPECT_EQ(error_of({"a.obj", "--quiet=yes"}),
-            "--quiet=yes: --quiet takes no value (see --help)");
+  EXPECT_EQ(error_of({"a.obj", "--quiet=yes"}), "--quiet=yes: --quiet takes no value (see --help)");
   EXPECT_EQ(error_of({"a.obj", "--engine", "gpgpu"}),
             "--engine: expected rtl, model, cpu or check, got 'gpgpu'");
   expect_error({"a.obj", "b.obj"}, "expected one scene, got 2");

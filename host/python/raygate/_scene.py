@@ -63,9 +63,9 @@ class Scene:
         or float64, and faces of shape (M, 3), whole numbers: three vertices, counted from 0, in each row.
 
         Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them, and
-        `warnings` counts them. `smooth`: faces without normals that meet at no more than so
-        many degrees are shaded smoothly. `threads`: how many build the scene, one per processor by default. Raises
-        InputError, a ValueError, which names the file and line, or the face, that cannot be used."""
+        `warnings` counts them. `smooth`: faces without normals that meet at no more than so many degrees are shaded
+        smoothly. `threads`: how many build the scene, one per processor by default. Raises InputError, a ValueError,
+        which names the file and line, or the face, that cannot be used."""
         options = {"smooth": smooth, "threads": threads}
         if faces is None and isinstance(file, (str, bytes, os.PathLike)):
             name = os.fsencode(file)
@@ -77,8 +77,7 @@ class Scene:
         vertices = np.array(_arrays.vectors("vertices", file))
         numbers = np.array(_arrays.vertex_numbers(faces, len(vertices)))
         self._recipe = Scene, (vertices, numbers), options
-        self._scene = _raygate.Scene("faces", _arrays.triangles("faces", vertices[numbers]),
-                                     _settings(smooth=smooth, threads=threads))
+        self._scene = _raygate.Scene("faces", _arrays.triangles("faces", vertices[numbers]), _settings(smooth=smooth, threads=threads))
 
     @classmethod
     @in_context

@@ -381,8 +381,7 @@ class GltfReader {
   /// Returns the numbers of an attribute plus the weighted sum of its morph targets; an empty list
   /// if there is no such attribute.
   std::vector<double> attribute(const Json& primitive, const std::string& name, int width,
-                                            std::size_t vertices,
-                                            const std::vector<double>& weights = {}) {
+                                std::size_t vertices, const std::vector<double>& weights = {}) {
     const int accessor = index_in(member(primitive, "attributes"), name.c_str());
     const auto optional = [&](int number, int components) {
       return file_.optional_numbers(number, components, name.c_str(), vertices);
@@ -406,7 +405,7 @@ class GltfReader {
 
   /// Returns the transform of each vertex to the world: the weighted mean of its joints.
   std::vector<glm::dmat4> skinned(const Json& primitive, const Placement& placement,
-                                              std::size_t vertices) {
+                                  std::size_t vertices) {
     std::vector<glm::dmat4> all(vertices, glm::dmat4(0.0));
     std::vector<double> sums(vertices);
     for (int set = 0;; ++set) {
@@ -428,8 +427,8 @@ class GltfReader {
     return all;
   }
 
-  void read_primitive(const Json& primitive, const Placement& placement,
-                                  std::uint32_t object, MeshBuilder& to) {
+  void read_primitive(const Json& primitive, const Placement& placement, std::uint32_t object,
+                      MeshBuilder& to) {
     const int mode = index_in(primitive, "mode"), number = index_in(primitive, "material");
     if (mode >= 0 && mode < kTriangles) {
       return file_.warn_once("points and lines are ignored: only polygons are rendered");
@@ -504,7 +503,8 @@ class GltfReader {
       if (!seconds.empty()) to.add_second_texcoord({seconds[2 * i], 1.0 - seconds[2 * i + 1]});
       if (is_clear) {
         const double alpha = colors[own_color + 3];
-        to.add_opacity(std::isfinite(alpha) ? static_cast<float>(std::clamp(alpha, 0.0, 1.0)) : 1.0f);
+        to.add_opacity(std::isfinite(alpha) ? static_cast<float>(std::clamp(alpha, 0.0, 1.0))
+                                            : 1.0f);
       }
     }
 
@@ -531,7 +531,7 @@ class GltfReader {
   const LoadOptions options_;
   MeshBuilder builder_;  // of meshes with one instance
   GltfMaterials materials_;
-  std::size_t vertices_ = 0;  // vertices and corners counted so far
+  std::size_t vertices_ = 0;       // vertices and corners counted so far
   std::vector<PlacedNode> nodes_;  // depth first
   std::map<Shape, int> uses_;
   std::map<Shape, SharedMesh> shared_;

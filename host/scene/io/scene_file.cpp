@@ -27,13 +27,15 @@ CameraRequest read_camera(const JsonValue& value) {
   request.fov =
       value.number_in("fov", kLeast, std::nextafter(180.0, 0.0), "degrees above 0 and below 180");
   if (const auto name = value.find("projection")) {
-    const std::string expected = "perspective, orthographic or panorama", found = name->string(expected);
+    const std::string expected = "perspective, orthographic or panorama",
+                      found = name->string(expected);
     for (const auto& [known, projection] : kProjections) {
       if (found == known) request.lens.projection = projection;
     }
     if (!request.lens.projection) name->fail(expected);
   }
-  request.lens.aperture = value.number_in("aperture", 0.0, kMost, "the radius of a lens, 0 or more");
+  request.lens.aperture =
+      value.number_in("aperture", 0.0, kMost, "the radius of a lens, 0 or more");
   request.lens.focus = value.number_in("focus", kLeast, kMost, "a distance, more than 0");
   if (!value.find("eye") && !value.find("target")) return request;
   const JsonValue target = value.at("target");

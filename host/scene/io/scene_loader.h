@@ -21,9 +21,9 @@ struct LoadOptions {
 /// .stl, in small or capital letters.
 ///
 /// Triangles have the order of the file's faces. Polygons, which may be concave, are cut into
-/// triangles of non-zero area. Faces of exactly zero area, after rounding to float, are left out, and
-/// so are vertices that no face uses. The scene is recentred; see Scene. Numbers are read to the
-/// nearest double, as in the C locale.
+/// triangles of non-zero area. Faces of exactly zero area, after rounding to float, are left out,
+/// and so are vertices that no face uses. The scene is recentred; see Scene. Numbers are read to
+/// the nearest double, as in the C locale.
 ///
 /// Throws InputError, with the line of a text file, for another ending, a file that cannot be read
 /// or breaks its format, a vertex index out of range, a position that is not finite, and a file in
@@ -46,8 +46,8 @@ struct LoadOptions {
 /// with an object for each node; materials (see GltfMaterials); the first camera; lights
 /// (KHR_lights_punctual; 683 candela are 1 watt per steradian). +y is up. Positions are transformed
 /// in double. Skins and morph targets are applied as posed by the nodes; animations are not read.
-/// Meshes of several nodes become instances. Throws InputError also for a node with two parents, and
-/// if vertices and corners exceed 12 million plus the number of bytes of the file.
+/// Meshes of several nodes become instances. Throws InputError also for a node with two parents,
+/// and if vertices and corners exceed 12 million plus the number of bytes of the file.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Loads a PLY file, ASCII or binary: the polygons of the element "face", as one object of one

@@ -152,10 +152,9 @@ TEST_F(ReadSceneFile, LensesAndEnvironments) {
       "camera": {"eye": [0, 0, 1], "target": [0, 0, 0], "projection": "panorama", "aperture": 0.5,
                  "focus": 3},
       "environment": {"file": "sky.exr", "rotation": 90, "strength": 2}})");
-  ASSERT_TRUE(file.camera);
-  EXPECT_EQ(file.camera->lens.projection, Projection::kPanorama);
-  EXPECT_EQ(file.camera->lens.aperture, 0.5);
-  EXPECT_EQ(file.lens.focus, 3.0) << "also of views";
+  EXPECT_EQ(file.camera.lens.projection, Projection::kPanorama);
+  EXPECT_EQ(file.camera.lens.aperture, 0.5);
+  EXPECT_EQ(file.camera.lens.focus, 3.0) << "also of views";
   ASSERT_TRUE(file.environment);
   EXPECT_EQ(file.environment->file, folder_.path() / "sky.exr");
   EXPECT_EQ(file.environment->rotation, 90.0);
