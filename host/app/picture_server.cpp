@@ -1,13 +1,10 @@
 #include "host/app/picture_server.h"
 
 #include <civetweb.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
-#include <filesystem>
 #include <functional>
 #include <future>
 #include <memory>
@@ -31,9 +28,6 @@
 
 namespace raygate {
 namespace {
-
-constexpr std::int64_t kMostServedPixels = std::int64_t{1} << 24;
-constexpr int kMostServedSamples = 1 << 16;
 
 /// A request with the decoded parameters of its query.
 struct Request {
@@ -59,19 +53,6 @@ struct Request {
     const char* const text = mg_get_header(connection, name);
     return text == nullptr ? "" : text;
   }
-  /// Returns the descriptor of the connection's socket, or -1; CivetWeb does not expose it.
-  [[nodiscard]] int socket() const {
-    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-      const int file = std::stoi(entry.path().filename());
-      sockaddr_in peer{};
-      socklen_t size = sizeof peer;
-      if (::getpeername(file, reinterpret_cast<sockaddr*>(&peer), &size) == 0 &&
-          peer.sin_family == AF_INET && ntohs(peer.sin_port) == info->remote_port) {
-        return file;
-      }
-    }
-    return -1;
-  }
 };
 
 struct Reply {
@@ -90,9 +71,7 @@ struct Reply {
       mg_response_header_add(to, name, value.c_str(), static_cast<int>(value.size()));
     }
     mg_response_header_send(to);
-    if (request.info->request_method != std::string("HEAD")) {
-      mg_write(to, body.data(), body.size());
-    }
+    mg_write(to, body.data(), body.size());
   }
 };
 
@@ -152,40 +131,32 @@ class PictureServer {
   static int handle(mg_connection* connection, void* server) {
     // Another thread, because stacks of CivetWeb's threads (100 kB) are too small.
     const Request request(connection);
-    Reply reply{.status = 503, .body = "found no thread that is free\n"};
+    Reply reply;
     try {
       const auto answer = &PictureServer::answer;
       auto* const self = static_cast<PictureServer*>(server);
       reply = std::async(std::launch::async, answer, self, std::cref(request)).get();
-    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): the reply says so
+    } catch (const InputError& error) {
+      reply = {.status = 400, .body = printable(error.what()) + "\n"};
+    } catch (const std::exception& error) {
+      reply = {.status = 500, .body = printable(error.what()) + "\n"};
     }
     reply.send(request);
     return reply.status;
   }
 
   [[nodiscard]] Reply answer(const Request& request) {
-    try {
-      if (!is_own_page(request)) {
-        return {.status = 403,
-                .body =
-                    "expected a request of this server's page, to the host 127.0.0.1 or "
-                    "localhost, and this port\n"};
-      }
-      const std::string method = request.info->request_method, path = request.info->local_uri;
-      if (method != "GET" && method != "HEAD") {
-        return {.status = 405,
-                .body = "found " + printable(method) + ", expected GET or HEAD\n",
-                .headers = {{"Allow", "GET, HEAD"}}};
-      }
-      if (path == "/") return {.type = "text/html; charset=utf-8", .body = kPicturePage};
-      if (path == "/picture") return picture(request);
-      if (path == "/camera") return {.type = "application/json", .body = camera(request).dump()};
-      return {.status = 404, .body = "expected /, /picture or /camera\n"};
-    } catch (const InputError& error) {
-      return {.status = 400, .body = printable(error.what()) + "\n"};
-    } catch (const std::exception& error) {
-      return {.status = 500, .body = printable(error.what()) + "\n"};
+    const std::string method = request.info->request_method, path = request.info->local_uri;
+    if (!is_own_page(request) || method != "GET") {
+      return {.status = 403,
+              .body =
+                  "expected a GET of this server's page, to the host 127.0.0.1 or localhost, and "
+                  "this port\n"};
     }
+    if (path == "/") return {.type = "text/html; charset=utf-8", .body = kPicturePage};
+    if (path == "/picture") return picture(request);
+    if (path == "/camera") return {.type = "application/json", .body = camera(request).dump()};
+    return {.status = 404, .body = "expected /, /picture or /camera\n"};
   }
 
   [[nodiscard]] bool is_own_page(const Request& request) const {
@@ -215,15 +186,6 @@ class PictureServer {
     // The default depends on the camera, but the scene is built.
     given.push_back({"ground", scene_.has_ground ? "on" : "off"});
     Options options = with_values(options_, std::move(given));
-    const RenderSettings& render = options.render;
-    if (std::int64_t{render.width} * render.height > kMostServedPixels) {
-      throw InputError("--size: expected at most " + std::to_string(kMostServedPixels) +
-                       " pixels with --serve");
-    }
-    if (render.samples > kMostServedSamples) {
-      throw InputError("--spp: expected at most " + std::to_string(kMostServedSamples) +
-                       " with --serve");
-    }
     if (options.has_core() && scene_.prepared.bvh.has_instances()) {
       throw InputError("--unit core: expected --instances write with --serve");
     }
@@ -238,12 +200,11 @@ class PictureServer {
   Reply picture(const Request& request) {
     const Options options = options_of(request);
     const Framing framing = framing_of(options);
+    const int number = ++pictures_;
     const std::lock_guard<std::mutex> one_at_a_time(rendering_);
-    const int socket = request.socket();
     RenderMonitor monitor;
     monitor.progress = [&](double /*fraction*/) {
-      pollfd end{.fd = socket, .events = POLLRDHUP, .revents = 0};
-      return interruption() == 0 && ::poll(&end, 1, 0) == 0;
+      return interruption() == 0 && number == pictures_;
     };
     prepare_engine(options);
     const Bvh& bvh = scene_.prepared.bvh;
@@ -252,7 +213,7 @@ class PictureServer {
     const Film film = render({scene_.prepared, framing.camera, options.render, framing.lights},
                              make_intersector_factory(options, bvh, options.render.skips, image_),
                              stats, monitor);
-    if (stats.cancelled) return {.body = "cancelled\n"};
+    if (stats.cancelled) throw InputError("another picture was asked for");
     const auto& channels = options.output.false_colors;
     const HitCounters& hit = stats.intersect.hit;
     const Json statistics{{"seconds", stats.wall_seconds},
@@ -289,8 +250,9 @@ class PictureServer {
 
   Options options_;
   const ServedScene scene_;
-  std::set<std::string> names_;  // the server's host names
-  std::mutex rendering_;         // one picture at a time, with all threads
+  std::set<std::string> names_;    // the server's host names
+  std::mutex rendering_;           // one picture at a time, with all threads
+  std::atomic<int> pictures_ = 0;  // asked for so far
   std::shared_ptr<const MemoryImage> image_;
 };
 

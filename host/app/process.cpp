@@ -18,7 +18,6 @@ namespace {
 
 constexpr int kUserError = 2;
 constexpr const char* kOutOfMemory = "out of memory";
-constexpr int kSignalBase = 128;  // as shells report a death by signal
 
 int why_output_failed = 0;  // errno of a failed print; 0: none failed
 std::atomic<int> noted_signal = 0;
@@ -167,17 +166,19 @@ int run_main(int argc, char** argv,
       internal_error);
 }
 
-void note_interruptions() {
+void handle_interruptions(void (*handler)(int)) {
   struct sigaction action {};
-  action.sa_handler = note;
+  action.sa_handler = handler;
   action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second one kills
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction old {};
-    if (::sigaction(signal, nullptr, &old) == 0 && old.sa_handler == SIG_DFL) {
+    if (::sigaction(signal, nullptr, &old) == 0 && old.sa_handler != SIG_IGN) {
       ::sigaction(signal, &action, nullptr);
     }
   }
 }
+
+void note_interruptions() { handle_interruptions(note); }
 
 int interruption() { return noted_signal; }
 

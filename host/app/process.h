@@ -38,8 +38,13 @@ int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program,
              int internal_error = 1);
 
-/// Installs handlers that note SIGINT, SIGTERM and SIGHUP; a second signal ends the program at
-/// once. Signals that are ignored stay ignored.
+constexpr int kSignalBase = 128;  ///< plus a signal: exit status, as shells report a death by it
+
+/// Installs a handler of SIGINT, SIGTERM and SIGHUP; a second signal ends the program at once.
+/// Signals that were ignored at the start stay ignored.
+void handle_interruptions(void (*handler)(int));
+
+/// Installs a handler that notes these signals.
 void note_interruptions();
 
 /// Returns the noted signal of note_interruptions(), or 0.
