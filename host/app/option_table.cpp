@@ -2,7 +2,7 @@
 
 #include <cctype>
 
-#include "host/app/version.h"
+#include "host/app/built_in.h"
 #include "host/base/input_error.h"
 
 namespace raygate {

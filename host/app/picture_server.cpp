@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
+#include "host/app/built_in.h"
 #include "host/app/engines.h"
 #include "host/app/load.h"
 #include "host/app/output_files.h"
-#include "host/app/picture_page.h"
 #include "host/app/process.h"
 #include "host/base/input_error.h"
 #include "host/film/display.h"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/app/built_in.h"
 #include "host/app/console.h"
 #include "host/app/engines.h"
 #include "host/app/load.h"
@@ -14,7 +15,6 @@
 #include "host/app/picture_server.h"
 #include "host/app/process.h"
 #include "host/app/report.h"
-#include "host/app/version.h"
 #include "host/base/input_error.h"
 #include "host/base/measure.h"
 #include "host/bvh/bvh.h"

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "host/app/built_in.h"
 #include "host/app/console.h"
 #include "host/app/output_files.h"
 #include "host/app/process.h"
-#include "host/app/version.h"
 
 namespace raygate {
 namespace {

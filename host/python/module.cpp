@@ -18,9 +18,9 @@
 #include <utility>
 #include <vector>
 
+#include "host/app/built_in.h"
 #include "host/app/load.h"
 #include "host/app/options.h"
-#include "host/app/version.h"
 #include "host/base/input_error.h"
 #include "host/base/threads.h"
 #include "host/bvh/bvh.h"
