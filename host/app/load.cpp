@@ -40,14 +40,14 @@ Scene load(const SceneFile& file, const LoadOptions& options,
   require_numbers(scene, file.file);
   if (!environment) return scene;
   const std::optional<glm::dvec3>& known = up ? up : file.up();
-  load_environment(*environment, known ? *known : usual_up_axis(scene), scene);
+  load_environment(*environment, known ? *known : scene.up, scene);
   return scene;
 }
 
 namespace {
 
 View chosen_view(const CameraRequest& request, const Scene& scene) {
-  const glm::dvec3 up = request.up ? *request.up : usual_up_axis(scene);
+  const glm::dvec3 up = request.up.value_or(scene.up);
   if (!request.angles) return {kDefaultAzimuth, kDefaultElevation, up};
   return {request.angles->first, request.angles->second, up};
 }
@@ -60,7 +60,7 @@ std::string view_text(const CameraRequest& request, const Scene& scene, const Vi
     if (std::abs(view.up[axis]) < largest(view.up)) continue;
     text += std::string(" --up ") + (view.up[axis] < 0.0 ? "-" : "") + "xyz"[axis];
   }
-  if (!request.up) text += scene.up ? " (of the format)" : " (usual in the format)";
+  if (!request.up) text += " (usual in the format)";
   const glm::dvec3 eye = camera.eye + scene.origin, target = camera.target + scene.origin;
   text += "; --camera ";
   for (int axis = 0; axis < 3; ++axis) text += format_number(eye[axis]) + ",";

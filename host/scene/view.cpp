@@ -47,11 +47,6 @@ View front_view(const Scene& scene, const glm::dvec3& up) {
   return {0.0, 3.0 + 27.0 * flatness, up};
 }
 
-glm::dvec3 usual_up_axis(const Scene& scene) {
-  if (scene.up) return *scene.up;
-  return scene.is_usually_z_up ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
-}
-
 CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const View& view,
                           FrameFit filling) {
   const Bounds3 box = bounding_box(scene);

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "host/base/input.h"
-#include "host/scene/io/find_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/text.h"
 
 namespace raygate {

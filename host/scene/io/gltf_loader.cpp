@@ -91,7 +91,6 @@ class GltfReader {
     if (is_empty(scene_)) throw InputError(file_.name() + ": no face has an area");
     for (const WorldPointLight& light : lights_) add_light(scene_, light, file_.name());
     aim_camera();
-    scene_.up = glm::dvec3(0.0, 1.0, 0.0);
     scene_.files = file_.files();
     if (!file_.list("animations").empty()) file_.warn_once("animations are not read");
     return std::move(scene_);

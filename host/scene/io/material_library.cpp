@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/scene/io/find_file.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/text.h"
 

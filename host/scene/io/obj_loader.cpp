@@ -13,7 +13,6 @@
 #include <string_view>
 #include <vector>
 
-#include "host/scene/io/find_file.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/text.h"

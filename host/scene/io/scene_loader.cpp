@@ -1,6 +1,8 @@
 #include "host/scene/io/scene_loader.h"
 
+#include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +34,38 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
   throw InputError(file.string() + ": found a " + file.extension().string() +
                    " file, expected .obj, .glb, .gltf, .ply or .stl; Blender writes them by File > "
                    "Export > glTF 2.0 (with materials, lights and camera) or Wavefront");
+}
+
+std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                               std::string_view name, const std::string& place,
+                                               std::vector<std::string>& warnings) {
+  const bool is_quoted = name.size() > 2 && name.front() == '"' && name.back() == '"';
+  std::string slashed(is_quoted ? name.substr(1, name.size() - 2) : name), plain(name);
+  std::ranges::replace(slashed, '\\', '/');
+  for (std::size_t at = 0; (at = plain.find("\\ ", at)) != plain.npos;) plain.erase(at, 1);
+  std::error_code error;
+  for (const std::string& spelling : {std::string(name), slashed, plain}) {
+    std::filesystem::path file = folder / spelling;
+    if (std::filesystem::is_regular_file(file, error)) return file;
+  }
+  const std::filesystem::path asked(slashed);
+  const std::string wanted = in_lower_case(asked.filename().string());
+  if (wanted.empty()) return std::nullopt;
+  for (const std::filesystem::path& where : {folder / asked.parent_path(), folder}) {
+    std::set<std::filesystem::path> found;
+    for (std::filesystem::directory_iterator entry(where.empty() ? "." : where, error), end;
+         !error && entry != end; entry.increment(error)) {
+      const std::filesystem::path file = entry->path().filename();
+      if (in_lower_case(file.string()) == wanted && entry->is_regular_file(error)) {
+        found.insert(where / file);
+      }
+    }
+    if (found.empty()) continue;
+    warnings.push_back(place + in_quotes(name) + " is missing, " + found.begin()->string() +
+                       " instead");
+    return *found.begin();
+  }
+  return std::nullopt;
 }
 
 std::filesystem::path find_scene_file(const std::filesystem::path& stem) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/scene/scene.h"
@@ -30,6 +31,15 @@ struct LoadOptions {
 /// which no face has an area. Warns (Scene::warnings) about a material or texture that is missing
 /// or damaged, a bad normal or texture coordinate, and all that is left out.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
+
+/// Returns the file that a model in `folder` refers to as `name`: the file of that name or, if
+/// there is none, of the name without quotes and with '/' for '\', or without the '\' before
+/// spaces; else the file whose name matches the last part of `name` in any letter case, in the
+/// folder of `name` or in `folder`, with a warning that begins with `place`.
+[[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                                             std::string_view name,
+                                                             const std::string& place,
+                                                             std::vector<std::string>& warnings);
 
 /// Returns the existing file with this stem and the first of these endings, or else "STEM.obj".
 [[nodiscard]] std::filesystem::path find_scene_file(const std::filesystem::path& stem);
