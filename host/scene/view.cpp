@@ -92,9 +92,15 @@ void add_ground(Scene& scene, const glm::dvec3& up) {
   const glm::dvec3 upright = unit(up);
   const Bounds3 box = position_bounds(scene);
   double lowest = std::numeric_limits<double>::infinity();
-  for_each_position(scene, [&](const glm::vec3& position) {
+  const auto show = [&](const glm::vec3& position) {
     lowest = std::min(lowest, glm::dot(glm::dvec3(position), upright));
-  });
+  };
+  std::ranges::for_each(scene.positions, show);
+  for (const Instance& instance : scene.instances) {
+    for (const glm::vec3& position : scene.meshes[instance.mesh].positions) {
+      show(transform_point(instance.rows, position));
+    }
+  }
   // Slightly below the lowest point, so that a floor of the scene hides this one.
   constexpr double kBelow = 0x1p-11, kHalfSide = 16.0;
   const double size = glm::length(box.high - box.low);

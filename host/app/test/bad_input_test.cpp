@@ -217,9 +217,6 @@ TEST_F(BadInput, SceneFiles) {
   refused("{\"render\":\n{\"size\": \"0x0\"}}", 2);
   folder_.write("scene.json", "{\"obj\": \"none.obj\"}");
   expect_refused(render({"scene.json"}), "scene\\.json: found no none\\.obj, expected [^\n]+");
-  folder_.write("make_scene.py", "");
-  expect_refused(render({"scene.json"}),
-                 "scene\\.json: found no none\\.obj, [^\n]+ `python3 make_scene\\.py none\\.obj`");
 }
 
 /// More triangles than there are numbers: told before anybody looks at them all.
