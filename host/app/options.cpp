@@ -1,7 +1,6 @@
 #include "host/app/options.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -94,28 +93,6 @@ std::optional<Variant> parse_variant(const std::string& text) {
   } catch (const InputError& error) {
     throw InputError("--variant: " + text + ": " + error.what());
   }
-}
-
-/// Parses "latency=100,bytes=16,cache=1024"; each part is optional.
-std::optional<MemoryTiming> parse_memory(const std::string& text) {
-  MemoryTiming timing;
-  for (const std::string& word : split_at_commas(text)) {
-    const auto [name, number] = split_at_equals(word);
-    const int value = parse_number<int>(number).value_or(-1);
-    const auto is_power = [&](int most) {
-      return value >= 1 && value <= most && std::has_single_bit(static_cast<unsigned>(value));
-    };
-    if (name == "latency" && value >= 1 && value <= 10'000) {
-      timing.latency = value;
-    } else if (name == "bytes" && is_power(64)) {
-      timing.bytes = value;
-    } else if (name == "cache" && (value == 0 || is_power(1 << 24))) {
-      timing.cache_lines = value;
-    } else {
-      return std::nullopt;
-    }
-  }
-  return timing;
 }
 
 /// Parses a fraction of the distance; "inf": the unit's point wherever it has one.
@@ -480,11 +457,6 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
                kAriths, kInStats | kInPage);
   table.choice<int>("--lanes", "1|2|4|8", "pipelined units side by side, per thread ({})",
                     options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats | kInPage);
-  table.value<MemoryTiming>(
-      "--memory", "latency=N,bytes=N,cache=N",
-      "ray core: clocks to a line (50), bytes per clock (64), cache lines (0)",
-      "latency=1 to 10000, bytes=1, 2, 4 ... 64, cache=0 or lines, a power of two", options.memory,
-      parse_memory, {}, kInPage);
   table.number("--cores", "N", "ray cores behind one memory, per thread ({})", options.cores,
                Range{1, 64, "a whole number, 1 to 64"}, kInStats | kInPage);
   table.text("--board-port", "PATH", "the serial port of a real board (--unit board)",
@@ -574,10 +546,8 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
 }
 
 void check_engine_options(const OptionTable& table, EngineOptions& options) {
-  for (const char* name : {"memory", "cores"}) {
-    if (!table.given(name).empty() && !(options.unit == "core" && options.simulates())) {
-      table.fail_value(name, "with --unit core and --engine rtl or check");
-    }
+  if (!table.given("cores").empty() && !(options.unit == "core" && options.simulates())) {
+    table.fail_value("cores", "with --unit core and --engine rtl or check");
   }
   if (options.variant) {
     const std::string unit =

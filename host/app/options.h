@@ -19,7 +19,6 @@
 #include "host/scene/io/scene_file.h"
 #include "host/variants/variant_table.h"
 #include "sim/arith.h"
-#include "sim/memory_timing.h"
 
 namespace raygate {
 
@@ -37,7 +36,6 @@ struct EngineOptions {
   std::optional<Variant> variant{};  ///< number format of the model; none: binary32
   Arith arith = Arith::kStructural;
   int lanes = 1;             ///< lanes of the pipelined unit: 1, 2, 4 or 8; 1 for other units
-  MemoryTiming memory{};     ///< memory of a simulated core
   std::string board_port{};  ///< serial port of unit "board"; "": the board is simulated
   int cores = 1;             ///< ray cores behind one memory, per thread; 1 for other units
   int threads = 1;

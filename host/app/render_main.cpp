@@ -154,7 +154,7 @@ void run(const Options& options) {
   if (!core_files.wave.empty()) {
     const glm::dvec2 middle = glm::dvec2(core_files.pixel) + 0.5;
     const Ray ray = framing.camera.ray(middle.x / settings.width, middle.y / settings.height, {});
-    print(trace_pixel(options, core_files, bvh, image, ray), console);
+    print(trace_pixel(core_files, bvh, image, ray), console);
   }
   if (!core_files.paths().empty()) return;
 

@@ -226,11 +226,7 @@ TEST(Options, OtherValuesThatAreImpossible) {
     expect_error({"a.obj", "--lanes", lanes}, "--lanes: expected 1, 2, 4 or 8");
   }
   expect_error({"a.obj", "--unit", "serial", "--lanes", "2"}, "--lanes: expected 1 with");
-  for (const char* memory :
-       {"latency", "latency=0", "bytes=24", "cache=3", "speed=1", "latency=1,", "bytes=128"}) {
-    expect_error({"a.obj", "--unit", "core", "--memory", memory}, "--memory: expected latency=1");
-  }
-  expect_error({"a.obj", "--memory", "latency=9"}, "--memory: expected with --unit core");
+  expect_error({"a.obj", "--cores", "2"}, "--cores: expected with --unit core");
   expect_error({"a.obj", "--cores", "2"}, "--cores: expected with --unit core");
   for (const char* cores : {"0", "65", "two"}) {
     expect_error({"a.obj", "--unit", "core", "--cores", cores}, "--cores: expected a whole number");
