@@ -35,10 +35,6 @@ int run(const std::vector<std::string>& words) {
   table.group("Options");
   add_picture_options(table, options);
   const CommandLine line = table.parse(words);
-  if (!line.information.empty()) {
-    print(line.information);
-    return 0;
-  }
   if (line.plain.empty() || table.given("output").empty()) {
     throw InputError("expected parts of a picture and -o NAME (see --help)");
   }

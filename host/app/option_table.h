@@ -118,7 +118,6 @@ struct OptionValue {
 
 /// The words of a command line.
 struct CommandLine {
-  std::string information;  ///< text that --help or --version asks for; the rest is then empty
   std::vector<OptionValue> values;
   std::vector<std::string> plain;  ///< words that belong to no option
 };
@@ -233,14 +232,14 @@ class OptionTable {
   /// Splits a command line without the program's name: "--name VALUE", "--name=VALUE", "-n VALUE",
   /// flags "--name" and "-n", and other words; all words after "--" are plain. A value may begin
   /// with a dash. Reads no value. Throws InputError, one line, for an unknown option or an option
-  /// without its value.
+  /// without its value, and Information for --help and --version.
   [[nodiscard]] CommandLine split(const std::vector<std::string>& words);
 
   /// Reads values of known options: row by row, each row's values in their order, so that the last
   /// one counts. Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'".
   void read(const std::vector<OptionValue>& values);
 
-  /// Splits a command line and reads its values, unless it asks for information.
+  /// Splits a command line and reads its values.
   [[nodiscard]] CommandLine parse(const std::vector<std::string>& words);
 
   /// Returns the last value that was read of an option, named without dashes; "" if there was none.

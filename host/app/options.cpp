@@ -631,9 +631,7 @@ Options parse_options(const std::vector<std::string>& words) {
   Options options;
   OptionTable table(kAbout, kFooter);
   add_render_options(table, options);
-  CommandLine line = table.split(words);
-  options.information = line.information;
-  if (!options.information.empty()) return options;
+  const CommandLine line = table.split(words);
   if (line.plain.size() != 1) {
     throw InputError("expected one scene, got " + std::to_string(line.plain.size()) +
                      "; try ./render scenes/cornell.obj");

@@ -85,9 +85,6 @@ struct CoreFileOptions {
 
 /// The options of ./render. Every value is in its range; files are not checked.
 struct Options : EngineOptions {
-  /// Output of --help or --version; if not empty, the other members are not valid.
-  std::string information;
-
   std::filesystem::path scene;  ///< the file that was named: a model or a scene file
   SceneFile scene_file;         ///< that scene file or the one beside the model; else the model
   /// Values given in the scene file and then on the command line, which overrides them.
@@ -135,7 +132,7 @@ void check_light_options(const OptionTable& table, bool has_environment, RenderS
 
 /// Parses a command line, without the program's name, after the options of the scene file, which it
 /// overrides. Throws InputError, one line that names the option (or file and line), the value and
-/// what was expected.
+/// what was expected, and Information for --help and --version.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
 /// Returns the options of a scene, whose file was read, with other values given. Throws InputError.

@@ -49,26 +49,9 @@ std::size_t shown_length(std::string_view text) {
   return first == 0xc2 && byte(1) < 0xa0 ? 0 : length;  // U+0080 to U+009F are controls
 }
 
-/// The exit status and message of a program that failed.
-struct Ending {
-  int status;
-  std::string line;
-};
-
-Ending ending_of(const std::exception_ptr& error, int internal_error) {
-  try {
-    std::rethrow_exception(error);
-  } catch (const InputError& unusable) {
-    return {kUserError, unusable.what()};
-  } catch (const Interrupted& interrupted) {
-    return {kSignalBase + interrupted.signal(), interrupted.what()};
-  } catch (const std::bad_alloc&) {
-    return {kUserError, kOutOfMemory};
-  } catch (const std::length_error&) {  // more than any memory has
-    return {kUserError, kOutOfMemory};
-  } catch (const std::exception& fault) {
-    return {internal_error, fault.what()};
-  }
+int report_error(int status, const char* what) {
+  std::fprintf(stderr, "error: %s\n", printable(what).c_str());
+  return status;
 }
 
 }  // namespace
@@ -126,44 +109,51 @@ void flush_standard_output() {
   throw InputError("standard output: cannot write: " + reason);
 }
 
-int run_guarded(const std::function<int()>& program, int internal_error) {
+int run_guarded(const std::function<int()>& program) {
   // A file beyond the size limit, or a pipe without a reader, is a failed write, not a signal.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    // The reserve is optional: a second call of run_guarded may find no memory for it.
-    ::operator delete(reserve.exchange(::operator new(kReserve, std::nothrow)));
-    std::set_new_handler(give_reserve_back);
-    const int status = program();
-    flush_standard_output();
-    return status;
-  } catch (...) {
-    const std::exception_ptr error = std::current_exception();
     try {
-      const Ending ending = ending_of(error, internal_error);
-      std::fprintf(stderr, "error: %s\n", printable(ending.line).c_str());
-      return ending.status;
-    } catch (const std::bad_alloc&) {  // no memory for the line itself
-      std::fprintf(stderr, "error: %s\n", kOutOfMemory);
-      return kUserError;
+      // The reserve is optional: a second call of run_guarded may find no memory for it.
+      ::operator delete(reserve.exchange(::operator new(kReserve, std::nothrow)));
+      std::set_new_handler(give_reserve_back);
+      int status = 0;
+      try {
+        status = program();
+      } catch (const Information& asked) {
+        print(asked.what());
+      }
+      flush_standard_output();
+      return status;
+    } catch (const InputError& unusable) {
+      return report_error(kUserError, unusable.what());
+    } catch (const Interrupted& interrupted) {
+      return report_error(kSignalBase + interrupted.signal(), interrupted.what());
+    } catch (const std::bad_alloc&) {
+      return report_error(kUserError, kOutOfMemory);
+    } catch (const std::length_error&) {  // more than any memory has
+      return report_error(kUserError, kOutOfMemory);
+    } catch (const std::exception& fault) {
+      return report_error(1, fault.what());
     }
+  } catch (const std::bad_alloc&) {  // no memory for the line itself
+    std::fprintf(stderr, "error: %s\n", kOutOfMemory);
+    return kUserError;
   }
 }
 
 int run_main(int argc, char** argv,
-             const std::function<int(const std::vector<std::string>&)>& program,
-             int internal_error) {
-  return run_guarded(
-      [&] {
-        require_ieee_floats();
-        try {
-          use_vectors(wanted_vectors());
-        } catch (const std::runtime_error& error) {
-          throw InputError(error.what());
-        }
-        return program({argv + 1, argv + argc});
-      },
-      internal_error);
+             const std::function<int(const std::vector<std::string>&)>& program) {
+  return run_guarded([&] {
+    require_ieee_floats();
+    try {
+      use_vectors(wanted_vectors());
+    } catch (const std::runtime_error& error) {
+      throw InputError(error.what());
+    }
+    return program({argv + 1, argv + argc});
+  });
 }
 
 void handle_interruptions(void (*handler)(int)) {

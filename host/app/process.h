@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,16 +28,21 @@ void print_warnings(const std::vector<std::string>& warnings, bool all);
 /// standard output is a pipe without a reader, raises SIGPIPE.
 void flush_standard_output();
 
-/// Runs `program` and returns its exit status. Exceptions become one line on standard error, and
-/// the status: 2 for InputError and out of memory, 128 + signal for Interrupted, else
-/// `internal_error`.
-int run_guarded(const std::function<int()>& program, int internal_error = 1);
+/// Thrown to end a program whose command line asks for --help or --version; what() is that text.
+class Information : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Runs `program` and returns its exit status. Information is printed. Other exceptions become one
+/// line on standard error, and the status: 2 for InputError and out of memory, 128 + signal for
+/// Interrupted, else 1.
+int run_guarded(const std::function<int()>& program);
 
 /// Body of main(): checks the machine's arithmetic, chooses the vector code that RAYGATE_VECTORS
 /// names (host/base/vectors.h), and runs `program`, guarded, with the words of the command line.
 int run_main(int argc, char** argv,
-             const std::function<int(const std::vector<std::string>&)>& program,
-             int internal_error = 1);
+             const std::function<int(const std::vector<std::string>&)>& program);
 
 constexpr int kSignalBase = 128;  ///< plus a signal: exit status, as shells report a death by it
 

@@ -184,12 +184,7 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   return raygate::run_main(argc, argv, [](const std::vector<std::string>& words) {
-    raygate::Options options = raygate::parse_options(words);
-    if (options.information.empty()) {
-      raygate::run(options);
-    } else {
-      raygate::print(options.information);
-    }
+    raygate::run(raygate::parse_options(words));
     return 0;
   });
 }

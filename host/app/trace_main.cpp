@@ -151,10 +151,6 @@ int run(const std::vector<std::string>& words) {
   add_engine_options(table, options.engine);
   table.flag("-q,--quiet", "print no summary (on standard error)", options.quiet);
   const CommandLine line = table.parse(words);
-  if (!line.information.empty()) {
-    print(line.information);
-    return 0;
-  }
   if (line.plain.size() != 2) throw InputError("expected SCENE and RAYS (see --help)");
   options.scene = line.plain[0];
   options.rays = line.plain[1];

@@ -13,7 +13,7 @@ namespace {
 // A file may ask for a list longer than any memory.
 TEST(RunGuarded, AListThatIsTooLong) {
   testing::internal::CaptureStderr();
-  EXPECT_EQ(run_guarded([]() -> int { throw std::length_error("vector"); }, 1), 2);
+  EXPECT_EQ(run_guarded([]() -> int { throw std::length_error("vector"); }), 2);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "error: out of memory\n");
 }
 

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "host/app/process.h"
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 
@@ -227,7 +228,6 @@ TEST(Options, OtherValuesThatAreImpossible) {
   }
   expect_error({"a.obj", "--unit", "serial", "--lanes", "2"}, "--lanes: expected 1 with");
   expect_error({"a.obj", "--cores", "2"}, "--cores: expected with --unit core");
-  expect_error({"a.obj", "--cores", "2"}, "--cores: expected with --unit core");
   for (const char* cores : {"0", "65", "two"}) {
     expect_error({"a.obj", "--unit", "core", "--cores", cores}, "--cores: expected a whole number");
   }
@@ -435,8 +435,17 @@ TEST(Options, CausticsOnNeedWhatLightPathsNeed) {
                "--caustics on and --error exclude each other");
 }
 
+std::string information_of(const char* argument) {
+  try {
+    (void)parse({argument});
+  } catch (const Information& asked) {
+    return asked.what();
+  }
+  return "";
+}
+
 TEST(Options, HelpFitsATerminal) {
-  const std::string help = parse({"--help"}).information;
+  const std::string help = information_of("--help");
   EXPECT_LE(std::ranges::count(help, '\n'), 95);
   for (std::size_t start = 0; start < help.size();) {
     const std::size_t end = help.find('\n', start);
@@ -444,9 +453,8 @@ TEST(Options, HelpFitsATerminal) {
     EXPECT_LE(end - start, 80u) << help.substr(start, end - start);
     start = end + 1;
   }
-  EXPECT_EQ(parse({"-h"}).information, help);
-  EXPECT_EQ(parse({"--version"}).information.substr(0, 8), "raygate ");
-  EXPECT_TRUE(parse({"a.obj"}).information.empty());
+  EXPECT_EQ(information_of("-h"), help);
+  EXPECT_EQ(information_of("--version").substr(0, 8), "raygate ");
 }
 
 }  // namespace
