@@ -13,8 +13,7 @@
 #include "host/scene/view.h"
 
 namespace raygate {
-Scene load(const SceneFile& file, const LoadOptions& options,
-           const std::optional<EnvironmentSetting>& environment,
+Scene load(const SceneFile& file, const LoadOptions& options, const EnvironmentSetting& environment,
            const std::optional<glm::dvec3>& up) {
   std::error_code ignored;
   if (file.obj != file.file && !std::filesystem::exists(file.obj, ignored)) {
@@ -24,9 +23,9 @@ Scene load(const SceneFile& file, const LoadOptions& options,
   }
   Scene scene = load_scene(file, options);
   require_numbers(scene, file.file);
-  if (!environment) return scene;
+  if (environment.file.empty()) return scene;
   const std::optional<glm::dvec3>& known = up ? up : file.up();
-  load_environment(*environment, known ? *known : scene.up, scene);
+  load_environment(environment, known ? *known : scene.up, scene);
   return scene;
 }
 

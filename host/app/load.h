@@ -17,7 +17,7 @@ namespace raygate {
 /// is `up`, else the file's, else the format's usual one. Throws InputError as load_scene() and
 /// load_environment() do, and if the scene has too many triangles or objects to number.
 [[nodiscard]] Scene load(const SceneFile& file, const LoadOptions& options,
-                         const std::optional<EnvironmentSetting>& environment = {},
+                         const EnvironmentSetting& environment = {},
                          const std::optional<glm::dvec3>& up = {});
 
 /// A camera and what goes with it.

@@ -225,31 +225,18 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
                      request.ground, {{"on", true}, {"off", false}}, kInExr);
 }
 
-void add_environment_options(OptionTable& table, std::optional<EnvironmentSetting>& environment) {
+void add_environment_options(OptionTable& table, EnvironmentSetting& environment) {
   table.add(
       "--environment", "FILE", "environment map: EXR or HDR, latitude-longitude", "a file",
       [&](const std::string& text) {
-        environment.emplace().file = text;
+        environment = {.file = text};
         return true;
       },
-      [&] { return environment ? environment->file.filename().string() : ""; }, kInExr);
-  const auto add = [&](const char* name, const char* value, const char* help,
-                       double EnvironmentSetting::*target, const Range<double>& range) {
-    table.add(
-        name, value, help, range.text() + ", with --environment",
-        [&environment, target, range](const std::string& text) {
-          const auto number = parse_number<double>(text);
-          if (!environment || !number || !range.contains(*number)) return false;
-          (*environment).*target = *number;
-          return true;
-        },
-        [&environment, target] { return environment ? number_text((*environment).*target) : ""; },
-        kInExr);
-  };
-  add("--environment-rotation", "DEG", "counter-clockwise, seen from above (0)",
-      &EnvironmentSetting::rotation, {-360.0, 360.0, "degrees from -360 to 360"});
-  add("--environment-strength", "X", "radiance multiplier (1)", &EnvironmentSetting::strength,
-      {0.0, 1e9, "a factor from 0 to 1e9"});
+      [&] { return environment.file.filename().string(); }, kInExr);
+  table.number("--environment-rotation", "DEG", "counter-clockwise, seen from above (0)",
+               environment.rotation, Range{-360.0, 360.0, "degrees from -360 to 360"}, kInExr);
+  table.number("--environment-strength", "X", "radiance multiplier (1)", environment.strength,
+               Range{0.0, 1e9, "a factor from 0 to 1e9"}, kInExr);
 }
 
 void add_run_options(OptionTable& table, Options& options) {
@@ -660,7 +647,12 @@ Options with_values(const Options& scene, std::vector<OptionValue> given) {
   table.read(given);
   options.given = std::move(given);
   RenderSettings& render = options.render;
-  check_light_options(table, options.environment.has_value(), render);
+  const bool has_environment = !options.environment.file.empty();
+  for (const char* name : {"environment-rotation", "environment-strength"}) {
+    if (!table.given(name).empty() && !has_environment)
+      table.fail_value(name, "--environment, too");
+  }
+  check_light_options(table, has_environment, render);
   name_outputs(table, options.scene, options.output);
   check_crop(table, render);
   if (!table.given("view").empty()) {
@@ -696,6 +688,9 @@ std::vector<std::pair<std::string, std::string>> option_values(Options options,
   // Options that do not matter are not written.
   std::erase(all, std::pair<std::string, std::string>("error", "0"));
   std::erase(all, std::pair<std::string, std::string>("caustics", "auto"));
+  if (options.environment.file.empty()) {
+    std::erase_if(all, [](const auto& value) { return value.first.starts_with("environment"); });
+  }
   if (options.render.error > 0.0 && options.render.exposure != 0.0) {
     all.emplace_back("exposure", number_text(options.render.exposure));
   }

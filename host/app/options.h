@@ -91,7 +91,7 @@ struct Options : EngineOptions {
   std::vector<OptionValue> given;
   RenderSettings render;
   CameraRequest camera;
-  std::optional<EnvironmentSetting> environment;
+  EnvironmentSetting environment;
   OutputOptions output;
   CoreFileOptions core_files;
   std::filesystem::path resume;  ///< EXR to resume; "": none

@@ -183,7 +183,7 @@ struct EnvironmentMap {
   }
 };
 
-/// An environment map that has not been loaded.
+/// An environment map that has not been loaded; none if `file` is empty.
 struct EnvironmentSetting {
   std::filesystem::path file;  ///< OpenEXR or Radiance HDR, latitude-longitude
   double rotation = 0.0;  ///< around the up axis, in degrees, counter-clockwise seen from above

@@ -135,22 +135,22 @@ TEST(Options, CamerasThatAreImpossible) {
 
 TEST(Options, LensesAndEnvironments) {
   const Options none = parse({"a.obj"});
-  EXPECT_FALSE(none.camera.lens.projection || none.camera.lens.aperture || none.environment);
+  EXPECT_FALSE(none.camera.lens.projection || none.camera.lens.aperture);
+  EXPECT_TRUE(none.environment.file.empty());
   const Options all = parse({"a.obj", "--projection", "orthographic", "--aperture", "0.25",
                              "--focus", "3", "--environment", "sky.hdr", "--environment-rotation",
                              "-90", "--environment-strength=2"});
   EXPECT_EQ(all.camera.lens.projection, Projection::kOrthographic);
   EXPECT_EQ(all.camera.lens.aperture, 0.25);
   EXPECT_EQ(all.camera.lens.focus, 3.0);
-  ASSERT_TRUE(all.environment);
-  EXPECT_EQ(all.environment->file, "sky.hdr");
-  EXPECT_EQ(all.environment->rotation, -90.0);
-  EXPECT_EQ(all.environment->strength, 2.0);
+  EXPECT_EQ(all.environment.file, "sky.hdr");
+  EXPECT_EQ(all.environment.rotation, -90.0);
+  EXPECT_EQ(all.environment.strength, 2.0);
   expect_error({"a.obj", "--projection", "fisheye"}, "--projection: expected ");
   expect_error({"a.obj", "--aperture", "-1"}, "--aperture: expected ");
   expect_error({"a.obj", "--focus", "0"}, "--focus: expected ");
   expect_error({"a.obj", "--environment-rotation", "10"},
-               "--environment-rotation: expected degrees from -360 to 360, with --environment");
+               "--environment-rotation: expected --environment, too, got");
   expect_error({"a.obj", "--environment", "s.exr", "--environment-strength", "-1"},
                "--environment-strength: expected ");
 }

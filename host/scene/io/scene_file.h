@@ -44,7 +44,7 @@ struct SceneFile {
   std::vector<WorldPointLight> point_lights = {};
   std::vector<AreaLightSetting> area_lights = {};
   std::vector<DirectionalLight> directional_lights = {};
-  std::optional<EnvironmentSetting> environment = {};
+  EnvironmentSetting environment = {};
   std::optional<glm::vec3> background = {};  ///< radiance, scene-linear RGB, none negative
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionSetting> options = {};

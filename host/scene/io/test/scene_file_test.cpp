@@ -155,10 +155,9 @@ TEST_F(ReadSceneFile, LensesAndEnvironments) {
   EXPECT_EQ(file.camera.lens.projection, Projection::kPanorama);
   EXPECT_EQ(file.camera.lens.aperture, 0.5);
   EXPECT_EQ(file.camera.lens.focus, 3.0) << "also of views";
-  ASSERT_TRUE(file.environment);
-  EXPECT_EQ(file.environment->file, folder_.path() / "sky.exr");
-  EXPECT_EQ(file.environment->rotation, 90.0);
-  EXPECT_EQ(file.environment->strength, 2.0);
+  EXPECT_EQ(file.environment.file, folder_.path() / "sky.exr");
+  EXPECT_EQ(file.environment.rotation, 90.0);
+  EXPECT_EQ(file.environment.strength, 2.0);
   EXPECT_EQ(error(R"({"camera": {"projection": "fisheye"}})"),
             "s.json:1: camera.projection: 'fisheye', expected perspective, orthographic or "
             "panorama");
