@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "host/scene/io/scene_file.h"
+
 namespace raygate {
 
 /// Parses all of `text` as a number of type T ("12", "-1.5e3"). Returns none if it is not a number
@@ -107,13 +109,6 @@ enum OptionPlaces : unsigned {
   kInPython = 4,     ///< keyword of the Python module
   kInSceneFile = 8,  ///< key of "render" in scene files
   kInPage = 16,      ///< parameter of requests to --serve
-};
-
-/// A value that was given to an option.
-struct OptionValue {
-  std::string name;     ///< of the option, without dashes
-  std::string text;     ///< "" for a flag
-  std::string where{};  ///< place for messages, "scene.json:3"; "": the command line
 };
 
 /// The words of a command line.

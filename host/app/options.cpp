@@ -627,11 +627,8 @@ Options parse_options(const std::vector<std::string>& words) {
   options.scene_file = find_scene_file(
       options.scene,
       std::ranges::find(line.values, "no-scene-file", &OptionValue::name) != line.values.end());
-  std::vector<OptionValue> given;
-  for (const auto& [name, value, number] : options.scene_file.options) {
-    given.push_back({name, value, options.scene_file.file.string() + ":" + std::to_string(number)});
-    table.require(given.back(), kInSceneFile);
-  }
+  std::vector<OptionValue> given = options.scene_file.options;
+  for (const OptionValue& value : given) table.require(value, kInSceneFile);
   given.insert(given.end(), line.values.begin(), line.values.end());
   return with_values(options, std::move(given));
 }

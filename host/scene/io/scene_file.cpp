@@ -127,15 +127,6 @@ void read_lights(const JsonValue& root, const std::filesystem::path& folder, Sce
   if (const auto value = root.find("background")) scene.background = value->light();
 }
 
-std::vector<OptionSetting> read_options(const JsonValue& render) {
-  std::vector<OptionSetting> options;
-  for (const auto& [key, value] : render.members()) {
-    options.push_back(
-        {key, value.word("a number or a string, as on the command line"), value.line()});
-  }
-  return options;
-}
-
 void add_lights(const SceneFile& file, Scene& scene) {
   for (const WorldPointLight& light : file.point_lights) {
     add_light(scene, light, file.file.string());
@@ -180,7 +171,12 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
   if (const auto camera = root.find("camera")) scene.camera = read_camera(*camera);
   scene.instances = read_instances(root, folder);
   read_lights(root, folder, scene);
-  if (const auto render = root.find("render")) scene.options = read_options(*render);
+  if (const auto render = root.find("render")) {
+    for (const auto& [key, value] : render->members()) {
+      scene.options.push_back({key, value.word("a number or a string, as on the command line"),
+                               file.string() + ":" + std::to_string(value.line())});
+    }
+  }
   scene.settings = root.text_without({"obj", "camera", "environment", "render"});
   return scene;
 }

@@ -28,11 +28,11 @@ struct InstanceSetting {
   std::vector<glm::dmat4> transforms;  ///< from the model's coordinates to the world's
 };
 
-/// A default for a command-line option.
-struct OptionSetting {
-  std::string name;   ///< "size": --size
-  std::string value;  ///< as typed on the command line
-  std::size_t line = 0;
+/// A value that was given to an option.
+struct OptionValue {
+  std::string name;     ///< of the option, without dashes
+  std::string text;     ///< "" for a flag
+  std::string where{};  ///< place for messages, "scene.json:3"; "": the command line
 };
 
 /// The contents of a scene file, in world coordinates. Values were checked, except those of
@@ -47,7 +47,7 @@ struct SceneFile {
   EnvironmentSetting environment = {};
   std::optional<glm::vec3> background = {};  ///< radiance, scene-linear RGB, none negative
   std::vector<InstanceSetting> instances = {};
-  std::vector<OptionSetting> options = {};
+  std::vector<OptionValue> options = {};
   std::string settings = {};  ///< lights, background and instances as JSON, for digest_of()
 
   /// Returns "camera.up", which may be there without a camera.

@@ -54,10 +54,10 @@ TEST_F(ReadSceneFile, EveryKey) {
   EXPECT_EQ(scene.background, glm::vec3(0.1f, 0.2f, 0.3f));
   ASSERT_EQ(scene.options.size(), 4u);
   EXPECT_EQ(scene.options[0].name, "exposure") << "sorted by name";
-  EXPECT_EQ(scene.options[0].value, "-0.5");
-  EXPECT_EQ(scene.options[1].line, 9u);
-  EXPECT_EQ(scene.options[2].value, "320x200");
-  EXPECT_EQ(scene.options[3].value, "16");
+  EXPECT_EQ(scene.options[0].text, "-0.5");
+  EXPECT_EQ(scene.options[1].where, (folder_.path() / "s.json:9").string());
+  EXPECT_EQ(scene.options[2].text, "320x200");
+  EXPECT_EQ(scene.options[3].text, "16");
 }
 
 TEST_F(ReadSceneFile, NothingIsNeeded) {
