@@ -40,7 +40,7 @@ bool is_unread(std::string_view name) {
          !name.starts_with("WEIGHTS_");
 }
 
-bool is_finite(const glm::dmat4& m) {
+bool is_finite_transform(const glm::dmat4& m) {
   const std::span elements(glm::value_ptr(m), 16);
   return std::ranges::all_of(elements, [](double element) { return std::isfinite(element); });
 }
@@ -140,7 +140,7 @@ class GltfReader {
       }
       seen[static_cast<std::size_t>(step.node)] = true;
       const glm::dmat4 world = step.parent * local_matrix(node);
-      if (!is_finite(world)) {
+      if (!is_finite_transform(world)) {
         file_.fail("node " + std::to_string(step.node) + ": its place is not finite");
       }
       nodes_.emplace_back(&node, world);
