@@ -15,7 +15,7 @@ namespace {
 using Paths = std::vector<std::filesystem::path>;
 
 TEST(Digest, DependsOnContentsAlone) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   const Paths files{folder.write("a.obj", "v 0 0 0"), folder.write("a.mtl", "newmtl m")};
   const std::string digest = digest_of(files, "{}");
   EXPECT_EQ(digest.find_first_not_of("0123456789abcdef"), std::string::npos);

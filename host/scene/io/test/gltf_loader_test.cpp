@@ -286,7 +286,7 @@ class LoadGltfPicture : public LoadGltf {
     json.replace(json.find(last), last.size(),
                  last + R"(, {"buffer": 0, "byteOffset": 140, "byteLength": 26})");
     json.replace(json.find(R"("byteLength": 140)"), 17, R"("byteLength": 166)");
-    return load(json, square_buffer() + half_clear(), options);
+    return load_gltf(folder_.write("s.glb", glb(json, square_buffer() + half_clear())), options);
   }
 };
 
@@ -585,11 +585,11 @@ TEST_F(LoadGltf, WhatIsRefused) {
   expect_error(json, "glTF version '1.0'");
 }
 
-TEST_F(LoadGltf, InstancesOfInstancesAreBounded) {
+TEST_F(LoadGltf, MeshesOfManySkinsAreBounded) {
   std::string primitives, nodes = "[{\"children\": [";
   for (int i = 1; i <= 4000; ++i) nodes.append(i > 1 ? "," : "").append(std::to_string(i));
   nodes += "]}";
-  for (int i = 1; i <= 4000; ++i) nodes += ",{\"mesh\":0}";
+  for (int i = 1; i <= 4000; ++i) nodes += ",{\"mesh\":0,\"skin\":0}";
   std::string json = square_json(nodes + "]");
   const std::string one =
       json.substr(json.find("{\"attributes"), json.find("}]}]") + 1 - json.find("{\"attributes"));

@@ -6,6 +6,7 @@
 #include "host/base/input_error.h"
 #include "host/base/test/damage.h"
 #include "host/base/test/temp_folder.h"
+#include "host/scene/instances.h"
 #include "host/scene/io/scene_loader.h"
 
 namespace raygate {
