@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "host/app/console.h"
-#include "host/app/process.h"
 #include "host/film/atomic_file.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"

@@ -8,7 +8,7 @@
 
 #include "host/light/lights.h"
 #include "host/scene/camera.h"
-#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/scene.h"
 
 namespace raygate {

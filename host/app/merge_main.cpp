@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "host/app/console.h"
 #include "host/app/options.h"
-#include "host/app/output_files.h"
-#include "host/app/process.h"
+#include "host/app/outputs.h"
 #include "host/base/input_error.h"
 #include "host/film/film.h"
 #include "host/film/merge.h"

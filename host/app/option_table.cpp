@@ -3,7 +3,7 @@
 #include <cctype>
 
 #include "host/app/built_in.h"
-#include "host/app/process.h"
+#include "host/app/console.h"
 #include "host/base/input_error.h"
 
 namespace raygate {

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 
 namespace raygate {
 

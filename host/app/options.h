@@ -16,7 +16,7 @@
 #include "host/film/film.h"
 #include "host/render/render_settings.h"
 #include "host/scene/instances.h"
-#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/variants/variant_table.h"
 #include "sim/arith.h"
 

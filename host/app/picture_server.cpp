@@ -18,10 +18,10 @@
 #include <vector>
 
 #include "host/app/built_in.h"
+#include "host/app/console.h"
 #include "host/app/engines.h"
 #include "host/app/load.h"
-#include "host/app/output_files.h"
-#include "host/app/process.h"
+#include "host/app/outputs.h"
 #include "host/base/input_error.h"
 #include "host/film/display.h"
 #include "host/render/renderer.h"

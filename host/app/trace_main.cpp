@@ -13,7 +13,6 @@
 #include "host/app/console.h"
 #include "host/app/engines.h"
 #include "host/app/load.h"
-#include "host/app/process.h"
 #include "host/base/input_error.h"
 #include "host/base/measure.h"
 #include "host/bvh/bvh.h"

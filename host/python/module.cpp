@@ -36,7 +36,7 @@
 #include "host/python/float_reference.h"
 #include "host/render/renderer.h"
 #include "host/scene/io/mesh_builder.h"
-#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table.h"
 #include "host/trace/tracer.h"

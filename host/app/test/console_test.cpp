@@ -5,8 +5,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "host/app/process.h"
-
 namespace raygate {
 namespace {
 

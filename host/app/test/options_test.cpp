@@ -11,7 +11,7 @@
 #include <sstream>
 #include <utility>
 
-#include "host/app/process.h"
+#include "host/app/console.h"
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 

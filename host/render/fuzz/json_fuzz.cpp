@@ -8,7 +8,7 @@
 
 #include "host/base/input_error.h"
 #include "host/render/fuzz/draw.h"
-#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::filesystem::path folder = [] {

@@ -1,6 +1,4 @@
 // scene.json: every key, and one clear line with its place for everything else.
-#include "host/scene/io/scene_file.h"
-
 #include <gtest/gtest.h>
 
 #include "host/base/input_error.h"

@@ -7,7 +7,6 @@
 #include <map>
 
 #include "host/scene/camera.h"
-#include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/view.h"
 
