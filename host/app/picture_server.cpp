@@ -239,11 +239,7 @@ class PictureServer {
               {"fov", camera.vertical_fov_degrees()},
               {"width", options.render.width},
               {"height", options.render.height},
-              {"samples", options.render.samples},
-              {"variants", Json::array()}};
-    for (const Variant& variant : all_variants_of_arithmetic()) {
-      json["variants"].push_back(variant.name);
-    }
+              {"samples", options.render.samples}};
     if (const auto& view = framing.request.angles) json["view"] = {view->first, view->second};
     return json;
   }
