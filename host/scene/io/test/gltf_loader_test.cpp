@@ -385,7 +385,7 @@ void add(const std::vector<Attribute>& attributes, std::string& json, std::strin
 TEST_F(LoadGltf, ExtensionsInTheSourceAreRead) {
   const std::filesystem::path source = std::filesystem::path(RAYGATE_SCENES) / "../host/scene/io";
   std::set<std::string> names;
-  for (const char* file : {"gltf_loader.cpp", "gltf_materials.cpp"}) {
+  for (const char* file : {"gltf_loader.cpp", "gltf_materials.h"}) {
     const std::string text = read_file(source / file);
     const std::regex name("\"((KHR|EXT)_\\w+)\"");
     for (std::sregex_iterator at(text.begin(), text.end(), name), end; at != end; ++at) {
