@@ -1,10 +1,13 @@
 #include "host/app/picture_server.h"
 
 #include <civetweb.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <future>
 #include <memory>
@@ -28,6 +31,9 @@
 
 namespace raygate {
 namespace {
+
+constexpr std::int64_t kMostServedPixels = std::int64_t{1} << 24;
+constexpr int kMostServedSamples = 1 << 16;
 
 /// A request with the decoded parameters of its query.
 struct Request {
@@ -53,6 +59,19 @@ struct Request {
     const char* const text = mg_get_header(connection, name);
     return text == nullptr ? "" : text;
   }
+  /// Returns the descriptor of the connection's socket, or -1; CivetWeb does not expose it.
+  [[nodiscard]] int socket() const {
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+      const int file = std::stoi(entry.path().filename());
+      sockaddr_in peer{};
+      socklen_t size = sizeof peer;
+      if (::getpeername(file, reinterpret_cast<sockaddr*>(&peer), &size) == 0 &&
+          peer.sin_family == AF_INET && ntohs(peer.sin_port) == info->remote_port) {
+        return file;
+      }
+    }
+    return -1;
+  }
 };
 
 struct Reply {
@@ -71,7 +90,9 @@ struct Reply {
       mg_response_header_add(to, name, value.c_str(), static_cast<int>(value.size()));
     }
     mg_response_header_send(to);
-    mg_write(to, body.data(), body.size());
+    if (request.info->request_method != std::string("HEAD")) {
+      mg_write(to, body.data(), body.size());
+    }
   }
 };
 
@@ -189,6 +210,14 @@ class PictureServer {
     if (options.has_core() && scene_.prepared.bvh.has_instances()) {
       throw InputError("--unit core: expected --instances write with --serve");
     }
+    if (std::int64_t{options.render.width} * options.render.height > kMostServedPixels) {
+      throw InputError("--size: expected at most " + std::to_string(kMostServedPixels) +
+                       " pixels with --serve");
+    }
+    if (options.render.samples > kMostServedSamples) {
+      throw InputError("--spp: expected at most " + std::to_string(kMostServedSamples) +
+                       " with --serve");
+    }
     return options;
   }
 
@@ -200,11 +229,12 @@ class PictureServer {
   Reply picture(const Request& request) {
     const Options options = options_of(request);
     const Framing framing = framing_of(options);
-    const int number = ++pictures_;
     const std::lock_guard<std::mutex> one_at_a_time(rendering_);
+    const int socket = request.socket();
     RenderMonitor monitor;
     monitor.progress = [&](double /*fraction*/) {
-      return interruption() == 0 && number == pictures_;
+      pollfd end{.fd = socket, .events = POLLRDHUP, .revents = 0};
+      return interruption() == 0 && ::poll(&end, 1, 0) == 0;
     };
     prepare_engine(options);
     const Bvh& bvh = scene_.prepared.bvh;
@@ -213,7 +243,7 @@ class PictureServer {
     const Film film = render({scene_.prepared, framing.camera, options.render, framing.lights},
                              make_intersector_factory(options, bvh, options.render.skips, image_),
                              stats, monitor);
-    if (stats.cancelled) throw InputError("another picture was asked for");
+    if (stats.cancelled) return {.body = "cancelled\n"};
     const auto& channels = options.output.false_colors;
     const HitCounters& hit = stats.intersect.hit;
     const Json statistics{{"seconds", stats.wall_seconds},
@@ -246,9 +276,8 @@ class PictureServer {
 
   Options options_;
   const ServedScene scene_;
-  std::set<std::string> names_;    // the server's host names
-  std::mutex rendering_;           // one picture at a time, with all threads
-  std::atomic<int> pictures_ = 0;  // asked for so far
+  std::set<std::string> names_;  // the server's host names
+  std::mutex rendering_;         // one picture at a time, with all threads
   std::shared_ptr<const MemoryImage> image_;
 };
 

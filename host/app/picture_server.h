@@ -24,8 +24,8 @@ struct ServedScene {
 ///                            options frame the whole scene
 ///
 /// OPTIONS are options of ./render at kInPage, without dashes: engine=cpu&size=80x60. They override
-/// `options`. A request for a picture cancels the one that is being rendered. A bad option gets one
-/// line of text, status 400. Throws InputError if the port is not available.
+/// `options`. A closed connection cancels its picture. A bad option gets one line of text,
+/// status 400. Throws InputError if the port is not available.
 void serve_pictures(const Options& options, const ServedScene& scene);
 
 }  // namespace raygate

@@ -98,6 +98,8 @@ class Http(unittest.TestCase):
                     ("/picture", {"width": 3}, "unknown option"),
                     ("/picture", {"output": "a.png"}, "unknown option"),
                     ("/picture", {"size": "3"}, "--size: expected WIDTHxHEIGHT"),
+                    ("/picture", {"size": "5000x5000"}, "--size: expected at most 16777216 pixels"),
+                    ("/picture", {"spp": 100000}, "--spp: expected at most 65536"),
                     ("/picture", {"slot": "left"}, "unknown option"),
                     ("/picture", {"false-colour": "nothing=a.png"}, "nothing"),
                     ("/picture", {"variant": "e8p9-raw"}, "--engine: expected model with --variant e8p9-raw, got 'cpu'")):
@@ -135,8 +137,11 @@ class Http(unittest.TestCase):
                     connection.request(method, "/camera", headers=headers)
                     self.assertEqual(connection.getresponse().status, expected)
                     connection.close()
+            with socket.create_connection(host.split(":"), timeout=30) as plain:
+                plain.sendall(f"HEAD / HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
+                self.assertTrue(plain.makefile("rb").read().endswith(b"\r\n\r\n"), "without a body")
 
-    def test_a_picture_ends_with_the_next_request(self):
+    def test_a_picture_ends_with_its_connection(self):
         with Served() as served:
             host = served.address.removeprefix("http://")
             with socket.create_connection(host.split(":"), timeout=30) as left:
