@@ -3,13 +3,60 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <cmath>
-#include <cstdio>
+#include <csignal>
+#include <cstring>
+#include <new>
+#include <set>
+
+#include "host/base/input_error.h"
+#include "host/base/vectors.h"
+#include "host/exact/ieee_floats.h"
 
 namespace raygate {
 namespace {
 
 constexpr const char* kEraseLine = "\r\x1b[K";
+
+constexpr int kUserError = 2;
+constexpr const char* kOutOfMemory = "out of memory";
+
+int why_output_failed = 0;  // errno of a failed print; 0: none failed
+std::atomic<int> noted_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
+
+/// Memory that is released when allocation fails for the first time, for the error message and for
+/// destructors that allocate, as those of JSON values do.
+constexpr std::size_t kReserve = std::size_t{1} << 20;
+std::atomic<void*> reserve = nullptr;
+
+void give_reserve_back() {
+  void* const memory = reserve.exchange(nullptr);
+  if (memory == nullptr) throw std::bad_alloc();
+  ::operator delete(memory);
+}
+
+void note(int signal) { noted_signal = signal; }
+
+/// Returns the length of the UTF-8 character at the start of `text` if it is printable, else 0.
+std::size_t shown_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if (byte(i) < 0x80 || byte(i) > 0xbf) return 0;
+  }
+  return first == 0xc2 && byte(1) < 0xa0 ? 0 : length;  // U+0080 to U+009F are controls
+}
+
+int report_error(int status, const char* what) {
+  std::fprintf(stderr, "error: %s\n", printable(what).c_str());
+  return status;
+}
 
 }  // namespace
 
@@ -80,5 +127,121 @@ void ProgressLine::update(double fraction) {
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   std::fprintf(stderr, "%s%s", kEraseLine, progress_text(fraction, elapsed).c_str());
 }
+
+std::string printable(std::string_view text, bool newlines) {
+  std::string shown;
+  while (!text.empty()) {
+    std::size_t length = shown_length(text);
+    if (length == 0 && newlines && text[0] == '\n') length = 1;
+    if (length > 0) {
+      shown += text.substr(0, length);
+    } else {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\x%02X", static_cast<unsigned char>(text[0]));
+      shown += code;
+      length = 1;
+    }
+    text.remove_prefix(length);
+  }
+  return shown;
+}
+
+void print(std::string_view text, std::FILE* stream) {
+  errno = 0;
+  if (std::fputs(printable(text, true).c_str(), stream) < 0 && stream == stdout) {
+    why_output_failed = errno;
+  }
+}
+
+void print_warning(std::string_view what) {
+  std::fprintf(stderr, "warning: %s\n", printable(what).c_str());
+}
+
+void print_warnings(const std::vector<std::string>& warnings, bool all) {
+  constexpr std::size_t kMost = 10;
+  std::set<std::string> seen;
+  for (const std::string& warning : warnings) {
+    if (seen.insert(warning).second && (all || seen.size() <= kMost)) print_warning(warning);
+  }
+  if (!all && seen.size() > kMost) {
+    print_warning("and " + std::to_string(seen.size() - kMost) + " more; --verbose lists them");
+  }
+}
+
+void flush_standard_output() {
+  errno = 0;
+  const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+  if (!failed) return;
+  const int why = why_output_failed != 0 ? why_output_failed : errno;
+  if (why == EPIPE) {  // `| head` ends it without a word
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+  }
+  const std::string reason = why != 0 ? std::strerror(why) : "an earlier write failed";
+  throw InputError("standard output: cannot write: " + reason);
+}
+
+int run_guarded(const std::function<int()>& program) {
+  // A file beyond the size limit, or a pipe without a reader, is a failed write, not a signal.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    try {
+      // The reserve is optional: a second call of run_guarded may find no memory for it.
+      ::operator delete(reserve.exchange(::operator new(kReserve, std::nothrow)));
+      std::set_new_handler(give_reserve_back);
+      int status = 0;
+      try {
+        status = program();
+      } catch (const Information& asked) {
+        print(asked.what());
+      }
+      flush_standard_output();
+      return status;
+    } catch (const InputError& unusable) {
+      return report_error(kUserError, unusable.what());
+    } catch (const Interrupted& interrupted) {
+      return report_error(kSignalBase + interrupted.signal(), interrupted.what());
+    } catch (const std::bad_alloc&) {
+      return report_error(kUserError, kOutOfMemory);
+    } catch (const std::length_error&) {  // more than any memory has
+      return report_error(kUserError, kOutOfMemory);
+    } catch (const std::exception& fault) {
+      return report_error(1, fault.what());
+    }
+  } catch (const std::bad_alloc&) {  // no memory for the line itself
+    std::fprintf(stderr, "error: %s\n", kOutOfMemory);
+    return kUserError;
+  }
+}
+
+int run_main(int argc, char** argv,
+             const std::function<int(const std::vector<std::string>&)>& program) {
+  return run_guarded([&] {
+    require_ieee_floats();
+    try {
+      use_vectors(wanted_vectors());
+    } catch (const std::runtime_error& error) {
+      throw InputError(error.what());
+    }
+    return program({argv + 1, argv + argc});
+  });
+}
+
+void handle_interruptions(void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second one kills
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction old {};
+    if (::sigaction(signal, nullptr, &old) == 0 && old.sa_handler != SIG_IGN) {
+      ::sigaction(signal, &action, nullptr);
+    }
+  }
+}
+
+void note_interruptions() { handle_interruptions(note); }
+
+int interruption() { return noted_signal; }
 
 }  // namespace raygate

@@ -1,9 +1,15 @@
-// Console: numbers in words, and the progress of a render.
+// Console: what a program prints, and how it ends.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace raygate {
 
@@ -50,6 +56,66 @@ class ProgressLine {
   bool drawn_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_;
+};
+
+/// Returns text that is safe to print: control characters and bytes that are not UTF-8 become
+/// "\x1B" and the like. Newlines are kept if `newlines`.
+[[nodiscard]] std::string printable(std::string_view text, bool newlines = false);
+
+/// Prints printable(text), with its newlines.
+void print(std::string_view text, std::FILE* stream = stdout);
+
+/// Prints "warning: WHAT", one printable line, on standard error.
+void print_warning(std::string_view what);
+
+/// Prints the first warnings, each once, and the number of the others, or `all`.
+void print_warnings(const std::vector<std::string>& warnings, bool all);
+
+/// Flushes standard output. Throws InputError if a write has failed, for example on a full disk. If
+/// standard output is a pipe without a reader, raises SIGPIPE.
+void flush_standard_output();
+
+/// Thrown to end a program whose command line asks for --help or --version; what() is that text.
+class Information : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Runs `program` and returns its exit status. Information is printed. Other exceptions become one
+/// line on standard error, and the status: 2 for InputError and out of memory, 128 + signal for
+/// Interrupted, else 1.
+int run_guarded(const std::function<int()>& program);
+
+/// Body of main(): checks the machine's arithmetic, chooses the vector code that RAYGATE_VECTORS
+/// names (host/base/vectors.h), and runs `program`, guarded, with the words of the command line.
+int run_main(int argc, char** argv,
+             const std::function<int(const std::vector<std::string>&)>& program);
+
+inline constexpr int kSignalBase =
+    128;  ///< plus a signal: exit status, as shells report a death by it
+
+/// Installs a handler of SIGINT, SIGTERM and SIGHUP; a second signal ends the program at once.
+/// Signals that were ignored at the start stay ignored.
+void handle_interruptions(void (*handler)(int));
+
+/// Installs a handler that notes these signals.
+void note_interruptions();
+
+/// Returns the noted signal of note_interruptions(), or 0.
+[[nodiscard]] int interruption();
+
+/// Thrown to end a run after a signal.
+class Interrupted : public std::exception {
+ public:
+  /// `outcome`: what happened to the output files, for the message.
+  Interrupted(int signal, const std::string& outcome)
+      : signal_(signal), what_("interrupted; " + outcome) {}
+  [[nodiscard]] int signal() const { return signal_; }
+  [[nodiscard]] const char* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  int signal_;
+  std::string what_;
 };
 
 }  // namespace raygate

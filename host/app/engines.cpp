@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "host/app/console.h"
-#include "host/app/process.h"
 #include "host/film/atomic_file.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
@@ -47,8 +46,7 @@ std::unique_ptr<CoreUnit> make_core(const EngineOptions& options) {
                                         kBoardRays);
   }
   if (options.unit == "board") return make_rtl_board();
-  return make_rtl_core(options.memory, {},
-                       {.cores = options.cores, .exact = true, .arith = options.arith});
+  return make_rtl_core({}, {}, {.cores = options.cores, .exact = true, .arith = options.arith});
 }
 
 }  // namespace
@@ -94,13 +92,13 @@ std::string dump_image(const CoreFileOptions& files, const MemoryImage& image) {
          format_count(image.lines().size(), "line") + "\n";
 }
 
-std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& files, const Bvh& bvh,
+std::string trace_pixel(const CoreFileOptions& files, const Bvh& bvh,
                         std::shared_ptr<const MemoryImage> image, const Ray& ray) {
   AtomicFile file(files.wave);
   NearestHit hit;
   CoreCounters counters;
   {
-    const std::shared_ptr<CoreUnit> core = make_core_wave(file.unnamed(), engine.memory);
+    const std::shared_ptr<CoreUnit> core = make_core_wave(file.unnamed(), {});
     CoreIntersector(bvh, std::move(image), core).nearest({&ray, 1}, {}, {&hit, 1});
     counters = core->counters();
   }

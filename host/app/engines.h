@@ -32,8 +32,7 @@ void prepare_engine(const EngineOptions& options);
 
 /// Traces `ray`, of `files.pixel`, with a simulated core that writes its waveform. Returns a line
 /// for the console about the hit. Throws InputError as make_core_wave does.
-[[nodiscard]] std::string trace_pixel(const EngineOptions& engine, const CoreFileOptions& files,
-                                      const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
-                                      const Ray& ray);
+[[nodiscard]] std::string trace_pixel(const CoreFileOptions& files, const Bvh& bvh,
+                                      std::shared_ptr<const MemoryImage> image, const Ray& ray);
 
 }  // namespace raygate

@@ -13,41 +13,26 @@
 #include "host/scene/view.h"
 
 namespace raygate {
-namespace {
-
-/// Throws InputError if the model of a scene file is missing, and names the script that makes it.
-void require_model(const SceneFile& file) {
-  std::error_code ignored;
-  if (file.obj == file.file || std::filesystem::exists(file.obj, ignored)) return;
-  const std::string model = file.obj.lexically_normal().string();
-  const std::filesystem::path script =
-      file.file.parent_path() / ("make_" + file.file.stem().string() + ".py");
-  throw InputError(file.file.string() + ": found no " + model +
-                   ", expected the scene that it is about" +
-                   (std::filesystem::exists(script, ignored)
-                        ? "; `make verilate` makes it, and so does `python3 " + script.string() +
-                              " " + model + "`"
-                        : ""));
-}
-
-}  // namespace
-
-Scene load(const SceneFile& file, const LoadOptions& options,
-           const std::optional<EnvironmentSetting>& environment,
+Scene load(const SceneFile& file, const LoadOptions& options, const EnvironmentSetting& environment,
            const std::optional<glm::dvec3>& up) {
-  require_model(file);
+  std::error_code ignored;
+  if (file.obj != file.file && !std::filesystem::exists(file.obj, ignored)) {
+    throw InputError(file.file.string() + ": found no " + file.obj.lexically_normal().string() +
+                     ", expected the scene that it is about; `make verilate` makes those of "
+                     "scenes/");
+  }
   Scene scene = load_scene(file, options);
   require_numbers(scene, file.file);
-  if (!environment) return scene;
-  const std::optional<glm::dvec3>& known = up ? up : file.up;
-  load_environment(*environment, known ? *known : usual_up_axis(scene), scene);
+  if (environment.file.empty()) return scene;
+  const std::optional<glm::dvec3>& known = up ? up : file.up();
+  load_environment(environment, known ? *known : scene.up, scene);
   return scene;
 }
 
 namespace {
 
 View chosen_view(const CameraRequest& request, const Scene& scene) {
-  const glm::dvec3 up = request.up ? *request.up : usual_up_axis(scene);
+  const glm::dvec3 up = request.up.value_or(scene.up);
   if (!request.angles) return {kDefaultAzimuth, kDefaultElevation, up};
   return {request.angles->first, request.angles->second, up};
 }
@@ -60,7 +45,7 @@ std::string view_text(const CameraRequest& request, const Scene& scene, const Vi
     if (std::abs(view.up[axis]) < largest(view.up)) continue;
     text += std::string(" --up ") + (view.up[axis] < 0.0 ? "-" : "") + "xyz"[axis];
   }
-  if (!request.up) text += scene.up ? " (of the format)" : " (usual in the format)";
+  if (!request.up) text += " (usual in the format)";
   const glm::dvec3 eye = camera.eye + scene.origin, target = camera.target + scene.origin;
   text += "; --camera ";
   for (int axis = 0; axis < 3; ++axis) text += format_number(eye[axis]) + ",";
@@ -69,17 +54,6 @@ std::string view_text(const CameraRequest& request, const Scene& scene, const Vi
 }
 
 }  // namespace
-
-CameraRequest camera_request(const SceneFile& file) {
-  CameraRequest request;
-  request.camera = file.camera;
-  request.lens = file.lens;
-  if (!file.camera) {
-    request.up = file.up;
-    request.fov = file.fov;
-  }
-  return request;
-}
 
 Framing frame_picture(const CameraRequest& request, const Scene& scene, double aspect) {
   const std::optional<CameraSetting> given = request.camera   ? request.camera

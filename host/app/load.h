@@ -5,11 +5,10 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "host/light/lights.h"
 #include "host/scene/camera.h"
-#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
@@ -18,24 +17,8 @@ namespace raygate {
 /// is `up`, else the file's, else the format's usual one. Throws InputError as load_scene() and
 /// load_environment() do, and if the scene has too many triangles or objects to number.
 [[nodiscard]] Scene load(const SceneFile& file, const LoadOptions& options,
-                         const std::optional<EnvironmentSetting>& environment = {},
+                         const EnvironmentSetting& environment = {},
                          const std::optional<glm::dvec3>& up = {});
-
-/// The user's choice of a camera. Empty fields are chosen by frame_picture(). Positions are in
-/// world coordinates.
-struct CameraRequest {
-  std::optional<CameraSetting> camera;  ///< none: the scene's camera, or a view of the whole scene
-  /// Azimuth and elevation in degrees: a view of the whole scene, even if the scene has a camera.
-  std::optional<std::pair<double, double>> angles;
-  std::optional<glm::dvec3> eye, target;  ///< in place of those of the camera or view
-  std::optional<glm::dvec3> up;           ///< of the camera, or of the view
-  std::optional<double> fov;              ///< vertical, in degrees
-  LensSetting lens;
-  std::optional<bool> ground;  ///< none: with default views that need one
-};
-
-/// Returns the camera, or the up direction, field of view and lens for views, of a scene file.
-[[nodiscard]] CameraRequest camera_request(const SceneFile& file);
 
 /// A camera and what goes with it.
 struct Framing {

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "host/app/console.h"
 #include "host/app/options.h"
-#include "host/app/output_files.h"
-#include "host/app/process.h"
+#include "host/app/outputs.h"
 #include "host/base/input_error.h"
 #include "host/film/film.h"
 #include "host/film/merge.h"
@@ -35,10 +35,6 @@ int run(const std::vector<std::string>& words) {
   table.group("Options");
   add_picture_options(table, options);
   const CommandLine line = table.parse(words);
-  if (!line.information.empty()) {
-    print(line.information);
-    return 0;
-  }
   if (line.plain.empty() || table.given("output").empty()) {
     throw InputError("expected parts of a picture and -o NAME (see --help)");
   }

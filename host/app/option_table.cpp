@@ -2,7 +2,8 @@
 
 #include <cctype>
 
-#include "host/app/version.h"
+#include "host/app/built_in.h"
+#include "host/app/console.h"
 #include "host/base/input_error.h"
 
 namespace raygate {
@@ -97,8 +98,8 @@ CommandLine OptionTable::split(const std::vector<std::string>& words) {
   const auto has = [&](const char* name) {
     return std::ranges::find(line.values, name, &OptionValue::name) != line.values.end();
   };
-  if (has("version")) return {std::string(kSoftware) + "\n", {}, {}};
-  if (has("help")) return {help(), {}, {}};
+  if (has("version")) throw Information(std::string(kSoftware) + "\n");
+  if (has("help")) throw Information(help());
   return line;
 }
 
@@ -115,7 +116,7 @@ void OptionTable::read(const std::vector<OptionValue>& values) {
 
 CommandLine OptionTable::parse(const std::vector<std::string>& words) {
   CommandLine line = split(words);
-  if (line.information.empty()) read(line.values);
+  read(line.values);
   return line;
 }
 

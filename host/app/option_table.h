@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "host/scene/io/scene_loader.h"
+
 namespace raygate {
 
 /// Parses all of `text` as a number of type T ("12", "-1.5e3"). Returns none if it is not a number
@@ -109,16 +111,8 @@ enum OptionPlaces : unsigned {
   kInPage = 16,      ///< parameter of requests to --serve
 };
 
-/// A value that was given to an option.
-struct OptionValue {
-  std::string name;     ///< of the option, without dashes
-  std::string text;     ///< "" for a flag
-  std::string where{};  ///< place for messages, "scene.json:3"; "": the command line
-};
-
 /// The words of a command line.
 struct CommandLine {
-  std::string information;  ///< text that --help or --version asks for; the rest is then empty
   std::vector<OptionValue> values;
   std::vector<std::string> plain;  ///< words that belong to no option
 };
@@ -159,13 +153,8 @@ class OptionTable {
         names, value, help, expected,
         [&target, parse](const std::string& text) {
           const std::optional<T> parsed = parse(text);
-          if (!parsed) return false;
-          if constexpr (std::is_same_v<T, Target>) {
-            target = *parsed;
-          } else {
-            target = parsed;
-          }
-          return true;
+          if (parsed) target = *parsed;
+          return parsed.has_value();
         },
         [&target, show]() -> std::string {
           if constexpr (std::is_same_v<T, Target>) {
@@ -233,14 +222,14 @@ class OptionTable {
   /// Splits a command line without the program's name: "--name VALUE", "--name=VALUE", "-n VALUE",
   /// flags "--name" and "-n", and other words; all words after "--" are plain. A value may begin
   /// with a dash. Reads no value. Throws InputError, one line, for an unknown option or an option
-  /// without its value.
+  /// without its value, and Information for --help and --version.
   [[nodiscard]] CommandLine split(const std::vector<std::string>& words);
 
   /// Reads values of known options: row by row, each row's values in their order, so that the last
   /// one counts. Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'".
   void read(const std::vector<OptionValue>& values);
 
-  /// Splits a command line and reads its values, unless it asks for information.
+  /// Splits a command line and reads its values.
   [[nodiscard]] CommandLine parse(const std::vector<std::string>& words);
 
   /// Returns the last value that was read of an option, named without dashes; "" if there was none.

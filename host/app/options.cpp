@@ -1,7 +1,6 @@
 #include "host/app/options.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -94,28 +93,6 @@ std::optional<Variant> parse_variant(const std::string& text) {
   } catch (const InputError& error) {
     throw InputError("--variant: " + text + ": " + error.what());
   }
-}
-
-/// Parses "latency=100,bytes=16,cache=1024"; each part is optional.
-std::optional<MemoryTiming> parse_memory(const std::string& text) {
-  MemoryTiming timing;
-  for (const std::string& word : split_at_commas(text)) {
-    const auto [name, number] = split_at_equals(word);
-    const int value = parse_number<int>(number).value_or(-1);
-    const auto is_power = [&](int most) {
-      return value >= 1 && value <= most && std::has_single_bit(static_cast<unsigned>(value));
-    };
-    if (name == "latency" && value >= 1 && value <= 10'000) {
-      timing.latency = value;
-    } else if (name == "bytes" && is_power(64)) {
-      timing.bytes = value;
-    } else if (name == "cache" && (value == 0 || is_power(1 << 24))) {
-      timing.cache_lines = value;
-    } else {
-      return std::nullopt;
-    }
-  }
-  return timing;
 }
 
 /// Parses a fraction of the distance; "inf": the unit's point wherever it has one.
@@ -236,10 +213,7 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
   table.choice<Projection>("--projection", "NAME",
                            "perspective (default), orthographic or panorama",
                            request.lens.projection,
-                           {{"perspective", Projection::kPerspective},
-                            {"orthographic", Projection::kOrthographic},
-                            {"panorama", Projection::kPanorama}},
-                           kInExr | kInPage);
+                           {std::begin(kProjections), std::end(kProjections)}, kInExr | kInPage);
   table.number("--aperture", "R", "lens radius for depth of field; needs --spp (0)",
                request.lens.aperture, Range{0.0, kLargest, "the radius of a lens, 0 or more"},
                kInExr | kInPage);
@@ -251,31 +225,18 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
                      request.ground, {{"on", true}, {"off", false}}, kInExr);
 }
 
-void add_environment_options(OptionTable& table, std::optional<EnvironmentSetting>& environment) {
+void add_environment_options(OptionTable& table, EnvironmentSetting& environment) {
   table.add(
       "--environment", "FILE", "environment map: EXR or HDR, latitude-longitude", "a file",
       [&](const std::string& text) {
-        environment.emplace().file = text;
+        environment = {.file = text};
         return true;
       },
-      [&] { return environment ? environment->file.filename().string() : ""; }, kInExr);
-  const auto add = [&](const char* name, const char* value, const char* help,
-                       double EnvironmentSetting::*target, const Range<double>& range) {
-    table.add(
-        name, value, help, range.text() + ", with --environment",
-        [&environment, target, range](const std::string& text) {
-          const auto number = parse_number<double>(text);
-          if (!environment || !number || !range.contains(*number)) return false;
-          (*environment).*target = *number;
-          return true;
-        },
-        [&environment, target] { return environment ? number_text((*environment).*target) : ""; },
-        kInExr);
-  };
-  add("--environment-rotation", "DEG", "counter-clockwise, seen from above (0)",
-      &EnvironmentSetting::rotation, {-360.0, 360.0, "degrees from -360 to 360"});
-  add("--environment-strength", "X", "radiance multiplier (1)", &EnvironmentSetting::strength,
-      {0.0, 1e9, "a factor from 0 to 1e9"});
+      [&] { return environment.file.filename().string(); }, kInExr);
+  table.number("--environment-rotation", "DEG", "counter-clockwise, seen from above (0)",
+               environment.rotation, Range{-360.0, 360.0, "degrees from -360 to 360"}, kInExr);
+  table.number("--environment-strength", "X", "radiance multiplier (1)", environment.strength,
+               Range{0.0, 1e9, "a factor from 0 to 1e9"}, kInExr);
 }
 
 void add_run_options(OptionTable& table, Options& options) {
@@ -290,8 +251,6 @@ void add_run_options(OptionTable& table, Options& options) {
   table.flag("--serve", "show the scene in a page of the browser", options.serve);
   table.number("--port", "N", "of --serve's page (any free one)", options.port,
                Range<int>{1, 65535});
-  table.flag("--strict", "treat faces without area as an error (default: drop them)",
-             options.strict);
   table.flag("--no-scene-file", "ignore the .json beside an OBJ", options.no_scene_file);
   table.flag("-q,--quiet", "print no statistics and no progress", options.quiet);
   table.flag("-v,--verbose", "print all statistics and warnings", options.verbose);
@@ -485,11 +444,6 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
                kAriths, kInStats | kInPage);
   table.choice<int>("--lanes", "1|2|4|8", "pipelined units side by side, per thread ({})",
                     options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats | kInPage);
-  table.value<MemoryTiming>(
-      "--memory", "latency=N,bytes=N,cache=N",
-      "ray core: clocks to a line (50), bytes per clock (64), cache lines (0)",
-      "latency=1 to 10000, bytes=1, 2, 4 ... 64, cache=0 or lines, a power of two", options.memory,
-      parse_memory, {}, kInPage);
   table.number("--cores", "N", "ray cores behind one memory, per thread ({})", options.cores,
                Range{1, 64, "a whole number, 1 to 64"}, kInStats | kInPage);
   table.text("--board-port", "PATH", "the serial port of a real board (--unit board)",
@@ -579,10 +533,8 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
 }
 
 void check_engine_options(const OptionTable& table, EngineOptions& options) {
-  for (const char* name : {"memory", "cores"}) {
-    if (!table.given(name).empty() && !(options.unit == "core" && options.simulates())) {
-      table.fail_value(name, "with --unit core and --engine rtl or check");
-    }
+  if (!table.given("cores").empty() && !(options.unit == "core" && options.simulates())) {
+    table.fail_value("cores", "with --unit core and --engine rtl or check");
   }
   if (options.variant) {
     const std::string unit =
@@ -666,9 +618,7 @@ Options parse_options(const std::vector<std::string>& words) {
   Options options;
   OptionTable table(kAbout, kFooter);
   add_render_options(table, options);
-  CommandLine line = table.split(words);
-  options.information = line.information;
-  if (!options.information.empty()) return options;
+  const CommandLine line = table.split(words);
   if (line.plain.size() != 1) {
     throw InputError("expected one scene, got " + std::to_string(line.plain.size()) +
                      "; try ./render scenes/cornell.obj");
@@ -677,11 +627,8 @@ Options parse_options(const std::vector<std::string>& words) {
   options.scene_file = find_scene_file(
       options.scene,
       std::ranges::find(line.values, "no-scene-file", &OptionValue::name) != line.values.end());
-  std::vector<OptionValue> given;
-  for (const auto& [name, value, number] : options.scene_file.options) {
-    given.push_back({name, value, options.scene_file.file.string() + ":" + std::to_string(number)});
-    table.require(given.back(), kInSceneFile);
-  }
+  std::vector<OptionValue> given = options.scene_file.options;
+  for (const OptionValue& value : given) table.require(value, kInSceneFile);
   given.insert(given.end(), line.values.begin(), line.values.end());
   return with_values(options, std::move(given));
 }
@@ -690,14 +637,19 @@ Options with_values(const Options& scene, std::vector<OptionValue> given) {
   Options options;
   options.scene = scene.scene;
   options.scene_file = scene.scene_file;
-  options.camera = camera_request(options.scene_file);
+  options.camera = options.scene_file.camera;
   options.environment = options.scene_file.environment;
   OptionTable table;
   add_render_options(table, options);
   table.read(given);
   options.given = std::move(given);
   RenderSettings& render = options.render;
-  check_light_options(table, options.environment.has_value(), render);
+  const bool has_environment = !options.environment.file.empty();
+  for (const char* name : {"environment-rotation", "environment-strength"}) {
+    if (!table.given(name).empty() && !has_environment)
+      table.fail_value(name, "--environment, too");
+  }
+  check_light_options(table, has_environment, render);
   name_outputs(table, options.scene, options.output);
   check_crop(table, render);
   if (!table.given("view").empty()) {
@@ -733,6 +685,9 @@ std::vector<std::pair<std::string, std::string>> option_values(Options options,
   // Options that do not matter are not written.
   std::erase(all, std::pair<std::string, std::string>("error", "0"));
   std::erase(all, std::pair<std::string, std::string>("caustics", "auto"));
+  if (options.environment.file.empty()) {
+    std::erase_if(all, [](const auto& value) { return value.first.starts_with("environment"); });
+  }
   if (options.render.error > 0.0 && options.render.exposure != 0.0) {
     all.emplace_back("exposure", number_text(options.render.exposure));
   }

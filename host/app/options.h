@@ -16,10 +16,9 @@
 #include "host/film/film.h"
 #include "host/render/render_settings.h"
 #include "host/scene/instances.h"
-#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/variants/variant_table.h"
 #include "sim/arith.h"
-#include "sim/memory_timing.h"
 
 namespace raygate {
 
@@ -37,7 +36,6 @@ struct EngineOptions {
   std::optional<Variant> variant{};  ///< number format of the model; none: binary32
   Arith arith = Arith::kStructural;
   int lanes = 1;             ///< lanes of the pipelined unit: 1, 2, 4 or 8; 1 for other units
-  MemoryTiming memory{};     ///< memory of a simulated core
   std::string board_port{};  ///< serial port of unit "board"; "": the board is simulated
   int cores = 1;             ///< ray cores behind one memory, per thread; 1 for other units
   int threads = 1;
@@ -87,23 +85,19 @@ struct CoreFileOptions {
 
 /// The options of ./render. Every value is in its range; files are not checked.
 struct Options : EngineOptions {
-  /// Output of --help or --version; if not empty, the other members are not valid.
-  std::string information;
-
   std::filesystem::path scene;  ///< the file that was named: a model or a scene file
   SceneFile scene_file;         ///< that scene file or the one beside the model; else the model
   /// Values given in the scene file and then on the command line, which overrides them.
   std::vector<OptionValue> given;
   RenderSettings render;
   CameraRequest camera;
-  std::optional<EnvironmentSetting> environment;
+  EnvironmentSetting environment;
   OutputOptions output;
   CoreFileOptions core_files;
   std::filesystem::path resume;  ///< EXR to resume; "": none
   bool serve = false;            ///< serve a page instead of writing files
   int port = 0;                  ///< of the page; 0: any free port
   bool quiet = false, verbose = false;
-  bool strict = false;           ///< refuse faces without area
   bool no_scene_file = false;    ///< ignore a scene file beside the model
   std::optional<double> smooth;  ///< LoadOptions::smooth, in degrees
 };
@@ -138,7 +132,7 @@ void check_light_options(const OptionTable& table, bool has_environment, RenderS
 
 /// Parses a command line, without the program's name, after the options of the scene file, which it
 /// overrides. Throws InputError, one line that names the option (or file and line), the value and
-/// what was expected.
+/// what was expected, and Information for --help and --version.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
 /// Returns the options of a scene, whose file was read, with other values given. Throws InputError.

@@ -20,11 +20,11 @@
 #include <utility>
 #include <vector>
 
+#include "host/app/built_in.h"
+#include "host/app/console.h"
 #include "host/app/engines.h"
 #include "host/app/load.h"
-#include "host/app/output_files.h"
-#include "host/app/picture_page.h"
-#include "host/app/process.h"
+#include "host/app/outputs.h"
 #include "host/base/input_error.h"
 #include "host/film/display.h"
 #include "host/render/renderer.h"
@@ -152,40 +152,32 @@ class PictureServer {
   static int handle(mg_connection* connection, void* server) {
     // Another thread, because stacks of CivetWeb's threads (100 kB) are too small.
     const Request request(connection);
-    Reply reply{.status = 503, .body = "found no thread that is free\n"};
+    Reply reply;
     try {
       const auto answer = &PictureServer::answer;
       auto* const self = static_cast<PictureServer*>(server);
       reply = std::async(std::launch::async, answer, self, std::cref(request)).get();
-    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): the reply says so
+    } catch (const InputError& error) {
+      reply = {.status = 400, .body = printable(error.what()) + "\n"};
+    } catch (const std::exception& error) {
+      reply = {.status = 500, .body = printable(error.what()) + "\n"};
     }
     reply.send(request);
     return reply.status;
   }
 
   [[nodiscard]] Reply answer(const Request& request) {
-    try {
-      if (!is_own_page(request)) {
-        return {.status = 403,
-                .body =
-                    "expected a request of this server's page, to the host 127.0.0.1 or "
-                    "localhost, and this port\n"};
-      }
-      const std::string method = request.info->request_method, path = request.info->local_uri;
-      if (method != "GET" && method != "HEAD") {
-        return {.status = 405,
-                .body = "found " + printable(method) + ", expected GET or HEAD\n",
-                .headers = {{"Allow", "GET, HEAD"}}};
-      }
-      if (path == "/") return {.type = "text/html; charset=utf-8", .body = kPicturePage};
-      if (path == "/picture") return picture(request);
-      if (path == "/camera") return {.type = "application/json", .body = camera(request).dump()};
-      return {.status = 404, .body = "expected /, /picture or /camera\n"};
-    } catch (const InputError& error) {
-      return {.status = 400, .body = printable(error.what()) + "\n"};
-    } catch (const std::exception& error) {
-      return {.status = 500, .body = printable(error.what()) + "\n"};
+    const std::string method = request.info->request_method, path = request.info->local_uri;
+    if (!is_own_page(request) || method != "GET") {
+      return {.status = 403,
+              .body =
+                  "expected a GET of this server's page, to the host 127.0.0.1 or localhost, and "
+                  "this port\n"};
     }
+    if (path == "/") return {.type = "text/html; charset=utf-8", .body = kPicturePage};
+    if (path == "/picture") return picture(request);
+    if (path == "/camera") return {.type = "application/json", .body = camera(request).dump()};
+    return {.status = 404, .body = "expected /, /picture or /camera\n"};
   }
 
   [[nodiscard]] bool is_own_page(const Request& request) const {
@@ -215,17 +207,16 @@ class PictureServer {
     // The default depends on the camera, but the scene is built.
     given.push_back({"ground", scene_.has_ground ? "on" : "off"});
     Options options = with_values(options_, std::move(given));
-    const RenderSettings& render = options.render;
-    if (std::int64_t{render.width} * render.height > kMostServedPixels) {
+    if (options.has_core() && scene_.prepared.bvh.has_instances()) {
+      throw InputError("--unit core: expected --instances write with --serve");
+    }
+    if (std::int64_t{options.render.width} * options.render.height > kMostServedPixels) {
       throw InputError("--size: expected at most " + std::to_string(kMostServedPixels) +
                        " pixels with --serve");
     }
-    if (render.samples > kMostServedSamples) {
+    if (options.render.samples > kMostServedSamples) {
       throw InputError("--spp: expected at most " + std::to_string(kMostServedSamples) +
                        " with --serve");
-    }
-    if (options.has_core() && scene_.prepared.bvh.has_instances()) {
-      throw InputError("--unit core: expected --instances write with --serve");
     }
     return options;
   }
@@ -278,11 +269,7 @@ class PictureServer {
               {"fov", camera.vertical_fov_degrees()},
               {"width", options.render.width},
               {"height", options.render.height},
-              {"samples", options.render.samples},
-              {"variants", Json::array()}};
-    for (const Variant& variant : all_variants_of_arithmetic()) {
-      json["variants"].push_back(variant.name);
-    }
+              {"samples", options.render.samples}};
     if (const auto& view = framing.request.angles) json["view"] = {view->first, view->second};
     return json;
   }

@@ -24,9 +24,8 @@ struct ServedScene {
 ///                            options frame the whole scene
 ///
 /// OPTIONS are options of ./render at kInPage, without dashes: engine=cpu&size=80x60. They override
-/// `options`. Closing the connection cancels its picture. Pictures have at most 2^24 pixels of 2^16
-/// samples. A bad option gets one line of text, status 400. Throws InputError if the port is not
-/// available.
+/// `options`. A closed connection cancels its picture. A bad option gets one line of text,
+/// status 400. Throws InputError if the port is not available.
 void serve_pictures(const Options& options, const ServedScene& scene);
 
 }  // namespace raygate

@@ -6,15 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "host/app/built_in.h"
 #include "host/app/console.h"
 #include "host/app/engines.h"
 #include "host/app/load.h"
 #include "host/app/options.h"
-#include "host/app/output_files.h"
+#include "host/app/outputs.h"
 #include "host/app/picture_server.h"
-#include "host/app/process.h"
-#include "host/app/report.h"
-#include "host/app/version.h"
 #include "host/base/input_error.h"
 #include "host/base/measure.h"
 #include "host/bvh/bvh.h"
@@ -119,13 +117,12 @@ void run(const Options& options) {
     if (is_standard_output(path)) console = stderr;
   }
 
-  Scene scene = load(options.scene_file,
-                     {.strict = options.strict, .keep_instances = true, .smooth = options.smooth},
-                     options.environment, options.camera.up);
+  Scene scene =
+      load(options.scene_file, {.smooth = options.smooth}, options.environment, options.camera.up);
   report.load_seconds = lap.lap();
   report.triangles = triangle_count(scene);
   report.rounding = scene.rounding;
-  const std::string digest = digest_of(scene);  // without default lights and ground
+  const std::string digest = digest_of(scene.files, options.scene_file.settings);
   print_warnings(scene.warnings, options.verbose);
   std::vector<std::filesystem::path> inputs = scene.files;
   inputs.push_back(options.scene);
@@ -155,7 +152,7 @@ void run(const Options& options) {
   if (!core_files.wave.empty()) {
     const glm::dvec2 middle = glm::dvec2(core_files.pixel) + 0.5;
     const Ray ray = framing.camera.ray(middle.x / settings.width, middle.y / settings.height, {});
-    print(trace_pixel(options, core_files, bvh, image, ray), console);
+    print(trace_pixel(core_files, bvh, image, ray), console);
   }
   if (!core_files.paths().empty()) return;
 
@@ -185,12 +182,7 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   return raygate::run_main(argc, argv, [](const std::vector<std::string>& words) {
-    raygate::Options options = raygate::parse_options(words);
-    if (options.information.empty()) {
-      raygate::run(options);
-    } else {
-      raygate::print(options.information);
-    }
+    raygate::run(raygate::parse_options(words));
     return 0;
   });
 }

@@ -1,21 +1,18 @@
 // The program `trace`: a table of rays in, a table of their exact hits out.
-#include <chrono>
-#include <condition_variable>
+#include <unistd.h>
+
+#include <atomic>
 #include <csignal>
-#include <cstdlib>
+#include <cstdio>
 #include <filesystem>
-#include <mutex>
 #include <optional>
-#include <stop_token>
 #include <string>
-#include <system_error>
-#include <thread>
+#include <string_view>
 #include <vector>
 
 #include "host/app/console.h"
 #include "host/app/engines.h"
 #include "host/app/load.h"
-#include "host/app/process.h"
 #include "host/base/input_error.h"
 #include "host/base/measure.h"
 #include "host/bvh/bvh.h"
@@ -54,70 +51,23 @@ struct TraceOptions {
   Hits hits = Hits::kNearest;
   std::vector<HitColumn> columns;
   EngineOptions engine{.engine = Engine::kCpu};
-  bool strict = false, quiet = false;
+  bool quiet = false;
 };
 
-/// The output file or standard output. Ends the program soon after a signal, whatever the threads
-/// do.
-class Output {
- public:
-  explicit Output(const std::filesystem::path& file) {
-    if (file == "-") {
-      std::signal(SIGPIPE, SIG_DFL);  // `| head` ends it without a word
-    } else {
-      file_.emplace(file);
-    }
-    note_interruptions();
-    try {
-      watcher_ = std::jthread([this](const std::stop_token& is_over) { watch(is_over); });
-    } catch (const std::system_error&) {
-      print_warning("no thread could be started that ends the program soon after a signal");
-    }
-  }
-  void write(std::string_view bytes) {
-    const std::lock_guard lock(mutex_);
-    if (file_) {
-      file_->append(bytes);
-    } else {
-      std::fwrite(bytes.data(), 1, bytes.size(), stdout);
-      flush_standard_output();
-    }
-  }
-  /// Completes the file. A later signal changes nothing.
-  void finish() {
-    watcher_ = {};
-    if (file_) file_->commit();
-  }
-  /// Removes the unfinished file and ends the program. Streams are left alone, because a write to
-  /// them may never end.
-  [[noreturn]] void abandon() {
-    const bool is_stream = !file_ || file_->is_stream();
-    if (!is_stream) {
-      mutex_.lock();
-      file_.reset();
-    }
-    std::_Exit(run_guarded([&]() -> int {
-      throw Interrupted(interruption(),
-                        is_stream ? "the table is not whole" : "no file was changed");
-    }));
-  }
+std::atomic<const char*> unfinished_file = nullptr;  // to remove when a signal comes
+static_assert(std::atomic<const char*>::is_always_lock_free,
+              "signal handlers may use nothing else");
 
- private:
-  void watch(const std::stop_token& is_over) {
-    std::mutex mutex;
-    std::unique_lock lock(mutex);
-    std::condition_variable_any never;
-    while (interruption() == 0) {
-      never.wait_for(lock, is_over, std::chrono::milliseconds(20), [] { return false; });
-      if (is_over.stop_requested()) return;
-    }
-    abandon();
+/// Ends the program at once, whatever the threads do.
+[[noreturn]] void end(int signal) {
+  std::string_view line = "error: interrupted; the table is not whole\n";
+  if (const char* const file = unfinished_file) {
+    (void)::unlink(file);
+    line = "error: interrupted; no file was changed\n";
   }
-
-  std::mutex mutex_;
-  std::optional<AtomicFile> file_;
-  std::jthread watcher_;
-};
+  (void)!::write(STDERR_FILENO, line.data(), line.size());
+  ::_exit(kSignalBase + signal);
+}
 
 std::string summary(const TraceOptions& options, const CornerRounding& rounding,
                     const TraceCounts& counts, double seconds) {
@@ -142,8 +92,7 @@ std::string summary(const TraceOptions& options, const CornerRounding& rounding,
 void trace_rays(const TraceOptions& options) {
   const bool has_file = options.output != "-";
   if (has_file) require_writable(options.output);
-  Scene scene = load(read_scene_file(options.scene),
-                     {.strict = options.strict, .keep_instances = true, .textures = false});
+  Scene scene = load(read_scene_file(options.scene), {.textures = false});
   resolve_instances(scene, options.engine.instances, options.scene);
   print_warnings(scene.warnings, false);
   prepare_engine(options.engine);
@@ -156,15 +105,28 @@ void trace_rays(const TraceOptions& options) {
   }
   RayTableReader rays(options.rays, scene.origin);
   const HitTable answers(scene, bvh, options.columns, TableFormat::kCsv);
-  Output output(options.output);
-  output.write(answers.header());
+  std::optional<AtomicFile> file;
+  if (has_file) {
+    file.emplace(options.output);
+    static const std::string name = file->unnamed().string();  // outlives the file
+    if (!file->is_stream()) unfinished_file = name.c_str();
+  } else {
+    std::signal(SIGPIPE, SIG_DFL);  // `| head` ends it without a word
+  }
+  handle_interruptions(end);
+  const auto write = [&](std::string_view bytes) {
+    if (file) return file->append(bytes);
+    std::fwrite(bytes.data(), 1, bytes.size(), stdout);
+    flush_standard_output();
+  };
+  write(answers.header());
   Stopwatch stopwatch;
   const TraceCounts counts =
       trace([&](std::size_t most, RayTable& block) { return rays.read(most, block); }, options.hits,
             bvh, answers, make_intersector_factory(options.engine, bvh), options.engine.threads,
-            [&](std::string_view rows) { output.write(rows); }, [] { return interruption() == 0; });
-  if (interruption() != 0) output.abandon();
-  output.finish();
+            write, [] { return true; });
+  handle_interruptions(SIG_IGN);
+  if (file) file->commit();
   const double seconds = stopwatch.lap();
   if (!options.quiet) print(summary(options, scene.rounding, counts, seconds), stderr);
 }
@@ -186,14 +148,8 @@ int run(const std::vector<std::string>& words) {
       "but material, side and the last two; of any: ray,hit)",
       columns);
   add_engine_options(table, options.engine);
-  table.flag("--strict", "treat faces without area as an error (default: drop them)",
-             options.strict);
   table.flag("-q,--quiet", "print no summary (on standard error)", options.quiet);
   const CommandLine line = table.parse(words);
-  if (!line.information.empty()) {
-    print(line.information);
-    return 0;
-  }
   if (line.plain.size() != 2) throw InputError("expected SCENE and RAYS (see --help)");
   options.scene = line.plain[0];
   options.rays = line.plain[1];

@@ -1,7 +1,7 @@
 // lab: measurements on the host, with one subcommand each. `lab --help` lists them.
 #include <CLI/CLI.hpp>
 
-#include "host/app/process.h"
+#include "host/app/console.h"
 #include "host/lab/lab.h"
 
 namespace {

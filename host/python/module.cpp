@@ -18,9 +18,9 @@
 #include <utility>
 #include <vector>
 
+#include "host/app/built_in.h"
 #include "host/app/load.h"
 #include "host/app/options.h"
-#include "host/app/version.h"
 #include "host/base/input_error.h"
 #include "host/base/threads.h"
 #include "host/bvh/bvh.h"
@@ -36,7 +36,7 @@
 #include "host/python/float_reference.h"
 #include "host/render/renderer.h"
 #include "host/scene/io/mesh_builder.h"
-#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table.h"
 #include "host/trace/tracer.h"
@@ -162,20 +162,18 @@ struct PythonFilm {
 
 class PythonScene {
  public:
-  PythonScene(const nb::bytes& file, bool strict, const Settings& settings) {
+  PythonScene(const nb::bytes& file, const Settings& settings) {
     const SceneKeywords keywords(settings);
     const std::filesystem::path path = std::string(file.c_str(), file.size());
     const nb::gil_scoped_release release;
     file_ = read_scene_file(path);
-    scene_ = load(file_, {.strict = strict, .keep_instances = true, .smooth = keywords.smooth},
-                  file_.environment);
+    scene_ = load(file_, {.smooth = keywords.smooth}, file_.environment);
     resolve_instances(scene_, InstanceMode::kFlatten, path);
     build(keywords.threads);
   }
 
   /// Makes a scene of triangles from their corners. `name` is the array's name in messages.
-  PythonScene(const std::string& name, const Vectors3& corners, bool strict,
-              const Settings& settings) {
+  PythonScene(const std::string& name, const Vectors3& corners, const Settings& settings) {
     const SceneKeywords keywords(settings);
     const Elements points("triangles", corners);
     const nb::gil_scoped_release release;
@@ -188,7 +186,7 @@ class PythonScene {
       }
       mesh.add_face(face, i / 3 + 1);
     }
-    mesh.build_plain({.strict = strict, .smooth = keywords.smooth}, scene_);
+    mesh.build_plain({.smooth = keywords.smooth}, scene_);
     build(keywords.threads);
   }
 
@@ -276,7 +274,7 @@ class PythonScene {
       const std::optional<Three>& up, const Settings& settings) const {
     RenderSettings chosen;
     chosen.channels = {.position = true, .albedo = true, .object = true};
-    CameraRequest camera = camera_request(file_);
+    CameraRequest camera = file_.camera;
     Keywords keywords;
     keywords.number("--width", "", "", chosen.width, kSideRange, kInPython);
     keywords.number("--height", "", "", chosen.height, kSideRange, kInPython);
@@ -392,8 +390,8 @@ NB_MODULE(_raygate, m) {
         return python_bytes([&] { return encode_exr(*f.film, f.metadata); });
       });
   nb::class_<PythonScene>(m, "Scene")
-      .def(nb::init<const nb::bytes&, bool, const Settings&>())
-      .def(nb::init<const std::string&, const Vectors3&, bool, const Settings&>())
+      .def(nb::init<const nb::bytes&, const Settings&>())
+      .def(nb::init<const std::string&, const Vectors3&, const Settings&>())
       .def_prop_ro("triangle_count",
                    [](const PythonScene& s) { return s.scene().triangles.size(); })
       .def_prop_ro("objects",

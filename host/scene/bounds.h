@@ -1,4 +1,4 @@
-// Bounding boxes of scenes, with their instances, and visitors of their positions and triangles.
+// Bounding boxes of scenes, with their instances, and a visitor of their triangles.
 #pragma once
 
 #include <algorithm>
@@ -40,17 +40,6 @@ struct Bounds3 {
 /// Returns whether the scene has neither instances nor triangles with an area.
 [[nodiscard]] inline bool is_empty(const Scene& scene) {
   return scene.instances.empty() && std::ranges::all_of(scene.triangles, is_left_out);
-}
-
-/// Calls visit(position) for all positions of the scene and of its instances.
-template <class Visit>
-void for_each_position(const Scene& scene, const Visit& visit) {
-  for (const glm::vec3& position : scene.positions) visit(position);
-  for (const Instance& instance : scene.instances) {
-    for (const glm::vec3& position : scene.meshes[instance.mesh].positions) {
-      visit(transform_point(instance.rows, position));
-    }
-  }
 }
 
 /// Calls visit(corners, triangle) for all triangles of the scene and of its instances, in the order

@@ -1,8 +1,6 @@
 #include "host/scene/camera.h"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string>
 
 #include "host/base/elementary.h"
@@ -11,8 +9,6 @@
 
 namespace raygate {
 namespace {
-
-constexpr std::string_view kProjections[] = {"perspective", "orthographic", "panorama"};
 
 /// Returns the tangent of half an angle in degrees.
 double half_tangent(double degrees) {
@@ -26,69 +22,34 @@ std::string text(const glm::dvec3& v) {
 
 }  // namespace
 
-std::optional<Projection> projection_named(std::string_view name) {
-  const auto* const found = std::ranges::find(kProjections, name);
-  if (found == std::end(kProjections)) return std::nullopt;
-  return static_cast<Projection>(found - std::begin(kProjections));
-}
-
-Camera Camera::look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up,
-                       double vertical_fov_degrees, double aspect) {
-  if (!is_finite(eye) || !is_finite(target) || !is_finite(up)) {
-    throw InputError("camera: eye " + text(eye) + ", target " + text(target) + ", up " + text(up) +
-                     ": expected finite numbers");
-  }
-  if (!(vertical_fov_degrees > 0.0 && vertical_fov_degrees < 180.0)) {
-    throw InputError("camera: field of view of " + std::to_string(vertical_fov_degrees) +
-                     " degrees: expected more than 0 and less than 180");
-  }
-  if (!(aspect > 0.0) || !std::isfinite(aspect)) {
-    throw InputError("camera: aspect of " + std::to_string(aspect) +
-                     ": expected width / height, a positive number");
-  }
+Camera Camera::look_at(const CameraSetting& setting, double aspect) {
+  const auto& [eye, target, given_up, fov, lens] = setting;
   const glm::dvec3 view = target - eye;
-  if (!is_finite(view)) throw InputError("camera: eye and target are too far apart");
-  if (largest(view) == 0.0) {
-    throw InputError("camera: eye and target are one point, " + text(eye));
-  }
+  const bool is_vertical = view.x == 0.0 && view.z == 0.0;
+  const glm::dvec3 usual_up = is_vertical ? glm::dvec3(0.0, 0.0, -1.0) : glm::dvec3(0.0, 1.0, 0.0);
+  const glm::dvec3 up = given_up.value_or(usual_up);
+  const auto require = [&](bool is_met, const char* expected) {
+    if (is_met) return;
+    throw InputError("camera: found eye " + text(setting.eye) + ", target " + text(setting.target) +
+                     ", up " + text(up) + ", expected " + expected);
+  };
   Camera camera;
+  camera.eye_ = glm::vec3(eye);
+  require(is_finite(view) && is_finite(camera.eye_) && is_finite(up),
+          "finite numbers within the range of float");
+  require(largest(view) > 0.0, "a target other than the eye");
   camera.forward_ = unit(view);
   const glm::dvec3 sideways = largest(up) == 0.0 ? up : glm::cross(camera.forward_, unit(up));
-  if (glm::length(sideways) < 1e-9) {
-    throw InputError("camera: up " + text(up) +
-                     " is zero or along the view: expected a direction across it");
-  }
+  require(glm::length(sideways) >= 1e-9, "an up direction across the view");
   camera.right_ = glm::normalize(sideways);
   camera.up_ = glm::cross(camera.right_, camera.forward_);
-  camera.eye_ = glm::vec3(eye);
-  if (!is_finite(camera.eye_)) {
-    throw InputError("camera: eye " + text(eye) + " is beyond the range of float");
-  }
-  camera.vertical_fov_degrees_ = vertical_fov_degrees;
-  camera.half_height_ = half_tangent(vertical_fov_degrees);
+  camera.vertical_fov_degrees_ = fov.value_or(kDefaultFov);
+  camera.half_height_ = half_tangent(camera.vertical_fov_degrees_);
   camera.half_width_ = camera.half_height_ * aspect;
-  return camera;
-}
-
-Camera Camera::look_at(const CameraSetting& setting, double aspect) {
-  const glm::dvec3 view = setting.target - setting.eye;
-  const bool vertical = view.x == 0.0 && view.z == 0.0;
-  const glm::dvec3 up = vertical ? glm::dvec3(0.0, 0.0, -1.0) : glm::dvec3(0.0, 1.0, 0.0);
-  Camera camera = look_at(setting.eye, setting.target, setting.up.value_or(up),
-                          setting.fov.value_or(kDefaultFov), aspect);
-  const LensSetting& lens = setting.lens;
   camera.projection_ = lens.projection.value_or(Projection::kPerspective);
   camera.aperture_ = lens.aperture.value_or(0.0);
   camera.distance_ = glm::length(view);
   camera.focus_ = lens.focus.value_or(camera.distance_);
-  if (!(camera.aperture_ >= 0.0 && std::isfinite(camera.aperture_))) {
-    throw InputError("camera: aperture of " + std::to_string(camera.aperture_) +
-                     ": expected the radius of a lens, 0 or more");
-  }
-  if (!(camera.focus_ > 0.0 && std::isfinite(camera.focus_))) {
-    throw InputError("camera: focus at " + std::to_string(camera.focus_) +
-                     ": expected a distance, more than 0");
-  }
   return camera;
 }
 
@@ -151,4 +112,5 @@ glm::vec3 Camera::direction(double x, double y) const {
   return scaled_direction(forward_ + (2.0 * x - 1.0) * half_width_ * right_ +
                           (1.0 - 2.0 * y) * half_height_ * up_);
 }
+
 }  // namespace raygate

@@ -3,8 +3,7 @@
 
 #include <glm/glm.hpp>
 #include <optional>
-#include <string_view>
-#include <vector>
+#include <utility>
 
 #include "host/exact/exact.h"
 
@@ -43,8 +42,23 @@ struct CameraSetting {
   LensSetting lens = {};
 };
 
-/// Returns the projection named "perspective", "orthographic" or "panorama".
-[[nodiscard]] std::optional<Projection> projection_named(std::string_view name);
+/// The user's choice of a camera, in world coordinates; unset members are chosen to suit the scene.
+struct CameraRequest {
+  std::optional<CameraSetting> camera;  ///< none: the scene's camera, or a view of the whole scene
+  /// Azimuth and elevation in degrees: a view of the whole scene, even if the scene has a camera.
+  std::optional<std::pair<double, double>> angles;
+  std::optional<glm::dvec3> eye, target;  ///< in place of those of the camera or view
+  std::optional<glm::dvec3> up;           ///< of the camera, or of the view
+  std::optional<double> fov;              ///< vertical, in degrees
+  LensSetting lens;
+  std::optional<bool> ground;  ///< none: with default views that need one
+};
+
+/// The names of projections in scene files and on the command line.
+inline constexpr std::pair<const char*, Projection> kProjections[] = {
+    {"perspective", Projection::kPerspective},
+    {"orthographic", Projection::kOrthographic},
+    {"panorama", Projection::kPanorama}};
 
 /// Coordinates are relative to Scene::origin. The camera's frame is right-handed: in the image,
 /// `right` is +x and `up` is +y, and the camera looks along `forward`.
@@ -53,16 +67,10 @@ class Camera {
   /// Default vertical field of view in degrees.
   static constexpr double kDefaultFov = 35.0;
 
-  /// Returns a camera at `eye` that looks towards `target`, with `up` upwards in the image.
-  /// `vertical_fov_degrees` is in (0, 180); `aspect` is the width of the image over its height.
-  /// Throws InputError if eye and target coincide, if `up` is zero or parallel to the view, if an
-  /// angle or aspect ratio is out of range, and for any number that is not finite.
-  [[nodiscard]] static Camera look_at(const glm::dvec3& eye, const glm::dvec3& target,
-                                      const glm::dvec3& up, double vertical_fov_degrees,
-                                      double aspect);
-
-  /// Returns the camera of `setting`. The default of `up` is +y, or -z if the view is parallel to
-  /// y. Throws InputError as above, and for a negative aperture or a focus that is not positive.
+  /// Returns the camera of `setting`, whose angle and lens must be in range. `aspect` is the width
+  /// of the image over its height. The default of `up` is +y, or -z if the view is parallel to y.
+  /// Throws InputError if eye and target coincide, if `up` is zero or parallel to the view, and if
+  /// any of the three is not finite.
   [[nodiscard]] static Camera look_at(const CameraSetting& setting, double aspect);
 
   /// Returns the common origin of all rays, or the centre of the image for an orthographic camera.

@@ -7,13 +7,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/scene/camera.h"
-#include "host/scene/name_list.h"
 #include "host/scene/texture.h"
 
 namespace raygate {
@@ -180,11 +183,60 @@ struct EnvironmentMap {
   }
 };
 
-/// An environment map that has not been loaded.
+/// An environment map that has not been loaded; none if `file` is empty.
 struct EnvironmentSetting {
   std::filesystem::path file;  ///< OpenEXR or Radiance HDR, latitude-longitude
   double rotation = 0.0;  ///< around the up axis, in degrees, counter-clockwise seen from above
   double strength = 1.0;  ///< factor of the file's values; at least 0
+};
+
+/// A list of names that stores repeated sequences, such as the object names of instances, once.
+class NameList {
+ public:
+  NameList(std::initializer_list<std::string> names = {}) : NameList(std::vector(names)) {}
+  explicit NameList(std::vector<std::string> names) { append(std::move(names), 1); }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  /// Returns a name. `index` is below size(). Takes O(log n) time for n appended sequences.
+  [[nodiscard]] const std::string& operator[](std::size_t index) const {
+    const auto next = std::ranges::upper_bound(runs_, index, {}, &Run::first);
+    const Run& run = *std::prev(next);
+    return run.names[(index - run.first) % run.names.size()];
+  }
+
+  void push_back(std::string name) {
+    const bool repeats = runs_.empty() || runs_.back().names.size() < size_ - runs_.back().first;
+    if (repeats) return append({std::move(name)}, 1);
+    runs_.back().names.push_back(std::move(name));
+    ++size_;
+  }
+
+  /// Appends all of these names, in order, `times` times.
+  void append(std::vector<std::string> names, std::size_t times) {
+    if (names.empty() || times == 0) return;
+    const std::size_t count = names.size() * times;
+    runs_.push_back({size_, std::move(names)});
+    size_ += count;
+  }
+
+  /// Returns a copy of the names as strings.
+  [[nodiscard]] std::vector<std::string> all() const {
+    std::vector<std::string> names;
+    names.reserve(size_);
+    for (std::size_t i = 0; i < size_; ++i) names.push_back((*this)[i]);
+    return names;
+  }
+
+ private:
+  /// Names from index `first` to the next run, which repeat `names`.
+  struct Run {
+    std::size_t first;
+    std::vector<std::string> names;
+  };
+
+  std::vector<Run> runs_;
+  std::size_t size_ = 0;
 };
 
 /// Error statistics of rounding corners to binary32: the number of inexact corners, and the largest
@@ -233,9 +285,8 @@ struct Scene {
   glm::dvec3 origin{0.0};                     ///< world position = origin + position
   CornerRounding rounding;
   std::optional<CameraSetting> camera;  ///< the file's first camera, in world coordinates
-  std::optional<glm::dvec3> up;         ///< up direction, if the file's format defines it
-  /// If `up` is unset: whether z (otherwise y) is usually up in the format.
-  bool is_usually_z_up = false;
+  glm::dvec3 up{0.0, 1.0,
+                0.0};  ///< +y or +z: the up direction of the format, or the usual one in it
   std::vector<std::filesystem::path> files;  ///< all files read: OBJ, MTL and textures
   std::vector<std::string> warnings;  ///< "file:line: ...": first of statements, then of faces
 };
@@ -248,9 +299,11 @@ void add_light(Scene& scene, const WorldPointLight& light, const std::string& fi
 /// `material.name`.
 void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, const Material& material);
 
-/// Returns a 64-bit digest, as 16 hexadecimal digits, of a scene's geometry, materials, textures,
-/// lights and instances. Equal scenes have equal digests on all machines of the same byte order;
-/// different ones collide with probability 2^-64. This is not a cryptographic hash.
-[[nodiscard]] std::string digest_of(const Scene& scene);
+/// Returns a 64-bit digest, as 16 hexadecimal digits, of the contents of a scene's files, in any
+/// order and under any name, and of the settings in its scene file. It is the same on all machines
+/// of the same byte order; different scenes collide with probability 2^-64. This is not a
+/// cryptographic hash. Throws InputError if a file cannot be read.
+[[nodiscard]] std::string digest_of(std::span<const std::filesystem::path> files,
+                                    const std::string& settings);
 
 }  // namespace raygate

@@ -47,11 +47,6 @@ View front_view(const Scene& scene, const glm::dvec3& up) {
   return {0.0, 3.0 + 27.0 * flatness, up};
 }
 
-glm::dvec3 usual_up_axis(const Scene& scene) {
-  if (scene.up) return *scene.up;
-  return scene.is_usually_z_up ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
-}
-
 CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const View& view,
                           FrameFit filling) {
   const Bounds3 box = bounding_box(scene);
@@ -63,7 +58,7 @@ CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const V
                             ? axes.up
                             : axes.direction(view.azimuth, view.elevation + 90.0);
   const double size = std::max({half.x, half.y, half.z});
-  const Camera at_centre = Camera::look_at(centre + towards_eye * size, centre, up, fov, aspect);
+  const Camera at_centre = Camera::look_at({centre + towards_eye * size, centre, up, fov}, aspect);
 
   // The smallest distance at which all points are within the four sides of the view frustum.
   constexpr double kFilled = 0.96;
@@ -97,9 +92,15 @@ void add_ground(Scene& scene, const glm::dvec3& up) {
   const glm::dvec3 upright = unit(up);
   const Bounds3 box = position_bounds(scene);
   double lowest = std::numeric_limits<double>::infinity();
-  for_each_position(scene, [&](const glm::vec3& position) {
+  const auto show = [&](const glm::vec3& position) {
     lowest = std::min(lowest, glm::dot(glm::dvec3(position), upright));
-  });
+  };
+  std::ranges::for_each(scene.positions, show);
+  for (const Instance& instance : scene.instances) {
+    for (const glm::vec3& position : scene.meshes[instance.mesh].positions) {
+      show(transform_point(instance.rows, position));
+    }
+  }
   // Slightly below the lowest point, so that a floor of the scene hides this one.
   constexpr double kBelow = 0x1p-11, kHalfSide = 16.0;
   const double size = glm::length(box.high - box.low);

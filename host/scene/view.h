@@ -21,9 +21,6 @@ inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
 /// Returns a view from the front: level for tall scenes, higher for flatter ones.
 [[nodiscard]] View front_view(const Scene& scene, const glm::dvec3& up = {0.0, 1.0, 0.0});
 
-/// Returns +y or +z: Scene::up if the file's format defines it, or else the format's usual axis.
-[[nodiscard]] glm::dvec3 usual_up_axis(const Scene& scene);
-
 /// Part of a scene that fills the image.
 enum class FrameFit {
   kVertices,  ///< the vertices of the scene

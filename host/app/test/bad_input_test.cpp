@@ -133,15 +133,13 @@ TEST_F(BadInput, KindsOfFilesThatAreNotRead) {
 
 TEST_F(BadInput, LinesThatCannotBeRead) {
   expect_refused_scene(std::string("\0\1\2\3\n", 5), 1);
-  expect_refused_scene(std::string(kGoodScene) + "fish and chips\n", 7);
+  expect_refused_scene(std::string(kGoodScene) + "f fish and chips\n", 7);
   expect_refused_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", 4);
   expect_refused_scene("v 0 0 0\nv 1 0 1e999\nv 0 1 0\nf 1 2 3\n", 2);
 }
 
 TEST_F(BadInput, FacesWithoutArea) {
   folder_.write("scene.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\nf 3 3 1\n");
-  expect_refused(render({"scene.obj", "--strict"}),
-                 "scene\\.obj:5: face of zero area, expected one with an area");
   const Outcome outcome = render({"scene.obj", "-o", "new"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(std::regex_match(outcome.err, std::regex("warning: scene\\.obj[^\n]+\n")))
@@ -219,9 +217,6 @@ TEST_F(BadInput, SceneFiles) {
   refused("{\"render\":\n{\"size\": \"0x0\"}}", 2);
   folder_.write("scene.json", "{\"obj\": \"none.obj\"}");
   expect_refused(render({"scene.json"}), "scene\\.json: found no none\\.obj, expected [^\n]+");
-  folder_.write("make_scene.py", "");
-  expect_refused(render({"scene.json"}),
-                 "scene\\.json: found no none\\.obj, [^\n]+ `python3 make_scene\\.py none\\.obj`");
 }
 
 /// More triangles than there are numbers: told before anybody looks at them all.

@@ -5,15 +5,13 @@
 #include <limits>
 #include <stdexcept>
 
-#include "host/app/process.h"
-
 namespace raygate {
 namespace {
 
 // A file may ask for a list longer than any memory.
 TEST(RunGuarded, AListThatIsTooLong) {
   testing::internal::CaptureStderr();
-  EXPECT_EQ(run_guarded([]() -> int { throw std::length_error("vector"); }, 1), 2);
+  EXPECT_EQ(run_guarded([]() -> int { throw std::length_error("vector"); }), 2);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "error: out of memory\n");
 }
 

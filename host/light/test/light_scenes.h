@@ -135,10 +135,7 @@ inline Scene everything() {
 
 inline Camera camera_at(const glm::dvec3& eye, const glm::dvec3& target, double fov,
                         double aspect = 1.0) {
-  const glm::dvec3 view = target - eye;
-  const bool vertical = view.x == 0.0 && view.z == 0.0;
-  return Camera::look_at(eye, target, vertical ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0), fov,
-                         aspect);
+  return Camera::look_at({.eye = eye, .target = target, .fov = fov}, aspect);
 }
 
 /// One pixel that looks straight down at the origin of a white floor.

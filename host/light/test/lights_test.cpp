@@ -230,9 +230,7 @@ Scene square(const Material& material) {
   return scene;
 }
 
-Camera camera_from(const glm::dvec3& eye) {
-  return Camera::look_at(eye, glm::dvec3(0.0), {0, 1, 0}, 35.0, 1.0);
-}
+Camera camera_from(const glm::dvec3& eye) { return Camera::look_at({.eye = eye}, 1.0); }
 
 TEST(DefaultLights, AreOneLightAboveTheCamera) {
   const auto lights = default_lights(square(matte(glm::vec3(0.5f))), camera_from({0, 0, 5}));
@@ -302,7 +300,8 @@ TEST(DefaultLights, CastSoftShadows) {
     Scene scene;
     add(scene, rectangle({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}), matte(glm::vec3(0.5f)));
     if (has_roof) add(scene, rectangle({0, 1, -9}, {0, 0, 18}, {9, 0, 0}), matte(glm::vec3(0.0f)));
-    const Camera camera = Camera::look_at({x - 1, 0.5, 0.1}, {x, 0, 0}, {0, 1, 0}, 1e-3, 1.0);
+    const Camera camera =
+        Camera::look_at({.eye = {x - 1, 0.5, 0.1}, .target = {x, 0, 0}, .fov = 1e-3}, 1.0);
     RenderSettings options = test::light(integrator, 1, 1, 4096);
     options.ambient = 0.0;
     options.max_depth = 1;

@@ -50,36 +50,34 @@ class Scene:
     and its options; unpickling reads the file or builds the scene again."""
 
     @overload
-    def __init__(self, file: Path, /, *, strict: bool = False, smooth: float | None = None,
-                 threads: int | None = None) -> None: ...
+    def __init__(self, file: Path, /, *, smooth: float | None = None, threads: int | None = None) -> None: ...
 
     @overload
-    def __init__(self, vertices: npt.ArrayLike, /, faces: npt.ArrayLike, *, strict: bool = False,
-                 smooth: float | None = None, threads: int | None = None) -> None: ...
+    def __init__(self, vertices: npt.ArrayLike, /, faces: npt.ArrayLike, *, smooth: float | None = None,
+                 threads: int | None = None) -> None: ...
 
     @in_context
-    def __init__(self, file: Any, /, faces: npt.ArrayLike | None = None, *, strict: bool = False,
-                 smooth: float | None = None, threads: int | None = None) -> None:
+    def __init__(self, file: Any, /, faces: npt.ArrayLike | None = None, *, smooth: float | None = None,
+                 threads: int | None = None) -> None:
         """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Or takes arrays: vertices of shape (N, 3), float32
         or float64, and faces of shape (M, 3), whole numbers: three vertices, counted from 0, in each row.
 
         Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them, and
-        `warnings` counts them; `strict` refuses them. `smooth`: faces without normals that meet at no more than so
-        many degrees are shaded smoothly. `threads`: how many build the scene, one per processor by default. Raises
-        InputError, a ValueError, which names the file and line, or the face, that cannot be used."""
-        options = {"strict": bool(strict), "smooth": smooth, "threads": threads}
+        `warnings` counts them. `smooth`: faces without normals that meet at no more than so many degrees are shaded
+        smoothly. `threads`: how many build the scene, one per processor by default. Raises InputError, a ValueError,
+        which names the file and line, or the face, that cannot be used."""
+        options = {"smooth": smooth, "threads": threads}
         if faces is None and isinstance(file, (str, bytes, os.PathLike)):
             name = os.fsencode(file)
             if b"\0" in name:
                 raise InputError(f"file: found {file!r}, expected a name without a null byte")
             self._recipe: tuple[Any, ...] = Scene, (os.path.abspath(name),), options
-            self._scene = _raygate.Scene(name, bool(strict), _settings(smooth=smooth, threads=threads))
+            self._scene = _raygate.Scene(name, _settings(smooth=smooth, threads=threads))
             return
         vertices = np.array(_arrays.vectors("vertices", file))
         numbers = np.array(_arrays.vertex_numbers(faces, len(vertices)))
         self._recipe = Scene, (vertices, numbers), options
-        self._scene = _raygate.Scene("faces", _arrays.triangles("faces", vertices[numbers]), bool(strict),
-                                     _settings(smooth=smooth, threads=threads))
+        self._scene = _raygate.Scene("faces", _arrays.triangles("faces", vertices[numbers]), _settings(smooth=smooth, threads=threads))
 
     @classmethod
     @in_context
@@ -90,8 +88,7 @@ class Scene:
         scene = cls.__new__(cls)
         kept = np.array(_arrays.reals("triangles", corners), order="C")
         scene._recipe = cls.of_triangles, (kept,), {"threads": threads}
-        scene._scene = _raygate.Scene("triangles", _arrays.triangles("triangles", kept), False,
-                                      _settings(threads=threads))
+        scene._scene = _raygate.Scene("triangles", _arrays.triangles("triangles", kept), _settings(threads=threads))
         return scene
 
     def __reduce__(self) -> tuple[Any, ...]:

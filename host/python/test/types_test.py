@@ -16,7 +16,7 @@ import pickle
 import numpy as np
 import raygate
 
-made: raygate.Scene = pickle.loads(pickle.dumps(raygate.Scene([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], strict=True)))
+made: raygate.Scene = pickle.loads(pickle.dumps(raygate.Scene([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], smooth=30)))
 total: float = made.trace(np.zeros((2, 3), np.float32), [0, 0, 1], 5, hits="any", columns="hit")["hit"].sum()
 names: list[str] = made.materials + made.warnings
 count: int = made.rounding[0] + int(made.inside([[0, 0, 1]]).sum())

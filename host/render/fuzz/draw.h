@@ -18,10 +18,10 @@ namespace raygate::test {
 /// if a pixel is not a valid colour. Throws InputError for a scene that is too large for float.
 inline void draw(const Scene& scene) {
   if (triangle_count(scene) > 100'000) return;
-  const glm::dvec3 up = scene.up.value_or(glm::dvec3(0.0, 1.0, 0.0));
-  const Camera camera = Camera::look_at(
-      frame_scene(scene, 1.0, Camera::kDefaultFov, View{kDefaultAzimuth, kDefaultElevation, up}),
-      1.0);
+  const Camera camera =
+      Camera::look_at(frame_scene(scene, 1.0, Camera::kDefaultFov,
+                                  View{kDefaultAzimuth, kDefaultElevation, scene.up}),
+                      1.0);
   const Bvh bvh(scene);
   RenderSettings options;
   options.width = options.height = 4;

@@ -8,7 +8,7 @@
 
 #include "host/base/input_error.h"
 #include "host/render/fuzz/draw.h"
-#include "host/scene/io/scene_file.h"
+#include "host/scene/io/scene_loader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::filesystem::path folder = [] {
@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
     const raygate::SceneFile read = raygate::read_scene_file(file);
-    raygate::Scene scene = raygate::load_scene(read, {.keep_instances = true});
+    raygate::Scene scene = raygate::load_scene(read);
     raygate::test::draw(scene);
   } catch (const raygate::InputError&) {
     // Expected for invalid files.

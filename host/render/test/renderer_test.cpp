@@ -61,7 +61,7 @@ Scene sphere_in_box() {
 
 // The eye on a diagonal, the picture square: rays run exactly through edges and vertices.
 const Camera kCamera =
-    Camera::look_at(glm::dvec3(2, 2, 2), glm::dvec3(0), glm::dvec3(0, 0, 1), 60.0, 1.0);
+    Camera::look_at({glm::dvec3(2), glm::dvec3(0), glm::dvec3(0, 0, 1), 60.0}, 1.0);
 
 TEST(Renderer, EveryPixelIsTheExactNearestPolygon) {
   const Scene scene = sphere_in_box();
@@ -129,8 +129,7 @@ TEST(Renderer, LambertLitFromTheCamera) {
   Scene scene =
       test::scene_of({{glm::vec3(-9, -9, -2), glm::vec3(9, -9, -2), glm::vec3(0, 9, -2)}});
   scene.materials[0].diffuse = glm::vec3(0.5f, 0.25f, 1.0f);
-  const Camera camera =
-      Camera::look_at(glm::dvec3(0), glm::dvec3(0, 0, -1), glm::dvec3(0, 1, 0), 60.0, 1.0);
+  const Camera camera = Camera::look_at({.target = {0, 0, -1}, .fov = 60.0}, 1.0);
   const Bvh bvh(scene);
   RenderStats stats;
   Film film = render(scene, bvh, camera, size(1, 1), serial(bvh), stats);

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "host/base/input.h"
-#include "host/scene/io/find_file.h"
+#include "host/scene/io/scene_loader.h"
 #include "host/scene/io/text.h"
 
 namespace raygate {
@@ -204,13 +204,6 @@ struct GltfFile::Component {
   double one;
 };
 
-/// The numbers of an accessor.
-struct GltfFile::Elements {
-  Component component;
-  std::size_t width;  // numbers of an element
-  std::vector<double> numbers;
-};
-
 std::string_view GltfFile::stored(int buffer_view, const std::string& place) const {
   if (buffer_view < 0) fail(place + "found no buffer view, expected its number");
   const Json& view = at(list("bufferViews"), buffer_view, "buffer view");
@@ -266,39 +259,57 @@ const GltfFile::Component& GltfFile::component_of(const Json& part,
   return *found;
 }
 
-GltfFile::Elements GltfFile::elements(int accessor, const char* what) const {
+std::vector<double> GltfFile::elements(int accessor, std::size_t wanted, const char* what,
+                                       bool are_indices) const {
   static const std::map<std::string, std::size_t> kTypes = {
       {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
   const std::string place = "accessor " + std::to_string(accessor) + " (" + what + "): ";
   const Json& from = this->accessor(accessor);
   const auto type = kTypes.find(text_in(from, "type"));
   if (type == kTypes.end()) fail(place + "of an unknown type");
-  Elements result{component_of(from, place), type->second, {}};
-  const auto& [component, width, ignored] = result;
-  const std::size_t count = this->count(accessor);
+  const Component& component = component_of(from, place);
+  const std::size_t width = type->second, count = this->count(accessor);
+  const bool is_index = component.type == NumberType::kUint8 ||
+                        component.type == NumberType::kUint16 ||
+                        component.type == NumberType::kUint32;
+  if (are_indices && !is_index) fail(place + "not of whole numbers");
+  if (!are_indices && component.type == NumberType::kUint32) {
+    fail(place + "numbers of a type that is not expected there");
+  }
+  if (width < wanted) fail(place + "too few components");
+  std::vector<double> all;
   if (!member(from, "bufferView").is_null()) {
-    result.numbers = stored_numbers(from, component, width, count, place);
+    all = stored_numbers(from, component, width, count, place);
   } else {  // they are 0, apart from sparse ones
     constexpr std::size_t kMost = 1'000'000;
     if (count > kMost + bytes_) fail(place + "too many elements without a buffer");
-    result.numbers.assign(width * count, 0.0);
+    all.assign(width * count, 0.0);
   }
-  const Json& sparse = member(from, "sparse");
-  if (!sparse.is_object()) return result;
-  const std::size_t changes = size_in(sparse, "count");
-  const Json& indices = member(sparse, "indices");
-  const std::vector<double> places = stored_numbers(indices, component_of(indices, place), 1,
-                                                    changes, place),
-                            values = stored_numbers(member(sparse, "values"), component, width,
-                                                    changes, place);
-  for (std::size_t i = 0; i < changes; ++i) {
-    if (!(places[i] >= 0.0 && places[i] < static_cast<double>(count))) {
-      fail(place + "a sparse element beyond its end");
+  if (const Json& sparse = member(from, "sparse"); sparse.is_object()) {
+    const std::size_t changes = size_in(sparse, "count");
+    const Json& indices = member(sparse, "indices");
+    const std::vector<double> places = stored_numbers(indices, component_of(indices, place), 1,
+                                                      changes, place),
+                              values = stored_numbers(member(sparse, "values"), component, width,
+                                                      changes, place);
+    for (std::size_t i = 0; i < changes; ++i) {
+      if (!(places[i] >= 0.0 && places[i] < static_cast<double>(count))) {
+        fail(place + "a sparse element beyond its end");
+      }
+      const std::size_t at = static_cast<std::size_t>(places[i]) * width;
+      for (std::size_t k = 0; k < width; ++k) all[at + k] = values[i * width + k];
     }
-    const std::size_t at = static_cast<std::size_t>(places[i]) * width;
-    for (std::size_t k = 0; k < width; ++k) result.numbers[at + k] = values[i * width + k];
   }
-  return result;
+  const Json& normalized = member(from, "normalized");
+  const bool is_normalized = !are_indices && normalized.is_boolean() && normalized.get<bool>();
+  if (width == wanted && !is_normalized) return all;
+  std::vector<double> numbers;
+  numbers.reserve(count * wanted);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i % width >= wanted) continue;
+    numbers.push_back(is_normalized ? std::max(all[i] / component.one, -1.0) : all[i]);
+  }
+  return numbers;
 }
 
 std::vector<double> GltfFile::optional_numbers(int accessor, int width, const char* what,
@@ -316,39 +327,12 @@ std::vector<double> GltfFile::optional_numbers(int accessor, int width, const ch
 }
 
 std::vector<double> GltfFile::numbers(int accessor, int width, const char* what) const {
-  auto [component, components, all] = elements(accessor, what);
-  const auto fail_here = [&](const char* found) {
-    fail("accessor " + std::to_string(accessor) + " (" + what + "): " + found);
-  };
-  const auto wanted = static_cast<std::size_t>(width);
-  if (components < wanted) fail_here("too few components");
-  if (component.type == NumberType::kUint32) {
-    fail_here("numbers of a type that is not expected there");
-  }
-  const Json& normalized = member(this->accessor(accessor), "normalized");
-  const bool is_normalized = normalized.is_boolean() && normalized.get<bool>();
-  if (components == wanted && !is_normalized) return std::move(all);
-  std::vector<double> numbers;
-  numbers.reserve(all.size() / components * wanted);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (i % components >= wanted) continue;
-    numbers.push_back(is_normalized ? std::max(all[i] / component.one, -1.0) : all[i]);
-  }
-  return numbers;
+  return elements(accessor, static_cast<std::size_t>(width), what, false);
 }
 
 std::vector<std::uint32_t> GltfFile::indices(int accessor) const {
-  const auto [component, width, all] = elements(accessor, "indices");
-  const NumberType type = component.type;
-  if (type != NumberType::kUint8 && type != NumberType::kUint16 && type != NumberType::kUint32) {
-    fail("accessor " + std::to_string(accessor) + " (indices): not of whole numbers");
-  }
-  std::vector<std::uint32_t> numbers;
-  numbers.reserve(all.size() / width);
-  for (std::size_t i = 0; i < all.size(); i += width) {
-    numbers.push_back(static_cast<std::uint32_t>(all[i]));
-  }
-  return numbers;
+  const std::vector<double> all = elements(accessor, 1, "indices", true);
+  return {all.begin(), all.end()};
 }
 
 glm::dmat4 local_matrix(const Json& node) {

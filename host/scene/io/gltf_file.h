@@ -75,13 +75,13 @@ class GltfFile {
 
  private:
   struct Component;
-  struct Elements;
   std::string_view read(const std::filesystem::path& file);
   /// Returns the bytes of a data URI or of a file beside this one; nullopt if there are none.
   std::optional<std::string_view> load(const std::string& uri);
   void add_warning(const std::string& warning);
   [[nodiscard]] const Component& component_of(const Json& part, const std::string& place) const;
-  [[nodiscard]] Elements elements(int accessor, const char* what) const;
+  [[nodiscard]] std::vector<double> elements(int accessor, std::size_t width, const char* what,
+                                             bool are_indices) const;
   /// Returns the bytes of a buffer view. Throws InputError, which names `place`, if it has none or
   /// is not within its buffer.
   [[nodiscard]] std::string_view stored(int buffer_view, const std::string& place) const;

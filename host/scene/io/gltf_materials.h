@@ -1,14 +1,19 @@
-// GltfMaterials: converts the materials and textures of a glTF file to those of a Scene.
+// GltfMaterials: converts the materials and textures of a glTF file to those of a Scene. A part of
+// the reader in gltf_loader.cpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "host/scene/io/gltf_file.h"
+#include "host/scene/io/text.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
@@ -26,29 +31,255 @@ class GltfMaterials {
     std::array<int, 2>
         texcoord_sets;  ///< sets that its textures use, the base colour's first; -1: none
   };
+
   /// Returns a material of the file, which is converted at its first use; -1 is the default one.
-  Converted convert(int material);
+  Converted convert(int material) {
+    const auto found = converted_.find(material);
+    if (found != converted_.end()) return found->second;
+    sets_ = {-1, -1};
+    Material result;
+    result.name = "default";
+    if (material != -1) result = translated(this->material(material));
+    const Converted converted{static_cast<std::uint32_t>(scene_.materials.size()), sets_};
+    scene_.materials.push_back(std::move(result));
+    return converted_.emplace(material, converted).first->second;
+  }
+
   /// Returns whether a material has a mask or blends.
-  [[nodiscard]] bool has_opacity(int material) const;
+  [[nodiscard]] bool has_opacity(int material) const {
+    const std::string mode = text_in(this->material(material), "alphaMode");
+    return mode == "MASK" || mode == "BLEND";
+  }
+
   /// Lets the opacities of vertices multiply a material's.
-  void use_vertex_opacity(int material);
+  void use_vertex_opacity(int material) {
+    const Json &from = this->material(material), &pbr = member(from, "pbrMetallicRoughness");
+    const Converted converted = convert(material);
+    Material& to = scene_.materials[converted.number];
+    sets_ = converted.texcoord_sets;
+    to.has_vertex_opacity = true;
+    to.opacity_blends = text_in(from, "alphaMode") == "BLEND";
+    to.opacity_map = map_of(pbr, "baseColorTexture", Texture::Content::kAlpha);
+    if (to.opacity_blends) return;
+    to.opacity_cutoff =
+        static_cast<float>(cutoff_of(from) / base_opacity(numbers(pbr, "baseColorFactor", 4)));
+  }
 
  private:
+  static constexpr std::int64_t kMostTexels = std::int64_t{1} << 27;
+
+  static double in_unit(double x) { return x >= 0.0 ? std::min(x, 1.0) : 0.0; }
+
+  /// Returns the first three numbers, clamped to [0, most]; 1 for missing ones.
+  static glm::vec3 colour_of(const std::vector<double>& numbers, double most = 1.0) {
+    glm::vec3 colour(1.0f);
+    for (int k = 0; k < 3 && static_cast<std::size_t>(k) < numbers.size(); ++k) {
+      const double number = numbers[static_cast<std::size_t>(k)];
+      colour[k] = static_cast<float>(number >= 0.0 ? std::min(number, most) : 0.0);
+    }
+    return colour;
+  }
+
+  static float finite_in(const Json& object, const char* key, double otherwise) {
+    const double number = number_in(object, key, otherwise);
+    return static_cast<float>(std::isfinite(number) ? number : otherwise);
+  }
+
+  static glm::vec2 pair_in(const Json& object, const char* key, const glm::vec2& otherwise) {
+    const std::vector<double> numbers = numbers_in(object, key);
+    return numbers.size() == 2 ? glm::vec2(numbers[0], numbers[1]) : otherwise;
+  }
+
+  static constexpr const char *kSpecular = "KHR_materials_specular",
+                              *kTransmission = "KHR_materials_transmission",
+                              *kTransform = "KHR_texture_transform";
+
+  /// Returns the number of the set of coordinates that a texture uses.
+  static int set_of(const Json& info) {
+    const double set =
+        number_in(extension(info, kTransform), "texCoord", number_in(info, "texCoord", 0.0));
+    return static_cast<int>(std::clamp(set, -1.0, 1e6));
+  }
+
+  /// Returns the opacity of a base colour.
+  static double base_opacity(const std::vector<double>& base_color) {
+    return base_color.size() == 4 ? in_unit(base_color[3]) : 1.0;
+  }
+
+  /// Returns the cutoff of a mask; above 1 nothing is visible.
+  static double cutoff_of(const Json& material) {
+    return std::max(number_in(material, "alphaCutoff", 0.5), 0.0);
+  }
+
+  /// Returns the material with this index, or null for index -1.
+  [[nodiscard]] const Json& material(int index) const {
+    static const Json kDefault;
+    return index == -1 ? kDefault : file_.at(file_.list("materials"), index, "material");
+  }
+
   /// Returns a member of a list of a material; an empty list, with a warning if the member is not
   /// `size` numbers.
-  std::vector<double> numbers(const Json& object, const char* key, std::size_t size);
-  Material translated(const Json& from);
-  void set_opacity(const Json& from, Material& material);
-  /// Returns the material with this index, or null for index -1.
-  [[nodiscard]] const Json& material(int index) const;
+  std::vector<double> numbers(const Json& object, const char* key, std::size_t size) {
+    std::vector<double> numbers = numbers_in(object, key);
+    if (numbers.size() == size) return numbers;
+    if (!member(object, key).is_null()) {
+      file_.warn_once(in_quotes(key) + " of a material is not as glTF has it, left out");
+    }
+    return {};
+  }
+
+  /// Returns a decoded image; nullopt, with a warning, if the texture has none. Throws InputError
+  /// if it cannot be decoded or the images have too many pixels.
+  std::optional<Texture> picture(const Json& texture, Texture::Content content) {
+    if (!textures_) return std::nullopt;
+    const int source = index_in(texture, "source");
+    if (source < 0) {
+      file_.warn_once("a texture without a PNG or JPEG picture is left out");
+      return std::nullopt;
+    }
+    Texture result = Texture::decode(file_.picture_bytes(source),
+                                     file_.name() + ": image " + std::to_string(source), content);
+    texels_ += std::int64_t{result.width()} * result.height();
+    if (texels_ > kMostTexels) {
+      file_.fail("textures of more than " + std::to_string(kMostTexels) + " pixels in all");
+    }
+    return result;
+  }
+
   /// Returns the texture at a key with its mapping; no texture if there is none or, with a warning,
   /// if it cannot be read.
   MaterialMap map_of(const Json& parent, const char* key,
-                     Texture::Content content = Texture::Content::kColour);
-  MaterialMap read_map(const Json& info, Texture::Content content);
-  /// Returns a decoded image; nullopt, with a warning, if the texture has none. Throws InputError
-  /// if it cannot be decoded or the images have too many pixels.
-  std::optional<Texture> picture(const Json& texture, Texture::Content content);
+                     Texture::Content content = Texture::Content::kColour) {
+    MaterialMap map;
+    const Json& info = member(parent, key);
+    if (!member(info, "index").is_number_integer()) {
+      if (!info.is_null()) {
+        file_.warn_once(in_quotes(key) + " of a material is not as glTF has it, left out");
+      }
+      return map;
+    }
+    file_.optionally("its material is plain instead", [&] { map = read_map(info, content); });
+    return map;
+  }
+
+  MaterialMap read_map(const Json& info, Texture::Content content) {
+    MaterialMap map;
+    const int set = set_of(info);
+    auto at = std::ranges::find(sets_, set);
+    if (at == sets_.end()) at = std::ranges::find(sets_, -1);
+    if (at == sets_.end()) {
+      file_.fail("textures of one material with three sets of coordinates, expected two at most");
+    }
+    *at = set;
+    map.mapping.is_second = at != sets_.begin();
+    const Json& texture = file_.at(file_.list("textures"), index_in(info, "index"), "texture");
+    const auto [entry, is_new] =
+        texture_of_image_.try_emplace(std::pair(index_in(texture, "source"), content), kNoIndex);
+    if (is_new) {
+      if (std::optional<Texture> decoded = picture(texture, content)) {
+        entry->second = static_cast<std::uint32_t>(scene_.textures.size());
+        scene_.textures.push_back(std::move(*decoded));
+      }
+    }
+    map.texture = entry->second;
+    if (const int number = index_in(texture, "sampler"); number >= 0) {
+      const Json& sampler = file_.at(file_.list("samplers"), number, "sampler");
+      const auto wrap_of = [&](const char* key) {
+        constexpr int kClamp = 33071, kMirror = 33648, kRepeat = 10497;
+        const auto mode = static_cast<int>(number_in(sampler, key, kRepeat));
+        if (mode == kClamp) return Wrap::kClamp;
+        if (mode == kMirror) return Wrap::kMirror;
+        if (mode != kRepeat) {
+          file_.warn_once("sampler " + std::to_string(number) + ": found the wrap mode " +
+                          std::to_string(mode) + ", expected 10497, 33071 or 33648; repeated");
+        }
+        return Wrap::kRepeat;
+      };
+      constexpr int kNearest = 9728;
+      map.mapping.sampling.u = wrap_of("wrapS");
+      map.mapping.sampling.v = wrap_of("wrapT");
+      map.mapping.sampling.is_nearest = index_in(sampler, "magFilter") == kNearest;
+    }
+    const Json& transform = extension(info, kTransform);
+    if (transform.is_null()) return map;
+    map.mapping.scale = pair_in(transform, "scale", glm::vec2(1.0f));
+    // The file's v points down: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o.
+    const glm::vec2 offset = pair_in(transform, "offset", glm::vec2(0.0f));
+    const double angle = number_in(transform, "rotation", 0.0);
+    map.mapping.turn = {std::cos(angle), std::sin(angle)};
+    const glm::vec2 up = map.mapping.scale.y * map.mapping.turn;
+    map.mapping.offset = {offset.x + up.y, 1.0f - up.x - offset.y};
+    return map;
+  }
+
+  /// Sets the opacity from the base colour's factor and texture, which blend or are a mask.
+  void set_opacity(const Json& from, Material& material) {
+    const std::string mode = text_in(from, "alphaMode");
+    if (mode != "MASK" && mode != "BLEND") return;
+    const Json& pbr = member(from, "pbrMetallicRoughness");
+    const bool is_mask = mode == "MASK";
+    const double factor = base_opacity(numbers(pbr, "baseColorFactor", 4)),
+                 cutoff = cutoff_of(from);
+    if (!is_mask) material.opacity = static_cast<float>(factor);
+    if (is_mask && factor < cutoff) material.opacity = 0.0f;
+    if (material.opacity == 0.0f) return;
+    MaterialMap map = map_of(pbr, "baseColorTexture", Texture::Content::kAlpha);
+    const double least = is_mask ? cutoff / factor : 1.0;
+    if (map.texture == kNoIndex || scene_.textures[map.texture].min_code() >= least) return;
+    material.opacity_map = std::move(map);
+    material.opacity_blends = !is_mask;
+    if (is_mask) material.opacity_cutoff = static_cast<float>(least);
+  }
+
+  Material translated(const Json& from) {
+    const Json &pbr = member(from, "pbrMetallicRoughness"), &specular = extension(from, kSpecular),
+               &transmission = extension(from, kTransmission),
+               &normal = member(from, "normalTexture");
+    const auto fraction = [](const Json& object, const char* key, double otherwise) {
+      return static_cast<float>(in_unit(number_in(object, key, otherwise)));
+    };
+    Material material;
+    const Json& base = member(pbr, "baseColorTexture");
+    if (index_in(base, "index") >= 0) sets_[0] = set_of(base);
+    material.name = text_in(from, "name");
+    if (!pbr.is_object()) (void)numbers(from, "pbrMetallicRoughness", 0);
+    material.diffuse = colour_of(numbers(pbr, "baseColorFactor", 4));
+    MetallicRoughness& model = material.metallic_roughness.emplace();
+    model.metallic = fraction(pbr, "metallicFactor", 1.0);
+    model.roughness = fraction(pbr, "roughnessFactor", 1.0);
+    model.roughness_map = model.metallic_map = map_of(pbr, "metallicRoughnessTexture");
+    material.diffuse_map = map_of(pbr, "baseColorTexture");
+    material.normal_map = map_of(from, "normalTexture");
+    material.normal_scale = finite_in(normal, "scale", 1.0);
+    set_opacity(from, material);
+    if (!member(from, "occlusionTexture").is_null()) {
+      file_.warn_once("occlusionTexture is not read: the rays of the scene find what is in shade");
+    }
+
+    const double strength = std::clamp(
+        number_in(extension(from, "KHR_materials_emissive_strength"), "emissiveStrength", 1.0), 0.0,
+        1e6);
+    const std::vector<double> emission = numbers(from, "emissiveFactor", 3);
+    material.emission =
+        emission.empty() ? glm::vec3(0.0f) : colour_of(emission) * static_cast<float>(strength);
+    if (material.emission != glm::vec3(0.0f)) {
+      material.emission_map = map_of(from, "emissiveTexture");
+    }
+    model.specular = fraction(specular, "specularFactor", 1.0);
+    model.specular_map = map_of(specular, "specularTexture", Texture::Content::kAlpha);
+    model.specular_color =
+        colour_of(numbers_in(specular, "specularColorFactor"), std::numeric_limits<float>::max());
+    model.specular_color_map = map_of(specular, "specularColorTexture");
+    model.transmission = fraction(transmission, "transmissionFactor", 0.0);
+    model.transmission_map = map_of(transmission, "transmissionTexture");
+    material.refraction_index = static_cast<float>(
+        std::clamp(number_in(extension(from, "KHR_materials_ior"), "ior", 1.5), 1.0, 4.0));
+    if (!extension(from, "KHR_materials_unlit").is_null()) {
+      material.illumination_model = 0;
+      material.metallic_roughness.reset();
+    }
+    return material;
+  }
 
   GltfFile& file_;
   Scene& scene_;

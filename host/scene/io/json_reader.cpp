@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <istream>
 #include <limits>
+#include <streambuf>
 #include <unordered_set>
 
 #include "host/base/input.h"
@@ -14,31 +16,22 @@
 namespace raygate {
 namespace {
 
-/// Passes characters to the parser and counts lines.
-class LineCounter {
+/// A text for the parser, which counts the lines that were read.
+class LineBuffer : public std::streambuf {
  public:
-  using difference_type = std::ptrdiff_t;
-  using value_type = char;
-  using pointer = const char*;
-  using reference = const char&;
-  using iterator_category = std::input_iterator_tag;
-
-  /// Keeps `line` at the line of the last character that was passed.
-  LineCounter(const char* at, std::size_t* line) : at_(at), line_(line) {}
-
-  reference operator*() const { return *at_; }
-  LineCounter& operator++() {
-    // A line feed counts at the next character, as the parser reads one beyond a number's end.
-    if (was_line_feed_) ++*line_;
-    was_line_feed_ = *at_++ == '\n';
-    return *this;
+  explicit LineBuffer(std::string_view text) : counted_(text.data()) {
+    char* const first = const_cast<char*>(text.data());  // which nobody writes
+    setg(first, first, first + text.size());
   }
-  bool operator==(const LineCounter& other) const { return at_ == other.at_; }
+  /// Returns the line of the last character that was read. The parser reads one beyond a number.
+  std::size_t line() {
+    for (; counted_ + 1 < gptr(); ++counted_) line_ += *counted_ == '\n' ? 1 : 0;
+    return line_;
+  }
 
  private:
-  const char* at_;
-  std::size_t* line_;
-  bool was_line_feed_ = false;
+  const char* counted_;
+  std::size_t line_ = 1;
 };
 
 std::string member_path(const std::string& path, const std::string& key) {
@@ -55,12 +48,10 @@ std::string shown(const Json& value) {
   return value.is_object() ? "an object" : value.dump();
 }
 
-/// Parses JSON. `line` is that of the last character that was read.
-Json parse(std::string_view text, const std::string& file, std::size_t& line,
-           const Json::parser_callback_t& follow) {
+Json parse(LineBuffer& text, const std::string& file, const Json::parser_callback_t& follow) {
   try {
-    return Json::parse(LineCounter(text.data(), &line),
-                       LineCounter(text.data() + text.size(), &line), follow);
+    std::istream stream(&text);
+    return Json::parse(stream, follow);
   } catch (const Json::exception& error) {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while
     // parsing value - invalid literal; last read: 'x'; expected ..."
@@ -69,15 +60,15 @@ Json parse(std::string_view text, const std::string& file, std::size_t& line,
       if (const std::size_t at = what.find(end); at <= 40) what.erase(0, at + std::strlen(end));
     }
     what = what.substr(0, std::min<std::size_t>(what.find("; expected"), 120));
-    throw InputError(file, line, "not JSON: " + what);
+    throw InputError(file, text.line(), "not JSON: " + what);
   }
 }
 
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& file) {
-  std::size_t line = 1;
-  return parse(text, file, line, nullptr);
+  LineBuffer buffer(text);
+  return parse(buffer, file, nullptr);
 }
 
 const Json& member(const Json& object, const char* key) {
@@ -134,7 +125,8 @@ JsonFile::JsonFile(const std::filesystem::path& file) : file_(file.string()) {
     std::unordered_set<std::string> keys = {};  // all of them
   };
   std::vector<Level> levels;
-  std::size_t line = 1;
+  const std::string bytes = read_file(file);
+  LineBuffer text(bytes);
   const auto follow = [&](int, Json::parse_event_t event, const Json& parsed) {
     using Event = Json::parse_event_t;
     if (event == Event::object_end || event == Event::array_end) {
@@ -144,7 +136,8 @@ JsonFile::JsonFile(const std::filesystem::path& file) : file_(file.string()) {
     if (event == Event::key) {
       levels.back().key = parsed.get<std::string>();
       if (!levels.back().keys.insert(levels.back().key).second) {
-        throw InputError(file_, line, "key " + in_quotes(levels.back().key) + " is there twice");
+        throw InputError(file_, text.line(),
+                         "key " + in_quotes(levels.back().key) + " is there twice");
       }
       return true;
     }
@@ -154,11 +147,11 @@ JsonFile::JsonFile(const std::filesystem::path& file) : file_(file.string()) {
       path = level.is_array ? element_path(level.path, level.count++)
                             : member_path(level.path, level.key);
     }
-    lines_.emplace(path, line);
+    lines_.emplace(path, text.line());
     if (event != Event::value) levels.push_back({event == Event::array_start, path});
     return true;
   };
-  root_ = parse(read_file(file), file_, line, follow);
+  root_ = parse(text, file_, follow);
 }
 
 std::size_t JsonFile::line_of(std::string path) const {
@@ -183,6 +176,12 @@ void JsonValue::require_keys(std::initializer_list<const char*> known) const {
     throw InputError(file_->name(), JsonValue(value, *file_, member_path(path_, key)).line(),
                      name() + ": unknown key " + in_quotes(key) + ", expected some of " + names);
   }
+}
+
+std::string JsonValue::text_without(std::initializer_list<const char*> keys) const {
+  Json others = *value_;
+  for (const char* key : keys) others.erase(key);
+  return others.empty() ? "" : others.dump();
 }
 
 std::size_t JsonValue::line() const { return file_->line_of(path_); }

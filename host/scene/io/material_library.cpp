@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -10,7 +11,6 @@
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/scene/io/find_file.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/text.h"
 
@@ -19,21 +19,20 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A statement of one number, and the range to which it is clamped.
-struct Value {
+/// Statements of one number, and the ranges to which it is clamped.
+enum Value : std::size_t { kNs, kNi, kD, kTr, kIllum, kPr, kPm, kValueCount };
+struct ValueRange {
   std::string_view keyword;
   double low, high, instead;  // `instead` replaces a number below `low`
 };
-constexpr Value kValues[] = {
-    {"Ns", 0.0, kInfinity, 0.0},
-    {"Ni", 0.001, kInfinity, 1.0},  // some exporters write an index of
-                                    // 0 for "none"
-    {"d", 0.0, 1.0, 0.0},
-    {"Tr", 0.0, 1.0, 0.0},
-    {"illum", 0.0, 10.0, 2.0},
-    {"Pr", 0.0, 1.0, 0.0},
-    {"Pm", 0.0, 1.0, 0.0},
-};
+constexpr ValueRange kValues[kValueCount] = {{"Ns", 0.0, kInfinity, 0.0},
+                                             {"Ni", 0.001, kInfinity, 1.0},  // some exporters write
+                                                                             // 0 for "none"
+                                             {"d", 0.0, 1.0, 0.0},
+                                             {"Tr", 0.0, 1.0, 0.0},
+                                             {"illum", 0.0, 10.0, 2.0},
+                                             {"Pr", 0.0, 1.0, 0.0},
+                                             {"Pm", 0.0, 1.0, 0.0}};
 
 /// Options of maps that are not supported, which numbers or one word follow.
 constexpr std::string_view kOtherOptions[] = {"-blendu", "-blendv", "-boost",     "-texres",
@@ -43,11 +42,11 @@ constexpr std::string_view kOtherOptions[] = {"-blendu", "-blendv", "-boost",   
 /// A material that is being read, and what its statements leave open.
 struct Draft {
   Material material;
-  bool has_diffuse = false, has_emission = false, has_opacity = false, has_no_shine = false;
-  std::optional<float> roughness, metallic;  // Pr and Pm
+  bool has_diffuse = false, has_emission = false;
+  std::array<std::optional<double>, kValueCount> values;
   MaterialMap roughness_map, metallic_map;
-  std::string transparent_at;  // "file:line: " of a Tr 1
-  glm::vec3 ambient{};         // Ka, which has no use
+  std::string transparency_place;  // "file:line: " of the last Tr
+  glm::vec3 ambient{};             // Ka, which has no use
 
   /// Returns the member that a colour statement sets, or nullptr.
   glm::vec3* colour(std::string_view keyword) {
@@ -101,7 +100,7 @@ class MtlReader {
     if (keyword == "newmtl") return begin_material(words);
     glm::vec3* const colour = draft_.colour(keyword);
     MaterialMap* const map = draft_.map(keyword);
-    const auto* const value = std::ranges::find(kValues, keyword, &Value::keyword);
+    const auto* const value = std::ranges::find(kValues, keyword, &ValueRange::keyword);
     const bool is_value = value != std::end(kValues);
     if ((colour || map || is_value) && !in_material_) {
       words.fail(in_quotes(keyword) + " before the first newmtl");
@@ -111,7 +110,8 @@ class MtlReader {
       return warn_once(keyword, words, in_quotes(keyword) + " is not supported, ignored");
     }
     words.drop_comment();
-    colour ? read_colour(keyword, words, *colour) : read_value(*value, words);
+    if (colour) return read_colour(keyword, words, *colour);
+    read_value(static_cast<Value>(value - std::begin(kValues)), words);
   }
 
   /// Completes a material. Any PBR statement selects the metallic-roughness model. Defaults are
@@ -119,22 +119,29 @@ class MtlReader {
   void finish_material() {
     if (!is_kept_) return;
     Material& material = draft_.material;
-    const int model = material.illumination_model;
+    const auto value = [&](Value key, double missing) {
+      return static_cast<float>(draft_.values[key].value_or(missing));
+    };
+    const int model = static_cast<int>(value(kIllum, material.illumination_model));
+    material.illumination_model = model;
+    material.shininess = value(kNs, material.shininess);
+    material.refraction_index = value(kNi, material.refraction_index);
+    material.opacity = value(kD, 1.0 - draft_.values[kTr].value_or(0.0));
     const bool is_glass = model == 4 || model == 6 || model == 7 || model == 9;
-    if (!draft_.transparent_at.empty() && !draft_.has_opacity && !is_glass) {
+    if (draft_.values[kTr] == 1.0 && !draft_.values[kD] && !is_glass) {
       material.opacity = 1.0f;
-      warnings_.push_back(draft_.transparent_at +
+      warnings_.push_back(draft_.transparency_place +
                           "found Tr 1, which hides the material, expected less; taken as 0");
     }
     // Exporters write Ns 0 for "no highlight".
-    if (model == 2 && draft_.has_no_shine) material.specular = glm::vec3(0.0f);
+    if (model == 2 && draft_.values[kNs] == 0.0) material.specular = glm::vec3(0.0f);
     const bool has_rough_map = !draft_.roughness_map.file.empty(),
                has_metal_map = !draft_.metallic_map.file.empty();
-    if (draft_.roughness || draft_.metallic || has_rough_map || has_metal_map) {
+    if (draft_.values[kPr] || draft_.values[kPm] || has_rough_map || has_metal_map) {
       MetallicRoughness& pbr = material.metallic_roughness.emplace();
       const float root = std::sqrt(std::min(material.shininess / 1000.0f, 1.0f));
-      pbr.roughness = draft_.roughness.value_or(has_rough_map ? 1.0f : 1.0f - root);
-      pbr.metallic = draft_.metallic.value_or(has_metal_map ? 1.0f : 0.0f);
+      pbr.roughness = value(kPr, has_rough_map ? 1.0f : 1.0f - root);
+      pbr.metallic = value(kPm, has_metal_map ? 1.0f : 0.0f);
       pbr.roughness_map = draft_.roughness_map;
       pbr.metallic_map = draft_.metallic_map;
       if (model == 6 || model == 7) {
@@ -181,42 +188,24 @@ class MtlReader {
     colour = count == 1 ? glm::vec3(rgb.r) : rgb;
   }
 
-  void read_value(const Value& value, Words& words) {
-    const std::string keyword(value.keyword);
-    if (keyword == "d" && words.take_if("-halo"))
-      warn(words, "d -halo is not supported, taken as d");
+  void read_value(Value key, Words& words) {
+    const auto& [name, low, high, instead] = kValues[key];
+    const std::string keyword(name);
+    if (key == kD && words.take_if("-halo")) warn(words, "d -halo is not supported, taken as d");
     const std::string word(words.peek());
     double number = words.number(keyword);
     if (!words.at_end()) words.fail(keyword + ": found several numbers, expected one");
-    if (number < value.low || number > value.high) {
-      number = number < value.low ? value.instead : value.high;
+    if (number < low || number > high) {
+      number = number < low ? instead : high;
       std::ostringstream text;
       text << keyword << " " << in_quotes(word) << " is out of range, taken as " << number;
       warn(words, text.str());
     }
-    const auto rounded = static_cast<float>(number);
-    Material& material = draft_.material;
-    if (keyword == "illum") {
-      if (number != std::floor(number)) {
-        words.fail("illum: found " + in_quotes(word) + ", expected a whole number from 0 to 10");
-      }
-      material.illumination_model = static_cast<int>(number);
-    } else if (keyword == "Ns") {
-      material.shininess = rounded;
-      draft_.has_no_shine = number == 0.0;
-    } else if (keyword == "Pr") {
-      draft_.roughness = rounded;
-    } else if (keyword == "Pm") {
-      draft_.metallic = rounded;
-    } else if (keyword == "Ni") {
-      material.refraction_index = rounded;
-    } else if (keyword == "d") {
-      material.opacity = rounded;
-      draft_.has_opacity = true;
-    } else if (!draft_.has_opacity) {  // Tr
-      material.opacity = static_cast<float>(1.0 - number);
-      draft_.transparent_at = number == 1.0 ? words.place() : "";
+    if (key == kIllum && number != std::floor(number)) {
+      words.fail("illum: found " + in_quotes(word) + ", expected a whole number from 0 to 10");
     }
+    if (key == kTr) draft_.transparency_place = words.place();
+    draft_.values[key] = number;
   }
 
   void read_map(const std::string& keyword, Words& words, MaterialMap& map) {

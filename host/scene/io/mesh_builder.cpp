@@ -198,8 +198,7 @@ bool MeshBuilder::was_flat(std::span<const FaceCorner> corners) const {
       glm::lessThanEqual(glm::abs(area), 0x1p-50 * static_cast<double>(corners.size()) * bound));
 }
 
-std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
-                                                    Scene& scene) const {
+std::vector<std::uint32_t> MeshBuilder::triangulate(Scene& scene) const {
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
   std::vector<glm::vec3> polygon;
@@ -211,10 +210,6 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
     begin = face.end;
     if (scene.triangles.size() % kCheckpointFaces == 0) checkpoint();
     if (corners.size() < 3) {
-      if (options.strict) {
-        fail(face.line,
-             "face with " + std::to_string(corners.size()) + " corners, expected at least 3");
-      }
       flaws.note(Flaws::kTooShort, face.line);
       continue;
     }
@@ -231,13 +226,7 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(const LoadOptions& options,
       kind = PolygonKind::kZeroArea;
     }
     if (kind == PolygonKind::kZeroArea) {
-      const bool is_flat = was_flat(corners);
-      if (options.strict) {
-        fail(face.line, std::string("face ") +
-                            (is_flat ? "of zero area" : "flattened by rounding to binary32") +
-                            ", expected one with an area");
-      }
-      flaws.note(is_flat ? Flaws::kNoArea : Flaws::kFlattened, face.line);
+      flaws.note(was_flat(corners) ? Flaws::kNoArea : Flaws::kFlattened, face.line);
       Triangle left_out{.material = face.attributes.material, .object = face.attributes.object};
       left_out.vertices.fill(corners[0].position);
       scene.triangles.insert(scene.triangles.end(), corners.size() - 2, left_out);
@@ -295,7 +284,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
                              " colours of vertices that are not finite numbers, taken as white");
   }
   recentre(scene);
-  const std::vector<std::uint32_t> groups = triangulate(options, scene);
+  const std::vector<std::uint32_t> groups = triangulate(scene);
   if (is_empty(scene) && !may_be_empty_) {
     fail(faces_.empty() ? 0 : faces_[0].line, "no face has an area");
   }

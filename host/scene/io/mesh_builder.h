@@ -75,8 +75,7 @@ class MeshBuilder {
   void allow_empty() { may_be_empty_ = true; }
 
   /// Sets the scene's vertices, triangles and origin, and appends to its warnings. Throws
-  /// InputError for an index out of range, if there is no face with an area, and with
-  /// options.strict for any face without an area.
+  /// InputError for an index out of range, and if there is no face with an area.
   void build(const LoadOptions& options, Scene& scene);
   /// Builds a scene in which all faces belong to one object of a default material.
   void build_plain(const LoadOptions& options, Scene& scene);
@@ -101,8 +100,7 @@ class MeshBuilder {
   /// Returns whether a face has no area in the file's own numbers, before they are rounded.
   [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
   /// Returns the smoothing groups of the triangles; empty: all are flat.
-  [[nodiscard]] std::vector<std::uint32_t> triangulate(const LoadOptions& options,
-                                                       Scene& scene) const;
+  [[nodiscard]] std::vector<std::uint32_t> triangulate(Scene& scene) const;
 
   std::string file_name_;
   Source source_;

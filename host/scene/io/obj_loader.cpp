@@ -13,27 +13,12 @@
 #include <string_view>
 #include <vector>
 
-#include "host/scene/io/find_file.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {
-
-// Statements of shapes other than polygons.
-constexpr std::string_view kOtherShapes[] = {
-    "p",     "l",    "vp",   "cstype", "deg",  "bmat", "step", "curv", "curv2",
-    "surf",  "parm", "trim", "hole",   "scrv", "sp",   "end",  "con",  "ctech",
-    "stech", "bsp",  "bzp",  "cdc",    "cdp",  "res",  "t",    "vw"};
-
-// Statements that affect neither polygons nor materials: merging groups, display attributes.
-constexpr std::string_view kOfNoConsequence[] = {
-    "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "usemap", "maplib"};
-
-bool is_in(std::span<const std::string_view> list, std::string_view keyword) {
-  return std::ranges::find(list, keyword) != list.end();
-}
 
 /// Names, numbered in the order of their first use.
 using NameNumbers = std::map<std::string, std::uint32_t>;
@@ -48,10 +33,8 @@ std::vector<std::string> in_order(const NameNumbers& numbers) {
   return names;
 }
 
-/// Reads v, vt, vn, f, g, o, s, usemtl and mtllib. Leaves out points, lines and free-form curves
-/// and surfaces, with a warning, and statements that only concern a modelling program, without one.
-/// Throws InputError for any other statement. (The statements are those of Wavefront's "Object
-/// Files", version 3.0.)
+/// Reads v, vt, vn, f, g, o, s, usemtl and mtllib (Wavefront's "Object Files", version 3.0). Leaves
+/// out other statements, such as lines and free-form surfaces, with one warning for each kind.
 class ObjReader {
  public:
   ObjReader(const std::filesystem::path& file, Scene& scene)
@@ -101,13 +84,9 @@ class ObjReader {
       if (face_.material == first_uses_.size()) first_uses_.push_back(words.place());
     } else if (keyword == "mtllib") {
       load_libraries(words);
-    } else if (is_in(kOtherShapes, keyword)) {
+    } else {
       warn_once(keyword, words,
-                std::string(keyword) + " statements are ignored: only polygons are rendered");
-    } else if (!is_in(kOfNoConsequence, keyword)) {
-      words.fail(
-          in_quotes(keyword) +
-          " is no OBJ statement, expected v, vt, vn, f, g, o, usemtl, mtllib, # or the like");
+                in_quotes(keyword) + " statements are ignored: only polygons are rendered");
     }
   }
 

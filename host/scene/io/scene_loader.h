@@ -1,21 +1,20 @@
-// load_scene: reads models of all supported formats into a Scene.
+// load_scene: reads models of all supported formats, and scene files, into a Scene.
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "host/scene/camera.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
 
 struct LoadOptions {
-  /// Whether a face of exactly zero area, after rounding to float, is an error. Otherwise it is
-  /// left out, with one warning for all of them.
-  bool strict = false;
-  bool keep_instances = false;  ///< otherwise they are flattened (see host/scene/instances.h)
-  bool textures = true;         ///< whether textures are decoded
+  bool textures = true;  ///< whether textures are decoded
   /// Largest angle between the normals of two faces without vertex normals that are smoothed over
   /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
   std::optional<double> smooth = {};
@@ -25,8 +24,9 @@ struct LoadOptions {
 /// .stl, in small or capital letters.
 ///
 /// Triangles have the order of the file's faces. Polygons, which may be concave, are cut into
-/// triangles of non-zero area. Vertices that no face uses are left out. The scene is recentred; see
-/// Scene. Numbers are read to the nearest double, as in the C locale.
+/// triangles of non-zero area. Faces of exactly zero area, after rounding to float, are left out,
+/// and so are vertices that no face uses. The scene is recentred; see Scene. Numbers are read to
+/// the nearest double, as in the C locale.
 ///
 /// Throws InputError, with the line of a text file, for another ending, a file that cannot be read
 /// or breaks its format, a vertex index out of range, a position that is not finite, and a file in
@@ -34,8 +34,75 @@ struct LoadOptions {
 /// or damaged, a bad normal or texture coordinate, and all that is left out.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
+/// Returns the file that a model in `folder` refers to as `name`: the file of that name or, if
+/// there is none, of the name without quotes and with '/' for '\', or without the '\' before
+/// spaces; else the file whose name matches the last part of `name` in any letter case, in the
+/// folder of `name` or in `folder`, with a warning that begins with `place`.
+[[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
+                                                             std::string_view name,
+                                                             const std::string& place,
+                                                             std::vector<std::string>& warnings);
+
 /// Returns the existing file with this stem and the first of these endings, or else "STEM.obj".
 [[nodiscard]] std::filesystem::path find_scene_file(const std::filesystem::path& stem);
+
+// Scene files: a scene.json, with the camera, lights, instances and options of a scene. The format
+// is described in host/docs/reference.md.
+
+/// A parallelogram that emits to both sides, with a corner and two edges from it.
+struct AreaLightSetting {
+  glm::dvec3 corner{0.0};
+  glm::dvec3 edges[2]{};     ///< not parallel
+  glm::vec3 radiance{0.0f};  ///< scene-linear RGB, none negative
+};
+
+/// A model and the transforms of its instances.
+struct InstanceSetting {
+  std::filesystem::path model;
+  std::vector<glm::dmat4> transforms;  ///< from the model's coordinates to the world's
+};
+
+/// A value that was given to an option.
+struct OptionValue {
+  std::string name;     ///< of the option, without dashes
+  std::string text;     ///< "" for a flag
+  std::string where{};  ///< place for messages, "scene.json:3"; "": the command line
+};
+
+/// The contents of a scene file, in world coordinates. Values were checked, except those of
+/// options.
+struct SceneFile {
+  std::filesystem::path file = {};
+  std::filesystem::path obj = {};
+  CameraRequest camera = {};
+  std::vector<WorldPointLight> point_lights = {};
+  std::vector<AreaLightSetting> area_lights = {};
+  std::vector<DirectionalLight> directional_lights = {};
+  EnvironmentSetting environment = {};
+  std::optional<glm::vec3> background = {};  ///< radiance, scene-linear RGB, none negative
+  std::vector<InstanceSetting> instances = {};
+  std::vector<OptionValue> options = {};
+  std::string settings = {};  ///< lights, background and instances as JSON, for digest_of()
+
+  /// Returns "camera.up", which may be there without a camera.
+  [[nodiscard]] const std::optional<glm::dvec3>& up() const {
+    return camera.camera ? camera.camera->up : camera.up;
+  }
+};
+
+/// Reads a scene file (.json). For a file with another ending, returns a SceneFile with that model
+/// alone. Throws InputError, "file:line: what: found, expected ...", if the file cannot be read or
+/// is not JSON, for unknown keys, and for values of a wrong type or out of range.
+[[nodiscard]] SceneFile read_scene_file(const std::filesystem::path& file);
+
+/// Loads the model of a scene file and adds the file's lights and instances. Each instance adds
+/// all objects of its model, without the model's lights and cameras. Each area light adds two
+/// triangles, an object and a material, "light 1" and so on. load_environment() loads the
+/// environment. Throws InputError as load_scene(file) does, and if an instance or a light is beyond
+/// the range of float or a light is too small for it.
+[[nodiscard]] Scene load_scene(const SceneFile& file, const LoadOptions& options = {});
+
+// Formats of models.
 
 /// Loads a Wavefront OBJ file, with its MTL files (relative to its folder) and their textures.
 [[nodiscard]] Scene load_obj(const std::filesystem::path& file, const LoadOptions& options = {});
@@ -49,8 +116,8 @@ struct LoadOptions {
 /// with an object for each node; materials (see GltfMaterials); the first camera; lights
 /// (KHR_lights_punctual; 683 candela are 1 watt per steradian). +y is up. Positions are transformed
 /// in double. Skins and morph targets are applied as posed by the nodes; animations are not read.
-/// Throws InputError also for a node with two parents, and if vertices and corners, with flattened
-/// instances, exceed 12 million plus the number of bytes of the file.
+/// Meshes of several nodes become instances. Throws InputError also for a node with two parents,
+/// and if vertices and corners exceed 12 million plus the number of bytes of the file.
 [[nodiscard]] Scene load_gltf(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Loads a PLY file, ASCII or binary: the polygons of the element "face", as one object of one

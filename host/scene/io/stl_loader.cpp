@@ -108,7 +108,7 @@ Scene load_stl(const std::filesystem::path& file, const LoadOptions& options) {
                      " facets that the header of a binary STL file counts");
   }
   mesh.build_plain(options, scene);
-  scene.is_usually_z_up = true;
+  scene.up = glm::dvec3(0.0, 0.0, 1.0);
   return scene;
 }
 

@@ -39,7 +39,7 @@ TEST(ScaledDirection, ChangesNothingButTheExponent) {
 }
 
 TEST(LookAt, ShowsTheTargetInTheMiddle) {
-  const Camera camera = Camera::look_at({1, 2, 3}, {1, 2, -7}, {0, 1, 0}, 90, 2);
+  const Camera camera = Camera::look_at({.eye = {1, 2, 3}, .target = {1, 2, -7}, .fov = 90}, 2);
   EXPECT_EQ(camera.eye(), glm::vec3(1, 2, 3));
   EXPECT_EQ(camera.direction(0.5, 0.5), glm::vec3(0, 0, -1));
   EXPECT_EQ(camera.forward(), glm::dvec3(0, 0, -1));
@@ -59,7 +59,7 @@ TEST(LookAt, AxesAreOrthonormalAndRightHanded) {
   std::normal_distribution<double> normal;
   const auto vector = [&] { return glm::dvec3(normal(random), normal(random), normal(random)); };
   for (int round = 0; round < 1000; ++round) {
-    const Camera camera = Camera::look_at(vector(), vector(), 1e-200 * vector(), 40, 1);
+    const Camera camera = Camera::look_at({vector(), vector(), 1e-200 * vector(), 40}, 1);
     EXPECT_NEAR(glm::length(camera.right()), 1, 1e-12);
     EXPECT_NEAR(glm::length(camera.up()), 1, 1e-12);
     EXPECT_NEAR(glm::length(camera.forward()), 1, 1e-12);
@@ -70,19 +70,17 @@ TEST(LookAt, AxesAreOrthonormalAndRightHanded) {
 TEST(LookAt, RefusesWhatMakesNoPicture) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const glm::dvec3 eye(0, 0, 5), target(0), up(0, 1, 0);
-  EXPECT_NO_THROW((void)Camera::look_at(eye, target, up, 40, 1));
-  EXPECT_THROW((void)Camera::look_at(eye, eye, up, 40, 1), InputError);
-  EXPECT_THROW((void)Camera::look_at(eye, target, {0, 0, 0}, 40, 1), InputError);
-  EXPECT_THROW((void)Camera::look_at(eye, target, {0, 0, -3}, 40, 1), InputError);
-  EXPECT_THROW((void)Camera::look_at(eye, {nan, 0, 0}, up, 40, 1), InputError);
-  EXPECT_THROW((void)Camera::look_at({1e300, 0, 0}, target, up, 40, 1), InputError);
-  EXPECT_THROW((void)Camera::look_at({-1.7e308, 0, 0}, {1.7e308, 0, 0}, up, 40, 1), InputError);
-  for (const double fov : {0.0, -1.0, 180.0, nan}) {
-    EXPECT_THROW((void)Camera::look_at(eye, target, up, fov, 1), InputError) << fov;
-  }
-  for (const double aspect : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW((void)Camera::look_at(eye, target, up, 40, aspect), InputError) << aspect;
-  }
+  const auto look = [](const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& upwards) {
+    (void)Camera::look_at({from, to, upwards}, 1.0);
+  };
+  EXPECT_NO_THROW(look(eye, target, up));
+  EXPECT_THROW(look(eye, eye, up), InputError);
+  EXPECT_THROW(look(eye, target, {0, 0, 0}), InputError);
+  EXPECT_THROW(look(eye, target, {0, 0, -3}), InputError);
+  EXPECT_THROW(look(eye, target, {0, nan, 0}), InputError);
+  EXPECT_THROW(look(eye, {nan, 0, 0}, up), InputError);
+  EXPECT_THROW(look({1e300, 0, 0}, target, up), InputError);
+  EXPECT_THROW(look({-1.7e308, 0, 0}, {1.7e308, 0, 0}, up), InputError);
 }
 
 // Where in the picture a point is seen: x, y in [0, 1].
@@ -233,12 +231,6 @@ TEST(Lens, APanoramaHasAllDirections) {
   const glm::dvec3 sharp = glm::dvec3(middle.origin) + 2.0 * way(0.3, 0.4);
   const glm::dvec3 towards = glm::normalize(sharp - glm::dvec3(ray.origin));
   EXPECT_NEAR(glm::length(towards - glm::normalize(glm::dvec3(ray.direction))), 0.0, 1e-6);
-}
-
-TEST(Lens, ImpossibleOnesAreRefused) {
-  EXPECT_THROW((void)through({{}, -1.0, {}}), InputError);
-  EXPECT_THROW((void)through({{}, 1.0, 0.0}), InputError);
-  EXPECT_THROW((void)through({{}, std::numeric_limits<double>::infinity(), {}}), InputError);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 
 #include "host/base/input_error.h"
 #include "host/scene/bounds.h"
-#include "host/scene/name_list.h"
 #include "host/scene/test/instanced_scene.h"
 
 namespace raygate {

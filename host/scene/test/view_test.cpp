@@ -95,15 +95,6 @@ TEST(View, FillsThePictureFromAllSides) {
   }
 }
 
-TEST(UsualUp, IsTheFormats) {
-  Scene scene = box({0, 0, 0}, {1, 1, 1});
-  EXPECT_EQ(usual_up_axis(scene), kY);
-  scene.is_usually_z_up = true;
-  EXPECT_EQ(usual_up_axis(scene), kZ);
-  scene.up = kY;
-  EXPECT_EQ(usual_up_axis(scene), kY) << "the format has the last word";
-}
-
 Scene tetrahedron(float size) {
   Scene scene;
   scene.positions = {{1, 2, 3}, {2, 2, 3}, {1, 3, 3}, {1, 2, 4}};

@@ -121,7 +121,7 @@ TEST_F(LoadMtl, TextureOptionsAreNotTheFile) {
   EXPECT_EQ(m.diffuse_map.file, (folder_.path() / "3d model.png").string());
   EXPECT_EQ(m.diffuse_map.mapping.scale, glm::vec2(2, 1));
   EXPECT_EQ(m.diffuse_map.mapping.offset, glm::vec2(0.5f, 0.25f));
-  EXPECT_EQ(m.diffuse_map.mapping.sampling, Sampling(Wrap::kClamp));
+  EXPECT_EQ(m.diffuse_map.mapping.sampling.u, Wrap::kClamp);
   EXPECT_EQ(material("newmtl a\nmap_Kd -minus.png\n").diffuse_map.file,
             (folder_.path() / "-minus.png").string());
 }

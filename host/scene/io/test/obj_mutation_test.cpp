@@ -40,9 +40,8 @@ TEST(DamagedObj, LoadsSoundlyOrIsRefused) {
     damaged = damage(damaged);
     folder.write("m.mtl", mtl);
     const std::filesystem::path file = folder.write("s.obj", obj);
-    const LoadOptions options = {.strict = damage.below(2) == 0};
     try {
-      const Scene scene = load_obj(file, options);
+      const Scene scene = load_obj(file);
       test::expect_sound(scene);
       if (testing::Test::HasFatalFailure()) FAIL() << "round " << round << "\n" << obj;
       ++loaded;

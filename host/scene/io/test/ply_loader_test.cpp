@@ -49,7 +49,6 @@ TEST_F(LoadPly, Ascii) {
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_TRUE(scene.warnings[0].ends_with("s.ply: not read: 'red' of vertex"));
   EXPECT_TRUE(scene.colors.empty()) << "red alone is no colour";
-  EXPECT_FALSE(scene.up);
 }
 
 TEST_F(LoadPly, ColorsOfVertices) {

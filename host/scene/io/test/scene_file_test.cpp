@@ -1,11 +1,10 @@
 // scene.json: every key, and one clear line with its place for everything else.
-#include "host/scene/io/scene_file.h"
-
 #include <gtest/gtest.h>
 
 #include "host/base/input_error.h"
 #include "host/base/test/damage.h"
 #include "host/base/test/temp_folder.h"
+#include "host/scene/instances.h"
 #include "host/scene/io/scene_loader.h"
 
 namespace raygate {
@@ -38,11 +37,12 @@ class ReadSceneFile : public testing::Test {
 TEST_F(ReadSceneFile, EveryKey) {
   const SceneFile scene = read(kWhole);
   EXPECT_EQ(scene.obj, folder_.path() / "room.obj");
-  ASSERT_TRUE(scene.camera);
-  EXPECT_EQ(scene.camera->eye, glm::dvec3(0, 1, 5));
-  EXPECT_EQ(scene.camera->target, glm::dvec3(0, 1, 0));
-  EXPECT_EQ(scene.camera->up, glm::dvec3(0, 1, 0.5));
-  EXPECT_EQ(scene.camera->fov, 39.5);
+  const std::optional<CameraSetting>& camera = scene.camera.camera;
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(camera->eye, glm::dvec3(0, 1, 5));
+  EXPECT_EQ(camera->target, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(camera->up, glm::dvec3(0, 1, 0.5));
+  EXPECT_EQ(camera->fov, 39.5);
   ASSERT_EQ(scene.point_lights.size(), 1u);
   EXPECT_EQ(scene.point_lights[0].position, glm::dvec3(1, 2, 3));
   EXPECT_EQ(scene.point_lights[0].intensity, glm::dvec3(10, 20, 30));
@@ -53,25 +53,25 @@ TEST_F(ReadSceneFile, EveryKey) {
   EXPECT_EQ(scene.background, glm::vec3(0.1f, 0.2f, 0.3f));
   ASSERT_EQ(scene.options.size(), 4u);
   EXPECT_EQ(scene.options[0].name, "exposure") << "sorted by name";
-  EXPECT_EQ(scene.options[0].value, "-0.5");
-  EXPECT_EQ(scene.options[1].line, 9u);
-  EXPECT_EQ(scene.options[2].value, "320x200");
-  EXPECT_EQ(scene.options[3].value, "16");
+  EXPECT_EQ(scene.options[0].text, "-0.5");
+  EXPECT_EQ(scene.options[1].where, (folder_.path() / "s.json:9").string());
+  EXPECT_EQ(scene.options[2].text, "320x200");
+  EXPECT_EQ(scene.options[3].text, "16");
 }
 
 TEST_F(ReadSceneFile, NothingIsNeeded) {
   const SceneFile scene = read("{}");
   EXPECT_EQ(scene.obj, folder_.path() / "s.obj") << "the same name";
-  EXPECT_FALSE(scene.camera);
+  EXPECT_FALSE(scene.camera.camera);
   EXPECT_TRUE(scene.point_lights.empty() && scene.area_lights.empty());
   EXPECT_FALSE(scene.background);
 }
 
 TEST_F(ReadSceneFile, UpAndFieldOfViewAreKnownWithoutACamera) {
   const SceneFile scene = read(R"({"camera": {"up": [0, 0, 1], "fov": 50}})");
-  EXPECT_FALSE(scene.camera);
-  EXPECT_EQ(scene.up, glm::dvec3(0, 0, 1));
-  EXPECT_EQ(scene.fov, 50.0);
+  EXPECT_FALSE(scene.camera.camera);
+  EXPECT_EQ(scene.camera.up, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(scene.camera.fov, 50.0);
   EXPECT_EQ(error(R"({"camera": {"up": [0, 0, 0]}})"),
             "s.json:1: camera.up: an array of 3, expected a direction across the view");
   EXPECT_EQ(error(R"({"camera": {"eye": [0, 0, 1], "up": [0, 1, 0]}})"),
@@ -151,14 +151,12 @@ TEST_F(ReadSceneFile, LensesAndEnvironments) {
       "camera": {"eye": [0, 0, 1], "target": [0, 0, 0], "projection": "panorama", "aperture": 0.5,
                  "focus": 3},
       "environment": {"file": "sky.exr", "rotation": 90, "strength": 2}})");
-  ASSERT_TRUE(file.camera);
-  EXPECT_EQ(file.camera->lens.projection, Projection::kPanorama);
-  EXPECT_EQ(file.camera->lens.aperture, 0.5);
-  EXPECT_EQ(file.lens.focus, 3.0) << "also of views";
-  ASSERT_TRUE(file.environment);
-  EXPECT_EQ(file.environment->file, folder_.path() / "sky.exr");
-  EXPECT_EQ(file.environment->rotation, 90.0);
-  EXPECT_EQ(file.environment->strength, 2.0);
+  EXPECT_EQ(file.camera.lens.projection, Projection::kPanorama);
+  EXPECT_EQ(file.camera.lens.aperture, 0.5);
+  EXPECT_EQ(file.camera.lens.focus, 3.0) << "also of views";
+  EXPECT_EQ(file.environment.file, folder_.path() / "sky.exr");
+  EXPECT_EQ(file.environment.rotation, 90.0);
+  EXPECT_EQ(file.environment.strength, 2.0);
   EXPECT_EQ(error(R"({"camera": {"projection": "fisheye"}})"),
             "s.json:1: camera.projection: 'fisheye', expected perspective, orthographic or "
             "panorama");
@@ -228,7 +226,9 @@ TEST_F(ReadSceneFile, InstancesOfModels) {
                 "o second\nf 3 2 1\n");
   const SceneFile file = read(R"({"obj": "room.obj", "instances": [{"model": "far.obj", "places": [
       [1, 2, 3], [2, 0, 0, -200000, 0, 0, -1, 1, 0, 1, 0, 2], [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]]}]})");
-  const Scene kept = load_scene(file, {.keep_instances = true}), written = load_scene(file);
+  const Scene kept = load_scene(file);
+  Scene written = kept;
+  flatten_instances(written);
   EXPECT_EQ(kept.instances.size(), 3u);
   EXPECT_EQ(kept.meshes.size(), 2u);
   EXPECT_EQ(kept.triangles.size(), 1u);

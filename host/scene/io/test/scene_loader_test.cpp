@@ -8,6 +8,7 @@
 #include "host/base/input_error.h"
 #include "host/base/test/damage.h"
 #include "host/base/test/temp_folder.h"
+#include "host/scene/instances.h"
 #include "host/scene/io/test/binary.h"
 #include "host/scene/io/test/sound.h"
 #include "host/scene/test/tga.h"
@@ -103,7 +104,9 @@ TEST_P(DamagedFile, LoadsSoundlyOrIsRefused) {
     const std::string bytes = damage(GetParam().bytes);
     const std::filesystem::path file = folder.write(GetParam().name, bytes);
     try {
-      test::expect_sound(load_scene(file));
+      Scene scene = load_scene(file);
+      resolve_instances(scene, InstanceMode::kFlatten, file);
+      test::expect_sound(scene);
       if (testing::Test::HasFatalFailure()) FAIL() << "round " << round << "\n" << bytes;
       ++loaded;
     } catch (const InputError& error) {

@@ -45,8 +45,7 @@ TEST_F(LoadStl, Ascii) {
   ASSERT_EQ(scene.triangles.size(), 2u);
   EXPECT_EQ(scene.origin + glm::dvec3(scene.positions[scene.triangles[1].vertices[2]]),
             glm::dvec3(0, 0, 1));
-  EXPECT_FALSE(scene.up);
-  EXPECT_TRUE(scene.is_usually_z_up);
+  EXPECT_EQ(scene.up, glm::dvec3(0, 0, 1));
   EXPECT_EQ(scene.triangles[0].normals[0], kNoIndex);
 }
 

@@ -7,7 +7,6 @@
 #include <map>
 
 #include "host/scene/camera.h"
-#include "host/scene/io/scene_file.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/view.h"
 
@@ -90,9 +89,9 @@ TEST(StoredScenes, SceneFilesAndTheirObjsGoTogether) {
     if (file.obj.parent_path() != entry.path().parent_path()) {
       file.obj = RAYGATE_MADE_SCENES / file.obj.filename();
     }
-    const Scene scene = load_scene(file, {.keep_instances = true});
+    const Scene scene = load_scene(file);
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
-    EXPECT_TRUE(file.camera);
+    EXPECT_TRUE(file.camera.camera);
     const bool shines = std::ranges::any_of(scene.materials, [](const Material& material) {
       return material.emission != glm::vec3(0.0f);
     });

@@ -1,6 +1,7 @@
-// Output files: the pictures of a film, finished or not.
+// Outputs of a run: the pictures of a film, finished or not, and the statistics.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "host/film/atomic_file.h"
 #include "host/film/exr.h"
 #include "host/film/film.h"
+#include "host/render/renderer.h"
+#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -60,5 +63,26 @@ class Checkpointer {
 /// run's picture. Throws InputError if the file cannot be read, has no sums, or is of another
 /// picture; only --spp may be larger.
 [[nodiscard]] Film read_unfinished(const Options& options, const ExrMetadata& metadata);
+
+/// Statistics of a finished run. Times are elapsed seconds.
+struct Report {
+  std::size_t triangles = 0;
+  CornerRounding rounding;
+  RenderStats render;
+  double load_seconds = 0.0;   ///< reading the scene
+  double tree_seconds = 0.0;   ///< building the tree
+  double write_seconds = 0.0;  ///< encoding and writing the pictures
+  double total_seconds = 0.0;
+  std::vector<std::filesystem::path> pictures;
+  std::string view;                  ///< Framing::text
+  std::vector<std::string> legends;  ///< scales of the false-colour pictures
+};
+
+/// Returns the summary of a run: four lines, more for --engine check, --error, legends, views and
+/// rounded corners; all statistics with --verbose. Ends with a newline.
+[[nodiscard]] std::string to_text(const Report& report, const Options& options);
+
+/// Returns all statistics as a JSON object, for --stats.
+[[nodiscard]] std::string to_json(const Report& report, const Options& options);
 
 }  // namespace raygate
