@@ -23,14 +23,12 @@ namespace raygate {
 namespace {
 
 /// Returns the tester for the simulated unit or its model.
-std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips& skips) {
+std::unique_ptr<HitTester> make_tester(const EngineOptions& options) {
   if (options.variant) return make_variant_tester(*options.variant);
   if (options.unit == "serial") {
     std::unique_ptr<PlaneUnit> unit = std::make_unique<ReferencePlaneUnit>();
     if (options.simulates()) unit = std::make_unique<RtlPlaneUnit>(options.arith);
-    return std::make_unique<SerialHitTester>(
-        std::move(unit), skips.divisions ? SerialHitTester::Order::kEdgesFirst
-                                         : SerialHitTester::Order::kPlanesFirst);
+    return std::make_unique<SerialHitTester>(std::move(unit));
   }
   std::unique_ptr<BurstUnit> unit = std::make_unique<ReferenceBurstUnit>();
   if (options.simulates()) unit = std::make_unique<RtlBurstUnit>(options.lanes, options.arith);
@@ -58,12 +56,11 @@ void prepare_engine(const EngineOptions& options) {
   if (options.has_core()) {
     (void)make_core(options);
   } else {
-    (void)make_tester(options, {});
+    (void)make_tester(options);
   }
 }
 
 IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,
-                                            const Skips& skips,
                                             std::shared_ptr<const MemoryImage> image) {
   IntersectorFactory make_cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
   if (options.engine == Engine::kCpu) return make_cpu;
@@ -74,8 +71,8 @@ IntersectorFactory make_intersector_factory(const EngineOptions& options, const 
       return std::make_unique<CoreIntersector>(bvh, image, make_core(options));
     };
   } else {
-    make_unit = [options, &bvh, skips] {
-      return std::make_unique<UnitIntersector>(bvh, make_tester(options, skips));
+    make_unit = [options, &bvh] {
+      return std::make_unique<UnitIntersector>(bvh, make_tester(options));
     };
   }
   if (options.engine != Engine::kCheck) return make_unit;

@@ -55,8 +55,6 @@ struct RayQuery {
   /// The primitive that the ray leaves and surely does not hit, or NearestHit::kNone. Does not
   /// change results, but saves the test that is hardest to decide.
   std::span<const std::uint32_t> source_ids{};
-  /// False: every ray is tested against every polygon, ignoring boxes.
-  bool culling = true;
   /// Receives the work of each ray.
   std::span<RayWork> work{};
   /// A primitive whose hits are ignored, or NearestHit::kNone.

@@ -229,7 +229,7 @@ void Integrator::list_spawn_queries(std::size_t i) {
   bool any_at[2] = {};  // by side
   for (LightSample& sample : block_.light_samples_of(i)) {
     if (sample.is_asked == 0) continue;
-    if (sample.is_dark != 0 && shading_.settings.skips.light_behind) {
+    if (sample.is_dark != 0) {
       ++block_.skipped.lights_behind;
       sample.is_asked = 0;
       continue;
@@ -238,7 +238,7 @@ void Integrator::list_spawn_queries(std::size_t i) {
   }
   for (ScatteredRay& scattered : block_.scattered_of(i)) {
     if (scattered.is_wanted == 0) continue;
-    if (scattered.state.throughput == glm::vec3(0.0f) && shading_.settings.skips.weightless) {
+    if (scattered.state.throughput == glm::vec3(0.0f)) {
       ++block_.skipped.weightless;
       scattered.is_wanted = 0;
     } else if (leaves(place, scattered)) {

@@ -26,24 +26,13 @@ enum class Caustics {
   kAuto,  ///< found by light paths if possible
 };
 
-/// Optimisations that do not change any bit of the image.
-struct Skips {
-  bool culling = true;  ///< skip polygons in boxes that a ray does not enter
-  /// Skip shadow rays to lights that contribute nothing, such as those behind the surface.
-  bool light_behind = true;
-  bool weightless = true;      ///< skip reflected and refracted rays that contribute nothing
-  bool empty_tiles = true;     ///< skip camera rays of tiles that contain no polygon
-  bool first_occluder = true;  ///< end shadow rays at the first occluder found
-  bool divisions = true;       ///< serial unit: skip planes of polygons that the edge tests exclude
-};
-
-/// Statistics of skipped work.
+/// Statistics of skipped work, which would not change the image except for `dim`.
 struct SkipCounters {
-  std::uint64_t culled_tests = 0;   ///< ray-polygon tests
-  std::uint64_t lights_behind = 0;  ///< shadow rays
-  std::uint64_t weightless = 0;     ///< secondary rays
-  std::uint64_t dim = 0;  ///< secondary rays below the threshold, which would contribute slightly
-  std::uint64_t empty_tile_rays = 0;  ///< camera rays
+  std::uint64_t culled_tests = 0;     ///< tests of polygons in boxes that the ray does not enter
+  std::uint64_t lights_behind = 0;    ///< shadow rays to lights that contribute nothing
+  std::uint64_t weightless = 0;       ///< secondary rays that contribute nothing
+  std::uint64_t dim = 0;              ///< secondary rays below IntegratorSettings::threshold
+  std::uint64_t empty_tile_rays = 0;  ///< camera rays of tiles that contain no polygon
   std::uint64_t first_occluders = 0;  ///< shadow rays ended at the first occluder
 
   SkipCounters& operator+=(const SkipCounters& other) {
@@ -62,7 +51,6 @@ struct IntegratorSettings {
   std::optional<double> ambient{};  ///< Whitted: ambient radiance; default: Lights::ambient()
   /// For kPath only. Requires several samples, no camera lights, and a perspective camera.
   Caustics caustics = Caustics::kAuto;
-  Skips skips{};  ///< do not change the film
   /// The host computes the hit point P if the relative error of the unit's P may exceed this. 0:
   /// always; the largest float: only if the unit has no P.
   float point_error = kPointError;

@@ -34,21 +34,19 @@ glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const Surface
 }  // namespace
 
 ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
-                       Intersector& intersector, const Skips& skips, bool through_refraction)
+                       Intersector& intersector, bool through_refraction)
     : scene_(prepared.scene),
       materials_(prepared.materials),
       bvh_(prepared.bvh),
       lights_(lights),
       intersector_(intersector),
       spawner_(prepared.clearances),
-      culling_(skips.culling),
       through_refraction_(through_refraction),
       any_clear_(std::ranges::any_of(materials_,
                                      [](const MaterialParameters& material) {
                                        return material.has_mask ||
                                               (material.kind & kTransmits) != 0;
-                                     })),
-      first_occluder_(skips.first_occluder && !any_clear_) {}
+                                     })) {}
 
 void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced) {
   traced_ = traced ? &traced : nullptr;
@@ -161,9 +159,8 @@ void ShadowRays::trace(bool from_light, float enough) {
   RayQuery search{.common_origin = from_light,
                   .t_max = limits_,
                   .source_ids = sources_,
-                  .culling = culling_,
                   .skip_ids = ignored_};
-  if (first_occluder_) search.any_hit_before = enough_;
+  if (!any_clear_) search.any_hit_before = enough_;  // any occluder ends the search
   work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;
   hits_.resize(batch_.size());

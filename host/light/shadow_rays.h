@@ -9,7 +9,6 @@
 
 #include "host/bvh/bvh.h"
 #include "host/intersect/intersector.h"
-#include "host/light/integrator_settings.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"
@@ -47,7 +46,7 @@ class ShadowRays {
  public:
   /// `through_refraction`: glass attenuates shadow rays as if it did not refract.
   ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
-             const Skips& skips, bool through_refraction);
+             bool through_refraction);
 
   /// Callback for each traced ray with its work and the index of its shadow ray.
   using TracedFunction = std::function<void(const RayWork& work, std::size_t shadow_ray)>;
@@ -82,9 +81,8 @@ class ShadowRays {
   RaySpawner spawner_;
   std::vector<SpawnQuery> spawn_queries_;  // origins behind transmitting surfaces
   std::vector<SpawnOrigin> origins_;
-  bool culling_, through_refraction_;
-  bool any_clear_;       // some material transmits light or has a mask
-  bool first_occluder_;  // any occluder ends a search
+  bool through_refraction_;
+  bool any_clear_;  // some material transmits light or has a mask
   std::uint64_t rays_ = 0;
   // Reused buffers.
   std::vector<Segment> segments_, next_;

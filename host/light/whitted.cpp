@@ -94,18 +94,16 @@ RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& 
                                     const Triple<T>& throughput) {
   SkipCounters& skipped = hits.block.skipped;
   const auto threshold = static_cast<float>(shading.settings.threshold);
-  const bool skips_weightless = shading.settings.skips.weightless;
   const T size = largest(throughput);
   const auto sizes = unpack(size);
   for (int k = 0; k < hits.count; ++k) {
     if (sizes[k] == 0.0f) {
-      skipped.weightless += skips_weightless ? 1 : 0;
+      ++skipped.weightless;
     } else if (sizes[k] < threshold) {
       ++skipped.dim;
     }
   }
-  const auto is_bright = (size > 0.0f) & !(size < threshold);
-  return skips_weightless ? MaskOf<T>(is_bright) : MaskOf<T>(is_bright | (size == 0.0f));
+  return (size > 0.0f) & !(size < threshold);
 }
 
 /// Spawns reflected and transmitted rays. Without `goes_on` the maximum depth is reached, and rays

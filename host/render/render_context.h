@@ -30,7 +30,6 @@ struct RenderContext {
                                        std::span<RayWork> work) {
   return {.common_origin = batch.depth == 0 && context.camera.has_common_origin(),
           .source_ids = batch.sources,
-          .culling = context.settings.skips.culling,
           .work = work};
 }
 

@@ -23,7 +23,7 @@ TileRenderer::TileRenderer(const RenderContext& context, Intersector& intersecto
       emitter_histories_(emitter_histories),
       integrator_(context.settings.integrator, context.prepared, context.lights, context.settings,
                   context.light_paths),
-      shadow_rays_(context.prepared, context.lights, intersector, context.settings.skips,
+      shadow_rays_(context.prepared, context.lights, intersector,
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {
   if (!emitter_histories.empty()) emitter_supersampler_.emplace(context, intersector, is_counting_);
@@ -76,7 +76,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
 bool TileRenderer::is_empty_tile() const {
   const RenderSettings& settings = context_.settings;
   const double margin = 1.0 + (settings.samples > 1 ? filter_radius(settings.filter) : 0.0);
-  return settings.skips.empty_tiles && !integrator_.sees_environment() &&
+  return !integrator_.sees_environment() &&
          !may_see_anything(context_.prepared.bvh, context_.camera, film_, tile_, margin);
 }
 

@@ -15,7 +15,7 @@ void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   Stopwatch watch;
   HitCounters& counters = counters_.hit;
   const HitCounters before = counters;
-  if (query.common_origin && query.culling && !rays.empty()) {
+  if (query.common_origin && !rays.empty()) {
     trace_packets(bvh_, rays, query, hits, counters_);
   } else {
     trace_single_rays(bvh_, rays, query, hits, counters_);

@@ -80,7 +80,7 @@ class PointWriter {
 
 // The two searches of CpuIntersector. `hits` are initialised to misses; misses are not counted.
 
-/// Intersects rays of one origin in packets. Always culls.
+/// Intersects rays of one origin in packets.
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                    std::span<NearestHit> hits, IntersectCounters& counters);
 

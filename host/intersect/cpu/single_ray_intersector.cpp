@@ -191,18 +191,11 @@ struct MetChildren {
 };
 
 /// Tests the ray against the boxes of its current inner node, which may be decoded into `room`.
-/// Without `culling` it meets all.
 template <Vectors kCode>
-RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk, bool culling,
-                                  Bvh::Node& room, MetChildren& met) {
+RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk, Bvh::Node& room,
+                                  MetChildren& met) {
   const Bvh::Node& node = tree.node(walk.at().first, room);
   met.children = node.child;
-  if (!culling) [[unlikely]] {
-    met.keys = IntLanes{};
-    met.mask = sign_mask<kCode>(load<FloatLanes>(node.bounds[0][0]) <=
-                                load<FloatLanes>(node.bounds[1][0]));
-    return;
-  }
   const char* const bounds = reinterpret_cast<const char*>(&node);
   using Floats = NativeFloats<kCode>;
   LaneMask mask = 0;
@@ -433,7 +426,7 @@ class SingleRayIntersector {
         if (inside_count + leaf_count == 0) return;
         // Two short loops let the processor overlap more rays.
         for (std::size_t i = 0; i < inside_count; ++i) {
-          meet_children<code()>(tree, *inside[i], query_.culling, rooms[i], met[i]);
+          meet_children<code()>(tree, *inside[i], rooms[i], met[i]);
         }
         for (std::size_t i = 0; i < inside_count; ++i) push_children<code()>(*inside[i], met[i]);
         auto* near_end = near;

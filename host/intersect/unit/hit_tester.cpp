@@ -150,7 +150,6 @@ void SerialHitTester::finish(HitReports& reports) {
       drop_farther(reports, first);
       first = reports.size();
     }
-    if (verdict == UnitVerdict::kMiss) continue;
     const RayBundle& bundle = batch[index];
     const PolygonRecord& record = bundle.records[number];
     const glm::vec3& direction = plane_tests_[i].direction;
@@ -178,7 +177,7 @@ void SerialHitTester::collect(std::uint32_t index, const RayBundle& bundle) {
       counters_.misses += verdict == UnitVerdict::kMiss;
       counters_.hits += verdict == UnitVerdict::kHit;
       counters_.edge_doubts += verdict == UnitVerdict::kDoubt;
-      if (verdict == UnitVerdict::kMiss && order_ == Order::kEdgesFirst) continue;
+      if (verdict == UnitVerdict::kMiss) continue;
       pairs_.push_back({index, static_cast<std::uint32_t>(lane), i, verdict});
       plane_tests_.push_back({direction, record.normal, record.d});
     }

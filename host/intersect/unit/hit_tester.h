@@ -53,17 +53,11 @@ class PipelineHitTester : public HitTester {
 };
 
 /// The paper's unit intersects a ray with a polygon's plane; software decides whether the point is
-/// inside the polygon and which hit is nearest, as in the paper.
+/// inside the polygon and which hit is nearest, as in the paper. Unlike there, pairs that the edge
+/// planes exclude are not sent to the unit, so a miss costs no clocks.
 class SerialHitTester : public HitTester {
  public:
-  /// Pairs that are sent to the unit.
-  enum class Order {
-    kEdgesFirst,   ///< pairs that the edge planes do not exclude: a miss costs no clocks
-    kPlanesFirst,  ///< all pairs, as in the paper
-  };
-
-  explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit, Order order = Order::kEdgesFirst)
-      : unit_(std::move(unit)), order_(order) {}
+  explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit) : unit_(std::move(unit)) {}
 
   void finish(HitReports& reports) override;
   [[nodiscard]] HitCounters counters() const override;
@@ -84,7 +78,6 @@ class SerialHitTester : public HitTester {
   void drop_farther(HitReports& reports, std::size_t first);
 
   std::unique_ptr<PlaneUnit> unit_;
-  Order order_;
   HitCounters counters_;
   // Reused for all batches.
   std::vector<Pair> pairs_;  // ordered by bundle, lane and record

@@ -184,13 +184,6 @@ TEST_P(EachRayCoreTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
   EXPECT_LT(counters_.triangles, triangles);
 }
 
-TEST_P(EachRayCoreTest, WithoutCullingEveryTriangleIsTested) {
-  const std::vector<Ray> rays = some_rays(bodies(), random_, 70);
-  std::vector<RayWork> work(rays.size());
-  check(rays, {.culling = false, .work = work}, core());
-  for (const RayWork& ray : work) EXPECT_EQ(ray.tests, bvh_.primitive_count());
-}
-
 /// A line that was read ahead may come when the last ray has ended; the core tells, or CoreModel
 /// throws.
 TEST_F(RayCoreTest, MemoryIsAtRestWhenTheCoreSaysSo) {
