@@ -469,11 +469,9 @@ class PacketIntersector {
         origin_(rays[0].origin),
         rays_(rays),
         query_(query),
-        hits_(hits),
-        points_(bvh, rays, true, hits) {}
+        hits_(hits) {}
 
-  /// Returns the number of points that were computed.
-  std::uint64_t trace() {
+  void trace() {
     assert(std::ranges::all_of(rays_, [&](const Ray& ray) { return ray.origin == origin_; }));
     RayPacket block;
     ConeTraversal walk;
@@ -494,10 +492,7 @@ class PacketIntersector {
         traverse(walk);
         finish(walk);
       }
-      if (points_.count() > PointWriter::kMost - RayPacket::kRays) points_.write();
     }
-    points_.write();
-    return points_.written();
   }
 
  private:
@@ -703,10 +698,9 @@ class PacketIntersector {
     return true;
   }
 
-  /// Writes the nearest hits, and adds them to those whose P is to be computed.
+  /// Writes the nearest hits.
   void finish(const ConeTraversal& walk) {
     in_vectors([&](auto) RAYGATE_BODY {
-      const bool with_points = query_.with_points;
       for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
         const int g = std::countr_zero(groups);
         LaneMask lanes = 0xFF & ~sign_mask(walk.primitive[g]);
@@ -715,7 +709,6 @@ class PacketIntersector {
           NearestHit& hit = hits_[walk.number(g, lane)];
           hit.primitive = static_cast<std::uint32_t>(walk.primitive[g][lane]);
           hit.t = walk.t(g, lane);
-          if (with_points) points_.add(walk.number(g, lane), hit.primitive);
         }
       }
     });
@@ -727,14 +720,13 @@ class PacketIntersector {
   const std::span<const Ray> rays_;
   const RayQuery query_;
   const std::span<NearestHit> hits_;
-  PointWriter points_;
 };
 
 }  // namespace
 
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                    std::span<NearestHit> hits, IntersectCounters& counters) {
-  counters.hit.plane_tests += PacketIntersector(bvh, rays, query, hits, counters).trace();
+  PacketIntersector(bvh, rays, query, hits, counters).trace();
 }
 
 }  // namespace raygate

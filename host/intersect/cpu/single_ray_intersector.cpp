@@ -283,13 +283,74 @@ class SingleRayIntersector {
         counters_(counters),
         rays_(rays),
         query_(query),
-        hits_(hits),
-        points_(bvh, rays, false, hits) {}
+        hits_(hits) {}
 
+  /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
+  /// memory latency. Choices that depend on a ray select values instead of branching, since
+  /// branches would often be mispredicted.
   void trace() {
-    walk_all();
-    points_.write();
-    counters_.hit.plane_tests += points_.written();
+    const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
+    in_vectors([&](auto code) RAYGATE_BODY {
+      // Rays by state: at inner nodes, at leaves, or without work.
+      RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];
+      // The children that rays at inner nodes meet.
+      MetChildren met[kAtOnce];
+      Bvh::Node rooms[kAtOnce];
+      // Rays at leaves that do not surely miss all triangles.
+      struct {
+        RayTraversal* walk;
+        LaneMask open;
+        QuadSides sides;
+      } near[kAtOnce];
+      std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
+      const BvhView tree(bvh_);
+      for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
+      for (;;) {
+        while (idle_count >= kQuad && next_ < rays_.size()) {
+          idle_count -= kQuad;
+          RayTraversal* four[kQuad];
+          std::copy_n(idle + idle_count, kQuad, four);
+          const LaneMask started = begin(four);
+          for (int i = 0; i < kQuad; ++i) {
+            const std::size_t on_its_way = started >> i & 1;
+            inside[inside_count] = idle[idle_count] = four[i];
+            inside_count += on_its_way;
+            idle_count += on_its_way ^ 1;
+          }
+        }
+        if (inside_count + leaf_count == 0) return;
+        // Two short loops let the processor overlap more rays.
+        for (std::size_t i = 0; i < inside_count; ++i) {
+          meet_children<code()>(tree, *inside[i], rooms[i], met[i]);
+        }
+        for (std::size_t i = 0; i < inside_count; ++i) push_children<code()>(*inside[i], met[i]);
+        auto* near_end = near;
+        for (std::size_t i = 0; i < leaf_count; ++i) {
+          RayTraversal& walk = *leaves[i];
+          const Bvh::Child leaf = walk.at();
+          walk.work.tests += leaf.count;
+          Bvh::LeafRoom room;
+          near_end->walk = inside[inside_count + i] = &walk;
+          near_end->open =
+              find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, near_end->sides);
+          near_end += near_end->open != 0 ? 1 : 0;
+        }
+        for (const auto* at = near; at != near_end; ++at) {
+          if (!judge(*at->walk, at->walk->at(), at->sides, at->open)) at->walk->end();
+        }
+        const std::size_t count = inside_count + leaf_count, were_idle = idle_count;
+        RayTraversal** ends[Bvh::Child::kKinds] = {inside, leaves, idle + idle_count};
+        for (std::size_t i = 0; i < count; ++i) {
+          RayTraversal& walk = *inside[i];
+          go_on(tree, walk);
+          *ends[walk.at().kind()]++ = &walk;
+        }
+        inside_count = static_cast<std::size_t>(ends[Bvh::Child::kInner] - inside);
+        leaf_count = static_cast<std::size_t>(ends[Bvh::Child::kLeaf] - leaves);
+        idle_count = static_cast<std::size_t>(ends[Bvh::Child::kNone] - idle);
+        for (std::size_t i = were_idle; i < idle_count; ++i) finish(*idle[i]);
+      }
+    });
   }
 
  private:
@@ -387,76 +448,6 @@ class SingleRayIntersector {
     hits_[walk.number].primitive = walk.primitive;
     if (walk.primitive == NearestHit::kNone) return;
     hits_[walk.number].t = walk.t();
-    if (query_.with_points) points_.add(walk.number, walk.primitive);
-  }
-
-  /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
-  /// memory latency. Choices that depend on a ray select values instead of branching, since
-  /// branches would often be mispredicted.
-  void walk_all() {
-    const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
-    in_vectors([&](auto code) RAYGATE_BODY {
-      // Rays by state: at inner nodes, at leaves, or without work.
-      RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];
-      // The children that rays at inner nodes meet.
-      MetChildren met[kAtOnce];
-      Bvh::Node rooms[kAtOnce];
-      // Rays at leaves that do not surely miss all triangles.
-      struct {
-        RayTraversal* walk;
-        LaneMask open;
-        QuadSides sides;
-      } near[kAtOnce];
-      std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
-      const BvhView tree(bvh_);
-      for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
-      for (;;) {
-        while (idle_count >= kQuad && next_ < rays_.size()) {
-          idle_count -= kQuad;
-          RayTraversal* four[kQuad];
-          std::copy_n(idle + idle_count, kQuad, four);
-          const LaneMask started = begin(four);
-          for (int i = 0; i < kQuad; ++i) {
-            const std::size_t on_its_way = started >> i & 1;
-            inside[inside_count] = idle[idle_count] = four[i];
-            inside_count += on_its_way;
-            idle_count += on_its_way ^ 1;
-          }
-        }
-        if (inside_count + leaf_count == 0) return;
-        // Two short loops let the processor overlap more rays.
-        for (std::size_t i = 0; i < inside_count; ++i) {
-          meet_children<code()>(tree, *inside[i], rooms[i], met[i]);
-        }
-        for (std::size_t i = 0; i < inside_count; ++i) push_children<code()>(*inside[i], met[i]);
-        auto* near_end = near;
-        for (std::size_t i = 0; i < leaf_count; ++i) {
-          RayTraversal& walk = *leaves[i];
-          const Bvh::Child leaf = walk.at();
-          walk.work.tests += leaf.count;
-          Bvh::LeafRoom room;
-          near_end->walk = inside[inside_count + i] = &walk;
-          near_end->open =
-              find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, near_end->sides);
-          near_end += near_end->open != 0 ? 1 : 0;
-        }
-        for (const auto* at = near; at != near_end; ++at) {
-          if (!judge(*at->walk, at->walk->at(), at->sides, at->open)) at->walk->end();
-        }
-        const std::size_t count = inside_count + leaf_count, were_idle = idle_count;
-        RayTraversal** ends[Bvh::Child::kKinds] = {inside, leaves, idle + idle_count};
-        for (std::size_t i = 0; i < count; ++i) {
-          RayTraversal& walk = *inside[i];
-          go_on(tree, walk);
-          *ends[walk.at().kind()]++ = &walk;
-        }
-        inside_count = static_cast<std::size_t>(ends[Bvh::Child::kInner] - inside);
-        leaf_count = static_cast<std::size_t>(ends[Bvh::Child::kLeaf] - leaves);
-        idle_count = static_cast<std::size_t>(ends[Bvh::Child::kNone] - idle);
-        for (std::size_t i = were_idle; i < idle_count; ++i) finish(*idle[i]);
-        if (points_.count() >= PointWriter::kMost / 2) points_.write();
-      }
-    });
   }
 
   const Bvh& bvh_;
@@ -464,7 +455,6 @@ class SingleRayIntersector {
   const std::span<const Ray> rays_;
   const RayQuery query_;
   const std::span<NearestHit> hits_;
-  PointWriter points_;
   std::size_t next_ = 0;  // the next ray to start
 };
 
