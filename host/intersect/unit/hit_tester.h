@@ -85,10 +85,4 @@ class SerialHitTester : public HitTester {
   std::vector<glm::vec3> points_;
 };
 
-/// Throws EngineMismatch at the first burst whose `actual` bits differ from those `expected`. The
-/// text can be replayed: the burst's direction, the 16 words of each record in hexadecimal, and the
-/// results of both units.
-void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
-                  const BurstResults& expected);
-
 }  // namespace raygate

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/test/same_results.h"
 #include "host/lab/lab.h"
 #include "host/lab/variants/variant_models.h"
 #include "host/variants/variant_hit_tester.h"

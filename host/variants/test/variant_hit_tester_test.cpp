@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/exact/exact.h"
+#include "host/intersect/unit/test/same_results.h"
 #include "host/lab/stress/cases.h"
 #include "host/scene/camera.h"
 #include "sim/random_bursts.h"
