@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/base/lanes.h"
+#include "host/intersect/intersect_counters.h"
 #include "host/intersect/polygon_record.h"
 
 namespace raygate {
@@ -94,23 +95,6 @@ struct BurstResult {
 /// its tests, except that its kHit comes last.
 using BurstResults = std::vector<BurstResult>;
 
-/// Statistics of a unit since its construction. Clocks are 0 without simulation. Idle clocks and
-/// stalls are counted per lane of the hardware; together they are lanes * clocks - tests.
-struct BurstCounters {
-  std::uint64_t tests = 0;          ///< misses + hits + doubts
-  std::uint64_t misses = 0;         ///< sure misses
-  std::uint64_t hits = 0;           ///< sure hits, including near ties
-  std::uint64_t doubts = 0;         ///< neither sure hits nor sure misses
-  std::uint64_t near_ties = 0;      ///< sure hits reported as near ties
-  std::uint64_t distances = 0;      ///< divisions for t
-  std::uint64_t coordinates = 0;    ///< divisions for the coordinates of P
-  std::uint64_t clocks = 0;         ///< simulated clock cycles
-  std::uint64_t idle_clocks = 0;    ///< clocks without a test
-  std::uint64_t output_stalls = 0;  ///< clocks stalled by the consumer
-
-  friend bool operator==(const BurstCounters&, const BurstCounters&) = default;
-};
-
 /// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest
 /// even after each operation. Every implementation gives the same bits, for every bit pattern:
 ///
@@ -129,8 +113,10 @@ struct BurstCounters {
 /// their errors, the one that is not kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResult> {
  public:
-  /// Must not be called between start and finish.
-  [[nodiscard]] virtual BurstCounters counters() const = 0;
+  /// Returns statistics since construction, without `unit_tests` and `input_bytes`. Clocks are 0
+  /// without simulation; idle clocks and stalls are counted per lane of the hardware: together they
+  /// are lanes * clocks - tests. Must not be called between start and finish.
+  [[nodiscard]] virtual HitCounters counters() const = 0;
 };
 
 /// One test of the paper's unit (equation 10): its seven input words.

@@ -75,19 +75,10 @@ void PipelineHitTester::finish(HitReports& reports) {
 }
 
 HitCounters PipelineHitTester::counters() const {
-  const BurstCounters unit = unit_->counters();
-  return {.tests = unit.tests,
-          .misses = unit.misses,
-          .hits = unit.hits,
-          .edge_doubts = unit.doubts,
-          .depth_doubts = unit.near_ties,
-          .plane_tests = unit.coordinates / 3,
-          .unit_tests = unit.tests,
-          .quotients = unit.distances + unit.coordinates,
-          .input_bytes = unit.tests * sizeof(PolygonRecord),
-          .clocks = unit.clocks,
-          .idle_clocks = unit.idle_clocks,
-          .output_stalls = unit.output_stalls};
+  HitCounters counters = unit_->counters();
+  counters.unit_tests = counters.tests;
+  counters.input_bytes = counters.tests * sizeof(PolygonRecord);
+  return counters;
 }
 
 HitCounters SerialHitTester::counters() const {

@@ -41,7 +41,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
     }
   }
 
-  [[nodiscard]] BurstCounters counters() const override { return counters_; }
+  [[nodiscard]] HitCounters counters() const override { return counters_; }
 
   /// Returns the verdict on one test, as in a batch.
   [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction) const {
@@ -135,19 +135,19 @@ class BasicReferenceBurstUnit : public BurstUnit {
       UnitVerdict verdict = decide(record, direction, v);
       HitDistance hit;
       if (verdict == UnitVerdict::kHit) {
-        ++counters_.distances;
+        ++counters_.quotients;
         hit = distance(record, v);
         if (!math_.is_normal(hit.t)) verdict = UnitVerdict::kDoubt;
       }
       ++counters_.tests;
       counters_.misses += verdict == UnitVerdict::kMiss;
       counters_.hits += verdict == UnitVerdict::kHit;
-      counters_.doubts += verdict == UnitVerdict::kDoubt;
+      counters_.edge_doubts += verdict == UnitVerdict::kDoubt;
       if (verdict == UnitVerdict::kDoubt) results.push_back({index, lane, i, Kind::kDoubt});
       if (verdict != UnitVerdict::kHit) continue;
       const bool nearer = hit.t < best.t;
       if (found && near_tie(hit, best)) {
-        ++counters_.near_ties;
+        ++counters_.depth_doubts;
         results.push_back({index, lane, nearer ? best.record : i, Kind::kNearTie});
       }
       if (found && !nearer) continue;
@@ -158,12 +158,13 @@ class BasicReferenceBurstUnit : public BurstUnit {
     }
     if (!found) return;
     best.point = point(bundle.records[best.record], direction);
-    counters_.coordinates += 3;
+    ++counters_.plane_tests;
+    counters_.quotients += 3;
     results.push_back(best);
   }
 
   Math math_;
-  BurstCounters counters_;
+  HitCounters counters_;
 };
 
 /// The reference model in the host's float arithmetic.

@@ -177,7 +177,7 @@ class WildUnit : public BurstUnit {
  public:
   explicit WildUnit(const BurstResult& result) : result_(result) {}
   void finish(BurstResults& results) override { results = {result_}; }
-  [[nodiscard]] BurstCounters counters() const override { return {}; }
+  [[nodiscard]] HitCounters counters() const override { return {}; }
 
  private:
   BurstResult result_;
