@@ -25,17 +25,6 @@ namespace raygate {
 
 class LightPaths;
 
-/// A light sample of a hit: a shadow ray to trace.
-struct alignas(16) LightSample {
-  glm::vec3 radiance{0.0f};  ///< contribution if not occluded
-  /// A point of an area light or of the lens, or the direction to a distant light.
-  glm::vec3 target{0.0f};
-  std::uint32_t index = 0;  ///< index of a point light, or primitive of the target
-  std::uint32_t is_asked : 1 = 0, is_dark : 1 = 0;  ///< dark: the contribution is 0
-  std::uint32_t is_transmitted : 1 = 0;             ///< through rough glass
-  std::uint32_t is_point_light : 1 = 0, is_to_camera : 1 = 0;
-};
-
 /// A ray spawned at a hit: reflected, refracted or scattered.
 struct alignas(16) ScatteredRay {
   PathState state;

@@ -280,17 +280,10 @@ void Integrator::output_hit(std::size_t i, const SpawnOrigin*& origins, ShadingO
   for (const LightSample& light : block_.light_samples_of(i)) {
     if (light.is_asked == 0 || !*points[light.is_transmitted]) continue;
     ShadowRay& shadow = output.shadows.emplace_back();
+    static_cast<LightSample&>(shadow) = light;
     shadow.sample = sample;
-    shadow.radiance = light.radiance;
     shadow.surface = **points[light.is_transmitted];
     shadow.surface_primitive = place.primitive;
-    shadow.is_to_camera = light.is_to_camera != 0;
-    if (light.is_point_light != 0) {
-      shadow.point_light = light.index;
-    } else {
-      shadow.target = light.target;
-      shadow.target_primitive = light.index;
-    }
   }
   for (const ScatteredRay& scattered : block_.scattered_of(i)) {
     if (scattered.is_wanted == 0 || !*points[scattered.is_transmitted]) continue;

@@ -179,7 +179,7 @@ void TileRenderer::trace_shadows() {
   shadow_rays_.resolve(output_.shadows,
                        is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
   for (const ShadowRay& shadow : output_.shadows) {
-    if (shadow.is_to_camera) {
+    if (shadow.is_to_camera != 0) {
       add_splat(shadow);
     } else {
       direct_light_[shadow.sample] += shadow.radiance;
