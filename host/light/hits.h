@@ -56,63 +56,34 @@ struct PathLanes {
   Triple<T> throughput;
   T pdf;
   Triple<T> scattered_at, normal;
-  WordOf<T> sample, stream, index, specular_history;
+  WordOf<T> sample, stream, index, first;
   T light_over_camera_pdf;
-  WordOf<T> supersampled;
 
   PathLanes() = default;
   RAYGATE_INLINE explicit PathLanes(const PathState* const (&states)[kLanesOf<T>]) {
-    T w[16];
-    load_records(states, w);
-    throughput = {w[0], w[1], w[2]};
-    pdf = w[3];
-    scattered_at = {w[4], w[5], w[6]};
-    normal = {w[7], w[8], w[9]};
-    sample = words_in(w[10]);
-    stream = words_in(w[11]);
-    index = words_in(w[12]);
-    specular_history = words_in(w[13]);
-    light_over_camera_pdf = w[14];
-    supersampled = words_in(w[15]);
-  }
-  /// Returns where the ray is its path's first.
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return specular_history == 1u; }
-  /// Return the histories after reflection in a mirror and after refraction by glass.
-  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
-  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
-  /// Returns whether `mask` contains the history. Its histories are below kSpecularHistories.
-  [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& mask,
-                                                    const WordOf<T>& history) {
-    return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
+    T words[16];
+    load_records(states, words);
+    const T* word = words;
+    for_each_word(*this, [&](auto& member) RAYGATE_BODY {
+      member = __builtin_bit_cast(std::remove_reference_t<decltype(member)>, *word++);
+    });
   }
   /// Stores the words of the records.
-  RAYGATE_INLINE void put(T* w) const {
-    static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
-                  offsetof(PathState, specular_history) == 52 &&
-                  offsetof(PathState, light_over_camera_pdf) == 56 && sizeof(PathState) == 64);
-    const T words[] = {throughput.x,
-                       throughput.y,
-                       throughput.z,
-                       pdf,
-                       scattered_at.x,
-                       scattered_at.y,
-                       scattered_at.z,
-                       normal.x,
-                       normal.y,
-                       normal.z,
-                       float_of(sample),
-                       float_of(stream),
-                       float_of(index),
-                       float_of(specular_history),
-                       light_over_camera_pdf,
-                       float_of(supersampled)};
-    for (int i = 0; i < 16; ++i) w[i] = words[i];
+  RAYGATE_INLINE void put(T* word) const {
+    for_each_word(*this, [&](const auto& member) RAYGATE_BODY { *word++ = float_of(member); });
   }
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return first != 0u; }
 
  private:
-  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_specular(std::uint32_t step) const {
-    const auto has_next = (specular_history > 0u) & (specular_history < kSpecularHistories / 2);
-    return choose(has_next, 2u * specular_history + step, WordOf<T>{});
+  /// Calls visit(member) for each word of PathState, in its order.
+  template <class Lanes, class Visit>
+  RAYGATE_INLINE static void for_each_word(Lanes& p, const Visit& visit) {
+    static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
+                  offsetof(PathState, light_over_camera_pdf) == 56 && sizeof(PathState) == 64);
+    const auto visit_all = [&](auto&... members) RAYGATE_BODY { (visit(members), ...); };
+    visit_all(p.throughput.x, p.throughput.y, p.throughput.z, p.pdf, p.scattered_at.x,
+              p.scattered_at.y, p.scattered_at.z, p.normal.x, p.normal.y, p.normal.z, p.sample,
+              p.stream, p.index, p.first, p.light_over_camera_pdf);
   }
 };
 
@@ -215,18 +186,6 @@ struct Hits {
     return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
   }
 
-  /// Returns whether EmitterSupersampler adds the emission of the hit.
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
-    const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
-    const auto are_wanted = PathLanes<T>::has(path.supersampled, path.specular_history);
-    return are_even & are_wanted;
-  }
-  /// Returns the emission, without that added by EmitterSupersampler.
-  [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
-    if ((kind & kEmits) == 0) return bsdf.emission();
-    return choose(are_supersampled(), zero<T>(), bsdf.emission());
-  }
-
   /// Returns a point of the path's random stream for this purpose.
   [[nodiscard]] RAYGATE_INLINE SquarePoint<T> random(std::uint32_t purpose) const {
     return sobol_point<T>(path.index, hash(path.stream, purpose));
@@ -283,7 +242,7 @@ struct ScatteredRays {
     flat = reflect(hits.surface.view, hits.surface.flat_normal);
     has_flat = T{} == 0.0f;
     is_transmitted = !has_flat;
-    path.specular_history = hits.path.after_mirror();
+    path.first = {};
   }
   /// Sets the directions to those through the surface: refracted at `normal` if the material
   /// refracts, otherwise straight on. Returns where such a direction exists.
@@ -297,7 +256,7 @@ struct ScatteredRays {
     flat = choose(is_bent, flat_bent.direction, -surface.view);
     has_flat = (!is_bent) | flat_bent.exists;
     is_transmitted = T{} == 0.0f;
-    path.specular_history = choose(is_bent, hits.path.after_glass(), hits.path.specular_history);
+    path.first = choose(is_bent, WordOf<T>{}, hits.path.first);
     return (!is_bent) | bent.exists;
   }
 

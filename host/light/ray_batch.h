@@ -22,20 +22,12 @@ struct alignas(16) PathState {
   std::uint32_t sample = 0;      ///< index of the radiance, in ShadingOutput, that the path adds to
   std::uint32_t stream = 0;      ///< stream of random numbers, different for each path
   std::uint32_t index = 0;       ///< index of the path's points in such streams
-  /// The mirrors and smooth glass that the path has met, as a code below kSpecularHistories: 1 for
-  /// the first ray, and from h to 2 h by a mirror, 2 h + 1 by glass. 0: more than four, or another
-  /// surface among them.
-  std::uint32_t specular_history = 1;
+  /// 1 for the path's first ray, also behind holes and clear surfaces; 0 for all others.
+  std::uint32_t first = 1;
   /// Density of light paths over that of camera paths for the path so far, or on light paths the
   /// inverse (see LightPaths); 0: only one kind of path exists here.
   float light_over_camera_pdf = 0.0f;
-  /// Bit mask of specular histories at which emission is omitted because EmitterSupersampler adds
-  /// it. For that class's own rays: the histories to follow.
-  std::uint32_t supersampled = 0;
 };
-
-/// Codes of specular histories of at most four bounces are below this.
-inline constexpr std::uint32_t kSpecularHistories = 32;
 
 /// Rays of the same depth.
 struct RayBatch {
