@@ -12,7 +12,6 @@
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"
-#include "host/light/ray_batch.h"
 #include "host/light/shade.h"
 #include "host/light/spawn_ray.h"
 

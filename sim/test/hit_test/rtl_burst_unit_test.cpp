@@ -6,8 +6,8 @@
 #include <string>
 #include <tuple>
 
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/test/same_results.h"
 #include "sim/random_bursts.h"
 #include "sim/rtl_units.h"

@@ -17,12 +17,12 @@
 #include <vector>
 
 #include "host/base/input_error.h"
-#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/box_cases.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/intersector.h"
 #include "host/intersect/unit/test/model_intersector.h"
 
 namespace raygate {
@@ -242,8 +242,8 @@ TEST_F(CoreIntersectorTest, ErrorsOfTheCoreAreInputErrors) {
   // One that begins close to the triangle of the last line.
   const Corners& t = TriangleLine(image_->lines().back()).corners;
   const glm::vec3 normal = glm::vec3(glm::normalize(triangle_normal(t)));
-  rays.push_back({(t[0] + t[1] + t[2]) / 3.0f + 1e-3f * normal,
-                  scaled_direction(-glm::dvec3(normal))});
+  rays.push_back(
+      {(t[0] + t[1] + t[2]) / 3.0f + 1e-3f * normal, scaled_direction(-glm::dvec3(normal))});
   std::vector<NearestHit> hits(rays.size());
   const auto said = [&](bool cyclic) {
     CoreIntersector intersector(bvh_, image_, std::make_unique<BrokenMemory>(cyclic));
