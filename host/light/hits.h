@@ -149,7 +149,6 @@ struct HitBlock {
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
   /// By position; null if the hit is not the first surface of its path. Empty if all are null.
   std::vector<FirstSurface*> first_surfaces;
-  SkipCounters skipped;
 
   [[nodiscard]] const PathState& state(std::size_t i) const { return batch->states[begin + i]; }
   /// Returns the samples of `hits` hits from position i on.

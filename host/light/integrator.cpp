@@ -73,10 +73,10 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
     for (ScatteredRay& scattered : block_.scattered_of(i)) scattered.is_wanted = 0;
   }
   sort(hits, count, output);
-  ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary    ? shade_primary
-                                    : kind_ == IntegratorKind::kWhitted  ? shade_whitted
-                                    : kind_ == IntegratorKind::kLight    ? shade_light_path
-                                                                         : shade_path;
+  ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary   ? shade_primary
+                                    : kind_ == IntegratorKind::kWhitted ? shade_whitted
+                                    : kind_ == IntegratorKind::kLight   ? shade_light_path
+                                                                        : shade_path;
   for (HitKind kind = 0; kind < kHitKinds; ++kind) {
     const std::span<const std::uint32_t> at(order_.data() + first_[kind],
                                             first_[kind + 1] - first_[kind]);
@@ -219,18 +219,14 @@ void Integrator::list_spawn_queries(std::size_t i) {
   for (LightSample& sample : block_.light_samples_of(i)) {
     if (sample.is_asked == 0) continue;
     if (sample.is_dark != 0) {
-      ++block_.skipped.lights_behind;
       sample.is_asked = 0;
-      continue;
+    } else {
+      any_at[sample.is_transmitted] = true;
     }
-    any_at[sample.is_transmitted] = true;
   }
   for (ScatteredRay& scattered : block_.scattered_of(i)) {
     if (scattered.is_wanted == 0) continue;
-    if (scattered.state.throughput == glm::vec3(0.0f)) {
-      ++block_.skipped.weightless;
-      scattered.is_wanted = 0;
-    } else if (leaves(place, scattered)) {
+    if (scattered.state.throughput != glm::vec3(0.0f) && leaves(place, scattered)) {
       any_at[scattered.is_transmitted] = true;
     } else {
       scattered.is_wanted = 0;

@@ -49,7 +49,6 @@ class Integrator {
   /// Returns whether shadow rays pass glass as if it did not refract.
   [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }
 
-  [[nodiscard]] const SkipCounters& skipped() const { return block_.skipped; }
   /// Returns the number of hit points P that the host computed.
   [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 

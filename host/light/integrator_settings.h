@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "host/intersect/intersect_counters.h"
-
 namespace raygate {
 
 enum class IntegratorKind {
@@ -22,21 +20,6 @@ enum class Caustics {
   kOff,   ///< found only by camera paths
   kOn,    ///< found by light paths; an error if that is not possible
   kAuto,  ///< found by light paths if possible
-};
-
-/// Statistics of skipped work, which would not change the image except for `dim`.
-struct SkipCounters {
-  std::uint64_t culled_tests = 0;     ///< tests of polygons in boxes that the ray does not enter
-  std::uint64_t lights_behind = 0;    ///< shadow rays to lights that contribute nothing
-  std::uint64_t weightless = 0;       ///< secondary rays that contribute nothing
-  std::uint64_t dim = 0;              ///< secondary rays below IntegratorSettings::threshold
-  std::uint64_t empty_tile_rays = 0;  ///< camera rays of tiles that contain no polygon
-  std::uint64_t first_occluders = 0;  ///< shadow rays ended at the first occluder
-
-  SkipCounters& operator+=(const SkipCounters& other) {
-    add_counters(*this, other);
-    return *this;
-  }
 };
 
 /// User options of the integrators. The defaults are those of ./render and of the Python module.

@@ -87,22 +87,11 @@ RAYGATE_INLINE void sample_all_lights(const ShadingScene& shading, Hits<T>& hits
   }
 }
 
-/// Returns the lanes in which a ray of this throughput is worth tracing; counts the others.
+/// Returns the lanes in which a ray of this throughput is worth tracing.
 template <class T>
-RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& hits,
-                                    const Triple<T>& throughput) {
-  SkipCounters& skipped = hits.block.skipped;
-  const auto threshold = static_cast<float>(shading.settings.threshold);
+RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Triple<T>& throughput) {
   const T size = largest(throughput);
-  const auto sizes = unpack(size);
-  for (int k = 0; k < hits.count; ++k) {
-    if (sizes[k] == 0.0f) {
-      ++skipped.weightless;
-    } else if (sizes[k] < threshold) {
-      ++skipped.dim;
-    }
-  }
-  return (size > 0.0f) & !(size < threshold);
+  return (size > 0.0f) & !(size < static_cast<float>(shading.settings.threshold));
 }
 
 /// Spawns reflected and transmitted rays. Without `goes_on` the maximum depth is reached, and rays
@@ -135,7 +124,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     next.path.pdf = spread<T>(1.0f);
   }
   next.is_wanted = T{} > 0.0f;
-  if (goes_on) next.is_wanted = worthwhile(shading, hits, next.path.throughput);
+  if (goes_on) next.is_wanted = worthwhile(shading, next.path.throughput);
   if (any(next.is_wanted)) {
     next.reflect_off(hits, facet);
     next.path.stream = hash(hits.path.stream, kMirror);
@@ -143,7 +132,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   }
   if (!bsdf.has_rough_glass()) next.path.pdf = T{};
   next.path.throughput = hits.path.throughput * transmitted;
-  next.is_wanted = worthwhile(shading, hits, next.path.throughput);
+  next.is_wanted = worthwhile(shading, next.path.throughput);
   if (!goes_on) {
     const T least = minimum(minimum(transmitted.x, transmitted.y), transmitted.z);
     next.is_wanted = next.is_wanted & !bsdf.is_refracting() & !(least < 1.0f);

@@ -314,8 +314,6 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
                 stats)
       .run();
   if (!stats.cancelled) film.keeps_sums = settings.channels.sums;
-  const std::uint64_t every_test = stats.rays * bvh.triangle_count();
-  stats.skipped.culled_tests = every_test - std::min(every_test, stats.intersect.hit.tests);
   if (settings.error > 0.0) {
     for (const std::uint32_t samples : film.sums.samples) {
       stats.spare_samples += static_cast<std::uint32_t>(settings.samples) - samples;

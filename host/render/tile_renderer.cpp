@@ -71,8 +71,8 @@ void TileRenderer::make_camera_rays() {
       state.sample = static_cast<std::uint32_t>(batch_.rays.size());
       state.stream = sampler.key();
       state.index = index;
-      const Ray& ray = batch_.rays.emplace_back(
-          camera_ray(context_, pixel.x, pixel.y, sampler, index));
+      const Ray& ray =
+          batch_.rays.emplace_back(camera_ray(context_, pixel.x, pixel.y, sampler, index));
       state.scattered_at = ray.origin;
     }
   }
@@ -92,7 +92,6 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   output_.first_surface.assign(paths_, {});
   output_.shadows.clear();
   direct_light_.assign(paths_, glm::vec3(0.0f));
-  if (is_empty) stats_.skipped.empty_tile_rays += paths_;
   stats_.shade_seconds += watch.lap();
   return (is_empty || trace_camera_rays(keep_going)) && trace_light_paths(keep_going);
 }
@@ -158,9 +157,9 @@ void TileRenderer::intersect_batch() {
   hits_.resize(batch_.rays.size());
   work_.resize(is_counting_ ? batch_.rays.size() : 0);
   const bool is_common = batch_.depth == 0 && context_.camera.has_common_origin();
-  intersector_.nearest(
-      batch_.rays,
-      {.common_origin = is_common, .source_ids = batch_.sources, .work = work_}, hits_);
+  intersector_.nearest(batch_.rays,
+                       {.common_origin = is_common, .source_ids = batch_.sources, .work = work_},
+                       hits_);
 }
 
 /// Traces the rays of one depth, and the shadow rays from their hits: in several batches if there
@@ -288,13 +287,7 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.shadow_rays += shadow_rays;
   stats.point_doubts += integrator_.point_doubts();
   stats.intersect += intersector_.counters();
-  stats.skipped += stats_.skipped;
-  stats.skipped += integrator_.skipped();
-  if (light_integrator_) {
-    stats.point_doubts += light_integrator_->point_doubts();
-    stats.skipped += light_integrator_->skipped();
-  }
-  stats.skipped.first_occluders += intersector_.counters().ended_early;
+  if (light_integrator_) stats.point_doubts += light_integrator_->point_doubts();
   stats.shade_seconds += stats_.shade_seconds;
 }
 
