@@ -282,8 +282,7 @@ struct ChosenLights {
     const Triple<T> position = any_ball ? Lights::point_on<T>(middle, radius, hits.surface.point,
                                                               hits.random(streams::kLightPoint))
                                         : middle;
-    IncidentLight<T> light =
-        point_light(all, hits, position, [&](auto member) RAYGATE_BODY { return get(member); });
+    IncidentLight<T> light = point_light(all, hits, lights, position);
     light.is_asked = are(Kind::kPoint);
     light.pdf = pmf;
     light.is_point_light = !(radius > 0.0f);

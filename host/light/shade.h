@@ -111,19 +111,19 @@ struct IncidentLight {
   }
 };
 
-/// Returns the light from point lights, of which it leaves at `position`. get(member) returns a
-/// member of each lane's Lights::Light.
-template <class T, class Get>
+/// Returns the light from point lights, one per lane, of which it leaves at `position`.
+template <class T>
 RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
-                                            const Triple<T>& position, const Get& get) {
+                                            const Lights::Light* const (&own)[kLanesOf<T>],
+                                            const Triple<T>& position) {
   using Light = Lights::Light;
   IncidentLight<T> light(lights, hits, position);
-  light.emission = get(&Light::emission);
-  if (any(get(&Light::is_spot))) {
-    const IncidentLight<T> middle(lights, hits, get(&Light::position));
-    const T cosine = -dot(middle.direction, get(&Light::spot_axis));
-    light.emission =
-        light.emission * spot_falloff(cosine, get(&Light::spot_scale), get(&Light::spot_offset));
+  light.emission = gather<T>(own, &Light::emission);
+  if (any(gather<T>(own, &Light::is_spot))) {
+    const IncidentLight<T> middle(lights, hits, gather<T>(own, &Light::position));
+    const T cosine = -dot(middle.direction, gather<T>(own, &Light::spot_axis));
+    light.emission = light.emission * spot_falloff(cosine, gather<T>(own, &Light::spot_scale),
+                                                   gather<T>(own, &Light::spot_offset));
   }
   light.target = position - hits.surface.point;
   return light;

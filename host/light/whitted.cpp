@@ -27,6 +27,8 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
   const Lights::Light& own = lights.light(i);
+  const Lights::Light* same[Hits<T>::kCount];
+  std::ranges::fill(same, &own);
   IncidentLight<T> light;
   if (own.kind == Kind::kArea) {
     const auto number = static_cast<std::uint32_t>(i - lights.points().size());
@@ -36,12 +38,8 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
     const SquarePoint<T> centre = {spread<T>(0.5f + 0x1p-11f), spread<T>(0.5f)};
     const LightPoint<T> point =
         lights.sample<T>(own, in_middle ? centre : hits.random(kFirstAreaLight + number));
-    Triple<T> emission = spread<T>(own.emission);
-    if (own.is_textured && !in_middle) {
-      const Lights::Light* same[Hits<T>::kCount];
-      std::ranges::fill(same, &own);
-      emission = lights.radiance_at<T>(same, point);
-    }
+    const Triple<T> emission =
+        in_middle ? spread<T>(own.emission) : lights.radiance_at<T>(same, point);
     light = area_light(lights, hits, point, emission * spread<T>(own.area));
     light.is_asked = hits.bsdf.scatters();
     return light;
@@ -54,13 +52,7 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
             ? Lights::point_on<T>(middle, spread<T>(own.radius), hits.surface.point,
                                   hits.random(kFirstPointLight + i))
             : middle;
-    light = point_light(lights, hits, position, [&](auto member) RAYGATE_BODY {
-      if constexpr (std::is_same_v<decltype(own.*member), const bool&>) {
-        return own.*member;
-      } else {
-        return spread<T>(own.*member);
-      }
-    });
+    light = point_light(lights, hits, same, position);
     if (!is_ball) {
       light.is_point_light = T{} == 0.0f;
       light.index = WordOf<T>{} + i;
