@@ -90,13 +90,18 @@ void write_batch(const Bvh& bvh, std::span<const Ray> rays, bool is_common,
   }
   in_vectors([&](auto) RAYGATE_BODY {
     for (std::size_t first = 0; first < numbers.size(); first += kQuad) {
-      FloatQuad rows[kQuad], n[kQuad] = {}, point[3];  // n[3]: d of the plane
+      FloatQuad rows[kQuad], n[kQuad], point[3];  // n[3]: d of the plane
       std::uint32_t number[kQuad];
+      std::uint16_t plane[kQuad];
       for (std::size_t i = 0; i < kQuad; ++i) {
         const std::size_t at = std::min(first + i, numbers.size() - 1);
         number[i] = numbers[at];
         rows[i] = load<FloatQuad>(reinterpret_cast<const float*>(&rays[number[i]] + 1) - kQuad);
-        for (int k = 0; k < 4; ++k) n[k][static_cast<int>(i)] = words[k][plane_of[at]];
+        plane[i] = plane_of[at];
+      }
+      for (int k = 0; k < 4; ++k) {
+        const float* const of = words[k];
+        n[k] = FloatQuad{of[plane[0]], of[plane[1]], of[plane[2]], of[plane[3]]};
       }
       transpose(rows);  // rows[0] is unused: the last coordinate of the origins
       IntQuad largest = {}, error;
@@ -114,19 +119,12 @@ void write_batch(const Bvh& bvh, std::span<const Ray> rays, bool is_common,
 
 }  // namespace
 
-std::uint64_t write_points(const Bvh& bvh, std::span<const Ray> rays, bool is_common,
-                           std::span<NearestHit> hits) {
-  std::uint32_t numbers[kPointBatch];
-  std::uint64_t written = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    numbers[count] = static_cast<std::uint32_t>(i);
-    count += hits[i].primitive != NearestHit::kNone ? 1 : 0;
-    if (count < kPointBatch && i + 1 < hits.size()) continue;
-    write_batch(bvh, rays, is_common, std::span(numbers).first(count), hits);
-    written += std::exchange(count, 0);
+void write_points(const Bvh& bvh, std::span<const Ray> rays, bool is_common,
+                  std::span<const std::uint32_t> numbers, std::span<NearestHit> hits) {
+  for (std::size_t first = 0; first < numbers.size(); first += kPointBatch) {
+    const std::size_t count = std::min(kPointBatch, numbers.size() - first);
+    write_batch(bvh, rays, is_common, numbers.subspan(first, count), hits);
   }
-  return written;
 }
 
 bool take_if_nearest(const Bvh& bvh, const Ray& ray, float t_max, NearestHit hit, bool is_sure,

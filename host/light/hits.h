@@ -291,7 +291,7 @@ struct ScatteredRays {
     flat = reflect(hits.surface.view, hits.surface.flat_normal);
     has_flat = T{} == 0.0f;
     is_transmitted = !has_flat;
-    path.first = {};
+    path.first = WordOf<T>{};
   }
   /// Sets the directions to those through the surface: refracted at `normal` if the material
   /// refracts, otherwise straight on. Returns where such a direction exists.

@@ -216,7 +216,7 @@ class Lights {
   /// The emitting faces of one object and material: one light that emits from both sides of each
   /// face.
   struct AreaLight {
-    std::vector<std::uint32_t> primitives;
+    std::vector<std::uint32_t> primitives{};
     double area = 0.0;
     glm::dvec3 radiance{0.0};  ///< mean
     bool is_textured = false;

@@ -136,7 +136,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   const bool has_rough_glass = bsdf.has_rough_glass();
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
-  next.path.first = {};
+  next.path.first = WordOf<T>{};
   next.direction = next.flat = zero<T>();
   if (any(bsdf.scatters())) {
     next.direction = bsdf.sample(hits.random(streams::kDirection),

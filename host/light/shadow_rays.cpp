@@ -112,7 +112,7 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
     next_[kept].source = spawn_queries_[i].primitive;
     next_[kept++].from = *origins_[i];
   }
-  next_.resize(kept);
+  next_.erase(next_.begin() + static_cast<std::ptrdiff_t>(kept), next_.end());
 }
 
 /// Traces all segments. Searches may end at hits before the fraction `enough` of the distance.

@@ -74,9 +74,12 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
     resolve(rays[result.tag], query.t_max_of(result.tag), result, hits[result.tag]);
   }
   counters_.traverse += watch.lap();
-  if (query.with_points) {
-    counters_.hit.plane_tests += write_points(bvh_, rays, query.common_origin, hits);
+  found_.clear();
+  for (std::uint32_t i = 0; i < rays.size() && query.with_points; ++i) {
+    if (hits[i].primitive != NearestHit::kNone) found_.push_back(i);
   }
+  write_points(bvh_, rays, query.common_origin, found_, hits);
+  counters_.hit.plane_tests += found_.size();
   counters_.record += watch.lap();
 }
 

@@ -280,8 +280,9 @@ RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
 class SingleRayIntersector {
  public:
   SingleRayIntersector(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
-                       std::span<NearestHit> hits, IntersectCounters& counters)
-      : bvh_(bvh), counters_(counters), rays_(rays), query_(query), hits_(hits) {}
+                       std::span<NearestHit> hits, IntersectCounters& counters,
+                       std::vector<std::uint32_t>& found)
+      : bvh_(bvh), counters_(counters), rays_(rays), query_(query), hits_(hits), found_(found) {}
 
   /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
   /// memory latency. Choices that depend on a ray select values instead of branching, since
@@ -446,6 +447,7 @@ class SingleRayIntersector {
     hits_[walk.number].primitive = walk.primitive;
     if (walk.primitive == NearestHit::kNone) return;
     hits_[walk.number].t = walk.t();
+    if (query_.with_points) found_.push_back(walk.number);
   }
 
   const Bvh& bvh_;
@@ -453,6 +455,7 @@ class SingleRayIntersector {
   const std::span<const Ray> rays_;
   const RayQuery query_;
   const std::span<NearestHit> hits_;
+  std::vector<std::uint32_t>& found_;
   std::size_t next_ = 0;  // the next ray to start
 };
 
@@ -463,16 +466,16 @@ void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   Stopwatch watch;
   HitCounters& counters = counters_.hit;
   const HitCounters before = counters;
+  found_.clear();
   if (query.common_origin && !rays.empty()) {
-    trace_packets(bvh_, rays, query, hits, counters_);
+    trace_packets(bvh_, rays, query, hits, counters_, found_);
   } else {
-    SingleRayIntersector(bvh_, rays, query, hits, counters_).trace();
+    SingleRayIntersector(bvh_, rays, query, hits, counters_, found_).trace();
   }
+  write_points(bvh_, rays, query.common_origin, found_, hits);
+  counters.plane_tests += found_.size();
   counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
                      (counters.edge_doubts - before.edge_doubts);
-  if (query.with_points) {
-    counters.plane_tests += write_points(bvh_, rays, query.common_origin, hits);
-  }
   counters_.hit_tests += watch.lap();
 }
 

@@ -24,12 +24,14 @@ class CpuIntersector : public Intersector {
  private:
   const Bvh& bvh_;
   IntersectCounters counters_;
+  std::vector<std::uint32_t> found_;  // rays whose hits need a point
 };
 
 /// Intersects rays of one origin in packets, for CpuIntersector. `hits` are initialised to misses;
-/// misses are not counted.
+/// misses are not counted. If the query asks for points, appends the rays that hit to `found`.
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
-                   std::span<NearestHit> hits, IntersectCounters& counters);
+                   std::span<NearestHit> hits, IntersectCounters& counters,
+                   std::vector<std::uint32_t>& found);
 
 /// Replaces `hits` by all hits of `ray` with t < t_max, nearest first, then by triangle index.
 /// `t_max` is positive; +infinity: no limit. The direction must be scaled, or is not usable and

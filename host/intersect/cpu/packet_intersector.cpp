@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "host/base/lanes.h"
 #include "host/bvh/traversal.h"
@@ -463,13 +464,15 @@ RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first
 class PacketIntersector {
  public:
   PacketIntersector(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
-                    std::span<NearestHit> hits, IntersectCounters& counters)
+                    std::span<NearestHit> hits, IntersectCounters& counters,
+                    std::vector<std::uint32_t>& found)
       : bvh_(bvh),
         counters_(counters),
         origin_(rays[0].origin),
         rays_(rays),
         query_(query),
-        hits_(hits) {}
+        hits_(hits),
+        found_(found) {}
 
   void trace() {
     assert(std::ranges::all_of(rays_, [&](const Ray& ray) { return ray.origin == origin_; }));
@@ -701,6 +704,7 @@ class PacketIntersector {
   /// Writes the nearest hits.
   void finish(const ConeTraversal& walk) {
     in_vectors([&](auto) RAYGATE_BODY {
+      const bool with_points = query_.with_points;
       for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
         const int g = std::countr_zero(groups);
         LaneMask lanes = 0xFF & ~sign_mask(walk.primitive[g]);
@@ -709,6 +713,7 @@ class PacketIntersector {
           NearestHit& hit = hits_[walk.number(g, lane)];
           hit.primitive = static_cast<std::uint32_t>(walk.primitive[g][lane]);
           hit.t = walk.t(g, lane);
+          if (with_points) found_.push_back(walk.number(g, lane));
         }
       }
     });
@@ -720,13 +725,15 @@ class PacketIntersector {
   const std::span<const Ray> rays_;
   const RayQuery query_;
   const std::span<NearestHit> hits_;
+  std::vector<std::uint32_t>& found_;
 };
 
 }  // namespace
 
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
-                   std::span<NearestHit> hits, IntersectCounters& counters) {
-  PacketIntersector(bvh, rays, query, hits, counters).trace();
+                   std::span<NearestHit> hits, IntersectCounters& counters,
+                   std::vector<std::uint32_t>& found) {
+  PacketIntersector(bvh, rays, query, hits, counters, found).trace();
 }
 
 }  // namespace raygate
