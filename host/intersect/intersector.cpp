@@ -3,11 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cstring>
 #include <utility>
-
-#include "host/base/lanes.h"
-#include "host/intersect/polygon_record.h"
 
 namespace raygate {
 namespace {
@@ -51,80 +47,6 @@ bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a, const Neares
   if (!overlap(a.t, b.t)) return a.t.high < b.t.low;
   const int order = compare_hits(ray, bvh.corners_of(a.primitive), bvh.corners_of(b.primitive));
   return order < 0 || (order == 0 && bvh.triangle_of(a.primitive) <= bvh.triangle_of(b.primitive));
-}
-
-namespace {
-
-constexpr std::size_t kPointBatch = 256;  // hits whose points are computed together
-
-/// Sets the points of the hits with these indices, at most kPointBatch.
-void write_batch(const Bvh& bvh, std::span<const Ray> rays, bool is_common,
-                 std::span<const std::uint32_t> numbers, std::span<NearestHit> hits) {
-  // By plane: its primitive, a ray that hits it, N and d. By hash: the last plane of a primitive.
-  // Plane indices have 16 bits, as bytes might alias any other variable.
-  std::uint32_t primitives[kPointBatch + 1] = {}, firsts[kPointBatch + 1];
-  float words[4][kPointBatch];
-  std::uint16_t last[kPointBatch] = {}, plane_of[kPointBatch];
-  std::size_t planes = 0;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const std::uint32_t primitive = hits[numbers[i]].primitive;
-    std::uint16_t unused = 0xFFFF;
-    std::uint16_t& plane = is_common ? last[primitive % kPointBatch] : unused;
-    // Branchless, as a branch would be unpredictable.
-    const bool known = (plane < planes) & (primitives[plane % kPointBatch] == primitive);
-    plane_of[i] = plane = static_cast<std::uint16_t>(known ? plane : planes);
-    primitives[planes] = primitive;
-    firsts[planes] = numbers[i];
-    planes += known ? 0 : 1;
-  }
-  for (std::size_t first = 0; first < planes; first += kPlanes) {
-    PlaneViews views;
-    for (std::size_t i = 0; i < kPlanes; ++i) {
-      const std::size_t plane = std::min(first + i, planes - 1);
-      views.origins[i] = rays[firsts[plane]].origin;
-      views.triangles[i] = bvh.corners_of(primitives[plane]);
-    }
-    Planes four;
-    make_planes(views, four);
-    for (int k = 0; k < 4; ++k) std::memcpy(&words[k][first], four.words[k], sizeof four.words[k]);
-  }
-  in_vectors([&](auto) RAYGATE_BODY {
-    for (std::size_t first = 0; first < numbers.size(); first += kQuad) {
-      FloatQuad rows[kQuad], n[kQuad], point[3];  // n[3]: d of the plane
-      std::uint32_t number[kQuad];
-      std::uint16_t plane[kQuad];
-      for (std::size_t i = 0; i < kQuad; ++i) {
-        const std::size_t at = std::min(first + i, numbers.size() - 1);
-        number[i] = numbers[at];
-        rows[i] = load<FloatQuad>(reinterpret_cast<const float*>(&rays[number[i]] + 1) - kQuad);
-        plane[i] = plane_of[at];
-      }
-      for (int k = 0; k < 4; ++k) {
-        const float* const of = words[k];
-        n[k] = FloatQuad{of[plane[0]], of[plane[1]], of[plane[2]], of[plane[3]]};
-      }
-      transpose(rows);  // rows[0] is unused: the last coordinate of the origins
-      IntQuad largest = {}, error;
-      for (int k = 0; k < 3; ++k) largest = maximum(largest, bits_in(n[k]) >> 23 & 0xFF);
-      plane_points({n[0], n[1], n[2]}, n[3], largest, {rows[1], rows[2], rows[3]}, point, error);
-      std::copy_n(point, 3, rows);
-      rows[3] = float_of(error);
-      transpose(rows);
-      static_assert(offsetof(NearestHit, point_error) ==
-                    offsetof(NearestHit, point) + 3 * sizeof(float));
-      for (std::size_t i = 0; i < kQuad; ++i) std::memcpy(&hits[number[i]].point, &rows[i], 16);
-    }
-  });
-}
-
-}  // namespace
-
-void write_points(const Bvh& bvh, std::span<const Ray> rays, bool is_common,
-                  std::span<const std::uint32_t> numbers, std::span<NearestHit> hits) {
-  for (std::size_t first = 0; first < numbers.size(); first += kPointBatch) {
-    const std::size_t count = std::min(kPointBatch, numbers.size() - first);
-    write_batch(bvh, rays, is_common, numbers.subspan(first, count), hits);
-  }
 }
 
 bool take_if_nearest(const Bvh& bvh, const Ray& ray, float t_max, NearestHit hit, bool is_sure,

@@ -126,12 +126,6 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a,
                              const NearestHit& b);
 
-/// Sets P and its error of the hits with these indices, with the bits of plane_point
-/// (burst_unit.h). `is_common`: all rays start at one point, so that hits of one primitive share
-/// its plane.
-void write_points(const Bvh& bvh, std::span<const Ray> rays, bool is_common,
-                  std::span<const std::uint32_t> numbers, std::span<NearestHit> hits);
-
 /// Replaces `best` by `hit` if that is a hit with t < t_max and nearer; returns whether it did. The
 /// order of calls does not matter. If not `is_sure`, binary32 finds the triangle neither hit nor
 /// missed, and hit.t is not read; the distance is decided first, which usually needs doubles only.

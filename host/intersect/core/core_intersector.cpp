@@ -5,6 +5,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/measure.h"
+#include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
 namespace {
@@ -74,12 +75,14 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
     resolve(rays[result.tag], query.t_max_of(result.tag), result, hits[result.tag]);
   }
   counters_.traverse += watch.lap();
-  found_.clear();
-  for (std::uint32_t i = 0; i < rays.size() && query.with_points; ++i) {
-    if (hits[i].primitive != NearestHit::kNone) found_.push_back(i);
+  for (std::size_t i = 0; i < rays.size() && query.with_points; ++i) {
+    if (hits[i].primitive == NearestHit::kNone) continue;
+    const PolygonRecord plane = make_plane(rays[i].origin, bvh_.corners_of(hits[i].primitive));
+    const auto [point, error] = plane_point(plane, rays[i].direction);
+    hits[i].point = point;
+    hits[i].point_error = error;
+    ++counters_.hit.plane_tests;
   }
-  write_points(bvh_, rays, query.common_origin, found_, hits);
-  counters_.hit.plane_tests += found_.size();
   counters_.record += watch.lap();
 }
 

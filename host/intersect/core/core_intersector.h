@@ -125,7 +125,6 @@ class CoreIntersector : public Intersector {
   IntersectCounters counters_;
   std::vector<CoreRay> sent_;
   std::vector<CoreResult> results_;
-  std::vector<std::uint32_t> found_;  // rays whose hits need a point
 };
 
 }  // namespace raygate

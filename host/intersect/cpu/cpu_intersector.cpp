@@ -280,76 +280,18 @@ RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
 class SingleRayIntersector {
  public:
   SingleRayIntersector(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
-                       std::span<NearestHit> hits, IntersectCounters& counters,
-                       std::vector<std::uint32_t>& found)
-      : bvh_(bvh), counters_(counters), rays_(rays), query_(query), hits_(hits), found_(found) {}
+                       std::span<NearestHit> hits, IntersectCounters& counters)
+      : bvh_(bvh),
+        counters_(counters),
+        rays_(rays),
+        query_(query),
+        hits_(hits),
+        points_(bvh, rays, false, hits) {}
 
-  /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
-  /// memory latency. Choices that depend on a ray select values instead of branching, since
-  /// branches would often be mispredicted.
   void trace() {
-    const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
-    in_vectors([&](auto code) RAYGATE_BODY {
-      // Rays by state: at inner nodes, at leaves, or without work.
-      RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];
-      // The children that rays at inner nodes meet.
-      MetChildren met[kAtOnce];
-      Bvh::Node rooms[kAtOnce];
-      // Rays at leaves that do not surely miss all triangles.
-      struct {
-        RayTraversal* walk;
-        LaneMask open;
-        QuadSides sides;
-      } near[kAtOnce];
-      std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
-      const BvhView tree(bvh_);
-      for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
-      for (;;) {
-        while (idle_count >= kQuad && next_ < rays_.size()) {
-          idle_count -= kQuad;
-          RayTraversal* four[kQuad];
-          std::copy_n(idle + idle_count, kQuad, four);
-          const LaneMask started = begin(four);
-          for (int i = 0; i < kQuad; ++i) {
-            const std::size_t on_its_way = started >> i & 1;
-            inside[inside_count] = idle[idle_count] = four[i];
-            inside_count += on_its_way;
-            idle_count += on_its_way ^ 1;
-          }
-        }
-        if (inside_count + leaf_count == 0) return;
-        // Two short loops let the processor overlap more rays.
-        for (std::size_t i = 0; i < inside_count; ++i) {
-          meet_children<code()>(tree, *inside[i], rooms[i], met[i]);
-        }
-        for (std::size_t i = 0; i < inside_count; ++i) push_children<code()>(*inside[i], met[i]);
-        auto* near_end = near;
-        for (std::size_t i = 0; i < leaf_count; ++i) {
-          RayTraversal& walk = *leaves[i];
-          const Bvh::Child leaf = walk.at();
-          walk.work.tests += leaf.count;
-          Bvh::LeafRoom room;
-          near_end->walk = inside[inside_count + i] = &walk;
-          near_end->open =
-              find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, near_end->sides);
-          near_end += near_end->open != 0 ? 1 : 0;
-        }
-        for (const auto* at = near; at != near_end; ++at) {
-          if (!judge(*at->walk, at->walk->at(), at->sides, at->open)) at->walk->end();
-        }
-        const std::size_t count = inside_count + leaf_count, were_idle = idle_count;
-        RayTraversal** ends[Bvh::Child::kKinds] = {inside, leaves, idle + idle_count};
-        for (std::size_t i = 0; i < count; ++i) {
-          RayTraversal& walk = *inside[i];
-          go_on(tree, walk);
-          *ends[walk.at().kind()]++ = &walk;
-        }
-        inside_count = static_cast<std::size_t>(ends[Bvh::Child::kInner] - inside);
-        leaf_count = static_cast<std::size_t>(ends[Bvh::Child::kLeaf] - leaves);
-        idle_count = static_cast<std::size_t>(ends[Bvh::Child::kNone] - idle);
-        for (std::size_t i = were_idle; i < idle_count; ++i) finish(*idle[i]);
-      }
-    });
+    walk_all();
+    points_.write();
+    counters_.hit.plane_tests += points_.written();
   }
 
  private:
@@ -447,7 +389,76 @@ class SingleRayIntersector {
     hits_[walk.number].primitive = walk.primitive;
     if (walk.primitive == NearestHit::kNone) return;
     hits_[walk.number].t = walk.t();
-    if (query_.with_points) found_.push_back(walk.number);
+    if (query_.with_points) points_.add(walk.number, walk.primitive);
+  }
+
+  /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
+  /// memory latency. Choices that depend on a ray select values instead of branching, since
+  /// branches would often be mispredicted.
+  void walk_all() {
+    const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
+    in_vectors([&](auto code) RAYGATE_BODY {
+      // Rays by state: at inner nodes, at leaves, or without work.
+      RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];
+      // The children that rays at inner nodes meet.
+      MetChildren met[kAtOnce];
+      Bvh::Node rooms[kAtOnce];
+      // Rays at leaves that do not surely miss all triangles.
+      struct {
+        RayTraversal* walk;
+        LaneMask open;
+        QuadSides sides;
+      } near[kAtOnce];
+      std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
+      const BvhView tree(bvh_);
+      for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
+      for (;;) {
+        while (idle_count >= kQuad && next_ < rays_.size()) {
+          idle_count -= kQuad;
+          RayTraversal* four[kQuad];
+          std::copy_n(idle + idle_count, kQuad, four);
+          const LaneMask started = begin(four);
+          for (int i = 0; i < kQuad; ++i) {
+            const std::size_t on_its_way = started >> i & 1;
+            inside[inside_count] = idle[idle_count] = four[i];
+            inside_count += on_its_way;
+            idle_count += on_its_way ^ 1;
+          }
+        }
+        if (inside_count + leaf_count == 0) return;
+        // Two short loops let the processor overlap more rays.
+        for (std::size_t i = 0; i < inside_count; ++i) {
+          meet_children<code()>(tree, *inside[i], rooms[i], met[i]);
+        }
+        for (std::size_t i = 0; i < inside_count; ++i) push_children<code()>(*inside[i], met[i]);
+        auto* near_end = near;
+        for (std::size_t i = 0; i < leaf_count; ++i) {
+          RayTraversal& walk = *leaves[i];
+          const Bvh::Child leaf = walk.at();
+          walk.work.tests += leaf.count;
+          Bvh::LeafRoom room;
+          near_end->walk = inside[inside_count + i] = &walk;
+          near_end->open =
+              find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, near_end->sides);
+          near_end += near_end->open != 0 ? 1 : 0;
+        }
+        for (const auto* at = near; at != near_end; ++at) {
+          if (!judge(*at->walk, at->walk->at(), at->sides, at->open)) at->walk->end();
+        }
+        const std::size_t count = inside_count + leaf_count, were_idle = idle_count;
+        RayTraversal** ends[Bvh::Child::kKinds] = {inside, leaves, idle + idle_count};
+        for (std::size_t i = 0; i < count; ++i) {
+          RayTraversal& walk = *inside[i];
+          go_on(tree, walk);
+          *ends[walk.at().kind()]++ = &walk;
+        }
+        inside_count = static_cast<std::size_t>(ends[Bvh::Child::kInner] - inside);
+        leaf_count = static_cast<std::size_t>(ends[Bvh::Child::kLeaf] - leaves);
+        idle_count = static_cast<std::size_t>(ends[Bvh::Child::kNone] - idle);
+        for (std::size_t i = were_idle; i < idle_count; ++i) finish(*idle[i]);
+        if (points_.count() >= PointWriter::kMost / 2) points_.write();
+      }
+    });
   }
 
   const Bvh& bvh_;
@@ -455,7 +466,7 @@ class SingleRayIntersector {
   const std::span<const Ray> rays_;
   const RayQuery query_;
   const std::span<NearestHit> hits_;
-  std::vector<std::uint32_t>& found_;
+  PointWriter points_;
   std::size_t next_ = 0;  // the next ray to start
 };
 
@@ -466,17 +477,52 @@ void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   Stopwatch watch;
   HitCounters& counters = counters_.hit;
   const HitCounters before = counters;
-  found_.clear();
   if (query.common_origin && !rays.empty()) {
-    trace_packets(bvh_, rays, query, hits, counters_, found_);
+    trace_packets(bvh_, rays, query, hits, counters_);
   } else {
-    SingleRayIntersector(bvh_, rays, query, hits, counters_, found_).trace();
+    SingleRayIntersector(bvh_, rays, query, hits, counters_).trace();
   }
-  write_points(bvh_, rays, query.common_origin, found_, hits);
-  counters.plane_tests += found_.size();
   counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
                      (counters.edge_doubts - before.edge_doubts);
   counters_.hit_tests += watch.lap();
+}
+
+void PointWriter::write() {
+  for (std::size_t first = 0; first < planes_; first += kPlanes) {
+    PlaneViews views;
+    for (std::size_t i = 0; i < kPlanes; ++i) {
+      const std::size_t plane = std::min(first + i, planes_ - 1);
+      views.origins[i] = rays_[firsts_[plane]].origin;
+      views.triangles[i] = bvh_.corners_of(primitives_[plane]);
+    }
+    Planes four;
+    make_planes(views, four);
+    for (int k = 0; k < 4; ++k) std::memcpy(&words_[k][first], four.words[k], sizeof four.words[k]);
+  }
+  in_vectors([&](auto) RAYGATE_BODY {
+    for (std::size_t first = 0; first < count_; first += kQuad) {
+      FloatQuad rows[kQuad], n[kQuad] = {}, point[3];  // n[3]: d of the plane
+      std::uint32_t number[kQuad];
+      for (std::size_t i = 0; i < kQuad; ++i) {
+        const std::size_t at = std::min(first + i, count_ - 1);
+        number[i] = numbers_[at];
+        rows[i] = load<FloatQuad>(reinterpret_cast<const float*>(&rays_[number[i]] + 1) - kQuad);
+        for (int k = 0; k < 4; ++k) n[k][static_cast<int>(i)] = words_[k][plane_of_[at]];
+      }
+      transpose(rows);  // rows[0] is unused: the last coordinate of the origins
+      IntQuad largest = {}, error;
+      for (int k = 0; k < 3; ++k) largest = maximum(largest, bits_in(n[k]) >> 23 & 0xFF);
+      plane_points({n[0], n[1], n[2]}, n[3], largest, {rows[1], rows[2], rows[3]}, point, error);
+      std::copy_n(point, 3, rows);
+      rows[3] = float_of(error);
+      transpose(rows);
+      static_assert(offsetof(NearestHit, point_error) ==
+                    offsetof(NearestHit, point) + 3 * sizeof(float));
+      for (std::size_t i = 0; i < kQuad; ++i) std::memcpy(&hits_[number[i]].point, &rows[i], 16);
+    }
+  });
+  written_ += count_;
+  planes_ = count_ = 0;
 }
 
 void all_hits(const Bvh& bvh, const Ray& ray, float t_max, std::vector<NearestHit>& hits,

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <limits>
 #include <span>
-#include <vector>
 
 #include "host/base/lanes.h"
 #include "host/bvh/traversal.h"
@@ -464,17 +463,17 @@ RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first
 class PacketIntersector {
  public:
   PacketIntersector(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
-                    std::span<NearestHit> hits, IntersectCounters& counters,
-                    std::vector<std::uint32_t>& found)
+                    std::span<NearestHit> hits, IntersectCounters& counters)
       : bvh_(bvh),
         counters_(counters),
         origin_(rays[0].origin),
         rays_(rays),
         query_(query),
         hits_(hits),
-        found_(found) {}
+        points_(bvh, rays, true, hits) {}
 
-  void trace() {
+  /// Returns the number of points that were computed.
+  std::uint64_t trace() {
     assert(std::ranges::all_of(rays_, [&](const Ray& ray) { return ray.origin == origin_; }));
     RayPacket block;
     ConeTraversal walk;
@@ -495,7 +494,10 @@ class PacketIntersector {
         traverse(walk);
         finish(walk);
       }
+      if (points_.count() > PointWriter::kMost - RayPacket::kRays) points_.write();
     }
+    points_.write();
+    return points_.written();
   }
 
  private:
@@ -701,7 +703,7 @@ class PacketIntersector {
     return true;
   }
 
-  /// Writes the nearest hits.
+  /// Writes the nearest hits, and adds them to those whose P is to be computed.
   void finish(const ConeTraversal& walk) {
     in_vectors([&](auto) RAYGATE_BODY {
       const bool with_points = query_.with_points;
@@ -713,7 +715,7 @@ class PacketIntersector {
           NearestHit& hit = hits_[walk.number(g, lane)];
           hit.primitive = static_cast<std::uint32_t>(walk.primitive[g][lane]);
           hit.t = walk.t(g, lane);
-          if (with_points) found_.push_back(walk.number(g, lane));
+          if (with_points) points_.add(walk.number(g, lane), hit.primitive);
         }
       }
     });
@@ -725,15 +727,14 @@ class PacketIntersector {
   const std::span<const Ray> rays_;
   const RayQuery query_;
   const std::span<NearestHit> hits_;
-  std::vector<std::uint32_t>& found_;
+  PointWriter points_;
 };
 
 }  // namespace
 
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
-                   std::span<NearestHit> hits, IntersectCounters& counters,
-                   std::vector<std::uint32_t>& found) {
-  PacketIntersector(bvh, rays, query, hits, counters, found).trace();
+                   std::span<NearestHit> hits, IntersectCounters& counters) {
+  counters.hit.plane_tests += PacketIntersector(bvh, rays, query, hits, counters).trace();
 }
 
 }  // namespace raygate
