@@ -24,7 +24,7 @@ class BurstModel {
   virtual ~BurstModel() = default;
   virtual void start(std::span<const RayBundle> batch) = 0;
   virtual void finish(BurstResults& results) = 0;
-  virtual BurstCounters counters() = 0;
+  virtual HitCounters counters() = 0;
 };
 
 template <class T, class Port>
@@ -151,12 +151,19 @@ class ArrayModel : public BurstModel {
     --in_flight_;
   }
 
-  BurstCounters counters() override {
+  HitCounters counters() override {
     assert(in_flight_ == 0);
     for (int i = 0; i < 3; ++i) clock();  // the counters are three clocks late
-    return {read(kTests),      read(kMisses),      read(kHits),       read(kDoubts),
-            read(kNearTies),   read(kDistances),   3 * read(kPoints), models_.front().clocks(),
-            read(kIdleClocks), read(kOutputStalls)};
+    return {.tests = read(kTests),
+            .misses = read(kMisses),
+            .hits = read(kHits),
+            .edge_doubts = read(kDoubts),
+            .depth_doubts = read(kNearTies),
+            .plane_tests = read(kPoints),
+            .quotients = read(kDistances) + 3 * read(kPoints),
+            .clocks = models_.front().clocks(),
+            .idle_clocks = read(kIdleClocks),
+            .output_stalls = read(kOutputStalls)};
   }
 
  private:

@@ -64,6 +64,6 @@ RtlBurstUnit::~RtlBurstUnit() = default;
 void RtlBurstUnit::start(std::span<const RayBundle> batch) { model_->start(batch); }
 void RtlBurstUnit::finish(BurstResults& results) { model_->finish(results); }
 
-BurstCounters RtlBurstUnit::counters() const { return model_->counters(); }
+HitCounters RtlBurstUnit::counters() const { return model_->counters(); }
 
 }  // namespace raygate

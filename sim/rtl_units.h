@@ -51,7 +51,7 @@ class RtlBurstUnit : public BurstUnit {
   void start(std::span<const RayBundle> batch) override;
   void finish(BurstResults& results) override;
   [[nodiscard]] std::size_t enough_tests() const override { return enough_tests_; }
-  [[nodiscard]] BurstCounters counters() const override;
+  [[nodiscard]] HitCounters counters() const override;
 
  private:
   std::unique_ptr<BurstModel> model_;

@@ -31,7 +31,7 @@ RtlBurstUnit::RtlBurstUnit(int /*lanes*/, Arith /*arith*/, const BurstStalls& /*
 RtlBurstUnit::~RtlBurstUnit() = default;
 void RtlBurstUnit::start(std::span<const RayBundle> /*batch*/) {}
 void RtlBurstUnit::finish(BurstResults& /*results*/) {}
-BurstCounters RtlBurstUnit::counters() const { return {}; }
+HitCounters RtlBurstUnit::counters() const { return {}; }
 
 RtlPlaneUnit::RtlPlaneUnit(Arith /*arith*/) { fail(kUnit); }
 RtlPlaneUnit::~RtlPlaneUnit() = default;

@@ -5,14 +5,13 @@
 
 #include "host/app/console.h"
 #include "host/film/atomic_file.h"
-#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/linked_core.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/variants/variant_hit_tester.h"
 #include "sim/rtl_core.h"
@@ -22,14 +21,12 @@ namespace raygate {
 namespace {
 
 /// Returns the tester for the simulated unit or its model.
-std::unique_ptr<HitTester> make_tester(const EngineOptions& options, const Skips& skips) {
+std::unique_ptr<HitTester> make_tester(const EngineOptions& options) {
   if (options.variant) return make_variant_tester(*options.variant);
   if (options.unit == "serial") {
     std::unique_ptr<PlaneUnit> unit = std::make_unique<ReferencePlaneUnit>();
     if (options.simulates()) unit = std::make_unique<RtlPlaneUnit>(options.arith);
-    return std::make_unique<SerialHitTester>(
-        std::move(unit), skips.divisions ? SerialHitTester::Order::kEdgesFirst
-                                         : SerialHitTester::Order::kPlanesFirst);
+    return std::make_unique<SerialHitTester>(std::move(unit));
   }
   std::unique_ptr<BurstUnit> unit = std::make_unique<ReferenceBurstUnit>();
   if (options.simulates()) unit = std::make_unique<RtlBurstUnit>(options.lanes, options.arith);
@@ -56,12 +53,11 @@ void prepare_engine(const EngineOptions& options) {
   if (options.has_core()) {
     (void)make_core(options);
   } else {
-    (void)make_tester(options, {});
+    (void)make_tester(options);
   }
 }
 
 IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,
-                                            const Skips& skips,
                                             std::shared_ptr<const MemoryImage> image) {
   IntersectorFactory make_cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
   if (options.engine == Engine::kCpu) return make_cpu;
@@ -72,8 +68,8 @@ IntersectorFactory make_intersector_factory(const EngineOptions& options, const 
       return std::make_unique<CoreIntersector>(bvh, image, make_core(options));
     };
   } else {
-    make_unit = [options, &bvh, skips] {
-      return std::make_unique<UnitIntersector>(bvh, make_tester(options, skips));
+    make_unit = [options, &bvh] {
+      return std::make_unique<UnitIntersector>(bvh, make_tester(options));
     };
   }
   if (options.engine != Engine::kCheck) return make_unit;

@@ -8,7 +8,6 @@
 #include "host/bvh/bvh.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/intersector.h"
-#include "host/light/integrator_settings.h"
 
 namespace raygate {
 
@@ -16,11 +15,11 @@ namespace raygate {
 /// for it later. Throws InputError if it cannot be built.
 void prepare_engine(const EngineOptions& options);
 
-/// Returns a factory of intersectors of the engine. Each intersector owns its simulated model. Only
-/// `skips.divisions` is used. The tree must outlive factory and intersectors. `image`: the tree's
-/// memory image for ray cores; null: made if needed.
+/// Returns a factory of intersectors of the engine. Each intersector owns its simulated model. The
+/// tree must outlive factory and intersectors. `image`: the tree's memory image for ray cores;
+/// null: made if needed.
 [[nodiscard]] IntersectorFactory make_intersector_factory(
-    const EngineOptions& options, const Bvh& bvh, const Skips& skips = {},
+    const EngineOptions& options, const Bvh& bvh,
     std::shared_ptr<const MemoryImage> image = nullptr);
 
 /// Returns the image of `bvh` that the engine's cores read; null for an engine without cores.

@@ -187,26 +187,25 @@ class OptionTable {
         [choices](const T& value) { return name_of(choices, value); }, places);
   }
 
-  /// Adds an option whose value is a list of choices, each of which sets a member of `target` to
-  /// `on`; the other members get their defaults. "all" stands for all of them.
+  /// Adds an option whose value is a list of choices, each of which sets a member of `target`; the
+  /// other members get their defaults. "all" stands for all of them.
   template <typename T>
   void names(const std::string& names, const std::string& help, T& target,
-             const Choices<bool T::*>& choices, bool on, unsigned places = kNowhere) {
+             const Choices<bool T::*>& choices) {
     const std::vector<std::string> words = names_of(choices, {"all"});
     add(
         names, "NAMES", help + listed(words),
         "some of " + listed(words, ", ") + " with commas between",
-        [&target, choices, on, words](const std::string& text) {
+        [&target, choices, words](const std::string& text) {
           target = {};
           for (const std::string& word : split_at_commas(text)) {
             if (std::ranges::count(words, word) == 0) return false;
             for (const auto& [name, member] : choices) {
-              if (word == name || word == "all") target.*member = on;
+              if (word == name || word == "all") target.*member = true;
             }
           }
           return true;
-        },
-        {}, places);
+        });
   }
 
   /// Adds an option whose value is stored as typed, such as a file name.

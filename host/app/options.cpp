@@ -54,12 +54,6 @@ const Choices<bool ExtraChannels::*> kExtraChannels{
     {"P", &ExtraChannels::position},      {"Albedo", &ExtraChannels::albedo},
     {"objectId", &ExtraChannels::object}, {"tests", &ExtraChannels::tests},
     {"doubts", &ExtraChannels::doubts},   {"sums", &ExtraChannels::sums}};
-const Choices<bool Skips::*> kSkips{{"culling", &Skips::culling},
-                                    {"light-behind", &Skips::light_behind},
-                                    {"weightless", &Skips::weightless},
-                                    {"empty-tiles", &Skips::empty_tiles},
-                                    {"first-occluder", &Skips::first_occluder},
-                                    {"divisions", &Skips::divisions}};
 const Choices<glm::dvec3> kAxes{{"x", {1, 0, 0}},   {"y", {0, 1, 0}},   {"z", {0, 0, 1}},
                                 {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
 using Angles = std::pair<double, double>;
@@ -177,9 +171,6 @@ void add_core_options(OptionTable& table, Options& options) {
       "never)",
       "a fraction of the distance, 0 or more, or inf", options.render.point_error,
       parse_point_error, [](float error) { return number_text(double{error}); }, kInExr | kInPage);
-  table.names("--no-skip",
-              "disable optimisations that do not change the picture: ", options.render.skips,
-              kSkips, false, kInPage);
 }
 
 void add_camera_options(OptionTable& table, CameraRequest& request) {
@@ -468,7 +459,7 @@ void add_picture_options(OptionTable& table, OutputOptions& options) {
                      {{"clip", Tone::kClip}, {"filmic", Tone::kFilmic}}, kInSceneFile | kInPage);
   table.names("--channels",
               "extra EXR channels (AOVs; sums: for --resume and ./merge): ", options.channels,
-              kExtraChannels, true);
+              kExtraChannels);
   table.add(
       "--false-colour,--false-color", "CHANNEL[:LOW:HIGH]=FILE.png", "a channel in false colours",
       "CHANNEL=FILE.png or, with numbers LOW < HIGH, CHANNEL:LOW:HIGH=FILE.png; CHANNEL is " +

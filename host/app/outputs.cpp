@@ -155,7 +155,6 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
   const RenderStats& render = report.render;
   const IntersectCounters& work = render.intersect;
   const HitCounters& hit = work.hit;
-  const SkipCounters& skipped = render.skipped;
   const PixelRect& window = options.render.window;
   std::vector<std::string> pictures;
   pictures.reserve(report.pictures.size());
@@ -193,12 +192,7 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
       {"output_stalls", hit.output_stalls, "clocks of pipelined lanes stalled by the consumer"},
       {"exact_clocks", hit.exact_clocks, "clocks of the ray cores' exact units"},
       {"clocks_per_test", ratio(hit.clocks, hit.unit_tests), "clocks / unit_tests"},
-      {"skipped.culled_tests", skipped.culled_tests, "tests in boxes that the ray does not enter"},
-      {"skipped.lights_behind", skipped.lights_behind, "shadow rays to lights without effect"},
-      {"skipped.weightless", skipped.weightless, "secondary rays without weight"},
-      {"skipped.dim", skipped.dim, "secondary rays below --threshold"},
-      {"skipped.empty_tile_rays", skipped.empty_tile_rays, "camera rays of tiles without polygons"},
-      {"skipped.first_occluders", skipped.first_occluders, "searches ended by the first occluder"},
+      {"skipped.first_occluders", work.ended_early, "searches ended by the first occluder"},
       {"skipped.spare_samples", render.spare_samples, "samples that --error did not need"},
       {"seconds.load", report.load_seconds, "elapsed: reading the scene"},
       {"seconds.tree", report.tree_seconds, "elapsed: building the tree"},

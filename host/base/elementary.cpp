@@ -23,8 +23,6 @@ double srgb_to_linear(double code) {
   return value <= 0.04045 ? value / 12.92 : power((value + 0.055) / 1.055, 2.4);
 }
 
-double srgb_curve(double linear) { return srgb_curve_above(std::clamp(linear, 0.0, 1.0)); }
-
 double srgb_curve_above(double linear) {
   const double x = linear;
   return x <= 0.0031308 ? 12.92 * x : 1.055 * power(x, 1.0 / 2.4) - 0.055;

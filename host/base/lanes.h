@@ -132,10 +132,6 @@ RAYGATE_INLINE IntOf<T> bits_in(const T& x) {
   return __builtin_bit_cast(IntOf<T>, x);
 }
 template <class T>
-RAYGATE_INLINE WordOf<T> words_in(const T& x) {
-  return __builtin_bit_cast(WordOf<T>, x);
-}
-template <class T>
 RAYGATE_INLINE Like<T, float> float_of(const T& bits) {
   return __builtin_bit_cast(Like<T, float>, bits);
 }

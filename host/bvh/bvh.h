@@ -139,11 +139,6 @@ class Bvh {
     return static_cast<std::uint32_t>(triangles_.size());
   }
   [[nodiscard]] bool has_instances() const { return !instances_.empty(); }
-  /// Returns the primitives of all instances, [first, second); they follow the stored ones.
-  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> instance_primitives() const {
-    if (!has_instances()) return {primitive_count(), primitive_count()};
-    return {instance_numbers_.begin(), instance_numbers_.end()};
-  }
   /// Returns whether a primitive or node index belongs to an instance.
   [[nodiscard]] RAYGATE_INLINE bool is_instanced(std::uint32_t number) const {
     return number >= first_instanced_;

@@ -1,5 +1,6 @@
-// Hits that are shaded together, one per lane: their surfaces and BSDFs, light samples and
-// scattered rays.
+// Batches of rays of one depth with their path states, and the results of shading their hits; hits
+// that are shaded together, one per lane: their surfaces and BSDFs, light samples and scattered
+// rays.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +17,8 @@
 #include "host/light/integrator_settings.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
-#include "host/light/ray_batch.h"
 #include "host/light/sampler.h"
+#include "host/light/shadow_rays.h"
 #include "host/light/spawn_ray.h"
 #include "host/light/surface.h"
 
@@ -25,15 +26,53 @@ namespace raygate {
 
 class LightPaths;
 
-/// A light sample of a hit: a shadow ray to trace.
-struct alignas(16) LightSample {
-  glm::vec3 radiance{0.0f};  ///< contribution if not occluded
-  /// A point of an area light or of the lens, or the direction to a distant light.
-  glm::vec3 target{0.0f};
-  std::uint32_t index = 0;  ///< index of a point light, or primitive of the target
-  std::uint32_t is_asked : 1 = 0, is_dark : 1 = 0;  ///< dark: the contribution is 0
-  std::uint32_t is_transmitted : 1 = 0;             ///< through rough glass
-  std::uint32_t is_point_light : 1 = 0, is_to_camera : 1 = 0;
+/// The state of a path along its current ray: a record of 16 words in one cache line, since hits
+/// are shaded in another order than rays are traced. PathLanes holds several, field by field.
+struct alignas(16) PathState {
+  glm::vec3 throughput{1.0f};  ///< factor of light that arrives along the ray
+  /// Probability density per steradian of this direction at the last scattering event; 0 if the
+  /// event was a delta distribution (mirror, smooth glass) or the camera.
+  float pdf = 0.0f;
+  glm::vec3 scattered_at{0.0f};  ///< position of the last scattering event
+  glm::vec3 normal{0.0f};        ///< shading normal there
+  std::uint32_t sample = 0;      ///< index of the radiance, in ShadingOutput, that the path adds to
+  std::uint32_t stream = 0;      ///< stream of random numbers, different for each path
+  std::uint32_t index = 0;       ///< index of the path's points in such streams
+  /// 1 for the path's first ray, also behind holes and clear surfaces; 0 for all others.
+  std::uint32_t first = 1;
+  /// Density of light paths over that of camera paths for the path so far, or on light paths the
+  /// inverse (see LightPaths); 0: only one kind of path exists here.
+  float light_over_camera_pdf = 0.0f;
+};
+
+/// Rays of the same depth.
+struct RayBatch {
+  int depth = 0;  ///< number of surfaces met so far; 0: camera rays
+  std::vector<Ray> rays;
+  std::vector<PathState> states;       ///< by ray
+  std::vector<std::uint32_t> sources;  ///< by ray: the primitive it leaves; empty for camera rays
+
+  void clear() {
+    rays.clear();
+    states.clear();
+    sources.clear();
+  }
+};
+
+/// The first surface on a camera ray; masked-out holes do not count.
+struct FirstSurface {
+  std::uint32_t primitive = NearestHit::kNone;
+  glm::vec3 origin{0.0f};  ///< of the ray that meets it; only of a pixel's first sample
+  glm::vec3 point{0.0f};   ///< relative to `origin`
+  glm::vec3 normal{0.0f}, albedo{0.0f};
+};
+
+/// The results of shading a batch.
+struct ShadingOutput {
+  std::vector<glm::vec3> radiance;          ///< by sample
+  std::vector<FirstSurface> first_surface;  ///< by sample
+  std::vector<ShadowRay> shadows;           ///< shadow rays to trace
+  RayBatch next;                            ///< scattered rays to trace
 };
 
 /// A ray spawned at a hit: reflected, refracted or scattered.
@@ -67,63 +106,34 @@ struct PathLanes {
   Triple<T> throughput;
   T pdf;
   Triple<T> scattered_at, normal;
-  WordOf<T> sample, stream, index, specular_history;
+  WordOf<T> sample, stream, index, first;
   T light_over_camera_pdf;
-  WordOf<T> supersampled;
 
   PathLanes() = default;
   RAYGATE_INLINE explicit PathLanes(const PathState* const (&states)[kLanesOf<T>]) {
-    T w[16];
-    load_records(states, w);
-    throughput = {w[0], w[1], w[2]};
-    pdf = w[3];
-    scattered_at = {w[4], w[5], w[6]};
-    normal = {w[7], w[8], w[9]};
-    sample = words_in(w[10]);
-    stream = words_in(w[11]);
-    index = words_in(w[12]);
-    specular_history = words_in(w[13]);
-    light_over_camera_pdf = w[14];
-    supersampled = words_in(w[15]);
-  }
-  /// Returns where the ray is its path's first.
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return specular_history == 1u; }
-  /// Return the histories after reflection in a mirror and after refraction by glass.
-  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
-  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
-  /// Returns whether `mask` contains the history. Its histories are below kSpecularHistories.
-  [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& mask,
-                                                    const WordOf<T>& history) {
-    return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
+    T words[16];
+    load_records(states, words);
+    const T* word = words;
+    for_each_word(*this, [&](auto& member) RAYGATE_BODY {
+      member = __builtin_bit_cast(std::remove_reference_t<decltype(member)>, *word++);
+    });
   }
   /// Stores the words of the records.
-  RAYGATE_INLINE void put(T* w) const {
-    static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
-                  offsetof(PathState, specular_history) == 52 &&
-                  offsetof(PathState, light_over_camera_pdf) == 56 && sizeof(PathState) == 64);
-    const T words[] = {throughput.x,
-                       throughput.y,
-                       throughput.z,
-                       pdf,
-                       scattered_at.x,
-                       scattered_at.y,
-                       scattered_at.z,
-                       normal.x,
-                       normal.y,
-                       normal.z,
-                       float_of(sample),
-                       float_of(stream),
-                       float_of(index),
-                       float_of(specular_history),
-                       light_over_camera_pdf,
-                       float_of(supersampled)};
-    for (int i = 0; i < 16; ++i) w[i] = words[i];
+  RAYGATE_INLINE void put(T* word) const {
+    for_each_word(*this, [&](const auto& member) RAYGATE_BODY { *word++ = float_of(member); });
   }
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return first != 0u; }
 
  private:
-  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_specular(std::uint32_t step) const {
-    const auto has_next = (specular_history > 0u) & (specular_history < kSpecularHistories / 2);
-    return choose(has_next, 2u * specular_history + step, WordOf<T>{});
+  /// Calls visit(member) for each word of PathState, in its order.
+  template <class Lanes, class Visit>
+  RAYGATE_INLINE static void for_each_word(Lanes& p, const Visit& visit) {
+    static_assert(offsetof(PathState, scattered_at) == 16 && offsetof(PathState, sample) == 40 &&
+                  offsetof(PathState, light_over_camera_pdf) == 56 && sizeof(PathState) == 64);
+    const auto visit_all = [&](auto&... members) RAYGATE_BODY { (visit(members), ...); };
+    visit_all(p.throughput.x, p.throughput.y, p.throughput.z, p.pdf, p.scattered_at.x,
+              p.scattered_at.y, p.scattered_at.z, p.normal.x, p.normal.y, p.normal.z, p.sample,
+              p.stream, p.index, p.first, p.light_over_camera_pdf);
   }
 };
 
@@ -139,7 +149,6 @@ struct HitBlock {
   std::size_t light_samples_per_hit = 0, scattered_per_hit = 0;
   /// By position; null if the hit is not the first surface of its path. Empty if all are null.
   std::vector<FirstSurface*> first_surfaces;
-  SkipCounters skipped;
 
   [[nodiscard]] const PathState& state(std::size_t i) const { return batch->states[begin + i]; }
   /// Returns the samples of `hits` hits from position i on.
@@ -226,18 +235,6 @@ struct Hits {
     return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
   }
 
-  /// Returns whether EmitterSupersampler adds the emission of the hit.
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
-    const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
-    const auto are_wanted = PathLanes<T>::has(path.supersampled, path.specular_history);
-    return are_even & are_wanted;
-  }
-  /// Returns the emission, without that added by EmitterSupersampler.
-  [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
-    if ((kind & kEmits) == 0) return bsdf.emission();
-    return choose(are_supersampled(), zero<T>(), bsdf.emission());
-  }
-
   /// Returns a point of the path's random stream for this purpose.
   [[nodiscard]] RAYGATE_INLINE SquarePoint<T> random(std::uint32_t purpose) const {
     return sobol_point<T>(path.index, hash(path.stream, purpose));
@@ -294,7 +291,7 @@ struct ScatteredRays {
     flat = reflect(hits.surface.view, hits.surface.flat_normal);
     has_flat = T{} == 0.0f;
     is_transmitted = !has_flat;
-    path.specular_history = hits.path.after_mirror();
+    path.first = WordOf<T>{};
   }
   /// Sets the directions to those through the surface: refracted at `normal` if the material
   /// refracts, otherwise straight on. Returns where such a direction exists.
@@ -308,7 +305,7 @@ struct ScatteredRays {
     flat = choose(is_bent, flat_bent.direction, -surface.view);
     has_flat = (!is_bent) | flat_bent.exists;
     is_transmitted = T{} == 0.0f;
-    path.specular_history = choose(is_bent, hits.path.after_glass(), hits.path.specular_history);
+    path.first = choose(is_bent, WordOf<T>{}, hits.path.first);
     return (!is_bent) | bent.exists;
   }
 

@@ -12,7 +12,6 @@
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"
-#include "host/light/ray_batch.h"
 #include "host/light/shade.h"
 #include "host/light/spawn_ray.h"
 
@@ -25,8 +24,8 @@ namespace raygate {
 /// own rays.
 class Integrator {
  public:
-  /// The references must outlive this object. `kind` may differ from that of `settings` (kLight,
-  /// kEmitters). `light_paths` are combined with kPath and kLight; may be null.
+  /// The references must outlive this object. `kind` may differ from that of `settings`
+  /// (kLight). `light_paths` are combined with kPath and kLight; may be null.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
              const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;
@@ -50,7 +49,6 @@ class Integrator {
   /// Returns whether shadow rays pass glass as if it did not refract.
   [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }
 
-  [[nodiscard]] const SkipCounters& skipped() const { return block_.skipped; }
   /// Returns the number of hit points P that the host computed.
   [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 

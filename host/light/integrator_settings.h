@@ -4,17 +4,13 @@
 #include <cstdint>
 #include <optional>
 
-#include "host/intersect/intersect_counters.h"
-
 namespace raygate {
 
 enum class IntegratorKind {
   kPrimary,  ///< camera rays only, lit from the camera: diffuse colour times cosine, plus emission
   kWhitted,  ///< reflection, refraction and shadows, as in the paper
   kPath,     ///< full global illumination: Monte Carlo path tracing
-  // Internal, not selectable by users:
-  kLight,     ///< paths from the lights to the camera
-  kEmitters,  ///< emitters that the camera sees: directly, in mirrors and through glass
+  kLight,    ///< internal, not selectable by users: paths from the lights to the camera
 };
 
 /// The default relative error of the hit-test unit's P above which the host computes the point.
@@ -24,32 +20,6 @@ enum class Caustics {
   kOff,   ///< found only by camera paths
   kOn,    ///< found by light paths; an error if that is not possible
   kAuto,  ///< found by light paths if possible
-};
-
-/// Optimisations that do not change any bit of the image.
-struct Skips {
-  bool culling = true;  ///< skip polygons in boxes that a ray does not enter
-  /// Skip shadow rays to lights that contribute nothing, such as those behind the surface.
-  bool light_behind = true;
-  bool weightless = true;      ///< skip reflected and refracted rays that contribute nothing
-  bool empty_tiles = true;     ///< skip camera rays of tiles that contain no polygon
-  bool first_occluder = true;  ///< end shadow rays at the first occluder found
-  bool divisions = true;       ///< serial unit: skip planes of polygons that the edge tests exclude
-};
-
-/// Statistics of skipped work.
-struct SkipCounters {
-  std::uint64_t culled_tests = 0;   ///< ray-polygon tests
-  std::uint64_t lights_behind = 0;  ///< shadow rays
-  std::uint64_t weightless = 0;     ///< secondary rays
-  std::uint64_t dim = 0;  ///< secondary rays below the threshold, which would contribute slightly
-  std::uint64_t empty_tile_rays = 0;  ///< camera rays
-  std::uint64_t first_occluders = 0;  ///< shadow rays ended at the first occluder
-
-  SkipCounters& operator+=(const SkipCounters& other) {
-    add_counters(*this, other);
-    return *this;
-  }
 };
 
 /// User options of the integrators. The defaults are those of ./render and of the Python module.
@@ -62,7 +32,6 @@ struct IntegratorSettings {
   std::optional<double> ambient{};  ///< Whitted: ambient radiance; default: Lights::ambient()
   /// For kPath only. Requires several samples, no camera lights, and a perspective camera.
   Caustics caustics = Caustics::kAuto;
-  Skips skips{};  ///< do not change the film
   /// The host computes the hit point P if the relative error of the unit's P may exceed this. 0:
   /// always; the largest float: only if the unit has no P.
   float point_error = kPointError;

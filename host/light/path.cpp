@@ -136,9 +136,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   const bool has_rough_glass = bsdf.has_rough_glass();
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
-  const WordOf<T> none{};
-  next.path.specular_history = none;
-  next.path.supersampled = choose(next.has_flat, hits.path.supersampled, none);
+  next.path.first = WordOf<T>{};
   next.direction = next.flat = zero<T>();
   if (any(bsdf.scatters())) {
     next.direction = bsdf.sample(hits.random(streams::kDirection),
@@ -168,8 +166,6 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
     next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
     next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
-    next.path.specular_history =
-        choose(is_mirrored, hits.path.after_mirror(), next.path.specular_history);
   }
   const auto is_bent = next.is_transmitted & bsdf.is_refracting();
   const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
@@ -180,7 +176,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
                                 RAYGATE_BODY { own = choose(next.is_transmitted, others, own); };
     use_beyond(next.direction, beyond.direction);
     use_beyond(next.flat, beyond.flat);
-    use_beyond(next.path.specular_history, beyond.path.specular_history);
+    use_beyond(next.path.first, beyond.path.first);
     next.has_flat = next.has_flat & ((!next.is_transmitted) | beyond.has_flat);
     next.is_wanted = next.is_wanted & ((!next.is_transmitted) | exists);
     const Triple<T> transmitted_throughput =
@@ -236,7 +232,7 @@ RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hit
   const T mis_weight = choose((area_pdf > 0.0f) & (hits.path.pdf > 0.0f),
                               power_heuristic(hits.path.pdf, light_pdf), spread<T>(1.0f));
   return hits.path.throughput *
-         (hits.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
+         (hits.bsdf.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
 }
 
 /// One sampled light per hit.
@@ -286,8 +282,7 @@ struct ChosenLights {
     const Triple<T> position = any_ball ? Lights::point_on<T>(middle, radius, hits.surface.point,
                                                               hits.random(streams::kLightPoint))
                                         : middle;
-    IncidentLight<T> light =
-        point_light(all, hits, position, [&](auto member) RAYGATE_BODY { return get(member); });
+    IncidentLight<T> light = point_light(all, hits, lights, position);
     light.is_asked = are(Kind::kPoint);
     light.pdf = pmf;
     light.is_point_light = !(radius > 0.0f);

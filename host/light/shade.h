@@ -52,11 +52,6 @@ ShadeFunction shade_path;
 /// by a light sample whose target is on the lens, and one ray is spawned.
 ShadeFunction shade_light_path;
 
-/// Shades hits on specular paths from the camera whose histories are in PathState::supersampled:
-/// adds emission, and spawns reflected and refracted rays. A ray's sample is a multiple of
-/// kSpecularHistories plus its history, so that radiance is separated by history.
-ShadeFunction shade_emitters;
-
 /// Returns a finite number: infinity becomes the largest float, NaN becomes 0.
 template <class T>
 RAYGATE_INLINE T bounded(const T& x) {
@@ -116,19 +111,19 @@ struct IncidentLight {
   }
 };
 
-/// Returns the light from point lights, of which it leaves at `position`. get(member) returns a
-/// member of each lane's Lights::Light.
-template <class T, class Get>
+/// Returns the light from point lights, one per lane, of which it leaves at `position`.
+template <class T>
 RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
-                                            const Triple<T>& position, const Get& get) {
+                                            const Lights::Light* const (&own)[kLanesOf<T>],
+                                            const Triple<T>& position) {
   using Light = Lights::Light;
   IncidentLight<T> light(lights, hits, position);
-  light.emission = get(&Light::emission);
-  if (any(get(&Light::is_spot))) {
-    const IncidentLight<T> middle(lights, hits, get(&Light::position));
-    const T cosine = -dot(middle.direction, get(&Light::spot_axis));
-    light.emission =
-        light.emission * spot_falloff(cosine, get(&Light::spot_scale), get(&Light::spot_offset));
+  light.emission = gather<T>(own, &Light::emission);
+  if (any(gather<T>(own, &Light::is_spot))) {
+    const IncidentLight<T> middle(lights, hits, gather<T>(own, &Light::position));
+    const T cosine = -dot(middle.direction, gather<T>(own, &Light::spot_axis));
+    light.emission = light.emission * spot_falloff(cosine, gather<T>(own, &Light::spot_scale),
+                                                   gather<T>(own, &Light::spot_offset));
   }
   light.target = position - hits.surface.point;
   return light;

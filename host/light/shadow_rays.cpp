@@ -34,21 +34,19 @@ glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const Surface
 }  // namespace
 
 ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
-                       Intersector& intersector, const Skips& skips, bool through_refraction)
+                       Intersector& intersector, bool through_refraction)
     : scene_(prepared.scene),
       materials_(prepared.materials),
       bvh_(prepared.bvh),
       lights_(lights),
       intersector_(intersector),
       spawner_(prepared.clearances),
-      culling_(skips.culling),
       through_refraction_(through_refraction),
       any_clear_(std::ranges::any_of(materials_,
                                      [](const MaterialParameters& material) {
                                        return material.has_mask ||
                                               (material.kind & kTransmits) != 0;
-                                     })),
-      first_occluder_(skips.first_occluder && !any_clear_) {}
+                                     })) {}
 
 void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced) {
   traced_ = traced ? &traced : nullptr;
@@ -59,37 +57,22 @@ void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced
     trace_from_light(rays, light);
   }
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
-    if (!from_points || rays[i].point_light == ShadowRay::kNoPoint) {
-      next_from_surface(rays[i], i);
+    if (!from_points || rays[i].is_point_light == 0) {
+      next_.emplace_back(i, rays[i].surface, rays[i].surface_primitive);
     }
   }
   while (!next_.empty()) trace_from_surface(rays);
-}
-
-/// Appends a segment. Sets fields one by one, as copying a temporary would stall.
-void ShadowRays::next_from_surface(const ShadowRay& ray, std::uint32_t index) {
-  const bool is_area = ray.point_light == ShadowRay::kNoPoint;
-  Segment& segment = next_.emplace_back();
-  segment.index = index;
-  segment.from = ray.surface;
-  segment.source = ray.surface_primitive;
-  segment.to = is_area ? ray.target : lights_.points()[ray.point_light].position;
-  segment.ignored = is_area ? ray.target_primitive : NearestHit::kNone;
-  segment.share = !is_area || ray.is_to_camera                ? kWholeWay
-                  : ray.target_primitive == NearestHit::kNone ? kNoEnd
-                                                              : kBeforeAreaLight;
 }
 
 void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light) {
   segments_.clear();
   const glm::vec3& position = lights_.points()[point_light].position;
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
-    if (rays[i].point_light != point_light) continue;
-    segments_.push_back(
-        {i, position, rays[i].surface, NearestHit::kNone, rays[i].surface_primitive, kWholeWay});
+    if (rays[i].is_point_light == 0 || rays[i].index != point_light) continue;
+    segments_.emplace_back(i, position, NearestHit::kNone);
   }
   if (segments_.empty()) return;
-  trace(true, kSureOfLight);
+  trace(rays, true, kSureOfLight);
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const NearestHit& hit = hits_[i];
     if (hit.primitive == NearestHit::kNone) continue;
@@ -98,7 +81,7 @@ void ShadowRays::trace_from_light(std::span<ShadowRay> rays, std::uint32_t point
     if (is_sure && (!any_clear_ || transmittance(i) == glm::vec3(0.0f))) {
       ray.radiance = glm::vec3(0.0f);
     } else {
-      next_from_surface(ray, segments_[i].index);
+      next_.emplace_back(segments_[i].index, ray.surface, ray.surface_primitive);
     }
   }
 }
@@ -107,7 +90,7 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   segments_.swap(next_);
   next_.clear();
   spawn_queries_.clear();
-  trace(false, kWholeWay);
+  trace(rays, false, kWholeWay);
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const NearestHit& hit = hits_[i];
     if (hit.primitive == NearestHit::kNone) continue;
@@ -129,11 +112,11 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
     next_[kept].source = spawn_queries_[i].primitive;
     next_[kept++].from = *origins_[i];
   }
-  next_.resize(kept);
+  next_.erase(next_.begin() + static_cast<std::ptrdiff_t>(kept), next_.end());
 }
 
 /// Traces all segments. Searches may end at hits before the fraction `enough` of the distance.
-void ShadowRays::trace(bool from_light, float enough) {
+void ShadowRays::trace(std::span<const ShadowRay> rays, bool from_light, float enough) {
   const std::size_t count = segments_.size();
   batch_.resize(count);
   limits_.resize(count);
@@ -142,16 +125,26 @@ void ShadowRays::trace(bool from_light, float enough) {
   sources_.resize(from_light || !intersector_.traits().wants_sources ? 0 : count);
   for (std::size_t i = 0; i < count; ++i) {
     const Segment& segment = segments_[i];
+    const ShadowRay& ray = rays[segment.index];
+    const bool is_point_light = ray.is_point_light != 0;
+    const bool is_to_point = is_point_light || ray.is_to_camera != 0;
+    const bool is_endless = !is_to_point && ray.index == NearestHit::kNone;
+    // Fraction of the distance in which hits count.
+    const float share = is_to_point ? kWholeWay : kBeforeAreaLight;
+    const glm::vec3& to = from_light       ? ray.surface
+                          : is_point_light ? lights_.points()[ray.index].position
+                                           : ray.target;
     batch_[i].origin = segment.from;
-    ignored_[i] = segment.ignored;
-    const bool is_endless = segment.share == kNoEnd;
-    const glm::vec3 way = is_endless ? segment.to : segment.to - segment.from;
+    ignored_[i] = from_light       ? ray.surface_primitive
+                  : is_point_light ? NearestHit::kNone
+                                   : ray.index;
+    const glm::vec3 way = is_endless ? to : to - segment.from;
     const bool is_point = way == glm::vec3(0.0f);  // hits nothing
     batch_[i].direction = is_point ? way : scaled_direction(glm::dvec3(way));
     // t of the end, a power of two.
     const float end = is_point ? 1.0f : largest(way) / largest(batch_[i].direction);
-    limits_[i] = is_endless ? kNoEnd : end * segment.share;
-    enough_[i] = is_endless ? kNoEnd : end * std::min(enough, segment.share);
+    limits_[i] = is_endless ? kNoEnd : end * share;
+    enough_[i] = is_endless ? kNoEnd : end * std::min(enough, share);
     // Rounding may turn a grazing ray back towards its own triangle.
     if (!sources_.empty()) {
       const bool leaves = !is_ahead(batch_[i], bvh_.corners_of(segment.source));
@@ -161,9 +154,8 @@ void ShadowRays::trace(bool from_light, float enough) {
   RayQuery search{.common_origin = from_light,
                   .t_max = limits_,
                   .source_ids = sources_,
-                  .culling = culling_,
                   .skip_ids = ignored_};
-  if (first_occluder_) search.any_hit_before = enough_;
+  if (!any_clear_) search.any_hit_before = enough_;  // any occluder ends the search
   work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;
   hits_.resize(batch_.size());

@@ -9,7 +9,6 @@
 
 #include "host/bvh/bvh.h"
 #include "host/intersect/intersector.h"
-#include "host/light/integrator_settings.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"
@@ -19,18 +18,23 @@
 
 namespace raygate {
 
-/// A shadow ray to trace, and the radiance that it carries.
-struct ShadowRay {
-  static constexpr std::uint32_t kNoPoint = NearestHit::kNone;
-
-  std::uint32_t sample = 0;  ///< for the caller: the sample that it belongs to
+/// A light sample of a hit: a shadow ray to trace, and the radiance that it carries.
+struct alignas(16) LightSample {
   glm::vec3 radiance{0.0f};  ///< unoccluded radiance; after resolve() the radiance that arrives
-  glm::vec3 surface{0.0f};   ///< origin of the ray, from RaySpawner
+  /// A point of an area light or of the lens, or the direction to a distant light.
+  glm::vec3 target{0.0f};
+  /// Index of a point light, or primitive of the target; kNone: a distant light.
+  std::uint32_t index = 0;
+  std::uint32_t is_asked : 1 = 0, is_dark : 1 = 0;  ///< dark: the contribution is 0
+  std::uint32_t is_transmitted : 1 = 0;             ///< through rough glass
+  std::uint32_t is_point_light : 1 = 0, is_to_camera : 1 = 0;
+};
+
+/// A light sample with the origin of its shadow ray.
+struct ShadowRay : LightSample {
+  std::uint32_t sample = 0;  ///< for the caller: the sample that it belongs to
   std::uint32_t surface_primitive = 0;
-  std::uint32_t point_light = kNoPoint;  ///< index of a point light; otherwise:
-  glm::vec3 target{0.0f};  ///< a point of an area light, or the direction to a distant light
-  std::uint32_t target_primitive = 0;  ///< primitive of the target; kNone: a distant light
-  bool is_to_camera = false;           ///< the target is a point of the lens
+  glm::vec3 surface{0.0f};  ///< origin of the ray, from RaySpawner
 };
 
 /// Traces shadow rays in batches.
@@ -47,7 +51,7 @@ class ShadowRays {
  public:
   /// `through_refraction`: glass attenuates shadow rays as if it did not refract.
   ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
-             const Skips& skips, bool through_refraction);
+             bool through_refraction);
 
   /// Callback for each traced ray with its work and the index of its shadow ray.
   using TracedFunction = std::function<void(const RayWork& work, std::size_t shadow_ray)>;
@@ -60,17 +64,18 @@ class ShadowRays {
  private:
   /// A ray of the next batch.
   struct Segment {
-    std::uint32_t index;  // index of its shadow ray
-    glm::vec3 from, to;
-    std::uint32_t source;   // the primitive at which it starts, or kNone
-    std::uint32_t ignored;  // primitive whose hits are ignored
-    float share;  // fraction of the distance in which hits count; infinite: `to` is a direction
+    // Constructed in place, as copying a temporary would stall.
+    Segment(std::uint32_t number, const glm::vec3& origin, std::uint32_t primitive)
+        : index(number), source(primitive), from(origin) {}
+
+    std::uint32_t index;   // index of its shadow ray
+    std::uint32_t source;  // the primitive at which it starts, or kNone: a light
+    glm::vec3 from;
   };
 
   void trace_from_light(std::span<ShadowRay> rays, std::uint32_t point_light);
   void trace_from_surface(std::span<ShadowRay> rays);
-  void trace(bool from_light, float enough);
-  void next_from_surface(const ShadowRay& ray, std::uint32_t index);
+  void trace(std::span<const ShadowRay> rays, bool from_light, float enough);
   /// Returns the transmittance of the surface that ray `number` of the batch hit.
   [[nodiscard]] glm::vec3 transmittance(std::size_t number) const;
 
@@ -82,9 +87,8 @@ class ShadowRays {
   RaySpawner spawner_;
   std::vector<SpawnQuery> spawn_queries_;  // origins behind transmitting surfaces
   std::vector<SpawnOrigin> origins_;
-  bool culling_, through_refraction_;
-  bool any_clear_;       // some material transmits light or has a mask
-  bool first_occluder_;  // any occluder ends a search
+  bool through_refraction_;
+  bool any_clear_;  // some material transmits light or has a mask
   std::uint64_t rays_ = 0;
   // Reused buffers.
   std::vector<Segment> segments_, next_;

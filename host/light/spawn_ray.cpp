@@ -87,7 +87,8 @@ class NeighborClearanceSearch {
       const Corners others = bvh.corners_of(other);
       if (lies_beyond(others, corners_, 1) && lies_beyond(others, corners_, -1)) continue;
       if (apart[i] < kShareOfOverlaps * most_ && overlaps_.size() < kMaxOverlaps) {
-        overlaps_.add(other, others);
+        overlaps_.push_back({other, glm::min(glm::min(others[0], others[1]), others[2]),
+                             glm::max(glm::max(others[0], others[1]), others[2])});
       } else {
         length_ = apart[i];
       }
@@ -217,22 +218,6 @@ float largest_coordinate(const Bvh& bvh) {
 }
 
 }  // namespace
-
-void Overlaps::add(std::uint32_t primitive, const Corners& triangle) {
-  const auto lane = static_cast<int>(primitives_.size() % kLanes);
-  primitives_.push_back(primitive);
-  if (lane == 0) {
-    Boxes& empty = boxes_.emplace_back();
-    for (int k = 0; k < 3; ++k) {
-      std::ranges::fill(empty.low[k], std::numeric_limits<float>::infinity());
-      std::ranges::fill(empty.high[k], -std::numeric_limits<float>::infinity());
-    }
-  }
-  for (int k = 0; k < 3; ++k) {
-    boxes_.back().low[k][lane] = std::min({triangle[0][k], triangle[1][k], triangle[2][k]});
-    boxes_.back().high[k][lane] = std::max({triangle[0][k], triangle[1][k], triangle[2][k]});
-  }
-}
 
 bool lies_beyond(const Corners& other, const Corners& hit, int side) {
   return std::ranges::all_of(
@@ -520,15 +505,17 @@ RAYGATE_INLINE void RaySpawner::find_four(const SpawnQuery* queries, SpawnOrigin
     const int i = std::countr_zero(rest);
     const SpawnQuery& query = queries[i];
     if ((good >> i & 1) != 0) {
-      const glm::vec3 plain = *origins[i];
-      const float distance = reach[i];
-      const auto is_there = [&](std::uint32_t primitive) {
-        return !surely_apart(plain - distance, plain + distance, bvh_.corners_of(primitive));
+      const glm::vec3 low = *origins[i] - reach[i], high = *origins[i] + reach[i];
+      const auto is_near = [&](const Overlap& overlap) {
+        return overlap.touches(low, high) &&
+               !surely_apart(low, high, bvh_.corners_of(overlap.primitive));
       };
-      const Overlaps& overlaps = bvh_.is_instanced(query.primitive)
-                                     ? found_[i].overlaps
-                                     : clearances_.overlaps_of(query.primitive);
-      if (!overlaps.any_near<kCode>(plain, distance, is_there)) continue;
+      if (std::ranges::none_of(bvh_.is_instanced(query.primitive)
+                                   ? found_[i].overlaps
+                                   : clearances_.overlaps_of(query.primitive),
+                               is_near)) {
+        continue;
+      }
     }
     const auto origin = search(*query.ray, query.primitive, query.side);
     origins[i] = origin ? SpawnOrigin{*origin, 1} : SpawnOrigin{};

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -21,43 +20,17 @@
 
 namespace raygate {
 
-/// The triangles that touch a triangle in its interior or intersect it.
-class Overlaps {
- public:
-  void add(std::uint32_t primitive, const Corners& triangle);
-  [[nodiscard]] std::size_t size() const { return primitives_.size(); }
+/// A triangle that touches another one in its interior or intersects it, with its bounds.
+struct Overlap {
+  std::uint32_t primitive;
+  glm::vec3 low, high;
 
-  /// Calls visit(primitive) for triangles whose boxes are within `reach` of the point on each axis,
-  /// until a call returns true. Returns whether a call did.
-  template <Vectors kCode = Vectors::kBaseline, class Visit>
-  [[nodiscard]] RAYGATE_INLINE bool any_near(const glm::vec3& point, float reach,
-                                             const Visit& visit) const {
-    const glm::vec3 from = point - reach, to = point + reach;
-    const std::uint32_t* primitives = primitives_.data();
-    for (const Boxes& boxes : boxes_) {
-      IntLanes touches = IntLanes{} - 1;
-      for (int k = 0; k < 3; ++k) {
-        const FloatLanes low = load<FloatLanes>(boxes.low[k]),
-                         high = load<FloatLanes>(boxes.high[k]);
-        touches &= (low <= to[k]) & (high >= from[k]);
-      }
-      for (LaneMask near = sign_mask<kCode>(touches); near != 0; near &= near - 1) {
-        if (visit(primitives[std::countr_zero(near)])) return true;
-      }
-      primitives += kLanes;
-    }
-    return false;
+  /// Returns whether the bounds touch the closed box from `from` to `to`.
+  [[nodiscard]] bool touches(const glm::vec3& from, const glm::vec3& to) const {
+    return glm::all(glm::lessThanEqual(low, to)) && glm::all(glm::lessThanEqual(from, high));
   }
-
- private:
-  /// Eight boxes; unused ones are empty.
-  struct Boxes {
-    float low[3][kLanes], high[3][kLanes];
-  };
-
-  std::vector<Boxes> boxes_;
-  std::vector<std::uint32_t> primitives_;
 };
+using Overlaps = std::vector<Overlap>;
 
 /// The clearance of a triangle ABC for rays that start on it: one cache line.
 ///

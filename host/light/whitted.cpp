@@ -1,5 +1,4 @@
-// Whitted's ray tracing: all lights, mirrors and glass; and the emission that the camera sees
-// directly, in mirrors and through glass.
+// Whitted's ray tracing: all lights, mirrors and glass.
 #include "host/light/shade.h"
 
 namespace raygate {
@@ -28,6 +27,8 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
   using Kind = Lights::Kind;
   const Lights& lights = shading.lights;
   const Lights::Light& own = lights.light(i);
+  const Lights::Light* same[Hits<T>::kCount];
+  std::ranges::fill(same, &own);
   IncidentLight<T> light;
   if (own.kind == Kind::kArea) {
     const auto number = static_cast<std::uint32_t>(i - lights.points().size());
@@ -37,12 +38,8 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
     const SquarePoint<T> centre = {spread<T>(0.5f + 0x1p-11f), spread<T>(0.5f)};
     const LightPoint<T> point =
         lights.sample<T>(own, in_middle ? centre : hits.random(kFirstAreaLight + number));
-    Triple<T> emission = spread<T>(own.emission);
-    if (own.is_textured && !in_middle) {
-      const Lights::Light* same[Hits<T>::kCount];
-      std::ranges::fill(same, &own);
-      emission = lights.radiance_at<T>(same, point);
-    }
+    const Triple<T> emission =
+        in_middle ? spread<T>(own.emission) : lights.radiance_at<T>(same, point);
     light = area_light(lights, hits, point, emission * spread<T>(own.area));
     light.is_asked = hits.bsdf.scatters();
     return light;
@@ -55,13 +52,7 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
             ? Lights::point_on<T>(middle, spread<T>(own.radius), hits.surface.point,
                                   hits.random(kFirstPointLight + i))
             : middle;
-    light = point_light(lights, hits, position, [&](auto member) RAYGATE_BODY {
-      if constexpr (std::is_same_v<decltype(own.*member), const bool&>) {
-        return own.*member;
-      } else {
-        return spread<T>(own.*member);
-      }
-    });
+    light = point_light(lights, hits, same, position);
     if (!is_ball) {
       light.is_point_light = T{} == 0.0f;
       light.index = WordOf<T>{} + i;
@@ -88,24 +79,11 @@ RAYGATE_INLINE void sample_all_lights(const ShadingScene& shading, Hits<T>& hits
   }
 }
 
-/// Returns the lanes in which a ray of this throughput is worth tracing; counts the others.
+/// Returns the lanes in which a ray of this throughput is worth tracing.
 template <class T>
-RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Hits<T>& hits,
-                                    const Triple<T>& throughput) {
-  SkipCounters& skipped = hits.block.skipped;
-  const auto threshold = static_cast<float>(shading.settings.threshold);
-  const bool skips_weightless = shading.settings.skips.weightless;
+RAYGATE_INLINE MaskOf<T> worthwhile(const ShadingScene& shading, const Triple<T>& throughput) {
   const T size = largest(throughput);
-  const auto sizes = unpack(size);
-  for (int k = 0; k < hits.count; ++k) {
-    if (sizes[k] == 0.0f) {
-      skipped.weightless += skips_weightless ? 1 : 0;
-    } else if (sizes[k] < threshold) {
-      ++skipped.dim;
-    }
-  }
-  const auto is_bright = (size > 0.0f) & !(size < threshold);
-  return skips_weightless ? MaskOf<T>(is_bright) : MaskOf<T>(is_bright | (size == 0.0f));
+  return (size > 0.0f) & !(size < static_cast<float>(shading.settings.threshold));
 }
 
 /// Spawns reflected and transmitted rays. Without `goes_on` the maximum depth is reached, and rays
@@ -138,7 +116,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     next.path.pdf = spread<T>(1.0f);
   }
   next.is_wanted = T{} > 0.0f;
-  if (goes_on) next.is_wanted = worthwhile(shading, hits, next.path.throughput);
+  if (goes_on) next.is_wanted = worthwhile(shading, next.path.throughput);
   if (any(next.is_wanted)) {
     next.reflect_off(hits, facet);
     next.path.stream = hash(hits.path.stream, kMirror);
@@ -146,7 +124,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   }
   if (!bsdf.has_rough_glass()) next.path.pdf = T{};
   next.path.throughput = hits.path.throughput * transmitted;
-  next.is_wanted = worthwhile(shading, hits, next.path.throughput);
+  next.is_wanted = worthwhile(shading, next.path.throughput);
   if (!goes_on) {
     const T least = minimum(minimum(transmitted.x, transmitted.y), transmitted.z);
     next.is_wanted = next.is_wanted & !bsdf.is_refracting() & !(least < 1.0f);
@@ -159,33 +137,6 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   }
 }
 
-/// Spawns the rays whose histories are in the mask: reflected, refracted, and straight through
-/// holes and clear surfaces, which do not change the history.
-template <class T>
-RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
-  const Bsdf<T>& bsdf = hits.bsdf;
-  const Triple<T>& normal = hits.surface.normal;
-  ScatteredRays<T> next(hits);
-  const WordOf<T> first = hits.path.sample - hits.path.specular_history;
-  const auto send = [&](std::size_t number, const Triple<T>& share,
-                        const MaskOf<T>& is_way) RAYGATE_BODY {
-    next.path.sample = first + next.path.specular_history;
-    next.path.throughput = hits.path.throughput * share;
-    const auto is_asked = PathLanes<T>::has(hits.path.supersampled, next.path.specular_history);
-    next.is_wanted = is_way & is_asked & (next.path.specular_history > 0u) &
-                     (largest(next.path.throughput) > 0.0f);
-    next.send(hits, number);
-  };
-  if ((hits.kind & kMirrors) != 0) {
-    next.reflect_off(hits, normal);
-    send(0, bsdf.mirror(), T{} == 0.0f);
-  }
-  if ((hits.kind & kTransmits) != 0) {
-    const MaskOf<T> is_way = next.pass_through(hits, normal);
-    send(1, bsdf.transmission(), is_way);
-  }
-}
-
 }  // namespace
 
 void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
@@ -194,7 +145,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     const Bsdf<T>& bsdf = hits.bsdf;
     const bool goes_on = block.batch->depth < shading.max_depth;
-    Triple<T> emission = hits.emission(), glossy = bsdf.glossy();
+    Triple<T> emission = bsdf.emission(), glossy = bsdf.glossy();
     // Emission is omitted if lights were sampled at the previous hit.
     if ((kind & kEmits) != 0) emission = choose(hits.path.pdf > 0.0f, zero<T>(), emission);
     if (goes_on && has_rough_facets(hits)) {
@@ -206,21 +157,6 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     hits.set_radiance(hits.path.throughput * shown);
     sample_all_lights(shading, hits);
     if (goes_on || (kind & kTransmits) != 0) spawn_specular_rays(shading, hits, goes_on);
-  });
-}
-
-void shade_emitters(const ShadingScene& shading, HitBlock& block, HitKind kind,
-                    std::span<const std::uint32_t> at) {
-  shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
-    Triple<T> emitted = zero<T>();
-    if ((kind & kEmits) != 0) {
-      emitted =
-          choose(hits.are_supersampled(), hits.path.throughput * hits.bsdf.emission(), emitted);
-    }
-    hits.set_radiance(emitted);
-    if (block.batch->depth > shading.max_depth || hits.bsdf.has_rough_glass()) return;
-    spawn_specular_rays(hits);
   });
 }
 

@@ -58,9 +58,8 @@ struct RenderStats {
   std::uint64_t camera_rays = 0;  ///< camera rays among `rays`
   std::uint64_t shadow_rays = 0;  ///< shadow rays among `rays`; the rest are reflected or refracted
   std::uint64_t point_doubts = 0;  ///< hits whose P the host computed, without shadow rays
-  SkipCounters skipped;
-  IntersectCounters intersect;  ///< summed over the threads' intersectors
-  double shade_seconds = 0.0;   ///< generating and shading rays
+  IntersectCounters intersect;     ///< summed over the threads' intersectors
+  double shade_seconds = 0.0;      ///< generating and shading rays
   double wall_seconds = 0.0;
   double processor_seconds = 0.0;
   std::uint64_t spare_samples = 0;  ///< samples saved by RenderSettings::error

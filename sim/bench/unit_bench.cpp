@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "sim/bench/test_stream.h"
 #include "sim/rtl_units.h"
 

@@ -386,7 +386,7 @@ TEST(OutputOptions, LightByName) {
   EXPECT_EQ(parse({"a.obj", "--engine", "cpu", "--spp", "1"}).render.samples, 1);
   const RenderSettings path =
       parse({"a.obj", "--integrator", "path", "--spp", "16", "--filter", "tent", "--threshold",
-             "0.5", "--ambient", "0", "--no-skip", "culling,light-behind"})
+             "0.5", "--ambient", "0"})
           .render;
   EXPECT_EQ(path.integrator, IntegratorKind::kPath);
   EXPECT_EQ(path.depth(), 64);
@@ -394,8 +394,6 @@ TEST(OutputOptions, LightByName) {
   EXPECT_EQ(path.filter, ReconstructionFilter::kTent);
   EXPECT_EQ(path.threshold, 0.5);
   EXPECT_EQ(path.ambient, 0.0);
-  EXPECT_FALSE(path.skips.culling || path.skips.light_behind);
-  EXPECT_TRUE(path.skips.weightless && path.skips.divisions);
   EXPECT_EQ(parse({"a.obj", "--depth", "0"}).render.depth(), 0);
   EXPECT_EQ(parse({"a.obj", "--max-depth", "7"}).render.depth(), 7);
   EXPECT_EQ(plain.point_error, 0x1p-16f);
@@ -405,9 +403,6 @@ TEST(OutputOptions, LightByName) {
   EXPECT_EQ(point_error("0"), 0.0f);
   EXPECT_EQ(point_error("1e-4"), 1e-4f);
   EXPECT_EQ(point_error("inf"), std::numeric_limits<float>::max());
-  const Skips none = parse({"a.obj", "--no-skip", "all"}).render.skips;
-  EXPECT_FALSE(none.culling || none.light_behind || none.weightless || none.empty_tiles ||
-               none.first_occluder || none.divisions);
   expect_error({"a.obj", "--integrator", "photon"}, "--integrator: expected primary, whitted or");
   expect_error({"a.obj", "--spp", "0"}, "--spp: expected a whole number from 1");
   expect_error({"a.obj", "--depth", "-1"}, "--depth: expected a whole number from 0");
@@ -419,7 +414,6 @@ TEST(OutputOptions, LightByName) {
   expect_error({"a.obj", "--point-error", "nan"},
                "--point-error: expected a fraction of the distance");
   expect_error({"a.obj", "--ambient", "inf"}, "--ambient: expected a radiance");
-  expect_error({"a.obj", "--no-skip", "rays"}, "--no-skip: expected some of culling, light-behind");
 }
 
 TEST(Options, CausticsOnNeedWhatLightPathsNeed) {

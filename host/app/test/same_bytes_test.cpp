@@ -1,4 +1,4 @@
-// The same picture, byte for byte, whatever the engine, the threads, the skips and the crop.
+// The same picture, byte for byte, whatever the engine, the threads and the crop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -234,8 +234,7 @@ TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
     render(with({"-o", "rtl", "--engine", "rtl"}));
     EXPECT_GT(stats_.at("clocks"), 0);
     expect_same_pictures("cpu", "rtl");
-    render(
-        with({"-o", "serial", "--engine", "model", "--unit", "serial", "--no-skip", "divisions"}));
+    render(with({"-o", "serial", "--engine", "model", "--unit", "serial"}));
     expect_same_pictures("cpu", "serial");
   }
 }
@@ -253,39 +252,11 @@ TEST_F(Render, EnginesGiveTheSameBytesThroughAnyLens) {
       EXPECT_GT(stats_.at("hits"), 0);
       render(with({"-o", "rtl", "--engine", "rtl"}));
       expect_same_pictures("cpu", "rtl");
-      render(with({"-o", "all", "--engine", "model", "--no-skip", "all"}));
-      expect_same_pictures("cpu", "all");
       const ExrReader exr(folder_.read("cpu.exr"));
       EXPECT_EQ(exr.text("projection"), projection == "perspective" ? "(none)" : projection);
       EXPECT_EQ(exr.text("aperture"), aperture == "0" ? "(none)" : aperture);
     }
   }
-}
-
-TEST_F(Render, SkipsChangeNoByte) {
-  const std::vector<std::string> arguments{RAYGATE_SCENES "/paper.obj",
-                                           "--size",
-                                           "40x30",
-                                           "--engine",
-                                           "cpu",
-                                           "--spp",
-                                           "1",
-                                           "--depth",
-                                           "2",
-                                           "-o"};
-  const auto with = [&](std::vector<std::string> rest) {
-    rest.insert(rest.begin(), arguments.begin(), arguments.end());
-    return rest;
-  };
-  render(with({"skips"}));
-  const json done = stats_;
-  for (const char* what : {"culled_tests", "lights_behind", "weightless"}) {
-    EXPECT_GT(done.at("skipped").at(what), 0) << what;
-  }
-  render(with({"none", "--no-skip", "all"}));
-  EXPECT_GT(stats_.at("tests"), 20 * done.at("tests").get<std::uint64_t>());
-  EXPECT_EQ(stats_.at("skipped").at("culled_tests"), 0);
-  expect_same_pictures("skips", "none");
 }
 
 TEST_F(Render, RunsAreRepeatable) {

@@ -5,7 +5,7 @@
 
 #include "host/base/input_error.h"
 #include "host/base/measure.h"
-#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
 namespace {
@@ -17,7 +17,6 @@ CoreRay core_ray(const MemoryImage& image, const Ray& ray, const RayQuery& query
   if (!query.source_ids.empty()) core.source_id = image.line_of(query.source_ids[number]);
   // Any hit before t_max ends the search if t_max is within any_hit_before.
   core.any_hit = !query.any_hit_before.empty() && query.any_hit_before[number] >= core.t_max;
-  core.no_cull = !query.culling;
   return core;
 }
 

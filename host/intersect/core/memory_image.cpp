@@ -95,11 +95,10 @@ class ImageWriter {
     image_.primitive_lines_.resize(bvh_.primitive_count(), MemoryImage::kNoTriangle);
     if (tree_.size() == 0) {
       image_.lines_[0] = NodeLine().line();
-      image_.depth_ = 1;
       return;
     }
     plan(tree_.root());
-    write_node(MemoryImage::kRoot, tree_.root(), 1);
+    write_node(MemoryImage::kRoot, tree_.root());
   }
 
  private:
@@ -177,7 +176,7 @@ class ImageWriter {
     }
   }
 
-  void write_node(std::uint32_t number, Ref ref, int depth) {
+  void write_node(std::uint32_t number, Ref ref) {
     NodeLine node;
     set_grid(bounds(ref), node);
     node.base = static_cast<std::uint32_t>(image_.lines_.size());
@@ -190,11 +189,10 @@ class ImageWriter {
     }
     image_.lines_[number] = node.line();
     image_.lines_.resize(image_.lines_.size() + size);
-    image_.depth_ = std::max(image_.depth_, depth);
     std::uint32_t next = node.base;
     for (std::size_t i = 0; i < refs.size(); ++i) {
       if (node.child[i].kind == NodeLine::kInner) {
-        write_node(next, refs[i], depth + 1);
+        write_node(next, refs[i]);
       } else {
         for (std::uint32_t k = 0; k < node.child[i].kind; ++k) {
           TriangleLine triangle;

@@ -118,15 +118,12 @@ class MemoryImage {
   }
   /// Returns the bytes of the memory, in the format of --dump-image: line n is at byte 64 n.
   [[nodiscard]] std::string_view bytes() const;
-  /// Returns the number of nodes on the longest path from the root to a leaf, from 1 to kMostDepth.
-  [[nodiscard]] int depth() const { return depth_; }
 
  private:
   friend class ImageWriter;
 
   std::vector<MemoryLine> lines_;
   std::vector<std::uint32_t> primitive_lines_;
-  int depth_ = 0;
 };
 
 }  // namespace raygate

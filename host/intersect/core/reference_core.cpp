@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "host/exact/ieee_floats.h"
 #include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {
 namespace {

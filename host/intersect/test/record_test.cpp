@@ -9,7 +9,7 @@
 #include "host/exact/test/meshes.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/polygon_record.h"
-#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
 namespace {

@@ -1,17 +1,24 @@
-// Interfaces of the pipelined hit-test unit (bursts in, nearest hits out) and of the paper's unit.
+// Hit-test units: the interfaces of the pipelined unit (bursts in, nearest hits out) and of the
+// paper's unit, and their reference models in C++, in any arithmetic.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <glm/glm.hpp>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "host/base/lanes.h"
+#include "host/exact/ieee_floats.h"
+#include "host/intersect/intersect_counters.h"
 #include "host/intersect/polygon_record.h"
 
 namespace raygate {
@@ -94,23 +101,6 @@ struct BurstResult {
 /// its tests, except that its kHit comes last.
 using BurstResults = std::vector<BurstResult>;
 
-/// Statistics of a unit since its construction. Clocks are 0 without simulation. Idle clocks and
-/// stalls are counted per lane of the hardware; together they are lanes * clocks - tests.
-struct BurstCounters {
-  std::uint64_t tests = 0;          ///< misses + hits + doubts
-  std::uint64_t misses = 0;         ///< sure misses
-  std::uint64_t hits = 0;           ///< sure hits, including near ties
-  std::uint64_t doubts = 0;         ///< neither sure hits nor sure misses
-  std::uint64_t near_ties = 0;      ///< sure hits reported as near ties
-  std::uint64_t distances = 0;      ///< divisions for t
-  std::uint64_t coordinates = 0;    ///< divisions for the coordinates of P
-  std::uint64_t clocks = 0;         ///< simulated clock cycles
-  std::uint64_t idle_clocks = 0;    ///< clocks without a test
-  std::uint64_t output_stalls = 0;  ///< clocks stalled by the consumer
-
-  friend bool operator==(const BurstCounters&, const BurstCounters&) = default;
-};
-
 /// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest
 /// even after each operation. Every implementation gives the same bits, for every bit pattern:
 ///
@@ -129,8 +119,10 @@ struct BurstCounters {
 /// their errors, the one that is not kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResult> {
  public:
-  /// Must not be called between start and finish.
-  [[nodiscard]] virtual BurstCounters counters() const = 0;
+  /// Returns statistics since construction, without `unit_tests` and `input_bytes`. Clocks are 0
+  /// without simulation; idle clocks and stalls are counted per lane of the hardware: together they
+  /// are lanes * clocks - tests. Must not be called between start and finish.
+  [[nodiscard]] virtual HitCounters counters() const = 0;
 };
 
 /// One test of the paper's unit (equation 10): its seven input words.
@@ -154,5 +146,195 @@ class PlaneUnit {
   /// Returns simulated clock cycles since construction; 0 without simulation.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
 };
+
+/// The unit's verdict on a single test.
+enum class UnitVerdict : std::uint8_t { kMiss, kHit, kDoubt };
+
+/// The distance of a hit. At most 2^(6 + error) numbers of the format separate it from the exact t.
+struct HitDistance {
+  float t = 0.0f;
+  std::uint32_t error = 0;
+};
+
+/// Implements BurstUnit in the format and rounding of `Math` (Binary32, or Arithmetic of
+/// host/variants): all floats of records, rays and results are numbers of that format, as are
+/// "floats" between two distances, and the limit of grazing is hit_test_pkg::max_grazing for it.
+/// Operations and their order are those of hit_test_pipeline with these parameters, so all bits are
+/// equal.
+template <typename Math>
+class BasicReferenceBurstUnit : public BurstUnit {
+ public:
+  explicit BasicReferenceBurstUnit(const Math& math = {}) : math_(math) {}
+
+  void finish(BurstResults& results) override {
+    const std::span<const RayBundle> batch = this->pop_started();
+    for (std::uint32_t i = 0; i < batch.size(); ++i) {
+      for (LaneMask lanes = batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
+        run_burst(batch[i], i, static_cast<std::uint32_t>(std::countr_zero(lanes)), results);
+      }
+    }
+  }
+
+  [[nodiscard]] HitCounters counters() const override { return counters_; }
+
+  /// Returns the verdict on one test, as in a batch.
+  [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction) const {
+    const float v = math_.dot(record.normal, direction);
+    const UnitVerdict decided = decide(record, direction, v);
+    if (decided != UnitVerdict::kHit) return decided;
+    return math_.is_normal(math_.divide(record.d, v)) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+  }
+
+  /// Returns the verdict of the edges alone; kHit if the triangle is hit provided that it is in
+  /// front of the origin (on the side of d's sign). If d is NaN, edges of opposite signs are a miss
+  /// and everything else is in doubt.
+  [[nodiscard]] UnitVerdict edges_verdict(const PolygonRecord& record,
+                                          const glm::vec3& direction) const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    if (record.d == 0.0f) return UnitVerdict::kMiss;
+    const bool side = std::signbit(record.d);
+    bool all_sure = !std::isnan(record.d), any_agrees = all_sure, any_differs = false;
+    for (int k = 0; k < 3; ++k) {
+      const float u = math_.dot(record.edges[k], direction);
+      const float bound = record.bounds[k];
+      const bool sure = !std::signbit(bound) && std::abs(u) > bound && std::abs(u) < kInfinity;
+      any_agrees |= sure && std::signbit(u) == side;
+      any_differs |= sure && std::signbit(u) != side;
+      if (any_agrees && any_differs) return UnitVerdict::kMiss;
+      all_sure = all_sure && sure;
+    }
+    return all_sure ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+  }
+
+  /// Returns BurstUnit's t and its error for a record that the ray surely hits.
+  [[nodiscard]] HitDistance distance(const PolygonRecord& record,
+                                     const glm::vec3& direction) const {
+    return distance(record, math_.dot(record.normal, direction));
+  }
+
+  /// Returns BurstUnit's P (equation 10); any NaN is 0x7FC00000.
+  [[nodiscard]] glm::vec3 point(const PolygonRecord& record, const glm::vec3& direction) const {
+    // The paper's accumulator starts from +0, which matters if V is a zero.
+    const float v = math_.add(0.0f, math_.dot(record.normal, direction));
+    glm::vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = math_.divide(math_.multiply(record.d, direction[k]), v);
+    return p;
+  }
+
+ private:
+  static constexpr int kTErrorUnit = 6;  // hit_test_pkg::TErrorUnit
+
+  /// Returns how far V's exponent is below the largest of N's.
+  [[nodiscard]] int grazing(const glm::vec3& n, float v) const {
+    return std::max(
+               {math_.exponent_field(n.x), math_.exponent_field(n.y), math_.exponent_field(n.z)}) -
+           math_.exponent_field(v);
+  }
+
+  /// Returns hit_test_pkg::max_grazing.
+  [[nodiscard]] int max_grazing() const { return std::max(math_.fraction_bits() - 11, 0); }
+
+  [[nodiscard]] HitDistance distance(const PolygonRecord& record, float v) const {
+    return {math_.divide(record.d, v),
+            static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
+  }
+
+  /// Returns the verdict before the division: from the edges and the range of V.
+  [[nodiscard]] UnitVerdict decide(const PolygonRecord& record, const glm::vec3& direction,
+                                   float v) const {
+    const UnitVerdict inside = edges_verdict(record, direction);
+    if (inside != UnitVerdict::kHit) return inside;
+    const bool divisible = math_.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
+                           grazing(record.normal, v) <= max_grazing();
+    return divisible ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+  }
+
+  /// Returns whether two positive distances differ by at most the sum of their errors.
+  [[nodiscard]] bool near_tie(const HitDistance& a, const BurstResult& b) const {
+    const std::int64_t margin = (std::int64_t{1} << (kTErrorUnit + a.error)) +
+                                (std::int64_t{1} << (kTErrorUnit + b.t_error));
+    return std::abs(static_cast<std::int64_t>(math_.to_word(a.t)) -
+                    static_cast<std::int64_t>(math_.to_word(b.t))) <= margin;
+  }
+
+  void run_burst(const RayBundle& bundle, std::uint32_t index, std::uint32_t lane,
+                 BurstResults& results) {
+    using Kind = BurstResult::Kind;
+    const glm::vec3 direction = bundle.lane_direction(static_cast<int>(lane));
+    BurstResult best{index, lane};
+    bool found = false;
+    for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
+      const PolygonRecord& record = bundle.records[i];
+      const float v = math_.dot(record.normal, direction);
+      UnitVerdict verdict = decide(record, direction, v);
+      HitDistance hit;
+      if (verdict == UnitVerdict::kHit) {
+        ++counters_.quotients;
+        hit = distance(record, v);
+        if (!math_.is_normal(hit.t)) verdict = UnitVerdict::kDoubt;
+      }
+      ++counters_.tests;
+      counters_.misses += verdict == UnitVerdict::kMiss;
+      counters_.hits += verdict == UnitVerdict::kHit;
+      counters_.edge_doubts += verdict == UnitVerdict::kDoubt;
+      if (verdict == UnitVerdict::kDoubt) results.push_back({index, lane, i, Kind::kDoubt});
+      if (verdict != UnitVerdict::kHit) continue;
+      const bool nearer = hit.t < best.t;
+      if (found && near_tie(hit, best)) {
+        ++counters_.depth_doubts;
+        results.push_back({index, lane, nearer ? best.record : i, Kind::kNearTie});
+      }
+      if (found && !nearer) continue;
+      best.record = i;
+      best.t = hit.t;
+      best.t_error = hit.error;
+      found = true;
+    }
+    if (!found) return;
+    best.point = point(bundle.records[best.record], direction);
+    ++counters_.plane_tests;
+    counters_.quotients += 3;
+    results.push_back(best);
+  }
+
+  Math math_;
+  HitCounters counters_;
+};
+
+/// The reference model in the host's float arithmetic.
+using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
+
+/// P and its error bound, as in NearestHit.
+struct UnitPoint {
+  glm::vec3 point;
+  float error;
+};
+
+/// Computes BasicReferenceBurstUnit::point in binary32, and its error bound.
+[[nodiscard]] inline UnitPoint plane_point(const PolygonRecord& record,
+                                           const glm::vec3& direction) {
+  const auto d = std::bit_cast<std::int32_t>(record.d),
+             v = std::bit_cast<std::int32_t>(Binary32::dot(record.normal, direction));
+  const std::int32_t error = point_error_of(d, v, grazing_of(largest_field(record.normal), v));
+  return {ReferenceBurstUnit().point(record, direction), std::bit_cast<float>(error)};
+}
+
+/// The reference model of the paper's unit; its points have the same bits as BurstUnit's.
+template <class Math>
+class BasicReferencePlaneUnit : public PlaneUnit {
+ public:
+  explicit BasicReferencePlaneUnit(const Math& math = {}) : math_(math) {}
+
+  void intersect(std::span<const PlaneTest> tests, std::span<glm::vec3> points) override {
+    std::ranges::transform(tests, points.begin(), [&](const PlaneTest& test) {
+      const PolygonRecord record{.normal = math_.read(test.normal), .d = math_.read(test.d)};
+      return BasicReferenceBurstUnit<Math>(math_).point(record, math_.read(test.direction));
+    });
+  }
+
+ private:
+  Math math_;
+};
+using ReferencePlaneUnit = BasicReferencePlaneUnit<Binary32>;
 
 }  // namespace raygate

@@ -7,8 +7,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "host/intersect/check_intersector.h"
-
 namespace raygate {
 namespace {
 
@@ -47,41 +45,7 @@ Interval distance_bounds(const PolygonRecord& record, const glm::vec3& direction
                                                    : std::numeric_limits<double>::infinity()};
 }
 
-std::string describe(const BurstResult& result) {
-  const std::string record = "record " + std::to_string(result.record);
-  if (result.kind == BurstResult::Kind::kDoubt) return "doubt of " + record;
-  if (result.kind == BurstResult::Kind::kNearTie) return "near tie of " + record;
-  const float words[] = {result.t, result.point.x, result.point.y, result.point.z};
-  return "nearest is " + record + ", t and P" + hex_words(words) + ", error of t " +
-         std::to_string(result.t_error);
-}
-
-bool earlier(const BurstResult& a, const BurstResult& b) {
-  return a.bundle != b.bundle ? a.bundle < b.bundle : a.lane < b.lane;
-}
-
 }  // namespace
-
-void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
-                  const BurstResults& expected) {
-  const auto [a, e] = std::ranges::mismatch(actual, expected);
-  const bool a_left = a != actual.end(), e_left = e != expected.end();
-  if (!a_left && !e_left) return;
-  // The burst that differs is that of the earlier result.
-  const BurstResult& culprit = !e_left || (a_left && earlier(*a, *e)) ? *a : *e;
-  const auto part = [&](bool left, auto result) {
-    return left && !earlier(culprit, *result) ? describe(*result) : std::string("nothing more");
-  };
-  const RayBundle& bundle = batch[culprit.bundle];
-  const glm::vec3 direction = bundle.lane_direction(static_cast<int>(culprit.lane));
-  std::string text = "the pipelined units differ: unit: " + part(a_left, a) +
-                     "; reference: " + part(e_left, e) + "; direction" +
-                     hex_words({&direction.x, 3});
-  for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
-    text += "; record " + std::to_string(i) + hex_words({&bundle.records[i].normal.x, 16});
-  }
-  throw EngineMismatch(text);
-}
 
 void PipelineHitTester::start(std::span<const RayBundle> batch) {
   HitTester::start(batch);
@@ -111,19 +75,10 @@ void PipelineHitTester::finish(HitReports& reports) {
 }
 
 HitCounters PipelineHitTester::counters() const {
-  const BurstCounters unit = unit_->counters();
-  return {.tests = unit.tests,
-          .misses = unit.misses,
-          .hits = unit.hits,
-          .edge_doubts = unit.doubts,
-          .depth_doubts = unit.near_ties,
-          .plane_tests = unit.coordinates / 3,
-          .unit_tests = unit.tests,
-          .quotients = unit.distances + unit.coordinates,
-          .input_bytes = unit.tests * sizeof(PolygonRecord),
-          .clocks = unit.clocks,
-          .idle_clocks = unit.idle_clocks,
-          .output_stalls = unit.output_stalls};
+  HitCounters counters = unit_->counters();
+  counters.unit_tests = counters.tests;
+  counters.input_bytes = counters.tests * sizeof(PolygonRecord);
+  return counters;
 }
 
 HitCounters SerialHitTester::counters() const {
@@ -150,7 +105,6 @@ void SerialHitTester::finish(HitReports& reports) {
       drop_farther(reports, first);
       first = reports.size();
     }
-    if (verdict == UnitVerdict::kMiss) continue;
     const RayBundle& bundle = batch[index];
     const PolygonRecord& record = bundle.records[number];
     const glm::vec3& direction = plane_tests_[i].direction;
@@ -178,7 +132,7 @@ void SerialHitTester::collect(std::uint32_t index, const RayBundle& bundle) {
       counters_.misses += verdict == UnitVerdict::kMiss;
       counters_.hits += verdict == UnitVerdict::kHit;
       counters_.edge_doubts += verdict == UnitVerdict::kDoubt;
-      if (verdict == UnitVerdict::kMiss && order_ == Order::kEdgesFirst) continue;
+      if (verdict == UnitVerdict::kMiss) continue;
       pairs_.push_back({index, static_cast<std::uint32_t>(lane), i, verdict});
       plane_tests_.push_back({direction, record.normal, record.d});
     }

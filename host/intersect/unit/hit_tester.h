@@ -8,7 +8,6 @@
 
 #include "host/intersect/intersector.h"
 #include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 
 namespace raygate {
 
@@ -53,17 +52,11 @@ class PipelineHitTester : public HitTester {
 };
 
 /// The paper's unit intersects a ray with a polygon's plane; software decides whether the point is
-/// inside the polygon and which hit is nearest, as in the paper.
+/// inside the polygon and which hit is nearest, as in the paper. Unlike there, pairs that the edge
+/// planes exclude are not sent to the unit, so a miss costs no clocks.
 class SerialHitTester : public HitTester {
  public:
-  /// Pairs that are sent to the unit.
-  enum class Order {
-    kEdgesFirst,   ///< pairs that the edge planes do not exclude: a miss costs no clocks
-    kPlanesFirst,  ///< all pairs, as in the paper
-  };
-
-  explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit, Order order = Order::kEdgesFirst)
-      : unit_(std::move(unit)), order_(order) {}
+  explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit) : unit_(std::move(unit)) {}
 
   void finish(HitReports& reports) override;
   [[nodiscard]] HitCounters counters() const override;
@@ -84,18 +77,11 @@ class SerialHitTester : public HitTester {
   void drop_farther(HitReports& reports, std::size_t first);
 
   std::unique_ptr<PlaneUnit> unit_;
-  Order order_;
   HitCounters counters_;
   // Reused for all batches.
   std::vector<Pair> pairs_;  // ordered by bundle, lane and record
   std::vector<PlaneTest> plane_tests_;
   std::vector<glm::vec3> points_;
 };
-
-/// Throws EngineMismatch at the first burst whose `actual` bits differ from those `expected`. The
-/// text can be replayed: the burst's direction, the 16 words of each record in hexadecimal, and the
-/// results of both units.
-void require_same(std::span<const RayBundle> batch, const BurstResults& actual,
-                  const BurstResults& expected);
 
 }  // namespace raygate

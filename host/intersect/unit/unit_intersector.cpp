@@ -77,7 +77,6 @@ void UnitIntersector::make_packets() {
     const int lane = filled[octant]++;
     packet.rays[lane] = number;
     packet.traversal.set_ray(lane, ray.origin, ray.direction);
-    packet.lanes |= 1u << lane;
     if (!query_.t_max.empty()) packet.traversal.set_cutoff(lane, query_.t_max[number]);
     if (filled[octant] == kLanes) open[octant] = kNone;
   }
@@ -85,18 +84,6 @@ void UnitIntersector::make_packets() {
   for (std::uint32_t index = 0; index < packets_.size(); ++index) {
     (index < packets_.size() / 2 ? halves_[0] : halves_[1]).active.push_back(index);
   }
-}
-
-LeafVisits UnitIntersector::next_leaf(Packet& packet) {
-  if (query_.culling) return packet.traversal.next_leaf();
-  const auto [placed, end] = bvh_.instance_primitives();
-  if (packet.next_primitive == bvh_.primitive_count()) packet.next_primitive = placed;
-  const std::uint32_t first = packet.next_primitive;
-  if (first == end) return {};
-  const std::uint32_t most = bvh_.is_instanced(first) ? end : bvh_.primitive_count();
-  const std::uint32_t count = std::min(Bvh::kMaxLeafSize, most - first);
-  packet.next_primitive += count;
-  return {{LeafVisit{first, count, packet.lanes}}, 1};
 }
 
 /// Fills the batch: advances every packet to its next leaf, repeatedly if there are too few tests.
@@ -135,7 +122,7 @@ std::size_t UnitIntersector::visit_leaves(Half& half) {
   std::size_t kept = 0, tests = 0;
   for (const std::uint32_t index : half.active) {
     Packet& packet = packets_[index];
-    const LeafVisits leaf = next_leaf(packet);
+    const LeafVisits leaf = packet.traversal.next_leaf();
     if (leaf.count == 0) continue;
     half.active[kept++] = index;
     for (const LeafVisit& visit : leaf) {

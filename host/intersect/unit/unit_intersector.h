@@ -34,9 +34,7 @@ class UnitIntersector : public Intersector {
 
     PacketTraversal traversal;
     std::array<std::uint32_t, kLanes> rays;  // ray indices; lanes without a ray repeat lane 0
-    LaneMask lanes = 0;
-    LaneMask ended = 0;                // rays ended early
-    std::uint32_t next_primitive = 0;  // without culling: the next primitive
+    LaneMask ended = 0;  // rays ended early
   };
 
   /// Half of the packets, with their batch.
@@ -49,7 +47,6 @@ class UnitIntersector : public Intersector {
   };
 
   void make_packets();
-  LeafVisits next_leaf(Packet& packet);
   void collect(Half& half);
   std::size_t visit_leaves(Half& half);
   void make_records_of(Half& half);

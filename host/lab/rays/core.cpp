@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/intersector.h"
 #include "host/lab/lab.h"
 #include "host/lab/rays/rays.h"
 #include "host/light/lights.h"

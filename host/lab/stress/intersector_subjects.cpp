@@ -10,7 +10,6 @@
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/stress/subjects.h"
 #include "host/variants/variant_hit_tester.h"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/test/same_results.h"
 #include "host/lab/lab.h"
 #include "host/lab/variants/variant_models.h"
 #include "host/variants/variant_hit_tester.h"
@@ -197,7 +198,7 @@ class VariantBursts {
 /// Result of a comparison.
 struct VariantCheck {
   std::uint64_t tests = 0;  // hit tests through unit and model
-  BurstCounters events;     // of the pipelined unit, which show what the sample covers
+  HitCounters events;     // of the pipelined unit, which show what the sample covers
   std::uint64_t clocks = 0;
   std::string difference = "none";  // the first one, with its inputs
 };
@@ -225,8 +226,8 @@ VariantCheck check_pipeline(const Variant& variant, BurstUnit& rtl, std::uint64_
       check.difference = error.what();
     }
   }
-  const auto events = [](const BurstCounters& c) {
-    return std::array{c.tests, c.misses, c.hits, c.doubts, c.near_ties};
+  const auto events = [](const HitCounters& c) {
+    return std::array{c.tests, c.misses, c.hits, c.edge_doubts, c.depth_doubts};
   };
   check.events = model.counters();
   check.clocks = rtl.counters().clocks;
@@ -314,8 +315,8 @@ void lab::add_check(CLI::App& lab) {
              {"tests", check.tests},
              {"misses", check.events.misses},
              {"hits", check.events.hits},
-             {"doubts", check.events.doubts},
-             {"near_ties", check.events.near_ties},
+             {"doubts", check.events.edge_doubts},
+             {"near_ties", check.events.depth_doubts},
              {"clocks", check.clocks},
              {"seed", options->seed},
              {"difference", check.difference}});

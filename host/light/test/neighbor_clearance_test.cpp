@@ -34,7 +34,9 @@ double distance(const glm::dvec3& x, const Corners& t) {
 }
 
 bool is_near(const Overlaps& overlaps, const glm::vec3& point, float reach) {
-  return overlaps.any_near(point, reach, [](std::uint32_t) { return true; });
+  return std::ranges::any_of(overlaps, [&](const Overlap& overlap) {
+    return overlap.touches(point - reach, point + reach);
+  });
 }
 
 /// A distance from x in which the overlaps is not; 0 where there is none.

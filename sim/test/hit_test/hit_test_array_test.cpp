@@ -7,6 +7,7 @@
 
 #include "Vhit_test_array_2.h"
 #include "host/intersect/unit/hit_tester.h"
+#include "host/intersect/unit/test/same_results.h"
 #include "sim/array_model.h"
 #include "sim/random_bursts.h"
 

@@ -6,8 +6,9 @@
 #include <string>
 #include <tuple>
 
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/test/same_results.h"
 #include "sim/random_bursts.h"
 #include "sim/rtl_units.h"
 
@@ -21,14 +22,14 @@ std::uint64_t tests_wanted(int lanes) {
   return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : lanes == 1 ? 1'000'000 : 100'000;
 }
 
-void expect_same_events(const BurstCounters& rtl, const BurstCounters& cpu) {
+void expect_same_events(const HitCounters& rtl, const HitCounters& cpu) {
   EXPECT_EQ(rtl.tests, cpu.tests);
   EXPECT_EQ(rtl.misses, cpu.misses);
   EXPECT_EQ(rtl.hits, cpu.hits);
-  EXPECT_EQ(rtl.doubts, cpu.doubts);
-  EXPECT_EQ(rtl.near_ties, cpu.near_ties);
-  EXPECT_EQ(rtl.distances, cpu.distances);
-  EXPECT_EQ(rtl.coordinates, cpu.coordinates);
+  EXPECT_EQ(rtl.edge_doubts, cpu.edge_doubts);
+  EXPECT_EQ(rtl.depth_doubts, cpu.depth_doubts);
+  EXPECT_EQ(rtl.plane_tests, cpu.plane_tests);
+  EXPECT_EQ(rtl.quotients, cpu.quotients);
 }
 
 class RtlBurstUnitTest : public testing::TestWithParam<std::tuple<Arith, int>> {};
@@ -42,7 +43,7 @@ TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
   RandomBursts random(seed);
   std::mt19937_64 size(seed);
   ReferenceBurstUnit cpu;
-  BurstCounters rtl_total;
+  HitCounters rtl_total;
   std::uint64_t done = 0;
   const std::uint64_t wanted = tests_wanted(lanes);
   // None, either, both, and so heavy that the unit mostly waits.
@@ -72,23 +73,16 @@ TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
       }
     }
     while (!started.empty()) ASSERT_NO_THROW(finish());
-    const BurstCounters counters = rtl.counters();
-    rtl_total.tests += counters.tests;
-    rtl_total.misses += counters.misses;
-    rtl_total.hits += counters.hits;
-    rtl_total.doubts += counters.doubts;
-    rtl_total.near_ties += counters.near_ties;
-    rtl_total.distances += counters.distances;
-    rtl_total.coordinates += counters.coordinates;
+    rtl_total += rtl.counters();
   }
   expect_same_events(rtl_total, cpu.counters());
   EXPECT_EQ(cpu.counters().tests, done);
   // The batches have something of everything.
   EXPECT_GT(cpu.counters().misses, done / 20);
   EXPECT_GT(cpu.counters().hits, done / 20);
-  EXPECT_GT(cpu.counters().doubts, done / 20);
-  EXPECT_GT(cpu.counters().near_ties, done / 1000);
-  EXPECT_GT(cpu.counters().distances, cpu.counters().hits);
+  EXPECT_GT(cpu.counters().edge_doubts, done / 20);
+  EXPECT_GT(cpu.counters().depth_doubts, done / 1000);
+  EXPECT_GT(cpu.counters().quotients, cpu.counters().hits);
 }
 
 std::string name(const testing::TestParamInfo<std::tuple<Arith, int>>& info) {

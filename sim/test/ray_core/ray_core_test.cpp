@@ -9,12 +9,12 @@
 
 #include "Vray_core_shared.h"
 #include "Vray_core_small.h"
-#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/intersector.h"
 #include "sim/core_model.h"
 #include "sim/rtl_core.h"
 
@@ -182,13 +182,6 @@ TEST_P(EachRayCoreTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
   const std::uint64_t triangles = counters_.triangles;
   check(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = enough}, core());
   EXPECT_LT(counters_.triangles, triangles);
-}
-
-TEST_P(EachRayCoreTest, WithoutCullingEveryTriangleIsTested) {
-  const std::vector<Ray> rays = some_rays(bodies(), random_, 70);
-  std::vector<RayWork> work(rays.size());
-  check(rays, {.culling = false, .work = work}, core());
-  for (const RayWork& ray : work) EXPECT_EQ(ray.tests, bvh_.primitive_count());
 }
 
 /// A line that was read ahead may come when the last ray has ended; the core tells, or CoreModel

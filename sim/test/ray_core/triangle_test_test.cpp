@@ -12,7 +12,7 @@
 #include "Vtriangle_test_11.h"
 #include "host/intersect/core/linked_core.h"
 #include "host/intersect/core/reference_core.h"
-#include "host/intersect/unit/reference_burst_unit.h"
+#include "host/intersect/unit/burst_unit.h"
 #include "sim/model.h"
 #include "sim/test/hit_test/float_stream.h"
 

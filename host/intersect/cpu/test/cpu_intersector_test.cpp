@@ -147,7 +147,6 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
       }
       hits += compare(bvh, rays, {});
       hits += compare(bvh, rays, {.t_max = limits});
-      if (!GetParam()) hits += compare(bvh, rays, {.t_max = limits, .culling = false});
       hits += compare(bvh, rays, {.t_max = limits, .skip_ids = ignored});
       hits += compare(bvh, rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = limits});
     }

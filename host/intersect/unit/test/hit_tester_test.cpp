@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/check_intersector.h"
+#include "host/intersect/unit/test/same_results.h"
 #include "host/scene/camera.h"
 
 namespace raygate {
@@ -154,26 +154,6 @@ TEST(PipelineHitTester, HasThePointsOfTheSerialUnit) {
   EXPECT_GT(compared, 1000u);
 }
 
-// The paper's order asks the unit about every pair and reports the same, bit for bit.
-TEST(SerialHitTester, BothOrdersReportTheSame) {
-  Random random;
-  const Batch batch(random, 2000);
-  SerialHitTester first(std::make_unique<ReferencePlaneUnit>());
-  SerialHitTester paper(std::make_unique<ReferencePlaneUnit>(),
-                        SerialHitTester::Order::kPlanesFirst);
-  HitReports a, b;
-  first.run(batch.bundles, a);
-  paper.run(batch.bundles, b);
-  ASSERT_GT(a.size(), 0u);
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(key_of(a[i]), key_of(b[i]));
-    EXPECT_EQ(a[i].is_sure, b[i].is_sure);
-    EXPECT_EQ(std::memcmp(&a[i].hit.point, &b[i].hit.point, sizeof(glm::vec3)), 0);
-  }
-  EXPECT_EQ(paper.counters().plane_tests, paper.counters().tests);
-}
-
 TEST(SerialHitTester, ThePlaneOfTheOriginIsAMissAndAnEmptyRunNothing) {
   const PolygonRecord record =
       make_record(glm::vec3(0), {glm::vec3(-1, 0, 1), glm::vec3(1, 0, 1), glm::vec3(0, 0, 3)});
@@ -197,7 +177,7 @@ class WildUnit : public BurstUnit {
  public:
   explicit WildUnit(const BurstResult& result) : result_(result) {}
   void finish(BurstResults& results) override { results = {result_}; }
-  [[nodiscard]] BurstCounters counters() const override { return {}; }
+  [[nodiscard]] HitCounters counters() const override { return {}; }
 
  private:
   BurstResult result_;

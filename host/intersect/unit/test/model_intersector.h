@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/reference_burst_unit.h"
 #include "host/intersect/unit/unit_intersector.h"
 
 namespace raygate::test {

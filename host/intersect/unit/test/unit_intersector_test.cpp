@@ -62,21 +62,16 @@ TEST_F(UnitIntersectorTest, OwnOriginsFindTheExactNearest) {
   EXPECT_GT(intersector_->counters().records, 0u);
 }
 
-TEST_F(UnitIntersectorTest, WithoutCullingEveryPolygonIsTestedForTheSame) {
+TEST_F(UnitIntersectorTest, TheWorkOfEachRayIsCounted) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 300);
   std::vector<RayWork> work(rays.size());
-  const auto culled = find(rays, {.work = work});
+  (void)find(rays, {.work = work});
   std::uint64_t tests = 0;
   for (const RayWork& ray : work) {
     EXPECT_LT(ray.tests, mesh_.size() / 2);
     tests += ray.tests;
   }
   EXPECT_EQ(tests, intersector_->counters().hit.tests);
-  const auto all = find(rays, {.culling = false, .work = work});
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    ASSERT_EQ(all[i].primitive, culled[i].primitive);
-    ASSERT_EQ(work[i].tests, mesh_.size());
-  }
 }
 
 // Rays that may end at any hit before some t end there whenever there is one; the others find their
