@@ -193,8 +193,7 @@ class OptionTable {
   void names(const std::string& names, const std::string& help, T& target,
              const Choices<bool T::*>& choices) {
     const std::vector<std::string> words = names_of(choices, {"all"});
-    add(
-        names, "NAMES", help + listed(words),
+    add(names, "NAMES", help + listed(words),
         "some of " + listed(words, ", ") + " with commas between",
         [&target, choices, words](const std::string& text) {
           target = {};

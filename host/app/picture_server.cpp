@@ -241,8 +241,7 @@ class PictureServer {
     if (!image_) image_ = make_memory_image(options, bvh);
     RenderStats stats;
     const Film film = render({scene_.prepared, framing.camera, options.render, framing.lights},
-                             make_intersector_factory(options, bvh, image_),
-                             stats, monitor);
+                             make_intersector_factory(options, bvh, image_), stats, monitor);
     if (stats.cancelled) return {.body = "cancelled\n"};
     const auto& channels = options.output.false_colors;
     const HitCounters& hit = stats.intersect.hit;

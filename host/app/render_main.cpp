@@ -162,8 +162,7 @@ void run(const Options& options) {
   const RenderJob job{prepared, framing.camera, settings, framing.lights,
                       unfinished ? &*unfinished : nullptr};
   const Film film = render_monitored(options, job, metadata,
-                                     make_intersector_factory(options, bvh, image),
-                                     report.render);
+                                     make_intersector_factory(options, bvh, image), report.render);
 
   // All files are staged before the first takes its name: a full disk changes none of them.
   lap.lap();

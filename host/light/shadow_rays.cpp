@@ -42,11 +42,9 @@ ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
       intersector_(intersector),
       spawner_(prepared.clearances),
       through_refraction_(through_refraction),
-      any_clear_(std::ranges::any_of(materials_,
-                                     [](const MaterialParameters& material) {
-                                       return material.has_mask ||
-                                              (material.kind & kTransmits) != 0;
-                                     })) {}
+      any_clear_(std::ranges::any_of(materials_, [](const MaterialParameters& material) {
+        return material.has_mask || (material.kind & kTransmits) != 0;
+      })) {}
 
 void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced) {
   traced_ = traced ? &traced : nullptr;
@@ -151,10 +149,8 @@ void ShadowRays::trace(std::span<const ShadowRay> rays, bool from_light, float e
       sources_[i] = leaves ? segment.source : NearestHit::kNone;
     }
   }
-  RayQuery search{.common_origin = from_light,
-                  .t_max = limits_,
-                  .source_ids = sources_,
-                  .skip_ids = ignored_};
+  RayQuery search{
+      .common_origin = from_light, .t_max = limits_, .source_ids = sources_, .skip_ids = ignored_};
   if (!any_clear_) search.any_hit_before = enough_;  // any occluder ends the search
   work_.resize(traced_ != nullptr ? batch_.size() : 0);
   search.work = work_;

@@ -384,10 +384,9 @@ TEST(OutputOptions, LightByName) {
     EXPECT_EQ(parse({"a.obj", "--engine", engine}).render.samples, 4) << "whatever the engine";
   }
   EXPECT_EQ(parse({"a.obj", "--engine", "cpu", "--spp", "1"}).render.samples, 1);
-  const RenderSettings path =
-      parse({"a.obj", "--integrator", "path", "--spp", "16", "--filter", "tent", "--threshold",
-             "0.5", "--ambient", "0"})
-          .render;
+  const RenderSettings path = parse({"a.obj", "--integrator", "path", "--spp", "16", "--filter",
+                                     "tent", "--threshold", "0.5", "--ambient", "0"})
+                                  .render;
   EXPECT_EQ(path.integrator, IntegratorKind::kPath);
   EXPECT_EQ(path.depth(), 64);
   EXPECT_EQ(path.samples, 16);

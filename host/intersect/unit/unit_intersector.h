@@ -34,7 +34,7 @@ class UnitIntersector : public Intersector {
 
     PacketTraversal traversal;
     std::array<std::uint32_t, kLanes> rays;  // ray indices; lanes without a ray repeat lane 0
-    LaneMask ended = 0;  // rays ended early
+    LaneMask ended = 0;                      // rays ended early
   };
 
   /// Half of the packets, with their batch.
