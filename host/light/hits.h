@@ -38,12 +38,20 @@ struct alignas(16) PathState {
   std::uint32_t sample = 0;      ///< index of the radiance, in ShadingOutput, that the path adds to
   std::uint32_t stream = 0;      ///< stream of random numbers, different for each path
   std::uint32_t index = 0;       ///< index of the path's points in such streams
-  /// 1 for the path's first ray, also behind holes and clear surfaces; 0 for all others.
-  std::uint32_t first = 1;
+  /// The mirrors and smooth glass that the path has met, as a code below kSpecularHistories: 1 for
+  /// the first ray, and from h to 2 h by a mirror, 2 h + 1 by glass. 0: more than four, or another
+  /// surface among them.
+  std::uint32_t specular_history = 1;
   /// Density of light paths over that of camera paths for the path so far, or on light paths the
   /// inverse (see LightPaths); 0: only one kind of path exists here.
   float light_over_camera_pdf = 0.0f;
+  /// Bit mask of specular histories at which emission is omitted because EmitterSupersampler adds
+  /// it. For that class's own rays: the histories to follow.
+  std::uint32_t supersampled = 0;
 };
+
+/// Codes of specular histories of at most four bounces are below this.
+inline constexpr std::uint32_t kSpecularHistories = 32;
 
 /// Rays of the same depth.
 struct RayBatch {
@@ -106,8 +114,9 @@ struct PathLanes {
   Triple<T> throughput;
   T pdf;
   Triple<T> scattered_at, normal;
-  WordOf<T> sample, stream, index, first;
+  WordOf<T> sample, stream, index, specular_history;
   T light_over_camera_pdf;
+  WordOf<T> supersampled;
 
   PathLanes() = default;
   RAYGATE_INLINE explicit PathLanes(const PathState* const (&states)[kLanesOf<T>]) {
@@ -118,11 +127,20 @@ struct PathLanes {
       member = __builtin_bit_cast(std::remove_reference_t<decltype(member)>, *word++);
     });
   }
+  /// Returns where the ray is its path's first.
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return specular_history == 1u; }
+  /// Return the histories after reflection in a mirror and after refraction by glass.
+  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
+  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
+  /// Returns whether `mask` contains the history. Its histories are below kSpecularHistories.
+  [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& mask,
+                                                    const WordOf<T>& history) {
+    return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
+  }
   /// Stores the words of the records.
   RAYGATE_INLINE void put(T* word) const {
     for_each_word(*this, [&](const auto& member) RAYGATE_BODY { *word++ = float_of(member); });
   }
-  [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return first != 0u; }
 
  private:
   /// Calls visit(member) for each word of PathState, in its order.
@@ -133,7 +151,11 @@ struct PathLanes {
     const auto visit_all = [&](auto&... members) RAYGATE_BODY { (visit(members), ...); };
     visit_all(p.throughput.x, p.throughput.y, p.throughput.z, p.pdf, p.scattered_at.x,
               p.scattered_at.y, p.scattered_at.z, p.normal.x, p.normal.y, p.normal.z, p.sample,
-              p.stream, p.index, p.first, p.light_over_camera_pdf);
+              p.stream, p.index, p.specular_history, p.light_over_camera_pdf, p.supersampled);
+  }
+  [[nodiscard]] RAYGATE_INLINE WordOf<T> after_specular(std::uint32_t step) const {
+    const auto has_next = (specular_history > 0u) & (specular_history < kSpecularHistories / 2);
+    return choose(has_next, 2u * specular_history + step, WordOf<T>{});
   }
 };
 
@@ -235,6 +257,18 @@ struct Hits {
     return bsdf.has_rough_glass() ? zero<T>() : surface.normal;
   }
 
+  /// Returns whether EmitterSupersampler adds the emission of the hit.
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
+    const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
+    const auto are_wanted = PathLanes<T>::has(path.supersampled, path.specular_history);
+    return are_even & are_wanted;
+  }
+  /// Returns the emission, without that added by EmitterSupersampler.
+  [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
+    if ((kind & kEmits) == 0) return bsdf.emission();
+    return choose(are_supersampled(), zero<T>(), bsdf.emission());
+  }
+
   /// Returns a point of the path's random stream for this purpose.
   [[nodiscard]] RAYGATE_INLINE SquarePoint<T> random(std::uint32_t purpose) const {
     return sobol_point<T>(path.index, hash(path.stream, purpose));
@@ -291,7 +325,7 @@ struct ScatteredRays {
     flat = reflect(hits.surface.view, hits.surface.flat_normal);
     has_flat = T{} == 0.0f;
     is_transmitted = !has_flat;
-    path.first = WordOf<T>{};
+    path.specular_history = hits.path.after_mirror();
   }
   /// Sets the directions to those through the surface: refracted at `normal` if the material
   /// refracts, otherwise straight on. Returns where such a direction exists.
@@ -305,7 +339,7 @@ struct ScatteredRays {
     flat = choose(is_bent, flat_bent.direction, -surface.view);
     has_flat = (!is_bent) | flat_bent.exists;
     is_transmitted = T{} == 0.0f;
-    path.first = choose(is_bent, WordOf<T>{}, hits.path.first);
+    path.specular_history = choose(is_bent, hits.path.after_glass(), hits.path.specular_history);
     return (!is_bent) | bent.exists;
   }
 

@@ -25,12 +25,21 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
     const bool is_seen = (hits.kind & kShadowCatcher) == 0;
     const Triple<T> colour = is_seen ? hits.surface.colour : zero<T>();
     const auto are_holes = gather<T>(hits.materials, &MaterialParameters::is_hole);
-    hits.set_radiance(choose(are_holes, zero<T>(), colour * facing + hits.bsdf.emission()));
+    hits.set_radiance(choose(are_holes, zero<T>(), colour * facing + hits.emission()));
     if (!any(are_holes)) return;
     ScatteredRays<T> next(hits);
     next.is_wanted = are_holes & next.pass_through(hits, hits.surface.normal);
     next.send(hits, 0);
   });
+}
+
+/// Returns the depth of the last rays. Rays of kEmitters go one deeper than the limit, as paths do,
+/// those of Whitted do not, and those of kPrimary end at the first surface.
+int last_depth(IntegratorKind kind, const IntegratorSettings& settings) {
+  if (kind == IntegratorKind::kPrimary) return 0;
+  const int depth = settings.integrator == IntegratorKind::kPrimary ? 0 : settings.depth();
+  const bool is_path = settings.integrator == IntegratorKind::kPath;
+  return kind == IntegratorKind::kEmitters && !is_path ? depth - 1 : depth;
 }
 
 }  // namespace
@@ -45,14 +54,15 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
                .ambient = is_path()          ? lights.background()
                           : settings.ambient ? glm::vec3(static_cast<float>(*settings.ambient))
                                              : glm::vec3(lights.ambient()),
-               .max_depth = kind == IntegratorKind::kPrimary ? 0 : settings.depth(),
+               .max_depth = last_depth(kind, settings),
                .light_paths = light_paths},
       spawner_(prepared.clearances),
       materials_(prepared.materials),
       has_masks_(std::ranges::any_of(materials_, &MaterialParameters::has_mask)) {
   const bool is_whitted = kind == IntegratorKind::kWhitted;
+  const bool splits = is_whitted || kind == IntegratorKind::kEmitters;
   block_.light_samples_per_hit = is_whitted ? lights.count() : is_path() ? 1 : 0;
-  block_.scattered_per_hit = is_whitted ? 2 : is_path() || has_masks_ ? 1 : 0;
+  block_.scattered_per_hit = splits ? 2 : is_path() || has_masks_ ? 1 : 0;
   block_size_ = std::clamp<std::size_t>(
       kMostLightSamples / std::max<std::size_t>(1, block_.light_samples_per_hit), 1, kMostHits);
   block_.places.resize(block_size_);
@@ -73,10 +83,11 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
     for (ScatteredRay& scattered : block_.scattered_of(i)) scattered.is_wanted = 0;
   }
   sort(hits, count, output);
-  ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary   ? shade_primary
-                                    : kind_ == IntegratorKind::kWhitted ? shade_whitted
-                                    : kind_ == IntegratorKind::kLight   ? shade_light_path
-                                                                        : shade_path;
+  ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary    ? shade_primary
+                                    : kind_ == IntegratorKind::kWhitted  ? shade_whitted
+                                    : kind_ == IntegratorKind::kLight    ? shade_light_path
+                                    : kind_ == IntegratorKind::kEmitters ? shade_emitters
+                                                                         : shade_path;
   for (HitKind kind = 0; kind < kHitKinds; ++kind) {
     const std::span<const std::uint32_t> at(order_.data() + first_[kind],
                                             first_[kind + 1] - first_[kind]);

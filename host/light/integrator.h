@@ -24,8 +24,8 @@ namespace raygate {
 /// own rays.
 class Integrator {
  public:
-  /// The references must outlive this object. `kind` may differ from that of `settings`
-  /// (kLight). `light_paths` are combined with kPath and kLight; may be null.
+  /// The references must outlive this object. `kind` may differ from that of `settings` (kLight,
+  /// kEmitters). `light_paths` are combined with kPath and kLight; may be null.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
              const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;

@@ -10,7 +10,9 @@ enum class IntegratorKind {
   kPrimary,  ///< camera rays only, lit from the camera: diffuse colour times cosine, plus emission
   kWhitted,  ///< reflection, refraction and shadows, as in the paper
   kPath,     ///< full global illumination: Monte Carlo path tracing
-  kLight,    ///< internal, not selectable by users: paths from the lights to the camera
+  // Internal, not selectable by users:
+  kLight,     ///< paths from the lights to the camera
+  kEmitters,  ///< emitters that the camera sees: directly, in mirrors and through glass
 };
 
 /// The default relative error of the hit-test unit's P above which the host computes the point.

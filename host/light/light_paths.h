@@ -18,7 +18,8 @@ namespace raygate {
 /// returns the density of light paths that start there and go against the path's ray.
 template <class Density>
 RAYGATE_INLINE float caustic_weight(const PathState& state, const Density& density) {
-  if (!(state.light_over_camera_pdf > 0.0f) || state.pdf > 0.0f || state.first != 0) return 1.0f;
+  if (!(state.light_over_camera_pdf > 0.0f) || state.pdf > 0.0f || state.specular_history == 1)
+    return 1.0f;
   const float ratio = state.light_over_camera_pdf * density();
   return 1.0f / (1.0f + ratio * ratio);
 }

@@ -32,16 +32,15 @@ std::vector<std::uint32_t> emitting_primitives(const Scene& scene, const Bvh& bv
   return primitives;
 }
 
-double area_of(const Corners& corners) { return 0.5 * glm::length(triangle_normal(corners)); }
-
-/// Returns the ambient radiance: the reflected part F r / (1 - r) of the lights' flux F from one
+/// Returns the ambient radiance: the reflected part F r / (1 - r) of the lights' flux from one
 /// side, over pi times the total area. r is the mean reflectance.
-glm::dvec3 guessed_ambient(const Scene& scene, const glm::dvec3& flux) {
-  if (flux == glm::dvec3(0.0)) return flux;
-  glm::dvec3 reflecting(0.0);
+glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lights) {
+  glm::dvec3 flux(0.0), reflecting(0.0);
   double area = 0.0;
+  for (const AreaLight& light : lights) flux += std::numbers::pi * light.area() * light.radiance;
+  if (flux == glm::dvec3(0.0)) return flux;
   for_each_face(scene, [&](const Corners& corners, const Triangle& face) {
-    const double own = area_of(corners);
+    const double own = 0.5 * glm::length(triangle_normal(corners));
     area += own;
     reflecting += own * glm::dvec3(scene.materials[face.material].diffuse);
   });
@@ -124,11 +123,14 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     record.spot_scale = static_cast<float>(slope);
     record.spot_offset = static_cast<float>(-outer * slope);
   }
-  const std::vector<AreaLight> areas = find_areas();
-  glm::dvec3 flux(0.0);
-  for (const AreaLight& light : areas) {
-    add_area(light, unit);
-    flux += std::numbers::pi * light.area * light.radiance;
+  find_areas();
+  for (const AreaLight& light : areas_) {
+    Light& record = lights_.emplace_back();
+    record.kind = Kind::kArea;
+    record.emission = finite_floats(light.radiance);
+    record.is_textured = light.is_textured;
+    record.area = finite_float(light.area() / unit / unit);
+    add_patches(light, record);
   }
   for (const DirectionalLight& light : scene.directional_lights) {
     Light& record = lights_.emplace_back();
@@ -141,10 +143,10 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     lights_.emplace_back().kind = Kind::kEnvironment;
   }
   if (sampling == Sampling::kOne) {
-    add_sources(areas, unit);
+    add_sources(unit);
   } else {
     ambient_ =
-        background() != glm::vec3(0.0f) ? glm::dvec3(background()) : guessed_ambient(scene, flux);
+        background() != glm::vec3(0.0f) ? glm::dvec3(background()) : guessed_ambient(scene, areas_);
   }
 }
 
@@ -163,59 +165,58 @@ glm::vec3 Lights::textured_radiance(std::uint32_t primitive, const glm::vec3& po
 }
 
 /// Groups the emissive triangles into area lights.
-std::vector<Lights::AreaLight> Lights::find_areas() const {
-  std::vector<AreaLight> areas;
+void Lights::find_areas() {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
   for (const std::uint32_t primitive : emitting_primitives(scene_, bvh_)) {
     const Triangle& face = scene_.triangles[bvh_.triangle_of(primitive)];
-    const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas.size());
+    const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas_.size());
     if (is_new) {
+      areas_.emplace_back();
       const Material& material = scene_.materials[face.material];
-      areas.push_back({.radiance = mean_emission(scene_, material),
-                       .is_textured = material.emission_map.texture != kNoIndex});
+      areas_.back().radiance = mean_emission(scene_, material);
+      areas_.back().is_textured = material.emission_map.texture != kNoIndex;
     }
-    AreaLight& light = areas[at->second];
-    light.area += area_of(bvh_.corners_of(primitive));
+    AreaLight& light = areas_[at->second];
+    const Corners corners = bvh_.corners_of(primitive);
+    if (is_new) light.low = light.high = corners[0];
+    for (const glm::vec3& corner : corners) {
+      light.low = glm::min(light.low, corner);
+      light.high = glm::max(light.high, corner);
+    }
+    const double area = 0.5 * glm::length(triangle_normal(corners));
+    light.area_up_to.push_back((light.primitives.empty() ? 0.0 : light.area()) + area);
     light.primitives.push_back(primitive);
   }
-  return areas;
 }
 
-/// Adds a light with its patches. Two successive triangles that form a parallelogram become one
+/// Adds the patches of a light. Two successive triangles that form a parallelogram become one
 /// patch, onto which the unit square is mapped without a kink.
-void Lights::add_area(const AreaLight& light, double unit) {
-  Light& record = lights_.emplace_back();
-  record.kind = Kind::kArea;
-  record.emission = finite_floats(light.radiance);
-  record.is_textured = light.is_textured;
-  record.area = finite_float(light.area / unit / unit);
+void Lights::add_patches(const AreaLight& light, Light& record) {
   record.first_patch = static_cast<std::uint32_t>(patches_.size());
   double before = 0.0;
   for (std::size_t i = 0; i < light.primitives.size(); ++i) {
     const Corners t = bvh_.corners_of(light.primitives[i]);
-    double end = before + area_of(t);
     Patch patch;
     patch.primitive = patch.primitive_beyond = light.primitives[i];
-    patch.begin = static_cast<float>(before / light.area);
+    patch.begin = static_cast<float>(before / light.area());
     patch.normal = glm::vec3(glm::normalize(triangle_normal(t)));
     patch.corner = t[0];
     patch.u = t[1] - t[0];
     patch.v = t[2] - t[0];
     if (i + 1 < light.primitives.size()) {
-      const Corners next = bvh_.corners_of(light.primitives[i + 1]);
-      if (const auto sides = parallelogram(t, next)) {
+      const auto sides = parallelogram(t, bvh_.corners_of(light.primitives[i + 1]));
+      if (sides) {
         ++i;
         patch.is_triangle = false;
         patch.corner = sides->corner;
         patch.u = sides->u;
         patch.v = sides->v;
         patch.primitive_beyond = light.primitives[i];
-        end += area_of(next);
       }
     }
-    patch.end = static_cast<float>(end / light.area);
-    patch.area = end - before;
-    before = end;
+    patch.end = static_cast<float>(light.area_up_to[i] / light.area());
+    patch.area = light.area_up_to[i] - before;
+    before = light.area_up_to[i];
     patches_.push_back(patch);
     patch_ends_.push_back(patch.end);
     ++record.patches;
@@ -242,7 +243,7 @@ LightBounds Lights::light_bounds(const Patch& patch, const AreaLight& light, dou
 }
 
 /// Adds the sources: each patch of area lights, and each other light.
-void Lights::add_sources(const std::vector<AreaLight>& areas, double unit) {
+void Lights::add_sources(double unit) {
   std::vector<LightBounds> sources;
   std::uint32_t number = 0;
   const auto add = [&](const LightBounds& source, std::uint32_t patch = kNoIndex,
@@ -254,8 +255,8 @@ void Lights::add_sources(const std::vector<AreaLight>& areas, double unit) {
     add(raygate::light_bounds(light, unit));
     ++number;
   }
-  if (!areas.empty()) source_of_primitive_.assign(bvh_.primitive_count(), kNoIndex);
-  for (const AreaLight& light : areas) {
+  if (!areas_.empty()) source_of_primitive_.assign(bvh_.primitive_count(), kNoIndex);
+  for (const AreaLight& light : areas_) {
     const std::vector<OuterSide> sides = outer_sides(bvh_, light.primitives);
     const std::uint32_t first = lights_[number].first_patch;
     std::size_t triangle = 0;

@@ -68,6 +68,18 @@ enum class OuterSide : std::uint8_t {
 [[nodiscard]] std::vector<OuterSide> outer_sides(const Bvh& bvh,
                                                  std::span<const std::uint32_t> primitives);
 
+/// The emitting faces of one object and material: one light that emits from both sides of each
+/// face.
+struct AreaLight {
+  std::vector<std::uint32_t> primitives;
+  std::vector<double> area_up_to;   ///< cumulative area, by primitive
+  glm::vec3 low{0.0f}, high{0.0f};  ///< bounds
+  glm::dvec3 radiance{0.0};         ///< mean
+  bool is_textured = false;
+
+  [[nodiscard]] double area() const { return area_up_to.back(); }
+};
+
 /// A point of a light in each lane.
 template <class T>
 struct LightPoint {
@@ -91,6 +103,7 @@ class Lights {
          const std::optional<CameraLights>& camera_lights = {});
 
   [[nodiscard]] std::span<const PointLight> points() const { return own_.points; }
+  [[nodiscard]] std::span<const AreaLight> areas() const { return areas_; }
   /// Returns null if there is only a background.
   [[nodiscard]] const Environment* environment() const {
     return environment_ ? &*environment_ : nullptr;
@@ -213,17 +226,9 @@ class Lights {
   };
 
   [[nodiscard]] glm::vec3 textured_radiance(std::uint32_t primitive, const glm::vec3& point) const;
-  /// The emitting faces of one object and material: one light that emits from both sides of each
-  /// face.
-  struct AreaLight {
-    std::vector<std::uint32_t> primitives{};
-    double area = 0.0;
-    glm::dvec3 radiance{0.0};  ///< mean
-    bool is_textured = false;
-  };
-  [[nodiscard]] std::vector<AreaLight> find_areas() const;
-  void add_area(const AreaLight& light, double unit);
-  void add_sources(const std::vector<AreaLight>& areas, double unit);
+  void find_areas();
+  void add_patches(const AreaLight& light, Light& record);
+  void add_sources(double unit);
   [[nodiscard]] static LightBounds light_bounds(const Patch& patch, const AreaLight& light,
                                                 double unit, OuterSide side);
 
@@ -232,6 +237,7 @@ class Lights {
   CameraLights own_;
   std::optional<Environment> environment_;
   glm::dvec3 ambient_{0.0};
+  std::vector<AreaLight> areas_;
   std::vector<Light> lights_;
   std::vector<Patch> patches_;
   std::vector<float> patch_ends_;  // `end` of each patch, for searching

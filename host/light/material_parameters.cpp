@@ -56,6 +56,7 @@ MaterialParameters::MaterialParameters(const Material& material) {
   index = std::clamp(material.refraction_index, kLeastIndex, kMostIndex);
   emission = material.emission;
   if (is_any(emission)) kind |= kEmits;
+  emits_evenly = is_any(emission) && material.emission_map.texture == kNoIndex;
   if (material.diffuse_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.emission_map.texture != kNoIndex) kind |= kInterpolates;
   if (material.normal_map.texture != kNoIndex) kind |= kInterpolates | kIsBumpy;

@@ -37,7 +37,8 @@ struct MaterialParameters {
   float index = 1.0f;     ///< index of refraction
   bool is_glass = false;  ///< lobes below the mirror receive only light that it does not reflect
   bool refracts = false;
-  bool is_fresnel = false;  ///< the mirror follows Fresnel's formula
+  bool is_fresnel = false;    ///< the mirror follows Fresnel's formula
+  bool emits_evenly = false;  ///< the emission has no texture
   /// Metallic-roughness materials only; textures multiply all of these.
   float metallic = 0.0f, roughness = 1.0f, transmission = 0.0f;
   float specular = 1.0f;         ///< of dielectrics: reflectance at grazing angles

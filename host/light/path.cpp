@@ -136,7 +136,9 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   const bool has_rough_glass = bsdf.has_rough_glass();
   next.path.scattered_at = surface.point;
   next.path.normal = hits.lit_normal();
-  next.path.first = WordOf<T>{};
+  const WordOf<T> none{};
+  next.path.specular_history = none;
+  next.path.supersampled = choose(next.has_flat, hits.path.supersampled, none);
   next.direction = next.flat = zero<T>();
   if (any(bsdf.scatters())) {
     next.direction = bsdf.sample(hits.random(streams::kDirection),
@@ -166,6 +168,8 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
     next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
     next.path.pdf = choose(is_mirrored, T{}, next.path.pdf);
+    next.path.specular_history =
+        choose(is_mirrored, hits.path.after_mirror(), next.path.specular_history);
   }
   const auto is_bent = next.is_transmitted & bsdf.is_refracting();
   const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
@@ -176,7 +180,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
                                 RAYGATE_BODY { own = choose(next.is_transmitted, others, own); };
     use_beyond(next.direction, beyond.direction);
     use_beyond(next.flat, beyond.flat);
-    use_beyond(next.path.first, beyond.path.first);
+    use_beyond(next.path.specular_history, beyond.path.specular_history);
     next.has_flat = next.has_flat & ((!next.is_transmitted) | beyond.has_flat);
     next.is_wanted = next.is_wanted & ((!next.is_transmitted) | exists);
     const Triple<T> transmitted_throughput =
@@ -232,7 +236,7 @@ RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hit
   const T mis_weight = choose((area_pdf > 0.0f) & (hits.path.pdf > 0.0f),
                               power_heuristic(hits.path.pdf, light_pdf), spread<T>(1.0f));
   return hits.path.throughput *
-         (hits.bsdf.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
+         (hits.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
 }
 
 /// One sampled light per hit.

@@ -52,6 +52,11 @@ ShadeFunction shade_path;
 /// by a light sample whose target is on the lens, and one ray is spawned.
 ShadeFunction shade_light_path;
 
+/// Shades hits on specular paths from the camera whose histories are in PathState::supersampled:
+/// adds emission, and spawns reflected and refracted rays. A ray's sample is a multiple of
+/// kSpecularHistories plus its history, so that radiance is separated by history.
+ShadeFunction shade_emitters;
+
 /// Returns a finite number: infinity becomes the largest float, NaN becomes 0.
 template <class T>
 RAYGATE_INLINE T bounded(const T& x) {

@@ -1,4 +1,5 @@
-// Whitted's ray tracing: all lights, mirrors and glass.
+// Whitted's ray tracing: all lights, mirrors and glass; and the emission that the camera sees
+// directly, in mirrors and through glass.
 #include "host/light/shade.h"
 
 namespace raygate {
@@ -137,6 +138,33 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   }
 }
 
+/// Spawns the rays whose histories are in the mask: reflected, refracted, and straight through
+/// holes and clear surfaces, which do not change the history.
+template <class T>
+RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
+  const Bsdf<T>& bsdf = hits.bsdf;
+  const Triple<T>& normal = hits.surface.normal;
+  ScatteredRays<T> next(hits);
+  const WordOf<T> first = hits.path.sample - hits.path.specular_history;
+  const auto send = [&](std::size_t number, const Triple<T>& share,
+                        const MaskOf<T>& is_way) RAYGATE_BODY {
+    next.path.sample = first + next.path.specular_history;
+    next.path.throughput = hits.path.throughput * share;
+    const auto is_asked = PathLanes<T>::has(hits.path.supersampled, next.path.specular_history);
+    next.is_wanted = is_way & is_asked & (next.path.specular_history > 0u) &
+                     (largest(next.path.throughput) > 0.0f);
+    next.send(hits, number);
+  };
+  if ((hits.kind & kMirrors) != 0) {
+    next.reflect_off(hits, normal);
+    send(0, bsdf.mirror(), T{} == 0.0f);
+  }
+  if ((hits.kind & kTransmits) != 0) {
+    const MaskOf<T> is_way = next.pass_through(hits, normal);
+    send(1, bsdf.transmission(), is_way);
+  }
+}
+
 }  // namespace
 
 void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
@@ -145,7 +173,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     const Bsdf<T>& bsdf = hits.bsdf;
     const bool goes_on = block.batch->depth < shading.max_depth;
-    Triple<T> emission = bsdf.emission(), glossy = bsdf.glossy();
+    Triple<T> emission = hits.emission(), glossy = bsdf.glossy();
     // Emission is omitted if lights were sampled at the previous hit.
     if ((kind & kEmits) != 0) emission = choose(hits.path.pdf > 0.0f, zero<T>(), emission);
     if (goes_on && has_rough_facets(hits)) {
@@ -157,6 +185,21 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     hits.set_radiance(hits.path.throughput * shown);
     sample_all_lights(shading, hits);
     if (goes_on || (kind & kTransmits) != 0) spawn_specular_rays(shading, hits, goes_on);
+  });
+}
+
+void shade_emitters(const ShadingScene& shading, HitBlock& block, HitKind kind,
+                    std::span<const std::uint32_t> at) {
+  shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
+    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
+    Triple<T> emitted = zero<T>();
+    if ((kind & kEmits) != 0) {
+      emitted =
+          choose(hits.are_supersampled(), hits.path.throughput * hits.bsdf.emission(), emitted);
+    }
+    hits.set_radiance(emitted);
+    if (block.batch->depth > shading.max_depth || hits.bsdf.has_rough_glass()) return;
+    spawn_specular_rays(hits);
   });
 }
 

@@ -19,6 +19,8 @@
 #include "host/light/light_paths.h"
 #include "host/light/lights.h"
 #include "host/render/adaptive_sampling.h"
+#include "host/render/emitter_supersampler.h"
+#include "host/render/render_context.h"
 #include "host/render/splat_layer.h"
 #include "host/render/tile_renderer.h"
 #include "host/render/tiles.h"
@@ -34,12 +36,13 @@ class RenderThreads {
   RenderThreads(const RenderContext& context, const Tiles& tiles,
                 std::unique_ptr<Intersector> first_intersector,
                 const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
-                Film& film, RenderStats& stats)
+                Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats)
       : context_(context),
         tiles_(tiles),
         first_intersector_(std::move(first_intersector)),
         make_intersector_(make_intersector),
         monitor_(monitor),
+        emitter_histories_(emitter_histories),
         film_(film),
         stats_(stats),
         queue_(tiles.count, tiles.passes()) {
@@ -88,7 +91,7 @@ class RenderThreads {
   void work() {
     try {
       const auto intersector = take_intersector();
-      TileRenderer renderer(context_, *intersector, film_);
+      TileRenderer renderer(context_, *intersector, film_, emitter_histories_);
       while (const auto step = next()) {
         if (!render(renderer, *step)) break;
       }
@@ -233,6 +236,7 @@ class RenderThreads {
   std::unique_ptr<Intersector> first_intersector_;  // for the first thread
   const IntersectorFactory& make_intersector_;
   const RenderMonitor& monitor_;
+  std::span<HistoryMask> emitter_histories_;
   std::mutex mutex_;  // guards the members below, except pixels of a tile that is being rendered
   std::condition_variable changed_;
   Film& film_;
@@ -308,10 +312,16 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
     add_sums(film, settings.error > 0.0);
   }
   film.keeps_sums = settings.channels.sums || unfinished != nullptr;
+  // With a single sample through the pixel's centre, emitters have no edges to smooth. Emitters
+  // seen through a lens are not supersampled.
+  std::vector<HistoryMask> emitter_histories;
+  if (settings.samples > 1 && camera.aperture() == 0.0 && !lights.areas().empty()) {
+    emitter_histories.assign(film.color.size(), kUnknownHistories);
+  }
   const RenderContext context{prepared, camera, settings, lights,
                               light_paths ? &*light_paths : nullptr};
   RenderThreads(context, tiles, std::move(first_intersector), make_intersector, monitor, film,
-                stats)
+                emitter_histories, stats)
       .run();
   if (!stats.cancelled) film.keeps_sums = settings.channels.sums;
   if (settings.error > 0.0) {

@@ -6,8 +6,6 @@
 
 #include "host/base/measure.h"
 #include "host/film/film.h"
-#include "host/light/light_paths.h"
-#include "host/light/sampler.h"
 #include "host/render/tiles.h"
 
 namespace raygate {
@@ -15,46 +13,20 @@ namespace {
 
 constexpr std::size_t kManyShadowRays = 1 << 17;  // per batch: 14 MB of queries
 
-// Streams of a pixel's random numbers.
-constexpr std::uint32_t kFilterStream = 0, kLensStream = 8;
-
-/// Returns the camera ray of sample `index` of a pixel, whose sampler this is. With one sample per
-/// pixel the ray goes through the centres of pixel and lens.
-Ray camera_ray(const RenderContext& context, int pixel_x, int pixel_y, const Sampler& sampler,
-               std::uint32_t index) {
-  const RenderSettings& settings = context.settings;
-  const Camera& camera = context.camera;
-  glm::dvec2 offset(0.0), lens(0.0);
-  if (settings.samples > 1) {
-    const SquarePoint<float> u = sampler(index, kFilterStream);
-    offset = filter_offset(settings.filter, {u.x, u.y});
-  }
-  const double x = (pixel_x + 0.5 + offset.x) / settings.width;
-  const double y = (pixel_y + 0.5 + offset.y) / settings.height;
-  if (camera.is_pinhole()) {
-    Ray ray;
-    ray.origin = camera.eye();
-    ray.direction = camera.direction(x, y);
-    return ray;
-  }
-  if (settings.samples > 1 && camera.aperture() > 0.0) {
-    const SquarePoint<float> u = sampler(index, kLensStream);
-    lens = {u.x, u.y};
-  }
-  return camera.ray(x, y, lens);
-}
-
 }  // namespace
 
-TileRenderer::TileRenderer(const RenderContext& context, Intersector& intersector, Film& film)
+TileRenderer::TileRenderer(const RenderContext& context, Intersector& intersector, Film& film,
+                           std::span<HistoryMask> emitter_histories)
     : context_(context),
       intersector_(intersector),
       film_(film),
+      emitter_histories_(emitter_histories),
       integrator_(context.settings.integrator, context.prepared, context.lights, context.settings,
                   context.light_paths),
       shadow_rays_(context.prepared, context.lights, intersector,
                    integrator_.shadows_through_refraction()),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {
+  if (!emitter_histories.empty()) emitter_supersampler_.emplace(context, intersector, is_counting_);
   if (context.light_paths == nullptr) return;
   light_integrator_.emplace(IntegratorKind::kLight, context.prepared, context.lights,
                             context.settings, context.light_paths);
@@ -71,8 +43,9 @@ void TileRenderer::make_camera_rays() {
       state.sample = static_cast<std::uint32_t>(batch_.rays.size());
       state.stream = sampler.key();
       state.index = index;
-      const Ray& ray =
-          batch_.rays.emplace_back(camera_ray(context_, pixel.x, pixel.y, sampler, index));
+      if (!emitter_histories_.empty()) state.supersampled = emitter_histories_[pixel.index];
+      const Ray& ray = batch_.rays.emplace_back(
+          camera_ray(context_, pixel.x, pixel.y, sampler, index, kFilterStream));
       state.scattered_at = ray.origin;
     }
   }
@@ -84,6 +57,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   pixels_ = samples_to_trace(context_.settings, film_, tile, end);
   if (pixels_.empty()) return true;
   tile_ = tile;
+  pixel_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
   const bool is_empty = is_empty_tile();
   paths_ = 0;
   for (const PixelSamples& pixel : pixels_) paths_ += pixel.path_count();
@@ -92,6 +66,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   output_.first_surface.assign(paths_, {});
   output_.shadows.clear();
   direct_light_.assign(paths_, glm::vec3(0.0f));
+  emitter_sums_.assign(pixels_.size(), {});
   stats_.shade_seconds += watch.lap();
   return (is_empty || trace_camera_rays(keep_going)) && trace_light_paths(keep_going);
 }
@@ -106,10 +81,16 @@ bool TileRenderer::is_empty_tile() const {
 
 bool TileRenderer::trace_camera_rays(const std::function<bool()>& keep_going) {
   Stopwatch watch;
+  if (emitter_supersampler_ && emitter_histories_[pixels_[0].index] == kUnknownHistories) {
+    emitter_supersampler_->find(film_, tile_, emitter_histories_, pixel_work_);
+  }
+  watch.lap();
   make_camera_rays();
   stats_.camera_rays += paths_;
   stats_.shade_seconds += watch.lap();
-  return trace_batch(integrator_, keep_going);
+  if (!trace_batch(integrator_, keep_going)) return false;
+  supersample_emitters();
+  return true;
 }
 
 /// Traces the batch and all rays that result from it. Returns false if it was stopped.
@@ -151,15 +132,20 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   return trace_batch(*light_integrator_, keep_going);
 }
 
+/// Adds the extra emission samples; see EmitterSupersampler.
+void TileRenderer::supersample_emitters() {
+  if (!emitter_supersampler_) return;
+  std::vector<RayWork> work(is_counting_ ? pixels_.size() : 0);
+  emitter_supersampler_->supersample(pixels_, emitter_histories_, emitter_sums_, work);
+  for (std::size_t p = 0; p < work.size(); ++p) pixel_work_[place_in_tile(pixels_[p])] += work[p];
+}
+
 /// Intersects the batch; sets hits_ and work_.
 void TileRenderer::intersect_batch() {
   stats_.rays += batch_.rays.size();
   hits_.resize(batch_.rays.size());
   work_.resize(is_counting_ ? batch_.rays.size() : 0);
-  const bool is_common = batch_.depth == 0 && context_.camera.has_common_origin();
-  intersector_.nearest(batch_.rays,
-                       {.common_origin = is_common, .source_ids = batch_.sources, .work = work_},
-                       hits_);
+  intersector_.nearest(batch_.rays, query_of(context_, batch_, work_), hits_);
 }
 
 /// Traces the rays of one depth, and the shadow rays from their hits: in several batches if there
@@ -219,7 +205,8 @@ void TileRenderer::write() {
   FilmSums& kept = film_.sums;
   const bool has_albedo = !film_.albedo.empty();
   std::size_t i = 0;  // index of a path
-  for (const PixelSamples& pixel : pixels_) {
+  for (std::size_t p = 0; p < pixels_.size(); ++p) {
+    const PixelSamples& pixel = pixels_[p];
     const std::size_t at = pixel.index;
     const auto count = [&](const RayWork& work) {
       if (!film_.tests.empty()) add_count(film_.tests[at], work.tests);
@@ -242,6 +229,8 @@ void TileRenderer::write() {
       if (is_counting_) count(path_work_[i]);
     }
     color[3].add(hits);
+    for (int k = 0; k < 3; ++k) color[k] += emitter_sums_[p][k];
+    if (is_counting_) count(pixel_work_[place_in_tile(pixel)]);
     const int samples = pixel.end - context_.settings.first_sample;
     if (!kept.samples.empty()) kept.samples[at] = static_cast<std::uint32_t>(samples);
     if (!kept.color.empty()) kept.color[at] = color;
@@ -287,6 +276,7 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.shadow_rays += shadow_rays;
   stats.point_doubts += integrator_.point_doubts();
   stats.intersect += intersector_.counters();
+  if (emitter_supersampler_) emitter_supersampler_->add_to(stats);
   if (light_integrator_) stats.point_doubts += light_integrator_->point_doubts();
   stats.shade_seconds += stats_.shade_seconds;
 }

@@ -16,26 +16,20 @@
 #include "host/light/integrator.h"
 #include "host/light/shadow_rays.h"
 #include "host/render/adaptive_sampling.h"
-#include "host/render/render_settings.h"
+#include "host/render/emitter_supersampler.h"
+#include "host/render/render_context.h"
 #include "host/render/splat_layer.h"
-#include "host/scene/camera.h"
 
 namespace raygate {
-
-struct RenderContext {
-  const PreparedScene& prepared;
-  const Camera& camera;
-  const RenderSettings& settings;
-  const Lights& lights;                     ///< the scene's lights, or camera lights
-  const LightPaths* light_paths = nullptr;  ///< null: only camera paths find caustics
-};
 
 /// Renders tiles into a film. All rays of one depth form a batch, and all shadow rays of that depth
 /// another, because intersectors are faster with large batches. A pixel does not depend on its
 /// tile: the light of each path is summed separately, depth by depth.
 class TileRenderer {
  public:
-  TileRenderer(const RenderContext& context, Intersector& intersector, Film& film);
+  /// `emitter_histories`: by pixel of the film, shared by all tiles; empty: no supersampling.
+  TileRenderer(const RenderContext& context, Intersector& intersector, Film& film,
+               std::span<HistoryMask> emitter_histories);
 
   /// Traces the samples of samples_to_trace(). `keep_going` is polled between batches; if it
   /// returns false, so does this function, and the samples are incomplete.
@@ -50,6 +44,7 @@ class TileRenderer {
 
  private:
   void make_camera_rays();
+  void supersample_emitters();
   [[nodiscard]] bool is_empty_tile() const;
   bool trace_camera_rays(const std::function<bool()>& keep_going);
   bool trace_light_paths(const std::function<bool()>& keep_going);
@@ -61,10 +56,16 @@ class TileRenderer {
   void count_work(const RayWork& work, std::uint32_t sample);
   void write_channels(std::size_t pixel, std::size_t path);
   void update_errors();
+  [[nodiscard]] std::size_t place_in_tile(const PixelSamples& pixel) const {
+    return std::size_t(pixel.y - tile_.y0) * std::size_t(tile_.width()) +
+           std::size_t(pixel.x - tile_.x0);
+  }
 
   RenderContext context_;
   Intersector& intersector_;
   Film& film_;
+  std::span<HistoryMask> emitter_histories_;
+  std::optional<EmitterSupersampler> emitter_supersampler_;
   Integrator integrator_;
   std::optional<Integrator> light_integrator_;  // for light paths
   ShadowRays shadow_rays_;
@@ -76,7 +77,10 @@ class TileRenderer {
   bool is_counting_;
   ShadingOutput output_;
   std::vector<glm::vec3> direct_light_;  // by path: from shadow rays
+  // By pixel, from emitter_supersampler_.
+  std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;
   PixelRect tile_;
+  std::vector<RayWork> pixel_work_;  // by pixel of the tile: of rays without a path
   RayBatch batch_;
   std::vector<NearestHit> hits_;  // of the batch
   std::vector<RayWork> work_;     // of the batch, if counted

@@ -56,4 +56,9 @@ bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film, co
   return any_leaf(bvh, boxes, [](const Bvh::Child&) { return true; });
 }
 
+bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
+                 const Film& film, const PixelRect& tile, double margin) {
+  return !camera.is_pinhole() || !TileFrustum(camera, film, tile, margin).is_outside(low, high);
+}
+
 }  // namespace raygate

@@ -108,4 +108,8 @@ class TileQueue {
 [[nodiscard]] bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film,
                                     const PixelRect& tile, double margin);
 
+/// Returns whether such a camera ray may enter the box from `low` to `high`.
+[[nodiscard]] bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
+                               const Film& film, const PixelRect& tile, double margin);
+
 }  // namespace raygate

@@ -1,0 +1,187 @@
+#include "host/render/emitter_supersampler.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "host/base/measure.h"
+#include "host/render/tiles.h"
+
+namespace raygate {
+namespace {
+
+constexpr int kRaysPerSample = 8;
+constexpr std::size_t kManyRays = 1 << 11;   // per batch
+constexpr float kLeastShare = 1.0f / 64.0f;  // relative to the brightest emitter
+
+constexpr HistoryMask kDirect = 1u << 1, kAllHistories = ~1u;
+
+template <class Visit>
+void for_each(HistoryMask histories, const Visit& visit) {
+  for (; histories != 0; histories &= histories - 1) {
+    visit(static_cast<std::uint32_t>(std::countr_zero(histories)));
+  }
+}
+
+HistoryMask with_prefixes(HistoryMask histories) {
+  HistoryMask all = histories;
+  for_each(histories, [&](std::uint32_t history) {
+    for (; history != 0; history /= 2) all |= 1u << history;
+  });
+  return all;
+}
+
+}  // namespace
+
+EmitterSupersampler::EmitterSupersampler(const RenderContext& context, Intersector& intersector,
+                                         bool counts_work)
+    : context_(context),
+      intersector_(intersector),
+      integrator_(IntegratorKind::kEmitters, context.prepared, context.lights, context.settings),
+      counts_work_(counts_work),
+      all_(kDirect) {
+  // Whitted images have few samples: finding more histories would take longer than it saves.
+  if (context.settings.integrator == IntegratorKind::kPath &&
+      std::ranges::any_of(context.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
+    all_ = kAllHistories;
+  }
+  for (const AreaLight& light : context.lights.areas()) {
+    least_ = std::max(least_, kLeastShare * largest(glm::vec3(light.radiance)));
+  }
+}
+
+void EmitterSupersampler::add(const Ray& ray, HistoryMask histories) {
+  PathState& state = batch_.states.emplace_back();
+  state.sample =
+      static_cast<std::uint32_t>(batch_.rays.size() * kSpecularHistories + state.specular_history);
+  state.supersampled = with_prefixes(histories);
+  batch_.rays.push_back(ray);
+}
+
+/// Traces and shades all rays that were added.
+void EmitterSupersampler::trace() {
+  const std::size_t count = batch_.rays.size();
+  output_.radiance.assign(count * kSpecularHistories, glm::vec3(0.0f));
+  ray_work_.assign(counts_work_ ? count : 0, {});
+  stats_.camera_rays += count;
+  Stopwatch watch;
+  for (batch_.depth = 0; !batch_.rays.empty(); std::swap(batch_, output_.next)) {
+    const std::size_t rays = batch_.rays.size();
+    stats_.rays += rays;
+    hits_.resize(rays);
+    work_.resize(counts_work_ ? rays : 0);
+    intersector_.nearest(batch_.rays, query_of(context_, batch_, work_), hits_);
+    watch.lap();
+    for (std::size_t i = 0; i < work_.size(); ++i) {
+      ray_work_[batch_.states[i].sample / kSpecularHistories] += work_[i];
+    }
+    output_.next.clear();
+    output_.next.depth = batch_.depth + 1;
+    for (std::size_t i = 0; i < rays; i += integrator_.block_size()) {
+      integrator_.shade(batch_, hits_, i, std::min(rays, i + integrator_.block_size()), output_);
+    }
+    stats_.shade_seconds += watch.lap();
+  }
+}
+
+void EmitterSupersampler::find(const Film& film, const PixelRect& tile,
+                               std::span<HistoryMask> histories, std::span<RayWork> work) {
+  // Pixel corners, up to this number of pixels beyond the tile.
+  const int beyond = static_cast<int>(std::ceil(filter_radius(context_.settings.filter) - 0.5));
+  const auto may_see = [&](const AreaLight& light) {
+    return may_see_box(light.low, light.high, context_.camera, film, tile, beyond + 1.0);
+  };
+  if (all_ == kDirect && std::ranges::none_of(context_.lights.areas(), may_see)) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      const auto row = histories.subspan(film.index_of(tile.x0, y), std::size_t(tile.width()));
+      std::ranges::fill(row, 0);
+    }
+    return;
+  }
+  const int columns = tile.width() + 1 + 2 * beyond, rows = tile.height() + 1 + 2 * beyond;
+  batch_.clear();
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      add(context_.camera.ray(double(tile.x0 - beyond + x) / film.width,
+                              double(tile.y0 - beyond + y) / film.height, {}),
+          all_);
+    }
+  }
+  trace();
+  for (std::size_t i = 0; i < ray_work_.size(); ++i) {  // assigns work to the nearest pixel
+    const int x = static_cast<int>(i % std::size_t(columns)) - beyond;
+    const int y = static_cast<int>(i / std::size_t(columns)) - beyond;
+    const int column = std::clamp(x, 0, tile.width() - 1);
+    const int row = std::clamp(y, 0, tile.height() - 1);
+    work[std::size_t(row) * std::size_t(tile.width()) + std::size_t(column)] += ray_work_[i];
+  }
+  std::vector<HistoryMask> seen(std::size_t(columns) * std::size_t(rows));  // by corner
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    for_each(all_, [&](std::uint32_t history) {
+      if (largest(radiance(i, history)) >= least_) seen[i] |= 1u << history;
+    });
+  }
+  for (int y = 0; y < tile.height(); ++y) {
+    for (int x = 0; x < tile.width(); ++x) {
+      const auto corner = [&](int dx, int dy) {
+        return std::size_t(y + dy) * std::size_t(columns) + std::size_t(x + dx);
+      };
+      const auto for_corners = [&](const auto& visit) {
+        for (int dy = 0; dy <= 1 + 2 * beyond; ++dy) {
+          for (int dx = 0; dx <= 1 + 2 * beyond; ++dx) visit(corner(dx, dy));
+        }
+      };
+      HistoryMask near = 0, different = 0;
+      for_corners([&](std::size_t at) { near |= seen[at]; });
+      for_each(near, [&](std::uint32_t history) {
+        const glm::vec3& first = radiance(corner(0, 0), history);
+        for_corners([&](std::size_t at) {
+          if (radiance(at, history) != first) different |= 1u << history;
+        });
+      });
+      histories[film.index_of(tile.x0 + x, tile.y0 + y)] = different;
+    }
+  }
+}
+
+void EmitterSupersampler::supersample(std::span<const PixelSamples> pixels,
+                                      std::span<const HistoryMask> histories,
+                                      std::span<std::array<ExactAccumulator, 3>> sums,
+                                      std::span<RayWork> work) {
+  std::vector<std::size_t> pixel_of;
+  const auto trace_them = [&] {
+    trace();
+    for (std::size_t i = 0; i < pixel_of.size(); ++i) {
+      for_each(histories[pixels[pixel_of[i]].index], [&](std::uint32_t history) {
+        const glm::dvec3 light(radiance(i, history));
+        for (int k = 0; k < 3; ++k) sums[pixel_of[i]][k].add(light[k] / kRaysPerSample);
+      });
+      if (counts_work_) work[pixel_of[i]] += ray_work_[i];
+    }
+    batch_.clear();
+    pixel_of.clear();
+  };
+  batch_.clear();
+  for (std::size_t p = 0; p < pixels.size(); ++p) {
+    const PixelSamples& pixel = pixels[p];
+    if (histories[pixel.index] == 0) continue;
+    const Sampler sampler(context_.settings.seed, pixel.x, pixel.y);
+    for (int i = pixel.first * kRaysPerSample; i < pixel.end * kRaysPerSample; ++i) {
+      add(camera_ray(context_, pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(i),
+                     kEmitterStream),
+          histories[pixel.index]);
+      pixel_of.push_back(p);
+      if (pixel_of.size() == kManyRays) trace_them();
+    }
+  }
+  trace_them();
+}
+
+void EmitterSupersampler::add_to(RenderStats& stats) const {
+  stats.rays += stats_.rays;
+  stats.camera_rays += stats_.camera_rays;
+  stats.shade_seconds += stats_.shade_seconds;
+  stats.point_doubts += integrator_.point_doubts();
+}
+
+}  // namespace raygate
