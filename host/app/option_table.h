@@ -153,8 +153,13 @@ class OptionTable {
         names, value, help, expected,
         [&target, parse](const std::string& text) {
           const std::optional<T> parsed = parse(text);
-          if (parsed) target = *parsed;
-          return parsed.has_value();
+          if (!parsed) return false;
+          if constexpr (std::is_same_v<T, Target>) {
+            target = *parsed;
+          } else {
+            target = parsed;
+          }
+          return true;
         },
         [&target, show]() -> std::string {
           if constexpr (std::is_same_v<T, Target>) {

@@ -101,7 +101,7 @@ class NeighborClearanceSearch {
     if (!is_possible()) return result;
     // Accounts for rounding of unit vectors.
     const float length = float_below(length_ * (1.0 - 0x1p-20));
-    result.length = overlaps_.size() != 0 ? -length : length;
+    result.length = overlaps_.empty() ? length : -length;
     int exponent;
     std::frexp(kNormalError * (normal_sizes_[0] + normal_sizes_[1] + normal_sizes_[2]), &exponent);
     const double scale = std::ldexp(1.0, -exponent);
