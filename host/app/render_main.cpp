@@ -122,7 +122,7 @@ void run(const Options& options) {
   report.load_seconds = lap.lap();
   report.triangles = triangle_count(scene);
   report.rounding = scene.rounding;
-  const std::string digest = digest_of(scene.files, options.scene_file.settings);
+  const std::string digest = digest_of(scene);  // without default lights and ground
   print_warnings(scene.warnings, options.verbose);
   std::vector<std::filesystem::path> inputs = scene.files;
   inputs.push_back(options.scene);

@@ -22,7 +22,7 @@ struct SampleRange {
 /// Attribute of a file that has only some of the samples of "spp".
 inline constexpr const char* kSamplesAttribute = "samples";
 
-/// Attribute with the digest of the scene's files (digest_of).
+/// Attribute with the digest of the scene (digest_of).
 inline constexpr const char* kSceneAttribute = "sceneDigest";
 
 /// Returns the samples of a film file: kSamplesAttribute, or all of "spp".

@@ -11,7 +11,6 @@
 #include <iterator>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -299,11 +298,9 @@ void add_light(Scene& scene, const WorldPointLight& light, const std::string& fi
 /// `material.name`.
 void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, const Material& material);
 
-/// Returns a 64-bit digest, as 16 hexadecimal digits, of the contents of a scene's files, in any
-/// order and under any name, and of the settings in its scene file. It is the same on all machines
-/// of the same byte order; different scenes collide with probability 2^-64. This is not a
-/// cryptographic hash. Throws InputError if a file cannot be read.
-[[nodiscard]] std::string digest_of(std::span<const std::filesystem::path> files,
-                                    const std::string& settings);
+/// Returns a 64-bit digest, as 16 hexadecimal digits, of a scene's geometry, materials, textures,
+/// lights and instances. Equal scenes have equal digests on all machines of the same byte order;
+/// different ones collide with probability 2^-64. This is not a cryptographic hash.
+[[nodiscard]] std::string digest_of(const Scene& scene);
 
 }  // namespace raygate

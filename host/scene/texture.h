@@ -19,6 +19,8 @@ struct Sampling {
   Sampling(Wrap both = Wrap::kRepeat) : u(both), v(both) {}
   Wrap u, v;
   bool is_nearest = false;  ///< nearest texel instead of bilinear interpolation
+
+  [[nodiscard]] bool operator==(const Sampling&) const = default;
 };
 
 /// An 8-bit sRGB image with lookup in scene-linear colours. Coordinate (0, 0) is the lower left

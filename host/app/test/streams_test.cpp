@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <fstream>
+#include <thread>
 
 #include "host/app/test/render_run.h"
 #include "host/scene/test/tga.h"
@@ -50,6 +52,18 @@ TEST_F(Render, APipeThatNobodyReadsIsRefused) {
       run_program({.arguments = small({"-o", "p.png"}), .folder = folder_.path()});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.err, "error: p.png: cannot write: nobody reads it\n");
+}
+
+/// A second look at its bytes would wait for ever.
+TEST_F(Render, AnEnvironmentFromAPipeIsReadOnce) {
+  const std::filesystem::path pipe = folder_.path() / "sky.hdr";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::jthread writer([&] {
+    std::ofstream(pipe) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x01\x02\x03\x80";
+  });
+  const Outcome outcome =
+      run_program({.arguments = small({"--environment", "sky.hdr"}), .folder = folder_.path()});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
 TEST_F(Render, HelpThatNobodyReadsOnEndsWithoutAWord) {

@@ -178,12 +178,6 @@ void JsonValue::require_keys(std::initializer_list<const char*> known) const {
   }
 }
 
-std::string JsonValue::text_without(std::initializer_list<const char*> keys) const {
-  Json others = *value_;
-  for (const char* key : keys) others.erase(key);
-  return others.empty() ? "" : others.dump();
-}
-
 std::size_t JsonValue::line() const { return file_->line_of(path_); }
 
 std::map<std::string, JsonValue> JsonValue::members() const {

@@ -45,8 +45,6 @@ class JsonValue {
 
   /// Requires an object without other keys than these.
   void require_keys(std::initializer_list<const char*> known) const;
-  /// Returns an object without these keys as text; "" if there are no others.
-  [[nodiscard]] std::string text_without(std::initializer_list<const char*> keys) const;
   /// Returns the values of an object and their keys, sorted by key.
   [[nodiscard]] std::map<std::string, JsonValue> members() const;
   /// Returns the value of a key of an object, or nullopt if the key is missing.

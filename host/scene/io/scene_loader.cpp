@@ -281,7 +281,6 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
                                file.string() + ":" + std::to_string(value.line())});
     }
   }
-  scene.settings = root.text_without({"obj", "camera", "environment", "render"});
   return scene;
 }
 

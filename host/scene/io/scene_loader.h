@@ -82,7 +82,6 @@ struct SceneFile {
   std::optional<glm::vec3> background = {};  ///< radiance, scene-linear RGB, none negative
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionValue> options = {};
-  std::string settings = {};  ///< lights, background and instances as JSON, for digest_of()
 
   /// Returns "camera.up", which may be there without a camera.
   [[nodiscard]] const std::optional<glm::dvec3>& up() const {
