@@ -5,11 +5,11 @@
 
 #include "host/app/console.h"
 #include "host/film/atomic_file.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/linked_core.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/unit_intersector.h"

@@ -19,6 +19,7 @@
 #include "host/film/display.h"
 #include "host/film/film.h"
 #include "host/film/merge.h"
+#include "host/intersect/check_intersector.h"
 #include "host/light/prepared_scene.h"
 #include "host/render/renderer.h"
 #include "host/scene/instances.h"

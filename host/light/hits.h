@@ -1,6 +1,5 @@
-// Batches of rays of one depth with their path states, and the results of shading their hits; hits
-// that are shaded together, one per lane: their surfaces and BSDFs, light samples and scattered
-// rays.
+// Hits that are shaded together, one per lane: their surfaces and BSDFs, light samples and
+// scattered rays.
 #pragma once
 
 #include <algorithm>
@@ -17,71 +16,14 @@
 #include "host/light/integrator_settings.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
+#include "host/light/ray_batch.h"
 #include "host/light/sampler.h"
-#include "host/light/shadow_rays.h"
 #include "host/light/spawn_ray.h"
 #include "host/light/surface.h"
 
 namespace raygate {
 
 class LightPaths;
-
-/// The state of a path along its current ray: a record of 16 words in one cache line, since hits
-/// are shaded in another order than rays are traced. PathLanes holds several, field by field.
-struct alignas(16) PathState {
-  glm::vec3 throughput{1.0f};  ///< factor of light that arrives along the ray
-  /// Probability density per steradian of this direction at the last scattering event; 0 if the
-  /// event was a delta distribution (mirror, smooth glass) or the camera.
-  float pdf = 0.0f;
-  glm::vec3 scattered_at{0.0f};  ///< position of the last scattering event
-  glm::vec3 normal{0.0f};        ///< shading normal there
-  std::uint32_t sample = 0;      ///< index of the radiance, in ShadingOutput, that the path adds to
-  std::uint32_t stream = 0;      ///< stream of random numbers, different for each path
-  std::uint32_t index = 0;       ///< index of the path's points in such streams
-  /// The mirrors and smooth glass that the path has met, as a code below kSpecularHistories: 1 for
-  /// the first ray, and from h to 2 h by a mirror, 2 h + 1 by glass. 0: more than four, or another
-  /// surface among them.
-  std::uint32_t specular_history = 1;
-  /// Density of light paths over that of camera paths for the path so far, or on light paths the
-  /// inverse (see LightPaths); 0: only one kind of path exists here.
-  float light_over_camera_pdf = 0.0f;
-  /// Bit mask of specular histories at which emission is omitted because EmitterSupersampler adds
-  /// it. For that class's own rays: the histories to follow.
-  std::uint32_t supersampled = 0;
-};
-
-/// Codes of specular histories of at most four bounces are below this.
-inline constexpr std::uint32_t kSpecularHistories = 32;
-
-/// Rays of the same depth.
-struct RayBatch {
-  int depth = 0;  ///< number of surfaces met so far; 0: camera rays
-  std::vector<Ray> rays;
-  std::vector<PathState> states;       ///< by ray
-  std::vector<std::uint32_t> sources;  ///< by ray: the primitive it leaves; empty for camera rays
-
-  void clear() {
-    rays.clear();
-    states.clear();
-    sources.clear();
-  }
-};
-
-/// The first surface on a camera ray; masked-out holes do not count.
-struct FirstSurface {
-  std::uint32_t primitive = NearestHit::kNone;
-  glm::vec3 origin{0.0f};  ///< of the ray that meets it; only of a pixel's first sample
-  glm::vec3 point{0.0f};   ///< relative to `origin`
-  glm::vec3 normal{0.0f}, albedo{0.0f};
-};
-
-/// The results of shading a batch.
-struct ShadingOutput {
-  std::vector<glm::vec3> radiance;          ///< by sample
-  std::vector<FirstSurface> first_surface;  ///< by sample
-  std::vector<ShadowRay> shadows;           ///< shadow rays to trace
-  RayBatch next;                            ///< scattered rays to trace
-};
 
 /// A ray spawned at a hit: reflected, refracted or scattered.
 struct alignas(16) ScatteredRay {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "host/exact/exact.h"
-#include "host/light/hits.h"
 #include "host/light/lights.h"
 #include "host/light/prepared_scene.h"
+#include "host/light/ray_batch.h"
 #include "host/scene/camera.h"
 
 namespace raygate {

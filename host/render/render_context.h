@@ -7,10 +7,10 @@
 
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
-#include "host/light/hits.h"
 #include "host/light/light_paths.h"
 #include "host/light/lights.h"
 #include "host/light/prepared_scene.h"
+#include "host/light/ray_batch.h"
 #include "host/light/sampler.h"
 #include "host/render/render_settings.h"
 #include "host/scene/camera.h"

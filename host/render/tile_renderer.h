@@ -12,8 +12,8 @@
 
 #include "host/film/film.h"
 #include "host/intersect/intersector.h"
-#include "host/light/hits.h"
 #include "host/light/integrator.h"
+#include "host/light/ray_batch.h"
 #include "host/light/shadow_rays.h"
 #include "host/render/adaptive_sampling.h"
 #include "host/render/emitter_supersampler.h"

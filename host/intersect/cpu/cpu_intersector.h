@@ -78,10 +78,15 @@ class PointWriter {
   float words_[4][kMost];  // of planes: N and d
 };
 
-/// Intersects rays of one origin in packets, for CpuIntersector. `hits` are initialised to misses;
-/// misses are not counted.
+// The two searches of CpuIntersector. `hits` are initialised to misses; misses are not counted.
+
+/// Intersects rays of one origin in packets.
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                    std::span<NearestHit> hits, IntersectCounters& counters);
+
+/// Intersects rays of any origins one by one.
+void trace_single_rays(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
+                       std::span<NearestHit> hits, IntersectCounters& counters);
 
 /// Replaces `hits` by all hits of `ray` with t < t_max, nearest first, then by triangle index.
 /// `t_max` is positive; +infinity: no limit. The direction must be scaled, or is not usable and

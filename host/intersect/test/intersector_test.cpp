@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "host/exact/test/meshes.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/test/model_intersector.h"
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "host/base/input_error.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/linked_core.h"
 #include "host/intersect/core/reference_core.h"

@@ -9,6 +9,7 @@
 
 #include "Vray_core_shared.h"
 #include "Vray_core_small.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/core/reference_core.h"

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "host/base/input_error.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/box_cases.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "host/intersect/intersector.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {

@@ -1,0 +1,479 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "host/base/lanes.h"
+#include "host/bvh/traversal.h"
+#include "host/exact/exact.h"
+#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/intersect/cpu/quad_test.h"
+
+// Why no true hit is culled
+//
+// Distances are measured along the ray's longest axis: they are p t, where p is the magnitude of
+// the direction's largest component, in [1, 2) (RayTraversal::t_scale). The derivation of
+// packet_traversal.cpp holds with p t for t and p / I for 1 / I:
+//  - t I = x - O becomes (p t) (I / p), and p / I is one quotient, rounded once.
+//  - p / |I| >= 1 > 1/2, so an underflow of a product is covered as there.
+//  - For |I| < 2^-100, p / |I| >= 2^100, so p 2^100, which is exact, is a valid inverse_near.
+//  - Along the longest axis, p t = |x - O| <= 2^127.
+
+namespace raygate {
+namespace {
+
+/// State of one ray. Many rays are interleaved, so a step's data is in few cache lines: the first
+/// for a node, the second for a leaf, the third for either, with the bottom of `keys`, and one with
+/// the bottom of `children`.
+struct alignas(64) RayTraversal {
+  // Box tests, by axis. The inverses are those of PacketBounds with reversed sign, as the
+  // instruction that subtracts in (O - near) (-inverse) also loads the plane. near_at and far_at
+  // are byte offsets in a node of the planes that the ray meets first and last.
+  float origin[3], minus_inverse_near[3], minus_inverse_far[3];
+  std::uint32_t near_at[3], far_at[3];
+  float cutoff;  ///< cutoff_beyond the nearest hit
+
+  ShearedRay sheared;                ///< for triangle tests
+  float low, high;                   ///< bounds of the nearest hit's depth, or of the limit's
+  float enough;                      ///< a hit whose depth is surely less ends the ray
+  std::uint32_t primitive;           ///< of the nearest hit
+  std::uint32_t skip_id, source_id;  ///< primitives
+  std::uint32_t number;              ///< index of the ray
+
+  RayWork work;
+  // Stack of children to visit, the nearest on top as far as known from their parent. The topmost
+  // is the one being visited. A key is a lower bound of the entry distance, with the child's number
+  // in its last bits. The bottom is a sentinel that is never skipped and ends the traversal.
+  std::size_t depth;
+  std::int32_t keys[1 + Bvh::kStackSize + Bvh::kWidth];
+  Bvh::Child children[1 + Bvh::kStackSize + Bvh::kWidth];
+
+  RayTraversal() {
+    keys[0] = std::numeric_limits<std::int32_t>::min();
+    children[0] = {0, Bvh::kMaxLeafSize + 1};
+  }
+
+  /// Returns the node or leaf that is visited.
+  [[nodiscard]] const Bvh::Child& at() const { return children[depth]; }
+  [[nodiscard]] double t_scale() const { return std::abs(sheared.way); }
+  /// Sets the bounds of t, or of the depth, of the nearest hit or the limit.
+  RAYGATE_INLINE void end_at(const Interval& t) {
+    end_at(float_below(t.low * t_scale()), float_above(t.high * t_scale()));
+  }
+  RAYGATE_INLINE void end_at(float lowest, float highest) {
+    low = lowest;
+    high = highest;
+    cutoff = cutoff_beyond(highest);
+  }
+  [[nodiscard]] Interval t() const { return {low / t_scale(), high / t_scale()}; }
+  void end() { depth = 1; }
+};
+
+/// Starts rays at the root, without limits. Bit i of the result is set if ray i is scaled;
+/// otherwise its traversal is undefined.
+RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
+                              RayTraversal* const (&walks)[kQuad]) {
+  static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
+  constexpr std::int32_t kRow = sizeof(Bvh::Node::bounds[0][0]);
+  static_assert(offsetof(Bvh::Node, bounds) == 0);
+  FloatQuad first[kQuad], last[kQuad];  // the rays' first four words, and their last four
+  for (int i = 0; i < kQuad; ++i) {
+    first[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i]));
+    last[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i] + 1) - kQuad);
+  }
+  transpose(first);
+  transpose(last);
+  const FloatQuad o[3] = {first[0], first[1], first[2]}, d[3] = {last[1], last[2], last[3]};
+  // The words of a RayTraversal up to `work`.
+  constexpr std::size_t kBoxWords = 16, kWords = 32;
+  static_assert(offsetof(RayTraversal, sheared) == 4 * kBoxWords);
+  static_assert(offsetof(RayTraversal, work) == 4 * kWords && kWords % kQuad == 0);
+  FloatQuad words[kWords], sheared[sizeof(ShearedRay) / sizeof(float)];
+  const auto word = [&](std::size_t offset) __attribute__((always_inline))->FloatQuad& {
+    return words[offset / sizeof(float)];
+  };
+  shear(o, d, sheared);
+  std::copy(std::begin(sheared), std::end(sheared), words + kBoxWords);
+  const FloatQuad zero = {}, infinity = zero + std::numeric_limits<float>::infinity();
+  word(offsetof(RayTraversal, cutoff)) = zero + std::numeric_limits<float>::max();
+  word(offsetof(RayTraversal, low)) = word(offsetof(RayTraversal, high)) = infinity;
+  word(offsetof(RayTraversal, enough)) = zero - 1.0f;
+  const FloatQuad none = float_of(IntQuad{} + static_cast<std::int32_t>(NearestHit::kNone));
+  word(offsetof(RayTraversal, primitive)) = none;
+  word(offsetof(RayTraversal, skip_id)) = word(offsetof(RayTraversal, source_id)) = none;
+  word(offsetof(RayTraversal, number)) = none;  // set by the caller
+  IntQuad largest = {};
+  for (const FloatQuad& component : d) {
+    // The bits of a NaN exceed those of any number.
+    largest = maximum(bits_in(absolute(component)), largest);
+  }
+  const FloatQuad longest = float_of(largest);
+  for (int k = 0; k < 3; ++k) {
+    const FloatQuad size = absolute(d[k]);
+    const IntQuad small = size < kSmallestComponent, back = d[k] < 0.0f;
+    const FloatQuad one = {1.0f, 1.0f, 1.0f, 1.0f}, sign = back ? -one : one;
+    const FloatQuad minus_inverse = -(longest / (small ? sign * kSmallestComponent : d[k]));
+    const FloatQuad minus_infinity = sign * -std::numeric_limits<float>::infinity();
+    const IntQuad to_high = back & (3 * kRow), low_at = IntQuad{} + k * kRow;
+    words[k] = o[k];
+    words[3 + k] = minus_inverse;
+    words[6 + k] = kExitGrowth * (small ? minus_infinity : minus_inverse);
+    words[9 + k] = float_of(low_at + to_high);
+    words[12 + k] = float_of(low_at + 3 * kRow - to_high);
+  }
+  for (std::size_t word = 0; word < kWords; word += kQuad) {
+    FloatQuad rows[kQuad] = {words[word], words[word + 1], words[word + 2], words[word + 3]};
+    transpose(rows);
+    for (int i = 0; i < kQuad; ++i) {
+      std::memcpy(reinterpret_cast<char*>(walks[i]) + 4 * word, &rows[i], sizeof rows[i]);
+    }
+  }
+  for (RayTraversal* const walk : walks) {
+    walk->work = {};
+    walk->end();
+    walk->children[walk->depth] = {0, 0};
+  }
+  return sign_mask((largest >= 0x3F800000) & (largest < 0x40000000));
+}
+
+/// By mask of lanes: the indices of the set lanes in order, followed by negative values.
+constexpr auto kNumbersOf = [] {
+  std::array<std::array<std::int32_t, kLanes>, 1 << kLanes> numbers{};
+  for (std::size_t mask = 0; mask < numbers.size(); ++mask) {
+    std::size_t count = 0;
+    numbers[mask].fill(std::numeric_limits<std::int32_t>::min());
+    for (std::int32_t i = 0; i < kLanes; ++i) {
+      if ((mask >> i & 1) != 0) numbers[mask][count++] = i;
+    }
+  }
+  return numbers;
+}();
+
+/// Sorts eight keys in descending order (Batcher's bitonic network); all but `count` are negative.
+RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count) {
+  IntLanes other, larger, smaller;
+  const auto compare = [&]() __attribute__((always_inline)) {
+    larger = keys > other ? keys : other;
+    smaller = keys > other ? other : keys;
+  };
+  const auto of_pairs = [&]() __attribute__((always_inline)) {
+    other = __builtin_shufflevector(keys, keys, 1, 0, 3, 2, 5, 4, 7, 6);
+    compare();
+    keys = __builtin_shufflevector(larger, smaller, 0, 9, 2, 11, 4, 13, 6, 15);
+  };
+  of_pairs();
+  if (count <= 2) return;
+  other = __builtin_shufflevector(keys, keys, 3, 2, 1, 0, 7, 6, 5, 4);
+  compare();
+  keys = __builtin_shufflevector(larger, smaller, 0, 1, 10, 11, 4, 5, 14, 15);
+  of_pairs();
+  if (count <= kLanes / 2) return;
+  other = __builtin_shufflevector(keys, keys, 7, 6, 5, 4, 3, 2, 1, 0);
+  compare();
+  keys = __builtin_shufflevector(larger, smaller, 0, 1, 2, 3, 12, 13, 14, 15);
+  other = __builtin_shufflevector(keys, keys, 2, 3, 0, 1, 6, 7, 4, 5);
+  compare();
+  keys = __builtin_shufflevector(larger, smaller, 0, 1, 10, 11, 4, 5, 14, 15);
+  of_pairs();
+}
+
+/// The children of a node, and the boxes that a ray meets.
+struct MetChildren {
+  IntLanes keys;  ///< entry distances of the met children, as bits of non-negative floats
+  const Bvh::Child* children;
+  LaneMask mask;
+};
+
+/// Tests the ray against the boxes of its current inner node, which may be decoded into `room`.
+template <Vectors kCode>
+RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk, Bvh::Node& room,
+                                  MetChildren& met) {
+  const Bvh::Node& node = tree.node(walk.at().first, room);
+  met.children = node.child;
+  const char* const bounds = reinterpret_cast<const char*>(&node);
+  using Floats = NativeFloats<kCode>;
+  LaneMask mask = 0;
+  for (std::size_t part = 0; part < Bvh::kWidth; part += sizeof(Floats) / sizeof(float)) {
+    Floats enter = {}, leave = walk.cutoff - Floats{};
+    for (int k = 0; k < 3; ++k) {
+      Floats near, far;
+      std::memcpy(&near, bounds + walk.near_at[k] + 4 * part, sizeof near);
+      std::memcpy(&far, bounds + walk.far_at[k] + 4 * part, sizeof far);
+      const Floats t_near = (walk.origin[k] - near) * walk.minus_inverse_near[k];
+      const Floats t_far = (walk.origin[k] - far) * walk.minus_inverse_far[k];
+      enter = t_near > enter ? t_near : enter;
+      leave = t_far < leave ? t_far : leave;
+    }
+    mask |= sign_mask<kCode>(enter <= leave) << part;
+    std::memcpy(reinterpret_cast<char*>(&met.keys) + 4 * part, &enter, sizeof enter);
+  }
+  met.mask = mask;
+}
+
+/// Pushes the children that the ray meets; branchless for up to two, as branches mispredict.
+template <Vectors kCode>
+RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
+  constexpr std::int32_t kNumber = Bvh::kWidth - 1;
+  constexpr IntLanes kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
+  const auto count = static_cast<std::size_t>(std::popcount(met.mask));
+  const auto& numbers = kNumbersOf[met.mask];
+  std::int32_t* const to_keys = walk.keys + walk.depth;
+  Bvh::Child* const to_children = walk.children + walk.depth;
+  walk.depth += count;
+  const auto push = [&](int first, int last) __attribute__((always_inline)) {
+    for (int i = first; i < last; ++i) to_children[i] = met.children[to_keys[i] & kNumber];
+  };
+  // Two children one by one, if no register holds all eight.
+  if (kCode == Vectors::kBaseline && count <= 2) {
+    const auto key = [&](int i) __attribute__((always_inline)) {
+      return (met.keys[numbers[i] & kNumber] & ~kNumber) | numbers[i];
+    };
+    const std::int32_t one = key(0), other = key(1);
+    const std::int32_t swap = (one ^ other) & -std::int32_t{one < other};
+    to_keys[0] = one ^ swap;
+    to_keys[1] = other ^ swap;
+    push(0, 2);
+    return;
+  }
+  // Met children come first, or are the only ones that are not negative.
+  IntLanes keys = met.keys & ~kNumber;
+#ifdef RAYGATE_AVX2
+  if constexpr (kCode == Vectors::kAvx2) {
+    const auto lanes = load<IntLanes>(numbers.data());
+    avx2_permute(keys, lanes);
+    keys |= lanes;
+  } else
+#endif
+  {
+    keys |= kNumbers | ~lanes_of(met.mask);
+  }
+  sort_falling(keys, kCode == Vectors::kBaseline ? kLanes : count);
+  std::memcpy(to_keys, &keys, sizeof keys);
+  push(0, 2);
+  if (count <= 2) return;
+  push(2, 4);
+  if (count <= 4) return;
+  push(4, Bvh::kWidth);
+}
+
+/// Pops the next subtree that is not beyond the cutoff.
+RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
+  // Non-negative floats have the order of their bits.
+  const std::int32_t last_key = std::bit_cast<std::int32_t>(walk.cutoff) | (Bvh::kWidth - 1);
+  do {
+    --walk.depth;
+  } while (walk.keys[walk.depth] > last_key);
+  tree.prefetch(walk.at());
+}
+
+/// Several rays traverse the BVH interleaved. A leaf's triangles are tested directly from their
+/// corners by quad_test. Exact arithmetic resolves doubts of float32 and orders hits, so decisions
+/// do not depend on the method.
+class SingleRayIntersector {
+ public:
+  SingleRayIntersector(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
+                       std::span<NearestHit> hits, IntersectCounters& counters)
+      : bvh_(bvh),
+        counters_(counters),
+        rays_(rays),
+        query_(query),
+        hits_(hits),
+        points_(bvh, rays, false, hits) {}
+
+  void trace() {
+    walk_all();
+    points_.write();
+    counters_.hit.plane_tests += points_.written();
+  }
+
+ private:
+  // Number of interleaved rays: enough to hide memory latency, few enough for a 32 KB cache that
+  // another thread of the core may share.
+  static constexpr int kAtOnce = 24;
+
+  /// Does the second half of a leaf's tests. Returns false if the ray can end.
+  RAYGATE_INLINE bool judge(RayTraversal& walk, const Bvh::Child& leaf, const QuadSides& sides,
+                            LaneMask open) {
+    QuadVerdict verdict;
+    judge_sides(walk.sheared, sides, open, verdict);
+    open = verdict.hit | verdict.level | verdict.doubt;
+    HitCounters& counters = counters_.hit;
+    counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
+    walk.work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
+    for (; open != 0; open &= open - 1) {
+      const int i = std::countr_zero(open);
+      const std::uint32_t primitive = leaf.first + static_cast<std::uint32_t>(i);
+      const float low = verdict.low[i], high = verdict.high[i];
+      if (primitive == walk.skip_id || primitive == walk.source_id) continue;
+      if (low > walk.high) continue;
+      if ((verdict.level >> i & 1) != 0) {
+        if (!is_ahead(rays_[walk.number], bvh_.corners_of(primitive))) continue;
+        ++counters.hits;
+      }
+      if ((verdict.doubt >> i & 1) != 0) {
+        if (!resolve(walk, primitive, false)) continue;
+      } else if (high < walk.low) {
+        walk.primitive = primitive;
+        walk.end_at(std::max(low, 0.0f), high);
+      } else if (!resolve(walk, primitive, true)) {
+        continue;
+      }
+      if (walk.high < walk.enough) {
+        ++counters_.ended_early;
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Resolves a doubt about a triangle that the ray may hit or, if `sure`, does hit. Returns
+  /// whether it is the nearest hit now.
+  bool resolve(RayTraversal& walk, std::uint32_t primitive, bool sure) {
+    const Ray& ray = rays_[walk.number];
+    NearestHit best;
+    if (walk.primitive != NearestHit::kNone) {
+      best.primitive = walk.primitive;
+      best.t = walk.t();
+      counters_.hit.depth_doubts += sure;
+    }
+    NearestHit hit = {.primitive = primitive};
+    if (sure) hit.t = hit_distance(ray, bvh_.corners_of(primitive));
+    if (!take_if_nearest(bvh_, ray, query_.t_max_of(walk.number), hit, sure, best, counters_)) {
+      return false;
+    }
+    walk.primitive = primitive;
+    walk.end_at(best.t);
+    return true;
+  }
+
+  /// Starts the next rays with these walks. Returns a mask of the walks that have a ray.
+  RAYGATE_INLINE LaneMask begin(RayTraversal* const (&walks)[kQuad]) {
+    const auto first = static_cast<std::uint32_t>(next_);
+    const std::size_t count = std::min<std::size_t>(kQuad, rays_.size() - next_);
+    const Ray* rays[kQuad];
+    for (std::size_t i = 0; i < kQuad; ++i) rays[i] = &rays_[next_ + std::min(i, count - 1)];
+    next_ += count;
+    const LaneMask all = (1u << count) - 1, scaled = raygate::begin(rays, walks) & all;
+    for (LaneMask left = all & ~scaled; left != 0; left &= left - 1) {
+      const Ray& ray = *rays[std::countr_zero(left)];
+      if (is_usable(ray.direction)) throw_unscaled(ray);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      RayTraversal& walk = *walks[i];
+      const std::uint32_t number = walk.number = first + i;
+      if (!query_.t_max.empty()) {
+        walk.end_at(Interval{query_.t_max[number], query_.t_max[number]});
+      }
+      if (!query_.skip_ids.empty()) walk.skip_id = query_.skip_ids[number];
+      if (!query_.source_ids.empty()) walk.source_id = query_.source_ids[number];
+      if (!query_.any_hit_before.empty()) {
+        walk.enough = float_below(query_.any_hit_before[number] * walk.t_scale());
+      }
+    }
+    return scaled;
+  }
+
+  RAYGATE_INLINE void finish(const RayTraversal& walk) {
+    HitCounters& counters = counters_.hit;
+    counters.tests += walk.work.tests;
+    counters.edge_doubts += walk.work.doubts;
+    if (!query_.work.empty()) query_.work[walk.number] = walk.work;
+    hits_[walk.number].primitive = walk.primitive;
+    if (walk.primitive == NearestHit::kNone) return;
+    hits_[walk.number].t = walk.t();
+    if (query_.with_points) points_.add(walk.number, walk.primitive);
+  }
+
+  /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
+  /// memory latency. Choices that depend on a ray select values instead of branching, since
+  /// branches would often be mispredicted.
+  void walk_all() {
+    const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
+    in_vectors([&](auto code) RAYGATE_BODY {
+      // Rays by state: at inner nodes, at leaves, or without work.
+      RayTraversal *inside[2 * kAtOnce], *leaves[kAtOnce], *idle[kAtOnce];
+      // The children that rays at inner nodes meet.
+      MetChildren met[kAtOnce];
+      Bvh::Node rooms[kAtOnce];
+      // Rays at leaves that do not surely miss all triangles.
+      struct {
+        RayTraversal* walk;
+        LaneMask open;
+        QuadSides sides;
+      } near[kAtOnce];
+      std::size_t inside_count = 0, leaf_count = 0, idle_count = kAtOnce;
+      const BvhView tree(bvh_);
+      for (std::size_t i = 0; i < kAtOnce; ++i) idle[i] = &walks[i];
+      for (;;) {
+        while (idle_count >= kQuad && next_ < rays_.size()) {
+          idle_count -= kQuad;
+          RayTraversal* four[kQuad];
+          std::copy_n(idle + idle_count, kQuad, four);
+          const LaneMask started = begin(four);
+          for (int i = 0; i < kQuad; ++i) {
+            const std::size_t on_its_way = started >> i & 1;
+            inside[inside_count] = idle[idle_count] = four[i];
+            inside_count += on_its_way;
+            idle_count += on_its_way ^ 1;
+          }
+        }
+        if (inside_count + leaf_count == 0) return;
+        // Two short loops let the processor overlap more rays.
+        for (std::size_t i = 0; i < inside_count; ++i) {
+          meet_children<code()>(tree, *inside[i], rooms[i], met[i]);
+        }
+        for (std::size_t i = 0; i < inside_count; ++i) push_children<code()>(*inside[i], met[i]);
+        auto* near_end = near;
+        for (std::size_t i = 0; i < leaf_count; ++i) {
+          RayTraversal& walk = *leaves[i];
+          const Bvh::Child leaf = walk.at();
+          walk.work.tests += leaf.count;
+          Bvh::LeafRoom room;
+          near_end->walk = inside[inside_count + i] = &walk;
+          near_end->open =
+              find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, near_end->sides);
+          near_end += near_end->open != 0 ? 1 : 0;
+        }
+        for (const auto* at = near; at != near_end; ++at) {
+          if (!judge(*at->walk, at->walk->at(), at->sides, at->open)) at->walk->end();
+        }
+        const std::size_t count = inside_count + leaf_count, were_idle = idle_count;
+        RayTraversal** ends[Bvh::Child::kKinds] = {inside, leaves, idle + idle_count};
+        for (std::size_t i = 0; i < count; ++i) {
+          RayTraversal& walk = *inside[i];
+          go_on(tree, walk);
+          *ends[walk.at().kind()]++ = &walk;
+        }
+        inside_count = static_cast<std::size_t>(ends[Bvh::Child::kInner] - inside);
+        leaf_count = static_cast<std::size_t>(ends[Bvh::Child::kLeaf] - leaves);
+        idle_count = static_cast<std::size_t>(ends[Bvh::Child::kNone] - idle);
+        for (std::size_t i = were_idle; i < idle_count; ++i) finish(*idle[i]);
+        if (points_.count() >= PointWriter::kMost / 2) points_.write();
+      }
+    });
+  }
+
+  const Bvh& bvh_;
+  IntersectCounters& counters_;
+  const std::span<const Ray> rays_;
+  const RayQuery query_;
+  const std::span<NearestHit> hits_;
+  PointWriter points_;
+  std::size_t next_ = 0;  // the next ray to start
+};
+
+}  // namespace
+
+void trace_single_rays(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
+                       std::span<NearestHit> hits, IntersectCounters& counters) {
+  SingleRayIntersector(bvh, rays, query, hits, counters).trace();
+}
+
+}  // namespace raygate
