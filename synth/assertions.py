@@ -37,7 +37,7 @@ def opened(name: str, wires: str, memories: str = "", **parameters: object) -> P
     """The module opened_NAME is module `name`, flat, with inner wires as outputs, for invariants speak of what is inside.
 
     `wires`: their names, in Yosys's patterns. `memories`: name, depth and width of each: all its words are one output, word 0
-    lowest.
+    lowest, of its name without generate blocks and without the `ram` that it may be in.
     """
     words = memories.split()
     lines = ["flatten -noscopeinfo", f"rename -top opened_{name}", f"cd opened_{name}"]
@@ -45,7 +45,7 @@ def opened(name: str, wires: str, memories: str = "", **parameters: object) -> P
     lines += ["opt_reduce  # one enable for all bits of a word", "memory -nordff  # a register of an address stays one of its own",
               "opt_clean"]
     for memory, depth, width in zip(words[::3], words[1::3], words[2::3], strict=True):
-        port = memory.replace(".", "_")
+        port = re.sub(r"gen_\w+\.|u_words\.", "", memory).replace(".", "_")
         held = ",".join(f"\\{memory}[{place}]" for place in reversed(range(int(depth))))
         lines += [f"add -output {port} {int(depth) * int(width)}", f"connect -set {port} {held}"]
     return lambda rtl: "\n".join([smt.read(rtl, name, parameters.items()), *lines, "cd .."])

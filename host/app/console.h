@@ -91,8 +91,8 @@ int run_guarded(const std::function<int()>& program);
 int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program);
 
-inline constexpr int kSignalBase =
-    128;  ///< plus a signal: exit status, as shells report a death by it
+/// The exit status after a signal is this plus the signal, as shells report it.
+inline constexpr int kSignalBase = 128;
 
 /// Installs a handler of SIGINT, SIGTERM and SIGHUP; a second signal ends the program at once.
 /// Signals that were ignored at the start stay ignored.

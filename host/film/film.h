@@ -149,8 +149,8 @@ struct Film {
   std::vector<glm::vec3> position;    ///< of the first surface, in world axes; 0 for a miss
   std::vector<glm::vec3> albedo;      ///< diffuse colour of the first surface; 0 for a miss
   std::vector<std::uint32_t> object;  ///< index into Scene::objects; kNoPrimitive for a miss
-  /// Hit tests of all rays of the pixel's paths. They depend on the engine and the
-  /// window, not on the number of threads.
+  /// Hit tests of all rays of the pixel's paths. They depend on the engine and the window, not on
+  /// the number of threads.
   std::vector<std::uint32_t> tests;
   std::vector<std::uint32_t> doubts;  ///< tests that binary32 could not decide
   /// Present while rendering continues; written to files if `keeps_sums`.

@@ -27,9 +27,9 @@ struct RenderJob {
 
 /// Renders an image. Several renders can share a prepared scene, also concurrently. No bit of the
 /// film depends on the intersector or the number of threads, and the film of a window is a part of
-/// the whole film. Resumed films keep their sums until they are complete, so that they
-/// can be resumed again. Rethrows exceptions of intersectors. A scene without lights is black
-/// except with kPrimary: see default_lights.
+/// the whole film. Resumed films keep their sums until they are complete, so that they can be
+/// resumed again. Rethrows exceptions of intersectors. A scene without lights is black except with
+/// kPrimary: see default_lights.
 [[nodiscard]] Film render(const RenderJob& job, const IntersectorFactory& make_intersector,
                           RenderStats& stats, const RenderMonitor& monitor = {});
 

@@ -284,8 +284,8 @@ struct Scene {
   glm::dvec3 origin{0.0};                     ///< world position = origin + position
   CornerRounding rounding;
   std::optional<CameraSetting> camera;  ///< the file's first camera, in world coordinates
-  glm::dvec3 up{0.0, 1.0,
-                0.0};  ///< +y or +z: the up direction of the format, or the usual one in it
+  /// +y or +z: the up direction of the format, or the usual one in it.
+  glm::dvec3 up{0.0, 1.0, 0.0};
   std::vector<std::filesystem::path> files;  ///< all files read: OBJ, MTL and textures
   std::vector<std::string> warnings;  ///< "file:line: ...": first of statements, then of faces
 };

@@ -1,7 +1,7 @@
 // Traversal of the tree: a short stack of nodes for each ray, and the choice of the ray that visits its next node.
 //
 // A stack entry is a group: the children of a node that a ray enters and has not visited yet, the nearest on top. In
-// each clock one ray is picked that waits neither for a node nor for its leaves to be asked for. Its groups whose
+// each clock one ray is picked, of those that neither wait for a node nor have leaves to be fetched. Its groups whose
 // nearest child lies beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for.
 // Rays without tests in flight come first: what they ask for is needed for all that is known so far.
 //

@@ -126,7 +126,7 @@ module cache_answers_once #(
     .heads(heads),
     .nexts(nexts),
     .rays(rays),
-    .u_hits_gen_memory_u_words_words(queue)
+    .u_hits_words(queue)
   );
 
   for (genvar p = 0; p < Lines; p++) begin : gen_tag

@@ -28,37 +28,20 @@ module fifo_keeps_order #(
   logic [CountWidth-1:0] count_q;
   logic [Depth*Width-1:0] words;
 
-  if (Memory) begin : gen_memory
-    opened_fifo dut (
-      .clk_i(clk),
-      .rst_ni(reset_n),
-      .push_i(push),
-      .data_i(data),
-      .space_o(space),
-      .pop_i(pop),
-      .valid_o(valid),
-      .data_o(word),
-      .write_q(write_q),
-      .read_q(read_q),
-      .count_q(count_q),
-      .gen_memory_u_words_words(words)
-    );
-  end else begin : gen_registers
-    opened_fifo dut (
-      .clk_i(clk),
-      .rst_ni(reset_n),
-      .push_i(push),
-      .data_i(data),
-      .space_o(space),
-      .pop_i(pop),
-      .valid_o(valid),
-      .data_o(word),
-      .write_q(write_q),
-      .read_q(read_q),
-      .count_q(count_q),
-      .gen_registers_words(words)
-    );
-  end
+  opened_fifo dut (
+    .clk_i(clk),
+    .rst_ni(reset_n),
+    .push_i(push),
+    .data_i(data),
+    .space_o(space),
+    .pop_i(pop),
+    .valid_o(valid),
+    .data_o(word),
+    .write_q(write_q),
+    .read_q(read_q),
+    .count_q(count_q),
+    .words(words)
+  );
 
   localparam logic [CountWidth-1:0] Full = CountWidth'(Depth);
 

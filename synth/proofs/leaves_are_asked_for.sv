@@ -67,7 +67,7 @@ module leaves_are_asked_for #(
     .\u_groups.data_o (head),
     .\u_groups.read_q (read_q),
     .\u_groups.write_q (write_q),
-    .u_groups_gen_memory_u_words_words(words)
+    .u_groups_words(words)
   );
 
   // ---- Entries of a group

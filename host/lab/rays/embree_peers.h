@@ -106,7 +106,7 @@ Word& in_lane(Word (&field)[kWidth], std::size_t lane) {
   return field[lane];
 }
 
-/// Sets a lane of `rays`, which are zero, to a ray.
+/// Stores a ray in one lane of `rays`. The lane's other words must be zero.
 template <class Rays>
 void set_ray(Rays& rays, std::size_t lane, const Ray& ray,
              float t_max = std::numeric_limits<float>::infinity()) {

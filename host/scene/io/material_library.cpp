@@ -25,14 +25,11 @@ struct ValueRange {
   std::string_view keyword;
   double low, high, instead;  // `instead` replaces a number below `low`
 };
-constexpr ValueRange kValues[kValueCount] = {{"Ns", 0.0, kInfinity, 0.0},
-                                             {"Ni", 0.001, kInfinity, 1.0},  // some exporters write
-                                                                             // 0 for "none"
-                                             {"d", 0.0, 1.0, 0.0},
-                                             {"Tr", 0.0, 1.0, 0.0},
-                                             {"illum", 0.0, 10.0, 2.0},
-                                             {"Pr", 0.0, 1.0, 0.0},
-                                             {"Pm", 0.0, 1.0, 0.0}};
+// Some exporters write Ni 0 for "none".
+constexpr ValueRange kValues[kValueCount] = {
+    {"Ns", 0.0, kInfinity, 0.0}, {"Ni", 0.001, kInfinity, 1.0}, {"d", 0.0, 1.0, 0.0},
+    {"Tr", 0.0, 1.0, 0.0},       {"illum", 0.0, 10.0, 2.0},     {"Pr", 0.0, 1.0, 0.0},
+    {"Pm", 0.0, 1.0, 0.0}};
 
 /// Options of maps that are not supported, which numbers or one word follow.
 constexpr std::string_view kOtherOptions[] = {"-blendu", "-blendv", "-boost",     "-texres",

@@ -101,7 +101,7 @@ struct SceneFile {
 /// the range of float or a light is too small for it.
 [[nodiscard]] Scene load_scene(const SceneFile& file, const LoadOptions& options = {});
 
-// Formats of models.
+// Readers of the formats of models, which load_scene() calls by the file's ending.
 
 /// Loads a Wavefront OBJ file, with its MTL files (relative to its folder) and their textures.
 [[nodiscard]] Scene load_obj(const std::filesystem::path& file, const LoadOptions& options = {});
