@@ -40,9 +40,10 @@ def beside_ours(rows: list[dict]) -> list[dict]:
     return [{**row, "by": name(row), "ours": ours[row["threads"]]} for row in mine]
 
 
-def ratio(ours: dict, theirs: dict, key: str) -> str:
-    """Returns raygate's error relative to the other's, times the ratio of times, and its standard error over seeds."""
-    value = ours[key] / theirs[key] * ours["median_seconds"] / theirs["median_seconds"]
+def ratio(ours: dict, theirs: dict, key: str, *, with_time: bool = True) -> str:
+    """Returns raygate's error relative to the other's, optionally times the ratio of times, and its standard error
+    over seeds."""
+    value = ours[key] / theirs[key] * (ours["median_seconds"] / theirs["median_seconds"] if with_time else 1.0)
     relative = math.hypot(ours[f"{key}_error"] / ours[key], theirs[f"{key}_error"] / theirs[key])
     return f"{value:.2f} ± {value * relative:.2f}"
 
@@ -59,6 +60,7 @@ def summary(rows: list[dict]) -> list[dict]:
         linear, shown = (min(theirs, key=lambda row, key=key: row["median_seconds"] * row[key]) for key in ("mse", "display_mse"))
         plain = ours.get(NO_LIGHT_PATHS, usual)
         found.append({"scene": reference["scene"], "seconds": usual["median_seconds"] / linear["median_seconds"],
+                      "mse": ratio(usual, linear, "mse", with_time=False), "shown": ratio(usual, shown, "display_mse", with_time=False),
                       "time_mse": ratio(usual, linear, "mse"), "time_shown": ratio(usual, shown, "display_mse"),
                       "plain_time_mse": ratio(plain, linear, "mse"), "plain_time_shown": ratio(plain, shown, "display_mse")})
     return found
@@ -92,17 +94,18 @@ PAGE = """# Pictures next to Mitsuba 3
 
 Both render the same scene, read by `host/lab/peers/convert.py`: the same film, a box filter, `path` with at most 64
 reflections and refractions in a row, Russian roulette after three surfaces. Seconds are of rendering alone, after
-loading and compiling; with one thread, processor seconds: medians of ten seeds, taken in turn. Errors are against the
-renderer's own long run, by two measures: the mean square of scene-linear light, which a few bright pixels decide, and
-that of what an 8-bit display shows.
+loading and compiling; with one thread, processor seconds. They are medians of ten seeds, taken in turn. Errors are
+against the renderer's own long run, by two measures: the mean square of scene-linear light, which a few bright pixels
+decide, and that of what an 8-bit display shows.
 
-raygate finds caustics by light paths, which the last two columns leave out, and sends eight more rays a sample to
-pixels in which an emitter begins or ends. All scenes are of this repository, and of materials that both renderers have.
+The algorithms differ. raygate finds caustics by light paths, which the last two columns leave out, and sends eight more
+rays a sample to pixels in which an emitter begins or ends. All scenes are of this repository, and of materials that
+both renderers have.
 
 raygate over Mitsuba (`llvm_ad_rgb`) with its best sampler, one thread, 32 samples per pixel (mean ± standard error of ten seeds); below 1 raygate has less:
 
-{{ table(summary, "scene", "seconds :.2f", "time x MSE = time_mse", "on a display = time_shown",
-         "without light paths = plain_time_mse", "likewise, on a display = plain_time_shown") }}
+{{ table(summary, "scene", "seconds :.2f", "MSE = mse", "MSE on a display = shown", "time x MSE = time_mse", "time x MSE on a display = time_shown",
+         "time x MSE without light paths = plain_time_mse", "on a display = plain_time_shown") }}
 
 ## Do they compute the same picture?
 
