@@ -168,7 +168,8 @@ Scene {{ first[0].scene }} ({{ first[0].integrator }}, samples per pixel: {{ fir
 
 ## Engines
 
-One thread, processor seconds: the median of interleaved repeats, and the median distance from it as their spread.
+One thread, processor seconds: the median of the repeats, and the median distance from it as their spread. The repeats of all rows
+were interleaved.
 
 {{ table(engines, "scene = scene_name(row)", "triangles :,", each(ways, "rays/s, {} = at['{}'].rays / at['{}'].seconds :,.0f")) }}
 {{ saved("bench-engines", of("engines"), "scene = scene_name(row)", "triangles :d", "unit", "engine",
@@ -179,7 +180,9 @@ One thread, processor seconds: the median of interleaved repeats, and the median
 
 ## Lanes
 
-`scenes/paper.obj`, 320 x 200 pixels, with shadows and reflections. Lane clocks per test: clocks times lanes over tests.
+`scenes/paper.obj`, 320 x 200 pixels, with shadows and reflections. The paper counts 5.12 million tests for such a picture (320 x 200
+rays, 20 polygons, 4 reflections), one clock each; its unit takes seven. Its scene is not known, and here rays skip the boxes that they miss, so
+these are other figures. Lane clocks per test: clocks times lanes over tests.
 
 {{ table(of("lanes"), "unit", "lanes :d", "clocks per frame = clocks :,.0f", "lane clocks per test = clocks * lanes / unit_tests :.3f",
          "simulation, s = seconds :.3g") }}
