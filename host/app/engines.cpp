@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "host/app/console.h"
+#include "host/base/input_error.h"
 #include "host/film/atomic_file.h"
 #include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
@@ -79,7 +80,13 @@ IntersectorFactory make_intersector_factory(const EngineOptions& options, const 
 }
 
 std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine, const Bvh& bvh) {
-  return engine.has_core() ? std::make_shared<const MemoryImage>(bvh, engine.threads) : nullptr;
+  if (!engine.has_core()) return nullptr;
+  if (!bvh.is_binary32()) {
+    throw InputError("--unit " + engine.unit +
+                     ": found vertices in binary64, expected binary32 or --round-vertices, as ray "
+                     "cores have it");
+  }
+  return std::make_shared<const MemoryImage>(bvh, engine.threads);
 }
 
 std::string dump_image(const CoreFileOptions& files, const MemoryImage& image) {

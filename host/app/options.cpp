@@ -437,6 +437,8 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
                     options.lanes, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}, kInStats | kInPage);
   table.number("--cores", "N", "ray cores behind one memory, per thread ({})", options.cores,
                Range{1, 64, "a whole number, 1 to 64"}, kInStats | kInPage);
+  table.flag("--round-vertices", "round vertices to binary32, which ray cores need",
+             options.rounds_vertices);
   table.text("--board-port", "PATH", "the serial port of a real board (--unit board)",
              options.board_port);
   table.number("--threads", "N", "threads (one per processor)", options.threads, kThreadRange,

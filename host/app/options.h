@@ -40,6 +40,7 @@ struct EngineOptions {
   int cores = 1;             ///< ray cores behind one memory, per thread; 1 for other units
   int threads = 1;
   InstanceMode instances = InstanceMode::kAutomatic;
+  bool rounds_vertices = false;  ///< to binary32
 
   /// Whether rays go to ray cores, simulated or modelled.
   [[nodiscard]] bool has_core() const {

@@ -40,8 +40,9 @@ semicolons or spaces, are the origin, the direction and, optionally, a limit:
 
 constexpr const char* kFooter =
     R"(Numbers count from 0. A ray without a hit has triangle -1, t inf, and nan
-elsewhere. Positions are rounded to binary32 relative to the scene's middle; the
-summary reports how many rays and corners that changed.
+elsewhere. Answers are exact for the numbers as given, in binary64. The summary
+reports rays and corners that had to be rounded: to binary32 by --engine rtl and
+model, and in meshes with instances.
 
 Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene, the rays or the output cannot be used; 130 interrupted.)";
@@ -80,10 +81,10 @@ std::string summary(const TraceOptions& options, const CornerRounding& rounding,
   }
   text += ", engine " + to_string(options.engine.engine) + "\n";
   if (counts.rounded > 0) {
-    text += format_count(counts.rounded, "ray") + " rounded to binary32\n";
+    text += format_count(counts.rounded, "ray") + " rounded\n";
   }
   if (rounding.corners > 0) {
-    text += format_count(rounding.corners, "corner") + " rounded to binary32, by up to " +
+    text += format_count(rounding.corners, "corner") + " rounded, by up to " +
             format_number(rounding.most) + "\n";
   }
   return text;
@@ -92,7 +93,10 @@ std::string summary(const TraceOptions& options, const CornerRounding& rounding,
 void trace_rays(const TraceOptions& options) {
   const bool has_file = options.output != "-";
   if (has_file) require_writable(options.output);
-  Scene scene = load(read_scene_file(options.scene), {.textures = false});
+  Scene scene = load(
+      read_scene_file(options.scene),
+      {.textures = false,
+       .vertices = options.engine.rounds_vertices ? Vertices::kBinary32 : Vertices::kBinary64});
   resolve_instances(scene, options.engine.instances, options.scene);
   print_warnings(scene.warnings, false);
   prepare_engine(options.engine);

@@ -78,21 +78,23 @@ RAYGATE_INLINE Triple<WideOf<T>> wide(const Triple<T>& a) {
   return {wide(a.x), wide(a.y), wide(a.z)};
 }
 
-/// Gathers of(k) for each lane k into numbers, words, masks or triples, if it returns a float, a
-/// std::uint32_t, a bool or a glm::vec3.
+/// Gathers of(k) for each lane k into numbers, words, masks, triples or wide triples, if it returns
+/// a float, a std::uint32_t, a bool, a glm::vec3 or a glm::dvec3.
 template <class T, class Of>
 RAYGATE_INLINE auto gather(const Of& of) {
   constexpr int kCount = kLanesOf<T>;
   using Element = std::remove_cvref_t<decltype(of(0))>;
-  if constexpr (std::is_same_v<Element, glm::vec3>) {
-    alignas(4 * kCount) float x[kCount], y[kCount], z[kCount];
+  if constexpr (std::is_same_v<Element, glm::vec3> || std::is_same_v<Element, glm::dvec3>) {
+    using Number = typename Element::value_type;
+    using Lanes = std::conditional_t<std::is_same_v<Number, float>, T, WideOf<T>>;
+    alignas(sizeof(Number) * kCount) Number x[kCount], y[kCount], z[kCount];
     for (int k = 0; k < kCount; ++k) {
-      const glm::vec3& v = of(k);
+      const Element& v = of(k);
       x[k] = v.x;
       y[k] = v.y;
       z[k] = v.z;
     }
-    return Triple<T>{load<T>(x), load<T>(y), load<T>(z)};
+    return Triple<Lanes>{load<Lanes>(x), load<Lanes>(y), load<Lanes>(z)};
   } else if constexpr (std::is_same_v<Element, bool>) {
     return MaskOf<T>(gather<T>([&](int k) RAYGATE_BODY { return of(k) ? 1.0f : 0.0f; }) > 0.0f);
   } else {

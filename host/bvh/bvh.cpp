@@ -318,6 +318,18 @@ void Bvh::build(std::span<const glm::vec3> positions, std::span<const Triangle> 
 Bvh::Bvh(const Scene& scene, int threads) {
   const int levels = scene.instances.empty() ? 0 : add_instances(scene, threads);
   build(scene.positions, scene.triangles, kMaxDepth - levels, threads);
+  rests_ = scene.rests;
+  faces_ = scene.triangles;
+}
+
+void Bvh::add_rests(std::uint32_t triangle, Corners& corners) const {
+  for (std::size_t v = 0; v < 3; ++v) {
+    const std::uint32_t vertex = faces_[triangle].vertices[v];
+    if (vertex >= rests_.size()) continue;
+    for (int k = 0; k < 3; ++k) {
+      corners[v][k] = with_rest(static_cast<float>(corners[v][k]), rests_[vertex][k]);
+    }
+  }
 }
 
 }  // namespace raygate

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/base/vectors.h"
+#include "host/exact/exact.h"
 #include "host/scene/instances.h"
 #include "host/scene/scene.h"
 
@@ -69,9 +70,9 @@ struct InstanceBvh {
 };
 
 /// A BVH with eight children per node. A leaf holds a range of primitives; primitive i is triangle
-/// `triangle_of(i)` of the scene. The BVH does not refer to the scene after it is built, and is the
-/// same, byte for byte, for any number of building threads. Memory: 320 bytes per node, one node
-/// for about five primitives, and 41 bytes per primitive.
+/// `triangle_of(i)` of the scene. The BVH is the same, byte for byte, for any number of building
+/// threads. It refers to the scene's triangles and rests, if there are rests. Memory: 320 bytes per
+/// node, one node for about five primitives, and 41 bytes per primitive.
 ///
 /// A mesh with several instances has one BVH. The nodes and primitives below an instance have
 /// indices of their own but are not stored: BvhView and corners_of() compute them from the mesh's
@@ -118,9 +119,6 @@ class Bvh {
     }
   };
 
-  /// The vertices of a primitive's triangle, in the triangle's order.
-  using Corners = std::array<glm::vec3, 3>;
-
   /// Buffer for the corners of a leaf's triangles, for leaves of instances.
   struct LeafRoom {
     float corners[9 * kMaxLeafSize + kMaxLeafSize];
@@ -159,10 +157,19 @@ class Bvh {
     return {kNoIndex, triangles_[primitive]};
   }
 
-  [[nodiscard]] Corners corners_of(std::uint32_t primitive) const {
+  /// Returns whether all corners are in binary32.
+  [[nodiscard]] bool is_binary32() const { return rests_.empty(); }
+  /// Returns the vertices of a primitive's triangle, in the triangle's order, rounded to binary32.
+  [[nodiscard]] FloatCorners float_corners_of(std::uint32_t primitive) const {
     if (is_instanced(primitive)) [[unlikely]]
       return instance_corners(primitive);
     return stored_corners(primitive);
+  }
+  /// Returns the vertices as the scene has them.
+  [[nodiscard]] Corners corners_of(std::uint32_t primitive) const {
+    Corners corners = widened(float_corners_of(primitive));
+    if (!is_binary32() && !is_instanced(primitive)) add_rests(triangles_[primitive], corners);
+    return corners;
   }
 
  private:
@@ -185,15 +192,17 @@ class Bvh {
   }
   void make_instance_node(std::uint32_t index, Node& room) const;
   void make_instance_corners(const Child& leaf, LeafRoom& room) const;
-  [[nodiscard]] Corners instance_corners(std::uint32_t primitive) const;
+  [[nodiscard]] FloatCorners instance_corners(std::uint32_t primitive) const;
   [[nodiscard]] std::uint32_t instance_triangle(std::uint32_t primitive) const;
   [[nodiscard]] FaceRef instance_face(std::uint32_t primitive) const;
   void prefetch_instance(const Child& child) const;
 
-  [[nodiscard]] Corners stored_corners(std::uint32_t primitive) const {
+  void add_rests(std::uint32_t triangle, Corners& corners) const;
+
+  [[nodiscard]] FloatCorners stored_corners(std::uint32_t primitive) const {
     const Place place = places_[primitive];
     const float* const from = &corners_[9 * std::size_t{primitive - place.number} + place.number];
-    Corners corners;
+    FloatCorners corners;
     for (int v = 0; v < 3; ++v) {
       for (int k = 0; k < 3; ++k) corners[v][k] = from[std::size_t(3 * v + k) * place.count];
     }
@@ -209,6 +218,8 @@ class Bvh {
   std::vector<float> corners_;            // of all primitives, leaf by leaf
   std::vector<std::uint32_t> triangles_;  // index in the scene, by primitive
   std::vector<Place> places_;
+  std::span<const glm::ivec3> rests_;  // of the scene, or none
+  std::span<const Triangle> faces_;    // of the scene
 
   // Nodes and primitives from this number on belong to instances. Each has a range of numbers, as
   // many as its mesh has primitives, which are at least as many as its nodes.

@@ -12,7 +12,7 @@ namespace {
 /// Returns the closest point of a triangle (C. Ericson, "Real-Time Collision Detection", 2005,
 /// 5.1.5), by the Voronoi regions of corners and edges.
 glm::dvec3 closest_on(const Corners& corners, const glm::dvec3& point) {
-  const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
+  const auto& [a, b, c] = corners;
   const glm::dvec3 ab = b - a, ac = c - a;
   const double d1 = glm::dot(ab, point - a), d2 = glm::dot(ac, point - a);
   if (d1 <= 0.0 && d2 <= 0.0) return a;

@@ -41,8 +41,10 @@ RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const gl
 
 /// Returns whether a triangle's axis-aligned box touches the closed box from `low` to `high`.
 [[nodiscard]] inline bool touches(const glm::vec3& low, const glm::vec3& high, const Corners& t) {
-  return glm::all(glm::lessThanEqual(glm::min(glm::min(t[0], t[1]), t[2]), high)) &&
-         glm::all(glm::lessThanEqual(low, glm::max(glm::max(t[0], t[1]), t[2])));
+  const glm::dvec3 least = glm::min(glm::min(t[0], t[1]), t[2]);
+  const glm::dvec3 most = glm::max(glm::max(t[0], t[1]), t[2]);
+  return glm::all(glm::lessThanEqual(least, glm::dvec3(high))) &&
+         glm::all(glm::lessThanEqual(glm::dvec3(low), most));
 }
 
 /// Calls visit(primitive, corners) for the triangles whose axis-aligned boxes touch the closed box

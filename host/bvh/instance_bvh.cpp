@@ -148,9 +148,9 @@ void Bvh::make_instance_corners(const Child& leaf, LeafRoom& room) const {
   in_vectors([&](auto) RAYGATE_BODY { place(at, from, leaf.count, room.corners); });
 }
 
-Corners Bvh::instance_corners(std::uint32_t primitive) const {
+FloatCorners Bvh::instance_corners(std::uint32_t primitive) const {
   const InstanceBvh& at = instance_of(primitive);
-  Corners corners = meshes_[at.mesh].stored_corners(primitive - at.first);
+  FloatCorners corners = meshes_[at.mesh].stored_corners(primitive - at.first);
   for (glm::vec3& corner : corners) corner = raygate::transform_point(at.rows, corner);
   return corners;
 }

@@ -61,7 +61,7 @@ void PacketTraversal::set_ray(int lane, const glm::vec3& origin, const glm::vec3
 void PacketTraversal::set_cutoff(int lane, double t) { rays_.cutoff[lane] = cutoff_beyond(t); }
 
 /// Returns the rays that meet the box of one triangle of a leaf.
-RAYGATE_INLINE LaneMask PacketTraversal::meet(const Bvh::Corners& corners) const {
+RAYGATE_INLINE LaneMask PacketTraversal::meet(const FloatCorners& corners) const {
   Box box;
   box_around(corners[0], corners[1], corners[2], box);
   float near[3], far[3];
@@ -83,7 +83,7 @@ LeafVisits PacketTraversal::next_leaf() {
       if ((at.lanes & sign_mask(rays_.cutoff >= at.entry)) == 0) continue;
       const std::uint32_t end = at.child.first + at.child.count;
       for (std::uint32_t primitive = at.child.first; primitive < end; ++primitive) {
-        const LaneMask lanes = meet(bvh_->corners_of(primitive));
+        const LaneMask lanes = meet(bvh_->float_corners_of(primitive));
         if (lanes == 0) continue;
         LeafVisit* const last = leaf.count == 0 ? nullptr : &leaf.visits[leaf.count - 1];
         if (last != nullptr && last->lanes == lanes && last->first + last->count == primitive) {

@@ -50,7 +50,7 @@ class PacketTraversal {
   [[nodiscard]] LeafVisits next_leaf();
 
  private:
-  [[nodiscard]] LaneMask meet(const Bvh::Corners& corners) const;
+  [[nodiscard]] LaneMask meet(const FloatCorners& corners) const;
 
   /// A node or leaf to visit, with a lower bound of the distance at which the first ray enters its
   /// box, and the rays that may enter it.

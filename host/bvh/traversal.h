@@ -86,12 +86,36 @@ struct PacketBounds {
       inverse_far[k] = small ? sign * kInfinity : kExitGrowth * (1.0f / direction[k]);
     }
   }
+  /// Returns the origin from which exits are computed.
+  [[nodiscard]] const float (&exit_origin() const)[3] { return origin; }
+};
+
+/// Sets the origins of entries and exits so that neither is culled for a coordinate that is
+/// rounded.
+RAYGATE_INLINE void spread_origin(double from, bool is_negative, float& entry, float& exit) {
+  entry = is_negative ? float_below(from) : float_above(from);
+  exit = is_negative ? float_above(from) : float_below(from);
+}
+
+/// Bounds of a ray that is rounded to binary32. Entries and exits have another relative error of
+/// 2.1 u for its direction, which more growth of the exit and that of the cutoff exceed.
+struct RoundedBounds : PacketBounds {
+  float exit[3];
+
+  explicit RoundedBounds(const ExactRay& ray)
+      : PacketBounds(glm::vec3(ray.origin), glm::vec3(ray.direction)) {
+    for (int k = 0; k < 3; ++k) {
+      spread_origin(ray.origin[k], (octant >> k & 1) != 0, origin[k], exit[k]);
+      inverse_far[k] *= kExitGrowth;
+    }
+  }
+  [[nodiscard]] const float (&exit_origin() const)[3] { return exit; }
 };
 
 /// Returns a mask of the node's children whose boxes the bounds meet before `cutoff` (see
 /// cutoff_beyond); sets entry[i] to the distance at which they enter child i.
-template <Vectors kCode = Vectors::kBaseline>
-RAYGATE_INLINE LaneMask intersect_children(const PacketBounds& bounds, const Bvh::Node& node,
+template <Vectors kCode = Vectors::kBaseline, class Bounds>
+RAYGATE_INLINE LaneMask intersect_children(const Bounds& bounds, const Bvh::Node& node,
                                            float cutoff, FloatLanes& entry) {
   FloatLanes enter = {}, leave = FloatLanes{} + cutoff;
   for (int k = 0; k < 3; ++k) {
@@ -99,7 +123,7 @@ RAYGATE_INLINE LaneMask intersect_children(const PacketBounds& bounds, const Bvh
     const FloatLanes near = load<FloatLanes>(node.bounds[negative][k]),
                      far = load<FloatLanes>(node.bounds[negative ^ 1][k]);
     const FloatLanes t_near = (near - bounds.origin[k]) * bounds.inverse_near[k];
-    const FloatLanes t_far = (far - bounds.origin[k]) * bounds.inverse_far[k];
+    const FloatLanes t_far = (far - bounds.exit_origin()[k]) * bounds.inverse_far[k];
     enter = t_near > enter ? t_near : enter;
     leave = t_far < leave ? t_far : leave;
   }

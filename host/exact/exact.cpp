@@ -23,10 +23,6 @@ struct Estimate {
   [[nodiscard]] int sign() const { return value > 0.0 ? 1 : -1; }
 };
 
-glm::dvec3 difference(const glm::vec3& a, const glm::vec3& b) {
-  return glm::dvec3(a) - glm::dvec3(b);
-}
-
 /// A cross product whose factors are rounded differences, and for each component the sum of the
 /// magnitudes of its two products. Every term of a component has four roundings (two differences, a
 /// product, a subtraction): its error is less than 5u times its magnitude.
@@ -66,15 +62,13 @@ ExactVector<16> exact_normal(const Corners& t) {
   return exact_cross(exact_difference(t[1], t[0]), exact_difference(t[2], t[0]));
 }
 
-Expansion<192> exact_plane(const glm::vec3& origin, const Corners& t) {
+Expansion<192> exact_plane(const glm::dvec3& origin, const Corners& t) {
   return exact_dot(exact_difference(t[0], origin), exact_normal(t));
 }
 
-Cross estimated_normal(const Corners& t) {
-  return {difference(t[1], t[0]), difference(t[2], t[0])};
-}
+Cross estimated_normal(const Corners& t) { return {t[1] - t[0], t[2] - t[0]}; }
 
-int exact_edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {
+int exact_edge_side(const ExactRay& ray, const glm::dvec3& a, const glm::dvec3& b) {
   const auto normal = exact_cross(exact_difference(a, ray.origin), exact_difference(b, a));
   if (const int side = exact_dot(ray.direction, normal).sign(); side != 0) return side;
   for (const auto& component : normal) {
@@ -83,7 +77,7 @@ int exact_edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {
   return 0;
 }
 
-Expansion<96> exact_slope(const glm::vec3& direction, const Corners& t) {
+Expansion<96> exact_slope(const glm::dvec3& direction, const Corners& t) {
   return exact_dot(direction, exact_normal(t));
 }
 
@@ -91,10 +85,10 @@ Expansion<96> exact_slope(const glm::vec3& direction, const Corners& t) {
 struct Fraction {
   Estimate numerator, denominator;
 
-  Fraction(const Ray& ray, const Corners& t) {
+  Fraction(const ExactRay& ray, const Corners& t) {
     const Cross normal = estimated_normal(t);
-    numerator = dot(difference(t[0], ray.origin), normal);
-    denominator = dot(glm::dvec3(ray.direction), normal);
+    numerator = dot(t[0] - ray.origin, normal);
+    denominator = dot(ray.direction, normal);
   }
 };
 
@@ -107,7 +101,7 @@ Estimate product(const Estimate& a, const Estimate& b) {
 }
 
 /// Computes order_of_planes exactly. Products of this size are not allocated on the stack.
-int exact_order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
+int exact_order_of_planes(const ExactRay& ray, const Corners& first, const Corners& second) {
   using Product = Expansion<2 * 192 * 96>;
   const auto left = std::make_unique_for_overwrite<Product>();
   const auto right = std::make_unique_for_overwrite<Product>();
@@ -121,7 +115,7 @@ int exact_order_of_planes(const Ray& ray, const Corners& first, const Corners& s
 }
 
 /// Returns the sign of D1 (I . N2) - D2 (I . N1): that of t1 - t2, times the signs of both I . N.
-int order_of_planes(const Ray& ray, const Corners& first, const Corners& second) {
+int order_of_planes(const ExactRay& ray, const Corners& first, const Corners& second) {
   const Fraction t1(ray, first), t2(ray, second);
   const Estimate left = product(t1.numerator, t2.denominator);
   const Estimate right = product(t2.numerator, t1.denominator);
@@ -142,10 +136,7 @@ RecentredPosition recentred(const glm::dvec3& position, const glm::dvec3& origin
   return result;
 }
 
-bool is_usable(const glm::vec3& direction) {
-  return std::isfinite(direction.x) && std::isfinite(direction.y) && std::isfinite(direction.z) &&
-         direction != glm::vec3(0.0f);
-}
+bool has_exact_difference(double a, double b) { return two_sum(a, -b).error == 0.0; }
 
 bool is_scaled(const glm::vec3& direction) {
   const float size = largest(direction);
@@ -168,14 +159,13 @@ glm::vec3 scaled_direction(const glm::dvec3& direction) {
   return scaled;
 }
 
-int edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b) {
-  const Estimate side =
-      dot(glm::dvec3(ray.direction), {difference(a, ray.origin), difference(b, a)});
+int edge_side(const ExactRay& ray, const glm::dvec3& a, const glm::dvec3& b) {
+  const Estimate side = dot(ray.direction, {a - ray.origin, b - a});
   return side.sure() ? side.sign() : exact_edge_side(ray, a, b);
 }
 
-int orient3d(const glm::vec3& origin, const Corners& t) {
-  const Estimate side = dot(difference(t[0], origin), estimated_normal(t));
+int orient3d(const glm::dvec3& origin, const Corners& t) {
+  const Estimate side = dot(t[0] - origin, estimated_normal(t));
   return side.sure() ? side.sign() : exact_plane(origin, t).sign();
 }
 
@@ -183,19 +173,19 @@ int orient3d(const glm::vec3& origin, const Corners& t) {
 // which have the signs of I . (B x C) and so on over det(A, B, C). It points into the triangle if
 // all three are positive. So all edges must have the sign of the plane, and then t = det / (I . N)
 // > 0, as I . N is the sum of the three.
-bool hits_triangle(const Ray& ray, const Corners& t) {
+bool hits_triangle(const ExactRay& ray, const Corners& t) {
   if (!is_usable(ray.direction)) return false;
   const int side = orient3d(ray.origin, t);
   return side != 0 && edge_side(ray, t[0], t[1]) == side && edge_side(ray, t[1], t[2]) == side &&
          edge_side(ray, t[2], t[0]) == side;
 }
 
-int direction_side(const glm::vec3& direction, const Corners& t) {
-  const Estimate side = dot(glm::dvec3(direction), estimated_normal(t));
+int direction_side(const glm::dvec3& direction, const Corners& t) {
+  const Estimate side = dot(direction, estimated_normal(t));
   return side.sure() ? side.sign() : exact_slope(direction, t).sign();
 }
 
-bool is_ahead(const Ray& ray, const Corners& t) {
+bool is_ahead(const ExactRay& ray, const Corners& t) {
   const auto& [n, d] = Fraction(ray, t);
   if (n.sure() && d.sure()) return n.sign() == d.sign();
   return orient3d(ray.origin, t) * direction_side(ray.direction, t) > 0;
@@ -203,7 +193,7 @@ bool is_ahead(const Ray& ray, const Corners& t) {
 
 // If doubles cancel too much, D and I . N are computed exactly up to their last rounding to double
 // (an error of at most an ulp), as is the quotient.
-Interval hit_distance(const Ray& ray, const Corners& triangle) {
+Interval hit_distance(const ExactRay& ray, const Corners& triangle) {
   const auto& [n, d] = Fraction(ray, triangle);
   if (n.error <= 0x1p-37 * std::abs(n.value) && d.error <= 0x1p-37 * std::abs(d.value)) {
     const double above = std::abs(n.value), below = std::abs(d.value);
@@ -219,13 +209,12 @@ Interval hit_distance(const Ray& ray, const Corners& triangle) {
 // The weights are I . (B x C), I . (C x A) and I . (A x B) over their sum S. If each has an error
 // of at most e = 2^-37 |S|, S has one of 3 e, and a quotient 4 * 2^-37. Clamping to [0, 1] only
 // reduces the error.
-Barycentric barycentric(const Ray& ray, const Corners& triangle) {
+Barycentric barycentric(const ExactRay& ray, const Corners& triangle) {
   double weights[3], sum = 0.0, error = 0.0;
-  const auto corner = [&](int k) -> const glm::vec3& { return triangle[std::size_t(k) % 3]; };
+  const auto corner = [&](int k) -> const glm::dvec3& { return triangle[std::size_t(k) % 3]; };
   for (int k = 0; k < 3; ++k) {
-    const glm::vec3 &a = corner(k + 1), &b = corner(k + 2);
-    const Estimate side =
-        dot(glm::dvec3(ray.direction), {difference(a, ray.origin), difference(b, a)});
+    const glm::dvec3 &a = corner(k + 1), &b = corner(k + 2);
+    const Estimate side = dot(ray.direction, {a - ray.origin, b - a});
     weights[k] = side.value;
     sum += side.value;
     error = std::max(error, side.error);
@@ -233,7 +222,7 @@ Barycentric barycentric(const Ray& ray, const Corners& triangle) {
   if (error > 0x1p-37 * std::abs(sum)) {
     sum = 0.0;
     for (int k = 0; k < 3; ++k) {
-      const glm::vec3 &a = corner(k + 1), &b = corner(k + 2);
+      const glm::dvec3 &a = corner(k + 1), &b = corner(k + 2);
       weights[k] = exact_dot(ray.direction,
                              exact_cross(exact_difference(a, ray.origin), exact_difference(b, a)))
                        .approximate();
@@ -247,19 +236,19 @@ Barycentric barycentric(const Ray& ray, const Corners& triangle) {
   return {u, within(weights[2] / sum, 1.0 - u)};
 }
 
-PreciseHit precise_hit(const Ray& ray, const Corners& triangle) {
+PreciseHit precise_hit(const ExactRay& ray, const Corners& triangle) {
   const Interval interval = hit_distance(ray, triangle);
   const double t = 0.5 * (interval.low + interval.high);
-  return {static_cast<float>(t), glm::vec3(t * glm::dvec3(ray.direction))};
+  return {static_cast<float>(t), glm::vec3(t * ray.direction)};
 }
 
 // D and I . N of a hit have the same sign, as t > 0.
-int compare_hits(const Ray& ray, const Corners& first, const Corners& second) {
+int compare_hits(const ExactRay& ray, const Corners& first, const Corners& second) {
   return orient3d(ray.origin, first) * orient3d(ray.origin, second) *
          order_of_planes(ray, first, second);
 }
 
-int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit) {
+int compare_hit_to_limit(const ExactRay& ray, const Corners& triangle, float limit) {
   const Interval t = hit_distance(ray, triangle);
   if (t.high < limit) return -1;
   if (t.low > limit) return 1;
@@ -269,18 +258,18 @@ int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit) {
 }
 
 // At O + t I, t = D1 / (I . N1), the other plane's D2 becomes D2 - t (I . N2).
-int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other) {
+int plane_side_at_hit(const ExactRay& ray, const Corners& hit, const Corners& other) {
   return orient3d(ray.origin, hit) * order_of_planes(ray, other, hit);
 }
 
-double plane_distance(const glm::vec3& origin, const Corners& t) {
-  const Estimate d = dot(difference(t[0], origin), estimated_normal(t));
+double plane_distance(const glm::dvec3& origin, const Corners& t) {
+  const Estimate d = dot(t[0] - origin, estimated_normal(t));
   return d.error <= 0x1p-32 * std::abs(d.value) && d.sure() ? d.value
                                                             : exact_plane(origin, t).approximate();
 }
 
-glm::dvec3 edge_normal(const glm::vec3& origin, const glm::vec3& p, const glm::vec3& q) {
-  const Cross cross(difference(p, origin), difference(q, p));
+glm::dvec3 edge_normal(const glm::dvec3& origin, const glm::dvec3& p, const glm::dvec3& q) {
+  const Cross cross(p - origin, q - p);
   return cross.accurate()
              ? cross.value
              : rounded(exact_cross(exact_difference(p, origin), exact_difference(q, p)));
@@ -291,51 +280,43 @@ glm::dvec3 triangle_normal(const Corners& t) {
   return normal.accurate() ? normal.value : rounded(exact_normal(t));
 }
 
-namespace {
-
-constexpr double kUnitRoundoff = 0x1p-53;
-
-// A product of two floats has at most 48 bits and an exponent of -298 to 256: exact in a double.
-double exact_product(float a, float b) { return static_cast<double>(a) * static_cast<double>(b); }
-
-int sign_of(double x) { return (x > 0.0) - (x < 0.0); }
-
-}  // namespace
-
-int area_sign(std::span<const glm::vec2> polygon, double& area) {
+int area_sign(std::span<const glm::dvec2> polygon, double& area) {
   double twice_area = 0.0;
   double magnitude = 0.0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::vec2& p = polygon[i];
-    const glm::vec2& q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    const double left = exact_product(p.x, q.y);
-    const double right = exact_product(p.y, q.x);
+    const glm::dvec2& p = polygon[i];
+    const glm::dvec2& q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    const double left = p.x * q.y;
+    const double right = p.y * q.x;
     twice_area += left - right;
     magnitude += std::abs(left) + std::abs(right);
   }
   area = 0.5 * twice_area;
-  // n differences and n additions, each with an error of at most u times the magnitudes.
-  const double bound = 2.0 * static_cast<double>(polygon.size() + 1) * kUnitRoundoff * magnitude;
-  if (std::abs(twice_area) > bound) return sign_of(twice_area);
+  // 2 n products, n differences and n additions, each with an error of at most u times the
+  // magnitudes.
+  const double bound = 2.0 * static_cast<double>(polygon.size() + 1) * kU * magnitude;
+  if (std::abs(twice_area) > bound) return twice_area > 0.0 ? 1 : -1;
 
   ExactSum sum;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::vec2& p = polygon[i];
-    const glm::vec2& q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    sum.add(exact_product(p.x, q.y));
-    sum.add(-exact_product(p.y, q.x));
+    const glm::dvec2& p = polygon[i];
+    const glm::dvec2& q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    for (const auto& [value, error] : {two_product(p.x, q.y), two_product(-p.y, q.x)}) {
+      sum.add(error);
+      sum.add(value);
+    }
   }
   return sum.sign();
 }
 
-int orient2d(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
-  const glm::vec2 corners[] = {a, b, c};
+int orient2d(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  const glm::dvec2 corners[] = {a, b, c};
   double area = 0.0;
   return area_sign(corners, area);
 }
 
-bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  const auto flat = [](const glm::vec3& p, int i, int j) { return glm::vec2(p[i], p[j]); };
+bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const auto flat = [](const glm::dvec3& p, int i, int j) { return glm::dvec2(p[i], p[j]); };
   for (int axis = 0; axis < 3; ++axis) {
     const int i = (axis + 1) % 3;
     const int j = (axis + 2) % 3;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
 #include <span>
@@ -12,8 +14,13 @@
 
 namespace raygate {
 
-/// The vertices of a triangle, in its order.
-using Corners = std::array<glm::vec3, 3>;
+/// The vertices of a triangle, in its order. Coordinates are multiples of 2^-149, as floats are.
+using Corners = std::array<glm::dvec3, 3>;
+/// The same in binary32.
+using FloatCorners = std::array<glm::vec3, 3>;
+[[nodiscard]] inline Corners widened(const FloatCorners& t) {
+  return {glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
+}
 
 /// Returns the largest magnitude of the components.
 template <class T>
@@ -32,6 +39,31 @@ struct RecentredPosition {
 };
 [[nodiscard]] RecentredPosition recentred(const glm::dvec3& position, const glm::dvec3& origin);
 
+/// Returns whether a - b is a double.
+[[nodiscard]] bool has_exact_difference(double a, double b);
+
+/// Returns the nearest multiple of 2^-149.
+[[nodiscard]] inline double on_float_grid(double x) {
+  return std::abs(x) < 0x1p-97 ? std::nearbyint(x * 0x1p149) * 0x1p-149 : x;
+}
+
+/// Returns a double in [1, 2) times 2^-30 ulp(x), for a normal float; its sign and fraction are 0.
+[[nodiscard]] inline double unit_of_rest(float x) {
+  constexpr std::uint32_t kField = 0xFF;
+  const std::uint64_t exponent = std::bit_cast<std::uint32_t>(x) >> 23 & kField;
+  return std::bit_cast<double>((exponent + (1023 - 127 - 53)) << 52);
+}
+
+/// Returns what a float lacks of a coordinate x, of which it is the nearest one: a number of
+/// unit_of_rest(). Together they are x, if that is a multiple of 2^-149.
+[[nodiscard]] inline std::int32_t rest_of(double x, float nearest) {
+  return static_cast<std::int32_t>((x - double{nearest}) / unit_of_rest(nearest));
+}
+/// Returns that x.
+[[nodiscard]] inline double with_rest(float nearest, std::int32_t rest) {
+  return double{nearest} + rest * unit_of_rest(nearest);
+}
+
 /// Return the nearest float that is not above x, or not below x.
 [[nodiscard]] inline float float_below(double x) {
   const auto nearest = static_cast<float>(x);
@@ -42,17 +74,20 @@ struct RecentredPosition {
   return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
 
-/// Returns whether rays can have this direction: all components are finite, and not all are 0. Rays
-/// with other directions hit nothing.
-[[nodiscard]] bool is_usable(const glm::vec3& direction);
-
-/// Returns the unit vector of `v`, which is not 0, without overflow or underflow of squares.
-[[nodiscard]] inline glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest(v)); }
-
 template <class T>
 [[nodiscard]] bool is_finite(const glm::vec<3, T>& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
+
+/// Returns whether rays can have this direction: all components are finite, and not all are 0. Rays
+/// with other directions hit nothing.
+template <class T>
+[[nodiscard]] bool is_usable(const glm::vec<3, T>& direction) {
+  return is_finite(direction) && direction != glm::vec<3, T>(0);
+}
+
+/// Returns the unit vector of `v`, which is not 0, without overflow or underflow of squares.
+[[nodiscard]] inline glm::dvec3 unit(const glm::dvec3& v) { return glm::normalize(v / largest(v)); }
 
 /// Returns whether the largest component's magnitude is in [1, 2), as intersectors, BVHs and units
 /// require. Scaling by a power of two changes neither rounding nor hits.
@@ -81,26 +116,37 @@ struct PreciseHit {
   glm::vec3 point{0.0f};  ///< P = t I, relative to the ray's origin
 };
 
+/// A ray of the exact predicates, in binary64. Coordinates are multiples of 2^-149.
+struct ExactRay {
+  glm::dvec3 origin{0.0};
+  glm::dvec3 direction{0.0};
+
+  ExactRay() = default;
+  ExactRay(const glm::dvec3& from, const glm::dvec3& to) : origin(from), direction(to) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): every Ray is one
+  ExactRay(const Ray& ray) : origin(ray.origin), direction(ray.direction) {}
+};
+
 /// Returns the sign (-1, 0, 1) of I . (A x B), for A = a - O and B = b - O: the side on which the
 /// ray passes the edge from `a` to `b`. If it is exactly 0, returns the sign for a direction tilted
 /// by an infinitesimal towards +x, by a smaller one towards +y, and by a still smaller one towards
 /// +z. The result is 0 only for an edge in line with the origin.
-[[nodiscard]] int edge_side(const Ray& ray, const glm::vec3& a, const glm::vec3& b);
+[[nodiscard]] int edge_side(const ExactRay& ray, const glm::dvec3& a, const glm::dvec3& b);
 
 /// Returns the sign of the determinant of A, B, C: the side of the triangle's plane on which the
 /// origin is; 0 for an origin in the plane and for a triangle without area.
-[[nodiscard]] int orient3d(const glm::vec3& origin, const Corners& triangle);
+[[nodiscard]] int orient3d(const glm::dvec3& origin, const Corners& triangle);
 
 /// Returns whether the ray, tilted as above, hits the triangle. Neighbours in a closed mesh agree
 /// about their shared edge because both use the same tilted ray: exactly one triangle of a fan is
 /// hit. A triangle whose plane contains the origin, or that is behind it, is never hit.
-[[nodiscard]] bool hits_triangle(const Ray& ray, const Corners& triangle);
+[[nodiscard]] bool hits_triangle(const ExactRay& ray, const Corners& triangle);
 
 /// Returns whether the ray's line meets the triangle's plane in front of the origin, at t > 0.
-[[nodiscard]] bool is_ahead(const Ray& ray, const Corners& triangle);
+[[nodiscard]] bool is_ahead(const ExactRay& ray, const Corners& triangle);
 
 /// Returns bounds of t for a triangle with hits_triangle(). high <= low (1 + 2^-34).
-[[nodiscard]] Interval hit_distance(const Ray& ray, const Corners& triangle);
+[[nodiscard]] Interval hit_distance(const ExactRay& ray, const Corners& triangle);
 
 /// The position of a hit on its triangle: P = (1 - u - v) A + u B + v C. The error of u and of v is
 /// at most 2^-34; none of the three weights is negative, nor -0.
@@ -109,46 +155,46 @@ struct Barycentric {
 };
 
 /// Returns the position for a triangle with hits_triangle().
-[[nodiscard]] Barycentric barycentric(const Ray& ray, const Corners& triangle);
+[[nodiscard]] Barycentric barycentric(const ExactRay& ray, const Corners& triangle);
 
 /// Returns t and P of a hit, computed from the corners. The error of each word is at most (1 +
 /// 2^-10) / 2 times the distance of neighbouring floats, at any angle.
-[[nodiscard]] PreciseHit precise_hit(const Ray& ray, const Corners& triangle);
+[[nodiscard]] PreciseHit precise_hit(const ExactRay& ray, const Corners& triangle);
 
 /// Returns the exact sign of t(first) - t(second). Both must be hits.
-[[nodiscard]] int compare_hits(const Ray& ray, const Corners& first, const Corners& second);
+[[nodiscard]] int compare_hits(const ExactRay& ray, const Corners& first, const Corners& second);
 
 /// Returns the exact sign of t - limit. The triangle must be hit; `limit` is positive and finite.
-[[nodiscard]] int compare_hit_to_limit(const Ray& ray, const Corners& triangle, float limit);
+[[nodiscard]] int compare_hit_to_limit(const ExactRay& ray, const Corners& triangle, float limit);
 
 /// Returns orient3d of `other` for the exact point in which the ray hits `hit`.
-[[nodiscard]] int plane_side_at_hit(const Ray& ray, const Corners& hit, const Corners& other);
+[[nodiscard]] int plane_side_at_hit(const ExactRay& ray, const Corners& hit, const Corners& other);
 
 /// Returns the exact sign of I . N. A direction with the sign of orient3d(origin, triangle) goes
 /// towards the plane, one with the opposite sign away from it.
-[[nodiscard]] int direction_side(const glm::vec3& direction, const Corners& triangle);
+[[nodiscard]] int direction_side(const glm::dvec3& direction, const Corners& triangle);
 
 /// Returns D = A . ((b-a) x (c-a)) rounded to double, with a relative error of at most 2^-32 and
 /// the exact sign.
-[[nodiscard]] double plane_distance(const glm::vec3& origin, const Corners& triangle);
+[[nodiscard]] double plane_distance(const glm::dvec3& origin, const Corners& triangle);
 
 /// Returns (p - origin) x (q - p) in double. The error of each component is at most 2^-34 of the
 /// sum of the components' magnitudes.
-[[nodiscard]] glm::dvec3 edge_normal(const glm::vec3& origin, const glm::vec3& p,
-                                     const glm::vec3& q);
+[[nodiscard]] glm::dvec3 edge_normal(const glm::dvec3& origin, const glm::dvec3& p,
+                                     const glm::dvec3& q);
 
 /// Returns (b-a) x (c-a), as accurate as edge_normal.
 [[nodiscard]] glm::dvec3 triangle_normal(const Corners& triangle);
 
 /// Returns 1 if a, b, c are in counter-clockwise order, -1 if clockwise, 0 if they are exactly
-/// collinear. For all finite floats.
-[[nodiscard]] int orient2d(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c);
+/// collinear. Coordinates are as those of Corners, of any finite magnitude that a float can have.
+[[nodiscard]] int orient2d(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c);
 
 /// Returns 1 if the closed polygon's signed area is positive (counter-clockwise), -1 if negative, 0
-/// if exactly zero. For all finite floats. Sets `area` to the rounded area.
-[[nodiscard]] int area_sign(std::span<const glm::vec2> polygon, double& area);
+/// if exactly zero. Coordinates are as in orient2d. Sets `area` to the rounded area.
+[[nodiscard]] int area_sign(std::span<const glm::dvec2> polygon, double& area);
 
-/// Returns whether the three points are exactly collinear (or coincide). For all finite floats.
-[[nodiscard]] bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+/// Returns whether the three points are exactly collinear (or coincide).
+[[nodiscard]] bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
 }  // namespace raygate

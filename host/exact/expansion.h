@@ -13,8 +13,8 @@ namespace raygate {
 /// magnitude; 0 has none. `Capacity` bounds the size and follows from the operations.
 ///
 /// Every operation is exact as long as no product of two components underflows or overflows in
-/// double. Here all numbers are polynomials of degree at most 6 in floats, so multiples of 2^-894
-/// and, with coordinates up to 2^126, below 2^800.
+/// double. Here all numbers are polynomials of degree at most 6 in multiples of 2^-149, so
+/// multiples of 2^-894 and, with coordinates up to 2^126, below 2^800.
 template <int Capacity>
 struct Expansion {
   int size = 0;
@@ -151,7 +151,7 @@ template <int N>
 using ExactVector = std::array<Expansion<N>, 3>;
 
 /// Returns a - b.
-[[nodiscard]] inline ExactVector<2> exact_difference(const glm::vec3& a, const glm::vec3& b) {
+[[nodiscard]] inline ExactVector<2> exact_difference(const glm::dvec3& a, const glm::dvec3& b) {
   return {exact_difference(a.x, b.x), exact_difference(a.y, b.y), exact_difference(a.z, b.z)};
 }
 
@@ -163,9 +163,8 @@ using ExactVector = std::array<Expansion<N>, 3>;
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-[[nodiscard]] inline Expansion<96> exact_dot(const glm::vec3& u, const ExactVector<16>& v) {
-  return v[0] * static_cast<double>(u.x) + v[1] * static_cast<double>(u.y) +
-         v[2] * static_cast<double>(u.z);
+[[nodiscard]] inline Expansion<96> exact_dot(const glm::dvec3& u, const ExactVector<16>& v) {
+  return v[0] * u.x + v[1] * u.y + v[2] * u.z;
 }
 
 /// A sum of doubles without rounding: an Expansion without a bound of its size (Shewchuk's

@@ -37,19 +37,19 @@ void throw_unscaled(const Ray& ray) {
   throw std::invalid_argument(text);
 }
 
-bool is_before(const Bvh& bvh, const Ray& ray, const NearestHit& hit, float t_max) {
+bool is_before(const Bvh& bvh, const ExactRay& ray, const NearestHit& hit, float t_max) {
   if (t_max == std::numeric_limits<float>::infinity()) return true;
   if (tells(hit.t, t_max)) return hit.t.high < t_max;
   return compare_hit_to_limit(ray, bvh.corners_of(hit.primitive), t_max) < 0;
 }
 
-bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a, const NearestHit& b) {
+bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a, const NearestHit& b) {
   if (!overlap(a.t, b.t)) return a.t.high < b.t.low;
   const int order = compare_hits(ray, bvh.corners_of(a.primitive), bvh.corners_of(b.primitive));
   return order < 0 || (order == 0 && bvh.triangle_of(a.primitive) <= bvh.triangle_of(b.primitive));
 }
 
-bool take_if_nearest(const Bvh& bvh, const Ray& ray, float t_max, NearestHit hit, bool is_sure,
+bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHit hit, bool is_sure,
                      NearestHit& best, IntersectCounters& counters) {
   const bool is_first = best.primitive == NearestHit::kNone;
   if (!is_sure) {

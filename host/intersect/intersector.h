@@ -52,6 +52,10 @@ struct RayQuery {
   bool common_origin = false;
   /// Positive. Only hits with exact t < t_max[i] count; +infinity: no limit.
   std::span<const float> t_max{};
+  /// The rays in binary64, of which `rays` are the nearest ones in binary32; empty: `rays` are
+  /// exact. Only CpuIntersector accepts them, and not of a common origin. NearestHit::point is that
+  /// of the rounded ray.
+  std::span<const ExactRay> exact_rays{};
   /// The primitive that the ray leaves and surely does not hit, or NearestHit::kNone. Does not
   /// change results, but saves the test that is hardest to decide.
   std::span<const std::uint32_t> source_ids{};
@@ -74,7 +78,8 @@ struct RayQuery {
 struct EngineTraits {
   /// Best number of rays per query: about 16,384 for each test done at the same time.
   std::size_t batch = std::size_t{1} << 14;
-  bool wants_sources = false;  ///< benefits from RayQuery::source_ids that need exact arithmetic
+  bool takes_exact_rays = false;  ///< RayQuery::exact_rays
+  bool wants_sources = false;     ///< benefits from RayQuery::source_ids that need exact arithmetic
 };
 
 /// Finds nearest hits with exact decisions: results depend only on ray and scene, not on the
@@ -114,17 +119,18 @@ class Intersector {
 using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 
 /// Returns whether a hit has t < t_max (positive); exact.
-[[nodiscard]] bool is_before(const Bvh& bvh, const Ray& ray, const NearestHit& hit, float t_max);
+[[nodiscard]] bool is_before(const Bvh& bvh, const ExactRay& ray, const NearestHit& hit,
+                             float t_max);
 
 /// Returns whether hit `a` is nearer than `b`, exactly; for equal t, by the lower triangle index.
-[[nodiscard]] bool is_nearer(const Bvh& bvh, const Ray& ray, const NearestHit& a,
+[[nodiscard]] bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a,
                              const NearestHit& b);
 
 /// Replaces `best` by `hit` if that is a hit with t < t_max and nearer; returns whether it did. The
 /// order of calls does not matter. If not `is_sure`, binary32 finds the triangle neither hit nor
 /// missed, and hit.t is not read; the distance is decided first, which usually needs doubles only.
 /// Counts the use of exact arithmetic.
-bool take_if_nearest(const Bvh& bvh, const Ray& ray, float t_max, NearestHit hit, bool is_sure,
+bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHit hit, bool is_sure,
                      NearestHit& best, IntersectCounters& counters);
 
 }  // namespace raygate

@@ -40,14 +40,14 @@ bool ordinary(double x) {
   return size == 0.0 || (size >= kSmallest && size < kLargest);
 }
 
-bool lower(const glm::vec3& a, const glm::vec3& b) {
+bool lower(const glm::dvec3& a, const glm::dvec3& b) {
   return std::pair(a.x, std::pair(a.y, a.z)) < std::pair(b.x, std::pair(b.y, b.z));
 }
 
 /// Returns A x B in float. Computed from the lower vertex, A x B = A x (B - A), regardless of the
 /// edge's direction, so neighbours get exactly opposite numbers. The difference, small for a
 /// distant triangle, avoids cancellation in A x B.
-glm::vec3 edge_words(const glm::vec3& origin, const glm::vec3& a, const glm::vec3& b) {
+glm::vec3 edge_words(const glm::dvec3& origin, const glm::dvec3& a, const glm::dvec3& b) {
   glm::dvec3 edge = lower(a, b) ? edge_normal(origin, a, b) : -edge_normal(origin, b, a);
   if (!ordinary(largest(edge))) edge = scaled_by(edge, to_unit(edge));
   return glm::vec3(edge);
@@ -63,7 +63,7 @@ struct Plane {
   glm::dvec3 normal;
   double d;
 
-  Plane(const glm::vec3& origin, const Corners& t)
+  Plane(const glm::dvec3& origin, const Corners& t)
       : normal(triangle_normal(t)), d(plane_distance(origin, t)) {
     if (ordinary(largest(normal)) && ordinary(d)) return;
     const int exponent = to_unit(normal);
@@ -89,13 +89,13 @@ struct Plane {
 
 }  // namespace
 
-PolygonRecord make_plane(const glm::vec3& origin, const Corners& t) {
+PolygonRecord make_plane(const glm::dvec3& origin, const Corners& t) {
   PolygonRecord record;
   Plane(origin, t).put(record);
   return record;
 }
 
-PolygonRecord make_record(const glm::vec3& origin, const Corners& t) {
+PolygonRecord make_record(const glm::dvec3& origin, const Corners& t) {
   PolygonRecord record;
   const Plane plane(origin, t);
   plane.put(record);
@@ -174,7 +174,7 @@ RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
   const Corners(&of)[kBatch] = views.triangles;
   for (int v = 0; v < 3; ++v) {
     for (int k = 0; k < 3; ++k) {
-      t[v][k] = wide(Floats{of[0][v][k], of[1][v][k], of[2][v][k], of[3][v][k]});
+      t[v][k] = Doubles{of[0][v][k], of[1][v][k], of[2][v][k], of[3][v][k]};
     }
   }
 }

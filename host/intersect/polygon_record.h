@@ -52,10 +52,10 @@ inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
 /// Returns the record of a triangle for rays from `origin`. All coordinates are finite with a
 /// magnitude of at most 2^126. If the origin is in the triangle's plane, or the triangle has no
 /// area, d is 0 and no ray hits it.
-[[nodiscard]] PolygonRecord make_record(const glm::vec3& origin, const Corners& triangle);
+[[nodiscard]] PolygonRecord make_record(const glm::dvec3& origin, const Corners& triangle);
 
 /// Returns only the plane: words 0-3 of that record; the others are 0.
-[[nodiscard]] PolygonRecord make_plane(const glm::vec3& origin, const Corners& triangle);
+[[nodiscard]] PolygonRecord make_plane(const glm::dvec3& origin, const Corners& triangle);
 
 /// Sets records[i] to make_record(origin, triangles[i]), bit for bit. The spans have the same size.
 void make_records(const glm::vec3& origin, std::span<const Corners> triangles,

@@ -40,9 +40,8 @@ bool is_lit_by_emitters(const Scene& scene, double size) {
   for (const Triangle& face : scene.triangles) {
     if (radiance[face.material] == 0.0) continue;
     const auto& [a, b, c] = face.vertices;
-    sum +=
-        0.5 * radiance[face.material] *
-        glm::length(triangle_normal({scene.positions[a], scene.positions[b], scene.positions[c]}));
+    const Corners corners{scene.vertex(a), scene.vertex(b), scene.vertex(c)};
+    sum += 0.5 * radiance[face.material] * glm::length(triangle_normal(corners));
   }
   return sum > size * size;
 }

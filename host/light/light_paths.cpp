@@ -81,8 +81,8 @@ void LightPaths::find_balls(const PreparedScene& prepared) {
       const FaceRef face = prepared.bvh.face_of(primitive);
       if (!prepared.materials[face_at(prepared.scene, face).material].is_mirror_or_glass())
         continue;
-      for (const glm::vec3& corner : prepared.bvh.corners_of(primitive)) {
-        each(object_at(prepared.scene, face), glm::dvec3(corner));
+      for (const glm::dvec3& corner : prepared.bvh.corners_of(primitive)) {
+        each(object_at(prepared.scene, face), corner);
       }
     }
   };

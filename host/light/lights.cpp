@@ -71,14 +71,12 @@ struct Parallelogram {
 std::optional<Parallelogram> parallelogram(const Corners& first, const Corners& second) {
   for (std::size_t k = 0; k < 3; ++k) {
     // `second` traverses the shared edge, from corner k + 2 to corner k of `first`, in reverse.
-    const glm::vec3 &corner = first[k], &side = first[(k + 1) % 3], &end = first[(k + 2) % 3];
+    const glm::dvec3 &corner = first[k], &side = first[(k + 1) % 3], &end = first[(k + 2) % 3];
     for (std::size_t j = 0; j < 3; ++j) {
       if (second[j] != corner || second[(j + 1) % 3] != end) continue;
-      const glm::dvec3 u = glm::dvec3(side) - glm::dvec3(corner);
-      const glm::dvec3 v = glm::dvec3(end) - glm::dvec3(side);
-      const glm::dvec3 other = glm::dvec3(second[(j + 2) % 3]) - glm::dvec3(corner);
+      const glm::dvec3 u = side - corner, v = end - side, other = second[(j + 2) % 3] - corner;
       if (largest(other - v) > 0x1p-20 * std::max(largest(u), largest(v))) return std::nullopt;
-      return Parallelogram{corner, glm::vec3(u), glm::vec3(other)};
+      return Parallelogram{glm::vec3(corner), glm::vec3(u), glm::vec3(other)};
     }
   }
   return std::nullopt;
@@ -155,7 +153,7 @@ glm::vec3 Lights::textured_radiance(std::uint32_t primitive, const glm::vec3& po
   const glm::dvec3 normal = triangle_normal(corners);
   glm::dvec3 weights;  // areas of the triangles that the point forms with the sides
   for (std::size_t k = 0; k < 3; ++k) {
-    const glm::dvec3 from(corners[(k + 1) % 3]), to(corners[(k + 2) % 3]);
+    const glm::dvec3 &from = corners[(k + 1) % 3], &to = corners[(k + 2) % 3];
     weights[static_cast<int>(k)] =
         std::max(glm::dot(glm::cross(to - from, glm::dvec3(point) - from), normal), 0.0);
   }
@@ -178,10 +176,10 @@ void Lights::find_areas() {
     }
     AreaLight& light = areas_[at->second];
     const Corners corners = bvh_.corners_of(primitive);
-    if (is_new) light.low = light.high = corners[0];
-    for (const glm::vec3& corner : corners) {
-      light.low = glm::min(light.low, corner);
-      light.high = glm::max(light.high, corner);
+    if (is_new) light.low = light.high = glm::vec3(corners[0]);
+    for (const glm::dvec3& corner : corners) {
+      light.low = glm::min(light.low, glm::vec3(corner));
+      light.high = glm::max(light.high, glm::vec3(corner));
     }
     const double area = 0.5 * glm::length(triangle_normal(corners));
     light.area_up_to.push_back((light.primitives.empty() ? 0.0 : light.area()) + area);
@@ -200,9 +198,9 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
     patch.primitive = patch.primitive_beyond = light.primitives[i];
     patch.begin = static_cast<float>(before / light.area());
     patch.normal = glm::vec3(glm::normalize(triangle_normal(t)));
-    patch.corner = t[0];
-    patch.u = t[1] - t[0];
-    patch.v = t[2] - t[0];
+    patch.corner = glm::vec3(t[0]);
+    patch.u = glm::vec3(t[1] - t[0]);
+    patch.v = glm::vec3(t[2] - t[0]);
     if (i + 1 < light.primitives.size()) {
       const auto sides = parallelogram(t, bvh_.corners_of(light.primitives[i + 1]));
       if (sides) {
@@ -286,7 +284,7 @@ void Lights::add_sources(double unit) {
 
 std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t> primitives) {
   struct Edge {
-    std::array<float, 6> ends;  // the smaller one first
+    std::array<double, 6> ends;  // the smaller one first
     std::uint32_t triangle;
     bool is_reversed;
   };
@@ -300,8 +298,8 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     const Corners corners = bvh.corners_of(primitives[i]);
     for (std::size_t k = 0; k < 3; ++k) {
-      const glm::vec3 &a = corners[k], &b = corners[(k + 1) % 3];
-      const std::array<float, 6> ends{a.x, a.y, a.z, b.x, b.y, b.z},
+      const glm::dvec3 &a = corners[k], &b = corners[(k + 1) % 3];
+      const std::array<double, 6> ends{a.x, a.y, a.z, b.x, b.y, b.z},
           back{b.x, b.y, b.z, a.x, a.y, a.z};
       edges.push_back({std::min(ends, back), i, back < ends});
     }
@@ -322,8 +320,8 @@ std::vector<OuterSide> outer_sides(const Bvh& bvh, std::span<const std::uint32_t
   std::vector<double> volumes(primitives.size());  // times six; negative: triangles face inwards
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     const Corners t = bvh.corners_of(primitives[i]);
-    const glm::dvec3 origin(bvh.corners_of(primitives[part_of(i)])[0]);
-    volumes[part_of(i)] += glm::dot(glm::dvec3(t[0]) - origin, triangle_normal(t));
+    const glm::dvec3 origin = bvh.corners_of(primitives[part_of(i)])[0];
+    volumes[part_of(i)] += glm::dot(t[0] - origin, triangle_normal(t));
   }
   std::vector<OuterSide> sides(primitives.size());
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {

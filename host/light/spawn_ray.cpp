@@ -32,9 +32,10 @@ class NeighborClearanceSearch {
       : corners_(corners), from_(corners[0]), reach_(spawn_reach(corners)), slack_(slack) {
     const auto grown = static_cast<float>(1.125 * reach_);  // more than rounding removes
     for (int k = 0; k < 3; ++k) {
-      vertex_[k] = glm::dvec3(corners[k]) - from_;
-      low_[k] = std::min({corners[0][k], corners[1][k], corners[2][k]}) - grown;
-      high_[k] = std::max({corners[0][k], corners[1][k], corners[2][k]}) + grown;
+      vertex_[k] = corners[k] - from_;
+      low_[k] = static_cast<float>(std::min({corners[0][k], corners[1][k], corners[2][k]})) - grown;
+      high_[k] =
+          static_cast<float>(std::max({corners[0][k], corners[1][k], corners[2][k]})) + grown;
     }
     const glm::dvec3 &b = vertex_[1], &c = vertex_[2];
     cross({b.x, b.y, b.z}, {c.x, c.y, c.z}, normal_, normal_sizes_);
@@ -78,8 +79,12 @@ class NeighborClearanceSearch {
     LaneMask rest = (LaneMask{1} << leaf.count) - 1;
     if (primitive - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (primitive - leaf.first));
     if (rest == 0 || !is_possible()) return;
+    Corners exact[kQuad];
+    if (!bvh.is_binary32()) {
+      for (std::uint32_t i = 0; i < leaf.count; ++i) exact[i] = bvh.corners_of(leaf.first + i);
+    }
     double apart[kQuad];
-    store(apart, clearances<kCode>(corners, leaf.count, rest));
+    store(apart, clearances<kCode>(corners, bvh.is_binary32() ? nullptr : exact, leaf.count, rest));
     for (; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       if (apart[i] >= length_) continue;
@@ -87,8 +92,7 @@ class NeighborClearanceSearch {
       const Corners others = bvh.corners_of(other);
       if (lies_beyond(others, corners_, 1) && lies_beyond(others, corners_, -1)) continue;
       if (apart[i] < kShareOfOverlaps * most_ && overlaps_.size() < kMaxOverlaps) {
-        overlaps_.push_back({other, glm::min(glm::min(others[0], others[1]), others[2]),
-                             glm::max(glm::max(others[0], others[1]), others[2])});
+        overlaps_.push_back(overlap_of(other, others));
       } else {
         length_ = apart[i];
       }
@@ -107,7 +111,7 @@ class NeighborClearanceSearch {
     const double scale = std::ldexp(1.0, -exponent);
     for (int k = 0; k < 3; ++k) {
       result.normal[k] = scale * normal_[k];
-      result.corner[k] = corners_[0][k];
+      result.corner[k] = static_cast<float>(corners_[0][k]);
       result.gradient[0][k] = static_cast<float>(length * inverse_height_[2] * axes_[5][k]);
       result.gradient[1][k] = static_cast<float>(length * inverse_height_[0] * axes_[3][k]);
     }
@@ -138,10 +142,20 @@ class NeighborClearanceSearch {
     return choose(size > 0.0, Vectors3{v.x / size, v.y / size, v.z / size}, zero<DoubleQuad>());
   }
 
+  static Overlap overlap_of(std::uint32_t primitive, const Corners& corners) {
+    Overlap overlap{.primitive = primitive};
+    for (int k = 0; k < 3; ++k) {
+      overlap.low[k] = float_below(std::min({corners[0][k], corners[1][k], corners[2][k]}));
+      overlap.high[k] = float_above(std::max({corners[0][k], corners[1][k], corners[2][k]}));
+    }
+    return overlap;
+  }
+
   /// Returns c for each of the triangles in the mask alone, or any value of at least length_.
+  /// `exact`: their corners, if `corners` are rounded; otherwise null.
   template <Vectors kCode>
-  [[nodiscard]] RAYGATE_INLINE DoubleQuad clearances(const float* corners, std::uint32_t count,
-                                                     LaneMask mask) const {
+  [[nodiscard]] RAYGATE_INLINE DoubleQuad clearances(const float* corners, const Corners* exact,
+                                                     std::uint32_t count, LaneMask mask) const {
     DoubleQuad coordinates[3][3];  // relative to from_
     constexpr IntQuad kBit = {1, 2, 4, 8};
     IntQuad near = ((IntQuad{} + static_cast<std::int32_t>(mask)) & kBit) != 0;
@@ -149,7 +163,11 @@ class NeighborClearanceSearch {
       FloatQuad corner[3];
       for (std::uint32_t v = 0; v < 3; ++v) {
         corner[v] = load<FloatQuad>(corners + std::size_t{3 * v + k} * count);
-        coordinates[v][k] = widen<kCode>(corner[v]) - from_[static_cast<int>(k)];
+        DoubleQuad coordinate = widen<kCode>(corner[v]);
+        if (exact != nullptr) [[unlikely]] {
+          for (int i = 0; i < kQuad; ++i) coordinate[i] = exact[i][v][static_cast<int>(k)];
+        }
+        coordinates[v][k] = coordinate - from_[static_cast<int>(k)];
       }
       near &= (minimum(minimum(corner[0], corner[1]), corner[2]) <= high_[static_cast<int>(k)]) &
               (maximum(maximum(corner[0], corner[1]), corner[2]) >= low_[static_cast<int>(k)]);
@@ -221,12 +239,12 @@ float largest_coordinate(const Bvh& bvh) {
 
 bool lies_beyond(const Corners& other, const Corners& hit, int side) {
   return std::ranges::all_of(
-      other, [&](const glm::vec3& vertex) { return orient3d(vertex, hit) != side; });
+      other, [&](const glm::dvec3& vertex) { return orient3d(vertex, hit) != side; });
 }
 
 // A float step is at most 2^-23 of the value, or 2^-149.
 double spawn_reach(const Corners& corners) {
-  const float size = std::max({largest(corners[0]), largest(corners[1]), largest(corners[2])});
+  const double size = std::max({largest(corners[0]), largest(corners[1]), largest(corners[2])});
   return std::max(0x1p-18 * size, 0x1p-144);
 }
 
@@ -329,15 +347,15 @@ struct HitPoint {
 /// Returns whether double precision proves that no point of the triangle is in the box, by the
 /// separating axis theorem. The box's own axes have been tested before.
 bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& triangle) {
-  for (const glm::vec3& corner : triangle) {
-    if (corner == glm::clamp(corner, low, high)) return false;
+  for (const glm::dvec3& corner : triangle) {
+    if (corner == glm::clamp(corner, glm::dvec3(low), glm::dvec3(high))) return false;
   }
   const glm::dvec3 middle = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
   const glm::dvec3 half = 0.5 * (glm::dvec3(high) - glm::dvec3(low));
   glm::dvec3 v[3];
   double size = largest(middle) + largest(half);
   for (int k = 0; k < 3; ++k) {
-    v[k] = glm::dvec3(triangle[k]) - middle;
+    v[k] = triangle[k] - middle;
     size = std::max(size, largest(v[k]));
   }
   const auto separates = [&](const glm::dvec3& axis) {
@@ -371,6 +389,8 @@ struct SpawnHits {
   FloatQuad length;
   Triple<FloatQuad> corner, gradient[2];
   Triple<FloatQuad> origin, direction;  ///< of the rays
+  /// The corners, if `corner` is rounded; otherwise null.
+  const glm::dvec3* exact_corners = nullptr;
 
   RAYGATE_INLINE SpawnHits(const NeighborClearance* const (&triangles)[kQuad],
                            const Ray* const (&rays)[kQuad]) {
@@ -432,7 +452,16 @@ RAYGATE_INLINE void find_candidates(const SpawnHits& hits, const FloatQuad& way,
   // X = O + t I, and u.
   const Triple<DoubleQuad> origin = widened<kCode>(hits.origin),
                            direction = widened<kCode>(hits.direction);
-  const Triple<DoubleQuad> from_origin = widened<kCode>(hits.corner) - origin;
+  Triple<DoubleQuad> corner = widened<kCode>(hits.corner);
+  if (hits.exact_corners != nullptr) [[unlikely]] {
+    for (int i = 0; i < kQuad; ++i) {
+      const glm::dvec3& exact = hits.exact_corners[i];
+      corner.x[i] = exact.x;
+      corner.y[i] = exact.y;
+      corner.z[i] = exact.z;
+    }
+  }
+  const Triple<DoubleQuad> from_origin = corner - origin;
   const DoubleQuad plane = dot(from_origin, hits.normal), slope = dot(direction, hits.normal);
   const DoubleQuad below = absolute(slope), inverse = 1.0 / below;
   const DoubleQuad t = absolute(plane) * inverse;
@@ -453,7 +482,9 @@ RAYGATE_INLINE void find_candidates(const SpawnHits& hits, const FloatQuad& way,
 
   // c times the least weight of X.
   const FloatQuad length = absolute(hits.length);
-  const Triple<FloatQuad> p = point - hits.corner;
+  Triple<FloatQuad> p = point - hits.corner;
+  if (hits.exact_corners != nullptr) [[unlikely]]
+    p = narrow(widened<kCode>(point) - corner);
   const FloatQuad second = dot(p, hits.gradient[0]), third = dot(p, hits.gradient[1]);
   const FloatQuad least = minimum(minimum(FloatQuad(length - second - third), second), third);
   const FloatQuad error_of_least =
@@ -488,7 +519,12 @@ RAYGATE_INLINE void RaySpawner::find_four(const SpawnQuery* queries, SpawnOrigin
     rays[i] = queries[i].ray;
     ways[i] = queries[i].side == SpawnSide::kIncident ? -1.0f : 1.0f;
   }
-  const SpawnHits hits(triangles, rays);
+  SpawnHits hits(triangles, rays);
+  glm::dvec3 corners[kQuad];
+  if (!bvh_.is_binary32()) [[unlikely]] {
+    for (int i = 0; i < kQuad; ++i) corners[i] = bvh_.corners_of(queries[i].primitive)[0];
+    hits.exact_corners = corners;
+  }
   Triple<FloatQuad> point;
   FloatQuad reach;
   IntQuad is_clear;
@@ -547,7 +583,7 @@ void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin
 
 std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive,
                                             SpawnSide side) {
-  const Corners& hit = bvh_.corners_of(primitive);
+  const Corners hit = bvh_.corners_of(primitive);
   const Interval t = hit_distance(ray, hit);
   const HitPoint x(ray, t);
   const int before = orient3d(ray.origin, hit);
@@ -586,7 +622,7 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
 
 bool RaySpawner::leaves(const Ray& ray, std::uint32_t primitive, SpawnSide side,
                         const glm::vec3& direction) const {
-  const Corners& hit = bvh_.corners_of(primitive);
+  const Corners hit = bvh_.corners_of(primitive);
   const int towards = orient3d(ray.origin, hit);
   const int sign = direction_side(direction, hit);
   return side == SpawnSide::kIncident ? sign == -towards : sign == towards;

@@ -149,8 +149,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   Corners own_corners[kCount];
   for (int k = 0; k < kCount; ++k) own_corners[k] = bvh.corners_of(places[k].primitive);
   const auto corner = [&](std::size_t c) RAYGATE_BODY {
-    return wide(
-        gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& { return own_corners[k][c]; }));
+    return gather<T>([&](int k) RAYGATE_BODY -> const glm::dvec3& { return own_corners[k][c]; });
   };
   Surface<T> surface;
   surface.point = origin + gather<T>([&](int k) RAYGATE_BODY {
@@ -253,8 +252,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
     if ((kind & kIsBumpy) != 0) {
       const auto normals = unpack(surface.normal);
       surface.normal = gather<T>([&](int k) RAYGATE_BODY {
-        const Corners& c = own_corners[k];
-        return mapped_normal(scene, *places[k].face, {c[0], c[1], c[2]}, places[k].instance,
+        return mapped_normal(scene, *places[k].face, own_corners[k], places[k].instance,
                              glm::dvec3(weight[k]), normals[k]);
       });
     }
@@ -271,7 +269,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
 [[nodiscard]] inline bool is_masked_out(const Scene& scene, const Bvh& bvh,
                                         const SurfaceHit& place) {
   const Corners corners = bvh.corners_of(place.primitive);
-  const auto wide = [](const glm::vec3& v) { return Triple<double>{v.x, v.y, v.z}; };
+  const auto wide = [](const glm::dvec3& v) { return Triple<double>{v.x, v.y, v.z}; };
   const Triple<double> at =
       unscaled_weights<double>(wide(place.ray->origin), wide(place.ray->direction),
                                {wide(corners[0]), wide(corners[1]), wide(corners[2])});

@@ -61,14 +61,14 @@ struct Tracer::Tree {
 
   [[nodiscard]] Hit answer(const RayTable& block, std::size_t i, const NearestHit& hit) const {
     if (hit.primitive == NearestHit::kNone) return {};
-    const HitPoint place = hit_point_of(block.rays[i], bvh.corners_of(hit.primitive));
+    const HitPoint place = hit_point_of(block.exact_ray(i), bvh.corners_of(hit.primitive));
     return {bvh.triangle_of(hit.primitive), std::ldexp(place.t, block.exponents[i]), place.u,
             place.v};
   }
 
   [[nodiscard]] std::vector<NearestHit> find(const RayTable& block, bool any) const {
     std::vector<NearestHit> hits(block.rays.size());
-    RayQuery query{.t_max = block.limits};
+    RayQuery query{.t_max = block.limits, .exact_rays = block.exact_rays};
     CpuIntersector intersector(bvh);
     if (any) {
       query.any_hit_before = block.limits;
@@ -118,7 +118,7 @@ std::vector<Tracer::Hit> Tracer::all(const Ray& ray) const {
   const RayTable block = block_of({&ray, 1});
   std::vector<NearestHit> found;
   RayWork work;
-  all_hits(tree_->bvh, block.rays[0], block.limits[0], found, work);
+  all_hits(tree_->bvh, block.exact_ray(0), block.limits[0], found, work);
   std::vector<Hit> hits;
   hits.reserve(found.size());
   for (const NearestHit& hit : found) hits.push_back(tree_->answer(block, 0, hit));

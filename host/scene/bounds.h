@@ -54,11 +54,11 @@ void for_each_face(const Scene& scene, const Visit& visit) {
       visit(corners, face);
     }
   };
-  visit_all(scene.triangles, [&](std::uint32_t vertex) { return scene.positions[vertex]; });
+  visit_all(scene.triangles, [&](std::uint32_t vertex) { return scene.vertex(vertex); });
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     visit_all(mesh.triangles, [&](std::uint32_t vertex) {
-      return transform_point(instance.rows, mesh.positions[vertex]);
+      return glm::dvec3(transform_point(instance.rows, mesh.positions[vertex]));
     });
   }
 }

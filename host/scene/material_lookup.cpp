@@ -118,7 +118,7 @@ float opacity_factor_at(const Scene& scene, const Triangle& triangle, const glm:
 }
 
 glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
-                        const std::array<glm::vec3, 3>& corners, const Instance* instance,
+                        const std::array<glm::dvec3, 3>& corners, const Instance* instance,
                         const glm::dvec3& weights, const glm::vec3& normal) {
   const Material& material = scene.materials[triangle.material];
   const MaterialMap& map = material.normal_map;
@@ -127,8 +127,7 @@ glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
     return turned(map.mapping, texcoord(map.mapping, scene, triangle, vertex));
   };
   const glm::dvec2 to_1 = uv(1) - uv(0), to_2 = uv(2) - uv(0);
-  const glm::dvec3 a(corners[0]), edge_1 = glm::dvec3(corners[1]) - a,
-                                  edge_2 = glm::dvec3(corners[2]) - a;
+  const glm::dvec3 edge_1 = corners[1] - corners[0], edge_2 = corners[2] - corners[0];
   const double sign = to_1.x * to_2.y < to_1.y * to_2.x ? -1.0 : 1.0;
   const glm::dvec3 n(normal), along_u = sign * (edge_1 * to_2.y - edge_2 * to_1.y),
                               along_v = sign * (edge_2 * to_1.x - edge_1 * to_2.x);

@@ -28,7 +28,7 @@ namespace raygate {
 /// v increase, projected onto the tangent plane, or the file's tangents, transformed by `instance`
 /// (nullptr: none). Returns `normal` if there is no map or the texture coordinates are degenerate.
 [[nodiscard]] glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
-                                      const std::array<glm::vec3, 3>& corners,
+                                      const std::array<glm::dvec3, 3>& corners,
                                       const Instance* instance, const glm::dvec3& weights,
                                       const glm::vec3& normal);
 

@@ -139,12 +139,13 @@ class Digest {
   }
   // `camera` and `up` are omitted: images record their own view.
   void add(const Scene& s) {
-    const auto& [positions, colors, normals, tangents, texcoords, second_texcoords, opacities,
-                 triangles, meshes, instances, materials, textures, objects, lights,
+    const auto& [positions, rests, colors, normals, tangents, texcoords, second_texcoords,
+                 opacities, triangles, meshes, instances, materials, textures, objects, lights,
                  directional_lights, background, environment, origin, rounding, camera, up, files,
                  warnings] = s;
     add(positions, normals, texcoords, triangles, meshes, instances, materials, textures, objects);
     add(lights, directional_lights, background, environment, origin);
+    if (!rests.empty()) add(rests);
     if (!colors.empty()) add(colors);
     if (!tangents.empty()) add(tangents);
     if (!second_texcoords.empty()) add(second_texcoords);
@@ -159,8 +160,9 @@ class Digest {
 
  private:
   template <class T>
-  static constexpr bool kIsPacked = std::same_as<T, glm::vec2> || std::same_as<T, glm::vec3> ||
-                                    std::same_as<T, Triangle> || std::same_as<T, Texture::Texel>;
+  static constexpr bool kIsPacked =
+      std::same_as<T, glm::vec2> || std::same_as<T, glm::vec3> || std::same_as<T, glm::ivec3> ||
+      std::same_as<T, Triangle> || std::same_as<T, Texture::Texel>;
   static_assert(std::has_unique_object_representations_v<Triangle> && sizeof(glm::vec3) == 12);
 
   std::uint64_t state_ = 0;

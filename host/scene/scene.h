@@ -238,9 +238,10 @@ class NameList {
   std::size_t size_ = 0;
 };
 
-/// Error statistics of rounding corners to binary32: the number of inexact corners, and the largest
-/// error of a coordinate, in the file's unit. A mesh with instances is counted once, in its own
-/// coordinates; rounding after an instance transform is not counted.
+/// Statistics of rounding: the number of corners that are not stored as they are in the file, and
+/// the largest error of a coordinate, in the file's unit. A mesh with instances, which is stored in
+/// binary32, is counted once, in its own coordinates; rounding after an instance transform is not
+/// counted.
 struct CornerRounding {
   std::uint64_t corners = 0;
   double most = 0.0;
@@ -252,13 +253,15 @@ struct CornerRounding {
 };
 
 /// All geometry, materials and lights. Emissive triangles are lights, too. Positions are relative
-/// to `origin`, which is subtracted in double before rounding to float, so a scene far from the
-/// world's origin keeps its precision.
+/// to `origin`, which is subtracted exactly: a position in binary32 and its rest are a binary64
+/// coordinate.
 ///
 /// Triangles are indexed in the order of `triangles`, followed by those of each instance in turn.
 /// Faces without area have indices, too (see is_left_out).
 struct Scene {
   std::vector<glm::vec3> positions;
+  /// What binary32 lacks of the first positions (see rest_of); 0 if missing.
+  std::vector<glm::ivec3> rests;
   /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour; default
   /// 1.
   std::vector<glm::vec3> colors;
@@ -288,6 +291,14 @@ struct Scene {
   glm::dvec3 up{0.0, 1.0, 0.0};
   std::vector<std::filesystem::path> files;  ///< all files read: OBJ, MTL and textures
   std::vector<std::string> warnings;  ///< "file:line: ...": first of statements, then of faces
+
+  /// Returns a position in binary64.
+  [[nodiscard]] glm::dvec3 vertex(std::uint32_t index) const {
+    if (index >= rests.size()) return positions[index];
+    glm::dvec3 exact;
+    for (int k = 0; k < 3; ++k) exact[k] = with_rest(positions[index][k], rests[index][k]);
+    return exact;
+  }
 };
 
 /// Adds a light to a scene whose origin is set. Throws InputError, which names `file`, if it is

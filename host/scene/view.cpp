@@ -72,7 +72,7 @@ CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const V
   };
   if (filling == FrameFit::kVertices) {
     for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
-      for (const glm::vec3& corner : triangle) show(glm::dvec3(corner) - centre);
+      for (const glm::dvec3& corner : triangle) show(corner - centre);
     });
   } else {
     for (int corner = 0; corner < 8; ++corner) {

@@ -85,7 +85,7 @@ std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
   return columns;
 }
 
-HitPoint hit_point_of(const Ray& ray, const Corners& corners) {
+HitPoint hit_point_of(const ExactRay& ray, const Corners& corners) {
   const Interval t = hit_distance(ray, corners);
   const Barycentric place = barycentric(ray, corners);
   return {0.5 * (t.low + t.high), place.u, place.v};
@@ -113,7 +113,7 @@ void HitTable::append(const RayTable& rays, const RayHit& found, std::string& by
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const NearestHit& hit = found.hit;
   const bool is_hit = hit.primitive != NearestHit::kNone;
-  const Ray& ray = rays.rays[found.ray];
+  const ExactRay ray = rays.exact_ray(found.ray);
   Corners corners{};
   std::int64_t number = -1;
   FaceRef stored;
@@ -130,7 +130,7 @@ void HitTable::append(const RayTable& rays, const RayHit& found, std::string& by
     for (int k = 0; k < 3; ++k) real(is_hit ? v[k] : kNan);
   };
   const auto from_origin = [&](const glm::dvec3& way) {
-    vector(scene_.origin + (glm::dvec3(ray.origin) + way));
+    vector(scene_.origin + (ray.origin + way));
   };
   for (const HitColumn column : columns_) {
     switch (column) {
@@ -153,7 +153,7 @@ void HitTable::append(const RayTable& rays, const RayHit& found, std::string& by
         real(std::ldexp(place.t, rays.exponents[found.ray]));
         break;
       case HitColumn::kPoint:
-        from_origin(place.t * glm::dvec3(ray.direction));
+        from_origin(place.t * ray.direction);
         break;
       case HitColumn::kUv:
         real(place.u);

@@ -52,7 +52,7 @@ struct HitPoint {
 };
 
 /// Returns the position of the hit; the ray must hit the triangle.
-[[nodiscard]] HitPoint hit_point_of(const Ray& ray, const Corners& corners);
+[[nodiscard]] HitPoint hit_point_of(const ExactRay& ray, const Corners& corners);
 
 /// One hit of a ray of a table.
 struct RayHit {

@@ -17,6 +17,7 @@ namespace raygate {
 void RayTable::clear(std::uint64_t its_first) {
   first = its_first;
   rays.clear();
+  exact_rays.clear();
   limits.clear();
   exponents.clear();
   rounded = 0;
@@ -34,23 +35,36 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
   if (largest(origin - scene_origin) > kMostCoordinate) {
     return "found an origin farther than 2^126 from the scene, expected a nearer one";
   }
-  const RecentredPosition start = recentred(origin, scene_origin);
-  Ray ray{.origin = start.position};
+  ExactRay exact;
+  bool is_exact = true;
+  const auto on_grid = [&](double x) {
+    is_exact = is_exact && on_float_grid(x) == x;
+    return on_float_grid(x);
+  };
+  for (int k = 0; k < 3; ++k) {
+    is_exact = is_exact && has_exact_difference(origin[k], scene_origin[k]);
+    exact.origin[k] = on_grid(origin[k] - scene_origin[k]);
+  }
+  Ray ray{.origin = glm::vec3(exact.origin)};
   int exponent = 0;
   if (direction != glm::dvec3(0.0)) {
     ray.direction = scaled_direction(direction);
     // The ratio is a power of two, up to the rounding of the direction.
     exponent = static_cast<int>(
         std::lround(std::log2(largest(glm::dvec3(ray.direction))) - std::log2(largest(direction))));
+    for (int k = 0; k < 3; ++k) exact.direction[k] = on_grid(std::ldexp(direction[k], exponent));
   }
-  const auto as_given = [&](float x) { return std::ldexp(double{x}, -exponent); };
-  const glm::dvec3 kept(as_given(ray.direction.x), as_given(ray.direction.y),
-                        as_given(ray.direction.z));
   const double scaled_limit = std::ldexp(limit, -exponent);
   const float float_limit =
       std::max(static_cast<float>(scaled_limit), std::numeric_limits<float>::denorm_min());
-  rounded += start.error != 0.0 || kept != direction ||
-             (double{float_limit} != scaled_limit && std::isfinite(float_limit));
+  rounded += !is_exact || (double{float_limit} != scaled_limit && std::isfinite(float_limit));
+  if (exact_rays.empty() &&
+      (glm::dvec3(ray.origin) != exact.origin || glm::dvec3(ray.direction) != exact.direction)) {
+    exact_rays.assign(rays.begin(), rays.end());
+    exact_rays.push_back(exact);
+  } else if (!exact_rays.empty()) {
+    exact_rays.push_back(exact);
+  }
   rays.push_back(ray);
   limits.push_back(float_limit);
   exponents.push_back(exponent);

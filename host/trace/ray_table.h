@@ -17,20 +17,37 @@ namespace raygate {
 
 /// A block of consecutive rays.
 struct RayTable {
-  std::uint64_t first = 0;     ///< index of the first ray
-  std::vector<Ray> rays;       ///< relative to the scene's origin, scaled
-  std::vector<float> limits;   ///< of the scaled rays; +infinity: none
-  std::vector<int> exponents;  ///< t of the given ray is 2^exponent times t of the scaled ray
-  std::uint64_t rounded = 0;   ///< number of rays that were rounded to binary32
+  std::uint64_t first = 0;           ///< index of the first ray
+  std::vector<Ray> rays;             ///< relative to the scene's origin, scaled, in binary32
+  std::vector<ExactRay> exact_rays;  ///< the same in binary64; empty: `rays` are exact
+  std::vector<float> limits;         ///< of the scaled rays; +infinity: none
+  std::vector<int> exponents;        ///< t of the given ray is 2^exponent times t of the scaled ray
+  std::uint64_t rounded = 0;         ///< number of rays that are not as given
 
   void clear(std::uint64_t its_first);
 
   /// Adds the ray P = origin + t direction with hits 0 < t < limit, in the file's coordinates. The
-  /// direction can have any length; a zero direction hits nothing. Origins are rounded to binary32
-  /// after subtracting the scene's origin, directions and limits directly. Returns null, or, for an
-  /// invalid ray, which is not added, the message "found ..., expected ...".
+  /// direction can have any length; a zero direction hits nothing. Origins are rounded to binary64
+  /// after subtracting the scene's origin, and limits to binary32. Returns null, or, for an invalid
+  /// ray, which is not added, the message "found ..., expected ...".
   const char* add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
                   const glm::dvec3& scene_origin);
+
+  /// Returns a ray as exactly as it is stored.
+  [[nodiscard]] ExactRay exact_ray(std::size_t i) const {
+    return exact_rays.empty() ? ExactRay(rays[i]) : exact_rays[i];
+  }
+  /// Rounds all rays to binary32.
+  void round() {
+    for (std::size_t i = 0; i < exact_rays.size(); ++i) rounded += is_inexact(i) ? 1 : 0;
+    exact_rays.clear();
+  }
+
+ private:
+  [[nodiscard]] bool is_inexact(std::size_t i) const {
+    return glm::dvec3(rays[i].origin) != exact_rays[i].origin ||
+           glm::dvec3(rays[i].direction) != exact_rays[i].direction;
+  }
 };
 
 /// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or,

@@ -38,7 +38,9 @@ void find_one(Desk& desk, Hits asked, const HitTable& answers) {
   const std::size_t count = desk.block.rays.size();
   desk.nearest.assign(count, {});
   desk.work.assign(count, {});
-  RayQuery query{.t_max = desk.block.limits, .work = desk.work};
+  if (!desk.intersector->traits().takes_exact_rays) desk.block.round();
+  RayQuery query{
+      .t_max = desk.block.limits, .exact_rays = desk.block.exact_rays, .work = desk.work};
   if (asked == Hits::kAny) {
     query.any_hit_before = desk.block.limits;
     desk.intersector->occluded(desk.block.rays, query, desk.nearest);
@@ -56,7 +58,8 @@ void find_one(Desk& desk, Hits asked, const HitTable& answers) {
 void find_all(Desk& desk, const Bvh& bvh, const HitTable& answers) {
   for (; desk.next < desk.block.rays.size() && desk.rows.size() < kManyRows; ++desk.next) {
     RayWork work;
-    all_hits(bvh, desk.block.rays[desk.next], desk.block.limits[desk.next], desk.nearest, work);
+    all_hits(bvh, desk.block.exact_ray(desk.next), desk.block.limits[desk.next], desk.nearest,
+             work);
     const auto ray = static_cast<std::uint32_t>(desk.next);
     for (const NearestHit& hit : desk.nearest) desk.found.push_back({ray, hit, work.doubts});
     desk.write_found(answers);

@@ -15,7 +15,7 @@ namespace raygate {
 /// Statistics of a run.
 struct TraceCounts {
   std::uint64_t rays = 0, hits = 0;
-  std::uint64_t rounded = 0;  ///< number of rays that were rounded to binary32
+  std::uint64_t rounded = 0;  ///< number of rays that are not as given
 };
 
 /// Replaces a block by at most the given number of next rays; returns false at the end.

@@ -197,7 +197,7 @@ class ImageWriter {
         for (std::uint32_t k = 0; k < node.child[i].kind; ++k) {
           TriangleLine triangle;
           triangle.primitive = primitive_at(tree_.first(refs[i]) + k);
-          triangle.corners = bvh_.corners_of(triangle.primitive);
+          triangle.corners = bvh_.float_corners_of(triangle.primitive);
           triangle.rank = bvh_.triangle_of(triangle.primitive);
           triangle.index = next + k;
           image_.lines_[next + k] = triangle.line();
@@ -216,9 +216,10 @@ class ImageWriter {
 
 MemoryImage::MemoryImage(const Bvh& bvh, int threads) {
   if (bvh.has_instances()) throw std::invalid_argument("instances, expected them written out");
+  if (!bvh.is_binary32()) throw std::invalid_argument("binary64 vertices, expected binary32");
   std::vector<Primitive> primitives(bvh.primitive_count());
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
-    const auto [a, b, c] = bvh.corners_of(i);
+    const auto [a, b, c] = bvh.float_corners_of(i);
     Box box;
     box_around(a, b, c, box);
     primitives[i] = Primitive(box, i);

@@ -85,7 +85,7 @@ struct NodeLine {
 
 /// A triangle with its indices.
 struct TriangleLine {
-  Corners corners{};
+  FloatCorners corners{};
   std::uint32_t index = 0;      ///< index of this line
   std::uint32_t rank = 0;       ///< of hits at equal t, the lowest rank is the nearest
   std::uint32_t primitive = 0;  ///< the host's primitive index, not read by the core

@@ -164,10 +164,10 @@ float edge_bound(float terms) {
 
 }  // namespace
 
-SetUpRecord set_up(const glm::vec3& origin, const Corners& triangle) {
+SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle) {
   SetUpRecord result;
   PolygonRecord& record = result.record;
-  Corners corners, edges;
+  FloatCorners corners, edges;
   for (int k = 0; k < 3; ++k) {
     corners[k] = difference(triangle[k], origin);
     edges[k] = difference(triangle[(k + 1) % 3], triangle[k]);
@@ -357,7 +357,7 @@ class RayTrace {
   void report(std::uint32_t line, bool is_hit) {
     if (!exact_) {
       results_.push_back({.kind = CoreResult::Kind::kDoubt, .tag = ray_.tag, .triangle = line});
-    } else if (!ended_ && (is_hit || hits_triangle(ray_.ray, TriangleLine(lines_[line]).corners)) &&
+    } else if (!ended_ && (is_hit || hits_triangle(ray_.ray, corners_of(line))) &&
                (candidate_ == CoreRay::kNoTriangle || is_nearer(line, candidate_))) {
       candidate_ = line;
     }
@@ -368,16 +368,19 @@ class RayTrace {
     if (candidate_ == CoreRay::kNoTriangle) return false;
     return end_.found ? is_nearer(candidate_, end_.triangle)
                       : limit_ == std::numeric_limits<float>::infinity() ||
-                            compare_hit_to_limit(ray_.ray, TriangleLine(lines_[candidate_]).corners,
-                                                 limit_) < 0;
+                            compare_hit_to_limit(ray_.ray, corners_of(candidate_), limit_) < 0;
+  }
+
+  [[nodiscard]] Corners corners_of(std::uint32_t line) const {
+    return widened(TriangleLine(lines_[line]).corners);
   }
 
   /// Returns whether one of two triangles that are hit is nearer or, at equal t, has the lower
   /// rank.
   [[nodiscard]] bool is_nearer(std::uint32_t line, std::uint32_t other) const {
-    const TriangleLine a(lines_[line]), b(lines_[other]);
-    const int order = compare_hits(ray_.ray, a.corners, b.corners);
-    return order < 0 || (order == 0 && a.rank < b.rank);
+    const int order = compare_hits(ray_.ray, corners_of(line), corners_of(other));
+    return order < 0 ||
+           (order == 0 && TriangleLine(lines_[line]).rank < TriangleLine(lines_[other]).rank);
   }
 
   const std::span<const MemoryLine> lines_;

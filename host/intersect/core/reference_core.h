@@ -51,7 +51,7 @@ struct SetUpRecord {
 };
 
 /// Returns the record of triangle_test, bit for bit, for any floats including NaN and infinities.
-[[nodiscard]] SetUpRecord set_up(const glm::vec3& origin, const Corners& triangle);
+[[nodiscard]] SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle);
 
 /// Returns whether a hit is sure (set_up_pkg::is_good_hit). `grazing` is HitDistance::error.
 [[nodiscard]] bool is_good_hit(const SetUpRecord& set_up, std::uint32_t grazing);

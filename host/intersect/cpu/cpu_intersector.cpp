@@ -14,7 +14,7 @@ void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   Stopwatch watch;
   HitCounters& counters = counters_.hit;
   const HitCounters before = counters;
-  if (query.common_origin && !rays.empty()) {
+  if (query.common_origin && !rays.empty() && query.exact_rays.empty()) {
     trace_packets(bvh_, rays, query, hits, counters_);
   } else {
     trace_single_rays(bvh_, rays, query, hits, counters_);
@@ -62,14 +62,15 @@ void PointWriter::write() {
   planes_ = count_ = 0;
 }
 
-void all_hits(const Bvh& bvh, const Ray& ray, float t_max, std::vector<NearestHit>& hits,
+void all_hits(const Bvh& bvh, const ExactRay& ray, float t_max, std::vector<NearestHit>& hits,
               RayWork& work) {
   hits.clear();
   if (!is_usable(ray.direction)) return;
-  if (!is_scaled(ray.direction)) throw_unscaled(ray);
+  const Ray rounded{glm::vec3(ray.origin), glm::vec3(ray.direction)};
+  if (!is_scaled(rounded.direction)) throw_unscaled(rounded);
   in_vectors([&](auto) RAYGATE_BODY {
-    const ShearedRay sheared(ray);
-    const PacketBounds bounds(ray.origin, ray.direction);
+    const ShearedRay sheared(rounded);
+    const RoundedBounds bounds(ray);
     const float cutoff = cutoff_beyond(t_max);
     const BvhView tree(bvh);
     const auto boxes = [&](const Bvh::Node& node) RAYGATE_BODY {
@@ -79,7 +80,8 @@ void all_hits(const Bvh& bvh, const Ray& ray, float t_max, std::vector<NearestHi
     const auto take_hits = [&](const Bvh::Child& leaf) RAYGATE_BODY {
       QuadVerdict verdict;
       Bvh::LeafRoom room;
-      test_quad(sheared, tree.corners_of(leaf, room), leaf.count, verdict);
+      test_quad<true>(sheared, tree.corners_of(leaf, room), leaf.count, verdict,
+                      largest(rounded.origin));
       work.tests += leaf.count;
       work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
       for (LaneMask open = verdict.hit | verdict.level | verdict.doubt; open != 0;

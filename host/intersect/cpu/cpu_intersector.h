@@ -19,7 +19,7 @@ namespace raygate {
 class CpuIntersector : public Intersector {
  public:
   /// `bvh` must outlive this object.
-  explicit CpuIntersector(const Bvh& bvh) : Intersector({}), bvh_(bvh) {}
+  explicit CpuIntersector(const Bvh& bvh) : Intersector({.takes_exact_rays = true}), bvh_(bvh) {}
 
   [[nodiscard]] IntersectCounters counters() const override { return counters_; }
 
@@ -91,7 +91,7 @@ void trace_single_rays(const Bvh& bvh, std::span<const Ray> rays, const RayQuery
 /// Replaces `hits` by all hits of `ray` with t < t_max, nearest first, then by triangle index.
 /// `t_max` is positive; +infinity: no limit. The direction must be scaled, or is not usable and
 /// hits nothing. `point` and `point_error` of the hits are not valid.
-void all_hits(const Bvh& bvh, const Ray& ray, float t_max, std::vector<NearestHit>& hits,
+void all_hits(const Bvh& bvh, const ExactRay& ray, float t_max, std::vector<NearestHit>& hits,
               RayWork& work);
 
 }  // namespace raygate

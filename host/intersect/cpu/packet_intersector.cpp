@@ -640,8 +640,10 @@ class PacketIntersector {
         }
         QuadRecord record;
         Bvh::LeafRoom room;
-        make_quad_record(cones.whole.origin, tree.corners_of(item.child, room), item.child.count,
-                         record);
+        const float* const corners = tree.corners_of(item.child, room);
+        bvh_.is_binary32()
+            ? make_quad_record<false>(cones.whole.origin, corners, item.child.count, record)
+            : make_quad_record<true>(cones.whole.origin, corners, item.child.count, record);
         LaneMask there = (1u << item.child.count) - 1;
         if (record.unsure != 0) resolve_sides(item.child, record, there);
         LaneMask changed = 0;

@@ -68,6 +68,17 @@ namespace raygate {
 //
 // So z* is within 6.5 b R / (D - 3.2 b) + 16 u max |Z_i| + 2^-45 m of the quotient, including the
 // rounding of this bound, and within 16 u max |Z_i| of the range of the corners' z.
+//
+// Rounded corners and rays
+//
+// Let the corners, the origin and the direction be those nearest to exact ones, M the largest
+// coordinate of the corners, F that of the origin, and r = u (M + F), which exceeds the error of a
+// difference. Each component of the direction, and each s, has another relative error of u or 2 u.
+//
+// 1. e grows to 8.02 u m + 2.001 r <= 8.02 u w, for w = m + (M + F) / 4.
+// 2. The error is less than e S + 2 e^2 <= 8.02 u w S + 128.7 u^2 w^2; with step 3, 10.03 u w S +
+//    128.8 u^2 w^2. The computed bound is b = w (10.6 u S + 2^-40 w).
+// 6. Each z has another error of r, and R of 2 r: 3.2 r are added to 16 u max |Z_i|.
 
 /// A ray prepared for tests against many quads of triangles.
 struct ShearedRay {
@@ -136,24 +147,32 @@ struct QuadSides {
   FloatQuad across[3];
   FloatQuad lowest, highest;  ///< least and largest of `across`
   FloatQuad farthest, m;
+  FloatQuad rest;   ///< 3.2 r; only if something is rounded
   FloatQuad bound;  ///< NaN if nothing is sure, so that comparisons with it are false
 };
 
 /// Returns which of 1 to 4 triangles the ray does not surely miss by its edges. Coordinate k of
 /// corner v of triangle i is corners[(3 v + k) count + i]; memory up to corners[8 count + 3] must
-/// be readable.
+/// be readable. `kIsRounded`: corners or ray are; `reach` is F then.
+template <bool kIsRounded = false>
 [[nodiscard]] RAYGATE_INLINE LaneMask find_sides(const ShearedRay& ray, const float* corners,
-                                                 std::uint32_t count, QuadSides& sides) {
-  constexpr float kBoundOfSum = 8.5f * 0x1p-24f, kBoundOfSize = 0x1p-41f;
+                                                 std::uint32_t count, QuadSides& sides,
+                                                 float reach = 0.0f) {
+  constexpr float kBoundOfSum = (kIsRounded ? 10.6f : 8.5f) * 0x1p-24f;
+  constexpr float kBoundOfSize = kIsRounded ? 0x1p-40f : 0x1p-41f;
   constexpr float kSmallest = 0x1p-20f, kLargest = 0x1p40f;
   const std::ptrdiff_t stride = count;
   const float* const along[3] = {corners + stride * ray.axes[0], corners + stride * ray.axes[1],
                                  corners + stride * ray.axes[2]};
-  FloatQuad x[3], y[3], (&z)[3] = sides.z, size[3];
+  FloatQuad x[3], y[3], (&z)[3] = sides.z, size[3], far = FloatQuad{} + reach;
   for (std::ptrdiff_t v = 0; v < 3; ++v) {
     x[v] = load<FloatQuad>(along[0] + 3 * v * stride);
     y[v] = load<FloatQuad>(along[1] + 3 * v * stride);
     z[v] = load<FloatQuad>(along[2] + 3 * v * stride);
+    if constexpr (kIsRounded) {
+      const FloatQuad most = maximum(maximum(absolute(x[v]), absolute(y[v])), absolute(z[v]));
+      far = maximum(far, most + reach);
+    }
     z[v] = ray.origin[2] - z[v];
     x[v] = (ray.origin[0] - x[v]) - ray.shear[0] * z[v];
     y[v] = (ray.origin[1] - y[v]) - ray.shear[1] * z[v];
@@ -161,7 +180,12 @@ struct QuadSides {
   }
   const FloatQuad sum = (size[0] + size[1]) + size[2];
   sides.farthest = maximum(maximum(absolute(z[0]), absolute(z[1])), absolute(z[2]));
-  const FloatQuad m = sides.m = sides.farthest + sum;
+  FloatQuad m = sides.farthest + sum;
+  if constexpr (kIsRounded) {
+    m += 0.25f * far;
+    sides.rest = (3.2f * 0x1.01p-24f) * far;
+  }
+  sides.m = m;
   const IntQuad unsure = (m < kSmallest) | (m > kLargest);
   const FloatQuad bound = float_of(bits_in(m * (kBoundOfSum * sum + kBoundOfSize * m)) | unsure);
   const FloatQuad across[3] = {x[1] * y[2] - y[1] * x[2], x[2] * y[0] - y[2] * x[0],
@@ -175,9 +199,10 @@ struct QuadSides {
 }
 
 /// Computes the results of the second half, for the triangles in `open`.
+template <bool kIsRounded = false>
 RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, LaneMask open,
                                 QuadVerdict& verdict) {
-  const auto& [of_z, across, lowest, highest, farthest, m, bound] = sides;
+  const auto& [of_z, across, lowest, highest, farthest, m, rest, bound] = sides;
   FloatQuad z[3];
   for (int v = 0; v < 3; ++v) z[v] = float_of(bits_in(of_z[v]) ^ ray.sign_ahead());
   FloatQuad near = minimum(minimum(z[0], z[1]), z[2]), far = maximum(maximum(z[0], z[1]), z[2]);
@@ -185,7 +210,9 @@ RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, L
   const FloatQuad middle = ((across[0] * z[0] + across[1] * z[1]) + across[2] * z[2]) / whole;
   const FloatQuad sure_whole = absolute(whole) - 3.2f * bound;
   const IntQuad through = ((lowest > bound) | (highest < -bound)) & (sure_whole > 0.0f);
-  const FloatQuad rounding = (16.0f * 0x1p-24f) * farthest, room = rounding + 0x1p-45f * m;
+  FloatQuad rounding = (16.0f * 0x1p-24f) * farthest;
+  if constexpr (kIsRounded) rounding += rest;
+  const FloatQuad room = rounding + 0x1p-45f * m;
   const FloatQuad width = (6.5f * bound / sure_whole) * (far - near) + room;
   near -= rounding;
   far += rounding;
@@ -199,11 +226,12 @@ RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, L
 }
 
 /// Tests 1 to 4 triangles: find_sides(), then judge_sides().
+template <bool kIsRounded = false>
 RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::uint32_t count,
-                              QuadVerdict& verdict) {
+                              QuadVerdict& verdict, float reach = 0.0f) {
   QuadSides sides;
-  const LaneMask open = find_sides(ray, corners, count, sides);
-  judge_sides(ray, sides, open, verdict);
+  const LaneMask open = find_sides<kIsRounded>(ray, corners, count, sides, reach);
+  judge_sides<kIsRounded>(ray, sides, open, verdict);
 }
 
 // Why a sure result is correct
@@ -225,6 +253,17 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
 //
 // A hit has all three I . E of the sign of d = A . N (see exact.cpp), and t = d / (I . N). All
 // words are stored multiplied by the sign of d, if float32 is sure of it.
+//
+// If the corners are rounded from exact ones, let r = u M, for their largest coordinate M, s the
+// largest coordinate of a side, and m of A, B and C. A, B and C have errors of r, and sides of 2 r.
+//
+// 1. A product of A and a side has an error of r |side| + 2 r |A| + 2 r^2, six of them 2 r |side|_1
+//    + 4 r |A|_1 + 12 r^2 <= 6 r s + 12 r m + 12 r^2. I . E has twice that: 26 r (m + s / 2 + r)
+//    are added to its bound.
+// 2. |N|_1 has an error of 4 r (|B-A|_1 + |C-B|_1) + 24 r^2 <= 24 r (s + r), I . N twice that: 50 r
+//    (s + r) are added.
+// 3. A . N has one of r |N|_1 and m times that of N, for exact N: 1.1 r L + 26 (m + r) r (s + r)
+//    are added.
 
 /// Four planes of four triangles: those of three edges, and N.
 struct alignas(sizeof(FloatLanes)) QuadRecord {
@@ -247,6 +286,7 @@ struct alignas(sizeof(FloatLanes)) QuadRecord {
 inline constexpr float kQuadBound = 14.5f;
 
 /// Computes the record of 1 to 4 triangles, with corners in the format of test_quad.
+template <bool kIsRounded>
 RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corners,
                                      std::uint32_t count, QuadRecord& record) {
   constexpr float kU = 0x1p-24f, kTiny = 0x1p-100f, kLargest = 0x1p40f;
@@ -287,10 +327,26 @@ RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corn
   largest = maximum(high_half(sizes[0]), largest);
   largest = maximum(low_half(sizes[1]), largest);
   const FloatQuad size = high_half(sizes[1]);
+  FloatQuad edge_bound = (kQuadBound * kU) * largest + kTiny,
+            normal_bound = (kQuadBound * kU) * size + kTiny,
+            distance_bound = (8.5f * kU) * farthest * size + kTiny;
+  if constexpr (kIsRounded) {
+    FloatQuad r = {}, side = {};
+    for (int v = 0; v < 3; ++v) {
+      for (int k = 0; k < 3; ++k) {
+        r = maximum(absolute(load<FloatQuad>(corners + stride * (3 * v + k))), r);
+        side = maximum(absolute(sides[v][k]), side);
+      }
+    }
+    r *= 0x1.01p-24f;
+    edge_bound += 26.0f * r * (farthest + 0.5f * side + r);
+    normal_bound += 50.0f * r * (side + r);
+    distance_bound += 1.1f * r * size + 26.0f * (farthest + r) * r * (side + r);
+  }
   const IntQuad small = farthest <= kLargest;
   const FloatQuad d = (p[0][0] * high_half(planes[1][0]) + p[0][1] * high_half(planes[1][1])) +
                       p[0][2] * high_half(planes[1][2]);
-  const FloatQuad d_bound = small ? (8.5f * kU) * farthest * size + kTiny : FloatQuad{} + kInfinity;
+  const FloatQuad d_bound = small ? distance_bound : FloatQuad{} + kInfinity;
   const FloatQuad distance = absolute(d);
   const IntQuad sure = distance > d_bound;
   const IntQuad flip = bits_in(d) & std::numeric_limits<std::int32_t>::min();
@@ -300,8 +356,8 @@ RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corn
       store(record.planes[pair][k], bits_in(planes[pair][k]) ^ flips);
     }
   }
-  store(record.bounds, small ? (kQuadBound * kU) * largest + kTiny : FloatQuad{} + kInfinity);
-  store(record.normal_bound, (kQuadBound * kU) * size + kTiny);
+  store(record.bounds, small ? edge_bound : FloatQuad{} + kInfinity);
+  store(record.normal_bound, normal_bound);
   store(record.low, sure ? distance - d_bound : FloatQuad{});
   store(record.high, small ? distance + d_bound : FloatQuad{} + kInfinity);
   store(record.flip, flip);

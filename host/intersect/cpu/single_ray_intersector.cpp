@@ -25,6 +25,7 @@
 //  - p / |I| >= 1 > 1/2, so an underflow of a product is covered as there.
 //  - For |I| < 2^-100, p / |I| >= 2^100, so p 2^100, which is exact, is a valid inverse_near.
 //  - Along the longest axis, p t = |x - O| <= 2^127.
+// For a ray that is rounded to binary32, see RoundedBounds.
 
 namespace raygate {
 namespace {
@@ -55,6 +56,11 @@ struct alignas(64) RayTraversal {
   std::int32_t keys[1 + Bvh::kStackSize + Bvh::kWidth];
   Bvh::Child children[1 + Bvh::kStackSize + Bvh::kWidth];
 
+  // Only if corners or the ray are rounded:
+  double exact_scale;    ///< p of the exact direction
+  float exit_origin[3];  ///< see RoundedBounds
+  float reach;           ///< largest coordinate of a rounded origin, or 0
+
   RayTraversal() {
     keys[0] = std::numeric_limits<std::int32_t>::min();
     children[0] = {0, Bvh::kMaxLeafSize + 1};
@@ -62,17 +68,25 @@ struct alignas(64) RayTraversal {
 
   /// Returns the node or leaf that is visited.
   [[nodiscard]] const Bvh::Child& at() const { return children[depth]; }
-  [[nodiscard]] double t_scale() const { return std::abs(sheared.way); }
+  template <bool kIsRounded>
+  [[nodiscard]] double t_scale() const {
+    return kIsRounded ? exact_scale : std::abs(sheared.way);
+  }
   /// Sets the bounds of t, or of the depth, of the nearest hit or the limit.
+  template <bool kIsRounded>
   RAYGATE_INLINE void end_at(const Interval& t) {
-    end_at(float_below(t.low * t_scale()), float_above(t.high * t_scale()));
+    const double scale = t_scale<kIsRounded>();
+    end_at(float_below(t.low * scale), float_above(t.high * scale));
   }
   RAYGATE_INLINE void end_at(float lowest, float highest) {
     low = lowest;
     high = highest;
     cutoff = cutoff_beyond(highest);
   }
-  [[nodiscard]] Interval t() const { return {low / t_scale(), high / t_scale()}; }
+  template <bool kIsRounded>
+  [[nodiscard]] Interval t() const {
+    return {low / t_scale<kIsRounded>(), high / t_scale<kIsRounded>()};
+  }
   void end() { depth = 1; }
 };
 
@@ -192,7 +206,7 @@ struct MetChildren {
 };
 
 /// Tests the ray against the boxes of its current inner node, which may be decoded into `room`.
-template <Vectors kCode>
+template <Vectors kCode, bool kIsRounded>
 RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk, Bvh::Node& room,
                                   MetChildren& met) {
   const Bvh::Node& node = tree.node(walk.at().first, room);
@@ -207,7 +221,8 @@ RAYGATE_INLINE void meet_children(const BvhView& tree, const RayTraversal& walk,
       std::memcpy(&near, bounds + walk.near_at[k] + 4 * part, sizeof near);
       std::memcpy(&far, bounds + walk.far_at[k] + 4 * part, sizeof far);
       const Floats t_near = (walk.origin[k] - near) * walk.minus_inverse_near[k];
-      const Floats t_far = (walk.origin[k] - far) * walk.minus_inverse_far[k];
+      const float from = kIsRounded ? walk.exit_origin[k] : walk.origin[k];
+      const Floats t_far = (from - far) * walk.minus_inverse_far[k];
       enter = t_near > enter ? t_near : enter;
       leave = t_far < leave ? t_far : leave;
     }
@@ -275,7 +290,8 @@ RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
 
 /// Several rays traverse the BVH interleaved. A leaf's triangles are tested directly from their
 /// corners by quad_test. Exact arithmetic resolves doubts of float32 and orders hits, so decisions
-/// do not depend on the method.
+/// do not depend on the method. `kIsRounded`: corners or rays are.
+template <bool kIsRounded>
 class SingleRayIntersector {
  public:
   SingleRayIntersector(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
@@ -302,7 +318,7 @@ class SingleRayIntersector {
   RAYGATE_INLINE bool judge(RayTraversal& walk, const Bvh::Child& leaf, const QuadSides& sides,
                             LaneMask open) {
     QuadVerdict verdict;
-    judge_sides(walk.sheared, sides, open, verdict);
+    judge_sides<kIsRounded>(walk.sheared, sides, open, verdict);
     open = verdict.hit | verdict.level | verdict.doubt;
     HitCounters& counters = counters_.hit;
     counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
@@ -314,7 +330,7 @@ class SingleRayIntersector {
       if (primitive == walk.skip_id || primitive == walk.source_id) continue;
       if (low > walk.high) continue;
       if ((verdict.level >> i & 1) != 0) {
-        if (!is_ahead(rays_[walk.number], bvh_.corners_of(primitive))) continue;
+        if (!is_ahead(exact_ray(walk.number), bvh_.corners_of(primitive))) continue;
         ++counters.hits;
       }
       if ((verdict.doubt >> i & 1) != 0) {
@@ -336,11 +352,11 @@ class SingleRayIntersector {
   /// Resolves a doubt about a triangle that the ray may hit or, if `sure`, does hit. Returns
   /// whether it is the nearest hit now.
   bool resolve(RayTraversal& walk, std::uint32_t primitive, bool sure) {
-    const Ray& ray = rays_[walk.number];
+    const ExactRay ray = exact_ray(walk.number);
     NearestHit best;
     if (walk.primitive != NearestHit::kNone) {
       best.primitive = walk.primitive;
-      best.t = walk.t();
+      best.t = walk.template t<kIsRounded>();
       counters_.hit.depth_doubts += sure;
     }
     NearestHit hit = {.primitive = primitive};
@@ -349,8 +365,23 @@ class SingleRayIntersector {
       return false;
     }
     walk.primitive = primitive;
-    walk.end_at(best.t);
+    walk.template end_at<kIsRounded>(best.t);
     return true;
+  }
+
+  [[nodiscard]] ExactRay exact_ray(std::uint32_t number) const {
+    return query_.exact_rays.empty() ? ExactRay(rays_[number]) : query_.exact_rays[number];
+  }
+
+  /// Completes the state of a ray that is rounded.
+  void spread(RayTraversal& walk) const {
+    const ExactRay ray = exact_ray(walk.number);
+    walk.exact_scale = std::abs(ray.direction[walk.sheared.axes[2]]);
+    walk.reach = query_.exact_rays.empty() ? 0.0f : largest(rays_[walk.number].origin);
+    for (int k = 0; k < 3; ++k) {
+      spread_origin(ray.origin[k], ray.direction[k] < 0.0, walk.origin[k], walk.exit_origin[k]);
+      walk.minus_inverse_far[k] *= kExitGrowth;
+    }
   }
 
   /// Starts the next rays with these walks. Returns a mask of the walks that have a ray.
@@ -368,13 +399,15 @@ class SingleRayIntersector {
     for (std::uint32_t i = 0; i < count; ++i) {
       RayTraversal& walk = *walks[i];
       const std::uint32_t number = walk.number = first + i;
+      if constexpr (kIsRounded) spread(walk);
       if (!query_.t_max.empty()) {
-        walk.end_at(Interval{query_.t_max[number], query_.t_max[number]});
+        walk.template end_at<kIsRounded>(Interval{query_.t_max[number], query_.t_max[number]});
       }
       if (!query_.skip_ids.empty()) walk.skip_id = query_.skip_ids[number];
       if (!query_.source_ids.empty()) walk.source_id = query_.source_ids[number];
       if (!query_.any_hit_before.empty()) {
-        walk.enough = float_below(query_.any_hit_before[number] * walk.t_scale());
+        walk.enough =
+            float_below(query_.any_hit_before[number] * walk.template t_scale<kIsRounded>());
       }
     }
     return scaled;
@@ -387,7 +420,7 @@ class SingleRayIntersector {
     if (!query_.work.empty()) query_.work[walk.number] = walk.work;
     hits_[walk.number].primitive = walk.primitive;
     if (walk.primitive == NearestHit::kNone) return;
-    hits_[walk.number].t = walk.t();
+    hits_[walk.number].t = walk.template t<kIsRounded>();
     if (query_.with_points) points_.add(walk.number, walk.primitive);
   }
 
@@ -427,7 +460,7 @@ class SingleRayIntersector {
         if (inside_count + leaf_count == 0) return;
         // Two short loops let the processor overlap more rays.
         for (std::size_t i = 0; i < inside_count; ++i) {
-          meet_children<code()>(tree, *inside[i], rooms[i], met[i]);
+          meet_children<code(), kIsRounded>(tree, *inside[i], rooms[i], met[i]);
         }
         for (std::size_t i = 0; i < inside_count; ++i) push_children<code()>(*inside[i], met[i]);
         auto* near_end = near;
@@ -438,7 +471,8 @@ class SingleRayIntersector {
           Bvh::LeafRoom room;
           near_end->walk = inside[inside_count + i] = &walk;
           near_end->open =
-              find_sides(walk.sheared, tree.corners_of(leaf, room), leaf.count, near_end->sides);
+              find_sides<kIsRounded>(walk.sheared, tree.corners_of(leaf, room), leaf.count,
+                                     near_end->sides, kIsRounded ? walk.reach : 0.0f);
           near_end += near_end->open != 0 ? 1 : 0;
         }
         for (const auto* at = near; at != near_end; ++at) {
@@ -473,7 +507,11 @@ class SingleRayIntersector {
 
 void trace_single_rays(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                        std::span<NearestHit> hits, IntersectCounters& counters) {
-  SingleRayIntersector(bvh, rays, query, hits, counters).trace();
+  if (bvh.is_binary32() && query.exact_rays.empty()) {
+    SingleRayIntersector<false>(bvh, rays, query, hits, counters).trace();
+  } else {
+    SingleRayIntersector<true>(bvh, rays, query, hits, counters).trace();
+  }
 }
 
 }  // namespace raygate

@@ -10,7 +10,7 @@ namespace {
 
 /// Returns whether a point is inside a counter-clockwise triangle or on its border, except at its
 /// corners.
-bool contains(const std::array<glm::vec2, 3>& triangle, const glm::vec2& point) {
+bool contains(const std::array<glm::dvec2, 3>& triangle, const glm::dvec2& point) {
   for (int i = 0; i < 3; ++i) {
     if (point == triangle[i] || orient2d(triangle[i], triangle[(i + 1) % 3], point) < 0) {
       return false;
@@ -21,16 +21,16 @@ bool contains(const std::array<glm::vec2, 3>& triangle, const glm::vec2& point) 
 
 /// Returns whether a box and a triangle are separated by one of the box's axes or by an edge: then
 /// even the box's innermost corner is on the outer side of the edge.
-bool are_separate(const std::array<glm::vec2, 3>& triangle, const glm::vec2& low,
-                  const glm::vec2& high) {
+bool are_separate(const std::array<glm::dvec2, 3>& triangle, const glm::dvec2& low,
+                  const glm::dvec2& high) {
   for (int axis = 0; axis < 2; ++axis) {
     const auto [least, most] =
         std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
     if (high[axis] < least || low[axis] > most) return true;
   }
   for (int i = 0; i < 3; ++i) {
-    const glm::vec2 &from = triangle[i], &to = triangle[(i + 1) % 3];
-    const glm::vec2 innermost(to.y > from.y ? low.x : high.x, to.x > from.x ? high.y : low.y);
+    const glm::dvec2 &from = triangle[i], &to = triangle[(i + 1) % 3];
+    const glm::dvec2 innermost(to.y > from.y ? low.x : high.x, to.x > from.x ? high.y : low.y);
     if (orient2d(from, to, innermost) < 0) return true;
   }
   return false;
@@ -42,7 +42,7 @@ bool are_separate(const std::array<glm::vec2, 3>& triangle, const glm::vec2& low
 // side of their box.
 void EarClipper::build_tree(std::size_t first, std::size_t last) {
   if (last - first < 2) return;
-  glm::vec2 low = tree_[first].position, high = low;
+  glm::dvec2 low = tree_[first].position, high = low;
   for (std::size_t i = first; i < last; ++i) {
     low = glm::min(low, tree_[i].position);
     high = glm::max(high, tree_[i].position);
@@ -68,7 +68,7 @@ bool EarClipper::has_obstacle(const Ear& ear, std::size_t first, std::size_t las
 }
 
 // Fills ring_ with the corners, without repeated ones. Returns false if the polygon has no area.
-bool EarClipper::project(std::span<const glm::vec3> corners) {
+bool EarClipper::project(std::span<const glm::dvec3> corners) {
   ring_.clear();
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     if (!ring_.empty() && corners[i] == corners[ring_.back().number]) continue;
@@ -86,8 +86,8 @@ bool EarClipper::project(std::span<const glm::vec3> corners) {
   const auto flatten = [&](int first, int second) {
     flat_.resize(ring_.size());
     for (std::size_t i = 0; i < ring_.size(); ++i) {
-      const glm::vec3& corner = corners[ring_[i].number];
-      flat_[i] = glm::vec2(corner[first], corner[second]);
+      const glm::dvec3& corner = corners[ring_[i].number];
+      flat_[i] = glm::dvec2(corner[first], corner[second]);
     }
   };
   for (int axis = 0; axis < 3; ++axis) {
@@ -201,7 +201,7 @@ PolygonKind EarClipper::clip_ears() {
   return kind;
 }
 
-PolygonKind EarClipper::cut(std::span<const glm::vec3> corners) {
+PolygonKind EarClipper::cut(std::span<const glm::dvec3> corners) {
   triangles_.clear();
   if (!project(corners)) return PolygonKind::kZeroArea;
   tree_.clear();

@@ -28,7 +28,7 @@ class EarClipper {
   ///
   /// Predicates are exact for the projection along the coordinate axis in which the projected area
   /// is largest, so no triangle has zero area. The time is about n log n for n corners.
-  PolygonKind cut(std::span<const glm::vec3> corners);
+  PolygonKind cut(std::span<const glm::dvec3> corners);
 
   /// Returns the triangles of the last cut(), as corner numbers: n - 2 for a simple polygon of n
   /// corners.
@@ -36,7 +36,7 @@ class EarClipper {
 
  private:
   struct Corner {
-    glm::vec2 position{0.0f};              // projected, so that the polygon runs counter-clockwise
+    glm::dvec2 position{0.0};              // projected, so that the polygon runs counter-clockwise
     std::uint32_t number = 0;              // among the polygon's corners
     std::uint32_t previous = 0, next = 0;  // in ring_
     std::uint32_t round = 0;               // round in which a neighbour was cut off last
@@ -45,12 +45,12 @@ class EarClipper {
   };
   /// The root of a subtree of the kd-tree of corners that were reflex in the whole polygon.
   struct Node {
-    glm::vec2 position, low, high;  // of the corner, and the box of the subtree
+    glm::dvec2 position, low, high;  // of the corner, and the box of the subtree
     std::uint32_t corner;
   };
-  using Ear = std::array<glm::vec2, 3>;
+  using Ear = std::array<glm::dvec2, 3>;
 
-  bool project(std::span<const glm::vec3> corners);
+  bool project(std::span<const glm::dvec3> corners);
   [[nodiscard]] int turn_at(std::uint32_t corner) const;
   void build_tree(std::size_t first, std::size_t last);
   [[nodiscard]] bool has_obstacle(const Ear& ear, std::size_t first, std::size_t last) const;
@@ -61,7 +61,7 @@ class EarClipper {
 
   std::vector<Triangle> triangles_;
   std::vector<Corner> ring_;
-  std::vector<glm::vec2> flat_;
+  std::vector<glm::dvec2> flat_;
   std::vector<std::uint32_t> candidates_, next_candidates_;
   std::vector<Node> tree_;
   bool mind_obstacles_ = true;

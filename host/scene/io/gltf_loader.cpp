@@ -78,7 +78,10 @@ class GltfReader {
       : file_(path, scene_.warnings),
         options_(options),
         builder_(file_.name()),
-        materials_(file_, scene_, options.textures) {}
+        materials_(file_, scene_, options.textures) {
+    // Coordinates of the file are in binary32, and their transforms are rounded in any case.
+    options_.vertices = std::max(options.vertices, Vertices::kAsPictures);
+  }
 
   Scene read() {
     walk(roots());
@@ -217,7 +220,9 @@ class GltfReader {
     builder.allow_empty();
     read_mesh(mesh(shape.first), {glm::dmat4(1.0), &shape.second, {}}, 0, builder);
     Scene& part = at->second.part;
-    builder.build(options_, part);
+    LoadOptions options = options_;
+    options.vertices = Vertices::kBinary32;
+    builder.build(options, part);
     at->second.box = bounds_of(part.positions);
     return at->second;
   }
@@ -527,7 +532,7 @@ class GltfReader {
 
   Scene scene_;
   GltfFile file_;
-  const LoadOptions options_;
+  LoadOptions options_;
   MeshBuilder builder_;  // of meshes with one instance
   GltfMaterials materials_;
   std::size_t vertices_ = 0;       // vertices and corners counted so far

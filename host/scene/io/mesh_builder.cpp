@@ -82,6 +82,37 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
   return origin;
 }
 
+glm::dvec3 exact_origin(std::span<const glm::dvec3> positions) {
+  // The box of the middle half of the coordinates, so that a few far positions do not matter.
+  glm::dvec3 low, high;
+  std::vector<double> sorted(positions.size());
+  const auto quarter = static_cast<std::ptrdiff_t>(positions.size() / 4);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::ranges::transform(positions, sorted.begin(), [&](const auto& at) { return at[axis]; });
+    std::ranges::nth_element(sorted, sorted.begin() + quarter);
+    low[axis] = sorted[static_cast<std::size_t>(quarter)];
+    std::ranges::nth_element(sorted, sorted.end() - 1 - quarter);
+    high[axis] = *(sorted.end() - 1 - quarter);
+  }
+  glm::dvec3 origin(0.0);
+  const double size = std::max(largest(high - low), 0x1p-100);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double centre = 0.5 * low[axis] + 0.5 * high[axis];
+    for (double step = std::exp2(std::ceil(std::log2(size))); step <= 2.0 * std::abs(centre);
+         step *= 2.0) {
+      const double steps = std::nearbyint(centre / step);
+      if (std::abs(steps) >= 0x1p53) continue;
+      const bool is_exact = std::ranges::all_of(positions, [&](const glm::dvec3& at) {
+        return has_exact_difference(at[axis], steps * step);
+      });
+      if (!is_exact) continue;
+      origin[axis] = steps * step;
+      break;
+    }
+  }
+  return origin;
+}
+
 void MeshBuilder::add_color(const glm::vec3& color) {
   colors_.resize(positions_.size() - 1, kNoColor);
   if (!is_finite(color)) ++bad_colors_;
@@ -148,36 +179,71 @@ std::size_t MeshBuilder::line_of(std::size_t corner) const {
 }
 
 // Keeps the positions that a face uses, relative to the origin, and renumbers the corners.
-void MeshBuilder::recentre(Scene& scene) {
+void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const FaceCorner& corner : corners_) new_index[corner.position] = 0;
+  const bool is_bytes = std::ranges::any_of(colors_, [](const glm::vec3& color) {
+    return glm::any(glm::greaterThan(color, glm::vec3(1.0f)));
+  });
   Bounds3 box = others_;
   std::uint32_t used = 0;
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     if (new_index[i] == kNoIndex) continue;
-    new_index[i] = used++;
+    if (!colors_.empty()) scene.colors.push_back(linear_color(i, is_bytes ? 255.0f : 1.0f));
     box.expand(positions_[i]);
+    positions_[used] = positions_[i];
+    new_index[i] = used++;
   }
-  scene.origin = box.is_empty() ? glm::dvec3(0.0) : origin_for_box(box.low, box.high);
-  scene.positions.resize(used);
-  scene.colors.resize(colors_.empty() ? 0 : used);
-  const bool is_bytes = std::ranges::any_of(colors_, [](const glm::vec3& color) {
-    return glm::any(glm::greaterThan(color, glm::vec3(1.0f)));
-  });
-  for (std::size_t i = 0; i < positions_.size(); ++i) {
-    if (new_index[i] == kNoIndex) continue;
-    if (!(largest(positions_[i] - scene.origin) <= kMostCoordinate)) {
-      const auto corner = std::ranges::find(corners_, i, &FaceCorner::position);
-      fail(line_of(static_cast<std::size_t>(corner - corners_.begin())),
-           "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
-    }
-    const auto [position, error] = recentred(positions_[i], scene.origin);
-    scene.positions[new_index[i]] = position;
-    scene.rounding.add({error != 0.0, error});
-    positions_[new_index[i]] = positions_[i];
-    if (!colors_.empty()) scene.colors[new_index[i]] = linear_color(i, is_bytes ? 255.0f : 1.0f);
-  }
+  positions_.resize(used);
   for (FaceCorner& corner : corners_) corner.position = new_index[corner.position];
+
+  scene.origin = box.is_empty() ? glm::dvec3(0.0) : origin_for_box(box.low, box.high);
+  const auto far = std::ranges::find_if(positions_, [&](const glm::dvec3& position) {
+    return !(largest(position - scene.origin) <= kMostCoordinate);
+  });
+  if (far != positions_.end()) {
+    const auto index = static_cast<std::uint32_t>(far - positions_.begin());
+    const auto corner = std::ranges::find(corners_, index, &FaceCorner::position);
+    fail(line_of(static_cast<std::size_t>(corner - corners_.begin())),
+         "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
+  }
+  for (const glm::dvec3& given : positions_) {
+    const auto [position, error] = recentred(given, scene.origin);
+    scene.positions.push_back(position);
+    scene.rounding.add({error != 0.0, error});
+  }
+  const bool keeps_rests = scene.rounding.corners > 0 && vertices != Vertices::kBinary32 &&
+                           (vertices == Vertices::kBinary64 || shows_rounding(scene));
+  if (!keeps_rests) return;
+  scene.origin = exact_origin(positions_);
+  scene.rounding = {};
+  for (std::uint32_t i = 0; i < used; ++i) {
+    glm::ivec3& rest = scene.rests.emplace_back();
+    double error = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double difference = positions_[i][k] - scene.origin[k];
+      const double stored = on_float_grid(difference);
+      error = std::max(error, std::abs(stored - difference));
+      scene.positions[i][k] = static_cast<float>(stored);
+      rest[k] = rest_of(stored, scene.positions[i][k]);
+    }
+    scene.rounding.add({error != 0.0, error});
+  }
+}
+
+bool MeshBuilder::shows_rounding(const Scene& scene) const {
+  std::size_t begin = 0;
+  for (const Face& face : faces_) {
+    double error = 0.0, size = 0.0;
+    for (std::size_t i = begin; i < face.end; ++i) {
+      const glm::dvec3& at = positions_[corners_[i].position];
+      error = std::max(error, recentred(at, scene.origin).error);
+      size = std::max(size, largest(at - positions_[corners_[begin].position]));
+    }
+    if (error > 0.01 * size) return true;
+    begin = face.end;
+  }
+  return false;
 }
 
 // Returns whether a polygon has no area in its file, up to the rounding of decimals to double.
@@ -201,7 +267,7 @@ bool MeshBuilder::was_flat(std::span<const FaceCorner> corners) const {
 std::vector<std::uint32_t> MeshBuilder::triangulate(Scene& scene) const {
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
-  std::vector<glm::vec3> polygon;
+  std::vector<glm::dvec3> polygon;
   Flaws flaws;
   scene.triangles.reserve(std::max(corners_.size(), 2 * faces_.size()) - 2 * faces_.size());
   std::size_t begin = 0;
@@ -214,7 +280,7 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Scene& scene) const {
       continue;
     }
     polygon.clear();
-    for (const FaceCorner& corner : corners) polygon.push_back(scene.positions[corner.position]);
+    for (const FaceCorner& corner : corners) polygon.push_back(scene.vertex(corner.position));
 
     static constexpr EarClipper::Triangle kWhole{0, 1, 2};
     std::span<const EarClipper::Triangle> pieces(&kWhole, 1);
@@ -234,9 +300,10 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Scene& scene) const {
     }
     if (kind == PolygonKind::kSelfTouching) flaws.note(Flaws::kTouching, face.line);
     double error = 0.0, size = 0.0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      error = std::max(error, recentred(positions_[corners[i].position], scene.origin).error);
-      size = std::max(size, largest(glm::dvec3(polygon[i]) - glm::dvec3(polygon[0])));
+    for (std::size_t i = 0; i < corners.size() && scene.rounding.corners > 0; ++i) {
+      const glm::dvec3 given = positions_[corners[i].position] - scene.origin;
+      error = std::max(error, largest(polygon[i] - given));
+      size = std::max(size, largest(polygon[i] - polygon[0]));
     }
     if (error > 0.01 * size) flaws.note(Flaws::kMoved, face.line);
 
@@ -283,7 +350,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
     scene.warnings.push_back(file_name_ + ": " + std::to_string(bad_colors_) +
                              " colours of vertices that are not finite numbers, taken as white");
   }
-  recentre(scene);
+  recentre(options.vertices, scene);
   const std::vector<std::uint32_t> groups = triangulate(scene);
   if (is_empty(scene) && !may_be_empty_) {
     fail(faces_.empty() ? 0 : faces_[0].line, "no face has an area");

@@ -95,7 +95,9 @@ class MeshBuilder {
   void check_indices() const;
   /// Returns the line of the face with this corner.
   [[nodiscard]] std::size_t line_of(std::size_t corner) const;
-  void recentre(Scene& scene);
+  void recentre(Vertices vertices, Scene& scene);
+  /// Returns whether rounding to binary32 shows: see Vertices::kAsPictures.
+  [[nodiscard]] bool shows_rounding(const Scene& scene) const;
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
   /// Returns whether a face has no area in the file's own numbers, before they are rounded.
   [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
@@ -124,6 +126,10 @@ class MeshBuilder {
 /// world's origin. The subtraction is exact for coordinates that exceed three times the box's
 /// extent, and no difference exceeds three times the extent.
 [[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
+
+/// Returns an origin near the middle of most positions, from which the differences to all of them
+/// are doubles: on each axis a multiple of the least sufficient power of two, or 0.
+[[nodiscard]] glm::dvec3 exact_origin(std::span<const glm::dvec3> positions);
 
 /// Sets the normals of triangles that have none and have a smooth edge. The normal at a corner is
 /// the weighted mean over the triangles that are connected there by smooth edges (weights of N.

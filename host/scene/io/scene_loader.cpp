@@ -286,8 +286,10 @@ SceneFile read_scene_file(const std::filesystem::path& file) {
 
 Scene load_scene(const SceneFile& file, const LoadOptions& options) {
   Scene scene = load_scene(file.obj, options);
+  LoadOptions of_models = options;
+  of_models.vertices = Vertices::kBinary32;
   for (const InstanceSetting& setting : file.instances) {
-    Scene model = load_scene(setting.model, options);
+    Scene model = load_scene(setting.model, of_models);
     resolve_instances(model, InstanceMode::kFlatten, setting.model);
     const std::vector<std::string> objects = model.objects.all();
     MeshInstancer instancer(scene, std::move(model));

@@ -13,20 +13,31 @@
 
 namespace raygate {
 
+/// Which vertices keep the rest of their binary64 coordinates (Scene::rests).
+enum class Vertices {
+  kBinary64,  ///< all that do not fit binary32
+  /// All, if rounding to binary32 would flatten a face or move a corner by more than a hundredth of
+  /// it; otherwise none. Pictures need no more.
+  kAsPictures,
+  kBinary32,  ///< none
+};
+
 struct LoadOptions {
   bool textures = true;  ///< whether textures are decoded
   /// Largest angle between the normals of two faces without vertex normals that are smoothed over
   /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
   std::optional<double> smooth = {};
+  /// glTF files, and meshes with instances, are always in binary32.
+  Vertices vertices = Vertices::kBinary64;
 };
 
 /// Loads a model. The ending of its name gives the format: .obj (or none), .gltf, .glb, .ply or
 /// .stl, in small or capital letters.
 ///
 /// Triangles have the order of the file's faces. Polygons, which may be concave, are cut into
-/// triangles of non-zero area. Faces of exactly zero area, after rounding to float, are left out,
-/// and so are vertices that no face uses. The scene is recentred; see Scene. Numbers are read to
-/// the nearest double, as in the C locale.
+/// triangles of non-zero area. Faces of exactly zero area, as stored, are left out, and so are
+/// vertices that no face uses. The scene is recentred; see Scene. Numbers are read to the nearest
+/// double, as in the C locale.
 ///
 /// Throws InputError, with the line of a text file, for another ending, a file that cannot be read
 /// or breaks its format, a vertex index out of range, a position that is not finite, and a file in

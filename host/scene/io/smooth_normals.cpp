@@ -27,14 +27,15 @@ struct Edge {
 };
 
 /// Returns a number for each position; equal positions have one number.
-std::vector<std::uint32_t> numbers_of(const std::vector<glm::vec3>& positions) {
-  std::vector<std::uint32_t> order(positions.size()), numbers(positions.size());
+std::vector<std::uint32_t> numbers_of(const Scene& scene) {
+  std::vector<std::uint32_t> order(scene.positions.size()), numbers(scene.positions.size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::sort(order, {}, [&](std::uint32_t i) {
-    return std::tuple(positions[i].x, positions[i].y, positions[i].z, i);
+    const glm::dvec3 at = scene.vertex(i);
+    return std::tuple(at.x, at.y, at.z, i);
   });
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool is_same = i > 0 && positions[order[i]] == positions[order[i - 1]];
+    const bool is_same = i > 0 && scene.vertex(order[i]) == scene.vertex(order[i - 1]);
     numbers[order[i]] = is_same ? numbers[order[i - 1]] : order[i];
   }
   return numbers;
@@ -75,7 +76,7 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
     return !is_left_out(face) && face.normals[0] == kNoIndex && (angle || groups[triangle] != 0);
   };
   const auto position = [&](Corner corner) {
-    return glm::dvec3(scene.positions[scene.triangles[corner / 3].vertices[corner % 3]]);
+    return scene.vertex(scene.triangles[corner / 3].vertices[corner % 3]);
   };
   const auto face_normal = [&](std::size_t triangle) {
     const auto first = static_cast<Corner>(3 * triangle);
@@ -96,7 +97,7 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
   };
 
   std::vector<Edge> edges;
-  const std::vector<std::uint32_t> numbers = numbers_of(scene.positions);
+  const std::vector<std::uint32_t> numbers = numbers_of(scene);
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
     if (!is_wanted(i)) continue;
     const auto& vertices = scene.triangles[i].vertices;
