@@ -118,11 +118,11 @@ void run(const Options& options) {
     if (is_standard_output(path)) console = stderr;
   }
 
-  Scene scene = load(
-      options.scene_file,
-      {.smooth = options.smooth,
-       .vertices = options.engine.rounds_vertices ? Vertices::kBinary32 : Vertices::kAsPictures},
-      options.environment, options.camera.up);
+  Scene scene =
+      load(options.scene_file,
+           {.smooth = options.smooth,
+            .vertices = options.rounds_vertices ? Vertices::kBinary32 : Vertices::kAsPictures},
+           options.environment, options.camera.up);
   report.load_seconds = lap.lap();
   report.triangles = triangle_count(scene);
   report.rounding = scene.rounding;

@@ -45,7 +45,7 @@ struct TreeWalk {
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
       const std::uint32_t primitive = leaf.first + i;
       ++visits[bvh.triangle_of(primitive)];
-      const Corners corners = bvh.corners_of(primitive);
+      const FloatCorners corners = bvh.float_corners_of(primitive);
       for (std::uint32_t v = 0; v < 3; ++v) {
         ASSERT_TRUE(glm::all(glm::lessThan(low, corners[v])));
         ASSERT_TRUE(glm::all(glm::lessThan(corners[v], high)));
@@ -252,7 +252,7 @@ void expect_sound(const Scene& scene) {
       for (std::uint32_t primitive = leaf.first; primitive < leaf.first + leaf.count;
            ++primitive, ++in_leaves) {
         const auto& vertices = flat.triangles[bvh.triangle_of(primitive)].vertices;
-        const Corners corners = bvh.corners_of(primitive);
+        const FloatCorners corners = bvh.float_corners_of(primitive);
         for (std::size_t v = 0; v < 3; ++v) ASSERT_EQ(corners[v], flat.positions[vertices[v]]);
         const FaceRef face = bvh.face_of(primitive);
         EXPECT_EQ(bvh.is_instanced(primitive), face.instance != kNoIndex);

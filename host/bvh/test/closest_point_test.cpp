@@ -55,7 +55,7 @@ TEST(ClosestPoint, OfFarPointsIsTheFarthestInTheirDirection) {
       const ClosestPoint found = closest_point(bvh, far * direction);
       double most = -1.0;
       for (const Corners& triangle : triangles) {
-        for (const glm::vec3& corner : triangle) {
+        for (const glm::dvec3& corner : triangle) {
           most = std::max(most, glm::dot(direction, glm::dvec3(corner)));
         }
       }
@@ -93,7 +93,7 @@ TEST(BoxQuery, FindsWhatTouchesAndNothingElse) {
     std::ranges::sort(found);
     std::vector<std::uint32_t> expected;
     for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
-      const Bvh::Corners& t = bvh.corners_of(primitive);
+      const FloatCorners t = bvh.float_corners_of(primitive);
       bool touches = true;
       for (int k = 0; k < 3; ++k) {
         const auto [least, most] = std::minmax({t[0][k], t[1][k], t[2][k]});

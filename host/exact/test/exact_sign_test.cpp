@@ -52,13 +52,13 @@ TEST(Turn, FromTheSmallestToTheLargestFloats) {
 TEST(AreaSign, IsExactWhereRoundingIsNot) {
   // A square of side 2^-20 around a far point: the products agree in their first 40 bits.
   const float far = 1.0f, step = 0x1p-20f;
-  std::vector<glm::vec2> square{
+  std::vector<glm::dvec2> square{
       {far, far}, {far + step, far}, {far + step, far + step}, {far, far + step}};
   double area = 0.0;
   EXPECT_EQ(area_sign(square, area), 1);
   std::swap(square[1], square[3]);
   EXPECT_EQ(area_sign(square, area), -1);
-  const std::vector<glm::vec2> bow_tie{{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+  const std::vector<glm::dvec2> bow_tie{{0, 0}, {1, 1}, {1, 0}, {0, 1}};
   EXPECT_EQ(area_sign(bow_tie, area), 0);
 }
 

@@ -20,42 +20,54 @@ using test::Rational3;
 using Oracle = test::RationalOracle;
 
 struct Case {
-  Ray ray;
+  ExactRay ray;
   Corners triangle;
 };
 
 /// Rays and triangles of every size, most of them made to be hard: aimed at vertices and edges,
-/// slivers, far away, on few bits so that exact ties are common.
+/// slivers, far away, on few bits so that exact ties are common. Half of them are in binary64.
 Case hard_case(Random& random) {
+  const bool is_binary64 = random.below(2) == 0;
   const float size = std::ldexp(1.0f, random.below(201) - 100);
   const float far = random.below(3) == 0 ? size * std::ldexp(1.0f, random.below(24)) : 0.0f;
   const bool grid = random.below(3) == 0;
   const auto point = [&] {
     glm::vec3 p = random.point(size);
     if (grid) p = glm::round(p / size * 3.0f) * size;
-    return p + glm::vec3(far, -far, far);
+    p += glm::vec3(far, -far, far);
+    glm::dvec3 exact(p);
+    for (int k = 0; k < 3 && is_binary64 && !grid; ++k) {
+      if (p[k] != 0.0f)
+        exact[k] = on_float_grid(with_rest(p[k], random.below(1 << 29) - (1 << 28)));
+    }
+    return exact;
   };
   Corners t = {point(), point(), point()};
   if (random.below(5) == 0) t[2] = glm::mix(t[0], t[1], random.uniform(0, 1));  // a sliver
-  const glm::vec3 origin = point();
+  if (!is_binary64) t[2] = glm::vec3(t[2]);
+  const glm::dvec3 origin = point();
   glm::dvec3 aim;
   switch (random.below(4)) {
     case 0:
-      aim = glm::dvec3(t[random.below(3)]);
+      aim = t[static_cast<std::size_t>(random.below(3))];
       break;
     case 1:
-      aim = glm::mix(glm::dvec3(t[0]), glm::dvec3(t[1]), random.uniform(0, 1));
+      aim = glm::mix(t[0], t[1], random.uniform(0, 1));
       break;
     case 2:
-      aim = (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0;
+      aim = (t[0] + t[1] + t[2]) / 3.0;
       break;
     default:
-      aim = glm::dvec3(point());
+      aim = point();
       break;
   }
-  glm::dvec3 direction = aim - glm::dvec3(origin);
+  glm::dvec3 direction = aim - origin;
   if (direction == glm::dvec3(0.0)) direction.x = 1.0;
-  return {{origin, scaled_direction(direction)}, t};
+  const glm::dvec3 rounded(scaled_direction(direction));
+  if (!is_binary64) return {{origin, rounded}, t};
+  direction *= std::exp2(std::round(std::log2(largest(rounded) / largest(direction))));
+  for (int k = 0; k < 3; ++k) direction[k] = on_float_grid(direction[k]);
+  return {{origin, direction}, t};
 }
 
 /// `rounded` is off by half the distance of floats around `exact` and 2^-10 of that at most.
@@ -116,7 +128,7 @@ TEST(Exact, RoundedWordsKeepTheirPromise) {
 
 // Which of two triangles is nearer, among them copies of one in another order of its vertices, and
 // others that share a vertex the ray is aimed at or differ from it by an ulp.
-void expect_barycentric(const Ray& ray, const Corners& t) {
+void expect_barycentric(const ExactRay& ray, const Corners& t) {
   const Oracle oracle(ray, t);
   mpq_class weights[3], sum = 0;
   for (int k = 0; k < 3; ++k) {
@@ -159,7 +171,7 @@ TEST(Exact, OrdersHitsAsRationalsDo) {
     Corners other = {t[1], t[2], t[0]};
     const int kind = random.below(3);
     const int k = random.below(3);
-    if (kind == 1) other[k].x = std::nextafter(other[k].x, 1e38f);
+    if (kind == 1) other[k].x = std::nextafter(float_above(other[k].x), 1e38f);
     if (kind == 2) other[k] = hard_case(random).triangle[0];
     if (!hits_triangle(ray, other)) continue;
     const int expected = cmp(Oracle(ray, t).t(), Oracle(ray, other).t());

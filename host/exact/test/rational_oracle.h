@@ -11,7 +11,7 @@ namespace raygate::test {
 
 using Rational3 = std::array<mpq_class, 3>;
 
-inline Rational3 rational(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+inline Rational3 rational(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 inline Rational3 minus(const Rational3& a, const Rational3& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
@@ -29,7 +29,7 @@ inline int sign_of(__int128 x) { return (x > 0) - (x < 0); }
 struct RationalOracle {
   Rational3 direction, v[3];
 
-  RationalOracle(const Ray& ray, const Corners& t) : direction(rational(ray.direction)) {
+  RationalOracle(const ExactRay& ray, const Corners& t) : direction(rational(ray.direction)) {
     for (int k = 0; k < 3; ++k) v[k] = minus(rational(t[k]), rational(ray.origin));
   }
   [[nodiscard]] int side(int k) const {

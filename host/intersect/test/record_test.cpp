@@ -26,14 +26,15 @@ struct View {
 View any_view(Random& random, int kind) {
   const float far = kind % 2 == 0 ? 0.0f : 1000.0f;
   View view{random.point(), {}};
-  for (glm::vec3& corner : view.triangle) corner = random.point() + far;
-  Corners& t = view.triangle;
+  FloatCorners t;
+  for (glm::vec3& corner : t) corner = random.point() + far;
   if (kind / 2 % 3 == 1) t[2] = glm::mix(t[0], t[1], random.uniform()) + random.point(0x1p-9f);
   if (kind / 6 % 3 == 1) {  // in the plane, but for roundings and a little more
     view.origin = t[0] + (t[1] - t[0]) * random.uniform(-2, 2) +
                   (t[2] - t[0]) * random.uniform(-2, 2) +
                   random.point(std::ldexp(1.0f, -random.below(24)));
   }
+  view.triangle = widened(t);
   return view;
 }
 
@@ -41,11 +42,14 @@ View any_view(Random& random, int kind) {
 Ray aimed(Random& random, const View& view) {
   const Corners& t = view.triangle;
   const double u = random.uniform(0, 1), v = random.below(2) == 0 ? 0.0 : random.uniform(0, 1);
-  const glm::dvec3 inside =
-      glm::mix(glm::mix(glm::dvec3(t[0]), glm::dvec3(t[1]), u), glm::dvec3(t[2]), v);
+  const glm::dvec3 inside = glm::mix(glm::mix(t[0], t[1], u), t[2], v);
   const glm::dvec3 aim = inside - glm::dvec3(view.origin);
   const auto off = glm::dvec3(random.point()) * std::ldexp(largest(aim), -random.below(26));
   return {view.origin, scaled_direction(aim + off)};
+}
+
+FloatCorners rounded(const Corners& t) {
+  return {glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2])};
 }
 
 /// Makes records in double (make_record) and in binary32 (set_up).
@@ -54,7 +58,9 @@ struct InDouble {
   static constexpr bool kHasSignOfD = true;  // always, exactly
 };
 struct InBinary32 {
-  static PolygonRecord make(const glm::vec3& o, const Corners& t) { return set_up(o, t).record; }
+  static PolygonRecord make(const glm::vec3& o, const Corners& t) {
+    return set_up(o, rounded(t)).record;
+  }
   static constexpr bool kHasSignOfD = false;  // or NaN
 };
 
@@ -110,7 +116,7 @@ TYPED_TEST(Record, SureAnswersAreRightAtEveryScale) {
     const float size = i % 4 == 0 ? std::ldexp(1.0f, this->random_.below(241) - 125) : 1.0f;
     View view = any_view(this->random_, i);
     view.origin *= size;
-    for (glm::vec3& corner : view.triangle) corner *= size;
+    for (glm::dvec3& corner : view.triangle) corner *= double{size};
     const PolygonRecord made = this->make(view.origin, view.triangle);
     if (TypeParam::kHasSignOfD || !std::isnan(made.d)) {
       ASSERT_EQ(orient3d(view.origin, view.triangle), (made.d > 0) - (made.d < 0)) << i;
@@ -181,7 +187,7 @@ TEST(SetUp, DistancesAreAsNearAsTheySay) {
   long good = 0;
   for (int i = 0; i < 400000; ++i) {
     const View view = any_view(random, i);
-    const SetUpRecord made = set_up(view.origin, view.triangle);
+    const SetUpRecord made = set_up(view.origin, rounded(view.triangle));
     for (int k = 0; k < 4; ++k) {
       const Ray ray = aimed(random, view);
       if (unit.verdict(made.record, ray.direction) != UnitVerdict::kHit) continue;
@@ -230,7 +236,7 @@ TEST(RecordBatch, HasTheBitsOfSingleRecordsAndPlanes) {
     const glm::vec3 origin = random.point(size);
     std::vector<Corners> triangles;
     for (int i = random.below(9); i >= 0; --i) {
-      Corners t = {random.point(size), random.point(size), random.point(size)};
+      FloatCorners t = {random.point(size), random.point(size), random.point(size)};
       const int kind = random.below(8);
       if (kind == 0) t[1] = t[0];                         // no edge
       if (kind == 1) t[2] = t[0] + 0.5f * (t[1] - t[0]);  // hardly any area
@@ -240,7 +246,7 @@ TEST(RecordBatch, HasTheBitsOfSingleRecordsAndPlanes) {
         if (kind == 4) v = origin + 1e-6f * v;
         if (kind == 5) v = 1000.0f * size + 1e-3f * v;
       }
-      triangles.push_back(t);
+      triangles.push_back(widened(t));
     }
     expect_same(origin, triangles);
   }

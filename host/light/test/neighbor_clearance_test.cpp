@@ -120,7 +120,7 @@ TEST(NeighborClearance, HoldsBetweenTrianglesOfAllKinds) {
     std::vector<Corners> mesh;
     for (int k = 0; k < 8; ++k) {
       Corners t;
-      for (glm::vec3& v : t) v = random.point(size) * glm::vec3(1.0f, 1.0f, height);
+      for (glm::dvec3& v : t) v = random.point(size) * glm::vec3(1.0f, 1.0f, height);
       if (k > 0) {
         for (int v = 0; v < random.below(3); ++v) t[v] = mesh[0][(v + k) % 3];
       }

@@ -111,8 +111,8 @@ TEST_F(CoreIntersectorTest, TheTriangleThatARayLeavesIsNoDoubt) {
   for (int i = 0; i < 10'000; ++i) {
     const auto triangle = static_cast<std::size_t>(random_.below(count));
     const Corners& t = mesh_[triangle];
-    Ray& ray = rays.emplace_back(
-        Ray{(t[0] + t[1] + t[2]) / 3.0f, scaled_direction(glm::dvec3(random_.point(1.0f)))});
+    Ray& ray = rays.emplace_back(Ray{glm::vec3((t[0] + t[1] + t[2]) / 3.0),
+                                     scaled_direction(glm::dvec3(random_.point(1.0f)))});
     if (is_ahead(ray, t)) ray.direction = -ray.direction;
     sources.push_back(primitive_of(triangle));
   }
@@ -241,10 +241,10 @@ class BrokenMemory : public ReferenceCore {
 TEST_F(CoreIntersectorTest, ErrorsOfTheCoreAreInputErrors) {
   std::vector<Ray> rays = some_rays(mesh_, random_, 100);
   // One that begins close to the triangle of the last line.
-  const Corners& t = TriangleLine(image_->lines().back()).corners;
-  const glm::vec3 normal = glm::vec3(glm::normalize(triangle_normal(t)));
+  const Corners t = widened(TriangleLine(image_->lines().back()).corners);
+  const glm::dvec3 normal = glm::normalize(triangle_normal(t));
   rays.push_back(
-      {(t[0] + t[1] + t[2]) / 3.0f + 1e-3f * normal, scaled_direction(-glm::dvec3(normal))});
+      {glm::vec3((t[0] + t[1] + t[2]) / 3.0 + 1e-3 * normal), scaled_direction(-normal)});
   std::vector<NearestHit> hits(rays.size());
   const auto said = [&](bool cyclic) {
     CoreIntersector intersector(bvh_, image_, std::make_unique<BrokenMemory>(cyclic));

@@ -14,8 +14,20 @@ namespace {
 
 using test::Random;
 
-class Quads : public testing::Test {
+/// Parameter: whether corners and rays are rounded from binary64.
+class Quads : public testing::TestWithParam<bool> {
  protected:
+  /// Returns a position that rounds to this one.
+  glm::dvec3 spread(const glm::vec3& position) {
+    glm::dvec3 exact(position);
+    for (int k = 0; k < 3 && GetParam(); ++k) {
+      if (!std::isnormal(position[k])) continue;
+      exact[k] = on_float_grid(with_rest(position[k], random_.below(1 << 29) - (1 << 28)));
+      if (static_cast<float>(exact[k]) != position[k]) exact[k] = position[k];
+    }
+    return exact;
+  }
+
   /// The corners in the format of test_quad, with anything behind them.
   std::vector<float> words_of(const std::vector<Corners>& triangles) {
     const std::size_t count = triangles.size();
@@ -23,7 +35,7 @@ class Quads : public testing::Test {
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t v = 0; v < 3; ++v) {
         for (std::size_t k = 0; k < 3; ++k) {
-          words[(3 * v + k) * count + i] = triangles[i][v][static_cast<int>(k)];
+          words[(3 * v + k) * count + i] = static_cast<float>(triangles[i][v][static_cast<int>(k)]);
         }
       }
     }
@@ -36,14 +48,14 @@ class Quads : public testing::Test {
     const glm::vec3 middle = random_.point(size);
     std::vector<Corners> triangles;
     for (int i = random_.below(kQuad); i >= 0; --i) {
-      Corners t;
+      FloatCorners t;
       for (glm::vec3& v : t) v = middle + random_.point(size * smaller);
       if (random_.below(6) == 0) t[2] = t[0] + 0.4f * (t[1] - t[0]);
-      if (random_.below(12) == 0) t[1] = t[0];
       if (random_.below(6) == 0) {
         for (glm::vec3& v : t) v[random_.below(3)] = middle.x;
       }
-      triangles.push_back(t);
+      triangles.push_back({spread(t[0]), spread(t[1]), spread(t[2])});
+      if (random_.below(12) == 0) triangles.back()[1] = triangles.back()[0];
     }
     return triangles;
   }
@@ -58,7 +70,7 @@ class Quads : public testing::Test {
 
   /// A point of the triangle's plane, near or on an edge as often as not.
   glm::dvec3 aim_at(const Corners& t) {
-    const glm::dvec3 a(t[0]), b(t[1]), c(t[2]);
+    const auto& [a, b, c] = t;
     const auto near_zero = [&] {
       return random_.below(3) == 0 ? 0.0 : std::ldexp(random_.uniform(), -random_.below(40));
     };
@@ -80,12 +92,17 @@ class Quads : public testing::Test {
 /// Verdicts on rays and triangles against the exact ones.
 class QuadTest : public Quads {
  protected:
-  void expect_right(const Ray& ray, const std::vector<Corners>& triangles) {
+  void expect_right(const Ray& given, const std::vector<Corners>& triangles) {
     const auto count = static_cast<std::uint32_t>(triangles.size());
-    const ShearedRay sheared(ray);
+    const ExactRay ray(spread(given.origin), spread(given.direction));
+    const ShearedRay sheared(given);
     const double t_scale = std::abs(ray.direction[sheared.axes[2]]);
     QuadVerdict verdict;
-    test_quad(sheared, words_of(triangles).data(), count, verdict);
+    if (GetParam()) {
+      test_quad<true>(sheared, words_of(triangles).data(), count, verdict, largest(given.origin));
+    } else {
+      test_quad(sheared, words_of(triangles).data(), count, verdict);
+    }
     ASSERT_EQ((verdict.hit | verdict.level | verdict.doubt) >> count, 0u);
     for (std::uint32_t i = 0; i < count; ++i) {
       const bool hit = hits_triangle(ray, triangles[i]);
@@ -111,14 +128,15 @@ class QuadTest : public Quads {
   int hits_ = 0, misses_ = 0, levels_ = 0, doubts_ = 0;
 };
 
-TEST_F(QuadTest, IsRightWhereItIsSure) {
+TEST_P(QuadTest, IsRightWhereItIsSure) {
   for (int round = 0; round < 100'000; ++round) {
     const float size = some_size(80);
     const std::vector<Corners> triangles = some_triangles(size);
     const Corners& aimed = triangles[random_.below(static_cast<int>(triangles.size()))];
     glm::vec3 origin = random_.point(size * std::ldexp(1.0f, 2 - random_.below(10)));
     if (random_.below(4) == 0) origin = glm::vec3(aim_at(aimed));  // on it, or nearly
-    if (random_.below(8) == 0) origin = aimed[random_.below(3)];
+    if (random_.below(8) == 0)
+      origin = glm::vec3(aimed[static_cast<std::size_t>(random_.below(3))]);
     expect_right(ray_to(origin, aim_at(aimed)), triangles);
     expect_right(ray_to(origin, glm::dvec3(random_.point(size))), triangles);
     if (HasFatalFailure()) FAIL() << "round " << round;
@@ -130,7 +148,7 @@ TEST_F(QuadTest, IsRightWhereItIsSure) {
 }
 
 // A sphere around the origin: every ray hits one triangle.
-TEST_F(QuadTest, IsHardlyEverInDoubt) {
+TEST_P(QuadTest, IsHardlyEverInDoubt) {
   const std::vector<Corners> mesh = test::sphere(3);
   for (int round = 0; round < 500; ++round) {
     const glm::vec3 origin = random_.point(0.5f);
@@ -150,7 +168,10 @@ class QuadRecordTest : public Quads {
   void expect_right(const glm::vec3& origin, const std::vector<Corners>& triangles) {
     const auto count = static_cast<std::uint32_t>(triangles.size());
     QuadRecord record;
-    make_quad_record({origin.x, origin.y, origin.z}, words_of(triangles).data(), count, record);
+    const std::vector<float> words = words_of(triangles);
+    GetParam()
+        ? make_quad_record<true>({origin.x, origin.y, origin.z}, words.data(), count, record)
+        : make_quad_record<false>({origin.x, origin.y, origin.z}, words.data(), count, record);
     ASSERT_EQ(record.unsure >> count, 0u);
     for (std::uint32_t i = 0; i < count; ++i) {
       const int side = orient3d(origin, triangles[i]);
@@ -208,13 +229,13 @@ class QuadRecordTest : public Quads {
   int naive_ = 0;  // doubts about which the sign would be wrong
 };
 
-TEST_F(QuadRecordTest, IsRightWhereItIsSure) {
+TEST_P(QuadRecordTest, IsRightWhereItIsSure) {
   for (int round = 0; round < 30'000; ++round) {
     const float size = some_size(70);
     const std::vector<Corners> triangles = some_triangles(size);
     glm::vec3 origin = random_.point(size * std::ldexp(1.0f, 2 - random_.below(10)));
     if (random_.below(8) == 0) {  // in a plane, or nearly
-      origin = triangles[0][0] + 2.0f * (triangles[0][1] - triangles[0][2]);
+      origin = glm::vec3(triangles[0][0] + 2.0 * (triangles[0][1] - triangles[0][2]));
     }
     expect_right(origin, triangles);
     if (HasFatalFailure()) FAIL() << "round " << round;
@@ -228,7 +249,7 @@ TEST_F(QuadRecordTest, IsRightWhereItIsSure) {
 
 constexpr float kBeyondFloats[] = {1e-37f, 1e-20f, 1e15f, 1e30f, 8e37f};
 
-TEST_F(QuadTest, IsNotSureOfWhatFloatsCannotHold) {
+TEST_P(QuadTest, IsNotSureOfWhatFloatsCannotHold) {
   for (const float size : kBeyondFloats) {
     for (int round = 0; round < 1000; ++round) {
       const Corners t = {random_.point(size), random_.point(size), random_.point(size)};
@@ -238,7 +259,7 @@ TEST_F(QuadTest, IsNotSureOfWhatFloatsCannotHold) {
   EXPECT_EQ(hits_ + misses_, 0);
 }
 
-TEST_F(QuadRecordTest, IsNotSureOfWhatFloatsCannotHold) {
+TEST_P(QuadRecordTest, IsNotSureOfWhatFloatsCannotHold) {
   for (const float size : kBeyondFloats) {
     for (int round = 0; round < 300; ++round) {
       expect_right(random_.point(size),
@@ -248,6 +269,9 @@ TEST_F(QuadRecordTest, IsNotSureOfWhatFloatsCannotHold) {
   EXPECT_EQ(sides_ + sure_, 0);
   EXPECT_GT(doubts_, 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(Rounded, QuadTest, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Rounded, QuadRecordTest, testing::Bool());
 
 }  // namespace
 }  // namespace raygate

@@ -240,14 +240,14 @@ class PointError : public testing::Test {
 TEST_F(PointError, HoldsFromStraightOnToFlat) {
   for (int i = 0; i < 200'000; ++i) {
     const float scale = std::ldexp(1.0f, random_.below(41) - 20);
-    Corners t = {random_.point(scale), random_.point(scale), random_.point(scale)};
+    FloatCorners t = {random_.point(scale), random_.point(scale), random_.point(scale)};
     const glm::vec3 origin = random_.point(2.0f * scale);
     if (random_.below(2) == 0) {  // nearly in the plane of the origin
       const float share = std::ldexp(1.0f, -random_.below(16));
       t[2] = glm::mix(glm::mix(t[0], t[1], 0.4f) + 0.5f * (t[0] - origin), t[2], share);
     }
     const glm::dvec3 aim = (glm::dvec3(t[0]) + glm::dvec3(t[1]) + glm::dvec3(t[2])) / 3.0;
-    check({origin, scaled_direction(aim - glm::dvec3(origin))}, t);
+    check({origin, scaled_direction(aim - glm::dvec3(origin))}, widened(t));
   }
   EXPECT_EQ(underflows_, 0);
   EXPECT_GT(flat_, 10'000);

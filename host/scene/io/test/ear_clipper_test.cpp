@@ -14,11 +14,11 @@
 namespace raygate {
 namespace {
 
-using Polygon = std::vector<glm::vec3>;
+using Polygon = std::vector<glm::dvec3>;
 
-Polygon in_plane(const std::vector<glm::vec2>& points) {
+Polygon in_plane(const std::vector<glm::dvec2>& points) {
   Polygon polygon;
-  for (const glm::vec2& p : points) polygon.emplace_back(p.x, p.y, 0.25f * p.x + 0.5f * p.y);
+  for (const glm::dvec2& p : points) polygon.emplace_back(p.x, p.y, 0.25 * p.x + 0.5 * p.y);
   return polygon;
 }
 
@@ -29,7 +29,7 @@ void expect_triangulation(const Polygon& polygon, const EarClipper& clipper, int
   ASSERT_EQ(clipper.triangles().size(), polygon.size() - 2);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (const auto& triangle : clipper.triangles()) {
-    const auto flat = [&](int i) { return glm::vec2(polygon[triangle[i]]); };
+    const auto flat = [&](int i) { return glm::dvec2(polygon[triangle[i]]); };
     ASSERT_EQ(orient2d(flat(0), flat(1), flat(2)), winding);
     for (int i = 0; i < 3; ++i) ++sides[{triangle[i], triangle[(i + 1) % 3]}];
   }
@@ -44,7 +44,7 @@ void expect_triangulation(const Polygon& polygon, const EarClipper& clipper, int
   }
 }
 
-void expect_simple(const std::vector<glm::vec2>& points, int winding = 1) {
+void expect_simple(const std::vector<glm::dvec2>& points, int winding = 1) {
   EarClipper clipper;
   const Polygon polygon = in_plane(points);
   ASSERT_EQ(clipper.cut(polygon), PolygonKind::kSimple);
@@ -60,8 +60,8 @@ TEST(EarClipper, CutsAConvexQuadFromFirstToThird) {
 }
 
 TEST(EarClipper, CutsConcavePolygonsFromWhateverCorner) {
-  std::vector<glm::vec2> arrow{{0, 0}, {2, -1}, {0.5f, 0}, {2, 1}};
-  std::vector<glm::vec2> letter{{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
+  std::vector<glm::dvec2> arrow{{0, 0}, {2, -1}, {0.5f, 0}, {2, 1}};
+  std::vector<glm::dvec2> letter{{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
   for (int i = 0; i < 8; ++i) {
     expect_simple(arrow);
     expect_simple(letter);
@@ -143,7 +143,7 @@ TEST(EarClipper, CutsRandomStarShapedPolygons) {
     double gap = angles.front() + 2.0 * std::numbers::pi - angles.back();
     for (std::size_t i = 1; i < size; ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
     if (gap > 3.0) continue;
-    std::vector<glm::vec2> points;
+    std::vector<glm::dvec2> points;
     for (const double angle : angles) {
       const double radius = std::uniform_real_distribution(0.1, 10.0)(random);
       points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
@@ -153,8 +153,8 @@ TEST(EarClipper, CutsRandomStarShapedPolygons) {
   }
 }
 
-std::vector<glm::vec2> star(int size) {
-  std::vector<glm::vec2> points;
+std::vector<glm::dvec2> star(int size) {
+  std::vector<glm::dvec2> points;
   for (int i = 0; i < size; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / size;
     const double radius = 1.0 + i % 2;
@@ -163,16 +163,16 @@ std::vector<glm::vec2> star(int size) {
   return points;
 }
 
-std::vector<glm::vec2> comb(int size) {
-  std::vector<glm::vec2> points{{0, -1}, {static_cast<float>(size), -1}};
+std::vector<glm::dvec2> comb(int size) {
+  std::vector<glm::dvec2> points{{0, -1}, {static_cast<float>(size), -1}};
   for (int i = size - 3; i > 0; --i) {
     points.emplace_back(static_cast<float>(i), i % 2 ? 1000.0f : 0.0f);
   }
   return points;
 }
 
-std::vector<glm::vec2> spiral(int size) {
-  std::vector<glm::vec2> points;
+std::vector<glm::dvec2> spiral(int size) {
+  std::vector<glm::dvec2> points;
   for (int i = 0; i < size; ++i) {
     const int step = i < size / 2 ? i : size - 1 - i;  // outwards, and back inside of that
     const double angle = 40.0 * std::numbers::pi * step / (size / 2);
@@ -190,7 +190,7 @@ TEST(EarClipper, CutsManyCorners) {
 
 // Four times the corners take about four times as long; were it quadratic, sixteen times.
 TEST(EarClipper, IsNotQuadratic) {
-  const auto seconds = [](const std::vector<glm::vec2>& points) {
+  const auto seconds = [](const std::vector<glm::dvec2>& points) {
     const Polygon polygon = in_plane(points);
     EarClipper clipper;
     double best = 1e9;

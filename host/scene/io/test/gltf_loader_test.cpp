@@ -93,7 +93,7 @@ TEST_F(LoadGltf, MeshesOfSeveralNodesAreKeptOnce) {
   std::size_t number = 0;
   for_each_face(kept, [&](const Corners& corners, const Triangle&) {
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(corners[k], written.positions[written.triangles[number].vertices[k]]);
+      EXPECT_EQ(corners[k], written.vertex(written.triangles[number].vertices[k]));
     }
     EXPECT_EQ(written.triangles[number].object, number / 2);
     const glm::dvec3 normal = glm::cross(corner(written, number, 1) - corner(written, number, 0),
