@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "host/base/lanes.h"
 #include "host/exact/expansion.h"
@@ -137,6 +138,37 @@ RecentredPosition recentred(const glm::dvec3& position, const glm::dvec3& origin
 }
 
 bool has_exact_difference(double a, double b) { return two_sum(a, -b).error == 0.0; }
+
+glm::dvec3 exact_origin(std::span<const glm::dvec3> positions) {
+  // The box of the middle half of the coordinates, so that a few far positions do not matter.
+  glm::dvec3 low, high;
+  std::vector<double> sorted(positions.size());
+  const auto quarter = static_cast<std::ptrdiff_t>(positions.size() / 4);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::ranges::transform(positions, sorted.begin(), [&](const auto& at) { return at[axis]; });
+    std::ranges::nth_element(sorted, sorted.begin() + quarter);
+    low[axis] = sorted[static_cast<std::size_t>(quarter)];
+    std::ranges::nth_element(sorted, sorted.end() - 1 - quarter);
+    high[axis] = *(sorted.end() - 1 - quarter);
+  }
+  glm::dvec3 origin(0.0);
+  const double size = std::max(largest(high - low), 0x1p-100);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double centre = 0.5 * low[axis] + 0.5 * high[axis];
+    for (double step = std::exp2(std::ceil(std::log2(size))); step <= 2.0 * std::abs(centre);
+         step *= 2.0) {
+      const double steps = std::nearbyint(centre / step);
+      if (std::abs(steps) >= 0x1p53) continue;
+      const bool is_exact = std::ranges::all_of(positions, [&](const glm::dvec3& at) {
+        return has_exact_difference(at[axis], steps * step);
+      });
+      if (!is_exact) continue;
+      origin[axis] = steps * step;
+      break;
+    }
+  }
+  return origin;
+}
 
 bool is_scaled(const glm::vec3& direction) {
   const float size = largest(direction);

@@ -42,6 +42,10 @@ struct RecentredPosition {
 /// Returns whether a - b is a double.
 [[nodiscard]] bool has_exact_difference(double a, double b);
 
+/// Returns an origin near the middle of most positions, from which the differences to all of them
+/// are doubles: on each axis a multiple of the least sufficient power of two, or 0.
+[[nodiscard]] glm::dvec3 exact_origin(std::span<const glm::dvec3> positions);
+
 /// Returns the nearest multiple of 2^-149.
 [[nodiscard]] inline double on_float_grid(double x) {
   return std::abs(x) < 0x1p-97 ? std::nearbyint(x * 0x1p149) * 0x1p-149 : x;

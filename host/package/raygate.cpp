@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "host/bvh/bvh.h"
 #include "host/exact/ieee_floats.h"
@@ -14,35 +16,39 @@
 namespace raygate {
 namespace {
 
-glm::vec3 vector(const Tracer::Point& p) { return {p[0], p[1], p[2]}; }
+glm::dvec3 vector(const Tracer::Point& p) { return {p[0], p[1], p[2]}; }
 
-/// Returns a temporary scene from which the BVH is built.
+/// Returns the scene from which the BVH is built.
 Scene scene_of(std::span<const Tracer::Triangle> triangles) {
-  Scene scene;
-  scene.positions.reserve(3 * triangles.size());
-  scene.triangles.resize(triangles.size());
+  std::vector<glm::dvec3> corners;
+  corners.reserve(3 * triangles.size());
+  bool is_binary32 = true;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const glm::vec3 position = vector(triangles[i][k]);
-      if (!(std::abs(position.x) <= kMostCoordinate && std::abs(position.y) <= kMostCoordinate &&
-            std::abs(position.z) <= kMostCoordinate)) {
-        throw std::invalid_argument("triangle " + std::to_string(i) +
-                                    ": found a corner that is not finite or beyond 2^126, "
-                                    "expected coordinates of magnitude at most 2^126");
-      }
-      scene.triangles[i].vertices[k] = static_cast<std::uint32_t>(scene.positions.size());
-      scene.positions.push_back(position);
+    for (const Tracer::Point& corner : triangles[i]) {
+      corners.push_back(vector(corner));
+      is_binary32 = is_binary32 && glm::dvec3(glm::vec3(corners.back())) == corners.back();
+      if (is_finite(corners.back()) && largest(corners.back()) <= kMostCoordinate) continue;
+      throw std::invalid_argument("triangle " + std::to_string(i) +
+                                  ": found a corner that is not finite or beyond 2^126, expected "
+                                  "coordinates of magnitude at most 2^126");
     }
   }
+  Scene scene;
+  scene.triangles.resize(triangles.size());
+  if (!is_binary32) scene.origin = exact_origin(corners);
+  for (std::uint32_t i = 0; i < corners.size(); ++i) {
+    scene.triangles[i / 3].vertices[i % 3] = i;
+    scene.add_vertex(corners[i]);
+  }
+  if (is_binary32) scene.rests = {};
   return scene;
 }
 
-RayTable block_of(std::span<const Tracer::Ray> rays) {
+RayTable block_of(std::span<const Tracer::Ray> rays, const glm::dvec3& origin) {
   RayTable block;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const char* const wrong =
-        block.add(glm::dvec3(vector(rays[i].origin)), glm::dvec3(vector(rays[i].direction)),
-                  rays[i].limit, glm::dvec3(0.0));
+        block.add(vector(rays[i].origin), vector(rays[i].direction), rays[i].limit, origin);
     if (wrong != nullptr) {
       throw std::invalid_argument("ray " + std::to_string(i) + ": " + wrong);
     }
@@ -57,7 +63,11 @@ void require_room(std::size_t rays, std::size_t room) {
 }  // namespace
 
 struct Tracer::Tree {
-  Tree(const Scene& scene, int threads) : bvh(scene, threads) {}
+  Tree(Scene&& given, int threads)
+      : origin(given.origin), scene(std::move(given)), bvh(scene, threads) {
+    scene.positions = {};
+    if (bvh.is_binary32()) scene.triangles = {};
+  }
 
   [[nodiscard]] Hit answer(const RayTable& block, std::size_t i, const NearestHit& hit) const {
     if (hit.primitive == NearestHit::kNone) return {};
@@ -79,6 +89,8 @@ struct Tracer::Tree {
     return hits;
   }
 
+  glm::dvec3 origin;
+  Scene scene;  // what the BVH refers to
   Bvh bvh;
 };
 
@@ -99,7 +111,7 @@ Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
   const IeeeFloats guard;
   require_room(rays.size(), hits.size());
-  const RayTable block = block_of(rays);
+  const RayTable block = block_of(rays, tree_->origin);
   const std::vector<NearestHit> found = tree_->find(block, false);
   for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = tree_->answer(block, i, found[i]);
 }
@@ -107,7 +119,7 @@ void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
 void Tracer::any(std::span<const Ray> rays, std::span<std::uint8_t> is_hit) const {
   const IeeeFloats guard;
   require_room(rays.size(), is_hit.size());
-  const std::vector<NearestHit> found = tree_->find(block_of(rays), true);
+  const std::vector<NearestHit> found = tree_->find(block_of(rays, tree_->origin), true);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     is_hit[i] = found[i].primitive == NearestHit::kNone ? 0 : 1;
   }
@@ -115,7 +127,7 @@ void Tracer::any(std::span<const Ray> rays, std::span<std::uint8_t> is_hit) cons
 
 std::vector<Tracer::Hit> Tracer::all(const Ray& ray) const {
   const IeeeFloats guard;
-  const RayTable block = block_of({&ray, 1});
+  const RayTable block = block_of({&ray, 1}, tree_->origin);
   std::vector<NearestHit> found;
   RayWork work;
   all_hits(tree_->bvh, block.exact_ray(0), block.limits[0], found, work);

@@ -14,21 +14,21 @@
 namespace raygate {
 
 /// A set of triangles in a BVH, for ray queries. Which triangles are hit, and in which order, is
-/// decided exactly on the given floats (except for underflow, see below): a ray through an edge or
-/// a corner of a closed mesh hits exactly one of the triangles that meet there, without leaks. Of
+/// decided exactly on the given numbers (except for underflow, see below): a ray through an edge
+/// or a corner of a closed mesh hits exactly one of the triangles that meet there, without leaks. Of
 /// two hits at equal distance the one with the lower triangle index comes first. Queries are
 /// thread-safe. They work in any rounding mode, by setting IEEE 754 arithmetic and restoring the
 /// mode.
 class Tracer {
  public:
-  using Point = std::array<float, 3>;
+  using Point = std::array<double, 3>;
   using Triangle = std::array<Point, 3>;
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   /// A ray. Its hits are P = origin + t direction with 0 < t < limit.
   struct Ray {
     Point origin{}, direction{};  ///< of any length; a zero direction hits nothing
-    float limit = std::numeric_limits<float>::infinity();  ///< positive
+    double limit = std::numeric_limits<double>::infinity();  ///< positive
   };
   struct Hit {
     std::uint32_t triangle = kNone;                      ///< triangle index; kNone: a miss
@@ -50,9 +50,9 @@ class Tracer {
   // not finite, starts farther away than 2^126, or has a limit that is not positive.
   //
   // Rays are traced with the direction scaled by a power of two, so that the largest component is
-  // in [1, 2), and the limit divided by it. Components below 2^-126 are then rounded to a multiple
-  // of 2^-149, and limits to at least 2^-149. So components of at least 2^-126 of the largest one,
-  // and limits at a distance of at least 2^-125, are exact.
+  // in [1, 2), and the limit divided by it and rounded to binary32. All coordinates are rounded to
+  // multiples of 2^-149: those of at least 2^-97 are exact. If the triangles' coordinates are not all
+  // floats, origins are rounded to binary64 relative to a point near the middle of the triangles.
 
   /// Sets hits[i] to the nearest hit of rays[i]. Both spans must have the same size.
   void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;

@@ -268,6 +268,16 @@ class PythonScene {
     return bytes_of(rows, rows->data(), rows->size() * sizeof(Row));
   }
 
+  /// Returns the open edges, relative to the scene's origin, as bytes: seven float64 each.
+  [[nodiscard]] Bytes open_edge_rows() const {
+    const auto rows = std::make_shared<std::vector<OpenEdge>>();
+    {
+      const nb::gil_scoped_release release;
+      *rows = open_edges(scene_);
+    }
+    return bytes_of(rows, rows->data(), rows->size() * sizeof(OpenEdge));
+  }
+
   /// Returns the film's channels by name, and the film.
   std::pair<nb::typed<nb::dict, nb::str, nb::ndarray<nb::numpy>>, PythonFilm> render_film(
       const std::optional<Three>& eye, const std::optional<Three>& target,
@@ -409,6 +419,7 @@ NB_MODULE(_raygate, m) {
                    })
       .def("trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
            "columns"_a, "settings"_a)
+      .def("open_edges", &PythonScene::open_edge_rows)
       .def("closest", &PythonScene::closest_points, "points"_a)
       .def("render", &PythonScene::render_film, "eye"_a.none(), "target"_a.none(), "up"_a.none(),
            "settings"_a);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/exact/exact.h"
 #include "host/scene/camera.h"
 #include "host/scene/texture.h"
 
@@ -298,6 +300,20 @@ struct Scene {
     glm::dvec3 exact;
     for (int k = 0; k < 3; ++k) exact[k] = with_rest(positions[index][k], rests[index][k]);
     return exact;
+  }
+  /// Adds a position and its rest, given in world coordinates. All positions so far have rests.
+  /// Returns the largest error of a coordinate.
+  double add_vertex(const glm::dvec3& world) {
+    double error = 0.0;
+    glm::vec3& position = positions.emplace_back();
+    glm::ivec3& rest = rests.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      const double difference = world[k] - origin[k], exact = on_float_grid(difference);
+      error = std::max(error, std::abs(exact - difference));
+      position[k] = static_cast<float>(exact);
+      rest[k] = rest_of(exact, position[k]);
+    }
+    return error;
   }
 };
 

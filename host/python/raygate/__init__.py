@@ -9,15 +9,15 @@
     picture["color"]                               # (480, 640, 4), scene-linear
     picture.save("teapot.png")
 
-Hits are exact: binary32 holds the corners and rays relative to the scene's middle (Scene.origin), and for these numbers
-the nearest triangle and the order of several triangles are always the right ones.
+Hits are exact for float64 corners and rays: the nearest triangle and the order of several triangles are always the right
+ones. raygate.trimesh and raygate.open3d answer as the ray casters of these libraries do.
 
 raygate.float is IEEE 754 arithmetic in any small format.
 """
 
-from . import _raygate, float, trimesh  # from here on `float` is the module, not Python's class
+from . import _raygate, float, open3d, trimesh  # from here on `float` is the module, not Python's class
 from ._raygate import InputError
 from ._scene import Picture, Scene
 
-__all__ = ["InputError", "Picture", "Scene", "float", "trimesh"]
+__all__ = ["InputError", "Picture", "Scene", "float", "open3d", "trimesh"]
 __version__: str = _raygate.software.split()[-1]

@@ -82,37 +82,6 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
   return origin;
 }
 
-glm::dvec3 exact_origin(std::span<const glm::dvec3> positions) {
-  // The box of the middle half of the coordinates, so that a few far positions do not matter.
-  glm::dvec3 low, high;
-  std::vector<double> sorted(positions.size());
-  const auto quarter = static_cast<std::ptrdiff_t>(positions.size() / 4);
-  for (int axis = 0; axis < 3; ++axis) {
-    std::ranges::transform(positions, sorted.begin(), [&](const auto& at) { return at[axis]; });
-    std::ranges::nth_element(sorted, sorted.begin() + quarter);
-    low[axis] = sorted[static_cast<std::size_t>(quarter)];
-    std::ranges::nth_element(sorted, sorted.end() - 1 - quarter);
-    high[axis] = *(sorted.end() - 1 - quarter);
-  }
-  glm::dvec3 origin(0.0);
-  const double size = std::max(largest(high - low), 0x1p-100);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double centre = 0.5 * low[axis] + 0.5 * high[axis];
-    for (double step = std::exp2(std::ceil(std::log2(size))); step <= 2.0 * std::abs(centre);
-         step *= 2.0) {
-      const double steps = std::nearbyint(centre / step);
-      if (std::abs(steps) >= 0x1p53) continue;
-      const bool is_exact = std::ranges::all_of(positions, [&](const glm::dvec3& at) {
-        return has_exact_difference(at[axis], steps * step);
-      });
-      if (!is_exact) continue;
-      origin[axis] = steps * step;
-      break;
-    }
-  }
-  return origin;
-}
-
 void MeshBuilder::add_color(const glm::vec3& color) {
   colors_.resize(positions_.size() - 1, kNoColor);
   if (!is_finite(color)) ++bad_colors_;
@@ -217,16 +186,9 @@ void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
   if (!keeps_rests) return;
   scene.origin = exact_origin(positions_);
   scene.rounding = {};
-  for (std::uint32_t i = 0; i < used; ++i) {
-    glm::ivec3& rest = scene.rests.emplace_back();
-    double error = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      const double difference = positions_[i][k] - scene.origin[k];
-      const double stored = on_float_grid(difference);
-      error = std::max(error, std::abs(stored - difference));
-      scene.positions[i][k] = static_cast<float>(stored);
-      rest[k] = rest_of(stored, scene.positions[i][k]);
-    }
+  scene.positions.clear();
+  for (const glm::dvec3& position : positions_) {
+    const double error = scene.add_vertex(position);
     scene.rounding.add({error != 0.0, error});
   }
 }

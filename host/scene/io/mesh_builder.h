@@ -127,10 +127,6 @@ class MeshBuilder {
 /// extent, and no difference exceeds three times the extent.
 [[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
 
-/// Returns an origin near the middle of most positions, from which the differences to all of them
-/// are doubles: on each axis a multiple of the least sufficient power of two, or 0.
-[[nodiscard]] glm::dvec3 exact_origin(std::span<const glm::dvec3> positions);
-
 /// Sets the normals of triangles that have none and have a smooth edge. The normal at a corner is
 /// the weighted mean over the triangles that are connected there by smooth edges (weights of N.
 /// Max, "Weights for computing vertex normals from facet normals", Journal of Graphics Tools 4 (2),
