@@ -129,7 +129,7 @@ class IntersectorSubject : public Subject {
     if (way_.unit != nullptr) {
       answer.t = variant_t(*way_.unit, make_record(ray.origin, triangle), ray.direction);
     }
-    if (way_.delivers) answer.delivered = precise_hit(ray, triangle);
+    if (way_.delivers) answer.delivered = precise_hit(ray, widened(triangle));
     return answer;
   }
 

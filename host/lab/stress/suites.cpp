@@ -308,7 +308,7 @@ MeshPointer flattened_sphere(Random& random) {
 constexpr int kBounces = 12;
 
 glm::vec3 mirrored(const glm::vec3& direction, const Corners& t) {
-  const glm::dvec3 n = glm::normalize(triangle_normal(t)), d(direction);
+  const glm::dvec3 n = glm::normalize(triangle_normal(widened(t))), d(direction);
   return scaled_direction(d - 2.0 * glm::dot(d, n) * n);
 }
 
@@ -316,7 +316,7 @@ glm::vec3 mirrored(const glm::vec3& direction, const Corners& t) {
 std::optional<std::uint32_t> first_hit(const Bvh& bvh, const Ray& ray) {
   std::optional<std::uint32_t> best;
   for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
-    const Corners& t = bvh.corners_of(primitive);
+    const raygate::Corners t = bvh.corners_of(primitive);
     if (!hits_triangle(ray, t)) continue;
     if (!best || compare_hits(ray, t, bvh.corners_of(*best)) < 0) best = primitive;
   }
@@ -373,7 +373,7 @@ class Bounces {
     const auto point =
         primitive ? spawner.find(ray, *primitive, SpawnSide::kIncident) : std::nullopt;
     if (!point) return start_anew(random);
-    mirrored_ = mirrored(ray.direction, bvh_->corners_of(*primitive));
+    mirrored_ = mirrored(ray.direction, bvh_->float_corners_of(*primitive));
     if (!spawner.leaves(ray, *primitive, SpawnSide::kIncident, mirrored_))
       mirrored_ = glm::vec3(0.0f);
     origin_ = *point;

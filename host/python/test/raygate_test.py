@@ -59,8 +59,8 @@ class Trace(unittest.TestCase):
 
     def test_the_model_of_the_unit_says_the_same(self):
         columns = ["triangle", "unit-point", "unit-error"]
-        ours = self.scene.trace(self.origins, self.directions, columns=columns)
-        units = self.scene.trace(self.origins, self.directions, columns=columns, engine="model")
+        rays = [array.astype(np.float32) for array in (self.origins, self.directions)]  # the unit's numbers
+        ours, units = (self.scene.trace(*rays, columns=columns, engine=engine) for engine in ("cpu", "model"))
         self.assertEqual(ours.tobytes(), units.tobytes())
 
     def test_takes_float32_and_refuses_what_it_cannot_use(self):
@@ -103,7 +103,7 @@ class Trace(unittest.TestCase):
         corners = random.normal(size=(300, 3, 3)).astype(np.float32)
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "same.obj"
-            file.write_text("".join(f"v {x!s} {y!s} {z!s}\n" for x, y, z in corners.reshape(-1, 3)) +
+            file.write_text("".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in corners.reshape(-1, 3).tolist()) +
                             "".join(f"f {i} {i + 1} {i + 2}\n" for i in range(1, 900, 3)))
             same = raygate.Scene(file)
         scene = raygate.Scene.of_triangles(corners)
@@ -206,11 +206,36 @@ class Arrays(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, r"origins: found an array of shape \(2,\)"):
             self.cube.trace([0, 1], directions)
 
-    def test_rounding(self):
-        self.assertEqual(self.cube.rounding, (0, 0.0))
-        moved = raygate.Scene(np.array(self.VERTICES) * [0.1, 1, 1], self.FACES)
-        self.assertEqual(moved.rounding[0], 36)  # three corners of each face
-        self.assertAlmostEqual(moved.rounding[1], np.float64(np.float32(0.1)) - 0.1, 15)
+    def test_float64_is_kept(self):
+        moved = raygate.Scene(np.array(self.VERTICES) * [0.1, 1, 1] + [5e6, 0, 0], self.FACES)
+        side = 5e6 + 0.1
+        self.assertEqual(moved.rounding, (0, 0.0))
+        xs = np.array([np.nextafter(side, 0), side, np.nextafter(side, 9e9)])
+        origins = np.stack([xs, np.full(3, 0.3), np.full(3, 9.0)], -1)
+        hits = moved.trace(origins, [0, 0, -1])
+        self.assertEqual(hits["hit"].tolist(), [1, 0, 0])  # rays along a side are tilted by infinitesimals towards +x
+        np.testing.assert_array_equal(hits["x"][0], xs[0])
+        self.assertEqual(moved.inside(origins - [0, 0, 9]).tolist(), [True, False, False])
+        tiny = raygate.Scene(np.array(self.VERTICES) * 1e-40, self.FACES)
+        self.assertEqual(tiny.rounding[0], 36)  # three corners of each face
+        self.assertLess(tiny.rounding[1], 2.0 ** -149)
+
+    def test_winding_number(self):
+        inside = (np.abs(self.points) < 1).all(axis=1)
+        winding, errors = self.cube.winding_number(self.points)
+        np.testing.assert_array_equal(winding, inside)
+        self.assertEqual(errors.max(), 0.0)
+        twice = raygate.Scene(np.array(self.VERTICES), np.array(self.FACES * 2))
+        np.testing.assert_array_equal(twice.winding_number(self.points)[0], 2 * inside)
+        faces = np.array(self.FACES)[[0, 2, 3, 5, 6, 9]]  # of an open surface
+        winding, errors = raygate.Scene(np.array(self.VERTICES), faces).winding_number(self.points)
+        a, b, c = (np.array(self.VERTICES, float)[faces[:, k]] - self.points[:, None] for k in range(3))
+        size = [np.linalg.norm(corner, axis=-1) for corner in (a, b, c)]
+        dot = lambda p, q: (p * q).sum(-1)  # noqa: E731
+        angles = 2 * np.arctan2(dot(a, np.cross(b, c)), size[0] * size[1] * size[2] + dot(a, b) * size[2] +
+                                dot(b, c) * size[0] + dot(c, a) * size[1])
+        np.testing.assert_allclose(winding, angles.sum(-1) / (4 * np.pi), atol=1e-9)
+        self.assertLess(errors.max(), 1e-6)
 
     def test_inside(self):
         expected = (np.abs(self.points) < 1).all(axis=1)

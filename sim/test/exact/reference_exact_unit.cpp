@@ -84,7 +84,7 @@ class Machine {
   ExactAnswer run() {
     using Against = ExactRequest::Against;
     const glm::vec3& o = request_.ray.origin;
-    const Corners& t = request_.triangle;
+    const FloatCorners& t = request_.triangle;
     if (request_.asks_hit) {
       const bool hit = hits();
       if (!hit || request_.against == Against::kNothing) return {hit, 0, answer_};
@@ -126,7 +126,7 @@ class Machine {
 
   bool hits() {
     const glm::vec3& o = request_.ray.origin;
-    const Corners& t = request_.triangle;
+    const FloatCorners& t = request_.triangle;
     const Vector b = difference(t[1], o), c = difference(t[2], o);
     a_ = difference(t[0], o);
     direction_ = load_direction();

@@ -11,11 +11,11 @@ struct ExactRequest {
   enum class Against { kNothing, kLimit, kOther };  ///< as in exact_pkg::against_e
 
   Ray ray;
-  Corners triangle{};
+  FloatCorners triangle{};
   bool asks_hit = true;  ///< false: the triangle is known to be hit; requires a comparison
   Against against = Against::kNothing;
-  float limit = 1.0f;  ///< for kLimit: positive, finite
-  Corners other{};     ///< for kOther: another triangle that is hit
+  float limit = 1.0f;    ///< for kLimit: positive, finite
+  FloatCorners other{};  ///< for kOther: another triangle that is hit
 };
 
 struct ExactAnswer {

@@ -24,7 +24,7 @@ constexpr unsigned kRays = 64;  // contexts, more than tests in flight
 
 struct Triangle {
   glm::vec3 origin, direction;
-  Corners corners;
+  FloatCorners corners;
   bool is_valid = false, is_exact = false, is_error = false, is_ignored = false;
 };
 

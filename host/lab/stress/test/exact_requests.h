@@ -19,12 +19,12 @@ struct ExactCase {
 /// What host/exact says of a request.
 inline ExactCase case_of(const ExactRequest& request) {
   using Against = ExactRequest::Against;
-  const bool hit = !request.asks_hit || hits_triangle(request.ray, request.triangle);
+  const bool hit = !request.asks_hit || hits_triangle(request.ray, widened(request.triangle));
   int order = 0;
   if (hit && request.against == Against::kLimit) {
-    order = compare_hit_to_limit(request.ray, request.triangle, request.limit);
+    order = compare_hit_to_limit(request.ray, widened(request.triangle), request.limit);
   } else if (hit && request.against == Against::kOther) {
-    order = compare_hits(request.ray, request.triangle, request.other);
+    order = compare_hits(request.ray, widened(request.triangle), widened(request.other));
   }
   return {request, hit, order};
 }
