@@ -22,6 +22,10 @@ using FloatCorners = std::array<glm::vec3, 3>;
   return {glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
 }
 
+[[nodiscard]] inline FloatCorners rounded(const Corners& t) {
+  return {glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2])};
+}
+
 /// Returns the largest magnitude of the components.
 template <class T>
 [[nodiscard]] T largest(const glm::vec<3, T>& v) {

@@ -407,6 +407,15 @@ NB_MODULE(_raygate, m) {
       .def_prop_ro("objects",
                    [](const PythonScene& s) { return texts_of(s.scene().objects.all()); })
       .def_prop_ro("materials", &PythonScene::material_names)
+      .def_prop_ro("degenerate_faces",
+                   [](const PythonScene& s) {
+                     nb::typed<nb::list, nb::int_> numbers;
+                     const std::vector<Triangle>& faces = s.scene().triangles;
+                     for (std::size_t i = 0; i < faces.size(); ++i) {
+                       if (is_left_out(faces[i])) numbers.append(nb::int_(i));
+                     }
+                     return numbers;
+                   })
       .def_prop_ro("warnings", [](const PythonScene& s) { return texts_of(s.scene().warnings); })
       .def_prop_ro("rounding",
                    [](const PythonScene& s) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <cstdlib>
 #include <glm/glm.hpp>
@@ -115,6 +116,13 @@ inline Scene scene_of(const std::vector<Corners>& triangles) {
   }
   if (is_binary32) scene.rests.clear();
   return scene;
+}
+
+template <std::same_as<FloatCorners> T>  // not of a braced list
+Scene scene_of(const std::vector<T>& triangles) {
+  std::vector<Corners> mesh;
+  for (const FloatCorners& triangle : triangles) mesh.push_back(widened(triangle));
+  return scene_of(mesh);
 }
 
 }  // namespace raygate::test

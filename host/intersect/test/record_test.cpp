@@ -48,10 +48,6 @@ Ray aimed(Random& random, const View& view) {
   return {view.origin, scaled_direction(aim + off)};
 }
 
-FloatCorners rounded(const Corners& t) {
-  return {glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2])};
-}
-
 /// Makes records in double (make_record) and in binary32 (set_up).
 struct InDouble {
   static PolygonRecord make(const glm::vec3& o, const Corners& t) { return make_record(o, t); }

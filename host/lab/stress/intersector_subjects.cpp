@@ -127,7 +127,7 @@ class IntersectorSubject : public Subject {
       answer.point_error = hit.point_error;
     }
     if (way_.unit != nullptr) {
-      answer.t = variant_t(*way_.unit, make_record(ray.origin, triangle), ray.direction);
+      answer.t = variant_t(*way_.unit, make_record(ray.origin, widened(triangle)), ray.direction);
     }
     if (way_.delivers) answer.delivered = precise_hit(ray, widened(triangle));
     return answer;

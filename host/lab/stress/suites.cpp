@@ -13,12 +13,11 @@
 namespace raygate::lab {
 namespace {
 
-MeshPointer placed(const Mesh& mesh, const Placement& placement) {
-  auto result = std::make_shared<Mesh>(mesh);
-  for (Corners& triangle : *result) {
-    for (glm::vec3& p : triangle) {
-      p = glm::vec3(glm::dvec3(p) * placement.scale + placement.shift);
-    }
+MeshPointer placed(std::vector<raygate::Corners> mesh, const Placement& placement) {
+  auto result = std::make_shared<Mesh>();
+  for (raygate::Corners& triangle : mesh) {
+    for (glm::dvec3& p : triangle) p = p * placement.scale + placement.shift;
+    result->push_back(rounded(triangle));
   }
   return result;
 }
@@ -36,7 +35,7 @@ MeshPointer sphere(int level, const Placement& placement) {
 MeshPointer random_sphere(int points, Random& random, const Placement& placement) {
   std::vector<glm::dvec3> p(static_cast<std::size_t>(points));
   for (glm::dvec3& point : p) point = random.unit();
-  Mesh faces;
+  std::vector<raygate::Corners> faces;
   for (std::size_t a = 0; a < p.size(); ++a) {
     for (std::size_t b = a + 1; b < p.size(); ++b) {
       for (std::size_t c = a + 1; c < p.size(); ++c) {

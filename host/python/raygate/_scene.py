@@ -16,6 +16,7 @@ from ._raygate import InputError
 
 Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 Engine = Literal["cpu", "model"]
+Degenerate = Literal["leave out", "refuse"]
 
 
 _DIRECTION = np.array([0.36, 0.48, 0.8], np.float32)  # of rays that count crossings; arbitrary
@@ -55,45 +56,56 @@ class Scene:
     _open_edges: npt.NDArray[np.float64] | None = None
 
     @overload
-    def __init__(self, file: Path, /, *, smooth: float | None = None, threads: int | None = None) -> None: ...
+    def __init__(self, file: Path, /, *, smooth: float | None = None, degenerate: Degenerate = "leave out",
+                 threads: int | None = None) -> None: ...
 
     @overload
     def __init__(self, vertices: npt.ArrayLike, /, faces: npt.ArrayLike, *, smooth: float | None = None,
-                 threads: int | None = None) -> None: ...
+                 degenerate: Degenerate = "leave out", threads: int | None = None) -> None: ...
 
     @in_context
     def __init__(self, file: Any, /, faces: npt.ArrayLike | None = None, *, smooth: float | None = None,
-                 threads: int | None = None) -> None:
+                 degenerate: Degenerate = "leave out", threads: int | None = None) -> None:
         """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Or takes arrays: vertices of shape (N, 3), float32
         or float64, and faces of shape (M, 3), whole numbers: three vertices, counted from 0, in each row.
 
         Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them, and
-        `warnings` counts them. `smooth`: faces without normals that meet at no more than so many degrees are shaded
-        smoothly. `threads`: how many build the scene, one per processor by default. Raises InputError, a ValueError,
+        `warnings` counts them; degenerate="refuse": an InputError instead. `smooth`: faces without normals that meet at
+        no more than so many degrees are shaded smoothly. `threads`: how many build the scene, one per processor by default. Raises InputError, a ValueError,
         which names the file and line, or the face, that cannot be used."""
-        options = {"smooth": smooth, "threads": threads}
+        options = {"smooth": smooth, "degenerate": degenerate, "threads": threads}
         if faces is None and isinstance(file, (str, bytes, os.PathLike)):
             name = os.fsencode(file)
             if b"\0" in name:
                 raise InputError(f"file: found {file!r}, expected a name without a null byte")
             self._recipe: tuple[Any, ...] = Scene, (os.path.abspath(name),), options
             self._scene = _raygate.Scene(name, _settings(smooth=smooth, threads=threads))
+            self._check(degenerate)
             return
         vertices = np.array(_arrays.vectors("vertices", file))
         numbers = np.array(_arrays.vertex_numbers(faces, len(vertices)))
         self._recipe = Scene, (vertices, numbers), options
         self._scene = _raygate.Scene("faces", _arrays.triangles("faces", vertices[numbers]), _settings(smooth=smooth, threads=threads))
+        self._check(degenerate)
+
+    def _check(self, degenerate: Degenerate) -> None:
+        if degenerate not in ("leave out", "refuse"):
+            raise InputError(f"degenerate: found {degenerate!r}, expected 'leave out' or 'refuse'")
+        if degenerate == "refuse" and (faces := self.degenerate_faces):
+            raise InputError(f"found face {faces[0]} without area, of {len(faces)}, expected none")
 
     @classmethod
     @in_context
-    def of_triangles(cls, corners: npt.ArrayLike, *, threads: int | None = None) -> Scene:
+    def of_triangles(cls, corners: npt.ArrayLike, *, degenerate: Degenerate = "leave out",
+                     threads: int | None = None) -> Scene:
         """Returns a scene of grey triangles from their corners, of shape (N, 3, 3), float32 or float64. Triangles
-        without area keep their numbers, but no ray hits them. Raises InputError, which names the triangle that cannot
+        without area keep their numbers, but no ray hits them, or are refused, as by Scene(). Raises InputError, which names the triangle that cannot
         be used."""
         scene = cls.__new__(cls)
         kept = np.array(_arrays.reals("triangles", corners), order="C")
-        scene._recipe = cls.of_triangles, (kept,), {"threads": threads}
+        scene._recipe = cls.of_triangles, (kept,), {"degenerate": degenerate, "threads": threads}
         scene._scene = _raygate.Scene("triangles", _arrays.triangles("triangles", kept), _settings(threads=threads))
+        scene._check(degenerate)
         return scene
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -114,6 +126,11 @@ class Scene:
     def materials(self) -> list[str]:
         """Names of the materials, by the numbers in the field "material" of hits."""
         return self._scene.materials
+
+    @property
+    def degenerate_faces(self) -> list[int]:
+        """Numbers of the triangles without area."""
+        return self._scene.degenerate_faces
 
     @property
     def warnings(self) -> list[str]:

@@ -206,6 +206,17 @@ class Arrays(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, r"origins: found an array of shape \(2,\)"):
             self.cube.trace([0, 1], directions)
 
+    def test_faces_without_area_are_refused_by_choice(self):
+        faces = np.concatenate([self.FACES, [[1, 1, 2]], self.FACES, [[0, 7, 7]]])
+        scene = raygate.Scene(self.VERTICES, faces)
+        self.assertEqual(scene.degenerate_faces, [12, 25])
+        with self.assertRaisesRegex(raygate.InputError, "found face 12 without area, of 2, expected none"):
+            raygate.Scene(self.VERTICES, faces, degenerate="refuse")
+        with self.assertRaisesRegex(raygate.InputError, "without area"):
+            raygate.Scene.of_triangles(np.ones((1, 3, 3)), degenerate="refuse")
+        with self.assertRaisesRegex(raygate.InputError, "degenerate: found 'drop'"):
+            raygate.Scene(self.VERTICES, faces, degenerate="drop")
+
     def test_float64_is_kept(self):
         moved = raygate.Scene(np.array(self.VERTICES) * [0.1, 1, 1] + [5e6, 0, 0], self.FACES)
         side = 5e6 + 0.1

@@ -220,14 +220,26 @@ TEST(LoadObj, CornersThatBinary32MovesAreCounted) {
   // Half a unit is the distance of floats at the first face.
   const std::string far =
       "v 5411987 0 0\nv 5411987 1 0\nv 5411987.2 0 0\nv -1 0 0\nv 0 0 0\nv -1 1 0\n";
-  const Scene scene = load(far + "f 1 2 3\nf 4 5 6\n");
+  const std::string flattened = far + "f 1 2 3\nf 4 5 6\n";
+  const LoadOptions binary32{.vertices = Vertices::kBinary32};
+  const Scene scene = load(flattened, binary32);
   EXPECT_EQ(scene.rounding.corners, 1u);
   EXPECT_NEAR(scene.rounding.most, 0.2, 1e-9);
   EXPECT_EQ(only_warning(scene), "scene.obj:7: face flattened by rounding to binary32, left out");
-  const Scene moved = load(far + "v 5411988 0 0\nf 7 2 3\nf 4 5 6\n");
+  const Scene moved = load(far + "v 5411988 0 0\nf 7 2 3\nf 4 5 6\n", binary32);
   EXPECT_EQ(only_warning(moved),
             "scene.obj:8: corners moved by up to 0.2, more than a hundredth of their face, by "
             "rounding to binary32");
+  for (const Vertices vertices : {Vertices::kBinary64, Vertices::kAsPictures}) {
+    const Scene exact = load(flattened, {.vertices = vertices});
+    EXPECT_EQ(exact.rounding.corners, 0u);
+    EXPECT_TRUE(exact.warnings.empty());
+    EXPECT_EQ(exact.origin + exact.vertex(2), glm::dvec3(5411987.2, 0, 0));
+    EXPECT_EQ(exact.origin + exact.vertex(3), glm::dvec3(-1, 0, 0));
+    // What pictures do not show is rounded for them.
+    const Scene near = load("v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", {.vertices = vertices});
+    EXPECT_EQ(near.rests.empty(), vertices == Vertices::kAsPictures);
+  }
 }
 
 TEST(LoadObj, ARepeatedCornerOfAPolygonIsLeftOut) {
