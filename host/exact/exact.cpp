@@ -17,11 +17,12 @@ namespace {
 
 constexpr double kU = 0x1p-53;  // half an ulp of 1 in double
 
-/// A value computed in double and a bound of its error.
+/// A value computed in double and a bound of its error; 0 only if all its terms are exactly 0, as
+/// in planes that are parallel to an axis.
 struct Estimate {
   double value, error;
-  [[nodiscard]] bool sure() const { return std::abs(value) > error; }
-  [[nodiscard]] int sign() const { return value > 0.0 ? 1 : -1; }
+  [[nodiscard]] bool sure() const { return std::abs(value) > error || error == 0.0; }
+  [[nodiscard]] int sign() const { return (value > 0.0) - (value < 0.0); }
 };
 
 /// A cross product whose factors are rounded differences, and for each component the sum of the
@@ -121,7 +122,11 @@ int order_of_planes(const ExactRay& ray, const Corners& first, const Corners& se
   const Estimate left = product(t1.numerator, t2.denominator);
   const Estimate right = product(t2.numerator, t1.denominator);
   const Estimate gap = {left.value - right.value, 1.000001 * (left.error + right.error)};
-  return gap.sure() ? gap.sign() : exact_order_of_planes(ray, first, second);
+  if (gap.sure()) return gap.sign();
+  // Coplanar triangles are common, and exact arithmetic takes longest for them.
+  const bool are_coplanar = std::ranges::all_of(
+      second, [&](const glm::dvec3& corner) { return orient3d(corner, first) == 0; });
+  return are_coplanar ? 0 : exact_order_of_planes(ray, first, second);
 }
 
 }  // namespace
@@ -193,12 +198,14 @@ glm::vec3 scaled_direction(const glm::dvec3& direction) {
 
 int edge_side(const ExactRay& ray, const glm::dvec3& a, const glm::dvec3& b) {
   const Estimate side = dot(ray.direction, {a - ray.origin, b - a});
-  return side.sure() ? side.sign() : exact_edge_side(ray, a, b);
+  return side.sure() && side.sign() != 0 ? side.sign() : exact_edge_side(ray, a, b);
 }
 
 int orient3d(const glm::dvec3& origin, const Corners& t) {
   const Estimate side = dot(t[0] - origin, estimated_normal(t));
-  return side.sure() ? side.sign() : exact_plane(origin, t).sign();
+  if (side.sure()) return side.sign();
+  const bool is_corner = std::ranges::find(t, origin) != t.end();
+  return is_corner ? 0 : exact_plane(origin, t).sign();
 }
 
 // If A, B, C are independent, the tilted I is a combination of them with three non-zero weights,
@@ -219,7 +226,7 @@ int direction_side(const glm::dvec3& direction, const Corners& t) {
 
 bool is_ahead(const ExactRay& ray, const Corners& t) {
   const auto& [n, d] = Fraction(ray, t);
-  if (n.sure() && d.sure()) return n.sign() == d.sign();
+  if (n.sure() && d.sure()) return n.sign() * d.sign() > 0;
   return orient3d(ray.origin, t) * direction_side(ray.direction, t) > 0;
 }
 

@@ -52,6 +52,14 @@ bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a, const N
 bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHit hit, bool is_sure,
                      NearestHit& best, IntersectCounters& counters) {
   const bool is_first = best.primitive == NearestHit::kNone;
+  // One triangle twice, as in sheets that coincide.
+  if (!is_first && is_sure &&
+      bvh.float_corners_of(hit.primitive) == bvh.float_corners_of(best.primitive) &&
+      bvh.corners_of(hit.primitive) == bvh.corners_of(best.primitive)) {
+    if (bvh.triangle_of(hit.primitive) > bvh.triangle_of(best.primitive)) return false;
+    best.primitive = hit.primitive;
+    return true;
+  }
   if (!is_sure) {
     const Corners corners = bvh.corners_of(hit.primitive);
     hit.t = hit_distance(ray, corners);

@@ -79,6 +79,7 @@ class NeighborClearanceSearch {
     LaneMask rest = (LaneMask{1} << leaf.count) - 1;
     if (primitive - leaf.first < leaf.count) rest &= ~(LaneMask{1} << (primitive - leaf.first));
     if (rest == 0 || !is_possible()) return;
+    if (++leaves_ > kMostLeaves) length_ = 0.0;
     Corners exact[kQuad];
     if (!bvh.is_binary32()) {
       for (std::uint32_t i = 0; i < leaf.count; ++i) exact[i] = bvh.corners_of(leaf.first + i);
@@ -123,6 +124,8 @@ class NeighborClearanceSearch {
   using Vectors3 = Triple<DoubleQuad>;
 
   static constexpr std::size_t kMaxOverlaps = 128;
+  // A triangle of a fan of 100,000 would have as many neighbours. RaySpawner::search() does without.
+  static constexpr int kMostLeaves = 1024;
   static constexpr double kShareOfHeight = 0.125;  // largest c, as a fraction of the height
   // Triangles nearer than this fraction of the largest c are overlaps.
   static constexpr double kShareOfOverlaps = 0x1p-4;
@@ -223,6 +226,7 @@ class NeighborClearanceSearch {
   double inverse_height_[3];
   double normal_[3], normal_sizes_[3];
   double most_, length_;  // largest possible c, and c so far
+  int leaves_ = 0;        // number of leaves considered
   Overlaps overlaps_;
 };
 
@@ -263,7 +267,7 @@ NeighborClearances::Found NeighborClearances::compute(std::uint32_t primitive) c
     in_vectors([&](auto code) RAYGATE_BODY {
       const auto visit = [&](const Bvh::Child& leaf) RAYGATE_BODY {
         search.consider<code()>(bvh_, leaf, primitive);
-        return false;
+        return !search.is_possible();
       };
       (void)any_leaf_near<code()>(bvh_, search.low(), search.high(), visit);
     });
