@@ -47,7 +47,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-using Corners = FloatCorners;  ///< the vertices of a triangle
+using Corners = std::array<glm::vec3, 3>;  ///< the vertices of a triangle
 using Mesh = std::vector<Corners>;
 using MeshPointer = std::shared_ptr<const Mesh>;
 

@@ -42,7 +42,7 @@ Case hard_case(Random& random) {
   c.ray.origin = glm::vec3(random.point());
   const double size = random.log_uniform(0.1, 10.0), distance = random.log_uniform(1.0, 10.0);
   const glm::dvec3 center = glm::dvec3(c.ray.origin) + distance * random.unit();
-  for (glm::vec3& corner : c.triangle) corner = glm::vec3(center + size * random.point());
+  for (glm::dvec3& corner : c.triangle) corner = glm::vec3(center + size * random.point());
   const double part = random.uniform(0, 1),
                off = random.one_in(2) ? random.log_uniform(1e-8, 1.0) : 1;
   const glm::dvec3 aim = glm::mix(glm::dvec3(c.triangle[0]), glm::dvec3(c.triangle[1]), part) +

@@ -205,7 +205,7 @@ class AxiBench : public testing::Test {
         Ray ray = test::some_rays(test::bodies(), random, 1).front();
         const auto corners =
             bvh_.corners_of(static_cast<std::uint32_t>(sent % bvh_.primitive_count()));
-        ray.origin = (corners[0] + corners[1] + corners[2]) / 3.0f;
+        ray.origin = glm::vec3((corners[0] + corners[1] + corners[2]) / 3.0);
         const float t_max = sent % 4 == 0 ? 0.001f : std::numeric_limits<float>::infinity();
         put_ray(*model_, {.ray = ray, .t_max = t_max, .tag = static_cast<std::uint32_t>(sent++)});
       }
