@@ -124,7 +124,8 @@ class NeighborClearanceSearch {
   using Vectors3 = Triple<DoubleQuad>;
 
   static constexpr std::size_t kMaxOverlaps = 128;
-  // A triangle of a fan of 100,000 would have as many neighbours. RaySpawner::search() does without.
+  // A triangle of a fan of 100,000 would have as many neighbours. RaySpawner::search() does
+  // without.
   static constexpr int kMostLeaves = 1024;
   static constexpr double kShareOfHeight = 0.125;  // largest c, as a fraction of the height
   // Triangles nearer than this fraction of the largest c are overlaps.

@@ -15,8 +15,8 @@ namespace raygate {
 
 /// A set of triangles in a BVH, for ray queries. Which triangles are hit, and in which order, is
 /// decided exactly on the given numbers (except for underflow, see below): a ray through an edge
-/// or a corner of a closed mesh hits exactly one of the triangles that meet there, without leaks. Of
-/// two hits at equal distance the one with the lower triangle index comes first. Queries are
+/// or a corner of a closed mesh hits exactly one of the triangles that meet there, without leaks.
+/// Of two hits at equal distance the one with the lower triangle index comes first. Queries are
 /// thread-safe. They work in any rounding mode, by setting IEEE 754 arithmetic and restoring the
 /// mode.
 class Tracer {
@@ -51,8 +51,9 @@ class Tracer {
   //
   // Rays are traced with the direction scaled by a power of two, so that the largest component is
   // in [1, 2), and the limit divided by it and rounded to binary32. All coordinates are rounded to
-  // multiples of 2^-149: those of at least 2^-97 are exact. If the triangles' coordinates are not all
-  // floats, origins are rounded to binary64 relative to a point near the middle of the triangles.
+  // multiples of 2^-149: those of at least 2^-97 are exact. If the triangles' coordinates are not
+  // all floats, origins are rounded to binary64 relative to a point near the middle of the
+  // triangles.
 
   /// Sets hits[i] to the nearest hit of rays[i]. Both spans must have the same size.
   void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;

@@ -212,7 +212,7 @@ class Arrays(unittest.TestCase):
         self.assertEqual(scene.degenerate_faces, [12, 25])
         with self.assertRaisesRegex(raygate.InputError, "found face 12 without area, of 2, expected none"):
             raygate.Scene(self.VERTICES, faces, degenerate="refuse")
-        with self.assertRaisesRegex(raygate.InputError, "without area"):
+        with self.assertRaisesRegex(raygate.InputError, "no face has an area"):
             raygate.Scene.of_triangles(np.ones((1, 3, 3)), degenerate="refuse")
         with self.assertRaisesRegex(raygate.InputError, "degenerate: found 'drop'"):
             raygate.Scene(self.VERTICES, faces, degenerate="drop")
