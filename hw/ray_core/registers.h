@@ -1,5 +1,4 @@
-/* Registers of the ray core: addresses, and bits as masks. Made of registers.md by `make synth
- * DATASHEET=1`. */
+/* Registers of the ray core: addresses, and bits as masks. Made of registers.md by `make synth DATASHEET=1`. */
 #ifndef RAYGATE_REGISTERS_H
 #define RAYGATE_REGISTERS_H
 

@@ -1,6 +1,5 @@
-// Drives a core of float_peers.sv: `bench FILE REPEATS`. FILE has lines of a, b and the right
-// result, binary32 in hexadecimal, to nearest even. Prints "operations clocks differences", where
-// any NaN equals any other. Exit status 1 if the core hangs.
+// Drives a core of float_peers.sv: `bench FILE REPEATS`. FILE has lines of a, b and the right result, binary32 in hexadecimal,
+// to nearest even. Prints "operations clocks differences", where any NaN equals any other. Exit status 1 if the core hangs.
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
@@ -18,8 +17,7 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   std::vector<Operation> operations;
   std::FILE* file = std::fopen(argv[1], "r");
-  for (Operation o{}; file != nullptr && std::fscanf(file, "%x %x %x", &o.a, &o.b, &o.result) == 3;)
-    operations.push_back(o);
+  for (Operation o{}; file != nullptr && std::fscanf(file, "%x %x %x", &o.a, &o.b, &o.result) == 3;) operations.push_back(o);
   const std::size_t all = operations.size() * std::strtoul(argv[2], nullptr, 10);
   Vcore core;
   std::size_t begun = 0, ended = 0, clocks = 0, differences = 0;
