@@ -198,9 +198,10 @@ bool MeshBuilder::shows_rounding(const Scene& scene) const {
   for (const Face& face : faces_) {
     double error = 0.0, size = 0.0;
     for (std::size_t i = begin; i < face.end; ++i) {
-      const glm::dvec3& at = positions_[corners_[i].position];
-      error = std::max(error, recentred(at, scene.origin).error);
-      size = std::max(size, largest(at - positions_[corners_[begin].position]));
+      const std::uint32_t vertex = corners_[i].position;
+      const glm::dvec3 at = positions_[vertex] - scene.origin;
+      error = std::max(error, largest(glm::dvec3(scene.positions[vertex]) - at));
+      size = std::max(size, largest(positions_[vertex] - positions_[corners_[begin].position]));
     }
     if (error > 0.01 * size) return true;
     begin = face.end;
@@ -226,7 +227,7 @@ bool MeshBuilder::was_flat(std::span<const FaceCorner> corners) const {
       glm::lessThanEqual(glm::abs(area), 0x1p-50 * static_cast<double>(corners.size()) * bound));
 }
 
-std::vector<std::uint32_t> MeshBuilder::triangulate(Scene& scene) const {
+std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& scene) const {
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
   std::vector<glm::dvec3> polygon;
@@ -262,7 +263,7 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Scene& scene) const {
     }
     if (kind == PolygonKind::kSelfTouching) flaws.note(Flaws::kTouching, face.line);
     double error = 0.0, size = 0.0;
-    for (std::size_t i = 0; i < corners.size() && scene.rounding.corners > 0; ++i) {
+    for (std::size_t i = 0; i < corners.size() && vertices == Vertices::kBinary32; ++i) {
       const glm::dvec3 given = positions_[corners[i].position] - scene.origin;
       error = std::max(error, largest(polygon[i] - given));
       size = std::max(size, largest(polygon[i] - polygon[0]));
@@ -313,7 +314,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
                              " colours of vertices that are not finite numbers, taken as white");
   }
   recentre(options.vertices, scene);
-  const std::vector<std::uint32_t> groups = triangulate(scene);
+  const std::vector<std::uint32_t> groups = triangulate(options.vertices, scene);
   if (is_empty(scene) && !may_be_empty_) {
     fail(faces_.empty() ? 0 : faces_[0].line, "no face has an area");
   }

@@ -102,7 +102,7 @@ class MeshBuilder {
   /// Returns whether a face has no area in the file's own numbers, before they are rounded.
   [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
   /// Returns the smoothing groups of the triangles; empty: all are flat.
-  [[nodiscard]] std::vector<std::uint32_t> triangulate(Scene& scene) const;
+  [[nodiscard]] std::vector<std::uint32_t> triangulate(Vertices vertices, Scene& scene) const;
 
   std::string file_name_;
   Source source_;
