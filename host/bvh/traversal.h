@@ -86,8 +86,6 @@ struct PacketBounds {
       inverse_far[k] = small ? sign * kInfinity : kExitGrowth * (1.0f / direction[k]);
     }
   }
-  /// Returns the origin from which exits are computed.
-  [[nodiscard]] const float (&exit_origin() const)[3] { return origin; }
 };
 
 /// Sets the origins of entries and exits so that neither is culled for a coordinate that is
@@ -109,8 +107,11 @@ struct RoundedBounds : PacketBounds {
       inverse_far[k] *= kExitGrowth;
     }
   }
-  [[nodiscard]] const float (&exit_origin() const)[3] { return exit; }
 };
+
+/// Return the origin from which exits are computed.
+inline const float (&exit_origin(const PacketBounds& bounds))[3] { return bounds.origin; }
+inline const float (&exit_origin(const RoundedBounds& bounds))[3] { return bounds.exit; }
 
 /// Returns a mask of the node's children whose boxes the bounds meet before `cutoff` (see
 /// cutoff_beyond); sets entry[i] to the distance at which they enter child i.
@@ -123,7 +124,7 @@ RAYGATE_INLINE LaneMask intersect_children(const Bounds& bounds, const Bvh::Node
     const FloatLanes near = load<FloatLanes>(node.bounds[negative][k]),
                      far = load<FloatLanes>(node.bounds[negative ^ 1][k]);
     const FloatLanes t_near = (near - bounds.origin[k]) * bounds.inverse_near[k];
-    const FloatLanes t_far = (far - bounds.exit_origin()[k]) * bounds.inverse_far[k];
+    const FloatLanes t_far = (far - exit_origin(bounds)[k]) * bounds.inverse_far[k];
     enter = t_near > enter ? t_near : enter;
     leave = t_far < leave ? t_far : leave;
   }

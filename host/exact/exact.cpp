@@ -157,18 +157,19 @@ glm::dvec3 exact_origin(std::span<const glm::dvec3> positions) {
     high[axis] = *(sorted.end() - 1 - quarter);
   }
   glm::dvec3 origin(0.0);
-  const double size = std::max(largest(high - low), 0x1p-100);
+  const int least = std::ilogb(std::max(largest(high - low), 0x1p-100)) + 1;
   for (int axis = 0; axis < 3; ++axis) {
     const double centre = 0.5 * low[axis] + 0.5 * high[axis];
-    for (double step = std::exp2(std::ceil(std::log2(size))); step <= 2.0 * std::abs(centre);
-         step *= 2.0) {
-      const double steps = std::nearbyint(centre / step);
+    if (centre == 0.0) continue;
+    for (int exponent = least; exponent <= std::ilogb(centre) + 1; ++exponent) {
+      const double steps = std::nearbyint(std::ldexp(centre, -exponent));
       if (std::abs(steps) >= 0x1p53) continue;
+      const double candidate = std::ldexp(steps, exponent);
       const bool is_exact = std::ranges::all_of(positions, [&](const glm::dvec3& at) {
-        return has_exact_difference(at[axis], steps * step);
+        return has_exact_difference(at[axis], candidate);
       });
       if (!is_exact) continue;
-      origin[axis] = steps * step;
+      origin[axis] = candidate;
       break;
     }
   }

@@ -65,7 +65,7 @@ struct RayQuery {
   std::span<const std::uint32_t> skip_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
-  /// NearestHit::point is computed. Set by nearest() and occluded().
+  /// nearest() computes NearestHit::point.
   bool with_points = true;
 
   /// Returns t_max[i], or +infinity if t_max is empty.

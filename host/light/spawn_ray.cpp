@@ -147,7 +147,7 @@ class NeighborClearanceSearch {
   }
 
   static Overlap overlap_of(std::uint32_t primitive, const Corners& corners) {
-    Overlap overlap{.primitive = primitive};
+    Overlap overlap{primitive, {}, {}};
     for (int k = 0; k < 3; ++k) {
       overlap.low[k] = float_below(std::min({corners[0][k], corners[1][k], corners[2][k]}));
       overlap.high[k] = float_above(std::max({corners[0][k], corners[1][k], corners[2][k]}));

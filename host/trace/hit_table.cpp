@@ -119,9 +119,11 @@ void HitTable::append(const RayTable& rays, const RayHit& found, std::string& by
   FaceRef stored;
   HitPoint place{std::numeric_limits<double>::infinity(), kNan, kNan};  // for t of the scaled ray
   if (is_hit) {
-    corners = bvh_.corners_of(hit.primitive);
     number = bvh_.triangle_of(hit.primitive);
     stored = bvh_.face_of(hit.primitive);
+  }
+  if (is_hit && needs_corners_) {
+    corners = bvh_.corners_of(hit.primitive);
     place = hit_point_of(ray, corners);
   }
   const auto integer = [&](std::int64_t value) { put(format_, value, bytes); };

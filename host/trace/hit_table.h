@@ -1,6 +1,7 @@
 // Hit table: rows with the triangle and position that each ray hits, as CSV or binary numbers.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -71,6 +72,11 @@ class HitTable {
   HitTable(const Scene& scene, const Bvh& bvh, std::vector<HitColumn> columns, TableFormat format)
       : scene_(scene), bvh_(bvh), columns_(std::move(columns)), format_(format) {}
 
+  /// Returns whether rows have one of these columns.
+  [[nodiscard]] bool has_any(std::initializer_list<HitColumn> columns) const {
+    return std::ranges::find_first_of(columns_, columns) != columns_.end();
+  }
+
   /// Returns the first line of a CSV file.
   [[nodiscard]] std::string header() const;
 
@@ -87,6 +93,8 @@ class HitTable {
   const Bvh& bvh_;
   std::vector<HitColumn> columns_;
   TableFormat format_;
+  bool needs_corners_ = has_any(
+      {HitColumn::kT, HitColumn::kPoint, HitColumn::kUv, HitColumn::kNormal, HitColumn::kSide});
 };
 
 }  // namespace raygate

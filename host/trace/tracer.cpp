@@ -39,8 +39,10 @@ void find_one(Desk& desk, Hits asked, const HitTable& answers) {
   desk.nearest.assign(count, {});
   desk.work.assign(count, {});
   if (!desk.intersector->traits().takes_exact_rays) desk.block.round();
-  RayQuery query{
-      .t_max = desk.block.limits, .exact_rays = desk.block.exact_rays, .work = desk.work};
+  RayQuery query{.t_max = desk.block.limits,
+                 .exact_rays = desk.block.exact_rays,
+                 .work = desk.work,
+                 .with_points = answers.has_any({HitColumn::kUnitPoint, HitColumn::kUnitError})};
   if (asked == Hits::kAny) {
     query.any_hit_before = desk.block.limits;
     desk.intersector->occluded(desk.block.rays, query, desk.nearest);

@@ -121,6 +121,7 @@ inline Scene scene_of(const std::vector<Corners>& triangles) {
 template <std::same_as<FloatCorners> T>  // not of a braced list
 Scene scene_of(const std::vector<T>& triangles) {
   std::vector<Corners> mesh;
+  mesh.reserve(triangles.size());
   for (const FloatCorners& triangle : triangles) mesh.push_back(widened(triangle));
   return scene_of(mesh);
 }
