@@ -161,7 +161,7 @@ class Scene:
         time; "all", a row for each hit of each ray, near before far. columns: one or several of ray, hit, triangle,
         object, material, t, point (fields x, y, z), uv (u, v), normal (nx, ny, nz), side, doubts, unit-point,
         unit-error; host/docs/reference.md explains them. engine: "cpu", or "model", the reference model of the
-        hit-test unit. threads: one per processor by default.
+        hit-test unit, for which rays are rounded to float32. threads: one per processor by default.
 
         No rays, shape (0, 3), give no rows. Raises InputError for other shapes, masked elements and unknown names; for
         inf, NaN, directions of 0, limits that are not above 0 and origins farther than 2^126 from the scene it names
