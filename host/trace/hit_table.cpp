@@ -183,7 +183,16 @@ void HitTable::append(const RayTable& rays, const RayHit& found, std::string& by
 
 void HitTable::append(const RayTable& rays, std::span<const RayHit> hits,
                       std::string& bytes) const {
-  for (const RayHit& hit : hits) append(rays, hit, bytes);
+  constexpr std::size_t kAhead = 8;  // rows between steps
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    for (int step = 0; step < 3 && needs_corners_; ++step) {
+      const std::size_t later = i + kAhead * static_cast<std::size_t>(3 - step);
+      if (later >= hits.size()) continue;
+      const std::uint32_t primitive = hits[later].hit.primitive;
+      if (primitive != NearestHit::kNone) bvh_.prefetch_rests(primitive, step);
+    }
+    append(rays, hits[i], bytes);
+  }
 }
 
 }  // namespace raygate
