@@ -24,7 +24,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> scenes;
-  std::vector<int> latencies = {1, 50, 200}, cores = {1};
+  std::vector<int> latencies = {1, 50, 200};
   std::vector<std::string> kinds = {"camera", "light", "scattered"};
   int size = 128;
   bool exact = false;
@@ -36,39 +36,35 @@ using Trace = std::function<std::size_t(const IntersectorFactory&)>;
 constexpr std::pair<const char*, IntegratorKind> kPictures[] = {
     {"whitted", IntegratorKind::kWhitted}, {"path", IntegratorKind::kPath}};
 
-/// Measures one kind of rays with every memory and number of cores.
+/// Measures one kind of rays with every memory.
 void measure(const Options& options, const std::string& scene, const std::string& kind,
              const Bvh& bvh, const std::shared_ptr<const MemoryImage>& image, const Trace& trace) {
   for (const int latency : options.latencies) {
-    for (const int cores : options.cores) {
-      const std::shared_ptr<CoreUnit> core =
-          make_rtl_core({.latency = latency}, {}, {.cores = cores, .exact = options.exact});
-      const auto count = static_cast<double>(trace([&] {
-        return std::make_unique<CheckIntersector>(
-            bvh, std::make_unique<CoreIntersector>(bvh, image, core),
-            std::make_unique<CpuIntersector>(bvh));
-      }));
-      const CoreCounters counters = core->counters();
-      const auto a_ray = [&](std::uint64_t of) { return static_cast<double>(of) / count; };
-      const auto percent = [&](std::uint64_t clocks) {  // of the clocks of all cores
-        return 100.0 * a_ray(clocks) / (a_ray(counters.clocks) * cores);
-      };
-      print({{"table", "core"},
-             {"scene", scene},
-             {"rays", kind},
-             {"exact", options.exact},
-             {"latency", latency},
-             {"cores", cores},
-             {"clocks_per_ray", a_ray(counters.clocks)},
-             {"lines_per_ray", a_ray(counters.lines)},
-             {"bytes_per_ray", 64.0 * a_ray(counters.lines)},
-             {"nodes_percent", percent(counters.nodes)},
-             {"triangles_percent", percent(counters.triangles)},
-             {"waits_percent", percent(counters.waits)},
-             {"exact_percent", percent(counters.exact_clocks)},
-             {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
-             {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)}});
-    }
+    const std::shared_ptr<CoreUnit> core =
+        make_rtl_core({.latency = latency}, {}, {.exact = options.exact});
+    const auto count = static_cast<double>(trace([&] {
+      return std::make_unique<CheckIntersector>(
+          bvh, std::make_unique<CoreIntersector>(bvh, image, core),
+          std::make_unique<CpuIntersector>(bvh));
+    }));
+    const CoreCounters counters = core->counters();
+    const auto a_ray = [&](std::uint64_t of) { return static_cast<double>(of) / count; };
+    const auto percent = [&](std::uint64_t clocks) {
+      return 100.0 * a_ray(clocks) / a_ray(counters.clocks);
+    };
+    print({{"table", "core"},
+           {"scene", scene},
+           {"rays", kind},
+           {"exact", options.exact},
+           {"latency", latency},
+           {"clocks_per_ray", a_ray(counters.clocks)},
+           {"lines_per_ray", a_ray(counters.lines)},
+           {"bytes_per_ray", 64.0 * a_ray(counters.lines)},
+           {"nodes_percent", percent(counters.nodes)},
+           {"triangles_percent", percent(counters.triangles)},
+           {"exact_percent", percent(counters.exact_clocks)},
+           {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
+           {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)}});
   }
 }
 
@@ -113,8 +109,6 @@ void add_core(CLI::App& lab) {
       ->check(CLI::Range(128, 8192));
   app->add_option("--latency", options->latencies, "of memory, in clocks; several may be given")
       ->check(CLI::Range(1, 10'000));
-  app->add_option("--cores", options->cores, "behind one port to memory; several may be given")
-      ->check(CLI::Range(1, 64));
   app->add_option("--kinds", options->kinds,
                   "of rays: camera, light, scattered; all of a picture: whitted, path")
       ->check(CLI::IsMember({"camera", "light", "scattered", "whitted", "path"}));

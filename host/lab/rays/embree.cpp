@@ -81,12 +81,8 @@ RTCRayHit shoot(RTCScene scene, const Ray& ray, Collector* collector = nullptr) 
 
 /// Returns whether a ray and the triangles are within Embree's range (FLT_LARGE in its sources).
 /// Embree aborts for rays beyond it and skips such triangles.
-bool accepts(const Shot& shot, const glm::vec3& direction) {
-  constexpr float kLargest = 1.8e18f;
-  const auto is_small = [](const glm::vec3& v) {
-    const glm::vec3 size = glm::abs(v);
-    return std::max({size.x, size.y, size.z}) < kLargest;
-  };
+bool accepts(const Shot& shot, const glm::dvec3& direction) {
+  const auto is_small = [](const glm::dvec3& v) { return largest(v) < 1.8e18; };
   return is_usable(direction) && is_small(shot.origin) &&
          std::ranges::all_of(*shot.mesh, [&](const Corners& corners) {
            return std::ranges::all_of(corners, is_small);
@@ -110,11 +106,12 @@ class EmbreeSubject : public Subject {
         mesh_ = shot.mesh;
         scene_ = embree_scene({}, device_, test::scene_of(*mesh_), flags_);
       }
-      for (const glm::vec3& direction : shot.directions) {
+      for (const glm::dvec3& direction : shot.directions) {
         const bool is_accepted = accepts(shot, direction);
         answers.refused.push_back(!is_accepted);
-        Collector collector{.answers = next, .direction = direction};
-        if (is_accepted) (void)shoot(scene_.get(), {shot.origin, direction}, &collector);
+        const Ray ray{glm::vec3(shot.origin), glm::vec3(direction)};
+        Collector collector{.answers = next, .direction = ray.direction};
+        if (is_accepted) (void)shoot(scene_.get(), ray, &collector);
         next += shot.mesh->size();
       }
     }
@@ -129,7 +126,7 @@ class EmbreeSubject : public Subject {
 };
 
 SubjectKind kind(const char* name, const char* what, RTCSceneFlags flags) {
-  return {.name = name, .what = what, .share = 0.02, .make = [flags] {
+  return {.name = name, .what = what, .binary64 = true, .share = 0.02, .make = [flags] {
             return std::make_unique<EmbreeSubject>(flags);
           }};
 }

@@ -43,20 +43,28 @@ class Random {
     }
   }
 
+  // Format of coordinates: binary32, or binary64 on multiples of 2^-149.
+  bool binary64_vertices = false, binary64_rays = false;
+  [[nodiscard]] glm::dvec3 vertex(const glm::dvec3& p) const {
+    return rounded(p, binary64_vertices);
+  }
+  [[nodiscard]] glm::dvec3 origin(const glm::dvec3& p) const { return rounded(p, binary64_rays); }
+  [[nodiscard]] static glm::dvec3 rounded(const glm::dvec3& p, bool to_binary64);
+
  private:
   std::mt19937_64 engine_;
 };
 
-using Corners = std::array<glm::vec3, 3>;  ///< the vertices of a triangle
+using Corners = std::array<glm::dvec3, 3>;  ///< the vertices of a triangle
 using Mesh = std::vector<Corners>;
 using MeshPointer = std::shared_ptr<const Mesh>;
 
 /// A test of each ray against each triangle of a mesh.
 struct Shot {
   MeshPointer mesh;  ///< shots may share it
-  glm::vec3 origin{0.0f};
-  std::vector<glm::vec3> directions{};  ///< 1 to 8, scaled as the renderer scales them
-  bool inside = false;                  ///< the mesh is closed and contains the origin
+  glm::dvec3 origin{0.0};
+  std::vector<glm::dvec3> directions{};  ///< 1 to 8, scaled as the renderer scales them
+  bool inside = false;                   ///< the mesh is closed and contains the origin
 
   /// Returns the number of results of each kind, ordered by ray, then by triangle.
   [[nodiscard]] std::size_t tests() const { return directions.size() * mesh->size(); }
@@ -90,9 +98,10 @@ struct Truth {
 /// tilted by (e, e^2, e^3). A direction that is zero or not finite hits nothing.
 [[nodiscard]] Truth find_truth(const Shot& shot);
 
-/// Position of a mesh made around the origin at size 1: p becomes p * scale + shift.
+/// Position of a mesh made around the origin at size 1: p becomes p * scale + shift, rounded.
 struct Placement {
   glm::dvec3 scale{1.0}, shift{0.0};
+  bool binary64 = false;
 };
 
 // Closed meshes: neighbouring triangles share their vertices bit for bit.
@@ -114,6 +123,7 @@ struct Suite {
   std::string what;  ///< one line for the report
   /// Makes a generator with its own state.
   std::function<Generator()> make;
+  bool binary64 = false;  ///< vertices are binary64, and in half of the shots rays are
 };
 
 /// Returns all suites, in the order of the report.

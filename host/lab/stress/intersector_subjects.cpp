@@ -37,6 +37,7 @@ class IntersectorSubject : public Subject {
   void run(std::span<const Shot> shots, Answers& answers) override {
     answers.tests.clear();
     answers.nearest.clear();
+    answers.refused.clear();
     for_each_mesh(shots, way_.one_origin, [&](std::span<const Shot> mine) { ask(mine, answers); });
   }
 
@@ -54,7 +55,12 @@ class IntersectorSubject : public Subject {
     plant(shots[0].mesh);
     rays_.clear();
     for (const Shot& shot : shots) {
-      for (const glm::vec3& direction : shot.directions) rays_.push_back({shot.origin, direction});
+      for (const glm::dvec3& direction : shot.directions) {
+        const Ray& ray = rays_.emplace_back(glm::vec3(shot.origin), glm::vec3(direction));
+        answers.refused.push_back(is_finite(direction) &&
+                                  (glm::dvec3(ray.origin) != shot.origin ||
+                                   glm::dvec3(ray.direction) != direction));
+      }
     }
     torn_.assign(rays_.size(), false);
     const Mesh& triangles = *shots[0].mesh;
@@ -127,9 +133,9 @@ class IntersectorSubject : public Subject {
       answer.point_error = hit.point_error;
     }
     if (way_.unit != nullptr) {
-      answer.t = variant_t(*way_.unit, make_record(ray.origin, widened(triangle)), ray.direction);
+      answer.t = variant_t(*way_.unit, make_record(ray.origin, triangle), ray.direction);
     }
-    if (way_.delivers) answer.delivered = precise_hit(ray, widened(triangle));
+    if (way_.delivers) answer.delivered = precise_hit(ray, triangle);
     return answer;
   }
 
@@ -155,7 +161,12 @@ SubjectKind with(SubjectKind kind, const std::function<IntersectorOf()>& engine,
 }
 
 SubjectKind cpu(const char* name, const char* what, bool one_origin) {
-  return with({.name = name, .what = what, .exact = true, .binary32 = true, .share = 0.5},
+  return with({.name = name,
+               .what = what,
+               .exact = true,
+               .binary32 = true,
+               .binary64 = true,
+               .share = 0.5},
               [] { return [](const Bvh& bvh) { return std::make_unique<CpuIntersector>(bvh); }; },
               {.one_origin = one_origin, .delivers = true});
 }
@@ -173,6 +184,7 @@ SubjectKind unit(const char* name, const char* what, double share, Lanes... lane
                .exact = true,
                .simulated = kSimulated,
                .binary32 = true,
+               .binary64 = true,
                .share = share},
               [=] { return by_unit(std::make_shared<Tester>(std::make_unique<Unit>(lanes...))); },
               {.delivers = true, .unit = &variant_named("binary32")});

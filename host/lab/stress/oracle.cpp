@@ -7,13 +7,13 @@
 namespace raygate::lab {
 namespace {
 
-/// A vector in units of 2^-149, of which every finite float is a multiple.
+/// A vector in units of 2^-149, of which every coordinate is a multiple.
 struct Vector {
   mpz_class x, y, z;
 };
 
-Vector whole(const glm::vec3& v) {
-  const auto units = [](float x) { return mpz_class(std::ldexp(double{x}, 149)); };
+Vector whole(const glm::dvec3& v) {
+  const auto units = [](double x) { return mpz_class(std::ldexp(x, 149)); };
   return {units(v.x), units(v.y), units(v.z)};
 }
 
@@ -30,8 +30,8 @@ double quotient(const mpf_class& a, const mpf_class& b) { return mpf_class(a / b
 
 mpf_class length(const Vector& v) { return sqrt(mpf_class(dot(v, v), 128)); }
 
-bool usable(const glm::vec3& direction) {
-  return direction != glm::vec3(0.0f) && std::isfinite(direction.x) && std::isfinite(direction.y) &&
+bool usable(const glm::dvec3& direction) {
+  return direction != glm::dvec3(0.0) && std::isfinite(direction.x) && std::isfinite(direction.y) &&
          std::isfinite(direction.z);
 }
 
@@ -75,7 +75,7 @@ Truth find_truth(const Shot& shot) {
   std::vector<Target> targets;
   const Vector origin = whole(shot.origin);
   for (const Corners& corners : *shot.mesh) targets.emplace_back(origin, corners);
-  for (const glm::vec3& ray : shot.directions) {
+  for (const glm::dvec3& ray : shot.directions) {
     std::vector<std::uint32_t>& order = truth.orders.emplace_back();
     bool tied = false;
     if (!usable(ray)) {

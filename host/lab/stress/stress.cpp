@@ -37,8 +37,9 @@ std::vector<std::string> names_of(const List& list) {
 
 }  // namespace
 
-std::vector<Row> run(const Suite& suite, const std::vector<SubjectKind>& kinds, std::uint64_t tests,
+std::vector<Row> run(const Suite& suite, std::vector<SubjectKind> kinds, std::uint64_t tests,
                      std::uint64_t seed) {
+  std::erase_if(kinds, [&](const SubjectKind& kind) { return suite.binary64 && !kind.binary64; });
   const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
   std::vector<Tally> tallies(kinds.size());
   std::uint64_t broken = 0;
@@ -75,6 +76,7 @@ std::vector<Row> run(const Suite& suite, const std::vector<SubjectKind>& kinds, 
     Row& row = rows.emplace_back(Row{{"table", "stress"},
                                      {"suite", suite.name},
                                      {"suite_is", suite.what},
+                                     {"binary64", suite.binary64},
                                      {"subject", kinds[i].name},
                                      {"subject_is", kinds[i].what},
                                      {"exact", kinds[i].exact},

@@ -44,9 +44,9 @@ struct Tally {
 void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
            const SubjectKind& subject, Tally& tally);
 
-/// Runs a suite with every subject, on its share of `tests` at least, and returns a row for each.
-/// All subjects see prefixes of one sequence of cases.
-[[nodiscard]] std::vector<Row> run(const Suite& suite, const std::vector<SubjectKind>& subjects,
+/// Runs a suite with every subject that takes it, on its share of `tests` at least, and returns a
+/// row for each. All subjects see prefixes of one sequence of cases.
+[[nodiscard]] std::vector<Row> run(const Suite& suite, std::vector<SubjectKind> subjects,
                                    std::uint64_t tests, std::uint64_t seed);
 
 /// Runs the public acceptance tests of watertightness (watertight.cpp), with `triangles` (at least

@@ -1,4 +1,4 @@
-// The list of all subjects, and common float32 intersection tests of ray tracers.
+// The list of all subjects, and common intersection tests of ray tracers.
 #include "host/lab/stress/subjects.h"
 
 #include <algorithm>
@@ -9,22 +9,25 @@
 namespace raygate::lab {
 namespace {
 
-/// A hit test in float32.
-using TriangleTest = Answer(const glm::vec3& origin, const glm::vec3& direction,
-                            const Corners& triangle);
+/// A hit test in a format T, to which vertices and rays are rounded.
+template <class T>
+using TriangleTest = Answer(const glm::vec<3, T>& origin, const glm::vec<3, T>& direction,
+                            const glm::vec<3, T> (&triangle)[3]);
 
 /// The test of Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, for
 /// both sides, without an epsilon.
-Answer moeller_trumbore(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+template <class T>
+Answer moeller_trumbore(const glm::vec<3, T>& origin, const glm::vec<3, T>& direction,
+                        const glm::vec<3, T> (&t)[3]) {
   Answer answer;
-  const glm::vec3 ab = t[1] - t[0], ac = t[2] - t[0], from_a = origin - t[0];
-  const glm::vec3 p = glm::cross(direction, ac), q = glm::cross(from_a, ab);
-  const float determinant = glm::dot(ab, p);
-  if (!(std::abs(determinant) > 0.0f)) return answer;
-  const float inverse = 1.0f / determinant;
-  const float u = glm::dot(from_a, p) * inverse, v = glm::dot(direction, q) * inverse;
-  const float distance = glm::dot(ac, q) * inverse;
-  if (!(u >= 0.0f && v >= 0.0f && u + v <= 1.0f && distance > 0.0f)) return answer;
+  const auto ab = t[1] - t[0], ac = t[2] - t[0], from_a = origin - t[0];
+  const auto p = glm::cross(direction, ac), q = glm::cross(from_a, ab);
+  const T determinant = glm::dot(ab, p);
+  if (!(std::abs(determinant) > 0)) return answer;
+  const T inverse = 1 / determinant;
+  const T u = glm::dot(from_a, p) * inverse, v = glm::dot(direction, q) * inverse;
+  const T distance = glm::dot(ac, q) * inverse;
+  if (!(u >= 0 && v >= 0 && u + v <= 1 && distance > 0)) return answer;
   answer.hit = true;
   answer.t = distance;
   answer.point = distance * direction;
@@ -33,7 +36,7 @@ Answer moeller_trumbore(const glm::vec3& origin, const glm::vec3& direction, con
 
 /// The test of Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013: shears the
 /// triangle so that the ray runs along an axis; recomputes zero edge functions in double.
-Answer woop(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+Answer woop(const glm::vec3& origin, const glm::vec3& direction, const glm::vec3 (&t)[3]) {
   Answer answer;
   const glm::vec3 size = glm::abs(direction);
   const int z = size.x > size.y && size.x > size.z ? 0 : (size.y > size.z ? 1 : 2);
@@ -73,16 +76,17 @@ Answer woop(const glm::vec3& origin, const glm::vec3& direction, const Corners& 
   return answer;
 }
 
-class FloatSubject : public Subject {
+template <class T>
+class TestSubject : public Subject {
  public:
-  explicit FloatSubject(TriangleTest* test) : test_(test) {}
+  explicit TestSubject(TriangleTest<T>* test) : test_(test) {}
 
   void run(std::span<const Shot> shots, Answers& answers) override {
     answers.tests.clear();
     for (const Shot& shot : shots) {
-      for (const glm::vec3& direction : shot.directions) {
+      for (const glm::vec<3, T> direction : shot.directions) {
         for (const Corners& t : *shot.mesh) {
-          answers.tests.push_back(test_(shot.origin, direction, t));
+          answers.tests.push_back(test_(shot.origin, direction, {Vector(t[0]), Vector(t[1]), Vector(t[2])}));
         }
       }
     }
@@ -90,12 +94,15 @@ class FloatSubject : public Subject {
   }
 
  private:
-  TriangleTest* test_;
+  using Vector = glm::vec<3, T>;
+
+  TriangleTest<T>* test_;
 };
 
-SubjectKind kind(const char* name, const char* what, TriangleTest* test) {
-  return {.name = name, .what = what, .share = 0.1, .make = [test] {
-            return std::make_unique<FloatSubject>(test);
+template <class T>
+SubjectKind kind(const char* name, const char* what, TriangleTest<T>* test) {
+  return {.name = name, .what = what, .binary64 = true, .make = [test] {
+            return std::make_unique<TestSubject<T>>(test);
           }};
 }
 
@@ -107,8 +114,11 @@ std::vector<SubjectKind> all_subjects() {
        {engine_subjects(),
         trace_subjects(),
         variant_subjects(),
-        {kind("Moeller-Trumbore", "the test most ray tracers use, in float32", moeller_trumbore),
-         kind("Woop 2013", "the watertight test, in float32, not fused", woop)},
+        {kind<float>("Moeller-Trumbore", "the test most ray tracers use, in float32",
+                     moeller_trumbore),
+         kind<double>("Moeller-Trumbore 64", "the same in float64, as in libigl",
+                      moeller_trumbore),
+         kind<float>("Woop 2013", "the watertight test, in float32, not fused", woop)},
         embree_subjects()}) {
     std::ranges::move(part, std::back_inserter(all));
   }
@@ -121,7 +131,7 @@ void nearest_by_t(std::span<const Shot> shots, Answers& answers) {
   for (const Shot& shot : shots) {
     for (std::size_t ray = 0; ray < shot.directions.size(); ++ray) {
       std::optional<std::uint32_t> nearest;
-      float t = std::numeric_limits<float>::infinity();
+      double t = std::numeric_limits<double>::infinity();
       for (std::uint32_t i = 0; i < shot.mesh->size(); ++i, ++answer) {
         if (!answer->hit || (nearest && !(answer->t < t))) continue;
         nearest = i;

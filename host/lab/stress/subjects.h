@@ -21,8 +21,8 @@ namespace raygate::lab {
 /// A subject's result for one ray and one triangle.
 struct Answer {
   bool hit = false;
-  bool doubt = false;                                 ///< resolved by exact arithmetic on the host
-  float t = std::numeric_limits<float>::quiet_NaN();  ///< of a hit; NaN: not computed
+  bool doubt = false;                                   ///< resolved by exact arithmetic on the host
+  double t = std::numeric_limits<double>::quiet_NaN();  ///< of a hit; NaN: not computed
   /// P, relative to the origin; NaN: not computed.
   glm::vec3 point{std::numeric_limits<float>::quiet_NaN()};
   float point_error = std::numeric_limits<float>::infinity();  ///< bound of the relative error of P
@@ -59,6 +59,7 @@ struct SubjectKind {
   bool exact = false;      ///< any wrong decision fails the run
   bool simulated = false;  ///< Verilated hardware
   bool binary32 = false;   ///< the bounds of tally.cpp for t and P apply
+  bool binary64 = false;   ///< asked in suites of binary64 vertices, too
   double share = 0.1;      ///< fraction of the requested number of tests
   std::function<std::unique_ptr<Subject>()> make{};
   std::function<IntersectorOf()> engine{};  ///< of an engine or a variant

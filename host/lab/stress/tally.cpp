@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -68,14 +67,14 @@ struct Off {
   double ulps, relative;
 };
 
-std::optional<Off> off(float value, double exact) {
+std::optional<Off> off(double value, double exact) {
   if (std::isnan(value) || !ordinary(exact)) return std::nullopt;
   const double difference = std::abs(value - exact);
   return Off{difference / ulp(exact), difference / std::abs(exact)};
 }
 
 /// Returns the largest error of the three coordinates.
-std::optional<Off> off(const glm::vec3& point, const glm::vec3& direction, double t) {
+std::optional<Off> off(const glm::vec3& point, const glm::dvec3& direction, double t) {
   std::optional<Off> worst;
   for (int k = 0; k < 3; ++k) {
     const auto error = off(point[k], t * direction[k]);
@@ -86,7 +85,7 @@ std::optional<Off> off(const glm::vec3& point, const glm::vec3& direction, doubl
   return worst;
 }
 
-void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& direction,
+void add_errors(const Answer& answer, const Verdict& truth, const glm::dvec3& direction,
                 bool bounded, Tally& tally) {
   if (!ordinary(truth.t)) return;
   if (const auto error = off(answer.t, truth.t)) {
@@ -109,23 +108,19 @@ void add_errors(const Answer& answer, const Verdict& truth, const glm::vec3& dir
   }
 }
 
-/// Returns a line of test/regressions.txt: hexadecimal words of origin, direction and vertices.
-std::string text_of(const glm::vec3& origin, const glm::vec3& direction,
+/// Returns a line of test/regressions.txt: origin, direction and vertices, as hexadecimal floats.
+std::string text_of(const glm::dvec3& origin, const glm::dvec3& direction,
                     std::span<const Corners> triangles) {
   std::string text;
-  const auto add = [&](const glm::vec3& v, const char* before) {
-    text += before;
-    for (int k = 0; k < 3; ++k) {
-      char word[16];
-      std::snprintf(word, sizeof word, k == 0 ? "%08X" : " %08X",
-                    std::bit_cast<std::uint32_t>(v[k]));
-      text += word;
-    }
+  const auto add = [&](const glm::dvec3& v, const char* before) {
+    char words[96];
+    std::snprintf(words, sizeof words, "%s%a %a %a", before, v.x, v.y, v.z);
+    text += words;
   };
   add(origin, "");
   add(direction, "  ");
   for (const Corners& triangle : triangles) {
-    for (const glm::vec3& vertex : triangle) add(vertex, "  ");
+    for (const glm::dvec3& vertex : triangle) add(vertex, "  ");
   }
   return text;
 }
@@ -164,7 +159,7 @@ Row Tally::row() const {
 
 void count(std::span<const Shot> shots, std::span<const Truth> truths, const Answers& answers,
            const SubjectKind& subject, Tally& tally) {
-  const auto fails = [&](const Shot& shot, const glm::vec3& direction,
+  const auto fails = [&](const Shot& shot, const glm::dvec3& direction,
                          std::span<const Corners> triangles) {
     if (tally.failures.size() == kFailures) return;
     tally.failures.push_back(text_of(shot.origin, direction, triangles));
@@ -176,7 +171,7 @@ void count(std::span<const Shot> shots, std::span<const Truth> truths, const Ans
     const Truth& truth = truths[s];
     auto verdict = truth.verdicts.begin();
     for (std::size_t ray = 0; ray < shot.directions.size(); ++ray, ++ray_number) {
-      const glm::vec3& direction = shot.directions[ray];
+      const glm::dvec3& direction = shot.directions[ray];
       if (!answers.refused.empty() && answers.refused[ray_number]) {
         ++tally.refused;
         test += triangles.size();

@@ -53,12 +53,11 @@ class TraceSubject : public Subject {
       if (std::exchange(done, true)) return false;
       block.clear(0);
       for (const Shot& shot : shots) {
-        for (const glm::vec3& direction : shot.directions) {
+        for (const glm::dvec3& direction : shot.directions) {
           const double scale = std::ldexp(1.0, exponent(block.rays.size()));
-          const char* const wrong =
-              block.add(glm::dvec3(shot.origin),
-                        is_usable(direction) ? scale * glm::dvec3(direction) : glm::dvec3(0.0),
-                        std::numeric_limits<double>::infinity(), glm::dvec3(0.0));
+          const char* const wrong = block.add(
+              shot.origin, is_usable(direction) ? scale * direction : glm::dvec3(0.0),
+              std::numeric_limits<double>::infinity(), glm::dvec3(0.0));
           if (wrong != nullptr) throw std::logic_error(wrong);
         }
       }
@@ -130,6 +129,7 @@ std::vector<SubjectKind> trace_subjects() {
       {.name = "trace",
        .what = "./trace: all hits of a ray in their order, the nearest, and whether there is any",
        .exact = true,
+       .binary64 = true,
        .share = 0.5,
        .make = [] { return std::make_unique<TraceSubject>(); }}};
 }

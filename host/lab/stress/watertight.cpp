@@ -11,7 +11,7 @@
 // edges, vertices: as in Woop, Benthin and Wald 2013. Rays from inside a sphere at its edges and
 //   vertices must hit.
 //
-// The random numbers and the sphere's triangles differ from the originals.
+// All are made with binary32 vertices, and with binary64 ones for the engines that take them. The random numbers and the sphere's triangles differ from the originals.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -44,17 +44,17 @@ Ray ray_from(const glm::dvec3& origin, const glm::dvec3& direction) {
 
 Watertight nomiss(int count, Random& random) {
   Watertight test{"nomiss", {}, {}};
-  std::vector<glm::vec3> vertices{{0, 0, -1}, {0, 1, -1}, {1, 0, -1}, {1, 1, -1}};
+  std::vector<glm::dvec3> vertices{{0, 0, -1}, {0, 1, -1}, {1, 0, -1}, {1, 1, -1}};
   std::vector<std::array<std::size_t, 3>> triangles{{0, 1, 2}, {3, 2, 1}};
   while (static_cast<int>(triangles.size()) < count) {
     const auto n = static_cast<std::size_t>(random.below(static_cast<int>(triangles.size())));
     const auto [p, q, r] = triangles[n];
-    const auto along = [&] { return static_cast<float>(random.uniform(0.01, 0.99)); };
-    const glm::vec3 edge = glm::mix(vertices[p], vertices[q], along());
-    glm::vec3 inner = glm::mix(edge, vertices[r], along());
+    const auto along = [&] { return random.uniform(0.01, 0.99); };
+    const glm::dvec3 edge = glm::mix(vertices[p], vertices[q], along());
+    glm::dvec3 inner = glm::mix(edge, vertices[r], along());
     inner.z = -along();
     const std::size_t fresh = vertices.size();
-    vertices.push_back(inner);
+    vertices.push_back(random.vertex(inner));
     triangles[n] = {p, q, fresh};
     triangles.push_back({q, r, fresh});
     triangles.push_back({r, p, fresh});
@@ -71,25 +71,26 @@ Watertight nomiss(int count, Random& random) {
   return test;
 }
 
-Watertight singlehit(int count) {
+Watertight singlehit(int count, const Random& random) {
   Watertight test{"singlehit", {}, {}};
-  const auto rim = [count](int i) {
+  const auto rim = [&](int i) {
     const double angle = 2.0 * std::numbers::pi * (i % count) / count;
-    return glm::vec3(std::sin(angle), std::cos(angle), 0.0);
+    return random.vertex({std::sin(angle), std::cos(angle), 0.0});
   };
   const glm::dvec3 eye(0, 0, -1);
   test.rays.push_back(ray_from(eye, {0, 0, 1}));
   for (int i = 0; i < count; ++i) {
-    test.mesh.push_back({glm::vec3(0.0f), rim(i), rim(i + 1)});
-    test.rays.push_back(ray_from(eye, 0.5 * glm::dvec3(rim(i)) - eye));
+    test.mesh.push_back({glm::dvec3(0.0), rim(i), rim(i + 1)});
+    test.rays.push_back(ray_from(eye, 0.5 * rim(i) - eye));
   }
   return test;
 }
 
 enum class Targets { kAnywhere, kEdges, kVertices };
 
-Watertight from_inside(const char* name, const Placement& placement, int count, Targets aim,
+Watertight from_inside(const char* name, Placement placement, int count, Targets aim,
                        Random& random) {
+  placement.binary64 = random.binary64_vertices;
   Watertight test{name, *sphere(5, placement), {}};
   const Mesh& triangles = test.mesh;
   for (int i = 0; i < count; ++i) {
@@ -97,7 +98,7 @@ Watertight from_inside(const char* name, const Placement& placement, int count, 
     const Corners& t =
         triangles[static_cast<std::size_t>(random.below(static_cast<int>(triangles.size())))];
     const double along = aim == Targets::kEdges ? random.uniform(0, 1) : 0.0;
-    const glm::dvec3 target = glm::mix(glm::dvec3(t[0]), glm::dvec3(t[1]), along);
+    const glm::dvec3 target = glm::mix(t[0], t[1], along);
     test.rays.push_back(ray_from(origin, aim == Targets::kAnywhere
                                              ? random.unit()
                                              : target - glm::dvec3(glm::vec3(origin))));
@@ -152,12 +153,14 @@ void add_counts(const Watertight& test, std::vector<Contestant>& all) {
   add("cpu", true, true, [&](std::span<const Ray> rays) { return count_all(bvh, rays); });
   for (const SubjectKind& kind : engine_subjects()) {
     if (kind.name != "model" && kind.name != "rtl" && kind.name != "rtl exact core") continue;
+    if (!kind.binary64 && !scene.rests.empty()) continue;
     const auto count = [&](std::span<const Ray> rays) {
       return count_nearest(*kind.engine()(bvh), rays);
     };
     add(kind.name, true, false, count,
         kind.simulated ? kSimulated : std::numeric_limits<std::size_t>::max());
   }
+  if (!scene.rests.empty()) return;
   for (const auto& [name, counts] : embree_hit_counts(scene, test.rays)) {
     add(name, false, true, [&](std::span<const Ray>) { return counts; });
   }
@@ -167,17 +170,23 @@ void add_counts(const Watertight& test, std::vector<Contestant>& all) {
 
 std::vector<Row> watertight_rows(int triangles, int seeds) {
   std::vector<Watertight> tests;
-  for (int seed = 1; seed <= seeds; ++seed) {
-    Random random(static_cast<std::uint64_t>(seed));
-    tests.push_back(nomiss(triangles, random));
+  for (const bool binary64 : {false, true}) {
+    const std::size_t first = tests.size();
+    for (int seed = 1; seed <= seeds; ++seed) {
+      Random random(static_cast<std::uint64_t>(seed));
+      random.binary64_vertices = binary64;
+      tests.push_back(nomiss(triangles, random));
+    }
+    Random random(1);
+    random.binary64_vertices = binary64;
+    const Placement far{glm::dvec3(2.0), {148376.0, 1234.0, -223423.0}}, third{glm::dvec3(1.0 / 3.0)};
+    constexpr int kMostInFan = 1024;  // in larger fans, each ray meets most of the long boxes
+    tests.push_back(singlehit(std::min(triangles, kMostInFan), random));
+    tests.push_back(from_inside("sphere", far, triangles, Targets::kAnywhere, random));
+    tests.push_back(from_inside("edges", third, triangles, Targets::kEdges, random));
+    tests.push_back(from_inside("vertices", third, triangles, Targets::kVertices, random));
+    for (std::size_t i = first; i < tests.size() && binary64; ++i) tests[i].name += " 64";
   }
-  Random random(1);
-  const Placement far{glm::dvec3(2.0), {148376.0, 1234.0, -223423.0}};
-  constexpr int kMostInFan = 1024;  // in larger fans, each ray meets most of the long boxes
-  tests.push_back(singlehit(std::min(triangles, kMostInFan)));
-  tests.push_back(from_inside("sphere", far, triangles, Targets::kAnywhere, random));
-  tests.push_back(from_inside("edges", {}, triangles, Targets::kEdges, random));
-  tests.push_back(from_inside("vertices", {}, triangles, Targets::kVertices, random));
   std::vector<Row> rows;
   std::vector<Contestant> all;
   for (std::size_t i = 0; i < tests.size(); ++i) {

@@ -1,4 +1,4 @@
-"""`make bench ONLY=core`: clocks of the simulated ray core by scene, kind of ray, memory, and number of cores."""
+"""`make bench ONLY=core`: clocks of the simulated ray core by scene, kind of ray and memory."""
 
 import argparse
 import pathlib
@@ -7,31 +7,28 @@ from collections.abc import Callable
 from host.lab.rows import grouped, of
 from host.lab.steps import Step
 
-FEW = ("scenes/cornell.obj", "scenes/teapot.obj", "build/scenes/sphereflake.obj")
-ALL = ("scenes/cornell.obj", "scenes/paper.obj", "scenes/teapot.obj",
+SCENES = ("scenes/cornell.obj", "scenes/paper.obj", "scenes/teapot.obj",
        *(f"build/scenes/{name}.obj" for name in ("cornell_spheres", "still_life", "columns", "sphereflake")))
 
 
-def part(name: str, scenes: tuple, *words: object) -> Callable[[argparse.Namespace], list[Step]]:
+def part(name: str, *words: object) -> Callable[[argparse.Namespace], list[Step]]:
     """Returns a function that makes the steps of a part: a run of `lab core` for each scene."""
-    return lambda given: [Step(name, f"{name} {scene}", ("core", scene, *words)) for scene in (FEW[:1] if given.quick else scenes)]
+    return lambda given: [Step(name, f"{name} {scene}", ("core", scene, *words)) for scene in (SCENES[:1] if given.quick else SCENES)]
 
 
-PARTS = {"scenes": part("scenes", ALL),
+PARTS = {"scenes": part("scenes"),
          "exact": lambda given: [step for way in ((), ("--exact",)) for step in part(
-             "exact", ALL, "--kinds", "whitted", "path", "--latency", 50, *way)(given)],
-         "cores": part("cores", FEW, "--kinds", "camera", "scattered", "--latency", 50, "--cores", 1, 2, 4, 8)}
+             "exact", "--kinds", "whitted", "path", "--latency", 50, *way)(given)]}
 
 
 def values(rows: list[dict], _: pathlib.Path) -> dict:
-    """Returns tables by kind of ray, latency and number of cores."""
-    scenes, cores, exact = (of(rows, "core", part=name) for name in ("scenes", "cores", "exact"))
+    """Returns tables by kind of ray and latency."""
+    scenes, exact = (of(rows, "core", part=name) for name in ("scenes", "exact"))
     latencies = sorted({row["latency"] for row in scenes})
     middle = latencies[len(latencies) // 2] if latencies else None
     return {"latencies": latencies, "middle": middle, "kinds": list(dict.fromkeys(row["rays"] for row in scenes)),
             "usual": grouped([row for row in scenes if row["latency"] == middle], ("scene",), "rays"),
-            "scenes": grouped(scenes, ("scene", "rays"), "latency"), "exact": grouped(exact, ("scene", "rays"), "exact"),
-            "cores": grouped(cores, ("scene", "rays"), "cores"), "numbers": sorted({row["cores"] for row in cores})}
+            "scenes": grouped(scenes, ("scene", "rays"), "latency"), "exact": grouped(exact, ("scene", "rays"), "exact")}
 
 
 PAGE = """# The ray core in simulation
@@ -63,14 +60,5 @@ All rays of a path-traced picture, a sample a pixel, latency 50. Doubts sent out
          "clocks/ray, settled = at[True].clocks_per_ray :.2f", "doubts/1000 rays = at[True].doubts_per_1000 :.2f",
          "near ties/1000 rays = at[True].near_ties_per_1000 :.2f", "exact unit busy, % = at[True].exact_percent :.2f") }} has Whitted
 pictures, too, doubts, and the clocks in which `exact_unit` has a question.
-{% endif %}
-{% if cores %}
-
-## Several cores behind one port
-
-Clocks per ray by number of cores, latency 50. Waits: clocks in which a core asks for a line and another core's request, or none, is taken.
-
-{{ table(cores, "scene", "rays", each(numbers, "{} cores = at[{}].clocks_per_ray :.2f"),
-         each(numbers[-1:], "waits, %, {} = at[{}].waits_percent :.1f")) }}
 {% endif %}
 """

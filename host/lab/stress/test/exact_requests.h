@@ -29,7 +29,7 @@ inline ExactCase case_of(const ExactRequest& request) {
   return {request, hit, order};
 }
 
-/// Makes cases shot by shot. Each triangle that a ray hits is compared with a limit near it and
+/// Makes cases shot by shot, of a suite in binary32. Each triangle that a ray hits is compared with a limit near it and
 /// with the next that the ray hits (or itself, turned round), and asked for alone; some that it
 /// misses are asked for, too. Of every case a fourth has no suite: random bits, whose exponents are
 /// as far apart as they can be, or near each other.
@@ -46,11 +46,11 @@ class ExactCases {
     const Truth truth = find_truth(shot);
     for (std::size_t i = 0; i < shot.directions.size(); ++i) {
       if (!is_usable(shot.directions[i])) continue;
-      ExactRequest request{.ray = {shot.origin, shot.directions[i]}};
+      ExactRequest request{.ray = {glm::vec3(shot.origin), glm::vec3(shot.directions[i])}};
       const auto& order = truth.orders[i];
       for (std::size_t k = 0; k < order.size() && k < 3; ++k) {
         const Verdict& verdict = truth.verdicts[i * triangles.size() + order[k]];
-        request.triangle = triangles[order[k]];
+        request.triangle = rounded(triangles[order[k]]);
         request.asks_hit = random_.one_in(2);
         request.against = Against::kLimit;
         request.limit = static_cast<float>(verdict.t);
@@ -59,13 +59,13 @@ class ExactCases {
         if (request.limit > 0.0f && std::isfinite(request.limit)) add(cases, request, true);
         request.against = Against::kOther;
         request.other = {request.triangle[1], request.triangle[2], request.triangle[0]};
-        if (k + 1 < order.size()) request.other = triangles[order[k + 1]];
+        if (k + 1 < order.size()) request.other = rounded(triangles[order[k + 1]]);
         add(cases, request, true);
         if (k + 1 < order.size() && cases.back().order > 0) differ();
       }
       for (int n = 0; n < 2; ++n) {
         const auto k = static_cast<std::size_t>(random_.below(static_cast<int>(triangles.size())));
-        request.triangle = triangles[k];
+        request.triangle = rounded(triangles[k]);
         request.asks_hit = true;
         request.against = Against::kNothing;
         add(cases, request, truth.verdicts[i * triangles.size() + k].hit);

@@ -67,8 +67,8 @@ TEST(InPlaceStacks, TheNearestIsNotCulled) {
     Shot& shot = shots.emplace_back();
     shot.mesh = mesh;
     for (int ray = 0; ray < 8; ++ray) {
-      shot.directions.push_back(
-          scaled_direction(glm::dvec3(at(random.uniform(-1, 1), random.uniform(-1, 1), 1.0f))));
+      const glm::dvec3 aim(at(random.uniform(-1, 1), random.uniform(-1, 1), 1.0f));
+      shot.directions.emplace_back(scaled_direction(aim));
     }
     truths.push_back(find_truth(shot));
   }
@@ -86,7 +86,9 @@ TEST(InPlaceStacks, TheNearestIsNotCulled) {
 TEST_F(InPlace, ASearchThatIsOneFloatOffIsSeen) {
   auto moved = shots_;
   for (Shot& shot : moved) {
-    for (glm::vec3& direction : shot.directions) direction.x = std::nextafter(direction.x, 2.0f);
+    for (glm::dvec3& direction : shot.directions) {
+      direction.x = std::nextafter(static_cast<float>(direction.x), 2.0f);
+    }
   }
   for (const SubjectKind& kind : cpu_subjects()) {
     Answers answers;

@@ -12,7 +12,7 @@ namespace {
 
 using Rational3 = std::array<mpq_class, 3>;
 
-Rational3 minus(const glm::vec3& a, const glm::vec3& b) {
+Rational3 minus(const glm::dvec3& a, const glm::dvec3& b) {
   Rational3 result;
   for (int k = 0; k < 3; ++k) result[k] = mpq_class(a[k]) - mpq_class(b[k]);
   return result;
@@ -25,15 +25,15 @@ mpq_class dot(const Rational3& a, const Rational3& b) {
 }
 
 /// The t of a hit: of triangles that the ray meets.
-mpq_class distance(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+mpq_class distance(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& t) {
   const Rational3 a = minus(t[0], origin), normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
-  return dot(a, normal) / dot(minus(direction, glm::vec3(0.0f)), normal);
+  return dot(a, normal) / dot(minus(direction, glm::dvec3(0.0f)), normal);
 }
 
 /// Whether the ray, its direction tilted by (e, e^2, e^3) for a very small e, meets the triangle.
-bool hits(const glm::vec3& origin, const glm::vec3& direction, const Corners& t) {
+bool hits(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& t) {
   const Rational3 a = minus(t[0], origin), b = minus(t[1], origin), c = minus(t[2], origin);
-  Rational3 tilted = minus(direction, glm::vec3(0.0f));
+  Rational3 tilted = minus(direction, glm::dvec3(0.0f));
   mpq_class e(1);
   e >>= 2000;
   mpq_class power = e;
@@ -57,7 +57,7 @@ TEST(Oracle, AgreesWithRationalsInEverySuite) {
       const Truth truth = find_truth(shot);
       auto verdict = truth.verdicts.begin();
       for (std::size_t ray = 0; ray < shot.directions.size(); ++ray) {
-        const glm::vec3& direction = shot.directions[ray];
+        const glm::dvec3& direction = shot.directions[ray];
         std::vector<std::pair<mpq_class, std::uint32_t>> met_here;
         for (std::uint32_t i = 0; i < shot.mesh->size(); ++i) {
           const Corners& t = (*shot.mesh)[i];
@@ -81,13 +81,13 @@ TEST(Oracle, AgreesWithRationalsInEverySuite) {
 }
 
 TEST(Oracle, TellsTheNearestAndItsTies) {
-  const auto at_depth = [](float z) {
-    return Corners{glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)};
+  const auto at_depth = [](double z) {
+    return Corners{glm::dvec3(-1, -1, z), glm::dvec3(1, -1, z), glm::dvec3(0, 1, z)};
   };
   Shot shot;
   shot.mesh =
       std::make_shared<const Mesh>(Mesh{at_depth(2), at_depth(1), at_depth(1), at_depth(-1)});
-  shot.directions = {glm::vec3(0, 0, 1), glm::vec3(0, 0, -1), glm::vec3(1, 0, 0), glm::vec3(0)};
+  shot.directions = {glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1), glm::dvec3(1, 0, 0), glm::dvec3(0)};
   const Truth truth = find_truth(shot);
   EXPECT_EQ(truth.orders[0], (std::vector<std::uint32_t>{1, 2, 0}));
   EXPECT_EQ(truth.nearest(0), 1u);

@@ -1,7 +1,7 @@
 // A short run of what `make stress` does: every suite, the regressions and the public tests.
 #include <gtest/gtest.h>
 
-#include <bit>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
@@ -25,12 +25,11 @@ INSTANTIATE_TEST_SUITE_P(Suites, Seeded, testing::Range(std::size_t{0}, all_suit
 /// Parses a line of regressions.txt.
 Shot shot_of(const std::string& line) {
   std::istringstream text(line);
-  std::vector<glm::vec3> vectors;
+  std::vector<glm::dvec3> vectors;
   int k = 3;
   for (std::string word; text >> word; ++k) {
     if (k == 3) vectors.emplace_back(), k = 0;
-    vectors.back()[k] =
-        std::bit_cast<float>(static_cast<std::uint32_t>(std::stoul(word, nullptr, 16)));
+    vectors.back()[k] = std::strtod(word.c_str(), nullptr);
   }
   Mesh mesh;
   for (std::size_t i = 2; i + 3 <= vectors.size(); i += 3) {
