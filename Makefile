@@ -57,11 +57,12 @@ page: ## use: the paper's unit in one file for a browser: its registers, clock b
 #   damage    damaged copies of files of every format (COUNT=300 SEED=1)
 #   error     the intervals of --error (SEEDS=1000)
 #   trimesh   tests of trimesh, with our intersector
+#   binary64  wrong answers and time beside libigl and Embree, on models in binary64
 #   cocotb    the core's AXI ports, driven by cocotb
 #   fuzz      libFuzzer on the readers and exact arithmetic (FUZZ_SECONDS=60, or FUZZ_FILES=5000)
 #   mutate    single faults in the hardware that test vectors catch (COUNT=1000 of each module)
 #   gallery   the pictures of scenes/gallery, rendered again: `git diff` shows what has changed
-LONG_RUNS := unit exact page traffic kills faults guards commands image damage error trimesh cocotb fuzz mutate gallery
+LONG_RUNS := unit exact page traffic kills faults guards commands image damage error trimesh binary64 cocotb fuzz mutate gallery
 LONG_unit = RAYGATE_STRESS=10000000 build/sim/rtl_burst_unit_test
 LONG_exact = RAYGATE_STRESS=1000000 build/sim/exact_unit_test
 LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test
@@ -72,6 +73,9 @@ LONG_commands = python3 -B host/docs/commands.py
 LONG_image = .ci/image
 LONG_damage = python3 -B host/test/damage_files.py build/render build/trace --count $(or $(COUNT),300) --seed $(or $(SEED),1)
 LONG_trimesh = RAYGATE_TRIMESH=1 PYTHONPATH=build/host/python $(PYTHON) -B host/python/test/trimesh_test.py
+LONG_binary64 = (test -e build/binary64/bin/pip || python3 -m venv build/binary64) && \
+  build/binary64/bin/pip install --quiet --disable-pip-version-check --no-deps -r host/python/test/binary64_peers.txt && \
+  PYTHONPATH=build/host/python build/binary64/bin/python3 -B host/python/test/binary64_peers.py
 LONG_page = $(PYTHON) -m unittest sim/page/test/page_test.py
 LONG_cocotb = (test -e build/cocotb/bin/pip || python3 -m venv build/cocotb) && \
   build/cocotb/bin/pip install --quiet --disable-pip-version-check -r sim/cocotb/requirements.txt && \
@@ -85,7 +89,7 @@ LONG_gallery = test -x build/render && sed -nE 's|.*`(./render [^`]*scenes/galle
 test: $(if $(filter page,$(LONG)),page) ## test: build and run all tests: make test [SKIP='a regular expression']; a long run, such as LONG=fuzz (LONG=? names all)
 ifdef LONG
 	$(if $(filter $(LONG),$(LONG_RUNS)),,$(error LONG=$(LONG), expected one of: $(LONG_RUNS)))
-	$(if $(filter commands image fuzz mutate,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),$(if $(filter trimesh,$(LONG)),_raygate,worked_example))))
+	$(if $(filter commands image fuzz mutate,$(LONG)),,$(call build,test,$(or $(patsubst build/%,%,$(filter build/%_test build/render build/trace,$(LONG_$(LONG)))),$(if $(filter trimesh binary64,$(LONG)),_raygate,worked_example))))
 	@unset LONG MAKEFLAGS MAKELEVEL MFLAGS; $(LONG_$(LONG))  # a make that it calls has words of its own
 else
 	$(call build,test,all)
