@@ -126,7 +126,8 @@ class Bvh {
 
   /// Builds the BVH of fewer than 2^31 triangles. All positions are finite with a magnitude of at
   /// most 2^126, also after instances' transforms, whose sums of magnitudes are bounded likewise.
-  /// No ray enters the BVH of a scene without triangles.
+  /// No ray enters the BVH of a scene without triangles. The scene must outlive the BVH if it
+  /// has rests.
   explicit Bvh(const Scene& scene, int threads = 1);
 
   /// Returns the stored nodes, without those of instances; nodes()[0] is the root.

@@ -62,8 +62,9 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
   if (collector->answers == nullptr) return;
   Answer& answer = collector->answers[RTCHitN_primID(arguments->hit, arguments->N, 0)];
   answer.hit = true;
-  answer.t = RTCRayN_tfar(arguments->ray, arguments->N, 0);
-  answer.point = answer.t * collector->direction;
+  const float t = RTCRayN_tfar(arguments->ray, arguments->N, 0);
+  answer.t = t;
+  answer.point = t * collector->direction;
 }
 
 /// Traces a ray: finds the nearest hit, or, with `collector`, all hits.

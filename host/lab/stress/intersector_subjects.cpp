@@ -44,8 +44,11 @@ class IntersectorSubject : public Subject {
  private:
   struct Tree {
     Tree(const Mesh& mesh, const IntersectorOf& make)
-        : bvh(test::scene_of(mesh)), intersector(make(bvh)) {}
+        : scene(test::scene_of(mesh)), bvh(scene), intersector(make(bvh)) {}
+    Tree(const Tree&) = delete;
+    Tree& operator=(const Tree&) = delete;
 
+    Scene scene;
     Bvh bvh;
     std::unique_ptr<Intersector> intersector;
   };

@@ -30,7 +30,7 @@ Answer moeller_trumbore(const glm::vec<3, T>& origin, const glm::vec<3, T>& dire
   if (!(u >= 0 && v >= 0 && u + v <= 1 && distance > 0)) return answer;
   answer.hit = true;
   answer.t = distance;
-  answer.point = distance * direction;
+  answer.point = glm::vec3(distance * direction);
   return answer;
 }
 
