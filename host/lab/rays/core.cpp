@@ -43,9 +43,9 @@ void measure(const Options& options, const std::string& scene, const std::string
     const std::shared_ptr<CoreUnit> core =
         make_rtl_core({.latency = latency}, {}, {.exact = options.exact});
     const auto count = static_cast<double>(trace([&] {
-      return std::make_unique<CheckIntersector>(
-          bvh, std::make_unique<CoreIntersector>(bvh, image, core),
-          std::make_unique<CpuIntersector>(bvh));
+      return std::make_unique<CheckIntersector>(bvh,
+                                                std::make_unique<CoreIntersector>(bvh, image, core),
+                                                std::make_unique<CpuIntersector>(bvh));
     }));
     const CoreCounters counters = core->counters();
     const auto a_ray = [&](std::uint64_t of) { return static_cast<double>(of) / count; };

@@ -73,7 +73,7 @@ class Peer {
 [[nodiscard]] std::unique_ptr<Peer> make_raygate(const Scene& scene);
 
 /// Returns peers of Embree 3: single rays, packets of 8 and 16, and streams, each in default and
-/// robust mode, with high-quality BVHs. Returns none if the program was built without Embree.
+/// robust mode, with high-quality BVHs.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees(const Scene& scene);
 /// Returns the same peers of Embree 4, a shared library. Throws InputError if `file` is not one.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene& scene,

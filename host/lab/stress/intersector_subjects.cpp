@@ -60,9 +60,8 @@ class IntersectorSubject : public Subject {
     for (const Shot& shot : shots) {
       for (const glm::dvec3& direction : shot.directions) {
         const Ray& ray = rays_.emplace_back(glm::vec3(shot.origin), glm::vec3(direction));
-        answers.refused.push_back(is_finite(direction) &&
-                                  (glm::dvec3(ray.origin) != shot.origin ||
-                                   glm::dvec3(ray.direction) != direction));
+        answers.refused.push_back(is_finite(direction) && (glm::dvec3(ray.origin) != shot.origin ||
+                                                           glm::dvec3(ray.direction) != direction));
       }
     }
     torn_.assign(rays_.size(), false);
@@ -164,14 +163,10 @@ SubjectKind with(SubjectKind kind, const std::function<IntersectorOf()>& engine,
 }
 
 SubjectKind cpu(const char* name, const char* what, bool one_origin) {
-  return with({.name = name,
-               .what = what,
-               .exact = true,
-               .binary32 = true,
-               .binary64 = true,
-               .share = 0.5},
-              [] { return [](const Bvh& bvh) { return std::make_unique<CpuIntersector>(bvh); }; },
-              {.one_origin = one_origin, .delivers = true});
+  return with(
+      {.name = name, .what = what, .exact = true, .binary32 = true, .binary64 = true, .share = 0.5},
+      [] { return [](const Bvh& bvh) { return std::make_unique<CpuIntersector>(bvh); }; },
+      {.one_origin = one_origin, .delivers = true});
 }
 
 IntersectorOf by_unit(const std::shared_ptr<HitTester>& tester) {

@@ -86,7 +86,8 @@ class TestSubject : public Subject {
     for (const Shot& shot : shots) {
       for (const glm::vec<3, T> direction : shot.directions) {
         for (const Corners& t : *shot.mesh) {
-          answers.tests.push_back(test_(shot.origin, direction, {Vector(t[0]), Vector(t[1]), Vector(t[2])}));
+          answers.tests.push_back(
+              test_(shot.origin, direction, {Vector(t[0]), Vector(t[1]), Vector(t[2])}));
         }
       }
     }
@@ -116,8 +117,7 @@ std::vector<SubjectKind> all_subjects() {
         variant_subjects(),
         {kind<float>("Moeller-Trumbore", "the test most ray tracers use, in float32",
                      moeller_trumbore),
-         kind<double>("Moeller-Trumbore 64", "the same in float64, as in libigl",
-                      moeller_trumbore),
+         kind<double>("Moeller-Trumbore 64", "the same in float64, as in libigl", moeller_trumbore),
          kind<float>("Woop 2013", "the watertight test, in float32, not fused", woop)},
         embree_subjects()}) {
     std::ranges::move(part, std::back_inserter(all));

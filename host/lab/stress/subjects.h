@@ -21,7 +21,7 @@ namespace raygate::lab {
 /// A subject's result for one ray and one triangle.
 struct Answer {
   bool hit = false;
-  bool doubt = false;                                   ///< resolved by exact arithmetic on the host
+  bool doubt = false;  ///< resolved by exact arithmetic on the host
   double t = std::numeric_limits<double>::quiet_NaN();  ///< of a hit; NaN: not computed
   /// P, relative to the origin; NaN: not computed.
   glm::vec3 point{std::numeric_limits<float>::quiet_NaN()};
@@ -72,10 +72,9 @@ struct SubjectKind {
 [[nodiscard]] std::vector<SubjectKind> engine_subjects();
 [[nodiscard]] std::vector<SubjectKind> trace_subjects();
 [[nodiscard]] std::vector<SubjectKind> variant_subjects();  ///< of variants.json
-[[nodiscard]] std::vector<SubjectKind> embree_subjects();   ///< empty without Embree
+[[nodiscard]] std::vector<SubjectKind> embree_subjects();
 
-/// Returns the number of hits of each ray with Embree, in default and robust mode, by name; empty
-/// without Embree.
+/// Returns the number of hits of each ray with Embree, in default and robust mode, by name.
 [[nodiscard]] std::vector<std::pair<std::string, std::vector<std::uint32_t>>> embree_hit_counts(
     const Scene& scene, std::span<const Ray> rays);
 

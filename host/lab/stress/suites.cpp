@@ -230,6 +230,25 @@ Shot near_tie_shot(Random& random) {
   return aimed(shot_at(std::move(triangles), 2.0 * random.point(), random), random);
 }
 
+/// Makes triangles that fill their boxes, in planes across an axis, equal or a few steps apart.
+Shot stack_shot(Random& random) {
+  const int axis = random.below(3);
+  const double step = random.binary64_vertices ? 0x1p-52 : 0x1p-23;
+  Mesh triangles;
+  for (int i = 0; i < 24; ++i) {
+    glm::dvec3 middle = random.point();
+    middle[axis] = 1.0 + step * random.below(3);
+    Corners& t = triangles.emplace_back(Corners{middle, middle, middle});
+    t[0][(axis + 1) % 3] -= 2.0;
+    t[1][(axis + 1) % 3] += 2.0;
+    for (int k = 0; k < 3; ++k) {
+      t[k][(axis + 2) % 3] += k == 2 ? 2.0 : -2.0;
+      t[k] = random.vertex(t[k]);
+    }
+  }
+  return aimed(shot_at(std::move(triangles), glm::dvec3(0.0), random), random);
+}
+
 /// Makes rays (almost) parallel to axes, from points in planes of faces, which must not be culled.
 Shot axis_shot(Random& random, const MeshPointer& mesh) {
   Shot shot{mesh};
@@ -376,9 +395,8 @@ class Bounces {
     while (directions_.size() < kRays) {
       // Towards edges and points near them, such as the edge between the first two side faces.
       const Corners& t = (*mesh_)[random.below(static_cast<int>(mesh_->size()))];
-      const glm::dvec3 aim =
-          glm::mix(t[0], t[random.below(3)], random.uniform(0, 1)) +
-          random.point() * random.log_uniform(1e-9, 1e-1);
+      const glm::dvec3 aim = glm::mix(t[0], t[random.below(3)], random.uniform(0, 1)) +
+                             random.point() * random.log_uniform(1e-9, 1e-1);
       const glm::dvec3 way = aim - glm::dvec3(origin_);
       if (way != glm::dvec3(0.0)) directions_.push_back(scaled_direction(way));
     }
@@ -466,6 +484,7 @@ std::vector<Suite> make_suites() {
       {"coplanar", "parts of one plane, or of nearly parallel ones, over one another",
        plain(coplanar_shot)},
       {"near ties", "copies of a triangle, moved by up to three floats", plain(near_tie_shot)},
+      {"stacks", "triangles that fill their boxes, in planes a few steps apart", plain(stack_shot)},
       {"extremes", "sizes from 2^-149 to 2^125: subnormal and overflowing intermediates",
        plain([](Random& random) { return scaled_shot(random, 0x1p-149, 0x1p125); })},
       {"axes", "along axes, with zero and subnormal components, from the planes of faces",

@@ -55,9 +55,9 @@ class TraceSubject : public Subject {
       for (const Shot& shot : shots) {
         for (const glm::dvec3& direction : shot.directions) {
           const double scale = std::ldexp(1.0, exponent(block.rays.size()));
-          const char* const wrong = block.add(
-              shot.origin, is_usable(direction) ? scale * direction : glm::dvec3(0.0),
-              std::numeric_limits<double>::infinity(), glm::dvec3(0.0));
+          const char* const wrong =
+              block.add(shot.origin, is_usable(direction) ? scale * direction : glm::dvec3(0.0),
+                        std::numeric_limits<double>::infinity(), glm::dvec3(0.0));
           if (wrong != nullptr) throw std::logic_error(wrong);
         }
       }

@@ -11,7 +11,8 @@
 // edges, vertices: as in Woop, Benthin and Wald 2013. Rays from inside a sphere at its edges and
 //   vertices must hit.
 //
-// All are made with binary32 vertices, and with binary64 ones for the engines that take them. The random numbers and the sphere's triangles differ from the originals.
+// All are made with binary32 vertices, and with binary64 ones for the engines that take them. The
+// random numbers and the sphere's triangles differ from the originals.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -179,7 +180,8 @@ std::vector<Row> watertight_rows(int triangles, int seeds) {
     }
     Random random(1);
     random.binary64_vertices = binary64;
-    const Placement far{glm::dvec3(2.0), {148376.0, 1234.0, -223423.0}}, third{glm::dvec3(1.0 / 3.0)};
+    const Placement far{glm::dvec3(2.0), {148376.0, 1234.0, -223423.0}},
+        third{glm::dvec3(1.0 / 3.0)};
     constexpr int kMostInFan = 1024;  // in larger fans, each ray meets most of the long boxes
     tests.push_back(singlehit(std::min(triangles, kMostInFan), random));
     tests.push_back(from_inside("sphere", far, triangles, Targets::kAnywhere, random));

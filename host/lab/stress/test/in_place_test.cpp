@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "host/lab/stress/stress.h"
-#include "host/scene/camera.h"
 
 namespace raygate::lab {
 namespace {
@@ -40,47 +39,6 @@ class InPlace : public testing::Test {
   std::vector<Shot> shots_;
   std::vector<Truth> truths_;
 };
-
-// Triangles that fill their boxes, in planes across an axis, equal or a few floats apart: a search
-// that leaves boxes out a little too soon does not find the nearest.
-TEST(InPlaceStacks, TheNearestIsNotCulled) {
-  Random random(5);
-  std::vector<Shot> shots;
-  std::vector<Truth> truths;
-  for (int i = 0; i < 200; ++i) {
-    const int axis = random.below(3);
-    const auto at = [&](double x, double y, float depth) {
-      glm::vec3 point;
-      point[axis] = depth;
-      point[(axis + 1) % 3] = static_cast<float>(x);
-      point[(axis + 2) % 3] = static_cast<float>(y);
-      return point;
-    };
-    auto mesh = std::make_shared<Mesh>();
-    for (int k = 0; k < 24; ++k) {
-      float depth = 1.0f;
-      for (int steps = random.below(3); steps > 0; --steps) depth = std::nextafter(depth, 2.0f);
-      const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
-      mesh->push_back(
-          {at(x - 2.0, y - 2.0, depth), at(x + 2.0, y - 2.0, depth), at(x, y + 2.0, depth)});
-    }
-    Shot& shot = shots.emplace_back();
-    shot.mesh = mesh;
-    for (int ray = 0; ray < 8; ++ray) {
-      const glm::dvec3 aim(at(random.uniform(-1, 1), random.uniform(-1, 1), 1.0f));
-      shot.directions.emplace_back(scaled_direction(aim));
-    }
-    truths.push_back(find_truth(shot));
-  }
-  for (const SubjectKind& kind : cpu_subjects()) {
-    Answers answers;
-    kind.make()->run(shots, answers);
-    Tally tally;
-    count(shots, truths, answers, kind, tally);
-    EXPECT_GT(tally.hits, tally.rays) << kind.name;
-    EXPECT_TRUE(tally.spotless()) << kind.name;
-  }
-}
 
 // As by a search that takes one component of a direction for the next float.
 TEST_F(InPlace, ASearchThatIsOneFloatOffIsSeen) {

@@ -5,35 +5,28 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/exact/test/rational_oracle.h"
 #include "host/lab/stress/cases.h"
 
 namespace raygate::lab {
 namespace {
 
-using Rational3 = std::array<mpq_class, 3>;
+using test::cross, test::dot, test::Rational3;
 
 Rational3 minus(const glm::dvec3& a, const glm::dvec3& b) {
-  Rational3 result;
-  for (int k = 0; k < 3; ++k) result[k] = mpq_class(a[k]) - mpq_class(b[k]);
-  return result;
-}
-Rational3 cross(const Rational3& a, const Rational3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-mpq_class dot(const Rational3& a, const Rational3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  return test::minus(test::rational(a), test::rational(b));
 }
 
 /// The t of a hit: of triangles that the ray meets.
 mpq_class distance(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& t) {
   const Rational3 a = minus(t[0], origin), normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
-  return dot(a, normal) / dot(minus(direction, glm::dvec3(0.0f)), normal);
+  return dot(a, normal) / dot(test::rational(direction), normal);
 }
 
 /// Whether the ray, its direction tilted by (e, e^2, e^3) for a very small e, meets the triangle.
 bool hits(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& t) {
   const Rational3 a = minus(t[0], origin), b = minus(t[1], origin), c = minus(t[2], origin);
-  Rational3 tilted = minus(direction, glm::dvec3(0.0f));
+  Rational3 tilted = test::rational(direction);
   mpq_class e(1);
   e >>= 2000;
   mpq_class power = e;
