@@ -368,7 +368,6 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
     const double reach = glm::dot(half, glm::abs(axis)) + 0x1p-48 * size * largest(axis);
     return std::min({p.x, p.y, p.z}) > reach || std::max({p.x, p.y, p.z}) < -reach;
   };
-  if (separates(triangle_normal(triangle))) return true;
   for (int k = 0; k < 3; ++k) {
     const glm::dvec3 edge = v[(k + 1) % 3] - v[k];
     if (separates(glm::dvec3(0.0, edge.z, -edge.y)) ||
@@ -377,7 +376,7 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
       return true;
     }
   }
-  return false;
+  return separates(triangle_normal(triangle));
 }
 
 /// Returns the side of `other` on which the ray is just before or after it hits `hit`; 0: coplanar.
@@ -605,8 +604,8 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
     const glm::vec3 low(glm::min(c, x.point) - 2.0 * x.step);
     const glm::vec3 high(glm::max(c, x.point) + 2.0 * x.step);
     const auto is_between = [&](std::uint32_t other_primitive, const Corners& other) {
-      if (other_primitive == primitive || lies_beyond(other, hit, sign) ||
-          surely_apart(low, high, other)) {
+      if (other_primitive == primitive || surely_apart(low, high, other) ||
+          lies_beyond(other, hit, sign)) {
         return false;
       }
       const int wanted = side_of_ray(ray, hit, other, side);

@@ -1,11 +1,13 @@
-"""Wrong answers and time beside libigl and Embree, for models in binary64 that packages carry: `make test LONG=binary64`.
+"""Wrong answers and time beside libigl and Embree, for models in binary64 that packages carry, and the time of pictures of
+awkward scenes: `make test LONG=binary64`.
 
-Prints a table. Fails if an answer of raygate is wrong. Truth: signs of determinants in binary64 where an error bound leaves
+Prints tables. Fails if an answer of raygate is wrong. Truth: signs of determinants in binary64 where an error bound leaves
 no doubt, else in rational numbers.
 """
 
 import fractions
-import importlib.resources
+import importlib.util
+import pathlib
 import time
 import unittest
 
@@ -20,23 +22,30 @@ RAYS = 1000
 UTM = np.array([448251.75, 5411943.125, 271.3125])  # easting, northing, height
 
 
+def of_package(package, file):
+    return pathlib.Path(importlib.util.find_spec(package).origin).parent / file
+
+
 def part(file):
-    """A part of a robot, as CAD exports it, turned and put where it stands."""
-    folder = importlib.resources.files("gymnasium_robotics") / "envs/assets"
-    mesh = trimesh.load(folder / file, process=True)
+    """A part of a robot in millimetres, as CAD exports it, turned and put into a hall."""
+    mesh = trimesh.load(of_package("gymnasium_robotics", "envs/assets/" + file), process=True)
     turn = trimesh.transformations.rotation_matrix(0.3, [1, 2, 3])[:3, :3]
-    return mesh.vertices @ turn.T + UTM, mesh.faces
+    return 1000 * mesh.vertices @ turn.T + [12000.5, -3500.25, 800.125], mesh.faces
 
 
 def terrain():
     """A survey: heights near Jacksboro, Tennessee, in metres east and north."""
-    data = np.load(importlib.resources.files("matplotlib") / "mpl-data/sample_data/jacksboro_fault_dem.npz")
+    data = np.load(of_package("matplotlib", "mpl-data/sample_data/jacksboro_fault_dem.npz"))
     heights = data["elevation"][::2, ::2].astype(float)
-    rows, columns = heights.shape
-    y, x = np.mgrid[0:rows, 0:columns] * 2 * np.array([data["dy"] * 110958.98, data["dx"] * 89700.51]).reshape(2, 1, 1)
-    corner = np.arange(rows * columns).reshape(rows, columns)
-    a, b, c, d = (part.ravel() for part in (corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]))
-    return np.stack([x, y, heights], axis=-1).reshape(-1, 3) + UTM, np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    y, x = np.indices(heights.shape) * 2 * np.array([data["dy"] * 110958.98, data["dx"] * 89700.51]).reshape(2, 1, 1)
+    return grid(x, y, heights, UTM)
+
+
+def grid(x, y, z, corner):
+    """The triangles between neighbouring points of a grid."""
+    number = np.arange(x.size).reshape(x.shape)
+    a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]))
+    return np.stack([x, y, z], axis=-1).reshape(-1, 3) + corner, np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
 
 
 def truth(origin, direction, corners):
@@ -98,7 +107,7 @@ class Peers(unittest.TestCase):
             return [hit[0] for hit in igl.ray_mesh_intersect(origin, direction, vertices, faces) or ()]
 
         def of_embree(origin, direction):
-            return [hit[0] for hit in embree.intersectRay_all(origin.astype(np.float32), direction.astype(np.float32))]
+            return [hit[0] for hit in embree.intersectRay(origin.astype(np.float32), direction.astype(np.float32))[0]]
 
         def by_ray(trace):
             return lambda: [trace(*ray) for ray in zip(origins, directions)]
@@ -116,6 +125,56 @@ class Peers(unittest.TestCase):
             number = sum(len(mine) != len(exact) for mine, exact in pairs)
             print(f"| {name} | {len(faces):,} | {by} | {nearest} of {len(pairs):,} | {number} | {took:.1f} |")
             self.assertTrue(by != "raygate" or nearest + number == 0)
+
+
+def sheet(rows, columns, size, corner=UTM):
+    """A hilly sheet of 2 (rows - 1) (columns - 1) triangles."""
+    y, x = np.mgrid[0:size:rows * 1j, 0:size:columns * 1j]
+    return grid(x, y, np.sin(6 * x / size) + np.cos(9 * y / size), corner)
+
+
+def fan(count):
+    """Triangles around one vertex."""
+    angle = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    rim = np.stack([15 * np.cos(angle), 15 * np.sin(angle), np.sin(7 * angle)], axis=1)
+    faces = np.stack([np.zeros(count, int), 1 + np.arange(count), 1 + (np.arange(count) + 1) % count], axis=1)
+    return UTM + [15, 15, 0] + np.concatenate([[[0, 0, 0]], rim]), faces
+
+
+def together(*meshes):
+    """One mesh of several."""
+    starts = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
+    return np.concatenate([mesh[0] for mesh in meshes]), np.concatenate([mesh[1] + start for mesh, start in zip(meshes, starts)])
+
+
+class AwkwardScenes(unittest.TestCase):
+    def test_time_of_a_picture(self):
+        plain, stray = sheet(60, 60, 30), (np.eye(3), np.array([[0, 1, 2]]))
+        scenes = {"a stray triangle at 0, 0, 0": (together(plain, stray), plain),
+                  "30 m in 6,000 km": (together(plain, sheet(3, 3, 6e6)), plain),
+                  "4,000 triangles on 4,000": (together(*[sheet(2, 2, 30)] * 2000), sheet(46, 46, 30)),
+                  "needles, 600 times as long as wide": (sheet(6, 600, 30), sheet(60, 60, 30)),
+                  "100,000 triangles at a vertex": (fan(100_000), sheet(225, 225, 30))}
+        print("\n| scene | seconds | of a usual scene as large | ratio | of Embree's camera rays |\n|---|---:|---:|---:|---:|")
+        for name, meshes in scenes.items():
+            ours, usual = (self.seconds_of_picture(mesh) for mesh in meshes)
+            peer, usual_peer = (self.seconds_of_embree(mesh) for mesh in meshes)
+            print(f"| {name} | {ours:.2f} | {usual:.2f} | {ours / usual:.1f} | {peer / usual_peer:.1f} |")
+
+    def seconds_of_picture(self, mesh):
+        scene, start = raygate.Scene(*mesh), time.process_time()
+        picture = scene.render(160, 120, eye=UTM + [15, -10, 15], target=UTM + [15, 15, 0], up=[0, 0, 1], spp=4)
+        self.assertGreater(np.count_nonzero(picture["color"][..., :3].max(axis=2)), 5000)
+        return time.process_time() - start
+
+    def seconds_of_embree(self, mesh):
+        rays = trimesh.Trimesh(mesh[0] - UTM, mesh[1], process=False).ray
+        origins = np.tile([15.0, -10.0, 15.0], (160 * 120, 1))
+        directions = np.pad(np.random.default_rng(1).uniform(0, 30, (len(origins), 2)), ((0, 0), (0, 1))) - origins
+        rays.intersects_first(origins[:1], directions[:1])  # builds its tree
+        start = time.process_time()
+        rays.intersects_first(origins, directions)
+        return time.process_time() - start
 
 
 if __name__ == "__main__":
