@@ -172,7 +172,7 @@ class Pictures {
  public:
   explicit Pictures(const PictureOptions& asked)
       : asked_(asked),
-        scene_(load_obj(asked.scene)),
+        scene_(load_obj(asked.scene, {.vertices = Vertices::kBinary32})),
         bvh_(scene_),
         lights_(default_lights(scene_, front_camera(scene_, 4.0 / 3.0))) {}
 

@@ -69,7 +69,7 @@ void measure(const Options& options, const std::string& scene, const std::string
 }
 
 void run(const Options& options, const std::filesystem::path& file) {
-  const Scene scene = load_obj(file);
+  const Scene scene = load_obj(file, {.vertices = Vertices::kBinary32});
   const Bvh bvh(scene);
   const auto image = std::make_shared<const MemoryImage>(bvh);
   const auto measure_kind = [&](const std::string& kind, const Trace& trace) {

@@ -97,7 +97,7 @@ void measure(const RaySet& set, const std::string& scene,
 
 void run(const RaysOptions& options) {
   for (const std::filesystem::path file : options.scenes) {
-    const Scene scene = load_obj(file);
+    const Scene scene = load_obj(file, {.vertices = Vertices::kBinary32});
     std::vector<std::unique_ptr<Peer>> peers;
     peers.push_back(make_raygate(scene));
     std::ranges::move(make_embrees(scene), std::back_inserter(peers));
