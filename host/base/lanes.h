@@ -268,6 +268,17 @@ RAYGATE_INLINE DoubleQuad widen(const FloatQuad& from) {
 /// Vector of floats that fills a register; GCC compares wider vectors word by word.
 template <Vectors kCode>
 using NativeFloats = Vec<float, kCode == Vectors::kBaseline ? kQuad : kLanes>;
+template <Vectors kCode>
+using NativeInts = Vec<std::int32_t, kCode == Vectors::kBaseline ? kQuad : kLanes>;
+/// Joins quad(0) and, if T has twice as many lanes, quad(1).
+template <class T, class Quad>
+RAYGATE_INLINE T joined(const Quad& quad) {
+  if constexpr (kLanesOf<T> == kQuad) {
+    return quad(0);
+  } else {
+    return join(quad(0), quad(1));
+  }
+}
 
 /// Transposes the rows: element i of row k becomes element k of row i.
 RAYGATE_INLINE void transpose(FloatQuad (&rows)[kQuad]) {

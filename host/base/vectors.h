@@ -12,11 +12,12 @@
 
 namespace raygate {
 
-/// Instruction sets, narrower first. Both give the same bits: neither fuses multiply and add.
-enum class Vectors { kBaseline, kAvx2 };
+/// Instruction sets, narrower first. All give the same bits: none fuses multiply and add.
+enum class Vectors { kBaseline, kAvx2, kAvx512 };
 
 [[nodiscard]] constexpr std::string_view name_of(Vectors vectors) {
-  return vectors == Vectors::kAvx2 ? "avx2" : "baseline";
+  constexpr std::string_view kNames[] = {"baseline", "avx2", "avx512"};
+  return kNames[static_cast<std::size_t>(vectors)];
 }
 
 /// Argument of the body of in_vectors: the instruction set as a constant.
@@ -32,20 +33,25 @@ using VectorCode = std::integral_constant<Vectors, kVectors>;
 #define RAYGATE_BODY __attribute__((always_inline))
 #if defined(__x86_64__) && defined(__GNUC__)
 #define RAYGATE_AVX2 "avx2,bmi,bmi2,lzcnt,popcnt"  // the names of GCC and Clang
+#define RAYGATE_AVX512 RAYGATE_AVX2 ",avx512f,avx512vl,avx512dq,avx512bw"
 #endif
 #endif
 
 /// Returns the widest instruction set that is compiled and that this machine has.
 [[nodiscard]] inline Vectors widest_vectors() {
 #ifdef RAYGATE_AVX2
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) return Vectors::kAvx2;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) {
+    const bool has_512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+    return has_512 ? Vectors::kAvx512 : Vectors::kAvx2;
+  }
 #endif
   return Vectors::kBaseline;
 }
 
 /// Returns the instruction sets of this machine, narrower first, for tests.
 [[nodiscard]] inline std::span<const Vectors> machine_vectors() {
-  static constexpr Vectors kAll[] = {Vectors::kBaseline, Vectors::kAvx2};
+  static constexpr Vectors kAll[] = {Vectors::kBaseline, Vectors::kAvx2, Vectors::kAvx512};
   return std::span(kAll).first(static_cast<std::size_t>(widest_vectors()) + 1);
 }
 
@@ -91,6 +97,10 @@ template <class Body>
 [[gnu::noinline, gnu::target(RAYGATE_AVX2)]] auto in_avx2(const Body& body) {
   return body(VectorCode<Vectors::kAvx2>{});
 }
+template <class Body>
+[[gnu::noinline, gnu::target(RAYGATE_AVX512)]] auto in_avx512(const Body& body) {
+  return body(VectorCode<Vectors::kAvx512>{});
+}
 #endif
 
 }  // namespace detail
@@ -105,6 +115,7 @@ auto in_vectors(const Body& body) {
   // Asked in baseline builds, too: it refuses a wrong RAYGATE_VECTORS.
   [[maybe_unused]] const Vectors vectors = vectors_in_use();
 #ifdef RAYGATE_AVX2
+  if (vectors == Vectors::kAvx512) return detail::in_avx512(body);
   if (vectors == Vectors::kAvx2) return detail::in_avx2(body);
 #endif
   return detail::in_baseline(body);

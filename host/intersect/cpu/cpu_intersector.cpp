@@ -26,36 +26,59 @@ void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
 
 void PointWriter::write() {
   for (std::size_t first = 0; first < planes_; first += kPlanes) {
-    PlaneViews views;
-    for (std::size_t i = 0; i < kPlanes; ++i) {
-      const std::size_t plane = std::min(first + i, planes_ - 1);
-      views.origins[i] = rays_[firsts_[plane]].origin;
-      views.triangles[i] = bvh_.corners_of(primitives_[plane]);
-    }
+    const auto plane = [&](std::size_t i) { return std::min(first + i, planes_ - 1); };
+    const auto origin = [&](std::size_t i) { return rays_[firsts_[plane(i)]].origin; };
+    const auto corners = [&](std::size_t i) { return bvh_.corners_of(primitives_[plane(i)]); };
+    // Initialised in place: copies would wait for the words that were just stored.
+    const PlaneViews views{{origin(0), origin(1), origin(2), origin(3)},
+                           {corners(0), corners(1), corners(2), corners(3)}};
     Planes four;
     make_planes(views, four);
-    for (int k = 0; k < 4; ++k) std::memcpy(&words_[k][first], four.words[k], sizeof four.words[k]);
+    FloatQuad rows[kQuad];
+    for (int k = 0; k < kQuad; ++k) rows[k] = load<FloatQuad>(four.words[k]);
+    transpose(rows);
+    std::memcpy(words_[first], rows, sizeof rows);
   }
-  in_vectors([&](auto) RAYGATE_BODY {
-    for (std::size_t first = 0; first < count_; first += kQuad) {
-      FloatQuad rows[kQuad], n[kQuad] = {}, point[3];  // n[3]: d of the plane
-      std::uint32_t number[kQuad];
-      for (std::size_t i = 0; i < kQuad; ++i) {
+  in_vectors([&](auto code) RAYGATE_BODY {
+    using Floats = NativeFloats<code()>;
+    constexpr std::size_t kHits = kLanesOf<Floats>;
+    for (std::size_t first = 0; first < count_; first += kHits) {
+      // By quads of hits: after transposing, directions from [1] on, N and d of the planes.
+      FloatQuad rays[kHits / kQuad][kQuad], planes[kHits / kQuad][kQuad];
+      std::uint32_t number[kHits];
+      for (std::size_t i = 0; i < kHits; ++i) {
         const std::size_t at = std::min(first + i, count_ - 1);
         number[i] = numbers_[at];
-        rows[i] = load<FloatQuad>(reinterpret_cast<const float*>(&rays_[number[i]] + 1) - kQuad);
-        for (int k = 0; k < 4; ++k) n[k][static_cast<int>(i)] = words_[k][plane_of_[at]];
+        rays[i / kQuad][i % kQuad] =
+            load<FloatQuad>(reinterpret_cast<const float*>(&rays_[number[i]] + 1) - kQuad);
+        planes[i / kQuad][i % kQuad] = load<FloatQuad>(words_[plane_of_[at]]);
       }
-      transpose(rows);  // rows[0] is unused: the last coordinate of the origins
-      IntQuad largest = {}, error;
+      for (std::size_t quad = 0; quad < kHits / kQuad; ++quad) {
+        transpose(rays[quad]);
+        transpose(planes[quad]);
+      }
+      Floats direction[3], n[4], point[3];
+      for (int k = 0; k < 4; ++k) {
+        if (k < 3)
+          direction[k] = joined<Floats>([&](int i) RAYGATE_BODY { return rays[i][k + 1]; });
+        n[k] = joined<Floats>([&](int i) RAYGATE_BODY { return planes[i][k]; });
+      }
+      NativeInts<code()> largest = {}, error;
       for (int k = 0; k < 3; ++k) largest = maximum(largest, bits_in(n[k]) >> 23 & 0xFF);
-      plane_points({n[0], n[1], n[2]}, n[3], largest, {rows[1], rows[2], rows[3]}, point, error);
-      std::copy_n(point, 3, rows);
-      rows[3] = float_of(error);
-      transpose(rows);
+      plane_points({n[0], n[1], n[2]}, n[3], largest, direction, point, error);
       static_assert(offsetof(NearestHit, point_error) ==
                     offsetof(NearestHit, point) + 3 * sizeof(float));
-      for (std::size_t i = 0; i < kQuad; ++i) std::memcpy(&hits_[number[i]].point, &rows[i], 16);
+      const Floats columns[4] = {point[0], point[1], point[2], float_of(error)};
+      for (std::size_t quad = 0; quad < kHits / kQuad; ++quad) {
+        FloatQuad rows[kQuad];
+        for (int k = 0; k < 4; ++k) {
+          rows[k] = load<FloatQuad>(reinterpret_cast<const float*>(&columns[k]) + quad * kQuad);
+        }
+        transpose(rows);
+        for (std::size_t i = 0; i < kQuad; ++i) {
+          std::memcpy(&hits_[number[quad * kQuad + i]].point, &rows[i], 16);
+        }
+      }
     }
   });
   written_ += count_;

@@ -75,7 +75,7 @@ class PointWriter {
   std::uint16_t last_[kMost] = {};  // by hash: the last plane of a primitive
   std::uint32_t numbers_[kMost];    // of rays, with their planes
   std::uint16_t plane_of_[kMost];
-  float words_[4][kMost];  // of planes: N and d
+  float words_[kMost][4];  // of planes: N and d
 };
 
 // The two searches of CpuIntersector. `hits` are initialised to misses; misses are not counted.

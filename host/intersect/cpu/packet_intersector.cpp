@@ -116,13 +116,12 @@ RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
   walk.going &= ~(std::uint64_t{0xFF & ~cones.active[group]} << (8 * group));
 }
 
-/// Loads the directions of four rays, transposed. Each load includes the float before the
-/// direction, which belongs to the same ray.
-RAYGATE_INLINE void load_directions(const Ray* const (&rays)[kQuad], FloatQuad (&components)[3]) {
-  static_assert(offsetof(Ray, direction) + sizeof(Ray::direction) == sizeof(Ray));
+/// Loads the directions of four rays, from their words, transposed. Each load includes the word
+/// before the direction.
+RAYGATE_INLINE void load_directions(const float* words, FloatQuad (&components)[3]) {
+  static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
   FloatQuad rows[kQuad];
-  for (int i = 0; i < kQuad; ++i)
-    rows[i] = load<FloatQuad>(reinterpret_cast<const float*>(rays[i] + 1) - kQuad);
+  for (int i = 0; i < kQuad; ++i) rows[i] = load<FloatQuad>(words + 6 * i + 2);
   transpose(rows);
   for (int k = 0; k < 3; ++k) components[k] = rows[k + 1];
 }
@@ -136,13 +135,17 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
       const std::size_t begin = std::size_t(group) * kLanes;
       const std::size_t count =
           begin < rays.size() ? std::min<std::size_t>(kLanes, rays.size() - begin) : 0;
-      const Ray* of[2][kQuad];  // beyond the end: the last ray
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        of[i / kQuad][i % kQuad] = &rays[std::min(begin + i, rays.size() - 1)];
+      auto words = reinterpret_cast<const float*>(rays.data() + begin);
+      float padded[6 * kLanes];  // beyond the end: the last ray
+      if (count < kLanes) {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+          std::memcpy(padded + 6 * i, &rays[std::min(begin + i, rays.size() - 1)], sizeof(Ray));
+        }
+        words = padded;
       }
       FloatQuad half[2][3];
-      load_directions(of[0], half[0]);
-      load_directions(of[1], half[1]);
+      load_directions(words, half[0]);
+      load_directions(words + 6 * kQuad, half[1]);
       IntLanes largest = {};  // largest magnitude of each ray, as bits of a float
       for (int k = 0; k < 3; ++k) {
         const FloatLanes d =
@@ -204,8 +207,9 @@ void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Con
     cones.whole.octant = octant;
     const IntLanes present = lanes_of(cones.groups);
     for (int k = 0; k < 3; ++k) {
-      FloatLanes largest_off;
-      for (int g = 0; g < RayPacket::kGroups; ++g) largest_off[g] = largest_of(off[k][g]);
+      transpose(off[k]);
+      FloatLanes largest_off = off[k][0];
+      for (int lane = 1; lane < kLanes; ++lane) largest_off = maximum(off[k][lane], largest_off);
       cones.radius[k] = present ? kUp * largest_off : FloatLanes{};
       const FloatLanes size = absolute(cones.center[k]);
       const FloatLanes largest = (size + cones.radius[k]) * kUp;
@@ -707,16 +711,26 @@ class PacketIntersector {
 
   /// Writes the nearest hits, and adds them to those whose P is to be computed.
   void finish(const ConeTraversal& walk) {
-    in_vectors([&](auto) RAYGATE_BODY {
+    in_vectors([&](auto code) RAYGATE_BODY {
       const bool with_points = query_.with_points;
       for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
         const int g = std::countr_zero(groups);
+        double bounds[kLanes][2];
+        for (int half = 0; half < 2; ++half) {
+          const auto quad = [&](const IntLanes& bits) RAYGATE_BODY {
+            const auto lanes = reinterpret_cast<const FloatLanes&>(bits);
+            return widen<code()>(half == 0 ? FloatQuad(low_half(lanes)) : high_half(lanes));
+          };
+          const DoubleQuad low = quad(walk.low[g]), high = quad(walk.high[g]);
+          store(bounds[4 * half], __builtin_shufflevector(low, high, 0, 4, 1, 5));
+          store(bounds[4 * half + 2], __builtin_shufflevector(low, high, 2, 6, 3, 7));
+        }
         LaneMask lanes = 0xFF & ~sign_mask(walk.primitive[g]);
         for (; lanes != 0; lanes &= lanes - 1) {
           const int lane = std::countr_zero(lanes);
           NearestHit& hit = hits_[walk.number(g, lane)];
           hit.primitive = static_cast<std::uint32_t>(walk.primitive[g][lane]);
-          hit.t = walk.t(g, lane);
+          hit.t = {bounds[lane][0], bounds[lane][1]};
           if (with_points) points_.add(walk.number(g, lane), hit.primitive);
         }
       }

@@ -260,7 +260,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   // Met children come first, or are the only ones that are not negative.
   IntLanes keys = met.keys & ~kNumber;
 #ifdef RAYGATE_AVX2
-  if constexpr (kCode == Vectors::kAvx2) {
+  if constexpr (kCode != Vectors::kBaseline) {
     const auto lanes = load<IntLanes>(numbers.data());
     avx2_permute(keys, lanes);
     keys |= lanes;
