@@ -143,6 +143,9 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
         }
         words = padded;
       }
+      for (int line = 0; line < 3; ++line) {  // of the next packet
+        __builtin_prefetch(words + 6 * RayPacket::kRays + 16 * line);
+      }
       FloatQuad half[2][3];
       load_directions(words, half[0]);
       load_directions(words + 6 * kQuad, half[1]);
