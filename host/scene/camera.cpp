@@ -5,7 +5,6 @@
 
 #include "host/base/elementary.h"
 #include "host/base/input_error.h"
-#include "host/exact/exact.h"
 
 namespace raygate {
 namespace {

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <string>
-#include <string_view>
 
 #include "host/base/elementary.h"
 #include "host/base/input.h"

@@ -83,8 +83,7 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
     const glm::dvec3 a = position(first);
     return glm::normalize(glm::cross(position(first + 1) - a, position(first + 2) - a));
   };
-  // The face's normal at a corner, weighted by the sine of its angle over the lengths of both
-  // sides.
+  // The face's normal at a corner, by the sine of its angle over the lengths of both sides.
   const auto weighted_normal = [&](Corner corner) {
     const glm::dvec3 at = position(corner), u = position(next(corner)) - at,
                      v = position(next(next(corner))) - at;

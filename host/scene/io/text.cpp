@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "host/base/input.h"
 #include "host/base/input_error.h"
 
 namespace raygate {
@@ -46,8 +45,6 @@ void Words::find_word(std::size_t from) {
 
 std::string_view Words::take() {
   const std::string_view word = word_;
-  last_ = next_;
-  last_line_ = line_;
   find_word(next_);
   return word;
 }
@@ -84,11 +81,6 @@ void Words::drop_comment() {
   if (length == text_.npos) return;
   text_ = text_.substr(0, begin + length);
   find_word(begin);
-}
-
-void Words::skip_line() {
-  line_ = last_line_;
-  find_word(std::min(text_.find('\n', last_), text_.size()));
 }
 
 std::string Words::place() const { return InputError::location(*file_, line_); }

@@ -33,8 +33,7 @@ class Words {
   bool take_if(std::string_view word);
   /// Takes the next word. Throws InputError unless it equals `word`, as for take_if().
   void expect(std::string_view word);
-  /// Takes a finite number within the range of float. Throws InputError, which calls it `what`, for
-  /// another word.
+  /// Takes a number within the range of float. Throws InputError, which calls it `what`, else.
   double number(std::string_view what);
   /// Takes any word. Returns NaN for one that is not a number.
   double any_number();
@@ -43,8 +42,6 @@ class Words {
   [[nodiscard]] std::string_view rest() const { return text_.substr(next_ - word_.size()); }
   /// Drops the next word that begins with '#', and the text after it.
   void drop_comment();
-  /// Skips the rest of the line of the last word that was taken.
-  void skip_line();
 
   /// Returns the line of the next word.
   [[nodiscard]] std::size_t line() const { return line_; }
@@ -58,10 +55,9 @@ class Words {
 
   const std::string* file_;
   std::string_view text_;
-  std::string_view word_;                 // the next word
-  std::size_t next_ = 0;                  // end of the next word
-  std::size_t last_ = 0;                  // end of the word before it
-  std::size_t line_ = 0, last_line_ = 0;  // lines of both words
+  std::string_view word_;  // the next word
+  std::size_t next_ = 0;   // its end
+  std::size_t line_ = 0;   // its line
 };
 
 /// A text file as a sequence of OBJ or MTL statements:
