@@ -2,13 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 #include "host/app/console.h"
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
 #include "host/film/environment_file.h"
-#include "host/light/lights.h"
 #include "host/scene/instances.h"
 #include "host/scene/view.h"
 

@@ -93,8 +93,7 @@ class Reader {
     return found;
   }
 
-  /// Reads a row: run-length encoded by component if its first bytes say so, otherwise pixel by
-  /// pixel.
+  /// Reads a row: run-length encoded by component if its first bytes say so, otherwise flat.
   void read_row(std::vector<Rgbe>& row) {
     const std::size_t width = row.size();
     if (width < 8 || width >= 0x8000 || !rest_.starts_with("\2\2")) {
