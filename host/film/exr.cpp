@@ -73,9 +73,9 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const Pix
     header.insert(name, Imf::StringAttribute(text));
   }
   // A matrix for column vectors, stored by columns, is one for row vectors, stored by rows.
-  Imath::M44f world_to_camera;
-  std::memcpy(world_to_camera.x, glm::value_ptr(metadata.world_to_camera), sizeof world_to_camera.x);
-  Imf::addWorldToCamera(header, world_to_camera);
+  Imath::M44f matrix;
+  std::memcpy(matrix.x, glm::value_ptr(metadata.world_to_camera), sizeof matrix.x);
+  Imf::addWorldToCamera(header, matrix);
   for (const Channel& channel : channels_of(film)) {
     header.channels().insert(channel.name, Imf::Channel(type_of(channel)));
   }
