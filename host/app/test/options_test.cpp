@@ -95,6 +95,7 @@ TEST(Options, NoOutputOverwritesTheSceneOrAnotherOutput) {
   expect_error({"a.obj", "--stats", "./a.obj"}, "./a.obj: would overwrite a.obj");
   expect_error({"a.obj", "--stats", "a.png"}, "a.png: would overwrite a.png");
   expect_error({"a.exr"}, "a.exr: would overwrite a.exr");
+  expect_error({"a.obj", "--stats", "a.json"}, "a.json: would overwrite a.json");
 }
 
 TEST(Options, ValuesThatAreImpossible) {
@@ -259,10 +260,6 @@ TEST_F(OptionsOfASceneFile, AreRefusedWithTheirPlace) {
   expect_error({scene.c_str()}, "b.json: is about ");
   EXPECT_EQ(parse({other.c_str()}).scene_file.obj, folder_.path() / "c.obj");
   expect_error({"missing.json"}, "missing.json: cannot read");
-}
-
-TEST_F(OptionsOfASceneFile, MayNotBeOverwrittenBeforeItIsThere) {
-  expect_error({"a.obj", "--stats", "a.json"}, "a.json: would overwrite a.json");
 }
 
 TEST(Options, AnEnvironmentNeedsPaths) {
