@@ -29,8 +29,7 @@ namespace raygate {
 /// Returns `value` with at most seven significant digits: "35", "-0.125".
 [[nodiscard]] std::string format_number(double value);
 
-/// Returns "rendering: 45 %, 12.3 s left". `fraction`: the completed fraction, in [0, 1];
-/// `elapsed`: seconds so far.
+/// Returns "rendering: 45 %, 12.3 s left". `fraction`: completed, in [0, 1]; `elapsed`: in seconds.
 [[nodiscard]] std::string progress_text(double fraction, double elapsed);
 
 /// A line about progress on standard error, redrawn in place and erased at the end. Silent if
@@ -81,9 +80,8 @@ class Information : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs `program` and returns its exit status. Information is printed. Other exceptions become one
-/// line on standard error, and the status: 2 for InputError and out of memory, 128 + signal for
-/// Interrupted, else 1.
+/// Runs `program` and returns its exit status. Prints Information. Other exceptions are a line on
+/// standard error and the status 2 (InputError, no memory), 128 + signal (Interrupted) or 1.
 int run_guarded(const std::function<int()>& program);
 
 /// Body of main(): checks the machine's arithmetic, chooses the vector code that RAYGATE_VECTORS

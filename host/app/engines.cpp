@@ -1,6 +1,5 @@
 #include "host/app/engines.h"
 
-#include <memory>
 #include <utility>
 
 #include "host/app/console.h"
@@ -87,12 +86,6 @@ std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine
                      "cores have it");
   }
   return std::make_shared<const MemoryImage>(bvh, engine.threads);
-}
-
-std::string dump_image(const CoreFileOptions& files, const MemoryImage& image) {
-  AtomicFile(files.image, image.bytes()).commit();
-  return "wrote " + printable(files.image.string()) + ", " +
-         format_count(image.lines().size(), "line") + "\n";
 }
 
 std::string trace_pixel(const CoreFileOptions& files, const Bvh& bvh,

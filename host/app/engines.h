@@ -15,9 +15,8 @@ namespace raygate {
 /// for it later. Throws InputError if it cannot be built.
 void prepare_engine(const EngineOptions& options);
 
-/// Returns a factory of intersectors of the engine. Each intersector owns its simulated model. The
-/// tree must outlive factory and intersectors. `image`: the tree's memory image for ray cores;
-/// null: made if needed.
+/// Returns a factory of intersectors, which own their simulated models. The tree must outlive both.
+/// `image`: the tree's memory image for ray cores; null: made if needed.
 [[nodiscard]] IntersectorFactory make_intersector_factory(
     const EngineOptions& options, const Bvh& bvh,
     std::shared_ptr<const MemoryImage> image = nullptr);
@@ -25,9 +24,6 @@ void prepare_engine(const EngineOptions& options);
 /// Returns the image of `bvh` that the engine's cores read; null for an engine without cores.
 [[nodiscard]] std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine,
                                                                    const Bvh& bvh);
-
-/// Writes the memory image to its file and returns a line for the console. Throws InputError.
-[[nodiscard]] std::string dump_image(const CoreFileOptions& files, const MemoryImage& image);
 
 /// Traces `ray`, of `files.pixel`, with a simulated core that writes its waveform. Returns a line
 /// for the console about the hit. Throws InputError as make_core_wave does.

@@ -2,13 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 #include "host/app/console.h"
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
 #include "host/film/environment_file.h"
-#include "host/light/lights.h"
 #include "host/scene/instances.h"
 #include "host/scene/view.h"
 
@@ -30,12 +28,6 @@ Scene load(const SceneFile& file, const LoadOptions& options, const EnvironmentS
 }
 
 namespace {
-
-View chosen_view(const CameraRequest& request, const Scene& scene) {
-  const glm::dvec3 up = request.up.value_or(scene.up);
-  if (!request.angles) return {kDefaultAzimuth, kDefaultElevation, up};
-  return {request.angles->first, request.angles->second, up};
-}
 
 /// "--view 33,24 --up y (usual in the format); --camera ...".
 std::string view_text(const CameraRequest& request, const Scene& scene, const View& view,
@@ -62,7 +54,11 @@ Framing frame_picture(const CameraRequest& request, const Scene& scene, double a
   const double fov = request.fov.value_or(Camera::kDefaultFov);
   const bool is_view = !given && !request.eye;
   View view;
-  if (!given || request.ground.value_or(false)) view = chosen_view(request, scene);
+  if (!given || request.ground.value_or(false)) {
+    const auto [azimuth, elevation] =
+        request.angles.value_or(std::pair(kDefaultAzimuth, kDefaultElevation));
+    view = {azimuth, elevation, request.up.value_or(scene.up)};
+  }
   CameraSetting setting;  // in the scene's coordinates
   if (given) {
     setting = *given;

@@ -22,22 +22,13 @@ std::string camel_case(const std::string& name) {
 
 }  // namespace
 
-void OptionTable::add(const std::string& names, const char* value, std::string help,
-                      std::string expected, Read read, Show show, unsigned places) {
-  if (const std::size_t at = help.find("{}"); at != std::string::npos) help.replace(at, 2, show());
-  std::vector<std::string> all = split_at_commas(names);
-  const auto first_long = std::ranges::find_if(all, [](const auto& n) { return n[1] == '-'; });
-  const std::string name = first_long->substr(2);
-  rows_.push_back({std::move(all),
-                   name,
-                   value,
-                   std::move(help),
-                   group_,
-                   std::move(expected),
-                   std::move(read),
-                   std::move(show),
-                   places,
-                   {}});
+void OptionTable::add(const std::string& names, const char* value, const std::string& help,
+                      const std::string& expected, const Read& read, const Show& show,
+                      unsigned places) {
+  Row row{split_at_commas(names), "", value, help, group_, expected, read, show, places, {}};
+  row.name = std::ranges::find_if(row.names, [](const auto& n) { return n[1] == '-'; })->substr(2);
+  if (const std::size_t at = help.find("{}"); at != help.npos) row.help.replace(at, 2, show());
+  rows_.push_back(std::move(row));
 }
 
 /// Two columns, the second one wrapped; a wide name continues in the second column.

@@ -77,13 +77,10 @@ template <typename T>
   return found == choices.end() ? std::nullopt : std::optional<T>(found->second);
 }
 
-/// Returns the names of choices and `more`.
 template <typename T>
-[[nodiscard]] std::vector<std::string> names_of(const Choices<T>& choices,
-                                                std::vector<std::string> more = {}) {
+[[nodiscard]] std::vector<std::string> names_of(const Choices<T>& choices) {
   std::vector<std::string> names;
   for (const auto& [name, value] : choices) names.push_back(name);
-  names.insert(names.end(), more.begin(), more.end());
   return names;
 }
 
@@ -117,9 +114,8 @@ struct CommandLine {
   std::vector<std::string> plain;  ///< words that belong to no option
 };
 
-/// The options of a program, in the order of --help. Values are stored in the targets that the rows
-/// name, which must outlive the table. "{}" in a help text is replaced by the default: the target's
-/// value when the row is added.
+/// The options of a program, in the order of --help. Values are stored in the targets of the rows,
+/// which must outlive the table. "{}" in a help text is the target's value when the row is added.
 class OptionTable {
  public:
   /// Stores a value; returns false if it is not as the row's `expected` says.
@@ -136,11 +132,11 @@ class OptionTable {
   /// Sets the heading in --help of the rows that are added next.
   void group(const char* title) { group_ = title; }
 
-  /// Adds an option. `names`: "-o,--output"; the first long name is the option's name. `value`: the
-  /// placeholder of its value in --help; null for a flag. `expected`: what its values are, in
-  /// messages.
-  void add(const std::string& names, const char* value, std::string help, std::string expected,
-           Read read, Show show = {}, unsigned places = kNowhere);
+  /// Adds an option. `names`: "-o,--output"; the first long name is the option's name. `value`: its
+  /// placeholder in --help; null for a flag. `expected`: describes its values in messages.
+  void add(const std::string& names, const char* value, const std::string& help,
+           const std::string& expected, const Read& read, const Show& show = {},
+           unsigned places = kNowhere);
 
   /// Adds an option whose text `parse` turns into a value, or none if it is not as expected.
   /// `target`: a T or an optional one. `show` returns the text of a value.
@@ -153,20 +149,12 @@ class OptionTable {
         names, value, help, expected,
         [&target, parse](const std::string& text) {
           const std::optional<T> parsed = parse(text);
-          if (!parsed) return false;
-          if constexpr (std::is_same_v<T, Target>) {
-            target = *parsed;
-          } else {
-            target = parsed;
-          }
-          return true;
+          if (parsed) target = *parsed;
+          return parsed.has_value();
         },
-        [&target, show]() -> std::string {
-          if constexpr (std::is_same_v<T, Target>) {
-            return show(target);
-          } else {
-            return target ? show(*target) : "";
-          }
+        [&target, show] {
+          const std::optional<T> current = target;
+          return current ? show(*current) : "";
         },
         places);
   }
@@ -192,26 +180,6 @@ class OptionTable {
         [choices](const T& value) { return name_of(choices, value); }, places);
   }
 
-  /// Adds an option whose value is a list of choices, each of which sets a member of `target`; the
-  /// other members get their defaults. "all" stands for all of them.
-  template <typename T>
-  void names(const std::string& names, const std::string& help, T& target,
-             const Choices<bool T::*>& choices) {
-    const std::vector<std::string> words = names_of(choices, {"all"});
-    add(names, "NAMES", help + listed(words),
-        "some of " + listed(words, ", ") + " with commas between",
-        [&target, choices, words](const std::string& text) {
-          target = {};
-          for (const std::string& word : split_at_commas(text)) {
-            if (std::ranges::count(words, word) == 0) return false;
-            for (const auto& [name, member] : choices) {
-              if (word == name || word == "all") target.*member = true;
-            }
-          }
-          return true;
-        });
-  }
-
   /// Adds an option whose value is stored as typed, such as a file name.
   template <typename Target>
   void text(const std::string& names, const char* value, const char* help, Target& target) {
@@ -223,9 +191,8 @@ class OptionTable {
   }
 
   /// Splits a command line without the program's name: "--name VALUE", "--name=VALUE", "-n VALUE",
-  /// flags "--name" and "-n", and other words; all words after "--" are plain. A value may begin
-  /// with a dash. Reads no value. Throws InputError, one line, for an unknown option or an option
-  /// without its value, and Information for --help and --version.
+  /// flags, and other words; all words after "--" are plain. Reads no value. Throws InputError for
+  /// an unknown option or a missing value, and Information for --help and --version.
   [[nodiscard]] CommandLine split(const std::vector<std::string>& words);
 
   /// Reads values of known options: row by row, each row's values in their order, so that the last
@@ -240,13 +207,11 @@ class OptionTable {
 
   /// Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'" about the last value given.
   [[noreturn]] void fail_value(const std::string& name, const std::string& expected) const;
-  /// Throws InputError about the values of the options `names`, after the place of those that are
-  /// not on the command line.
+  /// Throws InputError about the values of `names`, and the place of those in a scene file.
   [[noreturn]] void fail(const std::string& message,
                          std::initializer_list<const char*> names) const;
 
-  /// Throws InputError "unknown option 'colour', expected some of ..." unless the option appears at
-  /// `place`.
+  /// Throws InputError "unknown option 'colour', ..." unless the option appears at `place`.
   void require(const OptionValue& value, OptionPlaces place) const;
 
   /// Name/value pairs of the options shown at `place`; options without a value are omitted.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <string_view>
 #include <thread>
 
@@ -127,29 +126,6 @@ std::vector<std::string> channel_names() {
   return names;
 }
 
-/// Reads "Z=FILE.png" or "Z:0:10=FILE.png".
-bool read_false_color(const std::string& text, std::vector<FalseColorOutput>& outputs) {
-  const auto [what, file] = split_at_equals(text);
-  std::string words = what;
-  std::ranges::replace(words, ':', ',');
-  const std::size_t name_end = std::min(words.find(','), words.size());
-  FalseColorOutput output{words.substr(0, name_end), std::nullopt, file};
-  const std::vector<std::string> known = channel_names();
-  if (output.path.extension() != ".png" || std::ranges::count(known, output.channel) == 0) {
-    return false;
-  }
-  if (name_end < words.size()) {
-    const std::vector<double> limits = parse_list<double>(words.substr(name_end + 1));
-    if (limits.size() != 2 || !std::isfinite(limits[0]) || !std::isfinite(limits[1]) ||
-        limits[0] >= limits[1]) {
-      return false;
-    }
-    output.scale = Scale{limits[0], limits[1]};
-  }
-  outputs.push_back(output);
-  return true;
-}
-
 // Rows of tables.
 
 void add_core_options(OptionTable& table, Options& options) {
@@ -242,7 +218,6 @@ void add_run_options(OptionTable& table, Options& options) {
   table.flag("--serve", "show the scene in a page of the browser", options.serve);
   table.number("--port", "N", "of --serve's page (any free one)", options.port,
                Range<int>{1, 65535});
-  table.flag("--no-scene-file", "ignore the .json beside an OBJ", options.no_scene_file);
   table.flag("-q,--quiet", "print no statistics and no progress", options.quiet);
   table.flag("-v,--verbose", "print all statistics and warnings", options.verbose);
 }
@@ -362,24 +337,18 @@ void require_distinct_outputs(const Options& options) {
   }
 }
 
-/// Reads the scene file that was named, or the one beside a model; returns the model alone if there
-/// is none.
-SceneFile find_scene_file(const fs::path& scene, bool no_scene_file) {
-  if (scene.extension() == ".json") {
-    if (no_scene_file) {
-      throw InputError("--no-scene-file: expected an OBJ, got " + scene.string());
-    }
-    return read_scene_file(scene);
-  }
+/// Reads the scene file that was named, or the one beside a model. Without one: the model alone.
+SceneFile scene_file_of(const fs::path& scene) {
   const fs::path beside = fs::path(scene).replace_extension(".json");
   std::error_code ignored;
-  if (no_scene_file || !fs::is_regular_file(beside, ignored)) return {.file = scene, .obj = scene};
+  if (scene != beside && !fs::is_regular_file(beside, ignored))
+    return {.file = scene, .obj = scene};
   SceneFile file = read_scene_file(beside);
   // The model may be elsewhere, made by a script.
-  if (!fs::exists(scene, ignored)) return file;
-  if (file.obj.lexically_normal() != scene.lexically_normal()) {
-    throw InputError(beside.string() + ": is about " + file.obj.string() + ", not " +
-                     scene.string() + "; --no-scene-file leaves it alone");
+  if (scene != beside && fs::exists(scene, ignored) &&
+      file.obj.lexically_normal() != scene.lexically_normal()) {
+    throw InputError(beside.string() + ": is about " + file.obj.string() + ", expected " +
+                     scene.string() + " or another name");
   }
   return file;
 }
@@ -459,15 +428,32 @@ void add_picture_options(OptionTable& table, OutputOptions& options) {
                kInSceneFile | kInPage);
   table.choice<Tone>("--tone", "clip|filmic", "tone curve of the PNG ({})", options.display.tone,
                      {{"clip", Tone::kClip}, {"filmic", Tone::kFilmic}}, kInSceneFile | kInPage);
-  table.names("--channels",
-              "extra EXR channels (AOVs; sums: for --resume and ./merge): ", options.channels,
-              kExtraChannels);
+  std::vector<std::string> channels = names_of(kExtraChannels);
+  channels.emplace_back("all");
+  table.add("--channels", "NAMES",
+            "extra EXR channels (AOVs; sums: for --resume and ./merge): " + listed(channels),
+            "some of " + listed(channels, ", ") + " with commas between",
+            [&options, channels](const std::string& text) {
+              options.channels = {};
+              for (const std::string& word : split_at_commas(text)) {
+                if (std::ranges::count(channels, word) == 0) return false;
+                for (const auto& [name, member] : kExtraChannels) {
+                  if (word == name || word == "all") options.channels.*member = true;
+                }
+              }
+              return true;
+            });
   table.add(
-      "--false-colour,--false-color", "CHANNEL[:LOW:HIGH]=FILE.png", "a channel in false colours",
-      "CHANNEL=FILE.png or, with numbers LOW < HIGH, CHANNEL:LOW:HIGH=FILE.png; CHANNEL is " +
-          listed(channel_names()),
-      [&](const std::string& text) { return read_false_color(text, options.false_colors); }, {},
-      kInPage);
+      "--false-colour,--false-color", "CHANNEL=FILE.png", "a channel in false colours",
+      "CHANNEL=FILE.png; CHANNEL is " + listed(channel_names()),
+      [&](const std::string& text) {
+        const auto [channel, file] = split_at_equals(text);
+        const std::vector<std::string> known = channel_names();
+        options.false_colors.push_back({channel, file});
+        return options.false_colors.back().path.extension() == ".png" &&
+               std::ranges::count(known, channel) > 0;
+      },
+      {}, kInPage);
 }
 
 void add_light_options(OptionTable& table, RenderSettings& settings) {
@@ -492,7 +478,7 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
                kInExr | kInStats | kInPython | kInSceneFile);
   table.add("--samples", "A:B", "render only samples A to B-1, for ./merge",
             "A:B, from sample A to before sample B of --spp", [&](const std::string& text) {
-              const SampleRange range = parse_sample_range(text).value_or(SampleRange{});
+              const SampleRange range = parse_sample_range(text);
               settings.first_sample = range.first;
               settings.end_sample = range.end;
               return range.end > 0;
@@ -617,9 +603,7 @@ Options parse_options(const std::vector<std::string>& words) {
                      "; try ./render scenes/cornell.obj");
   }
   options.scene = line.plain.front();
-  options.scene_file = find_scene_file(
-      options.scene,
-      std::ranges::find(line.values, "no-scene-file", &OptionValue::name) != line.values.end());
+  options.scene_file = scene_file_of(options.scene);
   std::vector<OptionValue> given = options.scene_file.options;
   for (const OptionValue& value : given) table.require(value, kInSceneFile);
   given.insert(given.end(), line.values.begin(), line.values.end());

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -53,8 +52,7 @@ struct EngineOptions {
 
 /// A picture of one channel in false colours.
 struct FalseColorOutput {
-  std::string channel;         ///< name in the EXR: "Z", "N.X", "tests"
-  std::optional<Scale> scale;  ///< none: from the smallest to the largest value
+  std::string channel;  ///< name in the EXR: "Z", "N.X", "tests"
   std::filesystem::path path;
 };
 
@@ -99,7 +97,6 @@ struct Options : EngineOptions {
   bool serve = false;            ///< serve a page instead of writing files
   int port = 0;                  ///< of the page; 0: any free port
   bool quiet = false, verbose = false;
-  bool no_scene_file = false;    ///< ignore a scene file beside the model
   std::optional<double> smooth;  ///< LoadOptions::smooth, in degrees
 };
 
@@ -132,8 +129,7 @@ void name_outputs(const OptionTable& table, const std::filesystem::path& scene,
 void check_light_options(const OptionTable& table, bool has_environment, RenderSettings& settings);
 
 /// Parses a command line, without the program's name, after the options of the scene file, which it
-/// overrides. Throws InputError, one line that names the option (or file and line), the value and
-/// what was expected, and Information for --help and --version.
+/// overrides. Throws InputError, and Information for --help and --version.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
 /// Returns the options of a scene, whose file was read, with other values given. Throws InputError.

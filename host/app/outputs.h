@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "host/app/console.h"
 #include "host/app/options.h"
 #include "host/film/atomic_file.h"
 #include "host/film/exr.h"
@@ -23,46 +22,13 @@ struct StagedFiles {
   std::vector<std::string> legends;  ///< of the false-colour pictures
 };
 
-/// Encodes and writes all pictures. Partial ones say so (ExrMetadata::partial). Throws InputError
-/// as AtomicFile does; then no file is left.
+/// Encodes and writes all pictures. PNGs of partial ones say so. Throws InputError as AtomicFile
+/// does; then no file is left.
 [[nodiscard]] StagedFiles stage_files(const OutputOptions& options, const Film& film,
                                       const ExrMetadata& metadata, int threads = 1);
 
-/// Returns a channel of the film in false colours. Throws InputError if the film lacks it.
-[[nodiscard]] Image8 false_color_picture(const Film& film, const FalseColorOutput& output);
-
 /// "a.exr, a.png".
 [[nodiscard]] std::string listed(const std::vector<std::filesystem::path>& paths);
-
-/// Saves an unfinished picture periodically and when a signal ends the run. The files are marked as
-/// partial.
-class Checkpointer {
- public:
-  /// The references must outlive this.
-  Checkpointer(const OutputOptions& outputs, const ExrMetadata& metadata, int threads,
-               ProgressLine& line);
-
-  /// Writes the unfinished pictures. Failures cost a warning; the next save tries again. `film` is
-  /// null if there was no memory for a copy of it.
-  void save(const Film* film);
-
-  /// Writes the unfinished pictures, unless nothing was rendered, and throws Interrupted.
-  [[noreturn]] void end_interrupted(const Film& film) const;
-
- private:
-  void write(const Film& film) const;
-
-  OutputOptions outputs_;  // without statistics
-  ExrMetadata metadata_;
-  int threads_;
-  ProgressLine& line_;
-  std::string last_trouble_;
-};
-
-/// Reads a film to resume, with the channels that this run's outputs need. `metadata`: of this
-/// run's picture. Throws InputError if the file cannot be read, has no sums, or is of another
-/// picture; only --spp may be larger.
-[[nodiscard]] Film read_unfinished(const Options& options, const ExrMetadata& metadata);
 
 /// Statistics of a finished run. Times are elapsed seconds.
 struct Report {

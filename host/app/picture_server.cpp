@@ -252,7 +252,7 @@ class PictureServer {
                           {"clocks", hit.clocks}};
     return {.type = "image/png",
             .body = encode_png(channels.empty() ? to_display(film, options.output.display)
-                                                : false_color_picture(film, channels.back())),
+                                                : false_color(film, channels.back().channel)),
             .headers = {{"X-Command", printable(command_of(options))},
                         {"X-Statistics", statistics.dump()}}};
   }

@@ -1,5 +1,4 @@
-// Picture server of --serve: a page in the browser that shows one scene with any camera, engine and
-// options.
+// Picture server of --serve: a page in the browser that shows a scene, with any options.
 #pragma once
 
 #include "host/app/options.h"

@@ -1,7 +1,9 @@
 // The program `render`: a scene in, pictures and statistics out.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
+#include <exception>
+#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,23 +58,84 @@ ExrMetadata make_metadata(const Options& options, const Framing& framing, const 
   Options same = options;
   same.camera = framing.request;
   const double height = 2.0 * camera.half_height();
+  const auto values = option_values(std::move(same), kInExr);
   ExrMetadata metadata{
-      .software = kSoftware,
-      .scene = options.scene_file.obj.filename().string(),
-      .seed = render.seed,
-      .options = option_values(std::move(same), kInExr),
+      .attributes = {values.begin(), values.end()},
       .world_to_camera = world_to_camera,
       .screen_window_width = static_cast<float>(height * render.width / render.height)};
-  metadata.options.emplace_back(kSceneAttribute, digest);
+  metadata.attributes.insert({{"software", kSoftware},
+                              {"scene", options.scene_file.obj.filename().string()},
+                              {"seed", std::to_string(render.seed)},
+                              {kSceneAttribute, digest}});
   if (render.end_sample > 0) set_samples(metadata, {render.first_sample, render.end_sample});
   return metadata;
 }
 
-/// Renders with a line of progress and checkpoints. Throws Interrupted when a signal comes.
-Film render_monitored(const Options& options, const RenderJob& job, const ExrMetadata& metadata,
+/// Reads a film to resume, with the channels that this run's outputs need. `metadata`: of this
+/// run's picture. Throws InputError if the file cannot be read, has no sums, or is of another
+/// picture; only --spp may be larger.
+Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
+  const std::string name = options.resume.string();
+  FilmFile file = read_film(options.resume);
+  Film& film = file.film;
+  const SampleRange there = samples_of(file.metadata), wanted = samples_of(metadata);
+  if (there.first != wanted.first || there.end > wanted.end) {
+    throw InputError(name + ": found samples " + to_string(there) + ", expected the first of " +
+                     to_string(wanted));
+  }
+  // A single sample is its pixel's middle, the first of several is not.
+  const auto samples = file.metadata.attributes.find("spp");
+  if (samples != file.metadata.attributes.end() && samples->second != "1") {
+    samples->second = std::to_string(options.render.samples);
+  }
+  const RenderSettings& render = options.render;
+  if (const auto difference = different_picture(file, metadata, render.width, render.height)) {
+    throw InputError(name + ": found " + *difference + " as this run has it");
+  }
+  if (film.window != render.window) {
+    throw InputError(name + ": found another crop, expected that of this run");
+  }
+  // One pixel with all fields that this run needs.
+  Film needed = make_film(1, 1, {0, 0, 1, 1}, options.output.needed_channels());
+  add_sums(needed, render.error > 0.0);
+  for_each_field(
+      [&](const FilmField& field, const auto& wanted, auto& values) {
+        if (wanted.empty()) values.clear();
+        if (!values.empty() || wanted.empty()) return;
+        throw InputError(name + ": found no channel " + std::string(field.layer) +
+                         ", expected it as --channels names it");
+      },
+      needed, film);
+  return film;
+}
+
+/// Renders with a line of progress. Saves the unfinished picture periodically, and when a signal
+/// comes, which ends in Interrupted, unless nothing was rendered.
+Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata metadata,
                       const IntersectorFactory& make_intersector, RenderStats& stats) {
   ProgressLine line(!options.quiet);
-  Checkpointer checkpointer(options.output, metadata, options.threads, line);
+  metadata.attributes[kPartialAttribute] = kPartial;
+  OutputOptions outputs = options.output;
+  outputs.stats.reset();
+  const auto write = [&](const Film& film) {
+    for (AtomicFile& file : stage_files(outputs, film, metadata, options.threads).files) {
+      file.commit();
+    }
+  };
+  const auto end_interrupted = [&](const Film& film) {
+    const int signal = interruption();
+    const auto is_miss = [](const glm::vec4& color) { return color.a == 0.0f; };
+    if (std::ranges::all_of(film.color, is_miss)) {
+      throw Interrupted(signal, "no file was changed");
+    }
+    write(film);
+    std::string outcome = "wrote what there was: " + listed(outputs.paths());
+    if (film.keeps_sums && outputs.exr) {
+      outcome += "; --resume " + outputs.exr->string() + " goes on from there";
+    }
+    throw Interrupted(signal, outcome);
+  };
+  std::string last_trouble;
   RenderMonitor monitor;
   monitor.progress = [&](double fraction) {
     // Until the first call there is nothing to save, and a signal ends the program.
@@ -80,18 +143,36 @@ Film render_monitored(const Options& options, const RenderJob& job, const ExrMet
     line.update(fraction);
     return interruption() == 0;
   };
-  if (options.output.save_seconds > 0.0) {
-    monitor.snapshot = [&](const Film* film) { checkpointer.save(film); };
-    monitor.snapshot_seconds = options.output.save_seconds;
+  if (outputs.save_seconds > 0.0) {
+    monitor.snapshot = [&](const Film* film) {  // null: there was no memory for a copy
+      std::string trouble;
+      try {
+        if (film == nullptr) throw std::bad_alloc();
+        write(*film);
+      } catch (const std::bad_alloc&) {
+        trouble = listed(outputs.paths()) + ": cannot write: out of memory";
+      } catch (const std::exception& error) {
+        trouble = error.what();
+      }
+      if (!trouble.empty() && trouble != last_trouble) {
+        line.erase();
+        print_warning(trouble + "; the render goes on, and the next save tries again");
+      }
+      last_trouble = trouble;
+    };
+    monitor.snapshot_seconds = outputs.save_seconds;
   }
   // The threads may be deep in a search: end without them.
   monitor.abandon = [&](const Film& film) {
     line.erase();
-    std::_Exit(run_guarded([&]() -> int { checkpointer.end_interrupted(film); }));
+    std::_Exit(run_guarded([&]() -> int {
+      end_interrupted(film);
+      return 0;
+    }));
   };
   Film film = render(job, make_intersector, stats, monitor);
   line.erase();
-  if (stats.cancelled) checkpointer.end_interrupted(film);
+  if (stats.cancelled) end_interrupted(film);
   if (stats.missing_threads > 0) {
     print_warning("only " + std::to_string(options.threads - stats.missing_threads) + " of " +
                   std::to_string(options.threads) + " threads could be started");
@@ -99,11 +180,9 @@ Film render_monitored(const Options& options, const RenderJob& job, const ExrMet
   return film;
 }
 
-/// Renders what the options ask for, or serves it. Prints warnings and progress on standard error
-/// and the summary on standard output, or on standard error if an output goes there. Throws
-/// InputError for errors of the user, EngineMismatch, and other exceptions for internal
-/// errors; then no output file has changed. Throws Interrupted after the unfinished pictures were
-/// written.
+/// Renders what the options ask for, or serves it. Prints the summary on standard output, or on
+/// standard error if an output goes there. No output file has changed if it throws, except for
+/// Interrupted, before which it writes the unfinished pictures.
 void run(const Options& options) {
   Stopwatch total, lap;
   Report report;
@@ -152,7 +231,12 @@ void run(const Options& options) {
   if (options.serve) return serve_pictures(options, {unframed, prepared, framing.has_ground});
 
   const auto image = make_memory_image(options, bvh);
-  if (!core_files.image.empty()) print(dump_image(core_files, *image), console);
+  if (!core_files.image.empty()) {
+    AtomicFile(core_files.image, image->bytes()).commit();
+    print("wrote " + printable(core_files.image.string()) + ", " +
+              format_count(image->lines().size(), "line") + "\n",
+          console);
+  }
   if (!core_files.wave.empty()) {
     const glm::dvec2 middle = glm::dvec2(core_files.pixel) + 0.5;
     const Ray ray = framing.camera.ray(middle.x / settings.width, middle.y / settings.height, {});

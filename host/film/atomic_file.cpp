@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <optional>
 #include <string>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -19,6 +19,17 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& path, int error) {
   throw InputError(path.string() + ": cannot write: " + std::generic_category().message(error));
+}
+
+/// Returns the absolute path of `name` with all symbolic links resolved, also to missing targets.
+fs::path target_of(const fs::path& name, std::error_code& error) {
+  constexpr int kMostLinks = 40;  // the limit of Linux
+  fs::path end = fs::absolute(name, error);
+  std::error_code ignored;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(end, ignored); ++i) {
+    end = end.parent_path() / fs::read_symlink(end, ignored);
+  }
+  return error ? fs::path() : fs::weakly_canonical(end, error);
 }
 
 /// Opens the stream `name` and returns its descriptor.
@@ -129,16 +140,6 @@ void AtomicFile::commit() {
   fail_if(sync_folder_of(target_));
 }
 
-fs::path target_of(const fs::path& name, std::error_code& error) {
-  constexpr int kMostLinks = 40;  // the limit of Linux
-  fs::path end = fs::absolute(name, error);
-  std::error_code ignored;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(end, ignored); ++i) {
-    end = end.parent_path() / fs::read_symlink(end, ignored);
-  }
-  return error ? fs::path() : fs::weakly_canonical(end, error);
-}
-
 bool is_standard_output(const fs::path& file) {
   struct stat named {
   }, standard{};
@@ -147,16 +148,12 @@ bool is_standard_output(const fs::path& file) {
 }
 
 void require_distinct(std::span<const fs::path> outputs, std::span<const fs::path> inputs) {
-  const auto resolved = [](const fs::path& path) {
-    std::error_code error;  // such paths are refused when they are read or written
-    return target_of(path, error);
-  };
+  std::error_code ignored;  // such paths are refused when they are read or written
   for (const fs::path& output : outputs) {
-    const fs::path target = resolved(output);
+    const fs::path target = target_of(output, ignored);
     for (const fs::path& input : inputs) {
-      std::error_code ignored;  // missing files are distinct
       if (fs::equivalent(output, input, ignored) ||
-          (!target.empty() && target == resolved(input))) {
+          (!target.empty() && target == target_of(input, ignored))) {
         throw InputError(output.string() + ": would overwrite " + input.string());
       }
     }

@@ -7,14 +7,12 @@
 #include <optional>
 #include <span>
 #include <string_view>
-#include <system_error>
 
 namespace raygate {
 
 /// A file that is written under a temporary name in the target's folder and synced to disk;
-/// commit() renames it to the target in one step. So the target is the complete old or the complete
-/// new file at any time and after any failure, and several files can be staged before the first is
-/// replaced.
+/// commit() renames it to the target. So the target is the complete old or the complete new file
+/// after any failure, and several files can be staged before the first is replaced.
 ///
 /// Symbolic links are followed, also to missing targets; the permissions of an old file are kept.
 /// Other hard links of the old file keep its contents. Bytes for a device, a pipe or standard
@@ -54,10 +52,6 @@ class AtomicFile {
   int descriptor_ = -1;                ///< -1: closed
 };
 
-/// Returns the absolute path of `name` with all symbolic links resolved, also to missing targets.
-[[nodiscard]] std::filesystem::path target_of(const std::filesystem::path& name,
-                                              std::error_code& error);
-
 /// Throws InputError if one of `outputs` is, or will be, the same file as one of `inputs`, under
 /// any name: "a.png: would overwrite scene.mtl".
 void require_distinct(std::span<const std::filesystem::path> outputs,
@@ -66,9 +60,8 @@ void require_distinct(std::span<const std::filesystem::path> outputs,
 /// Returns whether `file` is standard output.
 [[nodiscard]] bool is_standard_output(const std::filesystem::path& file);
 
-/// Throws the InputError that an AtomicFile for `path` would throw now: the folder is missing, no
-/// permission, a folder of that name, a pipe without a reader. Changes nothing. Call it before
-/// hours of work whose result goes to `path`.
+/// Throws the InputError that an AtomicFile for `path` would throw now, before hours of work whose
+/// result goes there. Changes nothing.
 void require_writable(const std::filesystem::path& path);
 
 }  // namespace raygate

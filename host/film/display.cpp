@@ -11,9 +11,9 @@
 #include <limits>
 #include <new>
 #include <stdexcept>
-#include <string_view>
 
 #include "host/base/elementary.h"
+#include "host/base/input_error.h"
 #include "host/base/threads.h"
 
 namespace raygate {
@@ -24,63 +24,27 @@ constexpr std::uint32_t kViridis[] = {
     0x1F9F88, 0x28AE80, 0x3EBC74, 0x5DC963, 0x82D34C, 0xABDC32, 0xD5E21A, 0xFDE725};  // 0xRRGGBB
 constexpr Rgb8 kNothing{0, 0, 0};
 
-bool holds_labels(const Channel& channel) {
-  return channel.name == "id" || channel.name == "objectId";
-}
-
 double gain_of(double exposure) { return binary_power(std::clamp(exposure, -126.0, 127.0)); }
 
-/// Writes a PNG file with libpng. Errors are C++ exceptions.
-class PngWriter {
- public:
-  explicit PngWriter(std::string& bytes)
-      : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, throw_error, ignore_warning)),
-        info_(png_ != nullptr ? png_create_info_struct(png_) : nullptr) {
-    if (info_ == nullptr) {
-      png_destroy_write_struct(&png_, nullptr);
-      throw std::bad_alloc();
-    }
-    png_set_write_fn(png_, &bytes, append, nullptr);
-  }
-  PngWriter(const PngWriter&) = delete;
-  PngWriter& operator=(const PngWriter&) = delete;
-  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
+// Callbacks of libpng. Errors are C++ exceptions.
+void append(png_structp png, png_bytep data, std::size_t size) {
+  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<char*>(data), size);
+}
+[[noreturn]] void throw_error(png_structp, png_const_charp message) {
+  if (std::strstr(message, "emory") != nullptr) throw std::bad_alloc();
+  throw std::runtime_error(std::string("libpng: ") + message);
+}
+void ignore_warning(png_structp, png_const_charp) {}
 
-  void write_header(const Image8& picture) {
-    const PixelRect& window = picture.window;
-    // By default libpng refuses sides of more than a million pixels.
-    png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_set_IHDR(png_, info_, static_cast<png_uint_32>(window.width()),
-                 static_cast<png_uint_32>(window.height()), 8, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
-    if (window.width() != picture.width || window.height() != picture.height) {
-      png_set_oFFs(png_, info_, window.x0, window.y0, PNG_OFFSET_PIXEL);
-    }
-    for (const auto& [name, words] : picture.texts) {
-      png_text text{};
-      text.compression = PNG_TEXT_COMPRESSION_NONE;
-      text.key = const_cast<char*>(name.c_str());
-      text.text = const_cast<char*>(words.c_str());
-      png_set_text(png_, info_, &text, 1);
-    }
-    png_write_info(png_, info_);
-  }
-  void write_row(const Rgb8* row) { png_write_row(png_, row->data()); }
-  void finish() { png_write_end(png_, info_); }
+struct PngStructs {
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, throw_error, ignore_warning);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
 
- private:
-  static void append(png_structp png, png_bytep data, std::size_t size) {
-    static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<char*>(data), size);
-  }
-  [[noreturn]] static void throw_error(png_structp, png_const_charp message) {
-    if (std::strstr(message, "emory") != nullptr) throw std::bad_alloc();
-    throw std::runtime_error(std::string("libpng: ") + message);
-  }
-  static void ignore_warning(png_structp, png_const_charp) {}
-
-  png_structp png_;
-  png_infop info_;
+  PngStructs() = default;
+  PngStructs(const PngStructs&) = delete;
+  PngStructs& operator=(const PngStructs&) = delete;
+  ~PngStructs() { png_destroy_write_struct(&png, &info); }
 };
 
 }  // namespace
@@ -115,15 +79,36 @@ Image8 to_display(const Film& film, const DisplayOptions& options) {
 
 std::string encode_png(const Image8& picture) {
   static_assert(sizeof(Rgb8) == 3, "rows go to libpng as they are");
+  const PixelRect& window = picture.window;
+  const PngStructs structs;
+  const png_structp png = structs.png;
+  const png_infop info = structs.info;
+  if (info == nullptr) throw std::bad_alloc();
   std::string bytes;
-  PngWriter writer(bytes);
-  writer.write_header(picture);
-  const auto width = static_cast<std::size_t>(picture.window.width());
+  png_set_write_fn(png, &bytes, append, nullptr);
+  // By default libpng refuses sides of more than a million pixels.
+  png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(window.width()),
+               static_cast<png_uint_32>(window.height()), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (window.width() != picture.width || window.height() != picture.height) {
+    png_set_oFFs(png, info, window.x0, window.y0, PNG_OFFSET_PIXEL);
+  }
+  for (const auto& [name, words] : picture.texts) {
+    png_text text{};
+    text.compression = PNG_TEXT_COMPRESSION_NONE;
+    text.key = const_cast<char*>(name.c_str());
+    text.text = const_cast<char*>(words.c_str());
+    png_set_text(png, info, &text, 1);
+  }
+  png_write_info(png, info);
+  const auto width = static_cast<std::size_t>(window.width());
   for (std::size_t start = 0; start < picture.pixels.size(); start += width) {
     checkpoint();
-    writer.write_row(picture.pixels.data() + start);
+    png_write_row(png, picture.pixels[start].data());
   }
-  writer.finish();
+  png_write_end(png, info);
   return bytes;
 }
 
@@ -152,49 +137,44 @@ Rgb8 label_color(std::uint32_t label) {
   return color;
 }
 
-Scale scale_of(const Channel& channel, std::size_t count) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Scale scale{kInfinity, -kInfinity};
-  constexpr const char* kFromZero[] = {"tests", "doubts", "samples", "error"};
-  if (std::ranges::find(kFromZero, channel.name) != std::end(kFromZero)) scale = {0.0, 0.0};
-  for (std::size_t i = 0; i < count; ++i) {
-    const double value = value_at(channel, i);
-    if (!std::isfinite(value)) continue;
-    scale.low = std::min(scale.low, value);
-    scale.high = std::max(scale.high, value);
+Image8 false_color(const Film& film, const std::string& name) {
+  const std::vector<Channel> channels = channels_of(film);
+  const auto channel = std::ranges::find(channels, name, &Channel::name);
+  if (channel == channels.end()) {
+    throw InputError("--false-colour: found no channel " + name +
+                     " in the picture, expected one that it has");
   }
-  return scale.low <= scale.high ? scale : Scale{};
-}
-
-Image8 false_color(int width, int height, const PixelRect& window, const Channel& channel,
-                   const std::optional<Scale>& wanted) {
-  Image8 picture{width, height, window, {}, {}};
-  const auto count =
-      static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height());
+  Image8 picture{film.width, film.height, film.window, {}, {}};
+  const std::size_t count = film.color.size();
   picture.pixels.reserve(count);
-  if (holds_labels(channel)) {
+  if (name == "id" || name == "objectId") {
     for (std::size_t i = 0; i < count; ++i) {
-      const auto label = static_cast<std::uint32_t>(value_at(channel, i));
+      const auto label = static_cast<std::uint32_t>(value_at(*channel, i));
       picture.pixels.push_back(label == kNoPrimitive ? kNothing : label_color(label));
     }
-    picture.texts.emplace_back("Scale", channel.name + ": a colour for each number");
+    picture.texts.emplace_back("Scale", name + ": a colour for each number");
     return picture;
   }
-  const Scale scale = wanted.value_or(scale_of(channel, count));
-  const double extent = scale.high - scale.low;
+  constexpr const char* kFromZero[] = {"tests", "doubts", "samples", "error"};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const bool is_from_zero = std::ranges::find(kFromZero, name) != std::end(kFromZero);
+  double low = is_from_zero ? 0.0 : kInfinity, high = is_from_zero ? 0.0 : -kInfinity;
   for (std::size_t i = 0; i < count; ++i) {
-    const double value = value_at(channel, i);
-    const double fraction = extent > 0.0 ? (value - scale.low) / extent : 0.0;
+    const double value = value_at(*channel, i);
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (low > high) low = high = 0.0;  // there is no finite value
+  for (std::size_t i = 0; i < count; ++i) {
+    const double value = value_at(*channel, i);
+    const double fraction = high > low ? (value - low) / (high - low) : 0.0;
     picture.pixels.push_back(std::isfinite(value) ? viridis(fraction) : kNothing);
   }
-  picture.texts.emplace_back("Scale", legend(channel.name, scale));
+  char legend[96];
+  std::snprintf(legend, sizeof legend, ": %.6g (dark violet) to %.6g (yellow)", low, high);
+  picture.texts.emplace_back("Scale", name + legend);
   return picture;
-}
-
-std::string legend(const std::string& name, const Scale& scale) {
-  char text[96];
-  std::snprintf(text, sizeof text, ": %.6g (dark violet) to %.6g (yellow)", scale.low, scale.high);
-  return name + text;
 }
 
 }  // namespace raygate

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,35 +44,21 @@ struct DisplayOptions {
 /// Returns the film over black. Each code is the nearest to the exact value.
 [[nodiscard]] Image8 to_display(const Film& film, const DisplayOptions& options = {});
 
-/// Returns the bytes of a PNG file of `picture`: 24-bit sRGB; the offset of a crop is in the oFFs
-/// chunk, the texts are tEXt chunks. Equal pictures give equal bytes. Throws std::runtime_error if
-/// libpng fails.
+/// Returns a PNG file, 24-bit sRGB, with the offset of a crop in the oFFs chunk and texts in tEXt
+/// chunks. Equal pictures give equal bytes. Throws std::runtime_error if libpng fails.
 [[nodiscard]] std::string encode_png(const Image8& picture);
 
-/// The range of a colour scale, from `low` (dark violet) to `high` (yellow).
-struct Scale {
-  double low = 0.0, high = 0.0;
-};
-
-/// Returns the colour at `fraction` of the scale, clamped to [0, 1]: viridis, by S. van der Walt
-/// and N. Smith for matplotlib (CC0), interpolated from 17 of its 256 colours. It is perceptually
-/// uniform, also for the colour-blind and in grey.
+/// Returns the colour at `fraction`, clamped to [0, 1], of viridis, by S. van der Walt and N. Smith
+/// for matplotlib (CC0), which is perceptually uniform, interpolated from 17 of its 256 colours.
 [[nodiscard]] Rgb8 viridis(double fraction);
 
 /// Returns a colour for an id; neighbouring ids have very different colours.
 [[nodiscard]] Rgb8 label_color(std::uint32_t label);
 
-/// Returns the range of the finite values of `count` pixels; 0 to 0 if there are none. Ranges of
-/// counts (tests, doubts, samples) and errors start at 0.
-[[nodiscard]] Scale scale_of(const Channel& channel, std::size_t count);
-
-/// Returns a channel of `window`, within a `width` x `height` frame, in colours of `scale` or of
-/// scale_of(). Values that are not finite are black. Channels id and objectId have label colours,
-/// and misses are black. The picture's text "Scale" is the legend().
-[[nodiscard]] Image8 false_color(int width, int height, const PixelRect& window,
-                                 const Channel& channel, const std::optional<Scale>& scale = {});
-
-/// Returns a legend: "tests: 0 (dark violet) to 132 (yellow)".
-[[nodiscard]] std::string legend(const std::string& name, const Scale& scale);
+/// Returns a channel of the film in viridis colours of the range of its finite values, where ranges
+/// of counts (tests, doubts, samples) and errors start at 0. Values that are not finite are black.
+/// Channels id and objectId have label colours, and misses are black. The picture's text "Scale" is
+/// a legend: "tests: 0 (dark violet) to 132 (yellow)". Throws InputError for a film without it.
+[[nodiscard]] Image8 false_color(const Film& film, const std::string& channel);
 
 }  // namespace raygate

@@ -93,8 +93,7 @@ class Reader {
     return found;
   }
 
-  /// Reads a row: run-length encoded by component if its first bytes say so, otherwise pixel by
-  /// pixel.
+  /// Reads a row: run-length encoded by component if its first bytes say so, otherwise flat.
   void read_row(std::vector<Rgbe>& row) {
     const std::size_t width = row.size();
     if (width < 8 || width >= 0x8000 || !rest_.starts_with("\2\2")) {
@@ -126,12 +125,6 @@ class Reader {
   double exposure_ = 1.0;
 };
 
-/// Returns the direction ahead for this up direction: perpendicular to `up`, close to -z or +y.
-glm::dvec3 ahead_of(const glm::dvec3& up) {
-  const glm::dvec3 across = glm::cross(up, glm::dvec3(1.0, 0.0, 0.0));
-  return glm::length(across) > 1e-6 ? glm::normalize(across) : glm::dvec3(0.0, 0.0, -1.0);
-}
-
 }  // namespace
 
 EnvironmentMap read_hdr(const std::filesystem::path& file) {
@@ -148,7 +141,10 @@ void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, S
   for (glm::vec3& texel : map.texels) texel = {usable(texel.x), usable(texel.y), usable(texel.z)};
   map.strength = static_cast<float>(setting.strength);
   map.up = glm::normalize(up);
-  const glm::dvec3 ahead = ahead_of(map.up);
+  // Perpendicular to `up`, close to -z or +y.
+  const glm::dvec3 across = glm::cross(map.up, glm::dvec3(1.0, 0.0, 0.0));
+  const glm::dvec3 ahead =
+      glm::length(across) > 1e-6 ? glm::normalize(across) : glm::dvec3(0.0, 0.0, -1.0);
   const auto turn = sine_cosine(setting.rotation / 360.0);
   map.ahead = turn.cosine * ahead + turn.sine * glm::cross(map.up, ahead);
   scene.files.push_back(setting.file);

@@ -14,10 +14,9 @@ namespace raygate {
 /// is damaged, or has more than 2^26 pixels.
 [[nodiscard]] EnvironmentMap read_hdr(const std::filesystem::path& file);
 
-/// Reads an environment map, OpenEXR (channels R, G, B) or Radiance HDR by its first bytes, into
-/// scene.environment. `up` is the scene's up vector, not zero. The centre of the map points ahead:
-/// towards -z if +y is up, towards +y if +z is up. Negative values and NaN become 0; values are
-/// limited to 1e30. Throws InputError as read_exr and read_hdr.
+/// Reads an environment map, OpenEXR (channels R, G, B) or Radiance HDR by its first bytes. `up` is
+/// not zero. The centre of the map points towards -z if +y is up, towards +y if +z is up. Negative
+/// values and NaN become 0; values are limited to 1e30. Throws InputError as read_exr and read_hdr.
 void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, Scene& scene);
 
 }  // namespace raygate

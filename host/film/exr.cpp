@@ -17,16 +17,17 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <glm/gtc/type_ptr.hpp>
 #include <new>
-#include <string>
+#include <span>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "host/base/input.h"
 #include "host/base/input_error.h"
@@ -61,15 +62,6 @@ Imf::FrameBuffer slices_of(const Film& film) {
   return slices;
 }
 
-/// Converts a matrix for column vectors (glm) to one for row vectors (Imath).
-Imath::M44f to_imath(const glm::mat4& m) {
-  Imath::M44f result;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) result[i][j] = m[i][j];
-  }
-  return result;
-}
-
 /// Returns the header of a file with these rows of the film.
 Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const PixelRect& window) {
   Imf::Header header(Imath::Box2i({0, 0}, {film.width - 1, film.height - 1}),
@@ -77,21 +69,18 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const Pix
   header.screenWindowWidth() = metadata.screen_window_width;
   header.compression() = Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = 2;  // 1 to 3 % larger than at level 4, in 3/4 of the time
-  header.insert("software", Imf::StringAttribute(metadata.software));
-  header.insert("scene", Imf::StringAttribute(metadata.scene));
-  header.insert("seed", Imf::StringAttribute(std::to_string(metadata.seed)));
-  for (const auto& [name, value] : metadata.options) {
-    header.insert(name, Imf::StringAttribute(value));
+  for (const auto& [name, text] : metadata.attributes) {
+    header.insert(name, Imf::StringAttribute(text));
   }
-  if (metadata.partial) header.insert("partial", Imf::StringAttribute(kPartial));
-  Imf::addWorldToCamera(header, to_imath(metadata.world_to_camera));
+  // A matrix for column vectors, stored by columns, is one for row vectors, stored by rows.
+  Imath::M44f matrix;
+  std::memcpy(matrix.x, glm::value_ptr(metadata.world_to_camera), sizeof matrix.x);
+  Imf::addWorldToCamera(header, matrix);
   for (const Channel& channel : channels_of(film)) {
     header.channels().insert(channel.name, Imf::Channel(type_of(channel)));
   }
   return header;
 }
-
-std::int64_t side(int low, int high) { return std::int64_t{high} - low + 1; }
 
 /// Returns the data window.
 PixelRect window_of(const Imf::Header& header) {
@@ -99,22 +88,16 @@ PixelRect window_of(const Imf::Header& header) {
   return {data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};
 }
 
-/// Returns channel names as "R, G, B, Z".
-std::string names_in(const Imf::ChannelList& channels) {
-  std::string names;
-  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
-    names += (names.empty() ? "" : ", ") + std::string(channel.name());
-  }
-  return names;
-}
-
 void require_channels(const std::filesystem::path& file, const Imf::ChannelList& channels,
                       std::span<const std::string> names) {
   for (const std::string& name : names) {
     const Imf::Channel* const found = channels.findChannel(name);
     if (found == nullptr) {
-      throw InputError(file.string() + ": no channel " + name + "; the file has " +
-                       names_in(channels));
+      std::string there;
+      for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+        there += (there.empty() ? "" : ", ") + std::string(channel.name());
+      }
+      throw InputError(file.string() + ": no channel " + name + "; the file has " + there);
     }
     if (found->xSampling != 1 || found->ySampling != 1) {
       throw InputError(file.string() + ": channel " + name +
@@ -166,6 +149,7 @@ auto with_file(const std::filesystem::path& path, const Read& read) {
   try {
     Imf::InputFile file(path.c_str(), 0);
     const Imath::Box2i& data = file.header().dataWindow();
+    const auto side = [](int low, int high) { return std::int64_t{high} - low + 1; };
     if (side(data.min.x, data.max.x) * side(data.min.y, data.max.y) > kMaxPixels) {
       throw InputError(path.string() + ": more than " + std::to_string(kMaxPixels) + " pixels");
     }
@@ -192,9 +176,8 @@ Film film_like(const std::filesystem::path& path, const Imf::Header& header) {
     throw InputError(path.string() +
                      ": found no sums of samples, expected a picture of `render --channels sums`");
   }
-  const Imath::Box2i& frame = header.displayWindow();
-  Film film = make_film(static_cast<int>(side(frame.min.x, frame.max.x)),
-                        static_cast<int>(side(frame.min.y, frame.max.y)), window_of(header),
+  const Imath::V2i& last = header.displayWindow().max;  // from 0,0
+  Film film = make_film(last.x + 1, last.y + 1, window_of(header),
                         {.position = has("P.X"),
                          .albedo = has("Albedo.R"),
                          .object = has("objectId"),
@@ -213,26 +196,11 @@ ExrMetadata metadata_of(const Imf::Header& header) {
   ExrMetadata metadata;
   for (auto at = header.begin(); at != header.end(); ++at) {
     const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute());
-    if (text == nullptr) continue;
-    const std::string name = at.name();
-    const std::string& value = text->value();
-    if (name == "software") {
-      metadata.software = value;
-    } else if (name == "scene") {
-      metadata.scene = value;
-    } else if (name == "seed") {
-      std::from_chars(value.data(), value.data() + value.size(), metadata.seed);
-    } else if (name == "partial") {
-      metadata.partial = true;
-    } else {
-      metadata.options.emplace_back(name, value);
-    }
+    if (text != nullptr) metadata.attributes[at.name()] = text->value();
   }
   if (Imf::hasWorldToCamera(header)) {
     const Imath::M44f& m = Imf::worldToCamera(header);
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) metadata.world_to_camera[i][j] = m[i][j];
-    }
+    std::memcpy(glm::value_ptr(metadata.world_to_camera), m.x, sizeof m.x);
   }
   metadata.screen_window_width = header.screenWindowWidth();
   return metadata;

@@ -1,12 +1,10 @@
 // OpenEXR files: writes films with all channels; reads films and other images.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <map>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "host/film/film.h"
 #include "host/scene/scene.h"
@@ -16,37 +14,24 @@ namespace raygate {
 /// Attributes of an EXR file. They describe the scene, camera and options of the picture only.
 /// Times, engine and threads belong into `render --stats`, so that equal pictures are equal files.
 struct ExrMetadata {
-  std::string software;    ///< attribute "software": name and version
-  std::string scene;       ///< attribute "scene": file name without folders
-  std::uint64_t seed = 0;  ///< attribute "seed", in decimal
-  /// More attributes: the options of `render` that the picture depends on.
-  std::vector<std::pair<std::string, std::string>> options{};
+  /// Texts: "software" (name and version), "scene" (file name without folders), "seed", and the
+  /// options of `render` that the picture depends on. kPartialAttribute if the render is
+  /// unfinished: pixels without a sample are misses, others may have too few samples.
+  std::map<std::string, std::string> attributes{};
   /// Attribute "worldToCamera", as OpenEXR defines it: +x to the right of the picture, +y up,
   /// +z along the view. Here for column vectors; the file has it for row vectors.
   glm::mat4 world_to_camera{1.0f};
   /// Attribute "screenWindowWidth": width of the frame in the plane at distance 1.
   float screen_window_width = 1.0f;
-  /// The render is unfinished: pixels without a sample are misses, others may have too few samples.
-  /// Attribute "partial" with the text kPartial; absent otherwise.
-  bool partial = false;
 };
 
-inline constexpr const char* kPartial = "not finished when it was saved";
+inline constexpr const char *kPartialAttribute = "partial",
+                            *kPartial = "not finished when it was saved";
 
-/// Returns the bytes of an OpenEXR scan-line file of `film`, ZIP compressed (lossless):
-///   R G B A        float   scene-linear, premultiplied
-///   Z              float   distance along the camera's axis, +infinity for a miss
-///   N.X N.Y N.Z    float   unit normal in world axes, 0 for a miss
-///   id             uint    triangle index, 4294967295 for a miss
-/// and, if the film has them,
-///   P.X P.Y P.Z    float   first hit point in world axes, 0 for a miss
-///   Albedo.R .G .B float   diffuse colour, 0 for a miss
-///   objectId       uint    object index, 4294967295 for a miss
-///   tests doubts   uint    counts
-///   samples error  uint, float    number of samples and estimated error (FilmSums)
-/// The display window is the frame, the data window the film's window. Equal arguments give equal
-/// bytes, for any number of threads. The bytes are read back and checked, because the library does
-/// not report all failures to allocate memory; then std::bad_alloc is thrown.
+/// Returns an OpenEXR scan-line file of `film`, ZIP compressed (lossless), with the channels of
+/// channels_of(). The display window is the frame, the data window the film's. Equal arguments give
+/// equal bytes, for any number of threads. The bytes are read back and checked, because the library
+/// does not report all failures to allocate memory; then std::bad_alloc is thrown.
 [[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata,
                                      int threads = 1);
 

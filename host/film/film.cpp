@@ -1,9 +1,7 @@
 #include "host/film/film.h"
 
-#include <algorithm>
 #include <cstring>
 #include <numbers>
-#include <string>
 #include <type_traits>
 
 #include "host/base/elementary.h"

@@ -1,5 +1,4 @@
-// The film: the arrays of a rendered image, the exact sums behind them, and reconstruction filters,
-// sampled by their weight.
+// The film: the arrays of a rendered image, their exact sums, and reconstruction filters.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +9,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace raygate {
@@ -109,8 +106,7 @@ struct FilmSums {
   std::vector<std::uint32_t> samples;  ///< number of samples
   std::vector<std::array<ExactAccumulator, 4>> color;
   std::vector<std::array<ExactAccumulator, 3>> albedo;  ///< if the film has albedo
-  // Adaptive sampling only, in steps of an 8-bit display, as of the last check (see
-  // render/adaptive_sampling.h).
+  // Adaptive sampling only, in steps of an 8-bit display (see render/adaptive_sampling.h):
   std::vector<float> error;  ///< estimated standard error; infinite until there is an estimate
   std::vector<float> shown;  ///< display steps at the last check
 };
@@ -149,8 +145,7 @@ struct Film {
   std::vector<glm::vec3> position;    ///< of the first surface, in world axes; 0 for a miss
   std::vector<glm::vec3> albedo;      ///< diffuse colour of the first surface; 0 for a miss
   std::vector<std::uint32_t> object;  ///< index into Scene::objects; kNoPrimitive for a miss
-  /// Hit tests of all rays of the pixel's paths. They depend on the engine and the window, not on
-  /// the number of threads.
+  /// Hit tests of all rays of the pixel's paths. They depend on the engine and the window.
   std::vector<std::uint32_t> tests;
   std::vector<std::uint32_t> doubts;  ///< tests that binary32 could not decide
   /// Present while rendering continues; written to files if `keeps_sums`.
@@ -163,8 +158,7 @@ struct Film {
   }
 };
 
-/// An array of a film and its name in files: "N" with the parts "XYZ" has the channels N.X, N.Y,
-/// N.Z.
+/// An array of a film and its name in files: "N" with the parts "XYZ" has channels N.X, N.Y, N.Z.
 struct FilmField {
   std::string_view layer, parts = {};
   bool is_sum = false;  ///< written to files only if the film keeps its sums
@@ -192,8 +186,7 @@ static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
                   sizeof(Film) == 14 * sizeof(std::vector<int>) + 2 * sizeof(PixelRect),
               "for_each_field() has them all");
 
-/// Returns a film of `window` in which every pixel is a miss, with the optional channels of
-/// `extra`, but without sums.
+/// Returns a film in which every pixel is a miss, with the optional channels of `extra`, no sums.
 [[nodiscard]] Film make_film(int width, int height, const PixelRect& window,
                              const ExtraChannels& extra);
 
@@ -210,8 +203,7 @@ struct Channel {
   std::size_t stride;  ///< bytes from one pixel to the next; rows follow without a gap
 };
 
-/// Returns the channels of all arrays of the film; the sums only if it keeps its sums, `samples`
-/// also if it has an error.
+/// Returns the channels of all arrays; sums only if it keeps them, `samples` also with an error.
 [[nodiscard]] std::vector<Channel> channels_of(const Film& film);
 
 /// Returns the channel's value at array index `index`; exact.
@@ -229,8 +221,7 @@ enum class ReconstructionFilter {
 };
 
 /// Returns the position of a sample in pixels from the pixel's centre, for a point of the unit
-/// square. The filter is importance sampled: all samples of a pixel have equal weight, and pixels
-/// are independent, so that a window is a part of the whole picture.
+/// square. The filter is importance sampled: all samples of a pixel have equal weight.
 [[nodiscard]] glm::dvec2 filter_offset(ReconstructionFilter filter, const glm::dvec2& u);
 
 /// Returns the probability density of filter_offset() for uniform `u`, per square pixel.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <map>
 
 #include "host/base/input_error.h"
 #include "host/base/measure.h"
@@ -11,17 +10,11 @@
 namespace raygate {
 namespace {
 
-const std::string* option_of(const ExrMetadata& metadata, const std::string& name) {
-  const auto at =
-      std::ranges::find(metadata.options, name, &std::pair<std::string, std::string>::first);
-  return at == metadata.options.end() ? nullptr : &at->second;
-}
-
 /// Throws InputError if a part is not finished or does not match the first one.
 void require_like(const NamedFilm& part, const NamedFilm& first) {
   const auto& [name, file] = part;
   const Film& other = first.second.film;
-  if (file.metadata.partial) {
+  if (file.metadata.attributes.contains(kPartialAttribute)) {
     throw InputError(name + ": found a picture that is not finished, expected a whole one; " +
                      "`render --resume` finishes it");
   }
@@ -67,15 +60,14 @@ void add_pixel(Film& film, std::size_t i, const Film& part, std::size_t k, bool 
 
 }  // namespace
 
-std::optional<SampleRange> parse_sample_range(const std::string& text) {
+SampleRange parse_sample_range(const std::string& text) {
   SampleRange range;
   const char *at = text.data(), *const end = at + text.size();
   const auto first = std::from_chars(at, end, range.first);
-  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ':') return std::nullopt;
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ':') return {};
   const auto last = std::from_chars(first.ptr + 1, end, range.end);
-  if (last.ec != std::errc() || last.ptr != end) return std::nullopt;
-  if (range.first < 0 || range.first >= range.end) return std::nullopt;
-  return range;
+  const bool is_range = last.ec == std::errc() && last.ptr == end && range.first >= 0;
+  return is_range && range.first < range.end ? range : SampleRange{};
 }
 
 std::string to_string(const SampleRange& range) {
@@ -83,39 +75,32 @@ std::string to_string(const SampleRange& range) {
 }
 
 SampleRange samples_of(const ExrMetadata& metadata) {
-  const std::string* const range = option_of(metadata, kSamplesAttribute);
-  const std::string* const all = option_of(metadata, "spp");
-  if (range != nullptr) return parse_sample_range(*range).value_or(SampleRange{});
-  return all == nullptr ? SampleRange{} : parse_sample_range("0:" + *all).value_or(SampleRange{});
+  const auto& attributes = metadata.attributes;
+  const auto part = attributes.find(kSamplesAttribute), all = attributes.find("spp");
+  if (part != attributes.end()) return parse_sample_range(part->second);
+  return all == attributes.end() ? SampleRange{} : parse_sample_range("0:" + all->second);
 }
 
 void set_samples(ExrMetadata& metadata, const SampleRange& range) {
-  std::erase_if(metadata.options,
-                [](const auto& option) { return option.first == kSamplesAttribute; });
-  const SampleRange all = samples_of(metadata);
-  if (range.first == all.first && range.end == all.end) return;
-  metadata.options.emplace_back(kSamplesAttribute, to_string(range));
+  metadata.attributes.erase(kSamplesAttribute);
+  if (range == samples_of(metadata)) return;
+  metadata.attributes[kSamplesAttribute] = to_string(range);
 }
 
 std::optional<std::string> different_picture(const FilmFile& found, const ExrMetadata& expected,
                                              int width, int height) {
-  std::map<std::string, std::pair<std::string, std::string>> facts;  // found, expected
-  const auto add_facts = [&](const ExrMetadata& metadata, auto side) {
-    for (const auto& [name, value] : metadata.options)
-      (facts[name].*side = name).append(" ").append(value);
-    facts["software"].*side = "software " + metadata.software;
-    facts["scene"].*side = "scene " + metadata.scene;
-    facts["seed"].*side = "seed " + std::to_string(metadata.seed);
-  };
-  using Pair = std::pair<std::string, std::string>;
-  add_facts(found.metadata, &Pair::first);
-  add_facts(expected, &Pair::second);
-  facts.erase(kSamplesAttribute);
-  for (const auto& [name, both] : facts) {
-    if (both.first == both.second) continue;
+  const auto &here = found.metadata.attributes, &there = expected.attributes;
+  auto names = here;
+  names.insert(there.begin(), there.end());
+  for (const char* name : {kSamplesAttribute, kPartialAttribute}) names.erase(name);
+  for (const auto& [name, ignored] : names) {
+    const auto fact = [&name = name](const auto& attributes) {
+      const auto at = attributes.find(name);
+      return at == attributes.end() ? "no " + name : name + " " + at->second;
+    };
+    if (fact(here) == fact(there)) continue;
     if (name == kSceneAttribute) return "another geometry, material or light, expected those";
-    const auto text = [&](const std::string& fact) { return fact.empty() ? "no " + name : fact; };
-    return text(both.first) + ", expected " + text(both.second);
+    return fact(here) + ", expected " + fact(there);
   }
   if (found.film.width != width || found.film.height != height) {
     return "another frame, expected that";
@@ -183,7 +168,7 @@ FilmFile merge(std::vector<NamedFilm> parts) {
     if (!film.albedo.empty()) film.albedo[i] = mean_of(film.sums.albedo[i], film.sums.samples[i]);
   }
   set_samples(whole.metadata, all);
-  film.keeps_sums = option_of(whole.metadata, kSamplesAttribute) != nullptr;
+  film.keeps_sums = whole.metadata.attributes.contains(kSamplesAttribute);
   return whole;
 }
 

@@ -13,10 +13,11 @@ namespace raygate {
 /// Samples [first, end) of each pixel.
 struct SampleRange {
   int first = 0, end = 0;
+  friend bool operator==(const SampleRange&, const SampleRange&) = default;
 };
 
-/// Parses "A:B"; returns none unless 0 <= A < B.
-[[nodiscard]] std::optional<SampleRange> parse_sample_range(const std::string& text);
+/// Parses "A:B"; returns an empty range unless 0 <= A < B.
+[[nodiscard]] SampleRange parse_sample_range(const std::string& text);
 [[nodiscard]] std::string to_string(const SampleRange& range);
 
 /// Attribute of a file that has only some of the samples of "spp".

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "host/bvh/bvh.h"
 #include "host/exact/ieee_floats.h"

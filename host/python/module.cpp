@@ -10,6 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -33,13 +36,14 @@
 #include "host/intersect/unit/hit_tester.h"
 #include "host/intersect/unit/unit_intersector.h"
 #include "host/light/prepared_scene.h"
-#include "host/python/float_reference.h"
 #include "host/render/renderer.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table.h"
 #include "host/trace/tracer.h"
+#include "sim/fp/float_format.h"
+#include "sim/test/fp/oracle.h"
 
 namespace nb = nanobind;
 
@@ -50,6 +54,16 @@ using Vectors3 = nb::ndarray<nb::ro, nb::shape<-1, 3>, nb::device::cpu, nb::c_co
 using Numbers = nb::ndarray<nb::ro, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
 using Three = std::array<double, 3>;
 using Texts = nb::typed<nb::list, nb::str>;
+
+/// Returns an array of data that `owner` keeps alive.
+template <class T>
+nb::ndarray<nb::numpy, T> array_of(const std::shared_ptr<const void>& owner, const void* data,
+                                   std::initializer_list<std::size_t> shape) {
+  using Owner = std::shared_ptr<const void>;
+  const nb::capsule capsule(new Owner(owner),
+                            [](void* p) noexcept { delete static_cast<Owner*>(p); });
+  return {const_cast<void*>(data), shape, capsule};
+}
 
 /// Keyword arguments and their values as text.
 using Settings = std::vector<std::pair<std::string, std::string>>;
@@ -322,9 +336,8 @@ class PythonScene {
     channels["albedo"] = array_of<float>(film, film->albedo.data(), {h, w, 3});
     channels["triangle"] = array_of<std::uint32_t>(film, film->primitive.data(), {h, w});
     channels["object"] = array_of<std::uint32_t>(film, film->object.data(), {h, w});
-    ExrMetadata metadata;
-    metadata.software = kSoftware;
-    metadata.seed = chosen.seed;
+    ExrMetadata metadata{
+        {{"software", kSoftware}, {"scene", ""}, {"seed", std::to_string(chosen.seed)}}};
     return {std::move(channels), PythonFilm{film, std::move(metadata)}};
   }
 
@@ -349,6 +362,77 @@ class PythonScene {
   std::unique_ptr<Bvh> bvh_;
   std::unique_ptr<PreparedScene> prepared_;
 };
+
+// Arithmetic of raygate.float by the reference model of the simulated float cores.
+
+template <class T>
+using FloatColumn = nb::ndarray<const T, nb::ndim<1>, nb::device::cpu, nb::c_contig>;
+
+template <class T>
+using Owned = nb::ndarray<nb::numpy, T, nb::ndim<1>>;
+using Columns = std::pair<Owned<std::uint32_t>, Owned<std::uint8_t>>;
+
+/// Returns the bits and the flags of compute(0), compute(1) and so on.
+template <class Compute>
+Columns float_columns(std::size_t count, const Compute& compute) {
+  constexpr std::size_t kCheckpointOperations = 1 << 12;
+  const auto bits = std::make_shared<std::vector<std::uint32_t>>(count);
+  const auto flags = std::make_shared<std::vector<std::uint8_t>>(count);
+  {
+    const nb::gil_scoped_release release;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i % kCheckpointOperations == 0) checkpoint();
+      const FloatResult result = compute(i);
+      (*bits)[i] = result.bits;
+      (*flags)[i] = result.flags;
+    }
+  }
+  return {Owned<std::uint32_t>(array_of<std::uint32_t>(bits, bits->data(), {count})),
+          Owned<std::uint8_t>(array_of<std::uint8_t>(flags, flags->data(), {count}))};
+}
+
+Tininess tininess(bool before) {
+  return before ? Tininess::kBeforeRounding : Tininess::kAfterRounding;
+}
+
+/// Both columns have the same length, and all words fit the format; float.py checks that.
+Columns float_run(int op, const FloatColumn<std::uint32_t>& a, const FloatColumn<std::uint32_t>& b,
+                  int exp_bits, int frac_bits, int rounding, bool before) {
+  const FloatFormat format{exp_bits, frac_bits};
+  const auto operation = static_cast<FloatOp>(op);
+  return float_columns(a.shape(0), [&](std::size_t i) {
+    const std::uint32_t x = a.data()[i], y = b.data()[i];
+    return is_comparison(operation) ? oracle_compare(format, operation, x, y)
+                                    : round_exact(format, exact_result(format, operation, x, y),
+                                                  rounding_of(rounding), tininess(before));
+  });
+}
+
+/// Returns x in the form of exact_result.
+ExactValue exact_value(double x) {
+  constexpr int kBits = 62;  // of a significand, as in the oracle
+  ExactValue value;
+  value.negative = std::signbit(x);
+  if (std::isnan(x)) {
+    value.kind = ExactValue::Kind::kNan;
+  } else if (std::isinf(x)) {
+    value.kind = ExactValue::Kind::kInfinity;
+  } else if (x != 0.0) {
+    int exponent = 0;
+    value.significand =
+        static_cast<std::uint64_t>(std::ldexp(std::frexp(std::abs(x), &exponent), kBits));
+    value.exponent = exponent - kBits;
+  }
+  return value;
+}
+
+Columns float_encode(const FloatColumn<double>& values, int exp_bits, int frac_bits, int rounding,
+                     bool before) {
+  return float_columns(values.shape(0), [&](std::size_t i) {
+    return round_exact({exp_bits, frac_bits}, exact_value(values.data()[i]), rounding_of(rounding),
+                       tininess(before));
+  });
+}
 
 /// Calls a Python function with IEEE 754 arithmetic. Its long work runs Python's signal handlers,
 /// every 20 ms, and ends with their exceptions, such as KeyboardInterrupt.
@@ -388,7 +472,8 @@ NB_MODULE(_raygate, m) {
       PyErr_SetObject(input_error.ptr(), text_of(unusable.what()).ptr());
     }
   });
-  add_float_reference(m);
+  m.def("float_run", &float_run);
+  m.def("float_encode", &float_encode);
   m.attr("software") = kSoftware;
   nb::class_<PythonFilm>(m, "Film")
       .def("png",
@@ -402,34 +487,44 @@ NB_MODULE(_raygate, m) {
   nb::class_<PythonScene>(m, "Scene")
       .def(nb::init<const nb::bytes&, const Settings&>())
       .def(nb::init<const std::string&, const Vectors3&, const Settings&>())
-      .def_prop_ro("triangle_count",
-                   [](const PythonScene& s) { return s.scene().triangles.size(); })
-      .def_prop_ro("objects",
-                   [](const PythonScene& s) { return texts_of(s.scene().objects.all()); })
-      .def_prop_ro("materials", &PythonScene::material_names)
-      .def_prop_ro("degenerate_faces",
-                   [](const PythonScene& s) {
-                     nb::typed<nb::list, nb::int_> numbers;
-                     const std::vector<Triangle>& faces = s.scene().triangles;
-                     for (std::size_t i = 0; i < faces.size(); ++i) {
-                       if (is_left_out(faces[i])) numbers.append(nb::int_(i));
-                     }
-                     return numbers;
-                   })
-      .def_prop_ro("warnings", [](const PythonScene& s) { return texts_of(s.scene().warnings); })
-      .def_prop_ro("rounding",
-                   [](const PythonScene& s) {
-                     return std::pair(s.scene().rounding.corners, s.scene().rounding.most);
-                   })
-      .def_prop_ro("origin",
+      .def_prop_ro(
+          "triangle_count", [](const PythonScene& s) { return s.scene().triangles.size(); },
+          "Number of triangles, including those without area.")
+      .def_prop_ro(
+          "objects", [](const PythonScene& s) { return texts_of(s.scene().objects.all()); },
+          "Names of the objects (`o` and `g` of an OBJ file), by the numbers in hits[\"object\"].")
+      .def_prop_ro("materials", &PythonScene::material_names,
+                   "Names of the materials, by the numbers in hits[\"material\"].")
+      .def_prop_ro(
+          "degenerate_faces",
+          [](const PythonScene& s) {
+            nb::typed<nb::list, nb::int_> numbers;
+            const std::vector<Triangle>& faces = s.scene().triangles;
+            for (std::size_t i = 0; i < faces.size(); ++i) {
+              if (is_left_out(faces[i])) numbers.append(nb::int_(i));
+            }
+            return numbers;
+          },
+          "Numbers of the triangles without area.")
+      .def_prop_ro(
+          "warnings", [](const PythonScene& s) { return texts_of(s.scene().warnings); },
+          "A line for each thing in the file that was ignored or changed.")
+      .def_prop_ro(
+          "rounding",
+          [](const PythonScene& s) {
+            return std::pair(s.scene().rounding.corners, s.scene().rounding.most);
+          },
+          "Number of vertices that are not stored as in the file, and the largest error of a "
+          "coordinate. Files of glTF, meshes with instances and numbers below 2^-97 are rounded.")
+      .def_prop_ro("_origin",
                    [](const PythonScene& s) {
                      const glm::dvec3& o = s.scene().origin;
                      return Three{o.x, o.y, o.z};
                    })
-      .def("trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
+      .def("_trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
            "columns"_a, "settings"_a)
-      .def("open_edges", &PythonScene::open_edge_rows)
-      .def("closest", &PythonScene::closest_points, "points"_a)
-      .def("render", &PythonScene::render_film, "eye"_a.none(), "target"_a.none(), "up"_a.none(),
+      .def("_open_edges", &PythonScene::open_edge_rows)
+      .def("_closest", &PythonScene::closest_points, "points"_a)
+      .def("_render", &PythonScene::render_film, "eye"_a.none(), "target"_a.none(), "up"_a.none(),
            "settings"_a);
 }

@@ -1,9 +1,7 @@
 #include "host/scene/bounds.h"
 
-#include <algorithm>
 #include <array>
 #include <utility>
-#include <vector>
 
 namespace raygate {
 namespace {

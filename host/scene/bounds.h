@@ -69,8 +69,7 @@ struct OpenEdge {
   double times;  ///< at least 1
 };
 
-/// Returns the open edges of all triangles; none for closed surfaces. Vertices are one if they have
-/// the same coordinates.
+/// Returns the open edges of all triangles. Vertices are one if they have the same coordinates.
 [[nodiscard]] std::vector<OpenEdge> open_edges(const Scene& scene);
 
 }  // namespace raygate

@@ -5,16 +5,9 @@
 
 #include "host/base/elementary.h"
 #include "host/base/input_error.h"
-#include "host/exact/exact.h"
 
 namespace raygate {
 namespace {
-
-/// Returns the tangent of half an angle in degrees.
-double half_tangent(double degrees) {
-  const SineCosine<double> half = sine_cosine(degrees / 720.0);
-  return half.sine / half.cosine;
-}
 
 std::string text(const glm::dvec3& v) {
   return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
@@ -44,7 +37,8 @@ Camera Camera::look_at(const CameraSetting& setting, double aspect) {
   camera.right_ = glm::normalize(sideways);
   camera.up_ = glm::cross(camera.right_, camera.forward_);
   camera.vertical_fov_degrees_ = fov.value_or(kDefaultFov);
-  camera.half_height_ = half_tangent(camera.vertical_fov_degrees_);
+  const SineCosine<double> half = sine_cosine(camera.vertical_fov_degrees_ / 720.0);
+  camera.half_height_ = half.sine / half.cosine;
   camera.half_width_ = camera.half_height_ * aspect;
   camera.projection_ = lens.projection.value_or(Projection::kPerspective);
   camera.aperture_ = lens.aperture.value_or(0.0);

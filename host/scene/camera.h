@@ -67,10 +67,9 @@ class Camera {
   /// Default vertical field of view in degrees.
   static constexpr double kDefaultFov = 35.0;
 
-  /// Returns the camera of `setting`, whose angle and lens must be in range. `aspect` is the width
-  /// of the image over its height. The default of `up` is +y, or -z if the view is parallel to y.
-  /// Throws InputError if eye and target coincide, if `up` is zero or parallel to the view, and if
-  /// any of the three is not finite.
+  /// Returns the camera of `setting`, whose angle and lens must be in range. `aspect`: the image's
+  /// width over its height. The default of `up` is +y, or -z if the view is parallel to y. Throws
+  /// InputError if eye and target coincide, `up` is parallel to the view, or one is not finite.
   [[nodiscard]] static Camera look_at(const CameraSetting& setting, double aspect);
 
   /// Returns the common origin of all rays, or the centre of the image for an orthographic camera.
@@ -106,13 +105,11 @@ class Camera {
                                                    const glm::dvec3& lens_point) const;
   /// Returns the area of the image plane at distance 1 along forward().
   [[nodiscard]] double picture_area() const { return 4.0 * half_width_ * half_height_; }
-  /// Returns the depth of a point, given relative to the eye: along the camera's axis, or its
-  /// distance for a panorama.
+  /// Returns the depth along the axis (panorama: the distance) of a point relative to the eye.
   [[nodiscard]] double depth(const glm::dvec3& point) const;
 
   /// Returns the direction of the pinhole ray through a point of the image: x from 0 (left edge) to
-  /// 1 (right), y from 0 (upper edge) to 1 (lower). The centre of pixel (i, j) is at ((i + 0.5) /
-  /// width, (j + 0.5) / height). The length is that of scaled_direction().
+  /// 1 (right), y from 0 (upper edge) to 1 (lower). The length is that of scaled_direction().
   [[nodiscard]] glm::vec3 direction(double x, double y) const;
 
  private:

@@ -1,7 +1,5 @@
 #include "host/scene/instances.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <span>
 #include <string>
@@ -28,12 +26,6 @@ void append_parallel(std::vector<T>& all, std::size_t count, std::vector<T>&& mo
   if (more.empty()) return;
   all.resize(count, missing);
   (void)append(all, std::move(more));
-}
-
-/// Sets the tangent of the scene's last normal.
-void add_tangent(Scene& scene, const glm::vec4& tangent) {
-  scene.tangents.resize(scene.normals.size(), glm::vec4(0.0f));
-  scene.tangents.back() = tangent;
 }
 
 void shift(std::array<std::uint32_t, 3>& indices, std::uint32_t by) {
@@ -133,8 +125,8 @@ std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh) {
   for (std::uint32_t i = normals.begin; i < normals.end; ++i) {
     scene.normals.push_back(-glm::vec3(scene.normals[i]));
     if (i < scene.tangents.size()) {
-      const glm::vec4 tangent = scene.tangents[i];
-      add_tangent(scene, {glm::vec3(tangent), -tangent.w});
+      const glm::vec4 tangent(glm::vec3(scene.tangents[i]), -scene.tangents[i].w);
+      set_last(scene.tangents, scene.normals.size(), tangent, glm::vec4(0.0f));
     }
   }
   for (Triangle& triangle : mirrored.triangles) {
@@ -203,7 +195,8 @@ void flatten(Scene& scene, std::span<const Instance> instances) {
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
       scene.normals.push_back(transform_normal(instance, glm::vec3(scene.normals[i])));
       if (i < scene.tangents.size()) {
-        add_tangent(scene, transform_tangent(instance, scene.tangents[i]));
+        set_last(scene.tangents, scene.normals.size(),
+                 transform_tangent(instance, scene.tangents[i]), glm::vec4(0.0f));
       }
     }
     for (Triangle triangle : mesh.triangles) {

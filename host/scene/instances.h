@@ -19,8 +19,7 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   result = ((row[0] * point[0] + row[1] * point[1]) + row[2] * point[2]) + row[3];
 }
 
-/// Returns a mesh position transformed by an instance, as float. All intersectors use these
-/// corners.
+/// Returns a mesh position transformed by an instance, as float, as all intersectors use it.
 [[nodiscard]] inline glm::vec3 transform_point(const double (&rows)[3][4],
                                                const glm::vec3& position) {
   const double point[3] = {position.x, position.y, position.z};
@@ -90,8 +89,7 @@ struct FaceRef {
 /// Returns the number of triangles of the scene, including those of all instances.
 [[nodiscard]] std::uint64_t triangle_count(const Scene& scene);
 
-/// Sets an instance's rows from a world transform. Mesh coordinates are relative to `from`, and
-/// scene coordinates to `to`.
+/// Sets rows from a world transform. Mesh coordinates are relative to `from`, the scene's to `to`.
 void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3& to,
               Instance& instance);
 

@@ -8,9 +8,10 @@
 
 namespace raygate {
 
-/// Returns the diffuse colour at a point of `triangle`, given by its barycentric coordinates
-/// (`weights`, with sum 1): Kd times its texture. The texture counts as white if the triangle has
-/// no texture coordinates.
+// Points are given by a triangle and barycentric coordinates (`weights`, with sum 1). Maps count as
+// 1 for a triangle without texture coordinates.
+
+/// Returns the diffuse colour at a point: Kd times its texture.
 [[nodiscard]] glm::vec3 diffuse_at(const Scene& scene, const Triangle& triangle,
                                    const glm::dvec3& weights);
 
@@ -18,8 +19,7 @@ namespace raygate {
 [[nodiscard]] glm::vec3 vertex_color_at(const std::vector<glm::vec3>& colors,
                                         const Triangle& triangle, const glm::dvec3& weights);
 
-/// Returns whether the opacity mask of the triangle's material hides the point. Returns false
-/// without a mask or texture coordinates.
+/// Returns whether the opacity mask of the triangle's material hides the point.
 [[nodiscard]] bool is_masked_out(const Scene& scene, const Triangle& triangle,
                                  const glm::dvec3& weights);
 
@@ -32,19 +32,18 @@ namespace raygate {
                                       const Instance* instance, const glm::dvec3& weights,
                                       const glm::vec3& normal);
 
-/// Returns the emission map's colour at a point, or 1 without a map or texture coordinates.
+/// Returns the emission map's colour at a point.
 [[nodiscard]] glm::vec3 emission_factor_at(const Scene& scene, const Triangle& triangle,
                                            const glm::dvec3& weights);
 
 /// Returns the radiance that a material emits, averaged over its texture.
 [[nodiscard]] glm::dvec3 mean_emission(const Scene& scene, const Material& material);
 
-/// Returns the blended opacity map at a point, without the material's own opacity, or 1 without a
-/// map or texture coordinates.
+/// Returns the blended opacity map at a point, without the material's own opacity.
 [[nodiscard]] float opacity_factor_at(const Scene& scene, const Triangle& triangle,
                                       const glm::dvec3& weights);
 
-/// Factors from metallic-roughness textures; 1 without a texture or texture coordinates.
+/// Factors from metallic-roughness textures.
 struct MetallicRoughnessFactors {
   float roughness = 1.0f, metallic = 1.0f, transmission = 1.0f, specular = 1.0f;
   glm::vec3 specular_color{1.0f};

@@ -1,17 +1,11 @@
 #include "host/scene/scene.h"
 
-#include <algorithm>
 #include <concepts>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <optional>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 #include "host/base/input_error.h"
-#include "host/exact/exact.h"
 
 namespace raygate {
 namespace {

@@ -59,8 +59,7 @@ struct MetallicRoughness {
   MaterialMap specular_color_map{};  ///< scene-linear RGB
 };
 
-/// A material of an MTL file, or of another format converted to MTL terms. Colours are scene-linear
-/// RGB, usually in [0, 1].
+/// A material, in the terms of MTL files. Colours are scene-linear RGB, usually in [0, 1].
 struct Material {
   std::string name;
   glm::vec3 diffuse{0.8f};        ///< Kd
@@ -147,10 +146,8 @@ struct SpotCone {
 
 /// A point light. The irradiance at distance r is intensity / r^2.
 struct PointLight {
-  glm::vec3 position{0.0f};  ///< relative to Scene::origin
-  /// Radiant intensity, scene-linear RGB; for a spot light, along its axis. Double, as it scales
-  /// with the square of lengths.
-  glm::dvec3 intensity{0.0};
+  glm::vec3 position{0.0f};           ///< relative to Scene::origin
+  glm::dvec3 intensity{0.0};          ///< radiant, scene-linear RGB; of a spot light along its axis
   std::optional<SpotCone> spot = {};  ///< none: isotropic
 };
 
@@ -168,9 +165,8 @@ struct DirectionalLight {
 };
 
 /// A latitude-longitude image of the radiance from outside the scene, in place of a background. The
-/// upper edge is `up`, the lower edge -`up`, the centre `ahead`; to the right of the centre is what
-/// an observer who looks ahead sees on the right. Lookup is bilinear between texel centres and
-/// wraps horizontally.
+/// upper edge is `up`, the centre `ahead`; to its right is what an observer who looks ahead sees on
+/// the right. Lookup is bilinear between texel centres and wraps horizontally.
 struct EnvironmentMap {
   int width = 0, height = 0;      ///< at least 1
   std::vector<glm::vec3> texels;  ///< row by row from the top; finite, not negative
@@ -241,9 +237,8 @@ class NameList {
 };
 
 /// Statistics of rounding: the number of corners that are not stored as they are in the file, and
-/// the largest error of a coordinate, in the file's unit. A mesh with instances, which is stored in
-/// binary32, is counted once, in its own coordinates; rounding after an instance transform is not
-/// counted.
+/// the largest error of a coordinate, in the file's unit. A mesh with instances is counted once, in
+/// its own coordinates; rounding after an instance transform is not counted.
 struct CornerRounding {
   std::uint64_t corners = 0;
   double most = 0.0;
@@ -253,6 +248,14 @@ struct CornerRounding {
     most = std::max(most, other.most);
   }
 };
+
+/// Sets the last element of a list of optional attributes, of `count` vertices. Attributes that are
+/// missing before it become `missing`.
+template <class T>
+void set_last(std::vector<T>& attributes, std::size_t count, const T& value, const T& missing) {
+  attributes.resize(count, missing);
+  attributes.back() = value;
+}
 
 /// All geometry, materials and lights. Emissive triangles are lights, too. Positions are relative
 /// to `origin`, which is subtracted exactly: a position in binary32 and its rest are a binary64
@@ -264,8 +267,7 @@ struct Scene {
   std::vector<glm::vec3> positions;
   /// What binary32 lacks of the first positions (see rest_of); 0 if missing.
   std::vector<glm::ivec3> rests;
-  /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour; default
-  /// 1.
+  /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour.
   std::vector<glm::vec3> colors;
   std::vector<glm::vec3> normals;  ///< unit length if a triangle uses them
   /// Tangents of the first normals: the normal map's x direction, and the sign of its y axis (1 or
@@ -317,12 +319,10 @@ struct Scene {
   }
 };
 
-/// Adds a light to a scene whose origin is set. Throws InputError, which names `file`, if it is
-/// beyond the range of float.
+/// Adds a light to a scene whose origin is set. Throws InputError beyond the range of float.
 void add_light(Scene& scene, const WorldPointLight& light, const std::string& file);
 
-/// Adds two triangles, (0, 1, 2) and (0, 2, 3) of `corners`, with an object and a material of
-/// `material.name`.
+/// Adds triangles (0, 1, 2) and (0, 2, 3) of `corners`, with an object of the material's name.
 void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, const Material& material);
 
 /// Returns a 64-bit digest, as 16 hexadecimal digits, of a scene's geometry, materials, textures,

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <string>
-#include <string_view>
 
 #include "host/base/elementary.h"
 #include "host/base/input.h"
@@ -41,8 +39,7 @@ struct Neighbours {
   double weight;
 };
 
-/// Returns a coordinate in texels, relative to the centre of the first: in [-0.5, size - 0.5].
-double place_along(double coordinate, int size, Wrap wrap) {
+Neighbours neighbours(double coordinate, int size, Wrap wrap, bool is_nearest) {
   if (!std::isfinite(coordinate)) coordinate = 0.0;
   if (wrap == Wrap::kClamp) coordinate = std::clamp(coordinate, 0.0, 1.0);
   if (wrap == Wrap::kRepeat) coordinate -= std::floor(coordinate);
@@ -50,21 +47,15 @@ double place_along(double coordinate, int size, Wrap wrap) {
     coordinate -= 2.0 * std::floor(0.5 * coordinate);
     if (coordinate > 1.0) coordinate = 2.0 - coordinate;
   }
-  return coordinate * size - 0.5;
-}
-
-/// Returns the texel at index i, in [-size, 2 size), after wrapping.
-int wrapped(int i, int size, Wrap wrap) {
-  if (wrap == Wrap::kClamp) return std::clamp(i, 0, size - 1);
-  if (wrap == Wrap::kMirror) return i < 0 ? -1 - i : i >= size ? 2 * size - 1 - i : i;
-  return i < 0 ? i + size : i >= size ? i - size : i;
-}
-
-Neighbours neighbours(double coordinate, int size, Wrap wrap, bool is_nearest) {
-  const double place = place_along(coordinate, size, wrap), below = std::floor(place);
-  const double weight = place - below;
+  // In texels, relative to the centre of the first: in [-0.5, size - 0.5].
+  const double place = coordinate * size - 0.5, below = std::floor(place), weight = place - below;
   const int first = static_cast<int>(below) + (is_nearest && weight >= 0.5 ? 1 : 0);
-  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), is_nearest ? 0.0 : weight};
+  const auto wrapped = [&](int i) {  // i is in [-size, 2 size)
+    if (wrap == Wrap::kClamp) return std::clamp(i, 0, size - 1);
+    if (wrap == Wrap::kMirror) return i < 0 ? -1 - i : i >= size ? 2 * size - 1 - i : i;
+    return i < 0 ? i + size : i >= size ? i - size : i;
+  };
+  return {wrapped(first), wrapped(first + 1), is_nearest ? 0.0 : weight};
 }
 
 /// Returns whether the bytes begin like a format that Texture::load() supports. The library has

@@ -8,7 +8,6 @@
 #include "host/base/elementary.h"
 #include "host/base/input_error.h"
 #include "host/scene/bounds.h"
-#include "host/scene/camera.h"
 
 namespace raygate {
 namespace {
@@ -37,19 +36,11 @@ struct Axes {
   }
 };
 
-}  // namespace
-
-View front_view(const Scene& scene, const glm::dvec3& up) {
-  const glm::dvec3 half = bounding_box(scene).half_size(), upright = glm::abs(Axes(up).up);
-  const glm::dvec3 across = half * (1.0 - upright);
-  const double flatness =
-      1.0 - std::min(1.0, glm::dot(half, upright) / std::max({across.x, across.y, across.z}));
-  return {0.0, 3.0 + 27.0 * flatness, up};
-}
-
-CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const View& view,
-                          FrameFit filling) {
-  const Bounds3 box = bounding_box(scene);
+/// Returns the camera of `view` for which the points that for_each_point(visit) visits, relative to
+/// the middle of `box`, fill the image.
+template <class ForEachPoint>
+CameraSetting frame(const Bounds3& box, double aspect, double fov, const View& view,
+                    const ForEachPoint& for_each_point) {
   const glm::dvec3 centre = box.middle(), half = box.half_size();
   const Axes axes(view.up);
   const glm::dvec3 towards_eye = axes.direction(view.azimuth, view.elevation);
@@ -64,27 +55,36 @@ CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const V
   constexpr double kFilled = 0.96;
   const double half_height = at_centre.half_height(), half_width = half_height * aspect;
   double distance = 0.0;
-  const auto show = [&](const glm::dvec3& offset) {
+  for_each_point([&](const glm::dvec3& offset) {
     const double nearer = -glm::dot(offset, at_centre.forward());
     const double across = std::abs(glm::dot(offset, at_centre.right())) / half_width;
     const double upwards = std::abs(glm::dot(offset, at_centre.up())) / half_height;
     distance = std::max(distance, std::max(across, upwards) / kFilled + nearer);
-  };
-  if (filling == FrameFit::kVertices) {
-    for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
-      for (const glm::dvec3& corner : triangle) show(corner - centre);
-    });
-  } else {
-    for (int corner = 0; corner < 8; ++corner) {
-      show(half * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
-    }
-  }
+  });
   return {centre + distance * towards_eye, centre, up, fov};
 }
 
-Camera front_camera(const Scene& scene, double aspect, double fov) {
-  return Camera::look_at(frame_scene(scene, aspect, fov, front_view(scene), FrameFit::kBox),
-                         aspect);
+}  // namespace
+
+CameraSetting frame_scene(const Scene& scene, double aspect, double fov, const View& view) {
+  const Bounds3 box = bounding_box(scene);
+  return frame(box, aspect, fov, view, [&](const auto& show) {
+    for_each_face(scene, [&](const Corners& triangle, const Triangle&) {
+      for (const glm::dvec3& corner : triangle) show(corner - box.middle());
+    });
+  });
+}
+
+Camera front_camera(const Scene& scene, double aspect) {
+  const Bounds3 box = bounding_box(scene);
+  const glm::dvec3 half = box.half_size();
+  const View view{0.0, 3.0 + 27.0 * (1.0 - std::min(1.0, half.y / std::max(half.x, half.z)))};
+  const auto for_each_corner = [&](const auto& show) {
+    for (int corner = 0; corner < 8; ++corner) {
+      show(half * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+    }
+  };
+  return Camera::look_at(frame(box, aspect, Camera::kDefaultFov, view, for_each_corner), aspect);
 }
 
 void add_ground(Scene& scene, const glm::dvec3& up) {

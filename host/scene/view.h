@@ -18,25 +18,15 @@ struct View {
 /// The default view, which suits most models: from the front right and above.
 inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
 
-/// Returns a view from the front: level for tall scenes, higher for flatter ones.
-[[nodiscard]] View front_view(const Scene& scene, const glm::dvec3& up = {0.0, 1.0, 0.0});
-
-/// Part of a scene that fills the image.
-enum class FrameFit {
-  kVertices,  ///< the vertices of the scene
-  kBox,       ///< their bounding box
-};
-
-/// Returns a camera, in the scene's coordinates, that shows all of `scene` from one side: `filling`
-/// fills the image except for a margin of 4 %, and the target is the centre of the box. `aspect` is
-/// the image's width over its height. Throws InputError for a scene without triangles or one too
-/// large for float.
+/// Returns a camera, in the scene's coordinates, that shows all of `scene` from one side, with a
+/// margin of 4 %; the target is the centre of its box. `aspect`: the image's width over its height.
+/// Throws InputError for a scene without triangles or one too large for float.
 [[nodiscard]] CameraSetting frame_scene(const Scene& scene, double aspect, double fov,
-                                        const View& view, FrameFit filling = FrameFit::kVertices);
+                                        const View& view);
 
-/// Returns a camera with front_view() that shows the scene's whole bounding box.
-[[nodiscard]] Camera front_camera(const Scene& scene, double aspect,
-                                  double fov = Camera::kDefaultFov);
+/// Returns a camera that shows the scene's bounding box from the front: level for tall scenes, from
+/// higher for flatter ones. +y is up.
+[[nodiscard]] Camera front_camera(const Scene& scene, double aspect);
 
 /// Adds a square of two triangles slightly below the scene's lowest point, 32 times the scene's
 /// size, with an object and a shadow-catcher material (illum 10) named "ground". `up` is not zero.

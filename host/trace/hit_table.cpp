@@ -1,6 +1,5 @@
 #include "host/trace/hit_table.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -13,39 +12,94 @@
 namespace raygate {
 namespace {
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A row that is being written: a hit of a ray, or a miss.
+struct Row {
+  const Scene& scene;
+  const RayTable& rays;
+  const RayHit& found;
+  TableFormat format;
+  std::string& bytes;
+  ExactRay ray = rays.exact_ray(found.ray);
+  bool is_hit = found.hit.primitive != NearestHit::kNone;
+  std::int64_t triangle = -1;
+  FaceRef stored{};
+  Corners corners{};                                                    // if a column needs them
+  HitPoint place{std::numeric_limits<double>::infinity(), kNan, kNan};  // for t of the scaled ray
+
+  /// Appends a decimal number and a comma (CSV), or a little-endian 64-bit word.
+  template <class T>
+  void put(T value) {
+    if (format == TableFormat::kCsv) {
+      char text[32];
+      bytes.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+      bytes += ',';
+      return;
+    }
+    const auto word = std::bit_cast<std::uint64_t>(value);
+    for (int i = 0; i < 8; ++i) bytes += static_cast<char>(word >> (8 * i));
+  }
+  void put(const glm::dvec3& v) {
+    for (int k = 0; k < 3; ++k) put(is_hit ? v[k] : kNan);
+  }
+  /// Appends a point that is given relative to the ray's origin, in world coordinates.
+  void put_from_origin(const glm::dvec3& way) { put(scene.origin + (ray.origin + way)); }
+};
+
 struct Column {
   std::string_view name;
   bool is_integer;
   std::array<std::string_view, 3> fields;  // unused ones are empty
+  void (*write)(Row&);
 };
 
 /// Columns in the order of HitColumn.
-constexpr Column kColumns[] = {{"ray", true, {"ray"}},
-                               {"hit", true, {"hit"}},
-                               {"triangle", true, {"triangle"}},
-                               {"object", true, {"object"}},
-                               {"material", true, {"material"}},
-                               {"t", false, {"t"}},
-                               {"point", false, {"x", "y", "z"}},
-                               {"uv", false, {"u", "v"}},
-                               {"normal", false, {"nx", "ny", "nz"}},
-                               {"side", true, {"side"}},
-                               {"doubts", true, {"doubts"}},
-                               {"unit-point", false, {"unit_x", "unit_y", "unit_z"}},
-                               {"unit-error", false, {"unit_error"}}};
-
-/// Appends a decimal number and a comma (CSV), or a little-endian 64-bit word.
-template <class T>
-void put(TableFormat format, T value, std::string& bytes) {
-  if (format == TableFormat::kCsv) {
-    char text[32];
-    bytes.append(text, std::to_chars(text, text + sizeof text, value).ptr);
-    bytes += ',';
-    return;
-  }
-  const auto word = std::bit_cast<std::uint64_t>(value);
-  for (int i = 0; i < 8; ++i) bytes += static_cast<char>(word >> (8 * i));
-}
+constexpr Column kColumns[] = {
+    {"ray", true, {"ray"}, [](Row& r) { r.put(std::int64_t(r.rays.first + r.found.ray)); }},
+    {"hit", true, {"hit"}, [](Row& r) { r.put(std::int64_t{r.is_hit}); }},
+    {"triangle", true, {"triangle"}, [](Row& r) { r.put(r.triangle); }},
+    {"object",
+     true,
+     {"object"},
+     [](Row& r) { r.put(r.is_hit ? std::int64_t{object_at(r.scene, r.stored)} : -1); }},
+    {"material",
+     true,
+     {"material"},
+     [](Row& r) { r.put(r.is_hit ? std::int64_t{face_at(r.scene, r.stored).material} : -1); }},
+    {"t",
+     false,
+     {"t"},
+     [](Row& r) { r.put(std::ldexp(r.place.t, r.rays.exponents[r.found.ray])); }},
+    {"point",
+     false,
+     {"x", "y", "z"},
+     [](Row& r) { r.put_from_origin(r.place.t * r.ray.direction); }},
+    {"uv",
+     false,
+     {"u", "v"},
+     [](Row& r) {
+       r.put(r.place.u);
+       r.put(r.place.v);
+     }},
+    {"normal",
+     false,
+     {"nx", "ny", "nz"},
+     [](Row& r) { r.put(glm::normalize(triangle_normal(r.corners))); }},
+    {"side",
+     true,
+     {"side"},
+     [](Row& r) {
+       r.put(std::int64_t{r.is_hit ? direction_side(r.ray.direction, r.corners) : 0});
+     }},
+    {"doubts", true, {"doubts"}, [](Row& r) { r.put(std::int64_t{r.found.doubts}); }},
+    {"unit-point",
+     false,
+     {"unit_x", "unit_y", "unit_z"},
+     [](Row& r) { r.put_from_origin(glm::dvec3(r.found.hit.point)); }},
+    {"unit-error", false, {"unit_error"}, [](Row& r) {
+       r.put(r.is_hit ? double{r.found.hit.point_error} : kNan);
+     }}};
 
 }  // namespace
 
@@ -110,74 +164,16 @@ std::string HitTable::header() const {
 }
 
 void HitTable::append(const RayTable& rays, const RayHit& found, std::string& bytes) const {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const NearestHit& hit = found.hit;
-  const bool is_hit = hit.primitive != NearestHit::kNone;
-  const ExactRay ray = rays.exact_ray(found.ray);
-  Corners corners{};
-  std::int64_t number = -1;
-  FaceRef stored;
-  HitPoint place{std::numeric_limits<double>::infinity(), kNan, kNan};  // for t of the scaled ray
-  if (is_hit) {
-    number = bvh_.triangle_of(hit.primitive);
-    stored = bvh_.face_of(hit.primitive);
+  Row row{scene_, rays, found, format_, bytes};
+  if (row.is_hit) {
+    row.triangle = bvh_.triangle_of(found.hit.primitive);
+    row.stored = bvh_.face_of(found.hit.primitive);
   }
-  if (is_hit && needs_corners_) {
-    corners = bvh_.corners_of(hit.primitive);
-    place = hit_point_of(ray, corners);
+  if (row.is_hit && needs_corners_) {
+    row.corners = bvh_.corners_of(found.hit.primitive);
+    row.place = hit_point_of(row.ray, row.corners);
   }
-  const auto integer = [&](std::int64_t value) { put(format_, value, bytes); };
-  const auto real = [&](double value) { put(format_, value, bytes); };
-  const auto vector = [&](const glm::dvec3& v) {
-    for (int k = 0; k < 3; ++k) real(is_hit ? v[k] : kNan);
-  };
-  const auto from_origin = [&](const glm::dvec3& way) {
-    vector(scene_.origin + (ray.origin + way));
-  };
-  for (const HitColumn column : columns_) {
-    switch (column) {
-      case HitColumn::kRay:
-        integer(static_cast<std::int64_t>(rays.first + found.ray));
-        break;
-      case HitColumn::kHit:
-        integer(is_hit ? 1 : 0);
-        break;
-      case HitColumn::kTriangle:
-        integer(number);
-        break;
-      case HitColumn::kObject:
-        integer(is_hit ? std::int64_t{object_at(scene_, stored)} : -1);
-        break;
-      case HitColumn::kMaterial:
-        integer(is_hit ? std::int64_t{face_at(scene_, stored).material} : -1);
-        break;
-      case HitColumn::kT:
-        real(std::ldexp(place.t, rays.exponents[found.ray]));
-        break;
-      case HitColumn::kPoint:
-        from_origin(place.t * ray.direction);
-        break;
-      case HitColumn::kUv:
-        real(place.u);
-        real(place.v);
-        break;
-      case HitColumn::kNormal:
-        vector(glm::normalize(triangle_normal(corners)));
-        break;
-      case HitColumn::kSide:
-        integer(is_hit ? direction_side(ray.direction, corners) : 0);
-        break;
-      case HitColumn::kDoubts:
-        integer(found.doubts);
-        break;
-      case HitColumn::kUnitPoint:
-        from_origin(glm::dvec3(hit.point));
-        break;
-      case HitColumn::kUnitError:
-        real(is_hit ? double{hit.point_error} : kNan);
-        break;
-    }
-  }
+  for (const HitColumn column : columns_) kColumns[static_cast<std::size_t>(column)].write(row);
   if (format_ == TableFormat::kCsv) bytes.back() = '\n';
 }
 

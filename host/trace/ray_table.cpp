@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -25,9 +24,6 @@ void RayTable::clear(std::uint64_t its_first) {
 
 const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
                           const glm::dvec3& scene_origin) {
-  const auto is_finite = [](const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-  };
   if (!is_finite(origin) || !is_finite(direction)) {
     return "found inf or nan in origin or direction, expected finite numbers";
   }
@@ -58,13 +54,8 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
   const float float_limit =
       std::max(static_cast<float>(scaled_limit), std::numeric_limits<float>::denorm_min());
   rounded += !is_exact || (double{float_limit} != scaled_limit && std::isfinite(float_limit));
-  if (exact_rays.empty() &&
-      (glm::dvec3(ray.origin) != exact.origin || glm::dvec3(ray.direction) != exact.direction)) {
-    exact_rays.assign(rays.begin(), rays.end());
-    exact_rays.push_back(exact);
-  } else if (!exact_rays.empty()) {
-    exact_rays.push_back(exact);
-  }
+  if (exact_rays.empty() && differs(ray, exact)) exact_rays.assign(rays.begin(), rays.end());
+  if (!exact_rays.empty() || differs(ray, exact)) exact_rays.push_back(exact);
   rays.push_back(ray);
   limits.push_back(float_limit);
   exponents.push_back(exponent);
@@ -76,10 +67,8 @@ namespace {
 constexpr const char* kWanted = "expected OX,OY,OZ,DX,DY,DZ or OX,OY,OZ,DX,DY,DZ,LIMIT";
 
 std::string_view trimmed(std::string_view text) {
-  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
+  const std::size_t first = std::min(text.find_first_not_of(" \t\r"), text.size());
+  return text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
 }
 
 std::string_view unquoted(std::string_view text) {

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,22 +38,20 @@ struct RayTable {
   }
   /// Rounds all rays to binary32.
   void round() {
-    for (std::size_t i = 0; i < exact_rays.size(); ++i) rounded += is_inexact(i) ? 1 : 0;
+    for (std::size_t i = 0; i < exact_rays.size(); ++i) rounded += differs(rays[i], exact_rays[i]);
     exact_rays.clear();
   }
 
  private:
-  [[nodiscard]] bool is_inexact(std::size_t i) const {
-    return glm::dvec3(rays[i].origin) != exact_rays[i].origin ||
-           glm::dvec3(rays[i].direction) != exact_rays[i].direction;
+  static bool differs(const Ray& ray, const ExactRay& exact) {
+    return glm::dvec3(ray.origin) != exact.origin || glm::dvec3(ray.direction) != exact.direction;
   }
 };
 
-/// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or,
-/// with the limit, OX,OY,OZ,DX,DY,DZ,LIMIT, between commas, or else semicolons, or else spaces and
-/// tabs. Spaces and quotes around numbers, a byte order mark, empty lines, lines that begin with #
-/// and one header line, without a number, are allowed. See RayTable::add for the meaning of the
-/// columns.
+/// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or
+/// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add), between commas, or else semicolons, or else spaces
+/// and tabs. Spaces and quotes around numbers, a byte order mark, empty lines, lines that begin
+/// with # and one header line, without a number, are allowed.
 class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace raygate {
 namespace {
@@ -27,25 +28,25 @@ TEST(Format, Counts) {
 }
 
 TEST(Format, Durations) {
-  EXPECT_EQ(format_duration(0.0), "0.00 ms");
-  EXPECT_EQ(format_duration(0.0001234), "0.12 ms");
-  EXPECT_EQ(format_duration(0.0123), "12.3 ms");
-  EXPECT_EQ(format_duration(0.9994), "999 ms");
-  EXPECT_EQ(format_duration(0.9996), "1.00 s");
-  EXPECT_EQ(format_duration(9.994), "9.99 s");
-  EXPECT_EQ(format_duration(9.996), "10.0 s");
-  EXPECT_EQ(format_duration(59.94), "59.9 s");
-  EXPECT_EQ(format_duration(59.96), "1 min 00 s");
-  EXPECT_EQ(format_duration(245.0), "4 min 05 s");
-  EXPECT_EQ(format_duration(3599.4), "59 min 59 s");
-  EXPECT_EQ(format_duration(3599.6), "1 h 00 min");
-  EXPECT_EQ(format_duration(7620.0), "2 h 07 min");
-}
-
-TEST(Format, DurationsThatSayNothing) {
-  EXPECT_EQ(format_duration(-1.0), "?");
-  EXPECT_EQ(format_duration(std::numeric_limits<double>::quiet_NaN()), "?");
-  EXPECT_EQ(format_duration(std::numeric_limits<double>::infinity()), "?");
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                   kInfinity = std::numeric_limits<double>::infinity();
+  const std::pair<double, const char*> durations[] = {{0.0, "0.00 ms"},
+                                                      {0.0001234, "0.12 ms"},
+                                                      {0.0123, "12.3 ms"},
+                                                      {0.9994, "999 ms"},
+                                                      {0.9996, "1.00 s"},
+                                                      {9.994, "9.99 s"},
+                                                      {9.996, "10.0 s"},
+                                                      {59.94, "59.9 s"},
+                                                      {59.96, "1 min 00 s"},
+                                                      {245.0, "4 min 05 s"},
+                                                      {3599.4, "59 min 59 s"},
+                                                      {3599.6, "1 h 00 min"},
+                                                      {7620.0, "2 h 07 min"},
+                                                      {-1.0, "?"},
+                                                      {kNan, "?"},
+                                                      {kInfinity, "?"}};
+  for (const auto& [seconds, text] : durations) EXPECT_EQ(format_duration(seconds), text);
 }
 
 TEST(Format, Fixed) {

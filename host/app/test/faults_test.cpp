@@ -3,7 +3,6 @@
 // each kind; RAYGATE_FAULTS=N takes N, and 0 all of them (`make test LONG=faults`).
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <random>

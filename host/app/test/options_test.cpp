@@ -10,6 +10,7 @@
 #include <limits>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "host/app/console.h"
 #include "host/base/input_error.h"
@@ -94,19 +95,96 @@ TEST(Options, NoOutputOverwritesTheSceneOrAnotherOutput) {
   expect_error({"a.obj", "--stats", "./a.obj"}, "./a.obj: would overwrite a.obj");
   expect_error({"a.obj", "--stats", "a.png"}, "a.png: would overwrite a.png");
   expect_error({"a.exr"}, "a.exr: would overwrite a.exr");
+  expect_error({"a.obj", "--stats", "a.json"}, "a.json: would overwrite a.json");
 }
 
-TEST(Options, SizesThatAreImpossible) {
-  for (const char* size : {"0x480", "640x0", "-1x5", "640", "640x", "x480", "640x480x3", "640X480",
-                           "1000000000x1", "1x1000000000", "65537x1", "99999999999999999999x1",
-                           "1.5x2", " 1x2", "1x2 ", "+1x2", "nanx1"}) {
-    expect_error({"a.obj", "--size", size},
-                 std::string("--size: expected WIDTHxHEIGHT, each from 1 to 65536"));
-    expect_error({"a.obj", "--size", size}, std::string("'") + size + "'");
+TEST(Options, ValuesThatAreImpossible) {
+  struct Row {
+    const char* option;
+    std::vector<const char*> values;
+    const char* expected;
+  };
+  const Row rows[] = {
+      {"--size",
+       {"0x480", "640x0", "-1x5", "640", "640x", "x480", "640x480x3", "640X480", "1000000000x1",
+        "1x1000000000", "65537x1", "99999999999999999999x1", "1.5x2", " 1x2", "1x2 ", "+1x2",
+        "nanx1"},
+       "WIDTHxHEIGHT, each from 1 to 65536"},
+      {"--size", {"8193x8192"}, "at most 67108864 pixels in one run"},
+      {"--crop",
+       {"0,0,0,10", "5,5,5,6", "6,0,5,10", "0,0,641,10", "0,0,10,481", "-1,0,10,10", "0,0,10",
+        "0,0,10,10,10", "a,b,c,d", "0,0,10,", "0,0,99999999999,1"},
+       "X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1 within the frame of 640x480"},
+      {"--camera",
+       {"0,0,0,1,1", "0,0,0,1,1,1,40,2", "0,0,0,1,1,x", "0,0,0,1,1,inf", "nan,0,0,1,1,1",
+        "1,2,3,1,2,3", "0,0,0,1,1,1,0", "0,0,0,1,1,1,180", "0,0,0,1,1,1,-40", "0,0,0,1,1,1e999",
+        "0 0 0 1 1 1"},
+       "EX,EY,EZ,TX,TY,TZ"},
+      {"--view", {"above", "33", "33,24,1", "33,91", "0,nan", "361,0"}, "front, back, "},
+      {"--up", {"w", "0,0,1", "+z"}, "x, y, z, "},
+      {"--fov", {"0", "180", "wide"}, "degrees above 0"},
+      {"--projection", {"fisheye"}, "perspective, "},
+      {"--aperture", {"-1"}, "the radius of a lens"},
+      {"--focus", {"0"}, "a distance"},
+      {"--smooth", {"-1", "181", "nan", "flat"}, "degrees from 0 to 180"},
+      {"--ground", {"yes"}, "on or off"},
+      {"--environment-rotation", {"10"}, "--environment, too"},
+      {"--environment-strength", {"-1"}, "a factor"},
+      {"--engine", {"gpu"}, "rtl, model, cpu or check"},
+      {"--variant", {"e8p"}, "exponent bits and digits"},
+      {"--unit", {"warp"}, "pipeline, serial, core or board"},
+      {"--lanes", {"0", "3", "16", "-1", "x"}, "1, 2, 4 or 8"},
+      {"--cores", {"2"}, "with --unit core"},
+      {"--cores", {"0", "65", "two"}, "a whole number, 1 to 64"},
+      {"--threads", {"0", "-1", "1025", "two", "1.5"}, "a whole number"},
+      {"--seed", {"-1", "1.5", "x", "18446744073709551616"}, "a whole number"},
+      {"--exposure", {"bright", "101", "nan", "inf", "1,5"}, "a number of stops"},
+      {"--tone", {"aces"}, "clip or filmic"},
+      {"--channels", {"p", "P,", ",P", "P tests", "Z", "P,,tests"}, "some of P, Albedo, "},
+      {"--false-colour",
+       {"tests", "tests=", "tests=t.exr", "tests=t", "=t.png", "N=t.png", "speed=t.png"},
+       "CHANNEL=FILE.png"},
+      {"--output", {"x.jpg"}, "a name that ends in .exr or .png"},
+      {"--integrator", {"photon"}, "primary, whitted or path"},
+      {"--spp", {"0"}, "a whole number from 1"},
+      {"--error", {"0", "-1", "256", "nan", "few"}, "steps of an 8-bit display"},
+      {"--depth", {"-1"}, "a whole number from 0"},
+      {"--filter", {"lanczos"}, "box, tent, gauss"},
+      {"--threshold", {"2", "nan"}, "a number from 0 to 1"},
+      {"--point-error", {"-1", "nan"}, "a fraction of the distance"},
+      {"--ambient", {"inf"}, "a radiance"},
+      {"--caustics", {"maybe"}, "on, off or auto"}};
+  for (const auto& [option, values, expected] : rows) {
+    for (const char* value : values) {
+      const std::string error = error_of({"a.obj", option, value});
+      EXPECT_EQ(error.find(std::string(option) + ": expected " + expected), 0u) << error;
+      EXPECT_TRUE(error.ends_with(std::string(", got '") + value + "'")) << error;
+      EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    }
   }
-  expect_error({"a.obj", "--size", "8193x8192"}, "at most 67108864 pixels in one run");
   EXPECT_EQ(parse({"a.obj", "--size", "8192x8192"}).render.width, 8192);
   EXPECT_EQ(parse({"a.obj", "--size", "65536x1"}).render.width, 65536);
+  for (const char* option : {"--size", "--stats", "--seed", "--engine", "-o"}) {
+    expect_error({"a.obj", option}, "expected ");      // no value
+    expect_error({"a.obj", option, ""}, "expected ");  // an empty one
+  }
+}
+
+TEST(Options, ThatExcludeEachOther) {
+  expect_error({"a.obj", "--variant", "e8p10"}, "--variant: e8p10: doubts are resolved, expected");
+  expect_error({"a.obj", "--variant", "e8p12", "--engine", "cpu"},
+               "--engine: expected model with --variant e8p12, got 'cpu'");
+  expect_error({"a.obj", "--variant", "serial-paper", "--unit", "core"},
+               "--unit: expected serial with --variant serial-paper, got 'core'");
+  expect_error({"a.obj", "--unit", "serial", "--lanes", "2"}, "--lanes: expected 1 with");
+  expect_error({"a.obj", "--view", "top", "--camera", "0,0,9,0,0,0"},
+               "--view and --camera exclude each other");
+  expect_error({"a.obj", "--channels", "P", "-o", "a.png"}, "--channels: expected an EXR");
+  expect_error({"a.obj", "--caustics", "on"}, "--caustics on: expected --integrator path");
+  expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--spp", "1"},
+               "--caustics on: expected --spp 2 or more");
+  expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--error", "1"},
+               "--caustics on and --error exclude each other");
 }
 
 TEST(Options, PartOfAFrameTooLargeForOneRun) {
@@ -114,23 +192,6 @@ TEST(Options, PartOfAFrameTooLargeForOneRun) {
             1024);
   expect_error({"a.obj", "--size", "65536x65536", "--crop", "0,0,65536,1025"},
                "--crop: expected at most 67108864 pixels");
-}
-
-TEST(Options, CropsThatAreImpossible) {
-  for (const char* crop :
-       {"0,0,0,10", "5,5,5,6", "6,0,5,10", "0,0,641,10", "0,0,10,481", "-1,0,10,10", "0,0,10",
-        "0,0,10,10,10", "a,b,c,d", "0,0,10,", "0,0,99999999999,1"}) {
-    expect_error({"a.obj", "--crop", crop}, "--crop: expected X0,Y0,X1,Y1");
-    expect_error({"a.obj", "--crop", crop}, "640x480");
-  }
-}
-
-TEST(Options, CamerasThatAreImpossible) {
-  for (const char* camera : {"0,0,0,1,1", "0,0,0,1,1,1,40,2", "0,0,0,1,1,x", "0,0,0,1,1,inf",
-                             "nan,0,0,1,1,1", "1,2,3,1,2,3", "0,0,0,1,1,1,0", "0,0,0,1,1,1,180",
-                             "0,0,0,1,1,1,-40", "0,0,0,1,1,1e999", "0 0 0 1 1 1"}) {
-    expect_error({"a.obj", "--camera", camera}, "--camera: expected ");
-  }
 }
 
 TEST(Options, LensesAndEnvironments) {
@@ -146,13 +207,6 @@ TEST(Options, LensesAndEnvironments) {
   EXPECT_EQ(all.environment.file, "sky.hdr");
   EXPECT_EQ(all.environment.rotation, -90.0);
   EXPECT_EQ(all.environment.strength, 2.0);
-  expect_error({"a.obj", "--projection", "fisheye"}, "--projection: expected ");
-  expect_error({"a.obj", "--aperture", "-1"}, "--aperture: expected ");
-  expect_error({"a.obj", "--focus", "0"}, "--focus: expected ");
-  expect_error({"a.obj", "--environment-rotation", "10"},
-               "--environment-rotation: expected --environment, too, got");
-  expect_error({"a.obj", "--environment", "s.exr", "--environment-strength", "-1"},
-               "--environment-strength: expected ");
 }
 
 /// A scene file in a folder of its own.
@@ -182,8 +236,6 @@ TEST_F(OptionsOfASceneFile, AreTakenWhereTheCommandLineHasNone) {
     const Options other = parse({scene.c_str(), "--camera", "0,0,9,0,0,0"});
     EXPECT_EQ(other.camera.camera->eye, glm::dvec3(0, 0, 9));
   }
-  EXPECT_EQ(parse({obj.c_str(), "--no-scene-file"}).render.width, 640);
-  expect_error({json.c_str(), "--no-scene-file"}, "--no-scene-file: expected an OBJ");
   expect_error({obj.c_str(), "--stats", json.c_str()}, "would overwrite");
 }
 
@@ -210,39 +262,6 @@ TEST_F(OptionsOfASceneFile, AreRefusedWithTheirPlace) {
   expect_error({"missing.json"}, "missing.json: cannot read");
 }
 
-TEST_F(OptionsOfASceneFile, MayNotBeOverwrittenBeforeItIsThere) {
-  expect_error({"a.obj", "--stats", "a.json"}, "a.json: would overwrite a.json");
-}
-
-TEST(Options, OtherValuesThatAreImpossible) {
-  expect_error({"a.obj", "--engine", "gpu"}, "--engine: expected rtl, model, cpu or check");
-  expect_error({"a.obj", "--variant", "e8p"}, "--variant: expected exponent bits and digits");
-  expect_error({"a.obj", "--variant", "e8p10"}, "--variant: e8p10: doubts are resolved, expected");
-  expect_error({"a.obj", "--variant", "e8p12", "--engine", "cpu"},
-               "--engine: expected model with --variant e8p12, got 'cpu'");
-  expect_error({"a.obj", "--variant", "serial-paper", "--unit", "core"},
-               "--unit: expected serial with --variant serial-paper, got 'core'");
-  expect_error({"a.obj", "--unit", "warp"}, "--unit: expected pipeline, serial, core or board");
-  for (const char* lanes : {"0", "3", "16", "-1", "x"}) {
-    expect_error({"a.obj", "--lanes", lanes}, "--lanes: expected 1, 2, 4 or 8");
-  }
-  expect_error({"a.obj", "--unit", "serial", "--lanes", "2"}, "--lanes: expected 1 with");
-  expect_error({"a.obj", "--cores", "2"}, "--cores: expected with --unit core");
-  for (const char* cores : {"0", "65", "two"}) {
-    expect_error({"a.obj", "--unit", "core", "--cores", cores}, "--cores: expected a whole number");
-  }
-  for (const char* threads : {"0", "-1", "1025", "two", "1.5"}) {
-    expect_error({"a.obj", "--threads", threads}, "--threads: expected a whole number");
-  }
-  for (const char* seed : {"-1", "1.5", "x", "18446744073709551616"}) {
-    expect_error({"a.obj", "--seed", seed}, "--seed: expected a whole number");
-  }
-  for (const char* option : {"--size", "--stats", "--seed", "--engine"}) {
-    expect_error({"a.obj", option}, option);      // no value
-    expect_error({"a.obj", option, ""}, option);  // an empty one
-  }
-}
-
 TEST(Options, AnEnvironmentNeedsPaths) {
   const RenderSettings plain = parse({"a.obj"}).render;
   EXPECT_EQ(plain.integrator, IntegratorKind::kWhitted);
@@ -260,8 +279,6 @@ TEST(Options, WordsThatMeanNothing) {
   EXPECT_EQ(error_of({"a.obj", "--frobnicate"}), "--frobnicate: unknown option (see --help)");
   EXPECT_EQ(error_of({"-x", "cpu", "a.obj"}), "-x: unknown option (see --help)");
   EXPECT_EQ(error_of({"a.obj", "--quiet=yes"}), "--quiet=yes: --quiet takes no value (see --help)");
-  EXPECT_EQ(error_of({"a.obj", "--engine", "gpgpu"}),
-            "--engine: expected rtl, model, cpu or check, got 'gpgpu'");
   expect_error({"a.obj", "b.obj"}, "expected one scene, got 2");
   expect_error({}, "expected one scene, got 0");
   EXPECT_EQ(parse({"--", "--odd.obj"}).scene, "--odd.obj");
@@ -273,23 +290,9 @@ TEST(Options, Views) {
   EXPECT_EQ(parse({"a.obj", "--view", "left"}).camera.angles, Angles(-90, 0));
   EXPECT_EQ(parse({"a.obj", "--view", "top"}).camera.angles, Angles(0, 90));
   EXPECT_EQ(parse({"a.obj", "--view", "-33.5,24"}).camera.angles, Angles(-33.5, 24));
-  for (const char* view : {"above", "33", "33,24,1", "33,91", "0,nan", "361,0"}) {
-    expect_error({"a.obj", "--view", view}, "--view: expected ");
-  }
-  for (const char* up : {"w", "0,0,1", "+z"})
-    expect_error({"a.obj", "--up", up}, "--up: expected ");
-  for (const char* fov : {"0", "180", "wide"}) {
-    expect_error({"a.obj", "--fov", fov}, "--fov: expected ");
-  }
-  for (const char* angle : {"-1", "181", "nan", "flat"}) {
-    expect_error({"a.obj", "--smooth", angle}, "--smooth: expected degrees from 0 to 180");
-  }
   EXPECT_EQ(parse({"a.obj", "--smooth", "30"}).smooth, 30.0);
-  expect_error({"a.obj", "--ground", "yes"}, "--ground: expected on or off");
   EXPECT_EQ(parse({"a.obj", "--ground", "off"}).camera.ground, false);
   EXPECT_FALSE(parse({"a.obj"}).camera.ground);
-  expect_error({"a.obj", "--view", "top", "--camera", "0,0,9,0,0,0"},
-               "--view and --camera exclude each other");
 }
 
 TEST(Options, FilesOfTheRayCore) {
@@ -322,8 +325,6 @@ TEST(OutputOptions, OutputNames) {
   EXPECT_EQ(parse({"d/a.obj", "-o", folder.c_str()}).output.exr,
             std::filesystem::path(folder) / "a.exr");
   EXPECT_EQ(parse({"d/a.obj", "-o", "missing/"}).output.png, "missing/a.png");
-  expect_error({"a.obj", "-o", "x.jpg"}, ".exr or .png");
-  expect_error({"a.obj", "-o", ""}, "--output");
 }
 
 TEST(OutputOptions, ChannelsByName) {
@@ -334,10 +335,6 @@ TEST(OutputOptions, ChannelsByName) {
   const ExtraChannels others =
       parse({"a.obj", "--channels", "tests,objectId,Albedo"}).output.channels;
   EXPECT_TRUE(others.albedo && others.object && others.tests);
-  for (const char* names : {"p", "P,", ",P", "P tests", "Z", "P,,tests"}) {
-    expect_error({"a.obj", "--channels", names}, "--channels: expected some of P, Albedo, ");
-  }
-  expect_error({"a.obj", "--channels", "P", "-o", "a.png"}, "--channels: expected an EXR");
 }
 
 TEST(OutputOptions, WhatThePngShows) {
@@ -345,34 +342,16 @@ TEST(OutputOptions, WhatThePngShows) {
   EXPECT_EQ(parse({"a.obj", "--exposure", "-1.5"}).output.display.exposure, -1.5);
   EXPECT_EQ(parse({"a.obj"}).output.display.tone, Tone::kClip);
   EXPECT_EQ(parse({"a.obj", "--tone", "filmic"}).output.display.tone, Tone::kFilmic);
-  for (const char* stops : {"bright", "101", "nan", "inf", "1,5"}) {
-    expect_error({"a.obj", "--exposure", stops}, "--exposure: expected a number of stops");
-  }
-  expect_error({"a.obj", "--tone", "aces"}, "--tone: expected clip or filmic");
 }
 
 TEST(OutputOptions, FalseColours) {
-  const Options options = parse({"a.obj", "--false-colour", "tests=t.png", "--false-color",
-                                 "N.X:-1:1=x=y.png", "-o", "b.png"});
+  const Options options = parse(
+      {"a.obj", "--false-colour", "tests=t.png", "--false-color", "N.X=x=y.png", "-o", "b.png"});
   ASSERT_EQ(options.output.false_colors.size(), 2u);
   EXPECT_EQ(options.output.false_colors[0].channel, "tests");
-  EXPECT_FALSE(options.output.false_colors[0].scale);
   EXPECT_EQ(options.output.false_colors[0].path, "t.png");
   EXPECT_EQ(options.output.false_colors[1].channel, "N.X");
-  ASSERT_TRUE(options.output.false_colors[1].scale);
-  EXPECT_EQ(options.output.false_colors[1].scale->low, -1.0);
-  EXPECT_EQ(options.output.false_colors[1].scale->high, 1.0);
   EXPECT_EQ(options.output.false_colors[1].path, "x=y.png");
-  for (const char* text : {"tests", "tests=", "tests=t.exr", "tests=t"}) {
-    expect_error({"a.obj", "--false-colour", text}, "expected CHANNEL=FILE.png");
-  }
-  for (const char* text : {"=t.png", "N=t.png", "speed=t.png"}) {
-    expect_error({"a.obj", "--false-colour", text}, "expected CHANNEL=FILE.png");
-  }
-  for (const char* text :
-       {"Z:=t.png", "Z:1=t.png", "Z:1:1=t.png", "Z:2:1=t.png", "Z:0:inf=t.png", "Z:0:1:2=t.png"}) {
-    expect_error({"a.obj", "--false-colour", text}, "with numbers LOW < HIGH");
-  }
   expect_error({"a.obj", "--false-colour", "Z=a.png"}, "a.png: would overwrite a.png");
 }
 
@@ -395,6 +374,9 @@ TEST(OutputOptions, LightByName) {
   EXPECT_EQ(path.ambient, 0.0);
   EXPECT_EQ(parse({"a.obj", "--depth", "0"}).render.depth(), 0);
   EXPECT_EQ(parse({"a.obj", "--max-depth", "7"}).render.depth(), 7);
+  EXPECT_EQ(parse({"a.obj", "--caustics", "off"}).render.caustics, Caustics::kOff);
+  EXPECT_EQ(parse({"a.obj", "--caustics", "on", "--integrator", "path"}).render.caustics,
+            Caustics::kOn);
   EXPECT_EQ(plain.point_error, 0x1p-16f);
   const auto point_error = [](const char* text) {
     return parse({"a.obj", "--point-error", text}).render.point_error;
@@ -402,30 +384,6 @@ TEST(OutputOptions, LightByName) {
   EXPECT_EQ(point_error("0"), 0.0f);
   EXPECT_EQ(point_error("1e-4"), 1e-4f);
   EXPECT_EQ(point_error("inf"), std::numeric_limits<float>::max());
-  expect_error({"a.obj", "--integrator", "photon"}, "--integrator: expected primary, whitted or");
-  expect_error({"a.obj", "--spp", "0"}, "--spp: expected a whole number from 1");
-  expect_error({"a.obj", "--depth", "-1"}, "--depth: expected a whole number from 0");
-  expect_error({"a.obj", "--filter", "lanczos"}, "--filter: expected box, tent, gauss");
-  expect_error({"a.obj", "--threshold", "2"}, "--threshold: expected a number from 0 to 1");
-  expect_error({"a.obj", "--threshold", "nan"}, "--threshold: expected");
-  expect_error({"a.obj", "--point-error", "-1"},
-               "--point-error: expected a fraction of the distance");
-  expect_error({"a.obj", "--point-error", "nan"},
-               "--point-error: expected a fraction of the distance");
-  expect_error({"a.obj", "--ambient", "inf"}, "--ambient: expected a radiance");
-}
-
-TEST(Options, CausticsOnNeedWhatLightPathsNeed) {
-  const RenderSettings off = parse({"a.obj", "--caustics", "off"}).render;
-  EXPECT_EQ(off.caustics, Caustics::kOff);
-  const RenderSettings on = parse({"a.obj", "--caustics", "on", "--integrator", "path"}).render;
-  EXPECT_EQ(on.caustics, Caustics::kOn);
-  expect_error({"a.obj", "--caustics", "maybe"}, "--caustics: expected on, off or auto");
-  expect_error({"a.obj", "--caustics", "on"}, "--caustics on: expected --integrator path");
-  expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--spp", "1"},
-               "--caustics on: expected --spp 2 or more");
-  expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--error", "1"},
-               "--caustics on and --error exclude each other");
 }
 
 std::string information_of(const char* argument) {

@@ -43,9 +43,9 @@ TEST_F(Render, ChannelsOnDemand) {
 }
 
 TEST_F(Render, FalseColoursOfAnyChannel) {
-  const Outcome outcome = render({kCornell, "--size", "40x30", "--engine", "cpu", "-o", "a.exr",
-                                  "--false-colour", "tests=t.png", "--false-colour",
-                                  "Z:500:2000=z.png", "--false-colour", "objectId=o.png"});
+  const Outcome outcome =
+      render({kCornell, "--size", "40x30", "--engine", "cpu", "-o", "a.exr", "--false-colour",
+              "tests=t.png", "--false-colour", "Z=z.png", "--false-colour", "objectId=o.png"});
   EXPECT_EQ(stats_.at("pictures"), (json{"a.exr", "t.png", "z.png", "o.png"}));
   for (const char* name : {"t.png", "z.png", "o.png"}) {
     const std::vector<std::uint8_t> pixels = decode_png(folder_.read(name));
@@ -53,7 +53,7 @@ TEST_F(Render, FalseColoursOfAnyChannel) {
     EXPECT_GT(std::set<std::uint8_t>(pixels.begin(), pixels.end()).size(), 5u) << name;
   }
   EXPECT_NE(outcome.out.find("scale    tests: 0 (dark violet) to "), std::string::npos);
-  EXPECT_NE(outcome.out.find("scale    Z: 500 (dark violet) to 2000 (yellow)"), std::string::npos);
+  EXPECT_NE(outcome.out.find("scale    Z: "), std::string::npos);
 }
 
 TEST_F(Render, ExposureChangesThePngAlone) {
@@ -130,8 +130,7 @@ TEST_F(Render, AnExrSaysHowItIsMadeAgain) {
           "0.001",  "-o",           "a.exr", "--projection", "orthographic", "--aperture",
           "7.5",    "--focus",      "900"});
   const ExrReader reader(folder_.read("a.exr"));
-  std::vector<std::string> again = {
-      kCornell, "--no-scene-file", "--size", "24x20", "--engine", "cpu", "-o", "b.exr"};
+  std::vector<std::string> again = {kCornell, "--size", "24x20", "--engine", "cpu", "-o", "b.exr"};
   for (const char* name : {"integrator", "spp", "filter", "depth", "threshold", "camera", "seed",
                            "projection", "aperture", "focus"}) {
     again.insert(again.end(), {std::string("--") + name, reader.text(name)});
@@ -189,8 +188,6 @@ TEST_F(Render, TheSceneFileBesideAnObjIsReadWithIt) {
   render({"s.json", "--engine", "cpu", "-o", "json"});
   expect_same_pictures("obj", "json");
   EXPECT_EQ(eye_of(folder_.read("obj.exr")), Imath::V3f(0, 0, 3));
-  render({"s.obj", "--engine", "cpu", "-o", "alone", "--no-scene-file"});
-  EXPECT_EQ(stats_.at("width"), 640);
 }
 
 }  // namespace

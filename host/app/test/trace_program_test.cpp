@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <sstream>
 #include <thread>
 
 #include "host/app/test/program.h"
@@ -217,27 +217,20 @@ TEST_F(TraceRays, LosesNothing) {
 
 TEST_F(TraceRays, RefusesWhatItCannotDo) {
   expect_refused({"sheets.obj"}, "expected SCENE and RAYS");
+  expect_refused({"sheets.obj", "rays.csv", "more"}, "expected SCENE and RAYS");
   expect_refused({"sheets.obj", "none.csv"}, "none.csv: cannot read: No such file");
   expect_refused({"none.obj", "rays.csv"}, "none.obj: cannot read");
-  expect_refused({"sheets.obj", "rays.csv", "-o", "hits.txt"},
-                 "--output: expected FILE.csv or -, got 'hits.txt'");
-  expect_refused({"sheets.obj", "rays.csv", "--hits", "nearst"},
-                 "--hits: expected nearest, any or all, got 'nearst'");
-  expect_refused({"sheets.obj", "rays.csv", "--colums", "t"},
-                 "--colums: unknown option (see --help)");
-  expect_refused({"sheets.obj", "rays.csv", "--columns", "ray,tt"},
-                 "--columns: found 'tt', expected some of ray, hit, triangle");
-  expect_refused({"sheets.obj", "rays.csv", "--columns", "t,t"},
-                 "--columns: found 't', expected each name once");
-  expect_refused({"sheets.obj", "rays.csv", "--hits", "all", "--columns", "unit-error"},
-                 "--columns: found 'unit-error', expected none of the unit's with --hits all");
+  const std::array<const char*, 3> options[] = {
+      {"-o", "hits.txt", "--output: expected FILE.csv or -, got 'hits.txt'"},
+      {"--hits", "nearst", "--hits: expected nearest, any or all, got 'nearst'"},
+      {"--colums", "t", "--colums: unknown option (see --help)"},
+      {"--columns", "ray,tt", "--columns: found 'tt', expected some of ray, hit, triangle"},
+      {"--unit", "core", "--unit: expected with --engine rtl, model or check, got 'core'"}};
+  for (const auto& [name, value, line] : options) {
+    expect_refused({"sheets.obj", "rays.csv", name, value}, line);
+  }
   expect_refused({"sheets.obj", "rays.csv", "--hits", "any", "--columns", "t"},
                  "--columns: found 't', expected ray, hit or doubts with --hits any");
-  expect_refused({"sheets.obj", "rays.csv", "--hits", "all", "--engine", "rtl"},
-                 "--engine: expected cpu with --hits all");
-  expect_refused({"sheets.obj", "rays.csv", "more"}, "expected SCENE and RAYS");
-  expect_refused({"sheets.obj", "rays.csv", "--unit", "core"},
-                 "--unit: expected with --engine rtl, model or check, got 'core'");
 }
 
 }  // namespace

@@ -11,24 +11,11 @@
 namespace raygate {
 namespace {
 
-Channel find(const std::vector<Channel>& channels, const std::string& name) {
-  for (const Channel& channel : channels) {
-    if (channel.name == name) return channel;
-  }
-  ADD_FAILURE() << "no channel " << name;
-  return channels.at(0);
-}
-
 /// CIE 1976 lightness of sRGB codes.
 double lightness(const Rgb8& color) {
   const double y = 0.2126 * srgb_to_linear(color[0]) + 0.7152 * srgb_to_linear(color[1]) +
                    0.0722 * srgb_to_linear(color[2]);
   return 116.0 * std::cbrt(y) - 16.0;
-}
-
-Image8 shown(const Film& film, const std::string& name, const std::optional<Scale>& scale = {}) {
-  const auto channels = channels_of(film);
-  return false_color(film.width, film.height, film.window, find(channels, name), scale);
 }
 
 TEST(FalseColor, ViridisHasItsPublishedColors) {
@@ -63,30 +50,26 @@ TEST(FalseColor, ScalesFromTheLeastToTheGreatestFiniteNumber) {
   Film film = make_sample_film(4, 1, {0, 0, 4, 1}, true);
   film.depth = {2.0f, std::numeric_limits<float>::infinity(), 6.0f, 4.0f};
   film.tests = {5, 3, 8, 4};
-  const Image8 depth = shown(film, "Z");
+  const Image8 depth = false_color(film, "Z");
   EXPECT_EQ(depth.pixels,
             (std::vector<Rgb8>{viridis(0.0), Rgb8{0, 0, 0}, viridis(1.0), viridis(0.5)}));
   ASSERT_EQ(depth.texts.size(), 1u);
   EXPECT_EQ(depth.texts[0].second, "Z: 2 (dark violet) to 6 (yellow)");
-  const Image8 tests = shown(film, "tests");
-  EXPECT_EQ(tests.pixels[3], viridis(0.5)) << "counts begin at 0";
-  const Image8 given = shown(film, "tests", Scale{4.0, 6.0});
-  EXPECT_EQ(given.pixels,
-            (std::vector<Rgb8>{viridis(0.5), viridis(0.0), viridis(1.0), viridis(0.0)}));
+  EXPECT_EQ(false_color(film, "tests").pixels[3], viridis(0.5)) << "counts begin at 0";
 }
 
 TEST(FalseColor, OneNumberOrNone) {
   Film film = make_sample_film(2, 1, {0, 0, 2, 1});
   film.depth = {3.0f, 3.0f};
-  EXPECT_EQ(shown(film, "Z").pixels[1], viridis(0.0));
+  EXPECT_EQ(false_color(film, "Z").pixels[1], viridis(0.0));
   film.depth = {NAN, NAN};
-  EXPECT_EQ(shown(film, "Z").pixels[1], (Rgb8{0, 0, 0}));
+  EXPECT_EQ(false_color(film, "Z").pixels[1], (Rgb8{0, 0, 0}));
 }
 
 TEST(FalseColor, MissesHaveNoLabel) {
   Film film = make_sample_film(3, 1, {0, 0, 3, 1});
   film.primitive = {kNoPrimitive, 7, 8};
-  EXPECT_EQ(shown(film, "id").pixels,
+  EXPECT_EQ(false_color(film, "id").pixels,
             (std::vector<Rgb8>{Rgb8{0, 0, 0}, label_color(7), label_color(8)}));
 }
 

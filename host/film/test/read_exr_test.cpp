@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <fstream>
 #include <random>
 
 #include "host/base/input_error.h"
@@ -57,7 +56,7 @@ TEST_F(ExrFile, BadFilesAreRefusedInOneLine) {
 /// Before memory is taken for it: fuzzing found a file of 2,634 bytes that took two gigabytes.
 TEST_F(ExrFile, HeadersAreNoLongerThanTheFile) {
   std::string bytes = encode_exr(make_sample_film(20, 10, {0, 0, 20, 10}),
-                                 {.software = {}, .scene = "cornell.obj"});
+                                 {.attributes = {{"scene", "cornell.obj"}}});
   const std::size_t length = bytes.find(std::string("scene\0string\0", 13)) + 13;
   ASSERT_EQ(bytes[length], 11);
   bytes.replace(length, 4, "ring");

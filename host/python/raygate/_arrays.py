@@ -63,6 +63,13 @@ def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
                          f"at most 2^{exponent}")
 
 
+def points(values: npt.ArrayLike, exponent: int) -> Array:
+    """Returns points of shape (N, 3), with coordinates of a magnitude of at most 2^exponent."""
+    array = vectors("points", values)
+    check_finite("points", array, "point", exponent)
+    return array
+
+
 def triangles(name: str, corners: Array) -> Array:
     """Returns corners of triangles, of shape (N, 3, 3), as rows of shape (3 N, 3), in C order."""
     if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not 0 < len(corners) < 2 ** 29:

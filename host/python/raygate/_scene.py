@@ -18,7 +18,6 @@ Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 Engine = Literal["cpu", "model"]
 Degenerate = Literal["leave out", "refuse"]
 
-
 _DIRECTION = np.array([0.36, 0.48, 0.8], np.float32)  # of rays that count crossings; arbitrary
 
 
@@ -49,11 +48,11 @@ class Picture(dict[str, Array]):
     _repr_png_ = png
 
 
-class Scene:
+class Scene(_raygate.Scene):
     """Triangles, materials and lights. Pickling a scene keeps the absolute name of its file or copies of its arrays,
     and its options; unpickling reads the file or builds the scene again."""
 
-    _open_edges: npt.NDArray[np.float64] | None = None
+    _edges: npt.NDArray[np.float64] | None = None  # the open ones
 
     @overload
     def __init__(self, file: Path, /, *, smooth: float | None = None, degenerate: Degenerate = "leave out",
@@ -71,21 +70,22 @@ class Scene:
 
         Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them, and
         `warnings` counts them; degenerate="refuse": an InputError instead. `smooth`: faces without normals that meet at
-        no more than so many degrees are shaded smoothly. `threads`: how many build the scene, one per processor by default. Raises InputError, a ValueError,
-        which names the file and line, or the face, that cannot be used."""
+        no more than so many degrees are shaded smoothly. `threads`: one per processor by default. Raises InputError, a
+        ValueError, which names the file and line, or the face, that cannot be used."""
         options = {"smooth": smooth, "degenerate": degenerate, "threads": threads}
         if faces is None and isinstance(file, (str, bytes, os.PathLike)):
             name = os.fsencode(file)
             if b"\0" in name:
                 raise InputError(f"file: found {file!r}, expected a name without a null byte")
             self._recipe: tuple[Any, ...] = Scene, (os.path.abspath(name),), options
-            self._scene = _raygate.Scene(name, _settings(smooth=smooth, threads=threads))
+            super().__init__(name, _settings(smooth=smooth, threads=threads))
             self._check(degenerate)
             return
         vertices = np.array(_arrays.vectors("vertices", file))
         numbers = np.array(_arrays.vertex_numbers(faces, len(vertices)))
         self._recipe = Scene, (vertices, numbers), options
-        self._scene = _raygate.Scene("faces", _arrays.triangles("faces", vertices[numbers]), _settings(smooth=smooth, threads=threads))
+        super().__init__("faces", _arrays.triangles("faces", vertices[numbers]),
+                         _settings(smooth=smooth, threads=threads))
         self._check(degenerate)
 
     def _check(self, degenerate: Degenerate) -> None:
@@ -99,12 +99,11 @@ class Scene:
     def of_triangles(cls, corners: npt.ArrayLike, *, degenerate: Degenerate = "leave out",
                      threads: int | None = None) -> Scene:
         """Returns a scene of grey triangles from their corners, of shape (N, 3, 3), float32 or float64. Triangles
-        without area keep their numbers, but no ray hits them, or are refused, as by Scene(). Raises InputError, which names the triangle that cannot
-        be used."""
+        without area are as in Scene(). Raises InputError, which names the triangle that cannot be used."""
         scene = cls.__new__(cls)
         kept = np.array(_arrays.reals("triangles", corners), order="C")
         scene._recipe = cls.of_triangles, (kept,), {"degenerate": degenerate, "threads": threads}
-        scene._scene = _raygate.Scene("triangles", _arrays.triangles("triangles", kept), _settings(threads=threads))
+        super(Scene, scene).__init__("triangles", _arrays.triangles("triangles", kept), _settings(threads=threads))
         scene._check(degenerate)
         return scene
 
@@ -113,40 +112,9 @@ class Scene:
         return functools.partial(make, **options), arguments
 
     @property
-    def triangle_count(self) -> int:
-        """Number of triangles, including those without area."""
-        return self._scene.triangle_count
-
-    @property
-    def objects(self) -> list[str]:
-        """Names of the objects (`o` and `g` of an OBJ file), by the numbers in the field "object" of hits."""
-        return self._scene.objects
-
-    @property
-    def materials(self) -> list[str]:
-        """Names of the materials, by the numbers in the field "material" of hits."""
-        return self._scene.materials
-
-    @property
-    def degenerate_faces(self) -> list[int]:
-        """Numbers of the triangles without area."""
-        return self._scene.degenerate_faces
-
-    @property
-    def warnings(self) -> list[str]:
-        """A line for each thing in the file that was ignored or changed."""
-        return self._scene.warnings
-
-    @property
-    def rounding(self) -> tuple[int, float]:
-        """Number of vertices that are not stored as they are in the file, and the largest error of a coordinate, in the
-        scene's unit of length. Files of glTF, meshes with instances and numbers below 2^-97 are rounded."""
-        return self._scene.rounding
-
-    @property
     def origin(self) -> Array:
         """The point that stored positions are relative to: float64, shape (3,)."""
-        return np.array(self._scene.origin)
+        return np.array(self._origin)
 
     @in_context
     def trace(self, origins: npt.ArrayLike, directions: npt.ArrayLike, limits: npt.ArrayLike | None = None, *,
@@ -178,8 +146,8 @@ class Scene:
         if not isinstance(columns, (str, Iterable, type(None))):
             raise InputError(f"columns: found {columns!r}, expected a name or several names")
         names = [columns] if isinstance(columns, str) else [str(column) for column in columns or []]
-        rows, fields = self._scene.trace(origins, directions, limits, names,
-                                         _settings(hits=hits, engine=engine, threads=threads))
+        rows, fields = self._trace(origins, directions, limits, names,
+                                   _settings(hits=hits, engine=engine, threads=threads))
         return rows.view(np.dtype(fields))
 
     @in_context
@@ -195,10 +163,14 @@ class Scene:
         camera of the scene file by default, or one that sees the whole scene. Other keywords are options of ./render,
         with its defaults: spp, error, integrator, fov (degrees), depth, seed, filter, threshold, ambient, threads.
         engine: as in trace(). Raises InputError, which names the option, for values that cannot be used."""
-        channels, film = self._scene.render(_arrays.point("eye", eye), _arrays.point("target", target),
-                                            _arrays.point("up", up),
-                                            _settings(width=width, height=height, engine=engine, **options))
+        channels, film = self._render(_arrays.point("eye", eye), _arrays.point("target", target), _arrays.point("up", up),
+                                      _settings(width=width, height=height, engine=engine, **options))
         return Picture(channels, film)
+
+    def _crossings(self, points: Array) -> Array:
+        """Returns how often a ray from each point leaves surfaces, less how often it enters them."""
+        hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
+        return np.bincount(hits["ray"], hits["side"], minlength=len(points))
 
     @in_context
     def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
@@ -206,10 +178,7 @@ class Scene:
         answers are exact: they count how often a ray from the point leaves and enters surfaces. They have no meaning
         for an open surface or for a point on a surface. Raises InputError, which names the point, for inf, NaN and
         coordinates beyond 2^125."""
-        points = _arrays.vectors("points", points)
-        _arrays.check_finite("points", points, "point", 125)
-        hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
-        is_inside: npt.NDArray[np.bool_] = np.bincount(hits["ray"], hits["side"], minlength=len(points)) != 0
+        is_inside: npt.NDArray[np.bool_] = self._crossings(_arrays.points(points, 125)) != 0
         return is_inside
 
     @in_context
@@ -221,17 +190,14 @@ class Scene:
 
         Crossings of a ray are counted exactly, as if each open edge were closed by a strip that goes to infinity against
         the ray; the solid angles of these strips are subtracted."""
-        points = _arrays.vectors("points", points)
-        _arrays.check_finite("points", points, "point", 125)
-        hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
-        whole = np.bincount(hits["ray"], hits["side"], minlength=len(points))
-        if self._open_edges is None:
-            self._open_edges = self._scene.open_edges().view(np.float64).reshape(-1, 7)
-        winding, errors = whole.astype(np.float64), np.zeros(len(points))
+        points = _arrays.points(points, 125)
+        if self._edges is None:
+            self._edges = self._open_edges().view(np.float64).reshape(-1, 7)
+        winding, errors = self._crossings(points).astype(np.float64), np.zeros(len(points))
         towards = -_DIRECTION.astype(np.float64) / np.linalg.norm(_DIRECTION.astype(np.float64))
         from_origin = points.astype(np.float64) - self.origin
-        for first in range(0, len(self._open_edges), 1024):
-            edges = self._open_edges[first:first + 1024]
+        for first in range(0, len(self._edges), 1024):
+            edges = self._edges[first:first + 1024]
             for part in range(0, len(points), 1024):
                 at = from_origin[part:part + 1024, None]
                 a, b = edges[:, :3] - at, edges[:, 3:6] - at
@@ -250,10 +216,9 @@ class Scene:
         fields triangle, int64, and distance, x, y and z, float64, in the scene's unit of length. Errors are those of
         rounding in float64. Of triangles at the same distance the lowest number is returned. Raises InputError, which
         names the point, for inf, NaN and coordinates beyond 2^1000."""
-        points = _arrays.vectors("points", points)
-        _arrays.check_finite("points", points, "point", 1000)
+        points = _arrays.points(points, 1000)
         fields = [("triangle", "<i8"), *((name, "<f8") for name in ("distance", "x", "y", "z"))]
-        return self._scene.closest(points).view(np.dtype(fields))
+        return self._closest(points).view(np.dtype(fields))
 
 
 def _settings(**options: object) -> list[tuple[str, str]]:

@@ -73,12 +73,13 @@ class RaycastingScene:
         shape, rows = _rows("rays", rays, 6)
         return shape, self._built.trace(rows[:, :3], rows[:, 3:], limits, hits=hits, columns=columns, threads=self._threads)
 
-    def _names(self, triangles: Array) -> dict[str, Array]:
-        """Returns the numbers of geometries, and of triangles in them."""
+    def _names(self, triangles: Array, shape: tuple[int, ...]) -> dict[str, Array]:
+        """Returns the numbers of geometries, and of triangles in them, in this shape."""
         parts = np.searchsorted(self._starts, triangles, "right") - 1
         is_hit = triangles >= 0
-        return {"geometry_ids": np.where(is_hit, parts, self.INVALID_ID).astype(np.uint32),
-                "primitive_ids": np.where(is_hit, triangles - self._starts[parts], self.INVALID_ID).astype(np.uint32)}
+        numbers = {"geometry_ids": parts, "primitive_ids": triangles - self._starts[parts]}
+        return {name: np.where(is_hit, number, self.INVALID_ID).astype(np.uint32).reshape(shape)
+                for name, number in numbers.items()}
 
     def _normals(self, triangles: Array) -> Array:
         """Returns unit normals; 0 for -1."""
@@ -94,7 +95,7 @@ class RaycastingScene:
         triangles = hits["triangle"]
         uvs = np.nan_to_num(np.stack([hits["u"], hits["v"]], -1))
         return {"t_hit": hits["t"].reshape(shape),
-                **{name: ids.reshape(shape) for name, ids in self._names(triangles).items()},
+                **self._names(triangles, shape),
                 "primitive_uvs": uvs.reshape(*shape, 2),
                 "primitive_normals": self._normals(triangles).reshape(*shape, 3)}
 
@@ -117,7 +118,7 @@ class RaycastingScene:
         shape, hits = self._trace(rays, "all", ["ray", "triangle", "t", "uv"])
         counts = np.bincount(hits["ray"], minlength=int(np.prod(shape)))
         return {"ray_splits": np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32),
-                "ray_ids": hits["ray"].astype(np.uint32), "t_hit": hits["t"], **self._names(hits["triangle"]),
+                "ray_ids": hits["ray"].astype(np.uint32), "t_hit": hits["t"], **self._names(hits["triangle"], (-1,)),
                 "primitive_uvs": np.stack([hits["u"], hits["v"]], -1)}
 
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> dict[str, Array]:
@@ -131,7 +132,7 @@ class RaycastingScene:
         squares = np.maximum((normals * normals).sum(-1), 1e-300)
         uvs = np.stack([(np.cross(c - a, a - at) * normals).sum(-1), (np.cross(b - a, at - a) * normals).sum(-1)], -1)
         return {"points": at.reshape(*shape, 3),
-                **{name: ids.reshape(shape) for name, ids in self._names(found["triangle"]).items()},
+                **self._names(found["triangle"], shape),
                 "primitive_uvs": np.clip(uvs / squares[:, None], 0.0, 1.0).reshape(*shape, 2),
                 "primitive_normals": self._normals(found["triangle"]).reshape(*shape, 3)}
 

@@ -2,9 +2,11 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -21,7 +23,6 @@
 #include "host/scene/io/gltf_materials.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/scene/io/text.h"
 
 namespace raygate {
 namespace {
@@ -40,18 +41,13 @@ bool is_unread(std::string_view name) {
          !name.starts_with("WEIGHTS_");
 }
 
-bool is_finite_transform(const glm::dmat4& m) {
-  const std::span elements(glm::value_ptr(m), 16);
-  return std::ranges::all_of(elements, [](double element) { return std::isfinite(element); });
-}
-
 /// The index of a mesh, and the weights of its morph targets.
 using Shape = std::pair<int, std::vector<double>>;
 
 /// A mesh with several instances.
 struct SharedMesh {
-  Scene part;   // moved to `instancer` at the first instance
-  Bounds3 box;  // of its positions
+  Scene part;   ///< moved to `instancer` at the first instance
+  Bounds3 box;  ///< of its positions
   std::optional<MeshInstancer> instancer;
 };
 
@@ -77,7 +73,7 @@ class GltfReader {
   GltfReader(const std::filesystem::path& path, const LoadOptions& options)
       : file_(path, scene_.warnings),
         options_(options),
-        builder_(file_.name()),
+        builder_(file_.name),
         materials_(file_, scene_, options.textures) {
     // Coordinates of the file are in binary32, and their transforms are rounded in any case.
     options_.vertices = std::max(options.vertices, Vertices::kAsPictures);
@@ -85,16 +81,18 @@ class GltfReader {
 
   Scene read() {
     walk(roots());
-    for (const auto& [node, world] : nodes_) count_uses(*node);
+    for (const auto& [node, world] : nodes_) {
+      if (index_in(*node, "mesh") >= 0 && index_in(*node, "skin") < 0) ++uses_[shape_of(*node)];
+    }
     for (const auto& [node, world] : nodes_) read_node(*node, world);
     for (const MeshInstance& instance : instances_) expand_extent(instance);
     if (!instances_.empty()) builder_.allow_empty();
     builder_.build(options_, scene_);
     for (const MeshInstance& instance : instances_) add_instance(instance);
-    if (is_empty(scene_)) throw InputError(file_.name() + ": no face has an area");
-    for (const WorldPointLight& light : lights_) add_light(scene_, light, file_.name());
+    if (is_empty(scene_)) throw InputError(file_.name + ": no face has an area");
+    for (const WorldPointLight& light : lights_) add_light(scene_, light, file_.name);
     aim_camera();
-    scene_.files = file_.files();
+    scene_.files = file_.files;
     if (!file_.list("animations").empty()) file_.warn_once("animations are not read");
     return std::move(scene_);
   }
@@ -106,7 +104,7 @@ class GltfReader {
 
   [[nodiscard]] std::vector<int> roots() const {
     if (!file_.list("scenes").empty()) {
-      const int scene = std::max(index_in(file_.json(), "scene"), 0);
+      const int scene = std::max(index_in(file_.json, "scene"), 0);
       return indices_in(file_.at(file_.list("scenes"), scene, "scene"), "nodes");
     }
     const Json& nodes = file_.list("nodes");
@@ -123,28 +121,23 @@ class GltfReader {
 
   /// Collects the nodes depth first, with their transforms to the world.
   void walk(const std::vector<int>& roots) {
-    struct Step {
-      int node;
-      glm::dmat4 parent;
-    };
-    std::vector<Step> steps;
+    std::vector<std::pair<int, glm::dmat4>> steps;  // nodes, and the transforms of their parents
     const auto add = [&](const std::vector<int>& nodes, const glm::dmat4& parent) {
-      for (auto node = nodes.rbegin(); node != nodes.rend(); ++node)
-        steps.push_back({*node, parent});
+      for (std::size_t i = nodes.size(); i-- > 0;) steps.emplace_back(nodes[i], parent);
     };
-    std::vector<bool> seen(file_.list("nodes").size());
+    std::set<int> seen;
     add(roots, glm::dmat4(1.0));
     while (!steps.empty()) {
-      const Step step = steps.back();
+      const auto [number, parent] = steps.back();
       steps.pop_back();
-      const Json& node = this->node(step.node);
-      if (seen[static_cast<std::size_t>(step.node)]) {
-        file_.fail("node " + std::to_string(step.node) + " has two parents, expected one");
+      const Json& node = this->node(number);
+      if (!seen.insert(number).second) {
+        file_.fail("node " + std::to_string(number) + " has two parents, expected one");
       }
-      seen[static_cast<std::size_t>(step.node)] = true;
-      const glm::dmat4 world = step.parent * local_matrix(node);
-      if (!is_finite_transform(world)) {
-        file_.fail("node " + std::to_string(step.node) + ": its place is not finite");
+      const glm::dmat4 world = parent * local_matrix(node);
+      const std::span elements(glm::value_ptr(world), 16);
+      if (!std::ranges::all_of(elements, [](double x) { return std::isfinite(x); })) {
+        file_.fail("node " + std::to_string(number) + ": its place is not finite");
       }
       nodes_.emplace_back(&node, world);
       add(indices_in(node, "children"), world);
@@ -161,11 +154,6 @@ class GltfReader {
     return {number, weights.empty() ? numbers_in(mesh(number), "weights") : weights};
   }
 
-  void count_uses(const Json& node) {
-    if (index_in(node, "mesh") < 0 || index_in(node, "skin") >= 0) return;
-    ++uses_[shape_of(node)];
-  }
-
   /// Returns the transforms of a skin's joints, from the mesh's coordinates to the world's.
   [[nodiscard]] std::vector<glm::dmat4> joints_of(int number) {
     const Json& skin = file_.at(file_.list("skins"), number, "skin");
@@ -177,8 +165,9 @@ class GltfReader {
     if (joints.empty()) file_.warn_once("a skin without joints is left out");
     const std::vector<double> inverse = file_.optional_numbers(
         index_in(skin, "inverseBindMatrices"), 16, "inverseBindMatrices", joints.size());
-    for (std::size_t i = 0; i < inverse.size() / 16; ++i)
+    for (std::size_t i = 0; i < inverse.size() / 16; ++i) {
       joints[i] *= glm::make_mat4(&inverse[16 * i]);
+    }
     return joints;
   }
 
@@ -207,7 +196,8 @@ class GltfReader {
     constexpr const char* kLights = "KHR_lights_punctual";
     if (const int light = index_in(extension(node, kLights), "light"); light >= 0) {
       file_.optionally("left out", [&] {
-        read_light(file_.at(member(file_.extension(kLights), "lights"), light, "light"), world);
+        const Json& lights = member(extension(file_.json, kLights), "lights");
+        read_light(file_.at(lights, light, "light"), world);
       });
     }
   }
@@ -216,7 +206,7 @@ class GltfReader {
   SharedMesh& shared(const Shape& shape) {
     const auto [at, is_new] = shared_.try_emplace(shape);
     if (!is_new) return at->second;
-    MeshBuilder builder(file_.name());
+    MeshBuilder builder(file_.name);
     builder.allow_empty();
     read_mesh(mesh(shape.first), {glm::dmat4(1.0), &shape.second, {}}, 0, builder);
     Scene& part = at->second.part;
@@ -244,9 +234,8 @@ class GltfReader {
     SharedMesh& mesh = shared(instance.shape);
     if (!mesh.instancer) {
       if (is_empty(mesh.part)) {
-        for (const std::string& warning : std::exchange(mesh.part.warnings, {})) {
-          scene_.warnings.push_back(warning);
-        }
+        std::ranges::move(std::exchange(mesh.part.warnings, {}),
+                          std::back_inserter(scene_.warnings));
         return;
       }
       mesh.instancer.emplace(scene_, std::move(mesh.part));
@@ -341,8 +330,6 @@ class GltfReader {
     cone.inner = inner >= 0.0 ? std::min(inner, cone.outer) : 0.0;
   }
 
-  // Meshes
-
   /// Appends the faces of a mesh, which belong to object number `object`. Leaves out points, lines
   /// and primitives without positions, with a warning.
   void read_mesh(const Json& mesh, const Placement& placement, std::uint32_t object,
@@ -356,8 +343,8 @@ class GltfReader {
   /// file of this size: nodes with skins repeat their mesh.
   void count(std::size_t more) {
     vertices_ += more;
-    if (more > kMostVertices + file_.bytes() || vertices_ > kMostVertices + file_.bytes()) {
-      file_.fail("more than " + std::to_string(kMostVertices + file_.bytes()) +
+    if (more > kMostVertices + file_.bytes || vertices_ > kMostVertices + file_.bytes) {
+      file_.fail("more than " + std::to_string(kMostVertices + file_.bytes) +
                  " vertices and corners, expected fewer");
     }
   }
@@ -367,9 +354,11 @@ class GltfReader {
     std::vector<std::uint32_t> order;
     if (const int indices = index_in(primitive, "indices"); indices >= 0) {
       count(file_.count(indices));
-      order = file_.indices(indices);
+      const std::vector<double> numbers = file_.numbers(indices, 1, "indices", true);
+      order.assign(numbers.begin(), numbers.end());
     } else {
-      for (std::size_t i = 0; i < vertices; ++i) order.push_back(static_cast<std::uint32_t>(i));
+      order.resize(vertices);
+      std::iota(order.begin(), order.end(), 0u);
     }
     const int mode = index_in(primitive, "mode");
     if (mode == kTriangles || mode == -1) return order;
@@ -384,24 +373,22 @@ class GltfReader {
 
   /// Returns the numbers of an attribute plus the weighted sum of its morph targets; an empty list
   /// if there is no such attribute.
-  std::vector<double> attribute(const Json& primitive, const std::string& name, int width,
+  std::vector<double> attribute(const Json& primitive, const std::string& name, std::size_t width,
                                 std::size_t vertices, const std::vector<double>& weights = {}) {
     const int accessor = index_in(member(primitive, "attributes"), name.c_str());
-    const auto optional = [&](int number, int components) {
+    const auto optional = [&](int number, std::size_t components) {
       return file_.optional_numbers(number, components, name.c_str(), vertices);
     };
     std::vector<double> all =
         name == "POSITION" ? file_.numbers(accessor, width, "POSITION") : optional(accessor, width);
-    const int moved = std::min(width, 3);  // targets move a tangent's direction, not its sign
+    const auto moved = std::min<std::size_t>(width, 3);  // not the sign of a tangent
     std::size_t target = 0;
     for (const Json& targets : member(primitive, "targets")) {
       const double weight = target < weights.size() ? weights[target++] : 0.0;
       if (weight == 0.0 || all.empty()) continue;
       const std::vector<double> by = optional(index_in(targets, name.c_str()), moved);
       for (std::size_t i = 0; i < by.size(); ++i) {
-        const std::size_t vertex = i / static_cast<std::size_t>(moved),
-                          k = i % static_cast<std::size_t>(moved);
-        all[vertex * static_cast<std::size_t>(width) + k] += weight * by[i];
+        all[i / moved * width + i % moved] += weight * by[i];
       }
     }
     return all;
@@ -446,7 +433,7 @@ class GltfReader {
     }
     const std::size_t vertices = file_.count(index_in(attributes, "POSITION"));
     count(vertices);
-    const auto read = [&](const std::string& name, int width) {
+    const auto read = [&](const std::string& name, std::size_t width) {
       return attribute(primitive, name, width, vertices, *placement.weights);
     };
     const std::vector<double> positions = read("POSITION", 3), normals = read("NORMAL", 3);
@@ -454,7 +441,7 @@ class GltfReader {
     if (!normals.empty()) tangents = read("TANGENT", 4);
     const int color = index_in(attributes, "COLOR_0");
     const bool has_alpha = color >= 0 && text_in(file_.accessor(color), "type") == "VEC4";
-    const int channels = has_alpha ? 4 : 3;
+    const std::size_t channels = has_alpha ? 4 : 3;
     const std::vector<double> colors = read("COLOR_0", channels);
     const std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
     count(corners.size());
@@ -484,11 +471,11 @@ class GltfReader {
       const glm::dmat4& place = place_of(i);
       const glm::dmat3 turn(place);
       const glm::dvec3 at(place * glm::dvec4(glm::make_vec3(&positions[3 * i]), 1.0));
-      if (!(is_finite(at) && largest(at) <= std::numeric_limits<float>::max())) {
+      if (!(is_finite(at) && largest(at) <= kMostFloat)) {
         file_.fail("a vertex is beyond the range of float");
       }
       to.add_position(at);
-      const std::size_t own_color = static_cast<std::size_t>(channels) * i;
+      const std::size_t own_color = channels * i;
       if (!colors.empty()) to.add_color(glm::vec3(glm::make_vec3(&colors[own_color])));
       if (!normals.empty()) {
         // The inverse transpose up to a factor; cofactors also exist for a singular matrix.

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "host/scene/io/gltf_file.h"
-#include "host/scene/io/text.h"
 #include "host/scene/scene.h"
 
 namespace raygate {
@@ -28,8 +27,8 @@ class GltfMaterials {
 
   struct Converted {
     std::uint32_t number;  ///< index into Scene::materials
-    std::array<int, 2>
-        texcoord_sets;  ///< sets that its textures use, the base colour's first; -1: none
+    /// The sets that its textures use, the base colour's first; -1: none.
+    std::array<int, 2> texcoord_sets;
   };
 
   /// Returns a material of the file, which is converted at its first use; -1 is the default one.
@@ -73,16 +72,10 @@ class GltfMaterials {
   /// Returns the first three numbers, clamped to [0, most]; 1 for missing ones.
   static glm::vec3 colour_of(const std::vector<double>& numbers, double most = 1.0) {
     glm::vec3 colour(1.0f);
-    for (int k = 0; k < 3 && static_cast<std::size_t>(k) < numbers.size(); ++k) {
-      const double number = numbers[static_cast<std::size_t>(k)];
-      colour[k] = static_cast<float>(number >= 0.0 ? std::min(number, most) : 0.0);
+    for (std::size_t k = 0; k < std::min<std::size_t>(numbers.size(), 3); ++k) {
+      colour[int(k)] = static_cast<float>(numbers[k] >= 0.0 ? std::min(numbers[k], most) : 0.0);
     }
     return colour;
-  }
-
-  static float finite_in(const Json& object, const char* key, double otherwise) {
-    const double number = number_in(object, key, otherwise);
-    return static_cast<float>(std::isfinite(number) ? number : otherwise);
   }
 
   static glm::vec2 pair_in(const Json& object, const char* key, const glm::vec2& otherwise) {
@@ -117,8 +110,7 @@ class GltfMaterials {
     return index == -1 ? kDefault : file_.at(file_.list("materials"), index, "material");
   }
 
-  /// Returns a member of a list of a material; an empty list, with a warning if the member is not
-  /// `size` numbers.
+  /// Returns a list of a material; an empty list, with a warning, if it is not `size` numbers.
   std::vector<double> numbers(const Json& object, const char* key, std::size_t size) {
     std::vector<double> numbers = numbers_in(object, key);
     if (numbers.size() == size) return numbers;
@@ -138,7 +130,7 @@ class GltfMaterials {
       return std::nullopt;
     }
     Texture result = Texture::decode(file_.picture_bytes(source),
-                                     file_.name() + ": image " + std::to_string(source), content);
+                                     file_.name + ": image " + std::to_string(source), content);
     texels_ += std::int64_t{result.width()} * result.height();
     if (texels_ > kMostTexels) {
       file_.fail("textures of more than " + std::to_string(kMostTexels) + " pixels in all");
@@ -146,8 +138,7 @@ class GltfMaterials {
     return result;
   }
 
-  /// Returns the texture at a key with its mapping; no texture if there is none or, with a warning,
-  /// if it cannot be read.
+  /// Returns the texture at a key with its mapping; no texture, with a warning, if unreadable.
   MaterialMap map_of(const Json& parent, const char* key,
                      Texture::Content content = Texture::Content::kColour) {
     MaterialMap map;
@@ -250,7 +241,8 @@ class GltfMaterials {
     model.roughness_map = model.metallic_map = map_of(pbr, "metallicRoughnessTexture");
     material.diffuse_map = map_of(pbr, "baseColorTexture");
     material.normal_map = map_of(from, "normalTexture");
-    material.normal_scale = finite_in(normal, "scale", 1.0);
+    const double normal_scale = number_in(normal, "scale", 1.0);
+    if (std::isfinite(normal_scale)) material.normal_scale = static_cast<float>(normal_scale);
     set_opacity(from, material);
     if (!member(from, "occlusionTexture").is_null()) {
       file_.warn_once("occlusionTexture is not read: the rays of the scene find what is in shade");

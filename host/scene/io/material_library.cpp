@@ -67,9 +67,8 @@ struct Draft {
   }
 };
 
-/// Reads the statements that Material has members for. Clamps values out of range, with a warning.
-/// Ignores other statements, with a warning if they would change a picture. Throws InputError for
-/// other errors.
+/// Reads the statements that Material has members for. Clamps values out of range and ignores other
+/// statements, with a warning. Throws InputError for other errors.
 class MtlReader {
  public:
   /// Searches for textures in the file's folder, by find_file. `warnings` must outlive this object.

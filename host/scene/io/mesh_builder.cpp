@@ -1,7 +1,6 @@
 #include "host/scene/io/mesh_builder.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -12,56 +11,22 @@
 #include "host/scene/io/ear_clipper.h"
 
 namespace raygate {
-
 namespace {
 
 constexpr glm::vec3 kNoColor(-1.0f);
 constexpr std::size_t kCheckpointFaces = 4096;
 
-}  // namespace
+/// A flaw of faces, for one warning that counts them and names the first.
+struct Flaw {
+  std::string text;
+  std::size_t count = 0, first_line = 0;
 
-/// Counts the faces with each flaw, for one warning that names the first of them.
-struct MeshBuilder::Flaws {
-  enum Flaw {
-    kNoArea,
-    kFlattened,
-    kTooShort,
-    kMoved,
-    kTouching,
-    kNoDirection,
-    kNoNormal,
-    kNoTexcoord,
-    kCount
-  };
-  std::array<std::size_t, kCount> counts{}, first_lines{};
-
-  void note(Flaw flaw, std::size_t line) {
-    if (counts[flaw]++ == 0) first_lines[flaw] = line;
-  }
-
-  void report(const MeshBuilder& mesh, Scene& scene) const {
-    char most[32];
-    std::snprintf(most, sizeof most, "%.3g", scene.rounding.most);
-    const std::string texts[kCount] = {
-        "face of zero area, left out",
-        "face flattened by rounding to binary32, left out",
-        "face of fewer than 3 corners, left out",
-        std::string("corners moved by up to ") + most +
-            ", more than a hundredth of their face, by rounding to binary32",
-        "polygon crosses or touches itself, cut as well as can be",
-        "normal without a direction, the face is taken as flat",
-        "face corner without a normal, the face is taken as flat",
-        "face corner without texture coordinates, the face has no texture"};
-    for (std::size_t flaw = 0; flaw < kCount; ++flaw) {
-      if (counts[flaw] == 0) continue;
-      std::string text = mesh.location(first_lines[flaw]) + texts[flaw];
-      if (const std::size_t more = counts[flaw] - 1; more > 0) {
-        text += ", here and in " + std::to_string(more) + " later face" + (more > 1 ? "s" : "");
-      }
-      scene.warnings.push_back(text);
-    }
+  void note(std::size_t line) {
+    if (count++ == 0) first_line = line;
   }
 };
+
+}  // namespace
 
 glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
   const glm::dvec3 half = 0.5 * high - 0.5 * low;
@@ -75,17 +40,16 @@ glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high) {
   glm::dvec3 origin;
   for (int axis = 0; axis < 3; ++axis) {
     const double steps = std::nearbyint(centre[axis] / step);
-    // + 0.0 avoids a negative zero. Beyond 2^53 steps the centre is already on the grid, and the
-    // quotient may overflow.
+    // + 0.0 avoids a negative zero. Beyond 2^53 steps the centre is already on the grid.
     origin[axis] = std::abs(steps) < 0x1p53 ? steps * step + 0.0 : centre[axis];
   }
   return origin;
 }
 
 void MeshBuilder::add_color(const glm::vec3& color) {
-  colors_.resize(positions_.size() - 1, kNoColor);
   if (!is_finite(color)) ++bad_colors_;
-  colors_.push_back(is_finite(color) ? glm::max(color, glm::vec3(0.0f)) : kNoColor);
+  set_last(colors_, positions_.size(),
+           is_finite(color) ? glm::max(color, glm::vec3(0.0f)) : kNoColor, kNoColor);
 }
 
 glm::vec3 MeshBuilder::linear_color(std::size_t position, float white) const {
@@ -103,21 +67,6 @@ void MeshBuilder::add_normal(const glm::dvec3& normal) {
   normals_.push_back(has_direction ? glm::vec3(unit(normal)) : glm::vec3(0.0f));
 }
 
-void MeshBuilder::add_tangent(const glm::vec4& tangent) {
-  tangents_.resize(normals_.size() - 1, glm::vec4(0.0f));
-  tangents_.push_back(tangent);
-}
-
-void MeshBuilder::add_second_texcoord(const glm::vec2& texcoord) {
-  second_texcoords_.resize(texcoords_.size() - 1, glm::vec2(0.0f));
-  second_texcoords_.push_back(texcoord);
-}
-
-void MeshBuilder::add_opacity(float opacity) {
-  opacities_.resize(texcoords_.size() - 1, 1.0f);
-  opacities_.push_back(opacity);
-}
-
 void MeshBuilder::add_face(std::span<const FaceCorner> corners, std::size_t line,
                            const FaceAttributes& attributes) {
   if (faces_.size() % kCheckpointFaces == 0) checkpoint();
@@ -130,21 +79,10 @@ std::string MeshBuilder::location(std::size_t line) const {
   return file_name_ + "[" + std::to_string(line - 1) + "]: ";
 }
 
-void MeshBuilder::fail(std::size_t line, const std::string& what) const {
-  throw InputError(location(line) + what);
-}
-
-void MeshBuilder::check_indices() const {
-  const auto bad = std::ranges::find_if(
-      corners_, [&](const FaceCorner& corner) { return corner.position >= positions_.size(); });
-  if (bad == corners_.end()) return;
-  fail(line_of(static_cast<std::size_t>(bad - corners_.begin())),
-       "vertex index " + std::to_string(bad->position + std::uint64_t{1}) +
-           " in a face, but the file has " + std::to_string(positions_.size()));
-}
-
-std::size_t MeshBuilder::line_of(std::size_t corner) const {
-  return std::ranges::upper_bound(faces_, corner, {}, &Face::end)->line;
+void MeshBuilder::fail(std::vector<FaceCorner>::const_iterator corner,
+                       const std::string& what) const {
+  const auto number = static_cast<std::size_t>(corner - corners_.begin());
+  throw InputError(location(std::ranges::upper_bound(faces_, number, {}, &Face::end)->line) + what);
 }
 
 // Keeps the positions that a face uses, relative to the origin, and renumbers the corners.
@@ -172,8 +110,7 @@ void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
   });
   if (far != positions_.end()) {
     const auto index = static_cast<std::uint32_t>(far - positions_.begin());
-    const auto corner = std::ranges::find(corners_, index, &FaceCorner::position);
-    fail(line_of(static_cast<std::size_t>(corner - corners_.begin())),
+    fail(std::ranges::find(corners_, index, &FaceCorner::position),
          "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
   }
   for (const glm::dvec3& given : positions_) {
@@ -181,8 +118,13 @@ void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
     scene.positions.push_back(position);
     scene.rounding.add({error != 0.0, error});
   }
-  const bool keeps_rests = scene.rounding.corners > 0 && vertices != Vertices::kBinary32 &&
-                           (vertices == Vertices::kBinary64 || shows_rounding(scene));
+  if (scene.rounding.corners == 0) return;
+  bool keeps_rests = vertices == Vertices::kBinary64;
+  if (vertices == Vertices::kAsPictures) {
+    for_each_face([&](const Face&, std::span<const FaceCorner> corners) {
+      keeps_rests = keeps_rests || is_moved(corners, scene);
+    });
+  }
   if (!keeps_rests) return;
   scene.origin = exact_origin(positions_);
   scene.rounding = {};
@@ -193,20 +135,24 @@ void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
   }
 }
 
-bool MeshBuilder::shows_rounding(const Scene& scene) const {
+template <class Visit>
+void MeshBuilder::for_each_face(const Visit& visit) const {
   std::size_t begin = 0;
   for (const Face& face : faces_) {
-    double error = 0.0, size = 0.0;
-    for (std::size_t i = begin; i < face.end; ++i) {
-      const std::uint32_t vertex = corners_[i].position;
-      const glm::dvec3 at = positions_[vertex] - scene.origin;
-      error = std::max(error, largest(glm::dvec3(scene.positions[vertex]) - at));
-      size = std::max(size, largest(positions_[vertex] - positions_[corners_[begin].position]));
-    }
-    if (error > 0.01 * size) return true;
+    visit(face, std::span(corners_).subspan(begin, face.end - begin));
     begin = face.end;
   }
-  return false;
+}
+
+bool MeshBuilder::is_moved(std::span<const FaceCorner> corners, const Scene& scene) const {
+  double error = 0.0, size = 0.0;
+  for (const FaceCorner& corner : corners) {
+    const glm::dvec3& given = positions_[corner.position];
+    const glm::dvec3 rounded(scene.positions[corner.position]);
+    error = std::max(error, largest(rounded - (given - scene.origin)));
+    size = std::max(size, largest(given - positions_[corners[0].position]));
+  }
+  return error > 0.01 * size;
 }
 
 // Returns whether a polygon has no area in its file, up to the rounding of decimals to double.
@@ -228,20 +174,24 @@ bool MeshBuilder::was_flat(std::span<const FaceCorner> corners) const {
 }
 
 std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& scene) const {
+  char most[32];
+  std::snprintf(most, sizeof most, "%.3g", scene.rounding.most);
+  Flaw no_area{"face of zero area, left out"},
+      flattened{"face flattened by rounding to binary32, left out"},
+      too_short{"face of fewer than 3 corners, left out"},
+      moved{std::string("corners moved by up to ") + most +
+            ", more than a hundredth of their face, by rounding to binary32"},
+      touching{"polygon crosses or touches itself, cut as well as can be"},
+      no_direction{"normal without a direction, the face is taken as flat"},
+      no_normal{"face corner without a normal, the face is taken as flat"},
+      no_texcoord{"face corner without texture coordinates, the face has no texture"};
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
   std::vector<glm::dvec3> polygon;
-  Flaws flaws;
   scene.triangles.reserve(std::max(corners_.size(), 2 * faces_.size()) - 2 * faces_.size());
-  std::size_t begin = 0;
-  for (const Face& face : faces_) {
-    const std::span<const FaceCorner> corners(corners_.data() + begin, face.end - begin);
-    begin = face.end;
+  for_each_face([&](const Face& face, std::span<const FaceCorner> corners) {
     if (scene.triangles.size() % kCheckpointFaces == 0) checkpoint();
-    if (corners.size() < 3) {
-      flaws.note(Flaws::kTooShort, face.line);
-      continue;
-    }
+    if (corners.size() < 3) return too_short.note(face.line);
     polygon.clear();
     for (const FaceCorner& corner : corners) polygon.push_back(scene.vertex(corner.position));
 
@@ -254,21 +204,15 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& sc
     } else if (collinear(polygon[0], polygon[1], polygon[2])) {
       kind = PolygonKind::kZeroArea;
     }
+    Triangle whole{.material = face.attributes.material, .object = face.attributes.object};
     if (kind == PolygonKind::kZeroArea) {
-      flaws.note(was_flat(corners) ? Flaws::kNoArea : Flaws::kFlattened, face.line);
-      Triangle left_out{.material = face.attributes.material, .object = face.attributes.object};
-      left_out.vertices.fill(corners[0].position);
-      scene.triangles.insert(scene.triangles.end(), corners.size() - 2, left_out);
-      continue;
+      (was_flat(corners) ? no_area : flattened).note(face.line);
+      whole.vertices.fill(corners[0].position);
+      scene.triangles.insert(scene.triangles.end(), corners.size() - 2, whole);
+      return;
     }
-    if (kind == PolygonKind::kSelfTouching) flaws.note(Flaws::kTouching, face.line);
-    double error = 0.0, size = 0.0;
-    for (std::size_t i = 0; i < corners.size() && vertices == Vertices::kBinary32; ++i) {
-      const glm::dvec3 given = positions_[corners[i].position] - scene.origin;
-      error = std::max(error, largest(polygon[i] - given));
-      size = std::max(size, largest(polygon[i] - polygon[0]));
-    }
-    if (error > 0.01 * size) flaws.note(Flaws::kMoved, face.line);
+    if (kind == PolygonKind::kSelfTouching) touching.note(face.line);
+    if (vertices == Vertices::kBinary32 && is_moved(corners, scene)) moved.note(face.line);
 
     // A face has normals or texture coordinates if all of its corners have valid ones.
     bool has_normals = true, has_texcoords = true, has_direction = true;
@@ -281,16 +225,13 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& sc
       has_texcoords &= corner.texcoord < texcoords_.size() &&
                        is_finite(glm::vec3(texcoords_[corner.texcoord], 0.0f));
     }
-    if (names_normal && !has_normals) flaws.note(Flaws::kNoNormal, face.line);
-    if (has_normals && !has_direction) flaws.note(Flaws::kNoDirection, face.line);
-    if (names_texcoord && !has_texcoords) flaws.note(Flaws::kNoTexcoord, face.line);
+    if (names_normal && !has_normals) no_normal.note(face.line);
+    if (has_normals && !has_direction) no_direction.note(face.line);
+    if (names_texcoord && !has_texcoords) no_texcoord.note(face.line);
     for (const EarClipper::Triangle& piece : pieces) {
-      Triangle& triangle = scene.triangles.emplace_back();
-      triangle.material = face.attributes.material;
-      triangle.object = face.attributes.object;
+      Triangle& triangle = scene.triangles.emplace_back(whole);
       if (face.attributes.group != 0 || !groups.empty()) {
-        groups.resize(scene.triangles.size() - 1);
-        groups.push_back(face.attributes.group);
+        set_last(groups, scene.triangles.size(), face.attributes.group, 0u);
       }
       for (int i = 0; i < 3; ++i) {
         const FaceCorner& corner = corners[piece[i]];
@@ -299,8 +240,16 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& sc
         if (has_normals && has_direction) triangle.normals[i] = corner.normal;
       }
     }
+  });
+  for (const Flaw* flaw : {&no_area, &flattened, &too_short, &moved, &touching, &no_direction,
+                           &no_normal, &no_texcoord}) {
+    if (flaw->count == 0) continue;
+    std::string text = location(flaw->first_line) + flaw->text;
+    if (const std::size_t more = flaw->count - 1; more > 0) {
+      text += ", here and in " + std::to_string(more) + " later face" + (more > 1 ? "s" : "");
+    }
+    scene.warnings.push_back(text);
   }
-  flaws.report(*this, scene);
   return groups;
 }
 
@@ -308,7 +257,12 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   if (faces_.empty() && !may_be_empty_) {
     throw InputError(file_name_ + ": no faces, expected at least one polygon");
   }
-  check_indices();
+  const auto bad = std::ranges::find_if(
+      corners_, [&](const FaceCorner& corner) { return corner.position >= positions_.size(); });
+  if (bad != corners_.end()) {
+    fail(bad, "vertex index " + std::to_string(bad->position + std::uint64_t{1}) +
+                  " in a face, but the file has " + std::to_string(positions_.size()));
+  }
   if (bad_colors_ > 0) {
     scene.warnings.push_back(file_name_ + ": " + std::to_string(bad_colors_) +
                              " colours of vertices that are not finite numbers, taken as white");
@@ -316,7 +270,7 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   recentre(options.vertices, scene);
   const std::vector<std::uint32_t> groups = triangulate(options.vertices, scene);
   if (is_empty(scene) && !may_be_empty_) {
-    fail(faces_.empty() ? 0 : faces_[0].line, "no face has an area");
+    throw InputError(location(faces_.empty() ? 0 : faces_[0].line) + "no face has an area");
   }
   scene.normals = std::move(normals_);
   scene.tangents = std::move(tangents_);

@@ -11,7 +11,6 @@
 
 #include "host/scene/bounds.h"
 #include "host/scene/io/scene_loader.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -45,11 +44,15 @@ class MeshBuilder {
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
   /// Add attributes of the last texture coordinates; the second ones, and the opacity, in [0, 1].
-  void add_second_texcoord(const glm::vec2& texcoord);
-  void add_opacity(float opacity);
+  void add_second_texcoord(const glm::vec2& texcoord) {
+    set_last(second_texcoords_, texcoords_.size(), texcoord, glm::vec2(0.0f));
+  }
+  void add_opacity(float opacity) { set_last(opacities_, texcoords_.size(), opacity, 1.0f); }
   void add_normal(const glm::dvec3& normal);
   /// Sets the tangent of the last normal, in the format of Scene::tangents.
-  void add_tangent(const glm::vec4& tangent);
+  void add_tangent(const glm::vec4& tangent) {
+    set_last(tangents_, normals_.size(), tangent, glm::vec4(0.0f));
+  }
 
   /// Adds a polygon. build() leaves out polygons of fewer than three corners, and the normals or
   /// texture coordinates of a face if one of its corners has none, with a warning. `line` is for
@@ -86,18 +89,18 @@ class MeshBuilder {
     std::size_t line;
     FaceAttributes attributes;
   };
-  struct Flaws;
 
-  /// Throws the InputError of a face.
-  [[noreturn]] void fail(std::size_t line, const std::string& what) const;
   /// Returns the prefix of messages about the face on this line.
   [[nodiscard]] std::string location(std::size_t line) const;
-  void check_indices() const;
-  /// Returns the line of the face with this corner.
-  [[nodiscard]] std::size_t line_of(std::size_t corner) const;
+  /// Throws the InputError of the face with this corner.
+  [[noreturn]] void fail(std::vector<FaceCorner>::const_iterator corner,
+                         const std::string& what) const;
   void recentre(Vertices vertices, Scene& scene);
-  /// Returns whether rounding to binary32 shows: see Vertices::kAsPictures.
-  [[nodiscard]] bool shows_rounding(const Scene& scene) const;
+  /// Calls visit(face, corners) for each face.
+  template <class Visit>
+  void for_each_face(const Visit& visit) const;
+  /// Returns whether rounding to binary32 moves a corner by more than a hundredth of its face.
+  [[nodiscard]] bool is_moved(std::span<const FaceCorner> corners, const Scene& scene) const;
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
   /// Returns whether a face has no area in the file's own numbers, before they are rounded.
   [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;

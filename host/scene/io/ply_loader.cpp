@@ -36,30 +36,20 @@ struct Element {
   long long count = 0;
   std::vector<Property> properties = {};
 
-  /// Returns a list, and marks it as used; nullptr if there is none.
-  const Property* use_list(std::string_view name) {
-    const auto found = std::ranges::find(properties, name, &Property::name);
-    if (found == properties.end() || !found->count_type) return nullptr;
-    found->is_used = true;
-    return &*found;
+  /// Returns properties, and marks them as used; none if one of them is missing.
+  std::vector<Property*> use(std::initializer_list<std::string_view> names, bool are_lists) {
+    std::vector<Property*> used;
+    for (const std::string_view name : names) {
+      const auto found = std::ranges::find(properties, name, &Property::name);
+      if (found == properties.end() || found->count_type.has_value() != are_lists) return {};
+      used.push_back(&*found);
+    }
+    for (Property* const property : used) property->is_used = true;
+    return used;
   }
 };
 
-/// The properties of an attribute of vertices; empty if one of them is missing.
-using Attribute = std::vector<Property*>;
-
-Attribute attribute_of(Element& element, std::initializer_list<std::string_view> names) {
-  Attribute attribute;
-  for (const std::string_view name : names) {
-    const auto found = std::ranges::find(element.properties, name, &Property::name);
-    if (found == element.properties.end() || found->count_type) return {};
-    attribute.push_back(&*found);
-  }
-  for (Property* const property : attribute) property->is_used = true;
-  return attribute;
-}
-
-glm::dvec3 vector_of(const Attribute& attribute) {
+glm::dvec3 vector_of(const std::vector<Property*>& attribute) {
   glm::dvec3 vector(0.0);
   for (int k = 0; const Property* property : attribute) vector[k++] = property->values[0];
   return vector;
@@ -226,9 +216,9 @@ class PlyReader {
   }
 
   void read_vertices(Element& element) {
-    const Attribute position = attribute_of(element, {"x", "y", "z"}),
-                    normal = attribute_of(element, {"nx", "ny", "nz"}),
-                    color = attribute_of(element, {"red", "green", "blue"});
+    const auto position = element.use({"x", "y", "z"}, false),
+               normal = element.use({"nx", "ny", "nz"}, false),
+               color = element.use({"red", "green", "blue"}, false);
     if (position.empty()) words_.fail("vertices without x, y and z");
     has_normals_ = !normal.empty();
     note_unread(element);
@@ -254,15 +244,15 @@ class PlyReader {
   }
 
   void read_faces(Element& element) {
-    const Property* indices = element.use_list("vertex_indices");
-    if (indices == nullptr) indices = element.use_list("vertex_index");
-    if (indices == nullptr) words_.fail("element face without a list vertex_indices");
+    auto indices = element.use({"vertex_indices"}, true);
+    if (indices.empty()) indices = element.use({"vertex_index"}, true);
+    if (indices.empty()) words_.fail("element face without a list vertex_indices");
     note_unread(element);
     std::vector<FaceCorner> corners;
     for (long long i = 0; i < element.count; ++i) {
       read_row(element);
       corners.clear();
-      for (const double index : indices->values) {
+      for (const double index : indices[0]->values) {
         if (!is_whole(index, 2147483646.0)) {
           fail_row("a vertex index: expected a whole number from 0 to 2147483646");
         }

@@ -6,9 +6,7 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "host/base/input_error.h"
 #include "host/exact/exact.h"
@@ -264,7 +262,7 @@ void load_textures(Scene& scene) {
 SceneFile read_scene_file(const std::filesystem::path& file) {
   if (file.extension() != ".json") return {.file = file, .obj = file};
   const JsonFile json(file);
-  const JsonValue root = json.root();
+  const JsonValue root(json);
   const std::filesystem::path folder = file.parent_path();
   root.require_keys({"obj", "camera", "instances", "point_lights", "spot_lights",
                      "directional_lights", "area_lights", "environment", "background", "render"});

@@ -31,13 +31,11 @@ struct LoadOptions {
   Vertices vertices = Vertices::kBinary64;
 };
 
-/// Loads a model. The ending of its name gives the format: .obj (or none), .gltf, .glb, .ply or
-/// .stl, in small or capital letters.
+/// Loads a model. The ending of its name gives the format: .obj (or none), .gltf, .glb, .ply, .stl.
 ///
 /// Triangles have the order of the file's faces. Polygons, which may be concave, are cut into
 /// triangles of non-zero area. Faces of exactly zero area, as stored, are left out, and so are
-/// vertices that no face uses. The scene is recentred; see Scene. Numbers are read to the nearest
-/// double, as in the C locale.
+/// vertices that no face uses. The scene is recentred; see Scene.
 ///
 /// Throws InputError, with the line of a text file, for another ending, a file that cannot be read
 /// or breaks its format, a vertex index out of range, a position that is not finite, and a file in
@@ -80,8 +78,7 @@ struct OptionValue {
   std::string where{};  ///< place for messages, "scene.json:3"; "": the command line
 };
 
-/// The contents of a scene file, in world coordinates. Values were checked, except those of
-/// options.
+/// The contents of a scene file, in world coordinates. Values of options were not checked.
 struct SceneFile {
   std::filesystem::path file = {};
   std::filesystem::path obj = {};
@@ -105,11 +102,10 @@ struct SceneFile {
 /// is not JSON, for unknown keys, and for values of a wrong type or out of range.
 [[nodiscard]] SceneFile read_scene_file(const std::filesystem::path& file);
 
-/// Loads the model of a scene file and adds the file's lights and instances. Each instance adds
-/// all objects of its model, without the model's lights and cameras. Each area light adds two
-/// triangles, an object and a material, "light 1" and so on. load_environment() loads the
-/// environment. Throws InputError as load_scene(file) does, and if an instance or a light is beyond
-/// the range of float or a light is too small for it.
+/// Loads the model of a scene file and adds the file's lights and instances, but no environment.
+/// Each instance adds all objects of its model, without the model's lights and cameras. Each area
+/// light adds two triangles, an object and a material, "light 1" and so on. Throws InputError as
+/// load_scene(file) does, and for an instance or a light out of the range of float.
 [[nodiscard]] Scene load_scene(const SceneFile& file, const LoadOptions& options = {});
 
 // Readers of the formats of models, which load_scene() calls by the file's ending.

@@ -20,10 +20,6 @@ struct Edge {
   std::uint32_t low, high;
   Corner corner;
   bool is_forward;  ///< from `low` to `high`
-
-  [[nodiscard]] bool joins_ends_of(const Edge& other) const {
-    return low == other.low && high == other.high;
-  }
 };
 
 /// Returns a number for each position; equal positions have one number.
@@ -83,8 +79,7 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
     const glm::dvec3 a = position(first);
     return glm::normalize(glm::cross(position(first + 1) - a, position(first + 2) - a));
   };
-  // The face's normal at a corner, weighted by the sine of its angle over the lengths of both
-  // sides.
+  // The face's normal at a corner, by the sine of its angle over the lengths of both sides.
   const auto weighted_normal = [&](Corner corner) {
     const glm::dvec3 at = position(corner), u = position(next(corner)) - at,
                      v = position(next(next(corner))) - at;
@@ -114,8 +109,10 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
   const auto count = static_cast<Corner>(3 * scene.triangles.size());
   JoinedCorners corners(count);
   for (auto first = edges.begin(), end = first; first != edges.end(); first = end) {
-    end = std::find_if_not(first, edges.end(),
-                           [&](const Edge& e) { return e.joins_ends_of(*first); });
+    const auto is_same = [&](const Edge& e) {
+      return e.low == first->low && e.high == first->high;
+    };
+    end = std::find_if_not(first, edges.end(), is_same);
     const Edge &a = *first, &b = *(end - 1);
     if (end - first != 2 || a.is_forward == b.is_forward) continue;
     if (!is_smooth(a.corner / 3, b.corner / 3)) continue;

@@ -46,6 +46,11 @@ void read_binary(const std::string& name, std::string_view bytes, std::size_t fa
   }
 }
 
+/// Takes the words of a line, if there are some.
+void skip_line(std::size_t line, Words& words) {
+  while (!words.at_end() && words.line() == line) words.take();
+}
+
 /// Takes "endWORD" or "end WORD".
 void expect_end(const std::string& word, Words& words) {
   words.take_if("end") ? words.expect(word) : words.expect("end" + word);
@@ -55,9 +60,10 @@ void expect_end(const std::string& word, Words& words) {
 /// words. Returns whether the last endsolid is there.
 bool read_ascii(Words words, MeshBuilder& mesh) {
   while (!words.at_end()) {
+    std::size_t line = words.line();
     words.expect("solid");
-    words.skip_line();
-    for (std::size_t line = words.line(); words.take_if("facet"); line = words.line()) {
+    skip_line(line, words);
+    for (line = words.line(); words.take_if("facet"); line = words.line()) {
       words.expect("normal");
       for (int axis = 0; axis < 3; ++axis) (void)words.take();  // often nan
       words.expect("outer");
@@ -74,8 +80,9 @@ bool read_ascii(Words words, MeshBuilder& mesh) {
       add_facet(mesh, line);
     }
     if (words.at_end() && mesh.face_count() > 0) return false;
+    line = words.line();
     expect_end("solid", words);
-    words.skip_line();
+    skip_line(line, words);
   }
   return true;
 }

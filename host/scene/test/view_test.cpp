@@ -88,9 +88,7 @@ TEST(View, FillsThePictureFromAllSides) {
                        : round % 4 == 1 ? kZ
                                         : -kX};
     const double aspect = std::exp(uniform(random));
-    const Camera camera = Camera::look_at(
-        frame_scene(scene, aspect, 35, view, round % 3 == 0 ? FrameFit::kBox : FrameFit::kVertices),
-        aspect);
+    const Camera camera = Camera::look_at(frame_scene(scene, aspect, 35, view), aspect);
     EXPECT_NEAR(reach(camera, aspect, low, high), 0.96, 1e-4) << "round " << round;
   }
 }
