@@ -39,15 +39,12 @@ struct RayTable {
   }
   /// Rounds all rays to binary32.
   void round() {
-    for (std::size_t i = 0; i < exact_rays.size(); ++i) rounded += is_inexact(i) ? 1 : 0;
     exact_rays.clear();
+    rounded = rounded_to_floats_;
   }
 
  private:
-  [[nodiscard]] bool is_inexact(std::size_t i) const {
-    return glm::dvec3(rays[i].origin) != exact_rays[i].origin ||
-           glm::dvec3(rays[i].direction) != exact_rays[i].direction;
-  }
+  std::uint64_t rounded_to_floats_ = 0;  // `rounded` after round()
 };
 
 /// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or,
