@@ -34,6 +34,7 @@ struct MeshBuilder::Flaws {
     kCount
   };
   std::array<std::size_t, kCount> counts{}, first_lines{};
+  bool show_rounding = false;  ///< see Vertices::kAsPictures
 
   void note(Flaw flaw, std::size_t line) {
     if (counts[flaw]++ == 0) first_lines[flaw] = line;
@@ -148,7 +149,7 @@ std::size_t MeshBuilder::line_of(std::size_t corner) const {
 }
 
 // Keeps the positions that a face uses, relative to the origin, and renumbers the corners.
-void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
+void MeshBuilder::recentre(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const FaceCorner& corner : corners_) new_index[corner.position] = 0;
   const bool is_bytes = std::ranges::any_of(colors_, [](const glm::vec3& color) {
@@ -181,9 +182,9 @@ void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
     scene.positions.push_back(position);
     scene.rounding.add({error != 0.0, error});
   }
-  const bool keeps_rests = scene.rounding.corners > 0 && vertices != Vertices::kBinary32 &&
-                           (vertices == Vertices::kBinary64 || shows_rounding(scene));
-  if (!keeps_rests) return;
+}
+
+void MeshBuilder::keep_rests(Scene& scene) const {
   scene.origin = exact_origin(positions_);
   scene.rounding = {};
   scene.positions.clear();
@@ -191,22 +192,7 @@ void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
     const double error = scene.add_vertex(position);
     scene.rounding.add({error != 0.0, error});
   }
-}
-
-bool MeshBuilder::shows_rounding(const Scene& scene) const {
-  std::size_t begin = 0;
-  for (const Face& face : faces_) {
-    double error = 0.0, size = 0.0;
-    for (std::size_t i = begin; i < face.end; ++i) {
-      const std::uint32_t vertex = corners_[i].position;
-      const glm::dvec3 at = positions_[vertex] - scene.origin;
-      error = std::max(error, largest(glm::dvec3(scene.positions[vertex]) - at));
-      size = std::max(size, largest(positions_[vertex] - positions_[corners_[begin].position]));
-    }
-    if (error > 0.01 * size) return true;
-    begin = face.end;
-  }
-  return false;
+  scene.drop_zero_rests();
 }
 
 // Returns whether a polygon has no area in its file, up to the rounding of decimals to double.
@@ -227,11 +213,10 @@ bool MeshBuilder::was_flat(std::span<const FaceCorner> corners) const {
       glm::lessThanEqual(glm::abs(area), 0x1p-50 * static_cast<double>(corners.size()) * bound));
 }
 
-std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& scene) const {
+std::vector<std::uint32_t> MeshBuilder::triangulate(Scene& scene, Flaws& flaws) const {
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
   std::vector<glm::dvec3> polygon;
-  Flaws flaws;
   scene.triangles.reserve(std::max(corners_.size(), 2 * faces_.size()) - 2 * faces_.size());
   std::size_t begin = 0;
   for (const Face& face : faces_) {
@@ -243,7 +228,15 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& sc
       continue;
     }
     polygon.clear();
-    for (const FaceCorner& corner : corners) polygon.push_back(scene.vertex(corner.position));
+    double error = 0.0, size = 0.0;
+    for (const FaceCorner& corner : corners) {
+      polygon.push_back(scene.vertex(corner.position));
+      if (scene.rounding.corners == 0) continue;
+      const glm::dvec3& given = positions_[corner.position];
+      error = std::max(error, largest(polygon.back() - (given - scene.origin)));
+      size = std::max(size, largest(given - positions_[corners[0].position]));
+    }
+    const bool is_moved = error > 0.01 * size;
 
     static constexpr EarClipper::Triangle kWhole{0, 1, 2};
     std::span<const EarClipper::Triangle> pieces(&kWhole, 1);
@@ -255,20 +248,17 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& sc
       kind = PolygonKind::kZeroArea;
     }
     if (kind == PolygonKind::kZeroArea) {
-      flaws.note(was_flat(corners) ? Flaws::kNoArea : Flaws::kFlattened, face.line);
+      const bool is_flattened = !was_flat(corners);
+      flaws.note(is_flattened ? Flaws::kFlattened : Flaws::kNoArea, face.line);
+      flaws.show_rounding |= is_moved && is_flattened;
       Triangle left_out{.material = face.attributes.material, .object = face.attributes.object};
       left_out.vertices.fill(corners[0].position);
       scene.triangles.insert(scene.triangles.end(), corners.size() - 2, left_out);
       continue;
     }
     if (kind == PolygonKind::kSelfTouching) flaws.note(Flaws::kTouching, face.line);
-    double error = 0.0, size = 0.0;
-    for (std::size_t i = 0; i < corners.size() && vertices == Vertices::kBinary32; ++i) {
-      const glm::dvec3 given = positions_[corners[i].position] - scene.origin;
-      error = std::max(error, largest(polygon[i] - given));
-      size = std::max(size, largest(polygon[i] - polygon[0]));
-    }
-    if (error > 0.01 * size) flaws.note(Flaws::kMoved, face.line);
+    if (is_moved) flaws.note(Flaws::kMoved, face.line);
+    flaws.show_rounding |= is_moved;
 
     // A face has normals or texture coordinates if all of its corners have valid ones.
     bool has_normals = true, has_texcoords = true, has_direction = true;
@@ -300,7 +290,6 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& sc
       }
     }
   }
-  flaws.report(*this, scene);
   return groups;
 }
 
@@ -313,8 +302,17 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
     scene.warnings.push_back(file_name_ + ": " + std::to_string(bad_colors_) +
                              " colours of vertices that are not finite numbers, taken as white");
   }
-  recentre(options.vertices, scene);
-  const std::vector<std::uint32_t> groups = triangulate(options.vertices, scene);
+  recentre(scene);
+  if (options.vertices == Vertices::kBinary64 && scene.rounding.corners > 0) keep_rests(scene);
+  Flaws flaws;
+  std::vector<std::uint32_t> groups = triangulate(scene, flaws);
+  if (options.vertices == Vertices::kAsPictures && flaws.show_rounding) {
+    keep_rests(scene);
+    scene.triangles.clear();
+    flaws = {};
+    groups = triangulate(scene, flaws);
+  }
+  flaws.report(*this, scene);
   if (is_empty(scene) && !may_be_empty_) {
     fail(faces_.empty() ? 0 : faces_[0].line, "no face has an area");
   }

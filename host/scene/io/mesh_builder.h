@@ -95,14 +95,15 @@ class MeshBuilder {
   void check_indices() const;
   /// Returns the line of the face with this corner.
   [[nodiscard]] std::size_t line_of(std::size_t corner) const;
-  void recentre(Vertices vertices, Scene& scene);
-  /// Returns whether rounding to binary32 shows: see Vertices::kAsPictures.
-  [[nodiscard]] bool shows_rounding(const Scene& scene) const;
+  void recentre(Scene& scene);
+  /// Replaces the positions by exact ones, with an origin of their own.
+  void keep_rests(Scene& scene) const;
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
   /// Returns whether a face has no area in the file's own numbers, before they are rounded.
   [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
-  /// Returns the smoothing groups of the triangles; empty: all are flat.
-  [[nodiscard]] std::vector<std::uint32_t> triangulate(Vertices vertices, Scene& scene) const;
+  /// Adds the triangles and the flaws of all faces. Returns the smoothing groups of the triangles;
+  /// empty: all are flat.
+  [[nodiscard]] std::vector<std::uint32_t> triangulate(Scene& scene, Flaws& flaws) const;
 
   std::string file_name_;
   Source source_;
