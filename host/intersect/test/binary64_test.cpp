@@ -19,7 +19,7 @@ using test::Random;
 
 /// Returns a coordinate that binary32 rounds to `x`.
 double near(float x, Random& random) {
-  const double exact = x == 0.0f ? 0.0 : with_rest(x, random.below(1 << 29) - (1 << 28));
+  const double exact = x == 0.0f ? 0.0 : with_rest(x, random.below(1 << 30) - (1 << 29));
   return static_cast<float>(exact) == x ? exact : double{x};
 }
 
@@ -151,6 +151,65 @@ TEST_F(Binary64, AllSearchesFindWhatThePredicatesSay) {
     if (HasFatalFailure()) FAIL() << "round " << round;
   }
   EXPECT_GT(hits_, 20'000);
+}
+
+// Neither by other rays of a query nor by all_hits().
+TEST_F(Binary64, RaysInBinary32HaveTheNarrowBounds) {
+  int doubts = 0;
+  for (int round = 0; round < 300; ++round) {
+    const std::vector<Corners> mesh = {
+        {glm::vec3(random_.point()), glm::vec3(random_.point()), glm::vec3(random_.point())}};
+    const Bvh bvh(test::scene_of(mesh));
+    Rays rays;
+    for (int i = 0; i < 30; ++i) {
+      const glm::vec3 origin = random_.point(1e4f);
+      const glm::dvec3 aim = glm::mix(mesh[0][0], mesh[0][1], double{random_.uniform(0, 1)}) +
+                             1e-4 * glm::dvec3(random_.point());
+      rays.add(origin, aim - glm::dvec3(origin), false);
+    }
+    rays.add({0.1, 0, 0}, {1, 0, 0}, true);
+    std::vector<NearestHit> hits(rays.rounded.size()), every;
+    std::vector<RayWork> alone(hits.size()), together(alone);
+    CpuIntersector(bvh).nearest(rays.rounded, {.work = alone}, hits);
+    CpuIntersector(bvh).nearest(rays.rounded, {.exact_rays = rays.exact, .work = together}, hits);
+    for (std::size_t i = 0; i + 1 < hits.size(); ++i) {
+      RayWork all;
+      all_hits(bvh, rays.exact[i], std::numeric_limits<float>::infinity(), every, all);
+      for (const RayWork& work : {together[i], all}) {
+        ASSERT_EQ(work.doubts, alone[i].doubts);
+        ASSERT_EQ(work.tests, alone[i].tests);
+      }
+      doubts += static_cast<int>(alone[i].doubts);
+    }
+  }
+  EXPECT_GT(doubts, 100);
+}
+
+// Rays through the corner in which all triangles meet hit one of them.
+TEST_F(Binary64, AFanIsHitOnce) {
+  const glm::dvec3 apex(1 + 0x1p-40, 1 - 0x1p-41, 0x1p-42);
+  constexpr int kCount = 1000;
+  std::vector<Corners> mesh;
+  const auto rim = [&](int i) {
+    const double angle = 6.283185307179586 * (i % kCount) / kCount;
+    return apex + glm::dvec3(std::cos(angle), std::sin(angle), 0.01 * (i % kCount % 3));
+  };
+  for (int i = 0; i < kCount; ++i) mesh.push_back({rim(i), rim(i + 1), apex});
+  const Scene scene = test::scene_of(mesh);
+  const Bvh bvh(scene);
+  Rays rays;
+  for (int i = 0; i < 50; ++i) {
+    const glm::dvec3 way = glm::round(0x1p10 * glm::dvec3(random_.point(0.05f))) * 0x1p-10;
+    rays.add(apex - way - glm::dvec3(0, 0, 1), way + glm::dvec3(0, 0, 1), true);
+  }
+  std::vector<NearestHit> hits(rays.rounded.size()), all;
+  CpuIntersector(bvh).nearest(rays.rounded, {.exact_rays = rays.exact}, hits);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    RayWork work;
+    all_hits(bvh, rays.exact[i], std::numeric_limits<float>::infinity(), all, work);
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_EQ(all[0].primitive, hits[i].primitive);
+  }
 }
 
 // The rounding of a coordinate moves it over the ray in half of the cases.
