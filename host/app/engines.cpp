@@ -81,9 +81,10 @@ IntersectorFactory make_intersector_factory(const EngineOptions& options, const 
 std::shared_ptr<const MemoryImage> make_memory_image(const EngineOptions& engine, const Bvh& bvh) {
   if (!engine.has_core()) return nullptr;
   if (!bvh.is_binary32()) {
-    throw InputError("--unit " + engine.unit +
-                     ": found vertices in binary64, expected binary32 or --round-vertices, as ray "
-                     "cores have it");
+    throw InputError(
+        "--unit " + engine.unit +
+        ": found vertices in binary64, expected --round-vertices, as ray cores compute "
+        "in binary32");
   }
   return std::make_shared<const MemoryImage>(bvh, engine.threads);
 }

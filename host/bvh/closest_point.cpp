@@ -4,32 +4,30 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace raygate {
 namespace {
 
-/// Returns the closest point of a triangle (C. Ericson, "Real-Time Collision Detection", 2005,
-/// 5.1.5), by the Voronoi regions of corners and edges.
-glm::dvec3 closest_on(const Corners& corners, const glm::dvec3& point) {
-  const auto& [a, b, c] = corners;
-  const glm::dvec3 ab = b - a, ac = c - a;
-  const double d1 = glm::dot(ab, point - a), d2 = glm::dot(ac, point - a);
-  if (d1 <= 0.0 && d2 <= 0.0) return a;
-  const double d3 = glm::dot(ab, point - b), d4 = glm::dot(ac, point - b);
-  if (d3 >= 0.0 && d4 <= d3) return b;
-  const double of_c = d1 * d4 - d3 * d2;
-  if (of_c <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + ab * (d1 / (d1 - d3));
-  const double d5 = glm::dot(ab, point - c), d6 = glm::dot(ac, point - c);
-  if (d6 >= 0.0 && d5 <= d6) return c;
-  const double of_b = d5 * d2 - d1 * d6;
-  if (of_b <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + ac * (d2 / (d2 - d6));
-  const double of_a = d3 * d6 - d5 * d4;
-  if (of_a <= 0.0 && d4 >= d3 && d5 >= d6) {
-    return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+/// Returns the closest point of a triangle: that of the edges beyond which `point` is, or else its
+/// projection. An exact normal keeps this accurate for slivers.
+glm::dvec3 closest_on(const Corners& t, const glm::dvec3& point) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const glm::dvec3 normal = triangle_normal(t);
+  glm::dvec3 closest;
+  double least = kInfinity;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::dvec3 &a = t[k], &b = t[(k + 1) % 3], edge = b - a, way = point - a;
+    if (glm::dot(glm::cross(edge, way), normal) > 0.0) continue;
+    const double along = glm::dot(edge, way), whole = glm::dot(edge, edge);
+    const glm::dvec3 at = along <= 0.0 ? a : (along >= whole ? b : a + edge * (along / whole));
+    const double distance = glm::distance(at, point);
+    if (distance < least) std::tie(closest, least) = std::pair(at, distance);
   }
-  const double inverse = 1.0 / (of_a + of_b + of_c);
-  return a + ab * (of_b * inverse) + ac * (of_c * inverse);
+  if (least < kInfinity) return closest;
+  const glm::dvec3 way = point - t[0];
+  return t[0] + (way - normal * (glm::dot(way, normal) / glm::dot(normal, normal)));
 }
 
 constexpr double kRounding = 1.0 - 0x1p-40;  // of distances in double

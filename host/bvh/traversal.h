@@ -88,24 +88,27 @@ struct PacketBounds {
   }
 };
 
-/// Sets the origins of entries and exits so that neither is culled for a coordinate that is
-/// rounded.
-RAYGATE_INLINE void spread_origin(double from, bool is_negative, float& entry, float& exit) {
-  entry = is_negative ? float_below(from) : float_above(from);
-  exit = is_negative ? float_above(from) : float_below(from);
+/// Sets the origins of a ray's entries and exits so that neither is culled if it is rounded to
+/// binary32. With a rounded direction, entries and exits have another relative error of 2.1 u,
+/// which more growth of the exit and that of the cutoff exceed.
+RAYGATE_INLINE void spread(const ExactRay& ray, float (&entry)[3], float (&exit)[3],
+                           float (&inverse_far)[3]) {
+  const float growth = is_binary32(ray.direction) ? 1.0f : kExitGrowth;
+  for (int k = 0; k < 3; ++k) {
+    const bool is_negative = ray.direction[k] < 0.0;
+    entry[k] = is_negative ? float_below(ray.origin[k]) : float_above(ray.origin[k]);
+    exit[k] = is_negative ? float_above(ray.origin[k]) : float_below(ray.origin[k]);
+    inverse_far[k] *= growth;
+  }
 }
 
-/// Bounds of a ray that is rounded to binary32. Entries and exits have another relative error of
-/// 2.1 u for its direction, which more growth of the exit and that of the cutoff exceed.
+/// Bounds of a ray that may be rounded to binary32.
 struct RoundedBounds : PacketBounds {
   float exit[3];
 
   explicit RoundedBounds(const ExactRay& ray)
       : PacketBounds(glm::vec3(ray.origin), glm::vec3(ray.direction)) {
-    for (int k = 0; k < 3; ++k) {
-      spread_origin(ray.origin[k], (octant >> k & 1) != 0, origin[k], exit[k]);
-      inverse_far[k] *= kExitGrowth;
-    }
+    spread(ray, origin, exit, inverse_far);
   }
 };
 

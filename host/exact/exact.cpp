@@ -166,7 +166,8 @@ glm::dvec3 exact_origin(std::span<const glm::dvec3> positions) {
       if (std::abs(steps) >= 0x1p53) continue;
       const double candidate = std::ldexp(steps, exponent);
       const bool is_exact = std::ranges::all_of(positions, [&](const glm::dvec3& at) {
-        return has_exact_difference(at[axis], candidate);
+        return has_exact_difference(at[axis], candidate) &&
+               std::abs(at[axis] - candidate) <= kMostCoordinate;
       });
       if (!is_exact) continue;
       origin[axis] = candidate;

@@ -47,7 +47,8 @@ struct RecentredPosition {
 [[nodiscard]] bool has_exact_difference(double a, double b);
 
 /// Returns an origin near the middle of most positions, from which the differences to all of them
-/// are doubles: on each axis a multiple of the least sufficient power of two, or 0.
+/// are doubles up to kMostCoordinate: on each axis a multiple of the least sufficient power of two,
+/// or 0.
 [[nodiscard]] glm::dvec3 exact_origin(std::span<const glm::dvec3> positions);
 
 /// Returns the nearest multiple of 2^-149.
@@ -55,19 +56,19 @@ struct RecentredPosition {
   return std::abs(x) < 0x1p-97 ? std::nearbyint(x * 0x1p149) * 0x1p-149 : x;
 }
 
-/// Returns a double in [1, 2) times 2^-30 ulp(x), for a normal float; its sign and fraction are 0.
+/// Returns 2^-30 ulp(x) for a normal float. Doubles that round to x are multiples of it.
 [[nodiscard]] inline double unit_of_rest(float x) {
   constexpr std::uint32_t kField = 0xFF;
   const std::uint64_t exponent = std::bit_cast<std::uint32_t>(x) >> 23 & kField;
   return std::bit_cast<double>((exponent + (1023 - 127 - 53)) << 52);
 }
 
-/// Returns what a float lacks of a coordinate x, of which it is the nearest one: a number of
-/// unit_of_rest(). Together they are x, if that is a multiple of 2^-149.
+/// Returns x minus its nearest float, as a multiple of unit_of_rest(). Exact if x is a multiple of
+/// 2^-149.
 [[nodiscard]] inline std::int32_t rest_of(double x, float nearest) {
   return static_cast<std::int32_t>((x - double{nearest}) / unit_of_rest(nearest));
 }
-/// Returns that x.
+/// Returns the x of rest_of().
 [[nodiscard]] inline double with_rest(float nearest, std::int32_t rest) {
   return double{nearest} + rest * unit_of_rest(nearest);
 }
@@ -81,6 +82,9 @@ struct RecentredPosition {
   const auto nearest = static_cast<float>(x);
   return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
+
+/// Returns whether all components are floats.
+[[nodiscard]] inline bool is_binary32(const glm::dvec3& v) { return glm::dvec3(glm::vec3(v)) == v; }
 
 template <class T>
 [[nodiscard]] bool is_finite(const glm::vec<3, T>& v) {

@@ -34,7 +34,7 @@ class CheckIntersector : public Intersector {
 
  private:
   void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits) override;
-  [[nodiscard]] bool agree(const ExactRay& ray, const RayQuery& query, std::size_t number,
+  [[nodiscard]] bool agree(const Ray& ray, const RayQuery& query, std::size_t number,
                            const NearestHit& a, const NearestHit& b) const;
 
   const Bvh& bvh_;

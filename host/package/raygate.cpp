@@ -21,11 +21,11 @@ glm::dvec3 vector(const Tracer::Point& p) { return {p[0], p[1], p[2]}; }
 Scene scene_of(std::span<const Tracer::Triangle> triangles) {
   std::vector<glm::dvec3> corners;
   corners.reserve(3 * triangles.size());
-  bool is_binary32 = true;
+  bool are_floats = true;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (const Tracer::Point& corner : triangles[i]) {
       corners.push_back(vector(corner));
-      is_binary32 = is_binary32 && glm::dvec3(glm::vec3(corners.back())) == corners.back();
+      are_floats = are_floats && is_binary32(corners.back());
       if (is_finite(corners.back()) && largest(corners.back()) <= kMostCoordinate) continue;
       throw std::invalid_argument("triangle " + std::to_string(i) +
                                   ": found a corner that is not finite or beyond 2^126, expected "
@@ -34,12 +34,12 @@ Scene scene_of(std::span<const Tracer::Triangle> triangles) {
   }
   Scene scene;
   scene.triangles.resize(triangles.size());
-  if (!is_binary32) scene.origin = exact_origin(corners);
+  if (!are_floats) scene.origin = exact_origin(corners);
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     scene.triangles[i / 3].vertices[i % 3] = i;
     scene.add_vertex(corners[i]);
   }
-  if (is_binary32) scene.rests = {};
+  scene.drop_zero_rests();
   return scene;
 }
 

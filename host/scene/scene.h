@@ -317,6 +317,10 @@ struct Scene {
     }
     return error;
   }
+  /// Removes the rests if all are 0.
+  void drop_zero_rests() {
+    if (std::ranges::count(rests, glm::ivec3(0)) == std::ssize(rests)) rests = {};
+  }
 };
 
 /// Adds a light to a scene whose origin is set. Throws InputError beyond the range of float.

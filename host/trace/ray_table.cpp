@@ -19,7 +19,7 @@ void RayTable::clear(std::uint64_t its_first) {
   exact_rays.clear();
   limits.clear();
   exponents.clear();
-  rounded = 0;
+  rounded = rounded_to_floats_ = 0;
 }
 
 const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
@@ -31,32 +31,31 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
   if (largest(origin - scene_origin) > kMostCoordinate) {
     return "found an origin farther than 2^126 from the scene, expected a nearer one";
   }
+  // The ratio is a power of two, up to the rounding of the direction.
+  const int exponent = direction == glm::dvec3(0.0)
+                           ? 0
+                           : static_cast<int>(std::lround(
+                                 std::log2(largest(glm::dvec3(scaled_direction(direction)))) -
+                                 std::log2(largest(direction))));
   ExactRay exact;
-  bool is_exact = true;
-  const auto on_grid = [&](double x) {
-    is_exact = is_exact && on_float_grid(x) == x;
-    return on_float_grid(x);
-  };
+  bool is_changed = false;
   for (int k = 0; k < 3; ++k) {
-    is_exact = is_exact && has_exact_difference(origin[k], scene_origin[k]);
-    exact.origin[k] = on_grid(origin[k] - scene_origin[k]);
-  }
-  Ray ray{.origin = glm::vec3(exact.origin)};
-  int exponent = 0;
-  if (direction != glm::dvec3(0.0)) {
-    ray.direction = scaled_direction(direction);
-    // The ratio is a power of two, up to the rounding of the direction.
-    exponent = static_cast<int>(
-        std::lround(std::log2(largest(glm::dvec3(ray.direction))) - std::log2(largest(direction))));
-    for (int k = 0; k < 3; ++k) exact.direction[k] = on_grid(std::ldexp(direction[k], exponent));
+    const double start = origin[k] - scene_origin[k];
+    exact.origin[k] = on_float_grid(start);
+    exact.direction[k] = on_float_grid(std::ldexp(direction[k], exponent));
+    is_changed |= !has_exact_difference(origin[k], scene_origin[k]) || exact.origin[k] != start ||
+                  std::ldexp(exact.direction[k], -exponent) != direction[k];
   }
   const double scaled_limit = std::ldexp(limit, -exponent);
   const float float_limit =
       std::max(static_cast<float>(scaled_limit), std::numeric_limits<float>::denorm_min());
-  rounded += !is_exact || (double{float_limit} != scaled_limit && std::isfinite(float_limit));
-  if (exact_rays.empty() && differs(ray, exact)) exact_rays.assign(rays.begin(), rays.end());
-  if (!exact_rays.empty() || differs(ray, exact)) exact_rays.push_back(exact);
-  rays.push_back(ray);
+  is_changed |= double{float_limit} != scaled_limit && std::isfinite(float_limit);
+  const bool are_floats = is_binary32(exact.origin) && is_binary32(exact.direction);
+  rounded += is_changed ? 1 : 0;
+  rounded_to_floats_ += is_changed || !are_floats ? 1 : 0;
+  if (!are_floats && exact_rays.empty()) exact_rays.assign(rays.begin(), rays.end());
+  if (!are_floats || !exact_rays.empty()) exact_rays.push_back(exact);
+  rays.push_back({glm::vec3(exact.origin), glm::vec3(exact.direction)});
   limits.push_back(float_limit);
   exponents.push_back(exponent);
   return nullptr;

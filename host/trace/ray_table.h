@@ -38,14 +38,12 @@ struct RayTable {
   }
   /// Rounds all rays to binary32.
   void round() {
-    for (std::size_t i = 0; i < exact_rays.size(); ++i) rounded += differs(rays[i], exact_rays[i]);
     exact_rays.clear();
+    rounded = rounded_to_floats_;
   }
 
  private:
-  static bool differs(const Ray& ray, const ExactRay& exact) {
-    return glm::dvec3(ray.origin) != exact.origin || glm::dvec3(ray.direction) != exact.direction;
-  }
+  std::uint64_t rounded_to_floats_ = 0;  // `rounded` after round()
 };
 
 /// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or

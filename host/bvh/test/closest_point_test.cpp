@@ -25,6 +25,23 @@ TEST(ClosestPoint, OfOneTriangleByItsRegions) {
   EXPECT_EQ(closest_point(bvh, {1, -3, 4}).distance, 5.0);
 }
 
+// A sliver of height h is a segment, up to h.
+TEST(ClosestPoint, OfSlivers) {
+  test::Random random;
+  const auto point = [&] { return glm::dvec3(random.point()); };
+  for (int i = 0; i < 2000; ++i) {
+    const double height = std::ldexp(1.0, -20 - i % 25);
+    const glm::dvec3 a = point(), b = point(), x = glm::mix(a, b, double{random.uniform(0, 1)});
+    const glm::dvec3 c = glm::mix(a, b, double{random.uniform(0, 1)}) + height * unit(point());
+    const glm::dvec3 from = x + std::ldexp(1.0, -random.below(40)) * point();
+    const double share = std::clamp(glm::dot(from - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
+    const double distance = glm::distance(from, glm::mix(a, b, share));
+    const Scene scene = test::scene_of({{a, b, c}});
+    const ClosestPoint found = closest_point(Bvh(scene), from);
+    ASSERT_NEAR(found.distance, distance, height + 0x1p-48) << height;
+  }
+}
+
 TEST(ClosestPoint, IsTheLeastOfAll) {
   test::Random random;
   const std::vector<Corners> triangles = test::sphere(3);

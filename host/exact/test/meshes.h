@@ -96,12 +96,11 @@ inline std::vector<Corners> sphere(int level, float radius = 1.0f,
   return triangles;
 }
 
-/// A scene of these triangles, one material, in binary64 if one corner is.
+/// A scene of these triangles, one material, with rests if a corner has one.
 inline Scene scene_of(const std::vector<Corners>& triangles) {
   Scene scene;
   scene.materials.emplace_back();
   scene.objects.push_back("mesh");
-  bool is_binary32 = true;
   for (const Corners& corners : triangles) {
     Triangle triangle;
     for (int k = 0; k < 3; ++k) {
@@ -110,11 +109,10 @@ inline Scene scene_of(const std::vector<Corners>& triangles) {
       scene.positions.push_back(position);
       glm::ivec3& rest = scene.rests.emplace_back(0);
       for (int axis = 0; axis < 3; ++axis) rest[axis] = rest_of(corners[k][axis], position[axis]);
-      is_binary32 = is_binary32 && rest == glm::ivec3(0);
     }
     scene.triangles.push_back(triangle);
   }
-  if (is_binary32) scene.rests.clear();
+  scene.drop_zero_rests();
   return scene;
 }
 

@@ -93,6 +93,7 @@ void all_hits(const Bvh& bvh, const ExactRay& ray, float t_max, std::vector<Near
   if (!is_scaled(rounded.direction)) throw_unscaled(rounded);
   in_vectors([&](auto) RAYGATE_BODY {
     const ShearedRay sheared(rounded);
+    const RoundedParts rounding(!bvh.is_binary32(), ray);
     const RoundedBounds bounds(ray);
     const float cutoff = cutoff_beyond(t_max);
     const BvhView tree(bvh);
@@ -103,8 +104,7 @@ void all_hits(const Bvh& bvh, const ExactRay& ray, float t_max, std::vector<Near
     const auto take_hits = [&](const Bvh::Child& leaf) RAYGATE_BODY {
       QuadVerdict verdict;
       Bvh::LeafRoom room;
-      test_quad<true>(sheared, tree.corners_of(leaf, room), leaf.count, verdict,
-                      largest(rounded.origin));
+      test_quad<true>(sheared, tree.corners_of(leaf, room), leaf.count, verdict, rounding);
       work.tests += leaf.count;
       work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
       for (LaneMask open = verdict.hit | verdict.level | verdict.doubt; open != 0;

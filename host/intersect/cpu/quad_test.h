@@ -72,10 +72,12 @@ namespace raygate {
 // Rounded corners and rays
 //
 // Let the corners, the origin and the direction be those nearest to exact ones, M the largest
-// coordinate of the corners, F that of the origin, and r = u (M + F), which exceeds the error of a
-// difference. Each component of the direction, and each s, has another relative error of u or 2 u.
+// coordinate of the corners, F that of the origin, each 0 if those are exact, and r = u (M + F),
+// which exceeds the error of a difference. Each component of a rounded direction, and each s, has
+// another relative error of u or 2 u.
 //
-// 1. e grows to 8.02 u m + 2.001 r <= 8.02 u w, for w = m + (M + F) / 4.
+// 1. e grows to 8.02 u m + 2.001 r <= 8.02 u w, for w = m + (M + F) / 4. If the direction is exact,
+//    e = 6.01 u m + 2.001 r <= 6.01 u w, for w = m + (M + F) / 3: the bound above, of w for m.
 // 2. The error is less than e S + 2 e^2 <= 8.02 u w S + 128.7 u^2 w^2; with step 3, 10.03 u w S +
 //    128.8 u^2 w^2. The computed bound is b = w (10.6 u S + 2^-40 w).
 // 6. Each z has another error of r, and R of 2 r: 3.2 r are added to 16 u max |Z_i|.
@@ -132,6 +134,18 @@ RAYGATE_INLINE ShearedRay::ShearedRay(const Ray& ray) {
   std::memcpy(this, first, sizeof first);
 }
 
+/// The parts of a test that are rounded to binary32.
+struct RoundedParts {
+  bool corners = false, direction = false;
+  float reach = 0.0f;  ///< F, or 0 if the origin is exact
+
+  RoundedParts() = default;
+  RoundedParts(bool of_corners, const ExactRay& ray)
+      : corners(of_corners),
+        direction(!is_binary32(ray.direction)),
+        reach(is_binary32(ray.origin) ? 0.0f : static_cast<float>(largest(ray.origin))) {}
+};
+
 /// Results of a quad test. Bit i of the masks, and lane i, belong to triangle i.
 struct QuadVerdict {
   LaneMask hit;    ///< sure hits, in front of the origin
@@ -153,25 +167,25 @@ struct QuadSides {
 
 /// Returns which of 1 to 4 triangles the ray does not surely miss by its edges. Coordinate k of
 /// corner v of triangle i is corners[(3 v + k) count + i]; memory up to corners[8 count + 3] must
-/// be readable. `kIsRounded`: corners or ray are; `reach` is F then.
+/// be readable. Results of `kIsRounded` are the same if nothing is.
 template <bool kIsRounded = false>
 [[nodiscard]] RAYGATE_INLINE LaneMask find_sides(const ShearedRay& ray, const float* corners,
                                                  std::uint32_t count, QuadSides& sides,
-                                                 float reach = 0.0f) {
-  constexpr float kBoundOfSum = (kIsRounded ? 10.6f : 8.5f) * 0x1p-24f;
-  constexpr float kBoundOfSize = kIsRounded ? 0x1p-40f : 0x1p-41f;
+                                                 const RoundedParts& rounding = {}) {
+  const bool is_wide = kIsRounded && rounding.direction;
+  const float bound_of_sum = (is_wide ? 10.6f : 8.5f) * 0x1p-24f;
+  const float bound_of_size = is_wide ? 0x1p-40f : 0x1p-41f;
   constexpr float kSmallest = 0x1p-20f, kLargest = 0x1p40f;
   const std::ptrdiff_t stride = count;
   const float* const along[3] = {corners + stride * ray.axes[0], corners + stride * ray.axes[1],
                                  corners + stride * ray.axes[2]};
-  FloatQuad x[3], y[3], (&z)[3] = sides.z, size[3], far = FloatQuad{} + reach;
+  FloatQuad x[3], y[3], (&z)[3] = sides.z, size[3], most = {};
   for (std::ptrdiff_t v = 0; v < 3; ++v) {
     x[v] = load<FloatQuad>(along[0] + 3 * v * stride);
     y[v] = load<FloatQuad>(along[1] + 3 * v * stride);
     z[v] = load<FloatQuad>(along[2] + 3 * v * stride);
-    if constexpr (kIsRounded) {
-      const FloatQuad most = maximum(maximum(absolute(x[v]), absolute(y[v])), absolute(z[v]));
-      far = maximum(far, most + reach);
+    if (kIsRounded && rounding.corners) {
+      for (const FloatQuad& axis : {x[v], y[v], z[v]}) most = maximum(most, absolute(axis));
     }
     z[v] = ray.origin[2] - z[v];
     x[v] = (ray.origin[0] - x[v]) - ray.shear[0] * z[v];
@@ -182,12 +196,13 @@ template <bool kIsRounded = false>
   sides.farthest = maximum(maximum(absolute(z[0]), absolute(z[1])), absolute(z[2]));
   FloatQuad m = sides.farthest + sum;
   if constexpr (kIsRounded) {
-    m += 0.25f * far;
+    const FloatQuad far = most + rounding.reach;
+    m += (is_wide ? 0.25f : 1.0f / 3.0f) * far;
     sides.rest = (3.2f * 0x1.01p-24f) * far;
   }
   sides.m = m;
   const IntQuad unsure = (m < kSmallest) | (m > kLargest);
-  const FloatQuad bound = float_of(bits_in(m * (kBoundOfSum * sum + kBoundOfSize * m)) | unsure);
+  const FloatQuad bound = float_of(bits_in(m * (bound_of_sum * sum + bound_of_size * m)) | unsure);
   const FloatQuad across[3] = {x[1] * y[2] - y[1] * x[2], x[2] * y[0] - y[2] * x[0],
                                x[0] * y[1] - y[0] * x[1]};
   std::copy_n(across, 3, sides.across);
@@ -228,9 +243,9 @@ RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, L
 /// Tests 1 to 4 triangles: find_sides(), then judge_sides().
 template <bool kIsRounded = false>
 RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::uint32_t count,
-                              QuadVerdict& verdict, float reach = 0.0f) {
+                              QuadVerdict& verdict, const RoundedParts& rounding = {}) {
   QuadSides sides;
-  const LaneMask open = find_sides<kIsRounded>(ray, corners, count, sides, reach);
+  const LaneMask open = find_sides<kIsRounded>(ray, corners, count, sides, rounding);
   judge_sides<kIsRounded>(ray, sides, open, verdict);
 }
 

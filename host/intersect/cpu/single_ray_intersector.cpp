@@ -25,7 +25,7 @@
 //  - p / |I| >= 1 > 1/2, so an underflow of a product is covered as there.
 //  - For |I| < 2^-100, p / |I| >= 2^100, so p 2^100, which is exact, is a valid inverse_near.
 //  - Along the longest axis, p t = |x - O| <= 2^127.
-// For a ray that is rounded to binary32, see RoundedBounds.
+// For a ray that is rounded to binary32, see spread().
 
 namespace raygate {
 namespace {
@@ -58,8 +58,8 @@ struct alignas(64) RayTraversal {
 
   // Only if corners or the ray are rounded:
   double exact_scale;    ///< p of the exact direction
-  float exit_origin[3];  ///< see RoundedBounds
-  float reach;           ///< largest coordinate of a rounded origin, or 0
+  float exit_origin[3];  ///< see spread()
+  RoundedParts rounding;
 
   RayTraversal() {
     keys[0] = std::numeric_limits<std::int32_t>::min();
@@ -373,15 +373,12 @@ class SingleRayIntersector {
     return query_.exact_rays.empty() ? ExactRay(rays_[number]) : query_.exact_rays[number];
   }
 
-  /// Completes the state of a ray that is rounded.
-  void spread(RayTraversal& walk) const {
+  /// Completes the state of a ray that may be rounded.
+  void set_rounding(RayTraversal& walk) const {
     const ExactRay ray = exact_ray(walk.number);
     walk.exact_scale = std::abs(ray.direction[walk.sheared.axes[2]]);
-    walk.reach = query_.exact_rays.empty() ? 0.0f : largest(rays_[walk.number].origin);
-    for (int k = 0; k < 3; ++k) {
-      spread_origin(ray.origin[k], ray.direction[k] < 0.0, walk.origin[k], walk.exit_origin[k]);
-      walk.minus_inverse_far[k] *= kExitGrowth;
-    }
+    walk.rounding = RoundedParts(!bvh_.is_binary32(), ray);
+    spread(ray, walk.origin, walk.exit_origin, walk.minus_inverse_far);
   }
 
   /// Starts the next rays with these walks. Returns a mask of the walks that have a ray.
@@ -399,7 +396,7 @@ class SingleRayIntersector {
     for (std::uint32_t i = 0; i < count; ++i) {
       RayTraversal& walk = *walks[i];
       const std::uint32_t number = walk.number = first + i;
-      if constexpr (kIsRounded) spread(walk);
+      if constexpr (kIsRounded) set_rounding(walk);
       if (!query_.t_max.empty()) {
         walk.template end_at<kIsRounded>(Interval{query_.t_max[number], query_.t_max[number]});
       }
@@ -470,9 +467,8 @@ class SingleRayIntersector {
           walk.work.tests += leaf.count;
           Bvh::LeafRoom room;
           near_end->walk = inside[inside_count + i] = &walk;
-          near_end->open =
-              find_sides<kIsRounded>(walk.sheared, tree.corners_of(leaf, room), leaf.count,
-                                     near_end->sides, kIsRounded ? walk.reach : 0.0f);
+          near_end->open = find_sides<kIsRounded>(walk.sheared, tree.corners_of(leaf, room),
+                                                  leaf.count, near_end->sides, walk.rounding);
           near_end += near_end->open != 0 ? 1 : 0;
         }
         for (const auto* at = near; at != near_end; ++at) {

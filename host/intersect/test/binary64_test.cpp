@@ -19,7 +19,7 @@ using test::Random;
 
 /// Returns a coordinate that binary32 rounds to `x`.
 double near(float x, Random& random) {
-  const double exact = x == 0.0f ? 0.0 : with_rest(x, random.below(1 << 29) - (1 << 28));
+  const double exact = x == 0.0f ? 0.0 : with_rest(x, random.below(1 << 30) - (1 << 29));
   return static_cast<float>(exact) == x ? exact : double{x};
 }
 
@@ -53,11 +53,14 @@ struct Rays {
 
 class Binary64 : public testing::Test {
  protected:
-  /// Rays at corners, edges and insides of the triangles, some from a corner.
+  /// Rays at corners, edges and insides of the triangles, half of them from nearby, and some from a
+  /// corner.
   Rays some_rays(const std::vector<Corners>& mesh, int count, bool is_binary64, bool is_common) {
     Rays rays;
     const float size = 2.0f * static_cast<float>(largest(mesh[0][0]));
-    glm::dvec3 origin(random_.point(size));
+    const glm::vec3 corner(mesh[0][0]);
+    const float extent = 4.0f * largest(glm::vec3(mesh[0][1]) - corner);
+    glm::dvec3 origin(random_.below(2) == 0 ? random_.point(size) : corner + random_.point(extent));
     while (static_cast<int>(rays.exact.size()) < count) {
       const auto any = [&] {
         return mesh[static_cast<std::size_t>(random_.below(static_cast<int>(mesh.size())))];
@@ -67,7 +70,9 @@ class Binary64 : public testing::Test {
       const double v = random_.below(3) == 0 ? 0.0 : random_.uniform(0, 1);
       const glm::dvec3 aim = glm::mix(glm::mix(t[0], t[1], u), t[2], v);
       if (!is_common) {
-        for (int k = 0; k < 3; ++k) origin[k] = near(random_.uniform(-size, size), random_);
+        const glm::vec3 start =
+            random_.below(2) == 0 ? random_.point(size) : corner + random_.point(extent);
+        for (int k = 0; k < 3; ++k) origin[k] = near(start[k], random_);
         if (random_.below(8) == 0) origin = any()[0];
       }
       if (aim != origin) rays.add(origin, aim - origin, is_binary64);
@@ -151,6 +156,98 @@ TEST_F(Binary64, AllSearchesFindWhatThePredicatesSay) {
     if (HasFatalFailure()) FAIL() << "round " << round;
   }
   EXPECT_GT(hits_, 20'000);
+}
+
+// Neither by other rays of a query nor by all_hits().
+TEST_F(Binary64, RaysInBinary32HaveTheNarrowBounds) {
+  int doubts = 0;
+  for (int round = 0; round < 300; ++round) {
+    const std::vector<Corners> mesh = {
+        {glm::vec3(random_.point()), glm::vec3(random_.point()), glm::vec3(random_.point())}};
+    const Bvh bvh(test::scene_of(mesh));
+    Rays rays;
+    for (int i = 0; i < 30; ++i) {
+      const glm::vec3 origin = random_.point(1e4f);
+      const glm::dvec3 aim = glm::mix(mesh[0][0], mesh[0][1], double{random_.uniform(0, 1)}) +
+                             std::ldexp(1.0, -random_.below(14)) * glm::dvec3(random_.point());
+      rays.add(origin, aim - glm::dvec3(origin), false);
+    }
+    rays.add({0.1, 0, 0}, {1, 0, 0}, true);
+    std::vector<NearestHit> hits(rays.rounded.size()), every;
+    std::vector<RayWork> alone(hits.size()), together(alone);
+    CpuIntersector(bvh).nearest(rays.rounded, {.work = alone}, hits);
+    CpuIntersector(bvh).nearest(rays.rounded, {.exact_rays = rays.exact, .work = together}, hits);
+    for (std::size_t i = 0; i + 1 < hits.size(); ++i) {
+      RayWork all;
+      all_hits(bvh, rays.exact[i], std::numeric_limits<float>::infinity(), every, all);
+      ASSERT_EQ(together[i].tests, alone[i].tests);
+      ASSERT_EQ(together[i].doubts, alone[i].doubts);
+      // Boxes are tested otherwise.
+      if (all.tests == alone[i].tests) {
+        ASSERT_EQ(all.doubts, alone[i].doubts);
+      }
+      doubts += static_cast<int>(alone[i].doubts);
+    }
+  }
+  EXPECT_GT(doubts, 100);
+}
+
+// The rounding of an origin above 1 exceeds what boxes below 1 are widened by.
+TEST_F(Binary64, SmallTrianglesAreHit) {
+  int hits = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const auto near_one = [&](double distance) {
+      return 1.0 + distance * glm::abs(glm::dvec3(random_.point()));
+    };
+    const glm::dvec3 at = near_one(-0x1p-20);
+    const auto corner = [&] { return at + glm::dvec3(random_.point(0x1p-30f)); };
+    const std::vector<Corners> mesh = {{corner(), corner(), corner()}};
+    const Scene scene = test::scene_of(mesh);
+    const Bvh bvh(scene);
+    Rays rays;
+    for (int i = 0; i < 10; ++i) {
+      const glm::dvec3 origin = near_one(0x1p-18);
+      rays.add(origin, (mesh[0][0] + mesh[0][1] + mesh[0][2]) / 3.0 - origin, true);
+    }
+    std::vector<NearestHit> nearest(rays.rounded.size()), all;
+    CpuIntersector(bvh).nearest(rays.rounded, {.exact_rays = rays.exact}, nearest);
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      const bool is_hit = hits_triangle(rays.exact[i], mesh[0]);
+      hits += is_hit ? 1 : 0;
+      RayWork work;
+      all_hits(bvh, rays.exact[i], std::numeric_limits<float>::infinity(), all, work);
+      ASSERT_EQ(nearest[i].primitive != NearestHit::kNone, is_hit);
+      ASSERT_EQ(!all.empty(), is_hit);
+    }
+  }
+  EXPECT_GT(hits, 10'000);
+}
+
+// Rays through the corner in which all triangles meet hit one of them.
+TEST_F(Binary64, AFanIsHitOnce) {
+  const glm::dvec3 apex(1 + 0x1p-40, 1 - 0x1p-41, 0x1p-42);
+  constexpr int kCount = 1000;
+  std::vector<Corners> mesh;
+  const auto rim = [&](int i) {
+    const double angle = 6.283185307179586 * (i % kCount) / kCount;
+    return apex + glm::dvec3(std::cos(angle), std::sin(angle), 0.01 * (i % kCount % 3));
+  };
+  for (int i = 0; i < kCount; ++i) mesh.push_back({rim(i), rim(i + 1), apex});
+  const Scene scene = test::scene_of(mesh);
+  const Bvh bvh(scene);
+  Rays rays;
+  for (int i = 0; i < 50; ++i) {
+    const glm::dvec3 way = glm::round(0x1p10 * glm::dvec3(random_.point(0.05f))) * 0x1p-10;
+    rays.add(apex - way - glm::dvec3(0, 0, 1), way + glm::dvec3(0, 0, 1), true);
+  }
+  std::vector<NearestHit> hits(rays.rounded.size()), all;
+  CpuIntersector(bvh).nearest(rays.rounded, {.exact_rays = rays.exact}, hits);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    RayWork work;
+    all_hits(bvh, rays.exact[i], std::numeric_limits<float>::infinity(), all, work);
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_EQ(all[0].primitive, hits[i].primitive);
+  }
 }
 
 // The rounding of a coordinate moves it over the ray in half of the cases.

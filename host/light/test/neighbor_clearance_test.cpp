@@ -134,6 +134,20 @@ TEST(NeighborClearance, HoldsBetweenTrianglesOfAllKinds) {
   EXPECT_LT(free, points);
 }
 
+// All triangles of a fan are near each other; the search for one of them ends early.
+TEST(NeighborClearance, IsUnknownInALargeFan) {
+  for (const int count : {100, 20'000}) {
+    std::vector<Corners> mesh;
+    const auto rim = [&](int i) {
+      const double angle = 6.283185307179586 * (i % count) / count;
+      return glm::dvec3(glm::vec3(std::cos(angle), std::sin(angle), 1.0));
+    };
+    for (int i = 0; i < count; ++i) mesh.push_back({glm::dvec3(0.0), rim(i), rim(i + 1)});
+    const Bvh bvh(test::scene_of(mesh));
+    EXPECT_EQ(NeighborClearances(bvh).of(0).length != 0.0f, count == 100) << count;
+  }
+}
+
 // A table's leg stands on the floor.
 TEST(NeighborClearance, WhatStandsOnATriangleIsItsOverlap) {
   const std::vector<Corners> mesh = {

@@ -78,17 +78,17 @@ def triangles(name: str, corners: Array) -> Array:
     return np.ascontiguousarray(corners).reshape(-1, 3)
 
 
-def vertex_numbers(faces: npt.ArrayLike | None, count: int) -> Array:
+def vertex_numbers(faces: npt.ArrayLike | None, count: int, name: str = "faces") -> Array:
     """Returns faces, of shape (M, 3), as numbers from 0 to `count` - 1."""
     if faces is None:
-        raise InputError("faces: found None, expected the numbers of three vertices in each row")
-    array = plain("faces", faces)
+        raise InputError(f"{name}: found None, expected the numbers of three vertices in each row")
+    array = plain(name, faces)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind == "f" or not len(array):
-        raise InputError(f"faces: found an array of {array.dtype} of shape {array.shape}, expected whole numbers of "
+        raise InputError(f"{name}: found an array of {array.dtype} of shape {array.shape}, expected whole numbers of "
                          "shape (M, 3), M at least 1")
     wrong = ((array < 0) | (array >= count)).any(axis=1)
     if wrong.any():
-        raise InputError(f"faces: found {array[wrong.argmax()].tolist()} in face {wrong.argmax()}, expected numbers "
+        raise InputError(f"{name}: found {array[wrong.argmax()].tolist()} in face {wrong.argmax()}, expected numbers "
                          f"from 0 to {count - 1}")
     return array
 

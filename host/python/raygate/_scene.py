@@ -175,9 +175,9 @@ class Scene(_raygate.Scene):
     @in_context
     def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Returns whether points, of shape (N, 3), are inside of closed surfaces: an array of bool, of shape (N,). The
-        answers are exact: they count how often a ray from the point leaves and enters surfaces. They have no meaning
-        for an open surface or for a point on a surface. Raises InputError, which names the point, for inf, NaN and
-        coordinates beyond 2^125."""
+        answers are exact, for points as trace() rounds origins: they count how often a ray from the point leaves and
+        enters surfaces. They have no meaning for an open surface or for a point on a surface. Raises InputError, which
+        names the point, for inf, NaN and coordinates beyond 2^125."""
         is_inside: npt.NDArray[np.bool_] = self._crossings(_arrays.points(points, 125)) != 0
         return is_inside
 
@@ -185,8 +185,9 @@ class Scene(_raygate.Scene):
     def winding_number(self, points: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Returns how often the surfaces wind around points, of shape (N, 3), and the largest error of each number: two
         arrays of float64, of shape (N,). Around a closed surface, also one that crosses itself, the number is whole, and
-        exact: 1 inside, 0 outside. Of an open one it is the solid angle seen from the point over 4 pi. They have no
-        meaning for a point on a surface. Raises InputError as inside() does.
+        exact: 1 inside, 0 outside. Of an open one it is the solid angle seen from the point over 4 pi. The error is inf
+        if a point is so near a surface that it may cross it by rounding, as trace() rounds origins. They have no meaning
+        for a point on a surface. Raises InputError as inside() does.
 
         Crossings of a ray are counted exactly, as if each open edge were closed by a strip that goes to infinity against
         the ray; the solid angles of these strips are subtracted."""
@@ -195,19 +196,31 @@ class Scene(_raygate.Scene):
             self._edges = self._open_edges().view(np.float64).reshape(-1, 7)
         winding, errors = self._crossings(points).astype(np.float64), np.zeros(len(points))
         towards = -_DIRECTION.astype(np.float64) / np.linalg.norm(_DIRECTION.astype(np.float64))
-        from_origin = points.astype(np.float64) - self.origin
+        exact, origin = points.astype(np.float64), self.origin
+        from_origin = exact - origin
+        seen = from_origin - exact  # two_sum of host/exact/expansion.h
+        lost = np.linalg.norm((exact - (from_origin - seen)) - (origin + seen), axis=-1)
+        moved = np.flatnonzero(lost)
+        if len(moved):
+            near = self.closest(points[moved])["distance"] <= 2.0 ** -40 * np.linalg.norm(from_origin[moved], axis=-1)
+            errors[moved[near]] = np.inf
         for first in range(0, len(self._edges), 1024):
             edges = self._edges[first:first + 1024]
             for part in range(0, len(points), 1024):
-                at = from_origin[part:part + 1024, None]
+                at, off = from_origin[part:part + 1024, None], lost[part:part + 1024, None]
                 a, b = edges[:, :3] - at, edges[:, 3:6] - at
                 size_a, size_b = np.linalg.norm(a, axis=-1), np.linalg.norm(b, axis=-1)
                 # Half of the solid angle of a, b and the direction (Van Oosterom and Strackee, 1983).
                 y = np.cross(a, b) @ towards
                 x = size_a * size_b + (a * b).sum(-1) + (b @ towards) * size_a + (a @ towards) * size_b
                 winding[part:part + 1024] += (np.arctan2(y, x) * edges[:, 6]).sum(-1) / (2 * np.pi)
-                rounding = np.minimum(2 ** -46 * size_a * size_b, np.hypot(x, y)) / np.maximum(np.hypot(x, y), 1e-300)
-                errors[part:part + 1024] += (rounding * edges[:, 6]).sum(-1)
+                # (x, y) is off by less than 2^-47 |a| |b|, and by 4.2 off (|a| + |b| + off) as the point is: as (|a||b|,
+                # a.b, b.t |a|, a.t |b|) each change by off (|a| + |b| + off) at most, and y by off (|a| + |b|). The angle
+                # over 2 pi is off by a quarter of that over |(x, y)|, or by 1 where pi may be -pi. The rest of the bound
+                # covers the rounding of arctan2 and of the sums.
+                off = 2.0 ** -46 * size_a * size_b + 4.2 * off * (size_a + size_b + off)
+                rounding = np.where((x <= off) & (np.abs(y) <= off), 1.0, off / np.maximum(np.hypot(x, y), 1e-300))
+                errors[part:part + 1024] += (rounding * edges[:, 6]).sum(-1) + 2.0 ** -52 * np.abs(winding[part:part + 1024])
         return winding, errors
 
     @in_context

@@ -17,34 +17,42 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from . import _arrays
 from ._raygate import InputError
-from ._scene import Scene
+from ._scene import _DIRECTION, Scene
 
 Array = npt.NDArray[Any]
 
 
-def _array(values: Any) -> Array:
-    """Returns an array of float64 from an array or from a tensor of Open3D."""
-    return np.asarray(values.numpy() if hasattr(values, "numpy") else values, np.float64)
+def _array(values: Any) -> Any:
+    """Returns a tensor of Open3D as an array, and anything else as it is."""
+    return values.numpy() if hasattr(values, "numpy") else values
 
 
 def _rows(name: str, values: Any, width: int) -> tuple[tuple[int, ...], Array]:
     """Returns the shape of an array without its last axis, and its rows."""
-    array = _array(values)
-    if array.ndim == 0 or array.shape[-1] != width:
-        raise InputError(f"{name}: found an array of shape {array.shape}, expected (..., {width})")
+    array = _arrays.reals(name, _array(values))
+    if array.ndim < 2 or array.shape[-1] != width:
+        raise InputError(f"{name}: found an array of shape {array.shape}, expected (..., N, {width})")
     return array.shape[:-1], array.reshape(-1, width)
 
 
+def _threads(nthreads: int) -> int | None:
+    if not isinstance(nthreads, (int, np.integer)) or not 0 <= nthreads <= 1024:
+        raise InputError(f"nthreads: found {nthreads!r}, expected a whole number from 0 to 1024")
+    return int(nthreads) or None
+
+
 class RaycastingScene:
-    """Triangles, and queries of rays and points. Shapes are those of Open3D: (..., 6) for rays, (..., 3) for points, and the
-    same leading axes for answers."""
+    """Triangles, and queries of rays and points. Shapes are those of Open3D: (..., N, 6) for rays, (..., N, 3) for points,
+    and the same leading axes for answers. `nthreads` of a query: 0: one per processor; distances and closest points take
+    one."""
 
     INVALID_ID = 4294967295
 
     def __init__(self, nthreads: int = 0) -> None:
-        """`nthreads`: of each query; 0: one per processor."""
-        self._threads = nthreads or None
+        """`nthreads`: how many build the scene; 0: one per processor."""
+        self._threads = _threads(nthreads)
         self._parts: list[Array] = []  # corners, (n, 3, 3), of each geometry
         self._scene: Scene | None = None
 
@@ -54,8 +62,9 @@ class RaycastingScene:
         if triangle_indices is None:
             mesh = vertex_positions
             vertex_positions, triangle_indices = mesh.vertex["positions"], mesh.triangle["indices"]
-        vertices, triangles = _array(vertex_positions), _array(triangle_indices).astype(np.int64)
-        self._parts.append(vertices[triangles])
+        vertices = _arrays.vectors("vertex_positions", _array(vertex_positions)).astype(np.float64)
+        _arrays.check_finite("vertex_positions", vertices, "vertex", 125)
+        self._parts.append(vertices[_arrays.vertex_numbers(_array(triangle_indices), len(vertices), "triangle_indices")])
         self._scene = None
         return len(self._parts) - 1
 
@@ -69,9 +78,11 @@ class RaycastingScene:
             self._scene = Scene.of_triangles(self._corners, threads=self._threads)
         return self._scene
 
-    def _trace(self, rays: Any, hits: Any, columns: list[str], limits: Any = None) -> tuple[tuple[int, ...], Array]:
+    def _trace(self, rays: Any, nthreads: int, hits: Any, columns: list[str],
+               limits: float | None = None) -> tuple[tuple[int, ...], Array]:
         shape, rows = _rows("rays", rays, 6)
-        return shape, self._built.trace(rows[:, :3], rows[:, 3:], limits, hits=hits, columns=columns, threads=self._threads)
+        return shape, self._built.trace(rows[:, :3], rows[:, 3:], limits, hits=hits, columns=columns,
+                                        threads=_threads(nthreads))
 
     def _names(self, triangles: Array, shape: tuple[int, ...]) -> dict[str, Array]:
         """Returns the numbers of geometries, and of triangles in them, in this shape."""
@@ -91,7 +102,7 @@ class RaycastingScene:
     def cast_rays(self, rays: Any, nthreads: int = 0) -> dict[str, Array]:
         """Returns the nearest hit of each ray: "t_hit" (infinite: none), "geometry_ids" and "primitive_ids" (INVALID_ID:
         none), "primitive_uvs" (0: none) and "primitive_normals" (0: none)."""
-        shape, hits = self._trace(rays, "nearest", ["triangle", "t", "uv"])
+        shape, hits = self._trace(rays, nthreads, "nearest", ["triangle", "t", "uv"])
         triangles = hits["triangle"]
         uvs = np.nan_to_num(np.stack([hits["u"], hits["v"]], -1))
         return {"t_hit": hits["t"].reshape(shape),
@@ -101,21 +112,25 @@ class RaycastingScene:
 
     def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Array:
         """Returns whether each ray hits anything at tnear < t < tfar."""
-        shape, rows = _rows("rays", rays, 6)
+        if np.isnan(tnear) or np.isnan(tfar):
+            raise InputError(f"tnear, tfar: found {tnear}, {tfar}, expected numbers")
+        if tfar <= max(tnear, 0.0):
+            return np.zeros(_rows("rays", rays, 6)[0], bool)
         if tnear > 0.0:  # hits up to tnear may be the nearest ones, so all are needed
-            hits = self._built.trace(rows[:, :3], rows[:, 3:], tfar, hits="all", columns=["ray", "t"], threads=self._threads)
-            return (np.bincount(hits["ray"][hits["t"] > tnear], minlength=len(rows)) > 0).reshape(shape)
-        return self._trace(rays, "any", ["hit"], tfar)[1]["hit"].astype(bool).reshape(shape)
+            shape, hits = self._trace(rays, nthreads, "all", ["ray", "t"], tfar)
+            return (np.bincount(hits["ray"][hits["t"] > tnear], minlength=int(np.prod(shape))) > 0).reshape(shape)
+        shape, hits = self._trace(rays, nthreads, "any", ["hit"], tfar)
+        return hits["hit"].astype(bool).reshape(shape)
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Array:
         """Returns the number of triangles that each ray hits."""
-        shape, hits = self._trace(rays, "all", ["ray"])
+        shape, hits = self._trace(rays, nthreads, "all", ["ray"])
         return np.bincount(hits["ray"], minlength=int(np.prod(shape))).astype(np.int32).reshape(shape)
 
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Array]:
         """Returns all hits, near before far: "ray_ids", "t_hit", "geometry_ids", "primitive_ids" and "primitive_uvs", and
         "ray_splits": hits of ray i are those from ray_splits[i] to ray_splits[i + 1]."""
-        shape, hits = self._trace(rays, "all", ["ray", "triangle", "t", "uv"])
+        shape, hits = self._trace(rays, nthreads, "all", ["ray", "triangle", "t", "uv"])
         counts = np.bincount(hits["ray"], minlength=int(np.prod(shape)))
         return {"ray_splits": np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32),
                 "ray_ids": hits["ray"].astype(np.uint32), "t_hit": hits["t"], **self._names(hits["triangle"], (-1,)),
@@ -124,6 +139,7 @@ class RaycastingScene:
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> dict[str, Array]:
         """Returns the nearest point of the surface to each point: "points", "geometry_ids", "primitive_ids", "primitive_uvs"
         and "primitive_normals"."""
+        _threads(nthreads)
         shape, points = _rows("query_points", query_points, 3)
         found = self._built.closest(points)
         at = np.stack([found["x"], found["y"], found["z"]], -1)
@@ -138,17 +154,21 @@ class RaycastingScene:
 
     def compute_distance(self, query_points: Any, nthreads: int = 0) -> Array:
         """Returns the distance of each point from the surface."""
+        _threads(nthreads)
         shape, points = _rows("query_points", query_points, 3)
         return self._built.closest(points)["distance"].reshape(shape)
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Returns 1 for points inside of the surface, which must be closed, and 0 for those outside. `nsamples` changes
-        nothing: one ray tells."""
+        nothing: one ray tells; as in Open3D, it must be odd."""
+        if nsamples < 1 or nsamples % 2 != 1:
+            raise InputError(f"nsamples: found {nsamples!r}, expected an odd number of at least 1")
         shape, points = _rows("query_points", query_points, 3)
-        return self._built.inside(points).astype(np.float32).reshape(shape)
+        crossings = self.count_intersections(np.concatenate([points, np.broadcast_to(_DIRECTION, points.shape)], -1), nthreads)
+        return (crossings % 2).astype(np.float32).reshape(shape)
 
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Returns the distance of each point from the surface, which must be closed; negative inside."""
-        sign = 1.0 - 2.0 * self.compute_occupancy(query_points)
+        sign = 1.0 - 2.0 * self.compute_occupancy(query_points, nthreads, nsamples)
         distance: Array = sign * self.compute_distance(query_points)
         return distance

@@ -2,6 +2,7 @@
 
 import itertools
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -62,8 +63,50 @@ class Queries(unittest.TestCase):
     def test_refuses(self):
         with self.assertRaisesRegex(raygate.InputError, "without triangles"):
             RaycastingScene().cast_rays([[0, 0, 0, 0, 0, 1]])
-        with self.assertRaisesRegex(raygate.InputError, r"rays: found an array of shape \(1, 3\), expected \(\.\.\., 6\)"):
-            self.scene.cast_rays([[0, 0, 0]])
+        for what, call in (
+                ("rays: found an array of shape (1, 3), expected (..., N, 6)", lambda: self.scene.cast_rays([[0, 0, 0]])),
+                ("rays: found an array of shape (6,), expected (..., N, 6)", lambda: self.scene.cast_rays([0, 0, 5, 0, 0, -1])),
+                ("rays: found an array of <U1, expected numbers", lambda: self.scene.cast_rays([["0"] * 6])),
+                ("query_points: found an array of shape (2,), expected", lambda: self.scene.compute_distance([0, 1])),
+                ("nthreads: found -1, expected a whole number from 0", lambda: self.scene.cast_rays([[0, 0, 5, 0, 0, -1]], -1)),
+                ("nthreads: found 1.5, expected", lambda: self.scene.compute_distance([[0, 0, 0]], 1.5)),
+                ("nthreads: found 'all', expected", lambda: RaycastingScene("all")),
+                ("nsamples: found 2, expected an odd", lambda: self.scene.compute_occupancy([[0, 0, 0]], nsamples=2)),
+                ("nsamples: found 0, expected an odd", lambda: self.scene.compute_signed_distance([[0, 0, 0]], nsamples=0)),
+                ("tnear, tfar: found nan, 1, expected", lambda: self.scene.test_occlusions([[0, 0, 5, 0, 0, -1]], np.nan, 1)),
+                ("vertex_positions: found an array of shape (8, 2), expected (N, 3)",
+                 lambda: self.scene.add_triangles(VERTICES[:, :2], FACES)),
+                ("vertex_positions: found [inf, 0.0, 0.0] in vertex 1",
+                 lambda: self.scene.add_triangles([[0, 0, 0], [np.inf, 0, 0], [0, 1, 0]], [[0, 1, 2]])),
+                ("triangle_indices: found [0, 1, 8] in face 0, expected numbers from 0 to 7",
+                 lambda: self.scene.add_triangles(VERTICES, [[0, 1, 8]])),
+                ("triangle_indices: found [0, 1, -1] in face 0", lambda: self.scene.add_triangles(VERTICES, [[0, 1, -1]])),
+                ("triangle_indices: found an array of float64", lambda: self.scene.add_triangles(VERTICES, FACES * 1.0))):
+            with self.subTest(what), self.assertRaises(raygate.InputError) as refused:
+                call()
+            self.assertIn(what, str(refused.exception))
+        self.assertEqual(self.scene.add_triangles(VERTICES + 20, FACES), 2, "what was refused has no number")
+
+    def test_takes_as_many_threads_as_asked(self):
+        asked = []
+        trace = raygate.Scene.trace
+        rays = [[0, 0, 5, 0, 0, -1]]
+        with unittest.mock.patch.object(raygate.Scene, "trace", autospec=True, side_effect=lambda *arguments, **options: (
+                asked.append(options["threads"]), trace(*arguments, **options))[1]):
+            for query in (self.scene.cast_rays, self.scene.test_occlusions, self.scene.count_intersections,
+                          self.scene.list_intersections):
+                query(rays, nthreads=3)
+            self.scene.compute_occupancy([[0, 0, 0]], 3)
+            self.scene.compute_signed_distance([[0, 0, 0]], 3)
+            self.scene.cast_rays(rays)
+        self.assertEqual(asked, [3] * 6 + [None])
+
+    def test_a_surface_in_another_is_a_hole(self):
+        hollow = RaycastingScene()
+        hollow.add_triangles(VERTICES, FACES)
+        hollow.add_triangles(VERTICES / 2, FACES)
+        np.testing.assert_array_equal(hollow.compute_occupancy([[0, 0, 0], [0, 0, 0.75], [0, 0, 2]]), [0, 1, 0])
+        self.assertEqual(hollow.test_occlusions([[0, 0, 5, 0, 0, -1]], 1, 1).tolist(), [False])
 
 
 if __name__ == "__main__":

@@ -237,13 +237,51 @@ class Arrays(unittest.TestCase):
         np.testing.assert_array_equal(twice.winding_number(self.points)[0], 2 * inside)
         faces = np.array(self.FACES)[[0, 2, 3, 5, 6, 9]]  # of an open surface
         winding, errors = raygate.Scene(np.array(self.VERTICES), faces).winding_number(self.points)
-        a, b, c = (np.array(self.VERTICES, float)[faces[:, k]] - self.points[:, None] for k in range(3))
-        size = [np.linalg.norm(corner, axis=-1) for corner in (a, b, c)]
-        dot = lambda p, q: (p * q).sum(-1)  # noqa: E731
-        angles = 2 * np.arctan2(dot(a, np.cross(b, c)), size[0] * size[1] * size[2] + dot(a, b) * size[2] +
-                                dot(b, c) * size[0] + dot(c, a) * size[1])
+        angles = np.stack([self.solid_angles(np.array(self.VERTICES)[face] - self.points[:, None]) for face in faces], -1)
         np.testing.assert_allclose(winding, angles.sum(-1) / (4 * np.pi), atol=1e-9)
         self.assertLess(errors.max(), 1e-6)
+
+    def test_errors_of_winding_numbers(self):
+        square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+        faces = [[0, 1, 2], [0, 2, 3]]
+        way = np.array([0.36, 0.48, 0.8], np.float32).astype(float)  # of the rays
+        # Rays from these points pass through the open edges, where the solid angle of a strip jumps.
+        along, back = np.linspace(0.125, 0.875, 7), np.arange(1, 41)[:, None] / 8
+        edges = [square[i] + along[:, None] * (square[(i + 1) % 4] - square[i]) for i in range(4)]
+        points = (np.concatenate(edges)[None] - back[:, None] * way).reshape(-1, 3)
+        winding, errors = raygate.Scene(square, faces).winding_number(points)
+        true = sum(self.solid_angles(square[face] - points[:, None]) for face in faces) / (4 * np.pi)
+        self.assertTrue((np.abs(winding - true) <= errors + 1e-12).all())
+        # A point that is rounded relative to the scene's origin.
+        cube = np.array(self.VERTICES, float)
+        vertices = np.concatenate([cube, *(cube + [5e6 + 0.1, 6e6 + 0.1, z] for z in (0, 3, 6, 9))])
+        far = raygate.Scene(vertices, np.concatenate([np.array(self.FACES) + i for i in range(0, 40, 8)]))
+        self.assertGreater(np.abs(far.origin).max(), 1e6)
+        winding, errors = far.winding_number([[1 + 1e-11, 0.1, 0.2], [0.1, 0.2, 0.3], [5e6, 6e6, 0.1], [1.5, 0.1, 0.2]])
+        self.assertEqual(winding[1:].tolist(), [1, 1, 0])
+        self.assertEqual(errors.tolist(), [np.inf, 0, 0, 0])
+
+    @staticmethod
+    def solid_angles(corners):
+        a, b, c = np.moveaxis(corners, 1, 0)
+        size = [np.linalg.norm(corner, axis=-1) for corner in (a, b, c)]
+        dot = lambda p, q: (p * q).sum(-1)  # noqa: E731
+        return 2 * np.arctan2(dot(a, np.cross(b, c)), size[0] * size[1] * size[2] + dot(a, b) * size[2] +
+                              dot(b, c) * size[0] + dot(c, a) * size[1])
+
+    def test_a_wall_in_utm_coordinates(self):
+        wall = np.array(self.VERTICES) * [2, 0.04, 1.5] + [447125.456, 5411987.361, 233.289]
+        faces = self.FACES + [[8, 9, 10]]  # and a stray face at 0, 0, 0
+        scene = raygate.Scene(np.concatenate([wall, [[0, 0, 0], [1, 0, 0], [0, 1, 0]]]), faces)
+        self.assertEqual((scene.rounding, scene.warnings), ((0, 0.0), []))
+        start = [447125.5, 5411982.321, 233.0]
+        hits = scene.trace([start], [[0, 1, 0]], hits="all")
+        np.testing.assert_allclose(hits["t"], [5, 5.08], rtol=0, atol=1e-8)
+        self.assertEqual(scene.trace([[0.25, 0.25, 1]], [[0, 0, -1]])["triangle"].tolist(), [12])
+        self.assertEqual(scene.inside([[447125, 5411987.35, 233], [447125, 5411987.45, 233]]).tolist(), [True, False])
+        picture = scene.render(32, 24, eye=start, target=[447125.5, 5411987.361, 233.0], up=[0, 0, 1], fov=20, spp=1)
+        self.assertTrue((picture["triangle"] < 12).all())
+        np.testing.assert_allclose(picture["depth"], 5, atol=0.2)
 
     def test_inside(self):
         expected = (np.abs(self.points) < 1).all(axis=1)

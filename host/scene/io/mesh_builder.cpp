@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "host/base/elementary.h"
 #include "host/base/input_error.h"
@@ -86,7 +87,7 @@ void MeshBuilder::fail(std::vector<FaceCorner>::const_iterator corner,
 }
 
 // Keeps the positions that a face uses, relative to the origin, and renumbers the corners.
-void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
+void MeshBuilder::recentre(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const FaceCorner& corner : corners_) new_index[corner.position] = 0;
   const bool is_bytes = std::ranges::any_of(colors_, [](const glm::vec3& color) {
@@ -118,14 +119,9 @@ void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
     scene.positions.push_back(position);
     scene.rounding.add({error != 0.0, error});
   }
-  if (scene.rounding.corners == 0) return;
-  bool keeps_rests = vertices == Vertices::kBinary64;
-  if (vertices == Vertices::kAsPictures) {
-    for_each_face([&](const Face&, std::span<const FaceCorner> corners) {
-      keeps_rests = keeps_rests || is_moved(corners, scene);
-    });
-  }
-  if (!keeps_rests) return;
+}
+
+void MeshBuilder::keep_rests(Scene& scene) const {
   scene.origin = exact_origin(positions_);
   scene.rounding = {};
   scene.positions.clear();
@@ -133,26 +129,7 @@ void MeshBuilder::recentre(Vertices vertices, Scene& scene) {
     const double error = scene.add_vertex(position);
     scene.rounding.add({error != 0.0, error});
   }
-}
-
-template <class Visit>
-void MeshBuilder::for_each_face(const Visit& visit) const {
-  std::size_t begin = 0;
-  for (const Face& face : faces_) {
-    visit(face, std::span(corners_).subspan(begin, face.end - begin));
-    begin = face.end;
-  }
-}
-
-bool MeshBuilder::is_moved(std::span<const FaceCorner> corners, const Scene& scene) const {
-  double error = 0.0, size = 0.0;
-  for (const FaceCorner& corner : corners) {
-    const glm::dvec3& given = positions_[corner.position];
-    const glm::dvec3 rounded(scene.positions[corner.position]);
-    error = std::max(error, largest(rounded - (given - scene.origin)));
-    size = std::max(size, largest(given - positions_[corners[0].position]));
-  }
-  return error > 0.01 * size;
+  scene.drop_zero_rests();
 }
 
 // Returns whether a polygon has no area in its file, up to the rounding of decimals to double.
@@ -173,7 +150,8 @@ bool MeshBuilder::was_flat(std::span<const FaceCorner> corners) const {
       glm::lessThanEqual(glm::abs(area), 0x1p-50 * static_cast<double>(corners.size()) * bound));
 }
 
-std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& scene) const {
+std::optional<std::vector<std::uint32_t>> MeshBuilder::triangulate(Scene& scene,
+                                                                   bool gives_up) const {
   char most[32];
   std::snprintf(most, sizeof most, "%.3g", scene.rounding.most);
   Flaw no_area{"face of zero area, left out"},
@@ -189,11 +167,25 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& sc
   EarClipper clipper;
   std::vector<glm::dvec3> polygon;
   scene.triangles.reserve(std::max(corners_.size(), 2 * faces_.size()) - 2 * faces_.size());
-  for_each_face([&](const Face& face, std::span<const FaceCorner> corners) {
+  std::size_t begin = 0;
+  for (const Face& face : faces_) {
+    const std::span<const FaceCorner> corners(corners_.data() + begin, face.end - begin);
+    begin = face.end;
     if (scene.triangles.size() % kCheckpointFaces == 0) checkpoint();
-    if (corners.size() < 3) return too_short.note(face.line);
+    if (corners.size() < 3) {
+      too_short.note(face.line);
+      continue;
+    }
     polygon.clear();
-    for (const FaceCorner& corner : corners) polygon.push_back(scene.vertex(corner.position));
+    double error = 0.0, size = 0.0;
+    for (const FaceCorner& corner : corners) {
+      polygon.push_back(scene.vertex(corner.position));
+      if (scene.rounding.corners == 0) continue;
+      const glm::dvec3& given = positions_[corner.position];
+      error = std::max(error, largest(polygon.back() - (given - scene.origin)));
+      size = std::max(size, largest(given - positions_[corners[0].position]));
+    }
+    const bool is_moved = error > 0.01 * size;
 
     static constexpr EarClipper::Triangle kWhole{0, 1, 2};
     std::span<const EarClipper::Triangle> pieces(&kWhole, 1);
@@ -206,13 +198,16 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& sc
     }
     Triangle whole{.material = face.attributes.material, .object = face.attributes.object};
     if (kind == PolygonKind::kZeroArea) {
-      (was_flat(corners) ? no_area : flattened).note(face.line);
+      const bool is_flattened = !was_flat(corners);
+      if (is_flattened && is_moved && gives_up) return std::nullopt;
+      (is_flattened ? flattened : no_area).note(face.line);
       whole.vertices.fill(corners[0].position);
       scene.triangles.insert(scene.triangles.end(), corners.size() - 2, whole);
-      return;
+      continue;
     }
+    if (is_moved && gives_up) return std::nullopt;
     if (kind == PolygonKind::kSelfTouching) touching.note(face.line);
-    if (vertices == Vertices::kBinary32 && is_moved(corners, scene)) moved.note(face.line);
+    if (is_moved) moved.note(face.line);
 
     // A face has normals or texture coordinates if all of its corners have valid ones.
     bool has_normals = true, has_texcoords = true, has_direction = true;
@@ -240,7 +235,7 @@ std::vector<std::uint32_t> MeshBuilder::triangulate(Vertices vertices, Scene& sc
         if (has_normals && has_direction) triangle.normals[i] = corner.normal;
       }
     }
-  });
+  }
   for (const Flaw* flaw : {&no_area, &flattened, &too_short, &moved, &touching, &no_direction,
                            &no_normal, &no_texcoord}) {
     if (flaw->count == 0) continue;
@@ -267,8 +262,14 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
     scene.warnings.push_back(file_name_ + ": " + std::to_string(bad_colors_) +
                              " colours of vertices that are not finite numbers, taken as white");
   }
-  recentre(options.vertices, scene);
-  const std::vector<std::uint32_t> groups = triangulate(options.vertices, scene);
+  recentre(scene);
+  if (options.vertices == Vertices::kBinary64 && scene.rounding.corners > 0) keep_rests(scene);
+  auto groups = triangulate(scene, options.vertices == Vertices::kAsPictures);
+  if (!groups) {
+    keep_rests(scene);
+    scene.triangles.clear();
+    groups = triangulate(scene, false);
+  }
   if (is_empty(scene) && !may_be_empty_) {
     throw InputError(location(faces_.empty() ? 0 : faces_[0].line) + "no face has an area");
   }
@@ -277,8 +278,8 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
   scene.texcoords = std::move(texcoords_);
   scene.second_texcoords = std::move(second_texcoords_);
   scene.opacities = std::move(opacities_);
-  if (options.smooth || !groups.empty()) {
-    add_smooth_normals(groups, options.smooth, scene);
+  if (options.smooth || !groups->empty()) {
+    add_smooth_normals(*groups, options.smooth, scene);
   }
 }
 

@@ -95,17 +95,16 @@ class MeshBuilder {
   /// Throws the InputError of the face with this corner.
   [[noreturn]] void fail(std::vector<FaceCorner>::const_iterator corner,
                          const std::string& what) const;
-  void recentre(Vertices vertices, Scene& scene);
-  /// Calls visit(face, corners) for each face.
-  template <class Visit>
-  void for_each_face(const Visit& visit) const;
-  /// Returns whether rounding to binary32 moves a corner by more than a hundredth of its face.
-  [[nodiscard]] bool is_moved(std::span<const FaceCorner> corners, const Scene& scene) const;
+  void recentre(Scene& scene);
+  /// Replaces the positions by exact ones, with an origin of their own.
+  void keep_rests(Scene& scene) const;
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
   /// Returns whether a face has no area in the file's own numbers, before they are rounded.
   [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
-  /// Returns the smoothing groups of the triangles; empty: all are flat.
-  [[nodiscard]] std::vector<std::uint32_t> triangulate(Vertices vertices, Scene& scene) const;
+  /// Returns the smoothing groups of the triangles; empty: all are flat. `gives_up`: returns
+  /// nothing if rounding to binary32 shows, see Vertices::kAsPictures.
+  [[nodiscard]] std::optional<std::vector<std::uint32_t>> triangulate(Scene& scene,
+                                                                      bool gives_up) const;
 
   std::string file_name_;
   Source source_;

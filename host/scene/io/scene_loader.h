@@ -16,8 +16,8 @@ namespace raygate {
 /// Which vertices keep the rest of their binary64 coordinates (Scene::rests).
 enum class Vertices {
   kBinary64,  ///< all that do not fit binary32
-  /// All, if rounding to binary32 would flatten a face or move a corner by more than a hundredth of
-  /// it; otherwise none. Pictures need no more.
+  /// All, if rounding to binary32 would move a corner by more than a hundredth of the size of a
+  /// face that has an area; otherwise none. Pictures need no more.
   kAsPictures,
   kBinary32,  ///< none
 };
@@ -27,7 +27,7 @@ struct LoadOptions {
   /// Largest angle between the normals of two faces without vertex normals that are smoothed over
   /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
   std::optional<double> smooth = {};
-  /// glTF files, and meshes with instances, are always in binary32.
+  /// At most kAsPictures for glTF files, and kBinary32 for meshes with instances.
   Vertices vertices = Vertices::kBinary64;
 };
 

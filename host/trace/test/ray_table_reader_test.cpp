@@ -125,6 +125,23 @@ TEST(RayTable, CountsOriginsThatRecentringRounds) {
   EXPECT_EQ(table.rounded, 1u);  // 1 - 2^60
 }
 
+TEST(RayTable, CountsEachRayOnce) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  RayTable table;
+  table.add({1, 0, 0}, {1, 0, 0}, kInfinity, {});
+  table.add({0.1, 0, 0}, {1, 0, 0}, kInfinity, {});          // rounded by round()
+  table.add({0.1, 0, 0}, {1, 0, 0}, 0.1, {});                // and, before, the limit
+  table.add({0, 0, 0}, {1e300, 1e-300, 0}, kInfinity, {});   // what becomes 0 counts
+  table.add({0, 0, 0}, {1e-300, 1e-300, 0}, kInfinity, {});  // scaled exactly
+  EXPECT_EQ(table.rounded, 2u);
+  table.round();
+  EXPECT_EQ(table.rounded, 4u);
+  EXPECT_TRUE(table.exact_rays.empty());
+  table.clear(0);
+  table.round();
+  EXPECT_EQ(table.rounded, 0u);
+}
+
 TEST_F(Table, IsSeenFromTheScenesOrigin) {
   const RayTable rays = read_all("1000000.25,0,0,1,0,0\n", glm::dvec3(1e6, 1.0, 0.0));
   EXPECT_EQ(rays.rays.at(0).origin, glm::vec3(0.25f, -1.0f, 0.0f));

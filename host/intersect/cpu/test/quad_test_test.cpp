@@ -14,15 +14,17 @@ namespace {
 
 using test::Random;
 
-/// Parameter: whether corners and rays are rounded from binary64.
-class Quads : public testing::TestWithParam<bool> {
+enum Parts { kNone = 0, kCorners = 1, kOrigin = 2, kDirection = 4, kAll = 7 };
+
+/// Parameter: which parts are rounded from binary64.
+class Quads : public testing::TestWithParam<int> {
  protected:
-  /// Returns a position that rounds to this one.
-  glm::dvec3 spread(const glm::vec3& position) {
+  /// Returns a position that rounds to this one, if this part is rounded.
+  glm::dvec3 spread(const glm::vec3& position, Parts part) {
     glm::dvec3 exact(position);
-    for (int k = 0; k < 3 && GetParam(); ++k) {
+    for (int k = 0; k < 3 && (GetParam() & part) != 0; ++k) {
       if (!std::isnormal(position[k])) continue;
-      exact[k] = on_float_grid(with_rest(position[k], random_.below(1 << 29) - (1 << 28)));
+      exact[k] = on_float_grid(with_rest(position[k], random_.below(1 << 30) - (1 << 29)));
       if (static_cast<float>(exact[k]) != position[k]) exact[k] = position[k];
     }
     return exact;
@@ -54,7 +56,7 @@ class Quads : public testing::TestWithParam<bool> {
       if (random_.below(6) == 0) {
         for (glm::vec3& v : t) v[random_.below(3)] = middle.x;
       }
-      triangles.push_back({spread(t[0]), spread(t[1]), spread(t[2])});
+      triangles.push_back({spread(t[0], kCorners), spread(t[1], kCorners), spread(t[2], kCorners)});
       if (random_.below(12) == 0) triangles.back()[1] = triangles.back()[0];
     }
     return triangles;
@@ -94,12 +96,13 @@ class QuadTest : public Quads {
  protected:
   void expect_right(const Ray& given, const std::vector<Corners>& triangles) {
     const auto count = static_cast<std::uint32_t>(triangles.size());
-    const ExactRay ray(spread(given.origin), spread(given.direction));
+    const ExactRay ray(spread(given.origin, kOrigin), spread(given.direction, kDirection));
     const ShearedRay sheared(given);
     const double t_scale = std::abs(ray.direction[sheared.axes[2]]);
     QuadVerdict verdict;
-    if (GetParam()) {
-      test_quad<true>(sheared, words_of(triangles).data(), count, verdict, largest(given.origin));
+    if (GetParam() != kNone) {
+      const RoundedParts parts((GetParam() & kCorners) != 0, ray);
+      test_quad<true>(sheared, words_of(triangles).data(), count, verdict, parts);
     } else {
       test_quad(sheared, words_of(triangles).data(), count, verdict);
     }
@@ -169,7 +172,7 @@ class QuadRecordTest : public Quads {
     const auto count = static_cast<std::uint32_t>(triangles.size());
     QuadRecord record;
     const std::vector<float> words = words_of(triangles);
-    GetParam()
+    GetParam() != kNone
         ? make_quad_record<true>({origin.x, origin.y, origin.z}, words.data(), count, record)
         : make_quad_record<false>({origin.x, origin.y, origin.z}, words.data(), count, record);
     ASSERT_EQ(record.unsure >> count, 0u);
@@ -270,8 +273,9 @@ TEST_P(QuadRecordTest, IsNotSureOfWhatFloatsCannotHold) {
   EXPECT_GT(doubts_, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rounded, QuadTest, testing::Bool());
-INSTANTIATE_TEST_SUITE_P(Rounded, QuadRecordTest, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Rounded, QuadTest,
+                         testing::Values(kNone, kCorners, kOrigin, kDirection, kAll));
+INSTANTIATE_TEST_SUITE_P(Rounded, QuadRecordTest, testing::Values(kNone, kCorners));
 
 }  // namespace
 }  // namespace raygate

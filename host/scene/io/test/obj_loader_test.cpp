@@ -220,6 +220,39 @@ TEST(LoadObj, CornersThatBinary32MovesAreCounted) {
     // What pictures do not show is rounded for them.
     const Scene near = load("v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", {.vertices = vertices});
     EXPECT_EQ(near.rests.empty(), vertices == Vertices::kAsPictures);
+    // So is a face without area, of any size, and one that rounding flattens but hardly moves.
+    const Scene flat = load(
+        "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 1\nv 1000000.1 0 0\nv 1000000.1 9 0\n"
+        "v 1000000.101 5 0\nf 4 5 6\n",
+        {.vertices = vertices});
+    EXPECT_EQ(flat.rests.empty(), vertices == Vertices::kAsPictures);
+    // Rests that are all 0 are none: binary32 has these positions, relative to another origin.
+    const Scene even = load(
+        "v 5411987 0 0\nv 5411987 1 0\nv 5411987.25 0 0\nv 5411987.25 1 0\n"
+        "v 0 0 0\nf 1 2 3\nf 1 2 4\nf 2 5 3\n",
+        {.vertices = vertices});
+    EXPECT_TRUE(even.rests.empty());
+    EXPECT_EQ(even.origin + even.vertex(2), glm::dvec3(5411987.25, 0, 0));
+  }
+}
+
+// A wall of 8 cm in UTM coordinates, and a face at their origin.
+constexpr const char* kWall =
+    "v 447123.456 5411987.321 231.789\nv 447127.456 5411987.321 231.789\n"
+    "v 447127.456 5411987.401 231.789\nv 447123.456 5411987.401 231.789\n"
+    "v 447123.456 5411987.321 234.789\nv 447127.456 5411987.321 234.789\n"
+    "v 447127.456 5411987.401 234.789\nv 447123.456 5411987.401 234.789\n"
+    "f -8 -5 -6 -7\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -6 -5 -1 -2\nf -7 -6 -2 -3\nf -8 -4 -1 -5\n"
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
+
+TEST(LoadObj, AWallFarFromAStrayFaceIsExact) {
+  for (const Vertices vertices : {Vertices::kBinary64, Vertices::kAsPictures}) {
+    const Scene scene = load(kWall, {.vertices = vertices});
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(scene.triangles.size(), 13u);
+    EXPECT_EQ(scene.origin + scene.vertex(0), glm::dvec3(447123.456, 5411987.321, 231.789));
+    EXPECT_EQ(scene.origin + scene.vertex(3), glm::dvec3(447123.456, 5411987.401, 231.789));
+    EXPECT_EQ(scene.origin + scene.vertex(9), glm::dvec3(1, 0, 0));
   }
 }
 
