@@ -10,16 +10,12 @@
 #include <span>
 #include <vector>
 
-#include "host/base/triple.h"
 #include "host/intersect/intersector.h"
 #include "host/light/bsdf.h"
 #include "host/light/integrator_settings.h"
 #include "host/light/lights.h"
-#include "host/light/material_parameters.h"
 #include "host/light/ray_batch.h"
-#include "host/light/sampler.h"
 #include "host/light/spawn_ray.h"
-#include "host/light/surface.h"
 
 namespace raygate {
 
@@ -32,8 +28,8 @@ struct alignas(16) ScatteredRay {
   /// Direction made with the geometric normal, used if the other one leads to the wrong side.
   glm::vec3 flat{0.0f};
   std::uint32_t is_wanted : 1 = 0;
-  std::uint32_t surely_leaves : 1 =
-      0;  ///< the triangle, on the right side; otherwise exact arithmetic decides
+  /// The ray leaves the triangle on the right side; otherwise exact arithmetic decides.
+  std::uint32_t surely_leaves : 1 = 0;
   std::uint32_t has_flat : 1 = 0, is_transmitted : 1 = 0;
 
   [[nodiscard]] SpawnSide side() const {
@@ -115,10 +111,8 @@ struct HitBlock {
   std::vector<FirstSurface*> first_surfaces;
 
   [[nodiscard]] const PathState& state(std::size_t i) const { return batch->states[begin + i]; }
-  /// Returns the samples of `hits` hits from position i on.
-  [[nodiscard]] std::span<LightSample> light_samples_of(std::size_t i, std::size_t hits = 1) {
-    return std::span(light_samples)
-        .subspan(i * light_samples_per_hit, hits * light_samples_per_hit);
+  [[nodiscard]] std::span<LightSample> light_samples_of(std::size_t i) {
+    return std::span(light_samples).subspan(i * light_samples_per_hit, light_samples_per_hit);
   }
   [[nodiscard]] std::span<ScatteredRay> scattered_of(std::size_t i) {
     return std::span(scattered).subspan(i * scattered_per_hit, scattered_per_hit);
@@ -137,8 +131,7 @@ struct ShadingScene {
 };
 
 /// Returns the diffuse colour, at most 1, with which `surface` looks like the background when lit
-/// by all point lights without a cone and by the uniform radiance `around`. It is darker in their
-/// shadows and brighter in the light of other sources.
+/// by all point lights without a cone and by the uniform radiance `around`.
 template <class T>
 RAYGATE_INLINE Triple<T> catcher_colour(const Lights& lights, const glm::vec3& around,
                                         const Surface<T>& surface) {
@@ -186,9 +179,8 @@ struct Hits {
     if (!hits.first_surfaces.empty()) show_first_surfaces();
   }
 
-  /// Returns the cosine of a unit direction with the shading normal; 0 if the surface scatters no
-  /// light from there: it is behind the triangle, or, for rough glass, the shading and geometric
-  /// normals disagree on the side.
+  /// Returns the cosine of a unit direction with the shading normal; 0 where the surface scatters
+  /// no light from there: behind the triangle or, for rough glass, where the normals disagree.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
@@ -201,19 +193,18 @@ struct Hits {
 
   /// Returns whether EmitterSupersampler adds the emission of the hit.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
-    const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
-    const auto are_wanted = PathLanes<T>::has(path.supersampled, path.specular_history);
-    return are_even & are_wanted;
+    return gather<T>(materials, &MaterialParameters::emits_evenly) &
+           PathLanes<T>::has(path.supersampled, path.specular_history);
   }
   /// Returns the emission, without that added by EmitterSupersampler.
   [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
-    if ((kind & kEmits) == 0) return bsdf.emission();
-    return choose(are_supersampled(), zero<T>(), bsdf.emission());
+    if ((kind & kEmits) == 0) return bsdf.emission;
+    return choose(are_supersampled(), zero<T>(), bsdf.emission);
   }
 
   /// Returns a point of the path's random stream for this purpose.
   [[nodiscard]] RAYGATE_INLINE SquarePoint<T> random(std::uint32_t purpose) const {
-    return sobol_point<T>(path.index, hash(path.stream, purpose));
+    return random_point<T>(path.index, path.stream, purpose);
   }
 
   /// The BSDF and shading normal as seen from another direction on the same side.
@@ -274,9 +265,9 @@ struct ScatteredRays {
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> pass_through(const Hits<T>& hits,
                                                       const Triple<T>& normal) {
     const Surface<T>& surface = hits.surface;
-    const MaskOf<T>& is_bent = hits.bsdf.is_refracting();
-    const Refraction<T> bent(surface.view, normal, hits.bsdf.eta());
-    const Refraction<T> flat_bent(surface.view, surface.flat_normal, hits.bsdf.eta());
+    const MaskOf<T>& is_bent = hits.bsdf.is_refracting;
+    const Refraction<T> bent(surface.view, normal, hits.bsdf.eta);
+    const Refraction<T> flat_bent(surface.view, surface.flat_normal, hits.bsdf.eta);
     direction = choose(is_bent, bent.direction, -surface.view);
     flat = choose(is_bent, flat_bent.direction, -surface.view);
     has_flat = (!is_bent) | flat_bent.exists;
@@ -290,16 +281,11 @@ struct ScatteredRays {
     const auto leaving = hits.surface.leaving(ahead, is_transmitted);
     const auto wanted = is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat);
     static_assert(offsetof(ScatteredRay, direction) == 64 && sizeof(ScatteredRay) == 96);
+    const T flags =
+        flag_words<T>(wanted, leaving.leaves & leaving.is_sure, has_flat, is_transmitted);
+    const T rest[] = {ahead.x, ahead.y, ahead.z, aside.x, aside.y, aside.z, flags};
     T words[24] = {};
     path.put(words);
-    const T rest[] = {
-        ahead.x,
-        ahead.y,
-        ahead.z,
-        aside.x,
-        aside.y,
-        aside.z,
-        flag_words<T>(wanted, leaving.leaves & leaving.is_sure, has_flat, is_transmitted)};
     std::copy(std::begin(rest), std::end(rest), words + 16);
     ScatteredRay* rays[Hits<T>::kCount];
     for (int k = 0; k < hits.count; ++k) rays[k] = &hits.block.scattered_of(hits.place[k])[number];

@@ -6,13 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "host/intersect/intersector.h"
 #include "host/light/hits.h"
-#include "host/light/integrator_settings.h"
-#include "host/light/lights.h"
-#include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"
-#include "host/light/shade.h"
 #include "host/light/spawn_ray.h"
 
 namespace raygate {
@@ -46,11 +41,6 @@ class Integrator {
   [[nodiscard]] bool sees_environment() const {
     return sees_background() && shading_.lights.environment() != nullptr;
   }
-  /// Returns whether shadow rays pass glass as if it did not refract.
-  [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }
-
-  /// Returns the number of hit points P that the host computed.
-  [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 
  private:
   [[nodiscard]] bool is_path() const {
@@ -69,7 +59,6 @@ class Integrator {
   IntegratorKind kind_;
   ShadingScene shading_;
   RaySpawner spawner_;
-  std::uint64_t point_doubts_ = 0;
   std::size_t block_size_;
   std::span<const MaterialParameters> materials_;
   bool has_masks_;

@@ -79,8 +79,8 @@ struct IncidentLight {
   T cosine = T{};                        ///< Hits::cosine of the direction; 0: no light arrives
   T light_cosine = T{};                  ///< of an area light
   Triple<T> emission = zero<T>();        ///< radiance, intensity or irradiance
-  T pdf = spread<T>(
-      1.0f);  ///< probability of the light times the density of its point (per area) or direction
+  /// Probability of the light times the density of its point (per area) or direction.
+  T pdf = spread<T>(1.0f);
   Triple<T> target = zero<T>();  ///< target and index as in LightSample
   WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
 
@@ -175,15 +175,11 @@ RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number,
   const auto is_behind = hits.bsdf.has_rough_glass()
                              ? MaskOf<T>(dot(hits.surface.flat_normal, light.direction) < 0.0f)
                              : none;
-  const T words[] = {sent.x,
-                     sent.y,
-                     sent.z,
-                     light.target.x,
-                     light.target.y,
-                     light.target.z,
-                     float_of(light.index),
-                     flag_words<T>(light.is_asked, is_dark, is_behind & !is_dark,
-                                   light.is_point_light, is_to_camera ? !none : none)};
+  const T index = float_of(light.index);
+  const T flags = flag_words<T>(light.is_asked, is_dark, is_behind & !is_dark, light.is_point_light,
+                                is_to_camera ? !none : none);
+  const Triple<T>& target = light.target;
+  const T words[] = {sent.x, sent.y, sent.z, target.x, target.y, target.z, index, flags};
   LightSample* samples[Hits<T>::kCount];
   for (int k = 0; k < hits.count; ++k)
     samples[k] = &hits.block.light_samples_of(hits.place[k])[number];

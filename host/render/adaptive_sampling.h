@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "host/film/film.h"
 #include "host/render/render_settings.h"
 
 namespace raygate {

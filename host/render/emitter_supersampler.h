@@ -7,10 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/film/film.h"
-#include "host/intersect/intersector.h"
 #include "host/light/integrator.h"
-#include "host/light/ray_batch.h"
 #include "host/render/adaptive_sampling.h"
 #include "host/render/render_context.h"
 
@@ -31,8 +28,10 @@ inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 /// Emitters smaller than a pixel and between all corners are not found.
 class EmitterSupersampler {
  public:
-  /// The references must outlive this object. `counts_work`: counts tests and doubts of rays.
-  EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work);
+  /// The references must outlive this object. `counts_work`: counts tests and doubts of rays. Adds
+  /// the numbers of rays and point doubts, and the shading time, to `stats`.
+  EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work,
+                      RenderStats& stats);
 
   /// Finds the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
   /// Adds the work to `work`, by pixel of the tile, unless that is empty.
@@ -42,8 +41,6 @@ class EmitterSupersampler {
   /// Adds to sums[i] the emission that samples of pixels[i] omit, and the work to work[i], if any.
   void supersample(std::span<const PixelSamples> pixels, std::span<const HistoryMask> histories,
                    std::span<std::array<ExactAccumulator, 3>> sums, std::span<RayWork> work);
-
-  void add_to(RenderStats& stats) const;
 
  private:
   void add(const Ray& ray, HistoryMask histories);
@@ -58,7 +55,7 @@ class EmitterSupersampler {
   bool counts_work_;
   HistoryMask all_;     // histories that can occur
   float least_ = 0.0f;  // dimmer emission is not supersampled
-  RenderStats stats_;
+  RenderStats& stats_;
   RayBatch batch_;
   ShadingOutput output_;
   std::vector<NearestHit> hits_;

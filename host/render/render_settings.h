@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "host/film/film.h"
-#include "host/intersect/intersect_counters.h"
+#include "host/intersect/intersector.h"
 #include "host/light/integrator_settings.h"
 
 namespace raygate {

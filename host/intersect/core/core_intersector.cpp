@@ -78,9 +78,7 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   for (std::size_t i = 0; i < rays.size() && query.with_points; ++i) {
     if (hits[i].primitive == NearestHit::kNone) continue;
     const PolygonRecord plane = make_plane(rays[i].origin, bvh_.corners_of(hits[i].primitive));
-    const auto [point, error] = plane_point(plane, rays[i].direction);
-    hits[i].point = point;
-    hits[i].point_error = error;
+    set_point(plane, rays[i].direction, hits[i]);
     ++counters_.hit.plane_tests;
   }
   counters_.record += watch.lap();

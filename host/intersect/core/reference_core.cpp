@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <limits>
 
@@ -16,7 +15,7 @@ namespace {
 constexpr int kFracBits = 22, kEnterBits = 12;
 constexpr std::int64_t kWhole = std::int64_t{1} << kFracBits;  // 2^E, in units
 
-int field(float x) { return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23 & 0xFF); }
+int field(float x) { return Binary32::exponent_field(x); }
 
 /// Returns the significand with its integer bit, also for zeros and subnormals (below all units).
 std::int64_t significand(float x) {
@@ -56,11 +55,8 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
     const bool back = std::signbit(ray.inverse[k]);
     const int cap = exponent - node.exponent[k] + 129;  // exponent field of the largest inverse
     const bool capped = field(ray.inverse[k]) >= cap || field(ray.inverse[k]) == 0xFF;
-    float inverse = ray.inverse[k];
-    if (capped) {
-      inverse = std::bit_cast<float>(static_cast<std::uint32_t>(cap & 0xFF) << 23 |
-                                     (back ? 0x80000000u : 0u));
-    }
+    const auto largest = std::bit_cast<float>(static_cast<std::uint32_t>(cap & 0xFF) << 23);
+    const float inverse = capped ? std::copysign(largest, ray.inverse[k]) : ray.inverse[k];
     const float product = distance[k] * inverse;
     const bool open = (capped && (cap < 1 || cap > 254)) || field(product) == 0xFF;
     const int amount = exponent + 11 - field(product);
@@ -157,11 +153,6 @@ float sum(const glm::vec3& v) { return Binary32::add(Binary32::add(v.x, v.y), v.
 
 bool is_in_range(int field) { return field >= kLeastField && field < 255; }
 
-float edge_bound(float terms) {
-  if (!is_in_range(Binary32::exponent_field(terms))) return std::numeric_limits<float>::infinity();
-  return std::bit_cast<float>(Binary32::to_word(terms) - (std::uint32_t{kBoundShift} << 23));
-}
-
 }  // namespace
 
 SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle) {
@@ -175,7 +166,9 @@ SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle) {
   for (int k = 0; k < 3; ++k) {
     const CrossProduct edge = cross_product(corners[k], edges[k]);
     record.edges[k] = edge.product;
-    record.bounds[k] = edge_bound(sum(edge.terms));
+    const float terms = sum(edge.terms);
+    record.bounds[k] = is_in_range(field(terms)) ? std::ldexp(terms, -kBoundShift)
+                                                 : std::numeric_limits<float>::infinity();
   }
   const CrossProduct normal = cross_product(edges[2], edges[0]);
   record.normal = normal.product;
@@ -184,7 +177,7 @@ SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle) {
   record.d = sum(shares);
 
   const int vertex_field = largest_field(corners[0]), terms_field = largest_field(normal.terms);
-  const int d_field = Binary32::exponent_field(record.d);
+  const int d_field = field(record.d);
   const int normal_error = terms_field - largest_field(normal.product);
   const int distance_error = std::max(vertex_field + terms_field - d_field - kBias, 0);
   const bool is_good = is_in_range(terms_field) && vertex_field < 255 && is_in_range(d_field) &&

@@ -5,9 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "host/exact/exact.h"
 #include "host/intersect/core/core_intersector.h"
-#include "host/intersect/core/memory_image.h"
 #include "host/intersect/polygon_record.h"
 
 namespace raygate {

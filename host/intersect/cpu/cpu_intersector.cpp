@@ -1,6 +1,5 @@
 #include "host/intersect/cpu/cpu_intersector.h"
 
-#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -25,16 +24,16 @@ void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
 }
 
 void PointWriter::write() {
-  for (std::size_t first = 0; first < planes_; first += kPlanes) {
+  for (std::size_t first = 0; first < planes_; first += kQuad) {
     PlaneViews views;
-    for (std::size_t i = 0; i < kPlanes; ++i) {
+    for (std::size_t i = 0; i < kQuad; ++i) {
       const std::size_t plane = std::min(first + i, planes_ - 1);
       views.origins[i] = rays_[firsts_[plane]].origin;
       views.triangles[i] = bvh_.corners_of(primitives_[plane]);
     }
-    Planes four;
-    make_planes(views, four);
-    for (int k = 0; k < 4; ++k) std::memcpy(&words_[k][first], four.words[k], sizeof four.words[k]);
+    float words[4][kQuad];
+    make_planes(views, words);
+    for (int k = 0; k < 4; ++k) std::copy_n(words[k], kQuad, &words_[k][first]);
   }
   in_vectors([&](auto) RAYGATE_BODY {
     for (std::size_t first = 0; first < count_; first += kQuad) {

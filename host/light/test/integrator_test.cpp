@@ -8,9 +8,6 @@
 #include <optional>
 
 #include "host/base/test/using_vectors.h"
-#include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/hit_tester.h"
 #include "host/light/test/light_scenes.h"
 
 static thread_local bool refuse_large = false;  // memory, to this thread
@@ -60,13 +57,9 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
     const IntersectorFactory several = [&] { return std::make_unique<ManyAtOnce>(bvh_, lanes); };
     EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), several, stats)));
   }
-  const IntersectorFactory serial = [&] {
-    return std::make_unique<UnitIntersector>(
-        bvh_, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>()));
-  };
-  EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), serial, stats)));
-  const IntersectorFactory cpu = [&] { return std::make_unique<CpuIntersector>(bvh_); };
-  EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), cpu, stats)));
+  for (const auto& engine : {serial_model(bvh_), cpu(bvh_)}) {
+    EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), engine, stats)));
+  }
 }
 
 /// Counts the rays that name their source; none may hit it.

@@ -214,7 +214,9 @@ class PointError : public testing::Test {
  protected:
   void check(const Ray& ray, const Corners& triangle) {
     if (!hits_triangle(ray, triangle)) return;
-    const auto [point, error] = plane_point(make_record(ray.origin, triangle), ray.direction);
+    NearestHit hit;
+    set_point(make_record(ray.origin, triangle), ray.direction, hit);
+    const float error = hit.point_error;
     if (std::isinf(error)) {
       ++none_;
       return;
@@ -225,7 +227,7 @@ class PointError : public testing::Test {
     const glm::dvec3 exact = 0.5 * (t.low + t.high) * glm::dvec3(ray.direction);
     const double of_itself = double{error} + 0x1p-33, besides = 0x1p-46 * largest(exact);
     for (int k = 0; k < 3; ++k) {
-      const double off = std::abs(double{point[k]} - exact[k]), size = std::abs(exact[k]);
+      const double off = std::abs(double{hit.point[k]} - exact[k]), size = std::abs(exact[k]);
       ASSERT_LE(off, of_itself * size + besides);
       underflows_ += off > of_itself * size;
       worst_ = std::max(worst_, size > 0x1p-20 * largest(exact) ? off / (error * size) : 0.0);
