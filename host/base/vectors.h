@@ -19,10 +19,6 @@ enum class Vectors { kBaseline, kAvx2 };
   return vectors == Vectors::kAvx2 ? "avx2" : "baseline";
 }
 
-/// Argument of the body of in_vectors: the instruction set as a constant.
-template <Vectors kVectors>
-using VectorCode = std::integral_constant<Vectors, kVectors>;
-
 // With RAYGATE_BASELINE_ONLY, the body is called directly, to compile faster.
 #ifdef RAYGATE_BASELINE_ONLY
 #define RAYGATE_INLINE inline
@@ -84,12 +80,12 @@ namespace detail {
 
 template <class Body>
 [[gnu::noinline]] auto in_baseline(const Body& body) {
-  return body(VectorCode<Vectors::kBaseline>{});
+  return body(std::integral_constant<Vectors, Vectors::kBaseline>{});
 }
 #ifdef RAYGATE_AVX2
 template <class Body>
 [[gnu::noinline, gnu::target(RAYGATE_AVX2)]] auto in_avx2(const Body& body) {
-  return body(VectorCode<Vectors::kAvx2>{});
+  return body(std::integral_constant<Vectors, Vectors::kAvx2>{});
 }
 #endif
 

@@ -25,8 +25,7 @@ namespace raygate {
 /// uses whole texels.)
 class Environment {
  public:
-  /// Without `is_sampled`, pdf() and sample() must not be called.
-  explicit Environment(const EnvironmentMap& map, bool is_sampled = true);
+  explicit Environment(const EnvironmentMap& map);
 
   /// Returns radiance, scene-linear RGB.
   template <class T>

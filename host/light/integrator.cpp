@@ -5,7 +5,6 @@
 
 #include "host/base/vectors.h"
 #include "host/light/light_paths.h"
-#include "host/light/shade.h"
 #include "host/scene/instances.h"
 
 namespace raygate {

@@ -12,11 +12,8 @@
 
 namespace raygate {
 
-/// Shades the hits of batches. Not thread-safe.
-///
-/// Hits of one kind are shaded together, as many at a time as the machine has lanes. The order of
-/// results depends only on the order of the batch, so the radiance of a sample depends only on its
-/// own rays.
+/// Shades the hits of batches; those of one kind together. Not thread-safe. The order of results
+/// depends only on the order of the batch, so the radiance of a sample depends only on its rays.
 class Integrator {
  public:
   /// The references must outlive this object. `kind` may differ from that of `settings` (kLight,

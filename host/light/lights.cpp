@@ -36,7 +36,7 @@ std::vector<std::uint32_t> emitting_primitives(const Scene& scene, const Bvh& bv
 glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lights) {
   glm::dvec3 flux(0.0), reflecting(0.0);
   double area = 0.0;
-  for (const AreaLight& light : lights) flux += std::numbers::pi * light.area() * light.radiance;
+  for (const AreaLight& light : lights) flux += std::numbers::pi * light.area * light.radiance;
   if (flux == glm::dvec3(0.0)) return flux;
   for_each_face(scene, [&](const Corners& corners, const Triangle& face) {
     const double own = 0.5 * glm::length(triangle_normal(corners));
@@ -190,7 +190,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     record.kind = Kind::kArea;
     record.emission = finite_floats(light.radiance);
     record.is_textured = light.is_textured;
-    record.area = finite_float(light.area() / unit / unit);
+    record.area = finite_float(light.area / unit / unit);
     add_patches(light, record);
   }
   for (const DirectionalLight& light : scene.directional_lights) {
@@ -200,7 +200,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     record.position = glm::vec3(-light.direction);
   }
   if (scene.environment) {
-    environment_.emplace(*scene.environment, sampling == Sampling::kOne);
+    environment_.emplace(*scene.environment);
     lights_.emplace_back().kind = Kind::kEnvironment;
   }
   if (sampling == Sampling::kOne) {
@@ -244,8 +244,7 @@ void Lights::find_areas() {
       light.low = glm::min(light.low, glm::vec3(corner));
       light.high = glm::max(light.high, glm::vec3(corner));
     }
-    const double area = 0.5 * glm::length(triangle_normal(corners));
-    light.area_up_to.push_back((light.primitives.empty() ? 0.0 : light.area()) + area);
+    light.area += 0.5 * glm::length(triangle_normal(corners));
     light.primitives.push_back(primitive);
   }
 }
@@ -257,17 +256,21 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
   double before = 0.0;
   for (std::size_t i = 0; i < light.primitives.size(); ++i) {
     const Corners t = bvh_.corners_of(light.primitives[i]);
+    const glm::dvec3 normal = triangle_normal(t);
+    double end = before + 0.5 * glm::length(normal);
     Patch patch;
     patch.primitive = patch.primitive_beyond = light.primitives[i];
-    patch.begin = static_cast<float>(before / light.area());
-    patch.normal = glm::vec3(glm::normalize(triangle_normal(t)));
+    patch.begin = static_cast<float>(before / light.area);
+    patch.normal = glm::vec3(glm::normalize(normal));
     patch.corner = glm::vec3(t[0]);
     patch.u = glm::vec3(t[1] - t[0]);
     patch.v = glm::vec3(t[2] - t[0]);
     if (i + 1 < light.primitives.size()) {
-      const auto sides = parallelogram(t, bvh_.corners_of(light.primitives[i + 1]));
+      const Corners next = bvh_.corners_of(light.primitives[i + 1]);
+      const auto sides = parallelogram(t, next);
       if (sides) {
         ++i;
+        end += 0.5 * glm::length(triangle_normal(next));
         patch.is_triangle = false;
         patch.corner = sides->corner;
         patch.u = sides->u;
@@ -275,9 +278,9 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
         patch.primitive_beyond = light.primitives[i];
       }
     }
-    patch.end = static_cast<float>(light.area_up_to[i] / light.area());
-    patch.area = light.area_up_to[i] - before;
-    before = light.area_up_to[i];
+    patch.end = static_cast<float>(end / light.area);
+    patch.area = end - before;
+    before = end;
     patches_.push_back(patch);
     patch_ends_.push_back(patch.end);
     ++record.patches;

@@ -65,12 +65,10 @@ enum class OuterSide : std::uint8_t {
 /// The emitting faces of one object and material, as one light. Both sides of each face emit.
 struct AreaLight {
   std::vector<std::uint32_t> primitives;
-  std::vector<double> area_up_to;   ///< cumulative area, by primitive
+  double area = 0.0;
   glm::vec3 low{0.0f}, high{0.0f};  ///< bounds
   glm::dvec3 radiance{0.0};         ///< mean
   bool is_textured = false;
-
-  [[nodiscard]] double area() const { return area_up_to.back(); }
 };
 
 /// A point of an area light in each lane.

@@ -2,8 +2,8 @@
 // sampling; light tracing, which connects the surfaces of light paths to the camera.
 #include <optional>
 
+#include "host/light/hits.h"
 #include "host/light/light_paths.h"
-#include "host/light/shade.h"
 
 namespace raygate {
 namespace {

@@ -69,9 +69,8 @@ struct SquarePoint {
 
 /// Returns point `index` of the stream `key`: the first two Sobol dimensions, a (0,2)-sequence. Of
 /// 2^k successive points from a multiple of 2^k on, each elementary interval of area 2^-k has one.
-/// Every stream has its own Owen scrambling of both coordinates and of the order, so that streams
-/// are independent ("Practical Hash-based Owen Scrambling", Burley 2020, with the permutation of
-/// Laine and Karras 2011).
+/// Every stream has its own Owen scrambling of both coordinates and of the order ("Practical
+/// Hash-based Owen Scrambling", Burley 2020, with the permutation of Laine and Karras 2011).
 template <class T>
 RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T>& key) {
   using Word = WordOf<T>;

@@ -292,9 +292,9 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 
 // Side of candidate 0
 //
-// The error of X in
-// double is at most u / 16 on each axis; otherwise the lane is rejected. With X and m this
-// accurate, and no coordinate rounded by more than u / 2, candidate 0 is beyond the plane by
+// The error of X in double is at most u / 16 on each axis; otherwise the lane is rejected. With X
+// and m this accurate, and no coordinate rounded by more than u / 2, candidate 0 is beyond the
+// plane by
 //   u / |n|_max - (u / 2 + u / 16) |n|_1 > u (1 - 1.37 * 9 / 16) / |n|_max > 0.
 //
 // Error of X: a component of NeighborClearance::normal is off by less than 1, so D = (A - O) . N is
@@ -349,14 +349,6 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
     }
   }
   return false;
-}
-
-/// Returns the side of `other` on which the ray is just before or after it hits `hit`; 0: coplanar.
-int side_of_ray(const Ray& ray, const Corners& hit, const Corners& other, SpawnSide side) {
-  const int at_hit = plane_side_at_hit(ray, hit, other);
-  if (at_hit != 0) return at_hit;
-  const int before = orient3d(ray.origin, other);
-  return side == SpawnSide::kIncident ? before : -before;
 }
 
 /// Four hits at which rays are spawned.
@@ -580,7 +572,12 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
           surely_apart(low, high, other)) {
         return false;
       }
-      const int wanted = side_of_ray(ray, hit, other, side);
+      // The side of `other` on which the ray is just before or after the hit; 0: coplanar.
+      int wanted = plane_side_at_hit(ray, hit, other);
+      if (wanted == 0) {
+        const int from = orient3d(ray.origin, other);
+        wanted = side == SpawnSide::kIncident ? from : -from;
+      }
       return wanted != 0 && orient3d(candidate, other) != wanted;
     };
     return !any_primitive_near(bvh_, low, high, is_between);

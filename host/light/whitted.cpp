@@ -1,6 +1,6 @@
 // Whitted's ray tracing: all lights, mirrors and glass; and the emission that the camera sees
 // directly, in mirrors and through glass.
-#include "host/light/shade.h"
+#include "host/light/hits.h"
 
 namespace raygate {
 namespace {

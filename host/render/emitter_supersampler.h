@@ -17,11 +17,10 @@ namespace raygate {
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 
-/// Emitters are usually much brighter than their surroundings, and the pixels on their outlines are
-/// the noisiest of an image, whether the camera sees them directly or through up to four mirrors
-/// and glass interfaces. Emission along such a path is cheap to compute: it needs no lights,
-/// shadows or choice of a lobe. So these pixels get additional rays that collect emission only, and
-/// the pixel's samples omit it.
+/// Emitters are much brighter than their surroundings, so pixels on their outlines are the noisiest
+/// of an image, whether the camera sees them directly or through up to four mirrors and glass
+/// interfaces. These pixels get additional rays that collect emission only, which is cheap: no
+/// lights, shadows or choice of a lobe. The pixel's samples omit it.
 ///
 /// A pixel has a history if rays through pixel corners, within the radius of the pixel's filter,
 /// find different emission with it. The choice does not depend on any sample, so it adds no bias.

@@ -247,15 +247,6 @@ bool wants_light_paths(const RenderJob& job) {
          job.camera.projection() == Projection::kPerspective;
 }
 
-/// Returns the part of the frame that light paths must hit to reach the film's window.
-FrameView frame_view(const RenderJob& job, const Film& film) {
-  const glm::dvec2 size(film.width, film.height);
-  const double margin = filter_radius(job.settings.filter) + 1.0;
-  const PixelRect& window = film.window;
-  return {job.camera, film.width, film.height, (glm::dvec2(window.x0, window.y0) - margin) / size,
-          (glm::dvec2(window.x1, window.y1) + margin) / size};
-}
-
 }  // namespace
 
 Film render(const RenderJob& job, const IntersectorFactory& make_intersector, RenderStats& stats,
@@ -281,7 +272,13 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   const Lights& lights = own_lights ? *own_lights : prepared.lights(sampling);
   std::optional<LightPaths> light_paths;
   if (wants_light_paths(job)) {
-    light_paths.emplace(prepared, lights, frame_view(job, film));
+    // The part of the frame that they must hit to reach the film's window.
+    const glm::dvec2 size(film.width, film.height);
+    const double margin = filter_radius(settings.filter) + 1.0;
+    const glm::dvec2 low(film.window.x0, film.window.y0), high(film.window.x1, film.window.y1);
+    const FrameView view{camera, film.width, film.height, (low - margin) / size,
+                         (high + margin) / size};
+    light_paths.emplace(prepared, lights, view);
     if (!light_paths->exist()) light_paths.reset();
   }
   if (unfinished != nullptr) {

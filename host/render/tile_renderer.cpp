@@ -197,23 +197,16 @@ void TileRenderer::trace_shadows() {
   };
   shadow_rays_.resolve(output_.shadows,
                        is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
-  for (const ShadowRay& shadow : output_.shadows) {
-    if (shadow.is_to_camera != 0) {
-      add_splat(shadow);
-    } else {
-      direct_light_[shadow.sample] += shadow.radiance;
+  const glm::dvec2 size(context_.settings.width, context_.settings.height);
+  for (const ShadowRay& ray : output_.shadows) {
+    if (ray.is_to_camera == 0) {
+      direct_light_[ray.sample] += ray.radiance;
+    } else if (ray.radiance != glm::vec3(0.0f)) {  // a surface seen through a point of the lens
+      const auto place = context_.camera.place_of(glm::dvec3(ray.surface), glm::dvec3(ray.target));
+      if (place) splats_.push_back({*place * size, glm::dvec3(ray.radiance)});
     }
   }
   output_.shadows.clear();
-}
-
-/// Adds a splat at the image position of a surface seen through a point of the lens.
-void TileRenderer::add_splat(const ShadowRay& way) {
-  if (way.radiance == glm::vec3(0.0f)) return;
-  const auto place = context_.camera.place_of(glm::dvec3(way.surface), glm::dvec3(way.target));
-  if (!place) return;
-  splats_.push_back({*place * glm::dvec2(context_.settings.width, context_.settings.height),
-                     glm::dvec3(way.radiance)});
 }
 
 void TileRenderer::write() {

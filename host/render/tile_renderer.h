@@ -72,7 +72,6 @@ class TileRenderer {
   bool trace_batch(Integrator& integrator, const std::function<bool()>& keep_going);
   void trace_wave(Integrator& integrator);
   void trace_shadows();
-  void add_splat(const ShadowRay& way);
   void write_channels(std::size_t pixel, std::size_t path);
   [[nodiscard]] std::size_t place_in_tile(const PixelSamples& pixel) const {
     return std::size_t(pixel.y - tile_.y0) * std::size_t(tile_.width()) +

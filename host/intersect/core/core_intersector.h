@@ -112,7 +112,6 @@ class CoreIntersector : public Intersector {
 
  private:
   void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits) override;
-  void resolve(const Ray& ray, float t_max, const CoreResult& result, NearestHit& best);
 
   const Bvh& bvh_;
   std::shared_ptr<const MemoryImage> image_;

@@ -155,5 +155,4 @@ void SerialHitTester::drop_farther(HitReports& reports, std::size_t first) {
   if (left > 1) counters_.depth_doubts += left;
 }
 
-
 }  // namespace raygate

@@ -176,17 +176,6 @@ EnvironmentMap sky() {
   return map;
 }
 
-// Smooth, rough and metallic balls.
-TEST(Caustics, OfAnEnvironmentHaveTheMeansOfChance) {
-  Scene scene;
-  add(scene, rectangle({-3, -1, -3}, {0, 0, 6}, {6, 0, 0}), matte({0.7f, 0.6f, 0.5f}));
-  add_smooth(scene, {-1, -0.2f, 0}, 0.7f, glass(1.5f));
-  add_smooth(scene, {1, -0.4f, 0.4f}, 0.5f, facets(0.0f, 0.3f, 1.0f));
-  add_smooth(scene, {0.2f, -0.5f, 1.2f}, 0.4f, facets(1.0f, 0.0f, 0.0f));
-  scene.environment = sky();
-  expect_same_means(scene, camera_at({0.5, 2.5, 5}, {0, -0.7, 0}, 40.0), 256);
-}
-
 // Every kind of surface in a mirror, under a lamp and a sky with a bright part.
 TEST(Caustics, InAMirrorHaveTheMeansOfChance) {
   Scene scene;

@@ -47,20 +47,15 @@ TEST(Renderer, EveryPixelIsTheExactNearestPolygon) {
   for (int y = 0; y < 65; ++y) {
     for (int x = 0; x < 65; ++x) {
       const Ray ray = {kCamera.eye(), kCamera.direction((x + 0.5) / 65, (y + 0.5) / 65)};
-      std::uint32_t nearest = kNoPrimitive;
-      const auto corners = [&](std::uint32_t i) {
-        const auto& v = scene.triangles[i].vertices;
-        return Corners{scene.positions[v[0]], scene.positions[v[1]], scene.positions[v[2]]};
-      };
-      for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-        if (!hits_triangle(ray, corners(i))) continue;
-        if (nearest == kNoPrimitive || compare_hits(ray, corners(i), corners(nearest)) < 0) {
-          nearest = i;
-        }
+      std::optional<std::uint32_t> nearest;
+      for (std::uint32_t i = 0; i < bvh.primitive_count(); ++i) {
+        const Corners& t = bvh.corners_of(i);
+        if (!hits_triangle(ray, t)) continue;
+        if (!nearest || compare_hits(ray, t, bvh.corners_of(*nearest)) < 0) nearest = i;
       }
-      ASSERT_NE(nearest, kNoPrimitive);
+      ASSERT_TRUE(nearest);
       const std::size_t pixel = std::size_t(y) * 65 + x;
-      ASSERT_EQ(film.primitive[pixel], nearest) << x << ", " << y;
+      ASSERT_EQ(film.primitive[pixel], bvh.triangle_of(*nearest)) << x << ", " << y;
       EXPECT_NEAR(glm::length(film.normal[pixel]), 1.0f, 1e-6f);
       EXPECT_LE(glm::dot(film.normal[pixel], ray.direction), 0.0f);
       EXPECT_EQ(film.color[pixel].a, 1.0f);

@@ -295,13 +295,6 @@ class SameResultsTest : public testing::Test {
   BurstResults results_;
 };
 
-TEST_F(SameResultsTest, SameOnesPass) {
-  ASSERT_EQ(results_.size(), 2u);
-  EXPECT_EQ(results_[0], (BurstResult{0, 5, 1, BurstResult::Kind::kDoubt}));
-  EXPECT_EQ(results_[1], (BurstResult{0, 5, 0, BurstResult::Kind::kHit, 2.0f, 0, {0, 0, 2}}));
-  EXPECT_NO_THROW(require_same(batch_, results_, results_));
-}
-
 TEST_F(SameResultsTest, OneBitThatDiffersIsThrownWithTheInputs) {
   BurstResults faulty = results_;
   faulty[1].point.y = std::bit_cast<float>(1u);
@@ -317,6 +310,10 @@ TEST_F(SameResultsTest, OneBitThatDiffersIsThrownWithTheInputs) {
 }
 
 TEST_F(SameResultsTest, AReportThatOnlyOneUnitMakesIsThrown) {
+  ASSERT_EQ(results_.size(), 2u);
+  EXPECT_EQ(results_[0], (BurstResult{0, 5, 1, BurstResult::Kind::kDoubt}));
+  EXPECT_EQ(results_[1], (BurstResult{0, 5, 0, BurstResult::Kind::kHit, 2.0f, 0, {0, 0, 2}}));
+  EXPECT_NO_THROW(require_same(batch_, results_, results_));
   BurstResults fewer = results_;
   fewer.erase(fewer.begin());
   EXPECT_THROW(require_same(batch_, fewer, results_), EngineMismatch);
