@@ -56,11 +56,11 @@ class Bsdf {
     return other;
   }
 
-  Triple<T> diffuse, glossy = zero<T>(), mirror = zero<T>(), transmission = zero<T>();
-  Triple<T> emission = zero<T>();  ///< emitted radiance (Ke)
-  Triple<T> unlit = zero<T>();     ///< radiance that is visible but lights nothing (illum 0)
-  MaskOf<T> is_refracting = T{} > 0.0f;
-  T eta = spread<T>(1.0f);  ///< index of refraction behind the interface over that in front of it
+  Triple<T> diffuse, glossy, mirror, transmission;
+  Triple<T> emission;  ///< emitted radiance (Ke)
+  Triple<T> unlit;     ///< radiance that is visible but lights nothing (illum 0)
+  MaskOf<T> is_refracting;
+  T eta;  ///< index of refraction behind the interface over that in front of it
   MetallicRoughnessLobes<T> facets;  ///< only for kMetallicRoughness
 
   /// Returns whether there is a lobe that is not specular: diffuse, glossy, or rough glass.
@@ -176,7 +176,7 @@ class Bsdf {
 
   HitKind kind_;
   Triple<T> view_, normal_;
-  T exponent_{};
+  T exponent_;
 };
 
 template <class T>
@@ -186,7 +186,11 @@ RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
   using Material = MaterialParameters;
   const Triple<T>& colour = surface.colour;
   diffuse = clamped(colour) * gather<T>(materials, &Material::diffuse);
+  glossy = mirror = transmission = emission = unlit = zero<T>();
   const T opacity = gather<T>(materials, &Material::opacity), one = spread<T>(1.0f);
+  eta = one;
+  exponent_ = T{};
+  is_refracting = one < 0.0f;
   if ((kind & kEmits) != 0) {
     emission = gather<T>(materials, &Material::emission);
     if ((kind & kInterpolates) != 0) emission = emission * surface.glow;

@@ -77,10 +77,10 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   const std::size_t count = end - begin;
   block_.batch = &batch;
   block_.begin = begin;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (LightSample& sample : block_.light_samples_of(i)) sample.is_asked = 0;
-    for (ScatteredRay& scattered : block_.scattered_of(i)) scattered.is_wanted = 0;
-  }
+  const std::size_t samples = count * block_.light_samples_per_hit;
+  for (std::size_t i = 0; i < samples; ++i) block_.light_samples[i].is_asked = 0;
+  const std::size_t scattered = count * block_.scattered_per_hit;
+  for (std::size_t i = 0; i < scattered; ++i) block_.scattered[i].is_wanted = 0;
   sort(hits, count, output);
   ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary    ? shade_primary
                                     : kind_ == IntegratorKind::kWhitted  ? shade_whitted

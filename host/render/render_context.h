@@ -32,8 +32,9 @@ inline constexpr std::uint32_t kFilterStream = 0, kEmitterStream = 7, kLensStrea
 /// Returns the camera ray of sample `index` of a pixel. `key` is its pixel_key; `stream` is the
 /// stream of the position in the filter. With one sample per pixel the ray goes through the centres
 /// of pixel and lens.
-[[nodiscard]] inline Ray camera_ray(const RenderContext& context, int pixel_x, int pixel_y,
-                                    std::uint32_t key, std::uint32_t index, std::uint32_t stream) {
+[[nodiscard]] RAYGATE_INLINE Ray camera_ray(const RenderContext& context, int pixel_x, int pixel_y,
+                                            std::uint32_t key, std::uint32_t index,
+                                            std::uint32_t stream) {
   const RenderSettings& settings = context.settings;
   const Camera& camera = context.camera;
   glm::dvec2 offset(0.0), lens(0.0);
