@@ -5,18 +5,6 @@
 #include <cmath>
 
 namespace raygate {
-namespace {
-
-/// Returns thresholds: entry k is the least linear value whose nearest code is k + 1.
-std::array<double, 255> make_thresholds() {
-  std::array<double, 255> thresholds{};
-  for (std::size_t k = 0; k < thresholds.size(); ++k) {
-    thresholds[k] = srgb_to_linear(static_cast<double>(k) + 0.5);
-  }
-  return thresholds;
-}
-
-}  // namespace
 
 double srgb_to_linear(double code) {
   const double value = code / 255.0;
@@ -29,7 +17,14 @@ double srgb_curve_above(double linear) {
 }
 
 std::uint8_t linear_to_srgb(float linear) {
-  static const std::array<double, 255> thresholds = make_thresholds();
+  // Entry k is the least linear value whose nearest code is k + 1.
+  static const auto thresholds = [] {
+    std::array<double, 255> thresholds{};
+    for (std::size_t k = 0; k < thresholds.size(); ++k) {
+      thresholds[k] = srgb_to_linear(static_cast<double>(k) + 0.5);
+    }
+    return thresholds;
+  }();
   if (std::isnan(linear)) return 0;
   // The code is the number of thresholds at or below the value.
   const auto above =

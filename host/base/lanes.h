@@ -29,7 +29,7 @@ using LaneMask = std::uint32_t;
 
 /// GCC's and Clang's vector types: element-wise arithmetic, comparisons giving 0 or -1, and
 /// `mask ? a : b`. Functions that are not inlined must not take or return them, because the calling
-/// convention depends on the machine. The alignment is explicit for the same reason.
+/// convention depends on the machine, as would the alignment.
 template <class Element, int kCount>
 using Vec [[gnu::vector_size(sizeof(Element) * kCount), gnu::aligned(sizeof(Element) * kCount)]] =
     Element;
@@ -66,9 +66,9 @@ struct LanesInfo<T> {
 };
 }  // namespace detail
 
-// Operations on T, which is a number (one lane) or a vector. Functions over T are written once. A
-// lane never depends on another lane, so results have the same bits for any number of lanes.
-// Comparisons return masks for choose(), & and |; `!` negates them.
+// Operations on T, which is a number (one lane) or a vector. No lane depends on another one, so
+// results have the same bits for any number of lanes. Comparisons return masks for choose(), & and
+// |; `!` negates them.
 
 /// Number of lanes of T.
 template <class T>
@@ -281,25 +281,16 @@ RAYGATE_INLINE T joined(const Quad& quad) {
 }
 
 /// Transposes the rows: element i of row k becomes element k of row i.
-RAYGATE_INLINE void transpose(FloatQuad (&rows)[kQuad]) {
-  const FloatQuad ab_low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
-  const FloatQuad ab_high = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
-  const FloatQuad cd_low = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
-  const FloatQuad cd_high = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+template <class Quad>
+RAYGATE_INLINE void transpose(Quad (&rows)[kQuad]) {
+  const Quad ab_low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
+  const Quad ab_high = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
+  const Quad cd_low = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+  const Quad cd_high = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
   rows[0] = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
   rows[1] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
   rows[2] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
   rows[3] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
-}
-RAYGATE_INLINE void transpose(DoubleQuad (&rows)[kQuad]) {
-  const DoubleQuad ab_even = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6);
-  const DoubleQuad ab_odd = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);
-  const DoubleQuad cd_even = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6);
-  const DoubleQuad cd_odd = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
-  rows[0] = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
-  rows[1] = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
-  rows[2] = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
-  rows[3] = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 
 RAYGATE_INLINE void transpose(FloatLanes (&rows)[kLanes]) {

@@ -60,13 +60,17 @@ template <class T>
 RAYGATE_INLINE Triple<T> normalized(const Triple<T>& a) {
   return a * (1.0f / root(dot(a, a)));
 }
+/// Returns the largest magnitude of the components.
+template <class T>
+RAYGATE_INLINE T largest_size(const Triple<T>& a) {
+  return maximum(absolute(a.z), maximum(absolute(a.y), absolute(a.x)));
+}
 /// Returns a direction scaled by a power of two (see is_scaled), which is exact. Its largest
 /// component must be a normal number below 2^126.
 template <class T>
 RAYGATE_INLINE Triple<T> scaled(const Triple<T>& a) {
   constexpr std::int32_t kExponent = 0x7F800000, kOne = 0x3F800000;
-  const T size = maximum(maximum(absolute(a.x), absolute(a.y)), absolute(a.z));
-  return a * float_of(2 * kOne - (bits_in(size) & kExponent));
+  return a * float_of(2 * kOne - (bits_in(largest_size(a)) & kExponent));
 }
 template <class D>
 RAYGATE_INLINE auto narrow(const Triple<D>& a) {

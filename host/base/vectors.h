@@ -20,10 +20,6 @@ enum class Vectors { kBaseline, kAvx2, kAvx512 };
   return kNames[static_cast<std::size_t>(vectors)];
 }
 
-/// Argument of the body of in_vectors: the instruction set as a constant.
-template <Vectors kVectors>
-using VectorCode = std::integral_constant<Vectors, kVectors>;
-
 // With RAYGATE_BASELINE_ONLY, the body is called directly, to compile faster.
 #ifdef RAYGATE_BASELINE_ONLY
 #define RAYGATE_INLINE inline
@@ -90,12 +86,12 @@ namespace detail {
 
 template <class Body>
 [[gnu::noinline]] auto in_baseline(const Body& body) {
-  return body(VectorCode<Vectors::kBaseline>{});
+  return body(std::integral_constant<Vectors, Vectors::kBaseline>{});
 }
 #ifdef RAYGATE_AVX2
 template <class Body>
 [[gnu::noinline, gnu::target(RAYGATE_AVX2)]] auto in_avx2(const Body& body) {
-  return body(VectorCode<Vectors::kAvx2>{});
+  return body(std::integral_constant<Vectors, Vectors::kAvx2>{});
 }
 template <class Body>
 [[gnu::noinline, gnu::target(RAYGATE_AVX512)]] auto in_avx512(const Body& body) {

@@ -1,9 +1,7 @@
 #include "host/intersect/intersector.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <utility>
 
 namespace raygate {
 namespace {

@@ -1,7 +1,6 @@
 #include "host/intersect/polygon_record.h"
 
 #include <cassert>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -58,53 +57,42 @@ float edge_bound(const glm::vec3& edge) {
   return float_above(kEdgeBound * 0x1p-24 * (e.x + e.y + e.z));
 }
 
-/// A plane scaled by the record's power of two.
-struct Plane {
-  glm::dvec3 normal;
-  double d;
-
-  Plane(const glm::dvec3& origin, const Corners& t)
-      : normal(triangle_normal(t)), d(plane_distance(origin, t)) {
-    if (ordinary(largest(normal)) && ordinary(d)) return;
+/// Sets the plane of a record. Returns whether d is 0 or in the range of normal floats; otherwise
+/// only its sign is right.
+bool set_plane(const glm::dvec3& origin, const Corners& t, PolygonRecord& record) {
+  glm::dvec3 normal = triangle_normal(t);
+  double d = plane_distance(origin, t);
+  if (!ordinary(largest(normal)) || !ordinary(d)) {
     const int exponent = to_unit(normal);
     normal = scaled_by(normal, exponent);
     d = std::ldexp(d, exponent);
   }
-
-  /// Returns whether d is outside the range of normal floats.
-  [[nodiscard]] bool is_beyond_float() const {
-    return d != 0.0 && !std::isnormal(static_cast<float>(d));
-  }
-
-  void put(PolygonRecord& record) const {
-    record.normal = glm::vec3(normal);
-    record.d = static_cast<float>(d);
-    if (!is_beyond_float()) return;
-    // Only the sign is used.
-    record.d = std::copysign(std::clamp(std::abs(record.d), std::numeric_limits<float>::min(),
-                                        std::numeric_limits<float>::max()),
-                             static_cast<float>(d < 0.0 ? -1.0 : 1.0));
-  }
-};
+  record.normal = glm::vec3(normal);
+  record.d = static_cast<float>(d);
+  if (d == 0.0 || std::isnormal(record.d)) return true;
+  record.d = std::copysign(std::clamp(std::abs(record.d), std::numeric_limits<float>::min(),
+                                      std::numeric_limits<float>::max()),
+                           record.d);
+  return false;
+}
 
 }  // namespace
 
 PolygonRecord make_plane(const glm::dvec3& origin, const Corners& t) {
   PolygonRecord record;
-  Plane(origin, t).put(record);
+  set_plane(origin, t, record);
   return record;
 }
 
 PolygonRecord make_record(const glm::dvec3& origin, const Corners& t) {
   PolygonRecord record;
-  const Plane plane(origin, t);
-  plane.put(record);
+  const bool is_in_range = set_plane(origin, t, record);
   for (int k = 0; k < 3; ++k) {
     record.edges[k] = edge_words(origin, t[k], t[(k + 1) % 3]);
     record.bounds[k] = edge_bound(record.edges[k]);
   }
   // Exact arithmetic then decides.
-  if (plane.is_beyond_float()) record.bounds.fill(std::numeric_limits<float>::infinity());
+  if (!is_in_range) record.bounds.fill(std::numeric_limits<float>::infinity());
   return record;
 }
 
@@ -114,31 +102,24 @@ PolygonRecord make_record(const glm::dvec3& origin, const Corners& t) {
 
 namespace {
 
-constexpr int kBatch = kPlanes;
-
-using Doubles = DoubleQuad;
-using Longs = LongQuad;
-using Floats = FloatQuad;
-using Ints = IntQuad;
-
 constexpr double kU = 0x1p-53;  // as in exact.cpp
 
-using Points = Doubles[3];
+using Points = DoubleQuad[3];
 
 RAYGATE_INLINE void subtract(const Points& a, const Points& b, Points& result) {
   for (int k = 0; k < 3; ++k) result[k] = a[k] - b[k];
 }
 
-RAYGATE_INLINE Doubles largest_of(const Points& p) { return maximum(maximum(p[0], p[1]), p[2]); }
+RAYGATE_INLINE DoubleQuad largest_of(const Points& p) { return maximum(maximum(p[0], p[1]), p[2]); }
 
 /// Clears `good` in lanes whose value is neither 0 nor has an exponent in [-60, 60].
-RAYGATE_INLINE void require_ordinary(const Doubles& size, Longs& good) {
+RAYGATE_INLINE void require_ordinary(const DoubleQuad& size, LongQuad& good) {
   good &= ((size >= 0x1p-60) & (size < 0x1p61)) | (size == 0.0);
 }
 
 /// Computes u x v; clears `good` in lanes in which it is not accurate enough or not ordinary.
 RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& value, Points& size,
-                                   Longs& good) {
+                                   LongQuad& good) {
   cross(u, v, value, size);
   Points s;
   for (int k = 0; k < 3; ++k) s[k] = absolute(value[k]);
@@ -146,74 +127,72 @@ RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& val
   require_ordinary(largest_of(s), good);
 }
 
-/// Stores four words of each of four records, from four vectors with one word of each record;
-/// words[i] begins record i.
+/// Stores four words of each of four records, from `first` on; words[i] are those of record i.
 template <std::size_t kWords>
-RAYGATE_INLINE void store_words(const Floats& a, const Floats& b, const Floats& c, const Floats& d,
-                                float (&words)[kBatch][kWords], std::size_t first = 0) {
-  Floats record[kBatch] = {a, b, c, d};
+RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const FloatQuad& c,
+                                const FloatQuad& d, float (&words)[kQuad][kWords],
+                                std::size_t first = 0) {
+  FloatQuad record[kQuad] = {a, b, c, d};
   transpose(record);
-  for (int i = 0; i < kBatch; ++i) std::memcpy(&words[i][first], &record[i], 16);
+  for (int i = 0; i < kQuad; ++i) std::memcpy(&words[i][first], &record[i], 16);
 }
 
-RAYGATE_INLINE void to_floats(const Points& p, Floats (&words)[3]) {
+RAYGATE_INLINE void to_floats(const Points& p, FloatQuad (&words)[3]) {
   for (int k = 0; k < 3; ++k) words[k] = narrow(p[k]);
 }
 
 /// Returns the bound of an edge: its sum of magnitudes times a constant, rounded up.
-RAYGATE_INLINE Floats edge_bound(const Floats (&words)[3]) {
-  Doubles e[3];
+RAYGATE_INLINE FloatQuad edge_bound(const FloatQuad (&words)[3]) {
+  DoubleQuad e[3];
   for (int k = 0; k < 3; ++k) e[k] = absolute(wide(words[k]));
-  const Doubles exact = kEdgeBound * 0x1p-24 * (e[0] + e[1] + e[2]);
-  const Floats nearest = narrow(exact);
+  const DoubleQuad exact = kEdgeBound * 0x1p-24 * (e[0] + e[1] + e[2]);
+  const FloatQuad nearest = narrow(exact);
   return float_of(bits_in(nearest) - whole(wide(nearest) < exact));
 }
 
-/// Loads the corners of four triangles by lane, as vector loads after single stores would stall.
+/// Loads the corners of four triangles, lane by lane: vector loads after single stores would stall.
 RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
-  const Corners(&of)[kBatch] = views.triangles;
+  const Corners(&of)[kQuad] = views.triangles;
   for (int v = 0; v < 3; ++v) {
     for (int k = 0; k < 3; ++k) {
-      t[v][k] = Doubles{of[0][v][k], of[1][v][k], of[2][v][k], of[3][v][k]};
+      t[v][k] = DoubleQuad{of[0][v][k], of[1][v][k], of[2][v][k], of[3][v][k]};
     }
   }
 }
 
 /// Computes N and d from the corners and the first corner relative to the origin; clears `good` in
 /// lanes in which they are not accurate.
-RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal, Doubles& d,
-                                Longs& good) {
+RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal,
+                                DoubleQuad& d, LongQuad& good) {
   Points to_b, to_c, size, far;
   subtract(t[1], t[0], to_b);
   subtract(t[2], t[0], to_c);
   accurate_cross(to_b, to_c, normal, size, good);
   d = a[0] * normal[0] + a[1] * normal[1] + a[2] * normal[2];
   for (int k = 0; k < 3; ++k) far[k] = absolute(a[k]);
-  const Doubles error = 10.0 * kU * (far[0] * size[0] + far[1] * size[1] + far[2] * size[2]);
-  const Doubles distance = absolute(d);
+  const DoubleQuad error = 10.0 * kU * (far[0] * size[0] + far[1] * size[1] + far[2] * size[2]);
+  const DoubleQuad distance = absolute(d);
   good &= (error <= 0x1p-32 * distance) & (distance > error);
   require_ordinary(distance, good);
 }
 
-}  // namespace
-
 /// Computes the 16 words of four records. Bit i of the result is set if record i is valid.
-LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&words)[kBatch][16]) {
+LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&words)[kQuad][16]) {
   return in_vectors([&](auto) RAYGATE_BODY {
     Points t[3], from_o[3];
     load_corners(views, t);
-    const Points o = {Doubles{} + origin.x, Doubles{} + origin.y, Doubles{} + origin.z};
+    const Points o = {DoubleQuad{} + origin.x, DoubleQuad{} + origin.y, DoubleQuad{} + origin.z};
     for (int v = 0; v < 3; ++v) subtract(t[v], o, from_o[v]);
-    Longs good = Longs{} - 1;
+    LongQuad good = LongQuad{} - 1;
     Points normal, size;
-    Doubles d;
+    DoubleQuad d;
     find_planes(t, from_o[0], normal, d, good);
-    Floats n[3], edges[3][3], bounds[3];
+    FloatQuad n[3], edges[3][3], bounds[3];
     to_floats(normal, n);
 
     for (int k = 0; k < 3; ++k) {
       const Points &p = t[k], &q = t[(k + 1) % 3];
-      const Longs lower =
+      const LongQuad lower =
           (p[0] < q[0]) | ((p[0] == q[0]) & ((p[1] < q[1]) | ((p[1] == q[1]) & (p[2] < q[2]))));
       const Points &pf = from_o[k], &qf = from_o[(k + 1) % 3];
       Points start, way, edge;
@@ -234,47 +213,41 @@ LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&wor
   });
 }
 
-/// Computes four planes. Bit i of the result is set if plane i is valid.
-LaneMask make_four_planes(const PlaneViews& views, Planes& planes) {
-  return in_vectors([&](auto) RAYGATE_BODY {
+}  // namespace
+
+void make_planes(const PlaneViews& views, float (&words)[4][kQuad]) {
+  const LaneMask good_lanes = in_vectors([&](auto) RAYGATE_BODY {
     Points t[3], a, normal;
     load_corners(views, t);
     for (int k = 0; k < 3; ++k) {
-      const glm::vec3(&from)[kBatch] = views.origins;
-      a[k] = t[0][k] - wide(Floats{from[0][k], from[1][k], from[2][k], from[3][k]});
+      const glm::vec3(&from)[kQuad] = views.origins;
+      a[k] = t[0][k] - wide(FloatQuad{from[0][k], from[1][k], from[2][k], from[3][k]});
     }
-    Longs good = Longs{} - 1;
-    Doubles d;
+    LongQuad good = LongQuad{} - 1;
+    DoubleQuad d;
     find_planes(t, a, normal, d, good);
-    Floats words[4];
-    for (int k = 0; k < 3; ++k) words[k] = narrow(normal[k]);
-    words[3] = narrow(d);
-    static_assert(sizeof words == sizeof planes.words);
-    std::memcpy(planes.words, words, sizeof words);
+    for (int k = 0; k < 3; ++k) store(words[k], narrow(normal[k]));
+    store(words[3], narrow(d));
     return sign_mask(whole(good));
   });
-}
-
-void make_planes(const PlaneViews& views, Planes& planes) {
-  const LaneMask good = make_four_planes(views, planes);
-  for (LaneMask left = ~good & ((1u << kPlanes) - 1); left != 0; left &= left - 1) {
+  for (LaneMask left = ~good_lanes & ((1u << kQuad) - 1); left != 0; left &= left - 1) {
     const int i = std::countr_zero(left);
     const PolygonRecord plane = make_plane(views.origins[i], views.triangles[i]);
-    for (int k = 0; k < 3; ++k) planes.words[k][i] = plane.normal[k];
-    planes.words[3][i] = plane.d;
+    for (int k = 0; k < 3; ++k) words[k][i] = plane.normal[k];
+    words[3][i] = plane.d;
   }
 }
 
 void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
                   std::span<PolygonRecord> records) {
   assert(triangles.size() == records.size());
-  for (std::size_t first = 0; first < triangles.size(); first += kBatch) {
-    const std::size_t count = std::min<std::size_t>(kBatch, triangles.size() - first);
+  for (std::size_t first = 0; first < triangles.size(); first += kQuad) {
+    const std::size_t count = std::min<std::size_t>(kQuad, triangles.size() - first);
     PlaneViews batch;
-    for (std::size_t i = 0; i < kBatch; ++i) {
+    for (std::size_t i = 0; i < kQuad; ++i) {
       batch.triangles[i] = triangles[first + std::min(i, count - 1)];
     }
-    float words[kBatch][16];
+    float words[kQuad][16];
     const LaneMask good = make_four(origin, batch, words);
     for (std::size_t i = 0; i < count; ++i) {
       PolygonRecord& record = records[first + i];

@@ -61,22 +61,14 @@ inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
 void make_records(const glm::vec3& origin, std::span<const Corners> triangles,
                   std::span<PolygonRecord> records);
 
-/// Number of planes that make_planes makes at once.
-inline constexpr int kPlanes = 4;
-
 /// Triangles and the origins from which they are seen.
 struct PlaneViews {
-  glm::vec3 origins[kPlanes];
-  Corners triangles[kPlanes];
+  glm::vec3 origins[kQuad];
+  Corners triangles[kQuad];
 };
 
-/// N and d of the results of make_plane, lane by lane.
-struct Planes {
-  alignas(16) float words[4][kPlanes];
-};
-
-/// Sets lane i to make_plane(views.origins[i], views.triangles[i]), bit for bit.
-void make_planes(const PlaneViews& views, Planes& planes);
+/// Sets words[k][i] to word k of make_plane(views.origins[i], views.triangles[i]), bit for bit.
+void make_planes(const PlaneViews& views, float (&words)[4][kQuad]);
 
 // Derivation of the error bound of P
 //
@@ -116,7 +108,7 @@ RAYGATE_INLINE Bits point_error_of(const Bits& d, const Bits& v, const Bits& gra
 }
 
 /// Computes P of a plane (N, d) and a direction in each lane, and the bits of its error, as
-/// plane_point does. `largest`: the largest exponent field of N.
+/// set_point does. `largest`: the largest exponent field of N.
 template <class Floats, class Ints>
 RAYGATE_INLINE void plane_points(const Floats (&n)[3], const Floats& d, const Ints& largest,
                                  const Floats (&direction)[3], Floats (&point)[3], Ints& error) {

@@ -1,11 +1,7 @@
 // BSDF: reflection and transmission of a material, as lobes that never add energy.
 #pragma once
 
-#include "host/base/elementary.h"
-#include "host/base/triple.h"
-#include "host/light/material_parameters.h"
 #include "host/light/metallic_roughness.h"
-#include "host/light/sampler.h"
 #include "host/light/scattering.h"
 #include "host/light/surface.h"
 
@@ -60,20 +56,16 @@ class Bsdf {
     return other;
   }
 
-  [[nodiscard]] RAYGATE_INLINE const Triple<T>& diffuse() const { return diffuse_; }
-  [[nodiscard]] RAYGATE_INLINE const Triple<T>& glossy() const { return glossy_; }
-  [[nodiscard]] RAYGATE_INLINE const Triple<T>& mirror() const { return mirror_; }
-  [[nodiscard]] RAYGATE_INLINE const Triple<T>& transmission() const { return transmission_; }
-  [[nodiscard]] RAYGATE_INLINE const MaskOf<T>& is_refracting() const { return is_refracting_; }
-  /// Returns the index of refraction behind the interface over that in front of it.
-  [[nodiscard]] RAYGATE_INLINE const T& eta() const { return eta_; }
-  /// Returns the emitted radiance (Ke).
-  [[nodiscard]] RAYGATE_INLINE const Triple<T>& emission() const { return emission_; }
-  /// Returns radiance that is visible but does not light anything (illum 0).
-  [[nodiscard]] RAYGATE_INLINE const Triple<T>& unlit() const { return unlit_; }
+  Triple<T> diffuse, glossy, mirror, transmission;
+  Triple<T> emission;  ///< emitted radiance (Ke)
+  Triple<T> unlit;     ///< radiance that is visible but lights nothing (illum 0)
+  MaskOf<T> is_refracting;
+  T eta;  ///< index of refraction behind the interface over that in front of it
+  MetallicRoughnessLobes<T> facets;  ///< only for kMetallicRoughness
+
   /// Returns whether there is a lobe that is not specular: diffuse, glossy, or rough glass.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> scatters() const {
-    return largest(diffuse_) + glossy_sum() > 0.0f;
+    return largest(diffuse) + glossy_sum() > 0.0f;
   }
   /// Returns whether lights are sampled: scatters(), or a mirror with a highlight of point lights.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> samples_lights() const {
@@ -84,44 +76,64 @@ class Bsdf {
   }
   /// Returns the approximate albedo of all lobes that are not specular.
   [[nodiscard]] RAYGATE_INLINE T scattered_share() const {
-    return has_rough_glass() ? largest(diffuse_) + glossy_sum() : largest(diffuse_ + glossy_);
+    return has_rough_glass() ? largest(diffuse) + glossy_sum() : largest(diffuse + glossy);
   }
 
   /// Returns the BSDF without specular lobes, per steradian and without the cosine, for the unit
   /// vector `light`. Behind the surface it is 0 except for rough glass.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light) const {
     if ((kind_ & kMetallicRoughness) != 0) {
-      const Triple<T> reflected = above(light, facets_.eval(light));
-      return has_rough_glass() ? reflected + facets_.transmitted(light).value : reflected;
+      const Triple<T> reflected = above(light, facets.eval(light));
+      return has_rough_glass() ? reflected + facets.transmitted(light).value : reflected;
     }
     return above(light, (kind_ & kGlossy) != 0
-                            ? diffuse_ * spread<T>(kPerPi) + glossy_ * phong_lobe(light)
-                            : diffuse_ * spread<T>(kPerPi));
+                            ? diffuse * spread<T>(kPerPi) + glossy * phong_lobe(light)
+                            : diffuse * spread<T>(kPerPi));
   }
   /// Returns eval(), with the highlight of mirrors in lanes whose light is a point.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light,
                                               const MaskOf<T>& is_from_point) const {
     if (!has_highlight() || !any(is_from_point)) return eval(light);
     const Triple<T> shown = choose(is_from_point, highlight(), zero<T>());
-    return above(light, diffuse_ * spread<T>(kPerPi) + (glossy_ + shown) * phong_lobe(light));
+    return above(light, diffuse * spread<T>(kPerPi) + (glossy + shown) * phong_lobe(light));
   }
 
   /// Samples a direction, approximately in proportion to eval() times the cosine, for a point of
   /// the unit square. The direction may point behind the surface or be 0; then its contribution is
   /// 0, except behind rough glass. `choice` in [0, 1): see MetallicRoughnessLobes::sample.
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u,
-                                                const T& choice = T{}) const;
+                                                const T& choice = T{}) const {
+    if ((kind_ & kGlossy) == 0) {
+      return spherical_direction(normal_, root(1.0f - u.x), root(u.x), u.y);
+    }
+    const T share = glossy_share(), left = 1.0f - share;
+    const auto is_glossy = u.x < share;
+    // The rest of u.x selects the angle from the axis.
+    const T glossy_rest = 1.0f - u.x / choose(share > 0.0f, share, spread<T>(1.0f));
+    const T diffuse_rest = (u.x - share) / choose(left > 0.0f, left, spread<T>(1.0f));
+    const T rest = at_most(at_least(choose(is_glossy, glossy_rest, diffuse_rest), 0.0f), 1.0f);
+    if ((kind_ & kMetallicRoughness) != 0) {
+      // Both lobes use the same point: each lane needs only one of them.
+      return choose(is_glossy, facets.sample({rest, u.y}, choice),
+                    spherical_direction(normal_, root(1.0f - rest), root(rest), u.y));
+    }
+    const auto cosine = power(wide(at_least(rest, 0x1p-24f)), 1.0 / (wide(exponent_) + 1.0));
+    const T sine = narrow(root(1.0 - cosine * cosine));
+    const Triple<T> axis = choose(is_glossy, reflect(view_, normal_), normal_);
+    return spherical_direction(axis, choose(is_glossy, narrow(cosine), root(1.0f - rest)),
+                               choose(is_glossy, sine, root(rest)), u.y);
+  }
   /// Returns the probability density of sample(), per steradian.
   [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& light) const {
-    const T diffuse = at_least(dot(normal_, light), 0.0f) * kPerPi;
-    if ((kind_ & kGlossy) == 0) return diffuse;
+    const T lambertian = at_least(dot(normal_, light), 0.0f) * kPerPi;
+    if ((kind_ & kGlossy) == 0) return lambertian;
     const T share = glossy_share();
     if ((kind_ & kMetallicRoughness) != 0) {
-      const T glossy = choose(dot(normal_, light) > 0.0f, facets_.pdf(light), T{});
-      return (1.0f - share) * diffuse +
-             share * (has_rough_glass() ? glossy + facets_.transmitted(light).pdf : glossy);
+      const T reflected = choose(dot(normal_, light) > 0.0f, facets.pdf(light), T{});
+      return (1.0f - share) * lambertian +
+             share * (has_rough_glass() ? reflected + facets.transmitted(light).pdf : reflected);
     }
-    return (1.0f - share) * diffuse +
+    return (1.0f - share) * lambertian +
            share * (phong_lobe(light) * ((exponent_ + 1.0f) / (exponent_ + 2.0f)));
   }
 
@@ -129,7 +141,6 @@ class Bsdf {
   [[nodiscard]] RAYGATE_INLINE bool has_rough_glass() const {
     return (~kind_ & (kMetallicRoughness | kGlossy | kMirrors)) == 0;
   }
-  [[nodiscard]] RAYGATE_INLINE const MetallicRoughnessLobes<T>& facets() const { return facets_; }
 
  private:
   [[nodiscard]] RAYGATE_INLINE Triple<T> above(const Triple<T>& light,
@@ -141,15 +152,15 @@ class Bsdf {
   }
   /// Returns the albedo of the highlight that a mirror has of point lights.
   [[nodiscard]] RAYGATE_INLINE Triple<T> highlight() const {
-    return choose(exponent_ > 1.0f, mirror_, zero<T>());
+    return choose(exponent_ > 1.0f, mirror, zero<T>());
   }
   [[nodiscard]] RAYGATE_INLINE T glossy_sum() const {
-    const T glossy = largest(glossy_);
-    return has_rough_glass() ? glossy + largest(mirror_) + largest(transmission_) : glossy;
+    const T sum = largest(glossy);
+    return has_rough_glass() ? sum + largest(mirror) + largest(transmission) : sum;
   }
   [[nodiscard]] RAYGATE_INLINE T glossy_share() const {
-    const T glossy = glossy_sum(), sum = glossy + largest(diffuse_);
-    return choose(glossy > 0.0f, glossy / sum, T{});
+    const T glossy_only = glossy_sum(), sum = glossy_only + largest(diffuse);
+    return choose(glossy_only > 0.0f, glossy_only / sum, T{});
   }
 
   /// Returns Phong's lobe around the reflected view, normalised to conserve energy (Lafortune and
@@ -163,119 +174,88 @@ class Bsdf {
     return choose(squared < 1.99999f, height * narrow(power(cosine, wide(exponent_))), T{});
   }
 
-  RAYGATE_INLINE void set_facets();
-
   HitKind kind_;
   Triple<T> view_, normal_;
-  T eta_, exponent_;
-  Triple<T> diffuse_, glossy_, mirror_, transmission_, emission_, unlit_;
-  MaskOf<T> is_refracting_;
-  MetallicRoughnessLobes<T> facets_;  // only for kMetallicRoughness
+  T exponent_;
 };
 
 template <class T>
 RAYGATE_INLINE Bsdf<T>::Bsdf(const Surface<T>& surface, HitKind kind,
                              const MaterialParameters* const (&materials)[kLanesOf<T>])
-    : kind_(kind),
-      view_(surface.view),
-      normal_(surface.normal),
-      eta_(spread<T>(1.0f)),
-      exponent_(T{}),
-      glossy_(zero<T>()),
-      mirror_(zero<T>()),
-      transmission_(zero<T>()),
-      emission_(zero<T>()),
-      unlit_(zero<T>()) {
+    : kind_(kind), view_(surface.view), normal_(surface.normal) {
   using Material = MaterialParameters;
   const Triple<T>& colour = surface.colour;
-  diffuse_ = clamped(colour) * gather<T>(materials, &Material::diffuse);
+  diffuse = clamped(colour) * gather<T>(materials, &Material::diffuse);
+  glossy = mirror = transmission = emission = unlit = zero<T>();
   const T opacity = gather<T>(materials, &Material::opacity), one = spread<T>(1.0f);
-  is_refracting_ = one < 0.0f;
+  eta = one;
+  exponent_ = T{};
+  is_refracting = one < 0.0f;
   if ((kind & kEmits) != 0) {
-    emission_ = gather<T>(materials, &Material::emission);
-    if ((kind & kInterpolates) != 0) emission_ = emission_ * surface.glow;
-    unlit_ = colour * gather<T>(materials, &Material::unlit);
+    emission = gather<T>(materials, &Material::emission);
+    if ((kind & kInterpolates) != 0) emission = emission * surface.glow;
+    unlit = colour * gather<T>(materials, &Material::unlit);
   }
   if ((kind & kMetallicRoughness) != 0) {
-    facets_ = MetallicRoughnessLobes<T>(surface, kind, materials);
-    set_facets();
+    facets = MetallicRoughnessLobes<T>(surface, kind, materials);
+    diffuse = facets.diffuse + facets.multiple;
+    ((kind & kGlossy) != 0 ? glossy : mirror) = facets.specular;
+    transmission = facets.grey(facets.clear);
+    if ((~kind & (kMirrors | kTransmits)) != 0) return;
+    eta = facets.eta;
+    is_refracting = facets.is_glass;
+    const T mirrored = facets.glass * fresnel_reflectance(facets.view_cosine, eta);
+    mirror = mirror + facets.grey(mirrored);
+    transmission = choose(is_refracting, facets.tint * (facets.glass - mirrored), transmission);
     return;
   }
   if ((kind & (kGlossy | kMirrors)) != 0) {
-    glossy_ = gather<T>(materials, &Material::glossy);
+    glossy = gather<T>(materials, &Material::glossy);
     exponent_ = gather<T>(materials, &Material::exponent);
   }
-  auto is_glass = is_refracting_;
+  auto is_glass = is_refracting;
   if ((kind & (kMirrors | kTransmits)) != 0) {
     is_glass = gather<T>(materials, &Material::is_glass);
-    is_refracting_ = gather<T>(materials, &Material::refracts);
+    is_refracting = gather<T>(materials, &Material::refracts);
     const T index = gather<T>(materials, &Material::index);
-    eta_ = choose(is_refracting_, choose(surface.outside, index, 1.0f / index), one);
+    eta = choose(is_refracting, choose(surface.outside, index, 1.0f / index), one);
     const T cosine = at_most(at_least(dot(normal_, view_), 0.0f), 1.0f);
-    mirror_ = gather<T>(materials, &Material::mirror) +
-              gather<T>(materials, &Material::grazing) * schlick_weight(cosine);
-    const T reflectance = fresnel_reflectance(cosine, eta_);
+    mirror = gather<T>(materials, &Material::mirror) +
+             gather<T>(materials, &Material::grazing) * schlick_weight(cosine);
+    const T reflectance = fresnel_reflectance(cosine, eta);
     const auto is_fresnel =
-        is_refracting_ & (gather<T>(materials, &Material::is_fresnel) | (reflectance >= 1.0f));
-    mirror_ = choose(is_fresnel, Triple<T>{reflectance, reflectance, reflectance}, mirror_);
+        is_refracting & (gather<T>(materials, &Material::is_fresnel) | (reflectance >= 1.0f));
+    mirror = choose(is_fresnel, Triple<T>{reflectance, reflectance, reflectance}, mirror);
     // Light that a glass mirror reflects does not reach the lobes below it.
     const Triple<T> rest =
-        choose(is_glass, Triple<T>{one, one, one} - mirror_, Triple<T>{one, one, one});
-    diffuse_ = diffuse_ * rest;
-    transmission_ = gather<T>(materials, &Material::transmittance) * rest;
+        choose(is_glass, Triple<T>{one, one, one} - mirror, Triple<T>{one, one, one});
+    diffuse = diffuse * rest;
+    transmission = gather<T>(materials, &Material::transmittance) * rest;
   }
   if ((kind & (kGlossy | kMirrors)) != 0) {
-    const T sum = largest(diffuse_ + glossy_ + mirror_);
+    const T sum = largest(diffuse + glossy + mirror);
     const T scale = choose((sum > opacity) & !is_glass, opacity / sum, one);
-    diffuse_ = diffuse_ * scale;
-    glossy_ = glossy_ * scale;
-    mirror_ = mirror_ * scale;
+    diffuse = diffuse * scale;
+    glossy = glossy * scale;
+    mirror = mirror * scale;
   }
   if ((~kind & (kInterpolates | kTransmits)) != 0) return;
-  diffuse_ = diffuse_ * surface.opacity;
-  glossy_ = glossy_ * surface.opacity;
-  mirror_ = mirror_ * surface.opacity;
-  unlit_ = unlit_ * surface.opacity;
+  diffuse = diffuse * surface.opacity;
+  glossy = glossy * surface.opacity;
+  mirror = mirror * surface.opacity;
+  unlit = unlit * surface.opacity;
   const T clear = one - surface.opacity;
-  transmission_ = transmission_ * surface.opacity + Triple<T>{clear, clear, clear};
+  transmission = transmission * surface.opacity + Triple<T>{clear, clear, clear};
 }
 
-template <class T>
-RAYGATE_INLINE void Bsdf<T>::set_facets() {
-  diffuse_ = facets_.diffuse + facets_.multiple;
-  ((kind_ & kGlossy) != 0 ? glossy_ : mirror_) = facets_.specular;
-  transmission_ = facets_.grey(facets_.clear);
-  if ((~kind_ & (kMirrors | kTransmits)) != 0) return;
-  eta_ = facets_.eta;
-  is_refracting_ = facets_.is_glass;
-  const T mirrored = facets_.glass * fresnel_reflectance(facets_.view_cosine, eta_);
-  mirror_ = mirror_ + facets_.grey(mirrored);
-  transmission_ = choose(is_refracting_, facets_.tint * (facets_.glass - mirrored), transmission_);
-}
-
-template <class T>
-RAYGATE_INLINE Triple<T> Bsdf<T>::sample(const SquarePoint<T>& u, const T& choice) const {
-  const auto turn = sine_cosine(wide(u.y));
-  const T turned_x = narrow(turn.cosine), turned_y = narrow(turn.sine);
-  if ((kind_ & kGlossy) == 0) {
-    return spherical_direction(normal_, root(1.0f - u.x), root(u.x), turned_x, turned_y);
-  }
-  const T share = glossy_share(), left = 1.0f - share;
-  const auto is_glossy = u.x < share;
-  // The rest of u.x selects the angle from the axis.
-  const T glossy_rest = 1.0f - u.x / choose(share > 0.0f, share, spread<T>(1.0f));
-  const T diffuse_rest = (u.x - share) / choose(left > 0.0f, left, spread<T>(1.0f));
-  const T rest = at_most(at_least(choose(is_glossy, glossy_rest, diffuse_rest), 0.0f), 1.0f);
-  if ((kind_ & kMetallicRoughness) != 0) {
-    // Both lobes use the same point: each lane needs only one of them.
-    return choose(is_glossy, facets_.sample({rest, u.y}, choice),
-                  spherical_direction(normal_, root(1.0f - rest), root(rest), turned_x, turned_y));
-  }
-  const auto cosine = power(wide(at_least(rest, 0x1p-24f)), 1.0 / (wide(exponent_) + 1.0));
-  const T sine = narrow(root(1.0 - cosine * cosine));
-  const Triple<T> axis = choose(is_glossy, reflect(view_, normal_), normal_);
-  return spherical_direction(axis, choose(is_glossy, narrow(cosine), root(1.0f - rest)),
-                             choose(is_glossy, sine, root(rest)), turned_x, turned_y);
+/// Returns the BSDF at one hit.
+[[nodiscard]] inline Bsdf<float> bsdf_at(const Scene& scene, const Bvh& bvh,
+                                         const SurfaceHit& place,
+                                         const MaterialParameters& material) {
+  const HitKind kind = material.kind | weights_needed(scene, place);
+  const SurfaceHit places[] = {place};
+  const MaterialParameters* const materials[] = {&material};
+  return {surface_at<float>(scene, bvh, kind, places), kind, materials};
 }
 
 }  // namespace raygate

@@ -21,7 +21,7 @@ void put_cdf(const std::vector<double>& weights, float* cdf) {
 
 }  // namespace
 
-Environment::Environment(const EnvironmentMap& map, bool is_sampled)
+Environment::Environment(const EnvironmentMap& map)
     : map_(map),
       width_(static_cast<std::uint32_t>(map.width)),
       height_(static_cast<std::uint32_t>(map.height)),
@@ -35,10 +35,8 @@ Environment::Environment(const EnvironmentMap& map, bool is_sampled)
     cosines_.push_back(static_cast<float>(sine_cosine((row + 0.5) / (2.0 * height_)).cosine));
   }
   cosines_.push_back(-1.0f);
-  if (is_sampled) {
-    row_cdf_.resize(rows);
-    column_cdf_.resize(std::size_t{rows} * width_);
-  }
+  row_cdf_.resize(rows);
+  column_cdf_.resize(std::size_t{rows} * width_);
   std::vector<double> of_rows(rows), of_cells(width_);
   glm::dvec3 sum(0.0);
   for (std::uint32_t row = 0; row < rows; ++row) {
@@ -58,9 +56,9 @@ Environment::Environment(const EnvironmentMap& map, bool is_sampled)
       of_cells[column] = bright;
       of_rows[row] += bright * solid_angle;
     }
-    if (is_sampled) put_cdf(of_cells, &column_cdf_[std::size_t{row} * width_]);
+    put_cdf(of_cells, &column_cdf_[std::size_t{row} * width_]);
   }
-  if (is_sampled) put_cdf(of_rows, row_cdf_.data());
+  put_cdf(of_rows, row_cdf_.data());
   mean_ = sum * (double{map.strength} / (4.0 * std::numbers::pi));
 }
 

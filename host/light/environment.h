@@ -6,8 +6,6 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "host/base/elementary.h"
-#include "host/base/triple.h"
 #include "host/light/sampler.h"
 #include "host/scene/scene.h"
 
@@ -27,18 +25,65 @@ namespace raygate {
 /// uses whole texels.)
 class Environment {
  public:
-  /// Without `is_sampled`, pdf() and sample() must not be called.
-  explicit Environment(const EnvironmentMap& map, bool is_sampled = true);
+  explicit Environment(const EnvironmentMap& map);
 
   /// Returns radiance, scene-linear RGB.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE Triple<T> radiance(const Triple<T>& direction) const;
+  [[nodiscard]] RAYGATE_INLINE Triple<T> radiance(const Triple<T>& direction) const {
+    const Place<T> at = place(direction);
+    const auto texels = [&](bool is_right, bool is_lower) RAYGATE_BODY {
+      return gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& {
+        return texel(is_right ? at.columns[k] : left_of(at.columns[k]),
+                     is_lower ? below(at.rows[k]) : above(at.rows[k]));
+      });
+    };
+    const T x = 1.0f - at.x, y = 1.0f - at.y;
+    const Triple<T> upper = texels(false, false) * x + texels(true, false) * at.x;
+    const Triple<T> lower = texels(false, true) * x + texels(true, true) * at.x;
+    return (upper * y + lower * at.y) * spread<T>(map_.strength);
+  }
   /// Returns the probability density of sample(), per steradian.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& direction) const;
+  [[nodiscard]] RAYGATE_INLINE T pdf(const Triple<T>& direction) const {
+    const Place<T> at = place(direction);
+    return gather<T>([&](int k) RAYGATE_BODY {
+      const std::uint32_t row = at.rows[k], column = at.columns[k];
+      const float* const cdf = &column_cdf_[std::size_t{row} * width_];
+      const float in_row = cdf[column] - (column == 0 ? 0.0f : cdf[column - 1]);
+      const float of_row = row_cdf_[row] - (row == 0 ? 0.0f : row_cdf_[row - 1]);
+      return of_row * in_row * per_solid_angle_[row];
+    });
+  }
   /// Samples a direction for a point of the unit square.
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u) const;
+  [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u) const {
+    constexpr int kCount = kLanesOf<T>;
+    const auto xs = unpack(u.x), ys = unpack(u.y);
+    std::uint32_t rows[kCount];
+    float in_rows[kCount], columns[kCount], in_columns[kCount];
+    // The position of a number within the chosen interval selects the position within the cell.
+    const auto find = [](const float* cdf, std::uint32_t count, float wanted, float& rest) {
+      const auto found =
+          static_cast<std::uint32_t>(std::upper_bound(cdf, cdf + count - 1, wanted) - cdf);
+      const float begin = found == 0 ? 0.0f : cdf[found - 1], size = cdf[found] - begin;
+      rest = size > 0.0f ? std::min((wanted - begin) / size, 1.0f) : 0.5f;
+      return found;
+    };
+    for (int k = 0; k < kCount; ++k) {
+      rows[k] = find(row_cdf_.data(), height_ + 1, ys[k], in_rows[k]);
+      columns[k] = static_cast<float>(
+          find(&column_cdf_[std::size_t{rows[k]} * width_], width_, xs[k], in_columns[k]));
+    }
+    const T in_row = load<T>(in_rows);
+    const T upper = gather<T>([&](int k) RAYGATE_BODY { return cosines_[rows[k]]; });
+    const T lower = gather<T>([&](int k) RAYGATE_BODY { return cosines_[rows[k] + 1]; });
+    const T cosine = upper * (1.0f - in_row) + lower * in_row;
+    const T sine = root(at_least(1.0f - cosine * cosine, 0.0f));
+    const auto turn = sine_cosine(
+        (wide(load<T>(columns)) + wide(load<T>(in_columns)) - 0.5) * (1.0 / double(width_)) - 0.5);
+    return spread<T>(up_) * cosine + spread<T>(right_) * (sine * narrow(turn.sine)) +
+           spread<T>(ahead_) * (sine * narrow(turn.cosine));
+  }
 
   /// Returns the mean over all directions.
   [[nodiscard]] const glm::dvec3& mean_radiance() const { return mean_; }
@@ -51,7 +96,31 @@ class Environment {
     T x, y;  // in [0, 1] from the left and upper edge, between texel centres
   };
   template <class T>
-  [[nodiscard]] RAYGATE_INLINE Place<T> place(const Triple<T>& direction) const;
+  [[nodiscard]] RAYGATE_INLINE Place<T> place(const Triple<T>& direction) const {
+    constexpr int kCount = kLanesOf<T>;
+    const T right = dot(direction, spread<T>(right_)), ahead = dot(direction, spread<T>(ahead_));
+    const T up = dot(direction, spread<T>(up_));
+    // Cell 0 begins half a texel before the map.
+    const T x = at_least(narrow((turns_of<T>(right, ahead) + 0.5) * double(width_) + 0.5), 0.0f);
+    const T y = at_least(
+        narrow(turns_of<T>(root(right * right + ahead * ahead), up) * (2.0 * double(height_)) +
+               0.5),
+        0.0f);
+    const auto xs = unpack(x), ys = unpack(y);
+    Place<T> found;
+    float from_left[kCount], from_top[kCount];
+    for (int k = 0; k < kCount; ++k) {
+      const auto column = static_cast<std::uint32_t>(xs[k]),
+                 row = static_cast<std::uint32_t>(ys[k]);
+      found.columns[k] = column % width_;
+      found.rows[k] = std::min(row, height_);
+      from_left[k] = xs[k] - static_cast<float>(column);
+      from_top[k] = std::min(ys[k] - static_cast<float>(found.rows[k]), 1.0f);
+    }
+    found.x = load<T>(from_left);
+    found.y = load<T>(from_top);
+    return found;
+  }
 
   [[nodiscard]] const glm::vec3& texel(std::uint32_t column, std::uint32_t row) const {
     return map_.texels[std::size_t{row} * width_ + column];
@@ -72,87 +141,5 @@ class Environment {
   std::vector<float> cosines_;  // cosines of the rows' edges with straight up; one more than rows
   std::vector<float> per_solid_angle_;  // by row: 1 / the solid angle of a cell
 };
-
-template <class T>
-RAYGATE_INLINE Environment::Place<T> Environment::place(const Triple<T>& direction) const {
-  constexpr int kCount = kLanesOf<T>;
-  const T right = dot(direction, spread<T>(right_)), ahead = dot(direction, spread<T>(ahead_));
-  const T up = dot(direction, spread<T>(up_));
-  // Cell 0 begins half a texel before the map.
-  const T x = at_least(narrow((turns_of<T>(right, ahead) + 0.5) * double(width_) + 0.5), 0.0f);
-  const T y = at_least(
-      narrow(turns_of<T>(root(right * right + ahead * ahead), up) * (2.0 * double(height_)) + 0.5),
-      0.0f);
-  const auto xs = unpack(x), ys = unpack(y);
-  Place<T> found;
-  float from_left[kCount], from_top[kCount];
-  for (int k = 0; k < kCount; ++k) {
-    const auto column = static_cast<std::uint32_t>(xs[k]), row = static_cast<std::uint32_t>(ys[k]);
-    found.columns[k] = column % width_;
-    found.rows[k] = std::min(row, height_);
-    from_left[k] = xs[k] - static_cast<float>(column);
-    from_top[k] = std::min(ys[k] - static_cast<float>(found.rows[k]), 1.0f);
-  }
-  found.x = load<T>(from_left);
-  found.y = load<T>(from_top);
-  return found;
-}
-
-template <class T>
-RAYGATE_INLINE Triple<T> Environment::radiance(const Triple<T>& direction) const {
-  const Place<T> at = place(direction);
-  const auto texels = [&](bool is_right, bool is_lower) RAYGATE_BODY {
-    return gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& {
-      return texel(is_right ? at.columns[k] : left_of(at.columns[k]),
-                   is_lower ? below(at.rows[k]) : above(at.rows[k]));
-    });
-  };
-  const T x = 1.0f - at.x, y = 1.0f - at.y;
-  const Triple<T> upper = texels(false, false) * x + texels(true, false) * at.x;
-  const Triple<T> lower = texels(false, true) * x + texels(true, true) * at.x;
-  return (upper * y + lower * at.y) * spread<T>(map_.strength);
-}
-
-template <class T>
-RAYGATE_INLINE T Environment::pdf(const Triple<T>& direction) const {
-  const Place<T> at = place(direction);
-  return gather<T>([&](int k) RAYGATE_BODY {
-    const std::uint32_t row = at.rows[k], column = at.columns[k];
-    const float* const cdf = &column_cdf_[std::size_t{row} * width_];
-    const float in_row = cdf[column] - (column == 0 ? 0.0f : cdf[column - 1]);
-    const float of_row = row_cdf_[row] - (row == 0 ? 0.0f : row_cdf_[row - 1]);
-    return of_row * in_row * per_solid_angle_[row];
-  });
-}
-
-template <class T>
-RAYGATE_INLINE Triple<T> Environment::sample(const SquarePoint<T>& u) const {
-  constexpr int kCount = kLanesOf<T>;
-  const auto xs = unpack(u.x), ys = unpack(u.y);
-  std::uint32_t rows[kCount];
-  float in_rows[kCount], columns[kCount], in_columns[kCount];
-  // The position of a number within the chosen interval selects the position within the cell.
-  const auto find = [](const float* cdf, std::uint32_t count, float wanted, float& rest) {
-    const auto found =
-        static_cast<std::uint32_t>(std::upper_bound(cdf, cdf + count - 1, wanted) - cdf);
-    const float begin = found == 0 ? 0.0f : cdf[found - 1], size = cdf[found] - begin;
-    rest = size > 0.0f ? std::min((wanted - begin) / size, 1.0f) : 0.5f;
-    return found;
-  };
-  for (int k = 0; k < kCount; ++k) {
-    rows[k] = find(row_cdf_.data(), height_ + 1, ys[k], in_rows[k]);
-    columns[k] = static_cast<float>(
-        find(&column_cdf_[std::size_t{rows[k]} * width_], width_, xs[k], in_columns[k]));
-  }
-  const T in_row = load<T>(in_rows);
-  const T upper = gather<T>([&](int k) RAYGATE_BODY { return cosines_[rows[k]]; });
-  const T lower = gather<T>([&](int k) RAYGATE_BODY { return cosines_[rows[k] + 1]; });
-  const T cosine = upper * (1.0f - in_row) + lower * in_row;
-  const T sine = root(at_least(1.0f - cosine * cosine, 0.0f));
-  const auto turn = sine_cosine(
-      (wide(load<T>(columns)) + wide(load<T>(in_columns)) - 0.5) * (1.0 / double(width_)) - 0.5);
-  return spread<T>(up_) * cosine + spread<T>(right_) * (sine * narrow(turn.sine)) +
-         spread<T>(ahead_) * (sine * narrow(turn.cosine));
-}
 
 }  // namespace raygate

@@ -1,5 +1,5 @@
 // Hits that are shaded together, one per lane: their surfaces and BSDFs, light samples and
-// scattered rays.
+// scattered rays; and the shading functions of the integrators.
 #pragma once
 
 #include <algorithm>
@@ -7,19 +7,18 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <iterator>
+#include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
-#include "host/base/triple.h"
+#include "host/base/vectors.h"
 #include "host/intersect/intersector.h"
 #include "host/light/bsdf.h"
 #include "host/light/integrator_settings.h"
 #include "host/light/lights.h"
-#include "host/light/material_parameters.h"
 #include "host/light/ray_batch.h"
-#include "host/light/sampler.h"
 #include "host/light/spawn_ray.h"
-#include "host/light/surface.h"
 
 namespace raygate {
 
@@ -32,8 +31,8 @@ struct alignas(16) ScatteredRay {
   /// Direction made with the geometric normal, used if the other one leads to the wrong side.
   glm::vec3 flat{0.0f};
   std::uint32_t is_wanted : 1 = 0;
-  std::uint32_t surely_leaves : 1 =
-      0;  ///< the triangle, on the right side; otherwise exact arithmetic decides
+  /// The ray leaves the triangle on the right side; otherwise exact arithmetic decides.
+  std::uint32_t surely_leaves : 1 = 0;
   std::uint32_t has_flat : 1 = 0, is_transmitted : 1 = 0;
 
   [[nodiscard]] SpawnSide side() const {
@@ -115,10 +114,8 @@ struct HitBlock {
   std::vector<FirstSurface*> first_surfaces;
 
   [[nodiscard]] const PathState& state(std::size_t i) const { return batch->states[begin + i]; }
-  /// Returns the samples of `hits` hits from position i on.
-  [[nodiscard]] std::span<LightSample> light_samples_of(std::size_t i, std::size_t hits = 1) {
-    return std::span(light_samples)
-        .subspan(i * light_samples_per_hit, hits * light_samples_per_hit);
+  [[nodiscard]] std::span<LightSample> light_samples_of(std::size_t i) {
+    return std::span(light_samples).subspan(i * light_samples_per_hit, light_samples_per_hit);
   }
   [[nodiscard]] std::span<ScatteredRay> scattered_of(std::size_t i) {
     return std::span(scattered).subspan(i * scattered_per_hit, scattered_per_hit);
@@ -137,8 +134,7 @@ struct ShadingScene {
 };
 
 /// Returns the diffuse colour, at most 1, with which `surface` looks like the background when lit
-/// by all point lights without a cone and by the uniform radiance `around`. It is darker in their
-/// shadows and brighter in the light of other sources.
+/// by all point lights without a cone and by the uniform radiance `around`.
 template <class T>
 RAYGATE_INLINE Triple<T> catcher_colour(const Lights& lights, const glm::vec3& around,
                                         const Surface<T>& surface) {
@@ -186,9 +182,8 @@ struct Hits {
     if (!hits.first_surfaces.empty()) show_first_surfaces();
   }
 
-  /// Returns the cosine of a unit direction with the shading normal; 0 if the surface scatters no
-  /// light from there: it is behind the triangle, or, for rough glass, the shading and geometric
-  /// normals disagree on the side.
+  /// Returns the cosine of a unit direction with the shading normal; 0 where the surface scatters
+  /// no light from there: behind the triangle or, for rough glass, where the normals disagree.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
@@ -201,19 +196,18 @@ struct Hits {
 
   /// Returns whether EmitterSupersampler adds the emission of the hit.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
-    const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
-    const auto are_wanted = PathLanes<T>::has(path.supersampled, path.specular_history);
-    return are_even & are_wanted;
+    return gather<T>(materials, &MaterialParameters::emits_evenly) &
+           PathLanes<T>::has(path.supersampled, path.specular_history);
   }
   /// Returns the emission, without that added by EmitterSupersampler.
   [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
-    if ((kind & kEmits) == 0) return bsdf.emission();
-    return choose(are_supersampled(), zero<T>(), bsdf.emission());
+    if ((kind & kEmits) == 0) return bsdf.emission;
+    return choose(are_supersampled(), zero<T>(), bsdf.emission);
   }
 
   /// Returns a point of the path's random stream for this purpose.
   [[nodiscard]] RAYGATE_INLINE SquarePoint<T> random(std::uint32_t purpose) const {
-    return sobol_point<T>(path.index, hash(path.stream, purpose));
+    return random_point<T>(path.index, path.stream, purpose);
   }
 
   /// The BSDF and shading normal as seen from another direction on the same side.
@@ -274,9 +268,9 @@ struct ScatteredRays {
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> pass_through(const Hits<T>& hits,
                                                       const Triple<T>& normal) {
     const Surface<T>& surface = hits.surface;
-    const MaskOf<T>& is_bent = hits.bsdf.is_refracting();
-    const Refraction<T> bent(surface.view, normal, hits.bsdf.eta());
-    const Refraction<T> flat_bent(surface.view, surface.flat_normal, hits.bsdf.eta());
+    const MaskOf<T>& is_bent = hits.bsdf.is_refracting;
+    const Refraction<T> bent(surface.view, normal, hits.bsdf.eta);
+    const Refraction<T> flat_bent(surface.view, surface.flat_normal, hits.bsdf.eta);
     direction = choose(is_bent, bent.direction, -surface.view);
     flat = choose(is_bent, flat_bent.direction, -surface.view);
     has_flat = (!is_bent) | flat_bent.exists;
@@ -290,21 +284,194 @@ struct ScatteredRays {
     const auto leaving = hits.surface.leaving(ahead, is_transmitted);
     const auto wanted = is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat);
     static_assert(offsetof(ScatteredRay, direction) == 64 && sizeof(ScatteredRay) == 96);
+    const T flags =
+        flag_words<T>(wanted, leaving.leaves & leaving.is_sure, has_flat, is_transmitted);
+    const T rest[] = {ahead.x, ahead.y, ahead.z, aside.x, aside.y, aside.z, flags};
     T words[24] = {};
     path.put(words);
-    const T rest[] = {
-        ahead.x,
-        ahead.y,
-        ahead.z,
-        aside.x,
-        aside.y,
-        aside.z,
-        flag_words<T>(wanted, leaving.leaves & leaving.is_sure, has_flat, is_transmitted)};
     std::copy(std::begin(rest), std::end(rest), words + 16);
     ScatteredRay* rays[Hits<T>::kCount];
     for (int k = 0; k < hits.count; ++k) rays[k] = &hits.block.scattered_of(hits.place[k])[number];
     store_records(words, rays, hits.count);
   }
 };
+
+/// Calls shade(hits) for the hits at positions `at` of the block, as many at a time as there are
+/// lanes. The baseline has one lane; all give the same bits.
+template <class Shade>
+void shade_in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
+                    std::span<const std::uint32_t> at, const Shade& shade) {
+  in_vectors([&](auto code) RAYGATE_BODY {
+    using T = std::conditional_t<code() == Vectors::kBaseline, float, FloatLanes>;
+    constexpr std::size_t kCount = kLanesOf<T>;
+    for (std::size_t i = 0; i < at.size(); i += kCount) {
+      Hits<T> hits(shading, block, kind, at.subspan(i, std::min(kCount, at.size() - i)));
+      shade(hits);
+    }
+  });
+}
+
+/// Shades the hits at positions `at` of the block, all of one kind.
+using ShadeFunction = void(const ShadingScene& shading, HitBlock& block, HitKind kind,
+                           std::span<const std::uint32_t> at);
+
+/// Whitted's ray tracing ("An improved illumination model for shaded display", 1980). At each hit:
+/// emission; direct light of every light, with a shadow ray to each point light and to one point of
+/// each area light; an ambient term for interreflection; and rays through mirrors and glass, up to
+/// the maximum depth or until their throughput is below the threshold. With one sample per pixel a
+/// light that is one triangle or parallelogram is sampled at its centre.
+ShadeFunction shade_whitted;
+
+/// Path tracing (Kajiya, "The rendering equation", 1986). At each hit one light is sampled and one
+/// ray is spawned. Light that both can find is weighted by multiple importance sampling (the power
+/// heuristic of Veach and Guibas, 1995). Russian roulette begins after three surfaces. The last
+/// rays, one deeper than the maximum depth, add emission only.
+ShadeFunction shade_path;
+
+/// Light tracing (Dutre, Lafortune and Willems, "Monte Carlo light tracing with direct computation
+/// of pixel intensities", 1993): each hit after a first mirror or glass is connected to the camera
+/// by a light sample whose target is on the lens, and one ray is spawned.
+ShadeFunction shade_light_path;
+
+/// Shades hits on specular paths from the camera whose histories are in PathState::supersampled:
+/// adds emission, and spawns reflected and refracted rays. A ray's sample is a multiple of
+/// kSpecularHistories plus its history, so that radiance is separated by history.
+ShadeFunction shade_emitters;
+
+/// Returns a finite number: infinity becomes the largest float, NaN becomes 0.
+template <class T>
+RAYGATE_INLINE T bounded(const T& x) {
+  const T most = spread<T>(std::numeric_limits<float>::max());
+  return choose(x < most, x, choose(x == x, most, T{}));
+}
+template <class T>
+RAYGATE_INLINE Triple<T> bounded(const Triple<T>& x) {
+  return {bounded(x.x), bounded(x.y), bounded(x.z)};
+}
+
+/// Unoccluded light that arrives at each hit from a point or a direction.
+template <class T>
+struct IncidentLight {
+  MaskOf<T> is_asked = T{} > 0.0f;       ///< whether the hit samples this light
+  MaskOf<T> is_area = is_asked;          ///< from an area light
+  MaskOf<T> is_point_light = is_asked;   ///< from a point light
+  Triple<T> direction = zero<T>();       ///< unit vector towards the light
+  T distance_squared = spread<T>(1.0f);  ///< in units of Lights; 1: a distant light
+  T cosine = T{};                        ///< Hits::cosine of the direction; 0: no light arrives
+  T light_cosine = T{};                  ///< of an area light
+  Triple<T> emission = zero<T>();        ///< radiance, intensity or irradiance
+  /// Probability of the light times the density of its point (per area) or direction.
+  T pdf = spread<T>(1.0f);
+  Triple<T> target = zero<T>();  ///< target and index as in LightSample
+  WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
+
+  IncidentLight() = default;
+  /// Sets the geometry of light from a point.
+  RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
+      : target(position) {
+    constexpr float kNear = 1e-30f;  // the inverse is within the range of float
+    const Triple<T> way = (position - hits.surface.point) * spread<T>(lights.per_unit());
+    distance_squared = dot(way, way);
+    direction = way * (1.0f / root(distance_squared));
+    cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
+  }
+  /// Sets the geometry of a distant light in the direction of a unit vector.
+  RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
+      : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
+
+  /// Copies the lanes of `other` in which `is_asked` is set.
+  RAYGATE_INLINE void take(const IncidentLight& other) {
+    const auto put = [&](auto& own, const auto& others)
+                         RAYGATE_BODY { own = choose(other.is_asked, others, own); };
+    put(is_area, other.is_area);
+    put(is_point_light, other.is_point_light);
+    put(direction, other.direction);
+    put(distance_squared, other.distance_squared);
+    put(cosine, other.cosine);
+    put(light_cosine, other.light_cosine);
+    put(emission, other.emission);
+    put(pdf, other.pdf);
+    put(target, other.target);
+    put(index, other.index);
+    is_asked = is_asked | other.is_asked;
+  }
+};
+
+/// Returns the light from point lights, one per lane, of which it leaves at `position`.
+template <class T>
+RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
+                                            const Lights::Light* const (&own)[kLanesOf<T>],
+                                            const Triple<T>& position) {
+  using Light = Lights::Light;
+  IncidentLight<T> light(lights, hits, position);
+  light.emission = gather<T>(own, &Light::emission);
+  if (any(gather<T>(own, &Light::is_spot))) {
+    const IncidentLight<T> middle(lights, hits, gather<T>(own, &Light::position));
+    const T cosine = -dot(middle.direction, gather<T>(own, &Light::spot_axis));
+    light.emission = light.emission * spot_falloff(cosine, gather<T>(own, &Light::spot_scale),
+                                                   gather<T>(own, &Light::spot_offset));
+  }
+  light.target = position - hits.surface.point;
+  return light;
+}
+
+/// Returns the light from points of area lights that were sampled uniformly in area.
+template <class T>
+RAYGATE_INLINE IncidentLight<T> area_light(const Lights& lights, const Hits<T>& hits,
+                                           const LightPoint<T>& point, const Triple<T>& radiance) {
+  IncidentLight<T> light(lights, hits, point.position);
+  light.is_area = T{} == 0.0f;
+  light.light_cosine = absolute(dot(point.normal, light.direction));
+  light.emission = radiance;
+  light.index = point.primitive;
+  return light;
+}
+
+/// Returns the radiance that hits scatter back along their rays; `scattered` is the BSDF.
+template <class T>
+RAYGATE_INLINE Triple<T> scattered_light(const Hits<T>& hits, const IncidentLight<T>& light,
+                                         const Triple<T>& scattered, const T& mis_weight) {
+  const Triple<T>& throughput = hits.path.throughput;
+  Triple<T> sent = throughput * (scattered * mis_weight) * light.emission *
+                   (light.cosine / (light.distance_squared * light.pdf));
+  if (any(light.is_area)) {
+    const T cosines = light.cosine * light.light_cosine;
+    sent = choose(light.is_area,
+                  throughput * scattered * (cosines / light.distance_squared) *
+                      (light.emission * (mis_weight / light.pdf)),
+                  sent);
+  }
+  return choose(light.cosine > 0.0f, bounded(sent), zero<T>());
+}
+
+/// Stores a light sample of each hit that contributes `sent` if it is not occluded, as sample
+/// `number` of the hit.
+template <class T>
+RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number,
+                                     const IncidentLight<T>& light, const Triple<T>& sent,
+                                     bool is_to_camera = false) {
+  static_assert(sizeof(LightSample) == 32);
+  const auto none = T{} > 0.0f;
+  const auto is_dark = (sent.x == 0.0f) & (sent.y == 0.0f) & (sent.z == 0.0f);
+  const auto is_behind = hits.bsdf.has_rough_glass()
+                             ? MaskOf<T>(dot(hits.surface.flat_normal, light.direction) < 0.0f)
+                             : none;
+  const T index = float_of(light.index);
+  const T flags = flag_words<T>(light.is_asked, is_dark, is_behind & !is_dark, light.is_point_light,
+                                is_to_camera ? !none : none);
+  const Triple<T>& target = light.target;
+  const T words[] = {sent.x, sent.y, sent.z, target.x, target.y, target.z, index, flags};
+  LightSample* samples[Hits<T>::kCount];
+  for (int k = 0; k < hits.count; ++k)
+    samples[k] = &hits.block.light_samples_of(hits.place[k])[number];
+  store_records(words, samples, hits.count);
+}
+
+/// Returns a^2 / (a^2 + b^2); a may be infinite.
+template <class T>
+RAYGATE_INLINE T power_heuristic(const T& a, const T& b) {
+  const T over = b / a;
+  return 1.0f / (1.0f + over * over);
+}
 
 }  // namespace raygate

@@ -5,7 +5,6 @@
 
 #include "host/base/vectors.h"
 #include "host/light/light_paths.h"
-#include "host/light/shade.h"
 #include "host/scene/instances.h"
 
 namespace raygate {
@@ -78,10 +77,10 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   const std::size_t count = end - begin;
   block_.batch = &batch;
   block_.begin = begin;
-  for (LightSample& sample : block_.light_samples_of(0, count)) sample.is_asked = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (ScatteredRay& scattered : block_.scattered_of(i)) scattered.is_wanted = 0;
-  }
+  const std::size_t samples = count * block_.light_samples_per_hit;
+  for (std::size_t i = 0; i < samples; ++i) block_.light_samples[i].is_asked = 0;
+  const std::size_t scattered = count * block_.scattered_per_hit;
+  for (std::size_t i = 0; i < scattered; ++i) block_.scattered[i].is_wanted = 0;
   sort(hits, count, output);
   ShadeFunction* const shade_kind = kind_ == IntegratorKind::kPrimary    ? shade_primary
                                     : kind_ == IntegratorKind::kWhitted  ? shade_whitted
@@ -135,7 +134,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
       continue;
     }
     const bool is_doubtful = is_point_doubt(hit, shading_.settings.point_error);
-    point_doubts_ += is_doubtful ? 1 : 0;
+    output.point_doubts += is_doubtful ? 1 : 0;
     const FaceRef stored = shading_.bvh.face_of(hit.primitive);
     const Triangle& face = face_at(scene, stored);
     block_.places[i] = {&block_.batch->rays[block_.begin + i], hit.primitive, &face,

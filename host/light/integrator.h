@@ -6,22 +6,14 @@
 #include <span>
 #include <vector>
 
-#include "host/intersect/intersector.h"
 #include "host/light/hits.h"
-#include "host/light/integrator_settings.h"
-#include "host/light/lights.h"
-#include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"
-#include "host/light/shade.h"
 #include "host/light/spawn_ray.h"
 
 namespace raygate {
 
-/// Shades the hits of batches. Not thread-safe.
-///
-/// Hits of one kind are shaded together, as many at a time as the machine has lanes. The order of
-/// results depends only on the order of the batch, so the radiance of a sample depends only on its
-/// own rays.
+/// Shades the hits of batches; those of one kind together. Not thread-safe. The order of results
+/// depends only on the order of the batch, so the radiance of a sample depends only on its rays.
 class Integrator {
  public:
   /// The references must outlive this object. `kind` may differ from that of `settings` (kLight,
@@ -46,11 +38,6 @@ class Integrator {
   [[nodiscard]] bool sees_environment() const {
     return sees_background() && shading_.lights.environment() != nullptr;
   }
-  /// Returns whether shadow rays pass glass as if it did not refract.
-  [[nodiscard]] bool shadows_through_refraction() const { return !is_path(); }
-
-  /// Returns the number of hit points P that the host computed.
-  [[nodiscard]] std::uint64_t point_doubts() const { return point_doubts_; }
 
  private:
   [[nodiscard]] bool is_path() const {
@@ -69,7 +56,6 @@ class Integrator {
   IntegratorKind kind_;
   ShadingScene shading_;
   RaySpawner spawner_;
-  std::uint64_t point_doubts_ = 0;
   std::size_t block_size_;
   std::span<const MaterialParameters> materials_;
   bool has_masks_;

@@ -1,7 +1,6 @@
 // Settings of the integrators: kind, limits, and optimisations.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
 namespace raygate {

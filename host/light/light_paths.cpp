@@ -12,9 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kMostBalls = 16;  // one sphere for all mirrors and glass beyond that
 constexpr double kPi = std::numbers::pi;
-constexpr double kBeyondLight = 0x1p-16;  // fraction of the path; skips the light itself
 
 // Few light paths suffice, as they are aimed at mirrors and glass. This number balances caustics
 // that camera paths also find against those that they do not.
@@ -70,12 +68,12 @@ LightPaths::LightPaths(const PreparedScene& prepared, const Lights& lights, cons
     return;
   find_balls(prepared);
   if (balls_.empty()) return;
-  const Bounds3 box = position_bounds(prepared.scene);
-  reach_ = 4.0 * glm::length(box.half_size());
+  reach_ = 4.0 * glm::length(position_bounds(prepared.scene).half_size());
   weigh_sources();
 }
 
 void LightPaths::find_balls(const PreparedScene& prepared) {
+  constexpr std::size_t kMostBalls = 16;  // one sphere for all mirrors and glass beyond that
   const auto visit = [&](const auto& each) {
     for (std::uint32_t primitive = 0; primitive < prepared.bvh.primitive_count(); ++primitive) {
       const FaceRef face = prepared.bvh.face_of(primitive);
@@ -148,12 +146,6 @@ double LightPaths::solid_angle(const glm::dvec3& point) const {
   return sum;
 }
 
-double LightPaths::nearest_middle(const glm::dvec3& point) const {
-  double nearest = reach_;
-  for (const Ball& ball : balls_) nearest = std::min(nearest, glm::distance(ball.middle, point));
-  return nearest;
-}
-
 /// Returns the number of spheres that a ray meets.
 double LightPaths::meetings(const glm::dvec3& point, const glm::dvec3& direction,
                             bool both_ways) const {
@@ -192,35 +184,25 @@ const LightPaths::Ball& LightPaths::choose_ball(double u, const Size& size) cons
 }
 
 /// Samples a direction, uniformly in the solid angles of all spheres.
-glm::dvec3 LightPaths::direction_from(const glm::dvec3& point, const SquarePoint<float>& choice,
+glm::dvec3 LightPaths::direction_from(const glm::dvec3& point, double choice,
                                       const SquarePoint<float>& u) const {
-  const Ball& ball =
-      choose_ball(choice.x, [&](const Ball& each) { return each.solid_angle(point); });
+  const Ball& ball = choose_ball(choice, [&](const Ball& each) { return each.solid_angle(point); });
   const double height = ball.solid_angle(point) / (2.0 * kPi);  // of the cap of the unit sphere
   const double cosine = 1.0 - double{u.x} * height;
   const glm::dvec3 axis = height < 2.0 ? glm::normalize(ball.middle - point) : glm::dvec3(0, 0, 1);
   return around(axis, cosine, std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), u.y);
 }
 
-/// Samples a point, uniformly on the discs of all spheres.
-glm::dvec3 LightPaths::point_across(const glm::dvec3& towards, const SquarePoint<float>& choice,
-                                    const SquarePoint<float>& u) const {
-  const Ball& ball =
-      choose_ball(choice.x, [](const Ball& each) { return each.radius * each.radius; });
-  return ball.middle + around(towards, 0.0, ball.radius * std::sqrt(double{u.x}), u.y);
-}
-
 std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::uint64_t seed) const {
   Start start;
   PathState& state = start.state;
   state.index = static_cast<std::uint32_t>(number);
-  state.stream =
-      hash(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
-           hash(kLightPaths, static_cast<std::uint32_t>(number >> 32)));
+  state.stream = pixel_key(seed, kLightPaths, static_cast<std::uint32_t>(number >> 32));
   const auto random = [&](std::uint32_t purpose) {
-    return sobol_point<float>(state.index, hash(state.stream, purpose));
+    return random_point<float>(state.index, state.stream, purpose);
   };
-  const SquarePoint<float> choice = random(kSource), ball = random(kBall), u = random(kTowards);
+  const SquarePoint<float> choice = random(kSource), u = random(kTowards);
+  const double ball_choice = random(kBall).x;
   const double wanted = double{choice.x} + double{choice.y} * 0x1p-24;
   const auto found = std::upper_bound(source_cdf_.begin(), source_cdf_.end() - 1, wanted);
   const auto source = static_cast<std::uint32_t>(found - source_cdf_.begin());
@@ -229,7 +211,7 @@ std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::ui
   double density = static_cast<double>(count()) * pmf(source);
   if (light->kind == Lights::Kind::kPoint) {
     origin = glm::dvec3(light->position);
-    direction = direction_from(origin, ball, u);
+    direction = direction_from(origin, ball_choice, u);
     density *= meetings(origin, direction, false) / solid_angle(origin);
     if (light->is_spot) {
       const auto cosine = static_cast<float>(glm::dot(direction, glm::dvec3(light->spot_axis)));
@@ -239,12 +221,14 @@ std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::ui
     const Lights::Source& own = lights_.source(source);
     const LightPoint<float> point = lights_.sample_patches<float>({own.patch}, random(kPlace));
     origin = wide(point.position);
-    direction = direction_from(origin, ball, u);
+    direction = direction_from(origin, ball_choice, u);
     density *= double{own.per_area} * meetings(origin, direction, false) / solid_angle(origin);
     const double cosine = std::abs(glm::dot(direction, wide(point.normal)));
     flux = wide(lights_.radiance_at<float>({light}, point)) * cosine;
     state.light_over_camera_pdf = finite_float(cosine / density);
-    origin += direction * (kBeyondLight * nearest_middle(origin));
+    double nearest = reach_;
+    for (const Ball& ball : balls_) nearest = std::min(nearest, glm::distance(ball.middle, origin));
+    origin += direction * (0x1p-16 * nearest);  // beyond the light itself
   } else {
     glm::dvec3 towards(light->position);
     if (light->kind == Lights::Kind::kEnvironment) {
@@ -253,7 +237,10 @@ std::optional<LightPaths::Start> LightPaths::start(std::uint64_t number, std::ui
       flux = wide(lights_.environment()->radiance<float>(sampled));
       density *= double{lights_.environment()->pdf<float>(sampled)};
     }
-    const glm::dvec3 across = point_across(towards, ball, u);
+    const Ball& ball =
+        choose_ball(ball_choice, [](const Ball& each) { return each.radius * each.radius; });
+    const glm::dvec3 across =
+        ball.middle + around(towards, 0.0, ball.radius * std::sqrt(double{u.x}), u.y);
     density *= meetings(across, towards, true) / discs_;
     if (light->kind == Lights::Kind::kEnvironment)
       state.light_over_camera_pdf = finite_float(1.0 / density);

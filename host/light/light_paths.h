@@ -6,8 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "host/exact/exact.h"
-#include "host/light/lights.h"
 #include "host/light/prepared_scene.h"
 #include "host/light/ray_batch.h"
 #include "host/scene/camera.h"
@@ -38,19 +36,18 @@ struct FrameView {
 /// to the camera.
 ///
 /// Mirrors and glass here are smooth; rough ones sample lights directly. A light path counts only
-/// if its first surface is a mirror or glass, since other surfaces find light well by sampling
-/// lights. So starts are chosen by the flux that a light sends to the bounding spheres of the
-/// scene's mirrors and glass: from lights at finite distance uniformly in the solid angles of the
-/// spheres, from distant lights uniformly over their discs. Lengths are in scene units, densities
-/// per square unit of Lights.
+/// if its first surface is a mirror or glass. So starts are chosen by the flux that a light sends
+/// to the bounding spheres of the scene's mirrors and glass: from lights at finite distance
+/// uniformly in the solid angles of the spheres, from distant lights uniformly over their discs.
+/// Lengths are in scene units, densities per square unit of Lights.
 ///
 /// A path that both camera paths and light paths can find is weighted by multiple importance
 /// sampling with the power heuristic (Veach, "Robust Monte Carlo methods for light transport
 /// simulation", 1997, chapters 9 and 10). PathState::light_over_camera_pdf is the ratio of both
-/// densities of the path so far, updated at each vertex (as in "Implementing vertex connection and
-/// merging", Georgiev 2012, for more techniques). At a vertex with edge cosines `in` and `out` and
-/// forward and reverse densities `pdf` and `back` per solid angle it is multiplied by back / pdf *
-/// out / in: common factors cancel, and mirrors and smooth glass have neither density.
+/// densities of the path so far (as in "Implementing vertex connection and merging", Georgiev
+/// 2012). A vertex with edge cosines `in` and `out` and forward and reverse densities `pdf` and
+/// `back` per solid angle multiplies it by back / pdf * out / in; mirrors and smooth glass have
+/// neither density.
 class LightPaths {
  public:
   /// The references must outlive this object.
@@ -68,11 +65,11 @@ class LightPaths {
   /// Returns the start of path `number` of an image, or nullopt if the light does not emit there.
   [[nodiscard]] std::optional<Start> start(std::uint64_t number, std::uint64_t seed) const;
 
-  /// Returns the density of light paths of a sample that start at `point` of a light in the
-  /// direction of the unit vector, per area and solid angle.
+  /// Returns the density of a sample's light paths that start at `point` of a light in the unit
+  /// direction, per area and solid angle.
   [[nodiscard]] float density(std::uint32_t source, const glm::vec3& point,
                               const glm::vec3& direction) const;
-  /// Returns the density of light paths of a sample from a distant light that go through `point`
+  /// Returns the density of a sample's light paths from the environment that go through `point`
   /// against the unit vector `towards`, per area perpendicular to it.
   [[nodiscard]] float environment_density(const glm::vec3& point, const glm::vec3& towards) const;
 
@@ -87,8 +84,8 @@ class LightPaths {
   /// The connection of a point to the camera.
   struct View {
     glm::vec3 lens{0.0f};  ///< point of the lens
-    float per_area =
-        0.0f;  ///< pixels per area perpendicular to the connection; 0: not in the frame
+    /// Pixels per area perpendicular to the connection; 0: not in the frame.
+    float per_area = 0.0f;
   };
   [[nodiscard]] View view_of(const glm::vec3& point, const glm::vec2& lens) const;
 
@@ -106,15 +103,12 @@ class LightPaths {
   void find_balls(const PreparedScene& prepared);
   void weigh_sources();
   [[nodiscard]] double solid_angle(const glm::dvec3& point) const;
-  [[nodiscard]] double nearest_middle(const glm::dvec3& point) const;
   [[nodiscard]] double meetings(const glm::dvec3& point, const glm::dvec3& direction,
                                 bool both_ways) const;
   template <class Size>
   [[nodiscard]] const Ball& choose_ball(double u, const Size& size) const;
-  [[nodiscard]] glm::dvec3 direction_from(const glm::dvec3& point, const SquarePoint<float>& choice,
+  [[nodiscard]] glm::dvec3 direction_from(const glm::dvec3& point, double choice,
                                           const SquarePoint<float>& u) const;
-  [[nodiscard]] glm::dvec3 point_across(const glm::dvec3& towards, const SquarePoint<float>& choice,
-                                        const SquarePoint<float>& u) const;
   [[nodiscard]] double pmf(std::uint32_t source) const {
     return source_cdf_[source] - (source == 0 ? 0.0 : source_cdf_[source - 1]);
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/scene/bounds.h"
+
 namespace raygate {
 namespace {
 
@@ -18,21 +20,20 @@ glm::dvec3 on_one_side(const LightBounds& source) {
 
 /// Sums over a group of sources, from which its cost is computed.
 struct Sum {
-  glm::dvec3 low{std::numeric_limits<double>::infinity()};
-  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+  Bounds3 box;
   glm::dvec3 axes{0.0};
   double power = 0.0;
 
   void add(const LightBounds& source) {
-    low = glm::min(low, source.middle - source.radius);
-    high = glm::max(high, source.middle + source.radius);
+    box.expand(source.middle - source.radius);
+    box.expand(source.middle + source.radius);
     // A source that emits to all sides adds nothing: it has no orientation.
     axes += (0.5 + 0.5 * source.spread) * source.power * on_one_side(source);
     power += source.power;
   }
   void add(const Sum& other) {
-    low = glm::min(low, other.low);
-    high = glm::max(high, other.high);
+    box.low = glm::min(box.low, other.box.low);
+    box.high = glm::max(box.high, other.box.high);
     axes += other.axes;
     power += other.power;
   }
@@ -40,7 +41,7 @@ struct Sum {
   /// size, times the spread of the axes, from 1 (parallel) to 4 (all directions).
   [[nodiscard]] double cost() const {
     if (!(power > 0.0)) return 0.0;
-    const glm::dvec3 size = high - low;
+    const glm::dvec3 size = box.high - box.low;
     return power * glm::dot(size, size) * (4.0 - 3.0 * std::min(glm::length(axes) / power, 1.0));
   }
 };
@@ -63,14 +64,15 @@ class LightTree::Builder {
     tree_.nodes_.emplace_back();
     tree_.nodes_[number].parent = parent;
     tree_.nodes_[number].place = place;
-    const std::vector<Group> children = split_into_eight(group);
+    const std::vector<CostedGroup> children = split_into_eight(group);
     for (std::uint32_t k = 0; k < children.size(); ++k) {
-      set(tree_.nodes_[number], k, cluster(children[k]));
-      std::uint32_t child = children[k][0] | kIsSource;
-      if (children[k].size() == 1) {
-        tree_.place_of_[children[k][0]] = number * kLanes + k;
+      const Group sources = children[k].sources;
+      set(tree_.nodes_[number], k, cluster(sources));
+      std::uint32_t child = sources[0] | kIsSource;
+      if (sources.size() == 1) {
+        tree_.place_of_[sources[0]] = number * kLanes + k;
       } else {
-        child = add(children[k], number, k);
+        child = add(sources, number, k);
       }
       tree_.nodes_[number].child[k] = child;
     }
@@ -78,6 +80,10 @@ class LightTree::Builder {
   }
 
  private:
+  struct CostedGroup {
+    Group sources;
+    double cost;
+  };
   [[nodiscard]] Sum sum_of(Group group) const {
     Sum sum;
     for (const std::uint32_t number : group) sum.add(sources_[number]);
@@ -85,21 +91,16 @@ class LightTree::Builder {
   }
 
   /// Splits a group into up to eight, always splitting the one with the highest cost.
-  [[nodiscard]] std::vector<Group> split_into_eight(Group group) const {
-    std::vector<Group> groups = {group};
-    std::vector<double> costs = {sum_of(group).cost()};
+  [[nodiscard]] std::vector<CostedGroup> split_into_eight(Group group) const {
+    std::vector<CostedGroup> groups = {{group, 0.0}};
     while (groups.size() < std::min<std::size_t>(kLanes, group.size())) {
-      std::size_t worst = groups.size();
-      for (std::size_t i = 0; i < groups.size(); ++i) {
-        if (groups[i].size() < 2) continue;
-        if (worst == groups.size() || costs[i] > costs[worst]) worst = i;
-      }
-      const std::size_t size = split(groups[worst]);
-      const Group rest = groups[worst].subspan(size);
-      groups[worst] = groups[worst].first(size);
-      costs[worst] = sum_of(groups[worst]).cost();
-      groups.insert(groups.begin() + static_cast<std::ptrdiff_t>(worst) + 1, rest);
-      costs.insert(costs.begin() + static_cast<std::ptrdiff_t>(worst) + 1, sum_of(rest).cost());
+      const auto worst = std::ranges::max_element(groups, {}, [](const CostedGroup& each) {
+        return each.sources.size() < 2 ? -1.0 : each.cost;
+      });
+      const std::size_t size = split(worst->sources);
+      const Group first = worst->sources.first(size), rest = worst->sources.subspan(size);
+      *worst = {first, sum_of(first).cost()};
+      groups.insert(worst + 1, {rest, sum_of(rest).cost()});
     }
     return groups;
   }
@@ -119,19 +120,17 @@ class LightTree::Builder {
     if (far_size != 0 && far_size != group.size()) return far_size;
 
     constexpr int kBins = 12;
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (const std::uint32_t number : group) {
-      low = glm::min(low, sources_[number].middle);
-      high = glm::max(high, sources_[number].middle);
-    }
+    Bounds3 middles;
+    for (const std::uint32_t number : group) middles.expand(sources_[number].middle);
+    const glm::dvec3 &low = middles.low, size = middles.high - middles.low;
     double least = std::numeric_limits<double>::infinity();
     int best_axis = -1, best_bin = 0;
     const auto bin_of = [&](std::uint32_t number, int axis) {
-      const double share = (sources_[number].middle[axis] - low[axis]) / (high[axis] - low[axis]);
+      const double share = (sources_[number].middle[axis] - low[axis]) / size[axis];
       return std::min(static_cast<int>(share * kBins), kBins - 1);
     };
     for (int axis = 0; axis < 3; ++axis) {
-      if (!(high[axis] > low[axis])) continue;
+      if (!(size[axis] > 0.0)) continue;
       std::array<Sum, kBins> bins;
       for (const std::uint32_t number : group) {
         bins[static_cast<std::size_t>(bin_of(number, axis))].add(sources_[number]);
@@ -168,7 +167,7 @@ class LightTree::Builder {
       all.radius = 1.0;
       return all;
     }
-    all.middle = 0.5 * (sum.low + sum.high);
+    all.middle = sum.box.middle();
     all.radius = 0.0;
     for (const std::uint32_t number : group) {
       const LightBounds& one = sources_[number];

@@ -20,8 +20,8 @@ struct LightBounds {
   glm::dvec3 axis{0.0, 0.0, 1.0};
   double spread = -1.0, reach = 1.0;
   double back = 0.0;  ///< fraction emitted against the axis
-  bool is_far =
-      false;  ///< a distant light: `middle` is the direction towards it, or 0 for all directions
+  /// A distant light: `middle` is the direction towards it, or 0 for all directions.
+  bool is_far = false;
   /// Irradiance on a facing surface at distance 1, or anywhere for a distant light. A source
   /// without power is never chosen.
   double power = 0.0;
@@ -29,12 +29,9 @@ struct LightBounds {
 
 /// Samples a light source for a surface point with a probability nearly proportional to its
 /// unoccluded contribution: by power, distance and the orientation of source and surface (Conty
-/// Estevez and Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018).
-/// There is no splitting; instead nodes have up to eight children that are weighted together, so
-/// that one of a thousand sources is reached in three or four steps, and clusters are small.
-///
-/// Every source that contributes has a positive probability. Probabilities depend only on the
-/// sources, their order, the point and the normal; float and FloatLanes give the same bits.
+/// Estevez and Kulla, "Importance sampling of many lights with adaptive tree splitting", 2018, but
+/// with up to eight children per node instead of splitting). Every source that contributes has a
+/// positive probability. float and FloatLanes give the same bits.
 class LightTree {
  public:
   LightTree() = default;
@@ -45,15 +42,52 @@ class LightTree {
     float pmf = 0.0f;                 ///< probability of the choice
   };
   /// Samples a source for u in [0, 1); some source must have power. A normal of 0 stands for a
-  /// surface that is lit from both sides. T is float or FloatLanes: the number of children weighted
-  /// at once.
+  /// surface that is lit from both sides. T determines how many children are weighted at once.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Sample sample(const glm::vec3& point, const glm::vec3& normal,
-                                             double u) const;
+                                             double u) const {
+    float pmf = 1.0f;
+    for (std::uint32_t at = 0;;) {
+      const Node& node = nodes_[at];
+      alignas(4 * kLanes) float weights[kLanes];
+      const float total = importance<T>(node, point, normal, weights);
+      if (!(total > 0.0f)) return {};
+      // Falls back to the last child with a positive weight if rounding exhausts the others.
+      const double wanted = u * double{total};
+      double begin = 0.0, end = 0.0;
+      int found = 0;
+      for (int k = 0; k < kLanes && end <= wanted; ++k) {
+        if (!(weights[k] > 0.0f)) continue;
+        begin = end;
+        end += double{weights[k]};
+        found = k;
+      }
+      constexpr double kBelowOne = 1.0 - 0x1p-53;
+      const double rest = (wanted - begin) / double{weights[found]};
+      u = rest < kBelowOne ? rest : kBelowOne;
+      pmf *= weights[found] / total;
+      at = node.child[found];
+      if ((at & kIsSource) != 0) return {at & ~kIsSource, pmf};
+    }
+  }
   /// Returns the probability that sample() chooses a source.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE float pmf(std::uint32_t source, const glm::vec3& point,
-                                         const glm::vec3& normal) const;
+                                         const glm::vec3& normal) const {
+    if (place_of_[source] == kNoIndex) return 0.0f;
+    float pmf = 1.0f;
+    std::uint32_t at = place_of_[source] / kLanes, place = place_of_[source] % kLanes;
+    while (at != kNoIndex) {
+      const Node& node = nodes_[at];
+      alignas(4 * kLanes) float weights[kLanes];
+      const float total = importance<T>(node, point, normal, weights);
+      if (!(weights[place] > 0.0f)) return 0.0f;
+      pmf *= weights[place] / total;
+      at = node.parent;
+      place = node.place;
+    }
+    return pmf;
+  }
 
  private:
   /// Up to eight sources and clusters, field by field. An empty entry has power 0.
@@ -72,112 +106,62 @@ class LightTree {
 
   class Builder;
 
-  /// Computes the relative importance of each child, and their sum.
+  /// Sets `weights` to the relative importance of each child, and returns their sum.
   template <class T>
-  RAYGATE_INLINE static void importance(const Node& node, const glm::vec3& point,
-                                        const glm::vec3& normal, float (&weights)[kLanes],
-                                        float& total);
+  RAYGATE_INLINE static float importance(const Node& node, const glm::vec3& point,
+                                         const glm::vec3& normal, float (&weights)[kLanes]) {
+    // Error bound of the cosines, so that no partly visible light is dropped.
+    constexpr float kMargin = 0x1p-10f;
+    constexpr float kLeastSquare = 0x1p-40f;
+    const T one = spread<T>(1.0f);
+    for (int k = 0; k < kLanes; k += kLanesOf<T>) {
+      const T nearness = load<T>(node.nearness + k);
+      const Triple<T> way = {load<T>(node.x + k) - nearness * point.x,
+                             load<T>(node.y + k) - nearness * point.y,
+                             load<T>(node.z + k) - nearness * point.z};
+      const T squared = dot(way, way), radius = load<T>(node.squared_radius + k);
+      const auto is_inside = !(squared > radius);
+      const T per_distance = 1.0f / root(choose(squared > 0.0f, squared, one));
+      // The half angle of the bounding sphere.
+      const T ball_sine_squared = choose(is_inside, one, radius * (per_distance * per_distance));
+      const T ball_sine = root(ball_sine_squared);
+      const T ball_cosine = root(at_least(1.0f - ball_sine_squared, 0.0f));
+      // The cosine of an angle minus the sphere's half angle, or 1 if the difference is negative.
+      const auto less_ball = [&](const T& cosine, const T& sine) RAYGATE_BODY {
+        return choose(is_inside | (cosine > ball_cosine), one,
+                      cosine * ball_cosine + sine * ball_sine);
+      };
+      const auto sine_of = [](const T& cosine) RAYGATE_BODY {
+        return root(at_least(1.0f - cosine * cosine, 0.0f));
+      };
+      const T arriving = dot(way, spread<T>(normal)) * per_distance;
+      const T received =
+          normal == glm::vec3(0.0f) ? one : less_ball(arriving, sine_of(arriving)) + kMargin;
+
+      const Triple<T> axis = {load<T>(node.axis_x + k), load<T>(node.axis_y + k),
+                              load<T>(node.axis_z + k)};
+      const T leaving = -dot(way, axis) * per_distance, leaving_sine = sine_of(leaving);
+      const T cone_cosine = load<T>(node.spread + k), cone_sine = load<T>(node.spread_sine + k);
+      const T reach = load<T>(node.reach + k);
+      const auto sent_at = [&](const T& cosine) RAYGATE_BODY {
+        const auto is_in_cone = cosine > cone_cosine;
+        const T beyond = choose(is_in_cone, one, cosine * cone_cosine + leaving_sine * cone_sine);
+        const T sine = choose(is_in_cone, T{}, leaving_sine * cone_cosine - cosine * cone_sine);
+        const T sent = less_ball(beyond, sine) + kMargin;
+        return choose(sent > reach, sent, T{});
+      };
+      const T sent = maximum(sent_at(leaving), load<T>(node.back + k) * sent_at(-leaving));
+      const T weight = load<T>(node.power + k) * received * sent /
+                       at_least(maximum(squared, radius), kLeastSquare);
+      store(weights + k, choose(received > 0.0f, weight, T{}));
+    }
+    float total = 0.0f;
+    for (const float weight : weights) total += weight;
+    return total;
+  }
 
   std::vector<Node> nodes_;              // the root is first
   std::vector<std::uint32_t> place_of_;  // by source: node index * kLanes + position in the node
 };
-
-template <class T>
-RAYGATE_INLINE void LightTree::importance(const Node& node, const glm::vec3& point,
-                                          const glm::vec3& normal, float (&weights)[kLanes],
-                                          float& total) {
-  // Error bound of the cosines, so that no partly visible light is dropped.
-  constexpr float kMargin = 0x1p-10f;
-  constexpr float kLeastSquare = 0x1p-40f;
-  const T one = spread<T>(1.0f);
-  for (int k = 0; k < kLanes; k += kLanesOf<T>) {
-    const T nearness = load<T>(node.nearness + k);
-    const Triple<T> way = {load<T>(node.x + k) - nearness * point.x,
-                           load<T>(node.y + k) - nearness * point.y,
-                           load<T>(node.z + k) - nearness * point.z};
-    const T squared = dot(way, way), radius = load<T>(node.squared_radius + k);
-    const auto is_inside = !(squared > radius);
-    const T per_distance = 1.0f / root(choose(squared > 0.0f, squared, one));
-    // The half angle of the bounding sphere.
-    const T ball_sine_squared = choose(is_inside, one, radius * (per_distance * per_distance));
-    const T ball_sine = root(ball_sine_squared);
-    const T ball_cosine = root(at_least(1.0f - ball_sine_squared, 0.0f));
-    // The cosine of an angle minus the sphere's half angle, or 1 if the difference is negative.
-    const auto less_ball = [&](const T& cosine, const T& sine) RAYGATE_BODY {
-      return choose(is_inside | (cosine > ball_cosine), one,
-                    cosine * ball_cosine + sine * ball_sine);
-    };
-    const auto sine_of = [](const T& cosine)
-                             RAYGATE_BODY { return root(at_least(1.0f - cosine * cosine, 0.0f)); };
-    const T arriving = dot(way, spread<T>(normal)) * per_distance;
-    const T received =
-        normal == glm::vec3(0.0f) ? one : less_ball(arriving, sine_of(arriving)) + kMargin;
-
-    const Triple<T> axis = {load<T>(node.axis_x + k), load<T>(node.axis_y + k),
-                            load<T>(node.axis_z + k)};
-    const T leaving = -dot(way, axis) * per_distance, leaving_sine = sine_of(leaving);
-    const T cone_cosine = load<T>(node.spread + k), cone_sine = load<T>(node.spread_sine + k);
-    const T reach = load<T>(node.reach + k);
-    const auto sent_at = [&](const T& cosine) RAYGATE_BODY {
-      const auto is_in_cone = cosine > cone_cosine;
-      const T beyond = choose(is_in_cone, one, cosine * cone_cosine + leaving_sine * cone_sine);
-      const T sine = choose(is_in_cone, T{}, leaving_sine * cone_cosine - cosine * cone_sine);
-      const T sent = less_ball(beyond, sine) + kMargin;
-      return choose(sent > reach, sent, T{});
-    };
-    const T sent = maximum(sent_at(leaving), load<T>(node.back + k) * sent_at(-leaving));
-    const T weight = load<T>(node.power + k) * received * sent /
-                     at_least(maximum(squared, radius), kLeastSquare);
-    store(weights + k, choose(received > 0.0f, weight, T{}));
-  }
-  total = 0.0f;
-  for (const float weight : weights) total += weight;
-}
-
-template <class T>
-RAYGATE_INLINE LightTree::Sample LightTree::sample(const glm::vec3& point, const glm::vec3& normal,
-                                                   double u) const {
-  float pmf = 1.0f;
-  for (std::uint32_t at = 0;;) {
-    const Node& node = nodes_[at];
-    alignas(4 * kLanes) float weights[kLanes], total;
-    importance<T>(node, point, normal, weights, total);
-    if (!(total > 0.0f)) return {};
-    // Falls back to the last child with a positive weight if rounding exhausts the others.
-    const double wanted = u * double{total};
-    double begin = 0.0, end = 0.0;
-    int found = 0;
-    for (int k = 0; k < kLanes && end <= wanted; ++k) {
-      if (!(weights[k] > 0.0f)) continue;
-      begin = end;
-      end += double{weights[k]};
-      found = k;
-    }
-    constexpr double kBelowOne = 1.0 - 0x1p-53;
-    const double rest = (wanted - begin) / double{weights[found]};
-    u = rest < kBelowOne ? rest : kBelowOne;
-    pmf *= weights[found] / total;
-    at = node.child[found];
-    if ((at & kIsSource) != 0) return {at & ~kIsSource, pmf};
-  }
-}
-
-template <class T>
-RAYGATE_INLINE float LightTree::pmf(std::uint32_t source, const glm::vec3& point,
-                                    const glm::vec3& normal) const {
-  if (place_of_[source] == kNoIndex) return 0.0f;
-  float pmf = 1.0f;
-  std::uint32_t at = place_of_[source] / kLanes, place = place_of_[source] % kLanes;
-  while (at != kNoIndex) {
-    const Node& node = nodes_[at];
-    alignas(4 * kLanes) float weights[kLanes], total;
-    importance<T>(node, point, normal, weights, total);
-    if (!(weights[place] > 0.0f)) return 0.0f;
-    pmf *= weights[place] / total;
-    at = node.parent;
-    place = node.place;
-  }
-  return pmf;
-}
 
 }  // namespace raygate

@@ -1,6 +1,5 @@
 #include "host/light/lights.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -37,7 +36,7 @@ std::vector<std::uint32_t> emitting_primitives(const Scene& scene, const Bvh& bv
 glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lights) {
   glm::dvec3 flux(0.0), reflecting(0.0);
   double area = 0.0;
-  for (const AreaLight& light : lights) flux += std::numbers::pi * light.area() * light.radiance;
+  for (const AreaLight& light : lights) flux += std::numbers::pi * light.area * light.radiance;
   if (flux == glm::dvec3(0.0)) return flux;
   for_each_face(scene, [&](const Corners& corners, const Triangle& face) {
     const double own = 0.5 * glm::length(triangle_normal(corners));
@@ -97,7 +96,71 @@ LightBounds light_bounds(const PointLight& light, double unit) {
   return source;
 }
 
+/// Returns whether emissive triangles light the scene. Without `is_preview` one that emits without
+/// a texture suffices, as it is meant as a light. In previews glowing labels do not count, and
+/// screens never do. `size` is the scene's diagonal.
+bool is_lit_by_emitters(const Scene& scene, double size, bool is_preview) {
+  // Thresholds of radiance * area / size^2: about 1/100 of the main light, or 1/6 for emission with
+  // a texture, which is meant to be looked at.
+  constexpr double kGlow = 0.01, kPicture = 0.15;
+  const auto is_picture = [](const Material& material) {
+    return material.emission_map.texture != kNoIndex;
+  };
+  std::vector<double> radiance;
+  for (const Material& material : scene.materials) {
+    radiance.push_back(mean(mean_emission(scene, material)) /
+                       (is_picture(material) ? kPicture : kGlow));
+  }
+  double sum = 0.0;
+  for (const Triangle& face : scene.triangles) {
+    const Material& material = scene.materials[face.material];
+    if (is_left_out(face) || !emits(material)) continue;
+    if (!is_preview && !is_picture(material)) return true;
+    const auto& [a, b, c] = face.vertices;
+    const Corners corners{scene.vertex(a), scene.vertex(b), scene.vertex(c)};
+    sum += 0.5 * radiance[face.material] * glm::length(triangle_normal(corners));
+  }
+  return sum > size * size;
+}
+
+constexpr glm::vec3 kDimSky(0.18f, 0.2f, 0.24f);
+
 }  // namespace
+
+std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
+                                           bool is_preview) {
+  const bool is_dark = scene.background == glm::vec3(0.0f);
+  if (is_empty(scene) || !scene.lights.empty() || !scene.directional_lights.empty() ||
+      scene.environment || (!is_preview && !is_dark)) {
+    return {};
+  }
+  const auto [low, high] = position_bounds(scene);
+  const glm::dvec3 eye(camera.eye()), middle = 0.5 * (low + high);
+  const double size = glm::length(high - low);
+  if (is_lit_by_emitters(scene, size, is_preview)) return {};
+  CameraLights lights;
+  lights.background = is_preview && !is_dark ? scene.background : kDimSky;
+  // `radiance` is that of a facing white wall at `distance`.
+  const auto add = [&](const glm::dvec3& at, double distance, double radiance) {
+    lights.points.push_back({glm::vec3(glm::clamp(at, -kMostCoordinate, kMostCoordinate)),
+                             glm::dvec3(radiance * std::numbers::pi * distance * distance)});
+  };
+  if (glm::all(glm::lessThanEqual(low, eye)) && glm::all(glm::lessThanEqual(eye, high))) {
+    add(eye, 0.35 * size, 0.8);
+    return lights;
+  }
+  const auto add_far = [&](double right, double up, double radiance) {
+    constexpr double kFar = 4.0;  // all parts of the scene are at about the same distance
+    const glm::dvec3 at =
+        middle + kFar * size * (up * camera.up() + right * camera.right() - 1.3 * camera.forward());
+    add(at, glm::length(at - middle), radiance);
+  };
+  // Together with the sky and interreflection, white stays below 1.
+  add_far(-0.8, 1.2, is_preview ? 0.4 : 0.6);
+  if (is_preview) add_far(1.4, 0.3, 0.16);
+  lights.radius = 0.5 * size;  // penumbras are 1/8 as wide as the occluder's distance
+  return lights;
+}
 
 Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
                const std::optional<CameraLights>& camera_lights)
@@ -127,7 +190,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     record.kind = Kind::kArea;
     record.emission = finite_floats(light.radiance);
     record.is_textured = light.is_textured;
-    record.area = finite_float(light.area() / unit / unit);
+    record.area = finite_float(light.area / unit / unit);
     add_patches(light, record);
   }
   for (const DirectionalLight& light : scene.directional_lights) {
@@ -137,7 +200,7 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     record.position = glm::vec3(-light.direction);
   }
   if (scene.environment) {
-    environment_.emplace(*scene.environment, sampling == Sampling::kOne);
+    environment_.emplace(*scene.environment);
     lights_.emplace_back().kind = Kind::kEnvironment;
   }
   if (sampling == Sampling::kOne) {
@@ -181,8 +244,7 @@ void Lights::find_areas() {
       light.low = glm::min(light.low, glm::vec3(corner));
       light.high = glm::max(light.high, glm::vec3(corner));
     }
-    const double area = 0.5 * glm::length(triangle_normal(corners));
-    light.area_up_to.push_back((light.primitives.empty() ? 0.0 : light.area()) + area);
+    light.area += 0.5 * glm::length(triangle_normal(corners));
     light.primitives.push_back(primitive);
   }
 }
@@ -194,17 +256,21 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
   double before = 0.0;
   for (std::size_t i = 0; i < light.primitives.size(); ++i) {
     const Corners t = bvh_.corners_of(light.primitives[i]);
+    const glm::dvec3 normal = triangle_normal(t);
+    double end = before + 0.5 * glm::length(normal);
     Patch patch;
     patch.primitive = patch.primitive_beyond = light.primitives[i];
-    patch.begin = static_cast<float>(before / light.area());
-    patch.normal = glm::vec3(glm::normalize(triangle_normal(t)));
+    patch.begin = static_cast<float>(before / light.area);
+    patch.normal = glm::vec3(glm::normalize(normal));
     patch.corner = glm::vec3(t[0]);
     patch.u = glm::vec3(t[1] - t[0]);
     patch.v = glm::vec3(t[2] - t[0]);
     if (i + 1 < light.primitives.size()) {
-      const auto sides = parallelogram(t, bvh_.corners_of(light.primitives[i + 1]));
+      const Corners next = bvh_.corners_of(light.primitives[i + 1]);
+      const auto sides = parallelogram(t, next);
       if (sides) {
         ++i;
+        end += 0.5 * glm::length(triangle_normal(next));
         patch.is_triangle = false;
         patch.corner = sides->corner;
         patch.u = sides->u;
@@ -212,9 +278,9 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
         patch.primitive_beyond = light.primitives[i];
       }
     }
-    patch.end = static_cast<float>(light.area_up_to[i] / light.area());
-    patch.area = light.area_up_to[i] - before;
-    before = light.area_up_to[i];
+    patch.end = static_cast<float>(end / light.area);
+    patch.area = end - before;
+    before = end;
     patches_.push_back(patch);
     patch_ends_.push_back(patch.end);
     ++record.patches;

@@ -9,12 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "host/base/triple.h"
 #include "host/bvh/bvh.h"
 #include "host/light/environment.h"
 #include "host/light/light_tree.h"
-#include "host/light/sampler.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -31,10 +28,8 @@ struct CameraLights {
 /// Returns lights for a scene without any (no lights, no background, and no emission except
 /// textures that hardly light anything): a light to the upper left of the camera with soft shadows,
 /// or at the camera if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
-///
-/// `is_preview`: the user did not choose the camera. Then there is a second, weaker light from the
-/// right, and scenes lit only by a background or by faces whose emission lights nothing get lights,
-/// too.
+/// With `is_preview`, for a camera that the user did not choose, there is a second, weaker light
+/// from the right, and scenes with only a background or dim emitters get lights, too.
 [[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
                                                          bool is_preview = false);
 
@@ -46,9 +41,9 @@ struct CameraLights {
   return {finite_float(x.x), finite_float(x.y), finite_float(x.z)};
 }
 
-/// Returns the fraction of a spot light's intensity at an angle to its axis with this cosine, by
-/// the ramp of KHR_lights_punctual: 1 within the cone's inner angle, 0 beyond the outer one.
-/// `scale` and `offset` are those of Lights::Light.
+/// Returns the fraction of a spot light's intensity by the cosine of the angle to its axis: 1
+/// within the inner angle, 0 beyond the outer one (the ramp of KHR_lights_punctual). See
+/// Lights::Light.
 template <class T>
 RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) {
   const T ramp = at_most(at_least(cosine * scale + offset, 0.0f), 1.0f);
@@ -62,30 +57,25 @@ enum class OuterSide : std::uint8_t {
   kAgainstNormal,  ///< the opposite side
 };
 
-/// Returns the outer side of each of the primitives. A closed surface is a set of these triangles,
-/// connected by edges, in which each edge belongs to exactly two triangles that traverse it in
-/// opposite directions.
+/// Returns the outer side of each primitive. A closed surface is a set of primitives connected by
+/// edges, each of which belongs to exactly two triangles that traverse it in opposite directions.
 [[nodiscard]] std::vector<OuterSide> outer_sides(const Bvh& bvh,
                                                  std::span<const std::uint32_t> primitives);
 
-/// The emitting faces of one object and material: one light that emits from both sides of each
-/// face.
+/// The emitting faces of one object and material, as one light. Both sides of each face emit.
 struct AreaLight {
   std::vector<std::uint32_t> primitives;
-  std::vector<double> area_up_to;   ///< cumulative area, by primitive
+  double area = 0.0;
   glm::vec3 low{0.0f}, high{0.0f};  ///< bounds
   glm::dvec3 radiance{0.0};         ///< mean
   bool is_textured = false;
-
-  [[nodiscard]] double area() const { return area_up_to.back(); }
 };
 
-/// A point of a light in each lane.
+/// A point of an area light in each lane.
 template <class T>
 struct LightPoint {
-  /// For a distant light: a unit vector towards it, and no normal.
   Triple<T> position, normal;  ///< unit normal of either side
-  WordOf<T> primitive;         ///< NearestHit::kNone: a distant light
+  WordOf<T> primitive;
 };
 
 /// All lights of a scene. Areas and distances are in units of about the scene's size, so that
@@ -113,9 +103,9 @@ class Lights {
     return environment_ ? glm::vec3(environment_->mean_radiance()) : own_.background;
   }
   /// Returns the uniform radiance that approximates interreflection: the background's or, if that
-  /// is black, the lights' flux after many reflections, spread evenly over all surfaces (the
-  /// ambient term of "A progressive refinement approach to fast radiosity image generation", Cohen,
-  /// Chen, Wallace and Greenberg 1988). 0 with Sampling::kOne.
+  /// is black, the lights' flux after many reflections, spread evenly over all surfaces ("A
+  /// progressive refinement approach to fast radiosity image generation", Cohen, Chen, Wallace and
+  /// Greenberg 1988). 0 with Sampling::kOne.
   [[nodiscard]] const glm::dvec3& ambient() const { return ambient_; }
   /// Returns the number of lights: point, area and directional lights, then the environment.
   [[nodiscard]] std::size_t count() const { return lights_.size(); }
@@ -145,14 +135,40 @@ class Lights {
   /// Samples points of an area light, uniform in area, for points of the unit square.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample(const Light& light,
-                                                    const SquarePoint<T>& u) const;
+                                                    const SquarePoint<T>& u) const {
+    constexpr int kCount = kLanesOf<T>;
+    const auto wanted = unpack(u.x);
+    std::uint32_t numbers[kCount];
+    const Patch* patches[kCount];
+    const auto first = patch_ends_.begin() + light.first_patch;
+    for (int k = 0; k < kCount; ++k) {
+      const auto found = std::upper_bound(first, first + light.patches - 1, wanted[k]);
+      numbers[k] = static_cast<std::uint32_t>(found - patch_ends_.begin());
+      patches[k] = &patches_[numbers[k]];
+    }
+    const T begin = gather<T>(patches, &Patch::begin),
+            size = gather<T>(patches, &Patch::end) - begin;
+    return sample_patches<T>(numbers, {at_most(at_least((u.x - begin) / size, 0.0f), 1.0f), u.y});
+  }
   /// Samples points of one patch per lane, uniform in area.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightPoint<T> sample_patches(
-      const std::uint32_t (&numbers)[kLanesOf<T>], const SquarePoint<T>& u) const;
+      const std::uint32_t (&numbers)[kLanesOf<T>], const SquarePoint<T>& u) const {
+    const Patch* patches[kLanesOf<T>];
+    for (int k = 0; k < kLanesOf<T>; ++k) patches[k] = &patches_[numbers[k]];
+    // Maps the square to the triangle; sqrt preserves areas.
+    const MaskOf<T> is_triangle = gather<T>(patches, &Patch::is_triangle);
+    const T far = root(u.x);
+    const T along_u = choose(is_triangle, far * (1.0f - u.y), u.x);
+    const T along_v = choose(is_triangle, far * u.y, u.y);
+    return {gather<T>(patches, &Patch::corner) + gather<T>(patches, &Patch::u) * along_u +
+                gather<T>(patches, &Patch::v) * along_v,
+            gather<T>(patches, &Patch::normal),
+            choose(is_triangle | (along_u > along_v), gather<T>(patches, &Patch::primitive),
+                   gather<T>(patches, &Patch::primitive_beyond))};
+  }
 
-  /// Returns the radiance of area lights at points on them, one per lane; of other lights, the
-  /// emission.
+  /// Returns the radiance of area lights at points on them; of other lights, the emission.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE Triple<T> radiance_at(const Light* const (&lights)[kLanesOf<T>],
                                                      const LightPoint<T>& at) const {
@@ -170,13 +186,9 @@ class Lights {
   [[nodiscard]] RAYGATE_INLINE static Triple<T> point_on(const Triple<T>& position, const T& radius,
                                                          const Triple<T>& from,
                                                          const SquarePoint<T>& u) {
-    const auto turn = sine_cosine(wide(u.y));
-    const Triple<T> towards = normalized(from - position);
-    return position + spherical_direction(towards, T{}, radius * root(u.x), narrow(turn.cosine),
-                                          narrow(turn.sine));
+    return position +
+           spherical_direction(normalized(from - position), T{}, radius * root(u.x), u.y);
   }
-
-  // Sampling one light at a time:
 
   /// A source of the light tree: a light, or a patch (one or two triangles) of an area light.
   struct Source {
@@ -217,9 +229,8 @@ class Lights {
   /// A part of an area light: a triangle, or two that form a parallelogram.
   struct Patch {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
-    std::uint32_t primitive = 0,
-                  /// Triangles with more of u than of v, and with more of v than of u.
-        primitive_beyond = 0;
+    /// Triangles with more of u than of v, and with more of v than of u.
+    std::uint32_t primitive = 0, primitive_beyond = 0;
     float begin = 0.0f, end = 0.0f;  ///< its interval of the light's cumulative area, in [0, 1]
     double area = 0.0;
     bool is_triangle = true;
@@ -240,46 +251,12 @@ class Lights {
   std::vector<AreaLight> areas_;
   std::vector<Light> lights_;
   std::vector<Patch> patches_;
-  std::vector<float> patch_ends_;  // `end` of each patch, for searching
-  std::vector<Source> sources_;    // by light and patch
-  std::vector<std::uint32_t>
-      source_of_primitive_;  // kNoIndex: none; empty if there are no sources. Instances never emit
+  std::vector<float> patch_ends_;                   // `end` of each patch, for searching
+  std::vector<Source> sources_;                     // by light and patch
+  std::vector<std::uint32_t> source_of_primitive_;  // or kNoIndex; instances never emit
   LightTree tree_;
   bool any_power_ = false;
   float per_unit_ = 1.0f;
 };
-
-template <class T>
-RAYGATE_INLINE LightPoint<T> Lights::sample(const Light& light, const SquarePoint<T>& u) const {
-  constexpr int kCount = kLanesOf<T>;
-  const auto wanted = unpack(u.x);
-  std::uint32_t numbers[kCount];
-  const Patch* patches[kCount];
-  const auto first = patch_ends_.begin() + light.first_patch;
-  for (int k = 0; k < kCount; ++k) {
-    const auto found = std::upper_bound(first, first + light.patches - 1, wanted[k]);
-    numbers[k] = static_cast<std::uint32_t>(found - patch_ends_.begin());
-    patches[k] = &patches_[numbers[k]];
-  }
-  const T begin = gather<T>(patches, &Patch::begin), size = gather<T>(patches, &Patch::end) - begin;
-  return sample_patches<T>(numbers, {at_most(at_least((u.x - begin) / size, 0.0f), 1.0f), u.y});
-}
-
-template <class T>
-RAYGATE_INLINE LightPoint<T> Lights::sample_patches(const std::uint32_t (&numbers)[kLanesOf<T>],
-                                                    const SquarePoint<T>& u) const {
-  const Patch* patches[kLanesOf<T>];
-  for (int k = 0; k < kLanesOf<T>; ++k) patches[k] = &patches_[numbers[k]];
-  // Maps the square to the triangle; sqrt preserves areas.
-  const MaskOf<T> is_triangle = gather<T>(patches, &Patch::is_triangle);
-  const T far = root(u.x);
-  const T along_u = choose(is_triangle, far * (1.0f - u.y), u.x);
-  const T along_v = choose(is_triangle, far * u.y, u.y);
-  return {gather<T>(patches, &Patch::corner) + gather<T>(patches, &Patch::u) * along_u +
-              gather<T>(patches, &Patch::v) * along_v,
-          gather<T>(patches, &Patch::normal),
-          choose(is_triangle | (along_u > along_v), gather<T>(patches, &Patch::primitive),
-                 gather<T>(patches, &Patch::primitive_beyond))};
-}
 
 }  // namespace raygate

@@ -1,9 +1,6 @@
 // Metallic-roughness lobes (glTF 2.0): GGX facets over a diffuse base, or rough glass.
 #pragma once
 
-#include "host/base/triple.h"
-#include "host/light/material_parameters.h"
-#include "host/light/sampler.h"
 #include "host/light/scattering.h"
 #include "host/light/surface.h"
 
@@ -22,14 +19,12 @@ RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
 ///
 /// * Facets (Ggx) reflect f0 + (f90 - f0) s with f0 = m c + (1 - m)(1 - t) r0 and
 ///   f90 = 1 - (1 - m) t - (1 - m)(1 - t)(1 - w).
-/// * Multiple scattering: the energy 1 - E (FacetAlbedo) that one facet does not reflect returns in
-/// a
-///   wide lobe (1 - E(view)) (1 - E(light)) / (1 - mean E), reduced by the absorption of the facets
+/// * Multiple scattering: the energy 1 - E (FacetAlbedo) that one facet does not reflect returns
+///   in a wide lobe (1 - E(view)) (1 - E(light)) / (1 - mean E), reduced by the facets' absorption
 ///   ("Revisiting physically based shading at Imageworks", Kulla and Conty 2017, with Hill's F^2).
-/// * The diffuse base of a dielectric is (1 - m)(1 - t) c (1 - h(view))(1 - h(light)) / (1 - mean
-/// h),
-///   where h is the albedo of both lobes above in their brightest colour channel. So a white
-///   material conserves energy, and the BRDF is reciprocal.
+/// * The diffuse base of a dielectric is (1 - m)(1 - t) c times
+///   (1 - h(view))(1 - h(light)) / (1 - mean h), where h is the albedo of both lobes above in their
+///   brightest channel. So a white material conserves energy, and the BRDF is reciprocal.
 /// * The fraction (1 - m) t is glass with such facets: Fresnel's formula, and c times the
 ///   transmitted light. Both are divided by the albedo of single scattering ("Practical multiple
 ///   scattering compensation for microfacet models", Turquin 2019), which is not reciprocal.

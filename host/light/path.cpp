@@ -2,23 +2,20 @@
 // sampling; light tracing, which connects the surfaces of light paths to the camera.
 #include <optional>
 
+#include "host/light/hits.h"
 #include "host/light/light_paths.h"
-#include "host/light/shade.h"
 
 namespace raygate {
 namespace {
 
-/// Streams of random numbers used at a surface of a path.
-namespace streams {
-inline constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
-                               kDirection = 5, kFacet = 6, kLens = 9;
-}  // namespace streams
-
+// Streams of random numbers used at a surface of a path.
+constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
+                        kDirection = 5, kFacet = 6, kLens = 9;
 // Russian roulette begins after this many surfaces, for paths with less throughput.
-inline constexpr int kRouletteDepth = 3;
-inline constexpr float kRouletteThroughput = 0.25f;
+constexpr int kRouletteDepth = 3;
+constexpr float kRouletteThroughput = 0.25f;
 // Of a direction; the inverse is within the range of float.
-inline constexpr float kMinPdf = 1e-20f;
+constexpr float kMinPdf = 1e-20f;
 
 /// Probability of sampling each lobe, in proportion to its albedo. Rough glass is in `scatter`.
 template <class T>
@@ -26,8 +23,8 @@ struct LobeProbabilities {
   T mirror, transmission, scatter, sum;
 
   RAYGATE_INLINE explicit LobeProbabilities(const Bsdf<T>& bsdf)
-      : mirror(bsdf.has_rough_glass() ? T{} : largest(bsdf.mirror())),
-        transmission(bsdf.has_rough_glass() ? T{} : largest(bsdf.transmission())),
+      : mirror(bsdf.has_rough_glass() ? T{} : largest(bsdf.mirror)),
+        transmission(bsdf.has_rough_glass() ? T{} : largest(bsdf.transmission)),
         scatter(bsdf.scattered_share()),
         sum(mirror + transmission + scatter) {}
   /// Excludes diffuse and glossy reflection where `is_specular`.
@@ -111,7 +108,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
                                          const LobeProbabilities<T>& lobes) {
   const Surface<T>& surface = hits.surface;
   const Bsdf<T>& bsdf = hits.bsdf;
-  const SquarePoint<T> choice = hits.random(streams::kChooseLobe);
+  const SquarePoint<T> choice = hits.random(kChooseLobe);
   Triple<T> throughput = hits.path.throughput;
   ScatteredRays<T> next(hits);
   next.is_wanted = lobes.sum > 0.0f;
@@ -128,7 +125,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   const auto is_mirrored = u < lobes.mirror;
   next.is_transmitted = (!is_mirrored) & (u < lobes.mirror + lobes.transmission);
   next.has_flat = is_mirrored | next.is_transmitted;
-  next.path.stream = hash(hits.path.stream, streams::kNextRay);
+  next.path.stream = hash(hits.path.stream, kNextRay);
 
   const bool has_reverse = kFromLight || shading.light_paths != nullptr;
   std::optional<ReversePdf<kFromLight, T>> reverse;
@@ -141,8 +138,8 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   next.path.supersampled = choose(next.has_flat, hits.path.supersampled, none);
   next.direction = next.flat = zero<T>();
   if (any(bsdf.scatters())) {
-    next.direction = bsdf.sample(hits.random(streams::kDirection),
-                                 has_rough_glass ? hits.random(streams::kFacet).x : T{});
+    next.direction =
+        bsdf.sample(hits.random(kDirection), has_rough_glass ? hits.random(kFacet).x : T{});
     next.flat = next.direction;
     next.path.pdf = bsdf.pdf(next.direction) * lobes.scatter_probability();
     const T cosine = hits.cosine(next.direction);
@@ -163,7 +160,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
   }
   if ((hits.kind & kMirrors) != 0) {
     const Triple<T> reflected = reflect(surface.view, surface.normal);
-    const Triple<T> reflected_throughput = throughput * bsdf.mirror() * (lobes.sum / lobes.mirror);
+    const Triple<T> reflected_throughput = throughput * bsdf.mirror * (lobes.sum / lobes.mirror);
     next.direction = choose(is_mirrored, reflected, next.direction);
     next.flat = choose(is_mirrored, reflect(surface.view, surface.flat_normal), next.flat);
     next.path.throughput = choose(is_mirrored, reflected_throughput, next.path.throughput);
@@ -171,8 +168,8 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.specular_history =
         choose(is_mirrored, hits.path.after_mirror(), next.path.specular_history);
   }
-  const auto is_bent = next.is_transmitted & bsdf.is_refracting();
-  const auto is_straight = next.is_transmitted & !bsdf.is_refracting();
+  const auto is_bent = next.is_transmitted & bsdf.is_refracting;
+  const auto is_straight = next.is_transmitted & !bsdf.is_refracting;
   if ((hits.kind & kTransmits) != 0) {
     ScatteredRays<T> beyond(hits);
     const MaskOf<T> exists = beyond.pass_through(hits, surface.normal);
@@ -184,14 +181,14 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.has_flat = next.has_flat & ((!next.is_transmitted) | beyond.has_flat);
     next.is_wanted = next.is_wanted & ((!next.is_transmitted) | exists);
     const Triple<T> transmitted_throughput =
-        throughput * bsdf.transmission() * (lobes.sum / lobes.transmission);
+        throughput * bsdf.transmission * (lobes.sum / lobes.transmission);
     use_beyond(next.path.throughput, transmitted_throughput);
     use_beyond(next.path.pdf, choose(is_straight, hits.path.pdf, T{}));
     next.path.scattered_at = choose(is_straight, hits.path.scattered_at, next.path.scattered_at);
     next.path.normal = choose(is_straight, hits.path.normal, next.path.normal);
   }
   if (has_reverse) {
-    const T eta = choose(is_bent, bsdf.eta(), spread<T>(1.0f));
+    const T eta = choose(is_bent, bsdf.eta, spread<T>(1.0f));
     reverse->mirror(hits, is_mirrored | is_bent, eta, next);
     next.path.light_over_camera_pdf =
         choose(is_straight, hits.path.light_over_camera_pdf, next.path.light_over_camera_pdf);
@@ -236,7 +233,7 @@ RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hit
   const T mis_weight = choose((area_pdf > 0.0f) & (hits.path.pdf > 0.0f),
                               power_heuristic(hits.path.pdf, light_pdf), spread<T>(1.0f));
   return hits.path.throughput *
-         (hits.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit());
+         (hits.emission() * (mis_weight * caustic_weights(shading, hits)) + hits.bsdf.unlit);
 }
 
 /// One sampled light per hit.
@@ -253,7 +250,7 @@ struct ChosenLights {
   RAYGATE_INLINE ChosenLights(const Lights& all, const Hits<T>& hits) {
     static const Lights::Source no_source{.per_area = 1.0f};
     static const Lights::Light no_light{.kind = Kind::kNone};
-    const SquarePoint<T> u = hits.random(streams::kChooseLight);
+    const SquarePoint<T> u = hits.random(kChooseLight);
     const auto high = unpack(u.x), low = unpack(u.y);
     const auto points = unpack(hits.surface.point), normals = unpack(hits.lit_normal());
     LightTree::Sample samples[kCount];
@@ -283,9 +280,9 @@ struct ChosenLights {
     const Triple<T> middle = get(&Lights::Light::position);
     const T radius = get(&Lights::Light::radius);
     const bool any_ball = any(radius > 0.0f);
-    const Triple<T> position = any_ball ? Lights::point_on<T>(middle, radius, hits.surface.point,
-                                                              hits.random(streams::kLightPoint))
-                                        : middle;
+    const Triple<T> position =
+        any_ball ? Lights::point_on<T>(middle, radius, hits.surface.point, hits.random(kLightPoint))
+                 : middle;
     IncidentLight<T> light = point_light(all, hits, lights, position);
     light.is_asked = are(Kind::kPoint);
     light.pdf = pmf;
@@ -303,7 +300,7 @@ struct ChosenLights {
   }
   [[nodiscard]] RAYGATE_INLINE IncidentLight<T> environment(const Environment& all,
                                                             const Hits<T>& hits) const {
-    IncidentLight<T> light(hits, all.sample<T>(hits.random(streams::kLightPoint)));
+    IncidentLight<T> light(hits, all.sample<T>(hits.random(kLightPoint)));
     light.emission = all.radiance(light.direction);
     light.pdf = all.pdf(light.direction) * pmf;
     const MaskOf<T> is_chosen = are(Kind::kEnvironment), scatters = hits.bsdf.scatters();
@@ -317,7 +314,7 @@ struct ChosenLights {
       // Lanes without an area light also sample one; the result is unused.
       patches[k] = sources[k]->patch == kNoIndex ? 0 : sources[k]->patch;
     }
-    const LightPoint<T> point = all.sample_patches<T>(patches, hits.random(streams::kLightPoint));
+    const LightPoint<T> point = all.sample_patches<T>(patches, hits.random(kLightPoint));
     IncidentLight<T> light = area_light(all, hits, point, all.radiance_at<T>(lights, point));
     const MaskOf<T> is_chosen = are(Kind::kArea), scatters = hits.bsdf.scatters();
     light.is_asked = (light.light_cosine > 0.0f) & is_chosen & scatters;
@@ -365,7 +362,7 @@ RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits
   const auto is_first = hits.path.is_first();
   const auto scatters = hits.bsdf.scatters() & !is_first;
   if (!any(scatters) || hits.bsdf.has_rough_glass()) return;
-  const SquarePoint<T> u = hits.random(streams::kLens);
+  const SquarePoint<T> u = hits.random(kLens);
   const auto x = unpack(u.x), y = unpack(u.y);
   const auto points = unpack(hits.surface.point);
   LightPaths::View views[kCount];

@@ -7,11 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "host/bvh/bvh.h"
 #include "host/light/lights.h"
 #include "host/light/material_parameters.h"
 #include "host/light/spawn_ray.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 

@@ -5,13 +5,12 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "host/exact/exact.h"
 #include "host/light/shadow_rays.h"
 
 namespace raygate {
 
-/// The state of a path along its current ray: a record of 16 words in one cache line, since hits
-/// are shaded in another order than rays are traced. PathLanes holds several, field by field.
+/// The state of a path along its current ray: 16 words in one cache line, since hits are shaded in
+/// another order than rays are traced. PathLanes holds several, field by field.
 struct alignas(16) PathState {
   glm::vec3 throughput{1.0f};  ///< factor of light that arrives along the ray
   /// Probability density per steradian of this direction at the last scattering event; 0 if the
@@ -64,6 +63,7 @@ struct ShadingOutput {
   std::vector<FirstSurface> first_surface;  ///< by sample
   std::vector<ShadowRay> shadows;           ///< shadow rays to trace
   RayBatch next;                            ///< scattered rays to trace
+  std::uint64_t point_doubts = 0;           ///< number of hit points P that the host computed
 };
 
 }  // namespace raygate

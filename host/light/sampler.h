@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "host/base/triple.h"
+#include "host/base/elementary.h"
 
 namespace raygate {
 
@@ -69,9 +69,8 @@ struct SquarePoint {
 
 /// Returns point `index` of the stream `key`: the first two Sobol dimensions, a (0,2)-sequence. Of
 /// 2^k successive points from a multiple of 2^k on, each elementary interval of area 2^-k has one.
-/// Every stream has its own Owen scrambling of both coordinates and of the order, so that streams
-/// are independent ("Practical Hash-based Owen Scrambling", Burley 2020, with the permutation of
-/// Laine and Karras 2011).
+/// Every stream has its own Owen scrambling of both coordinates and of the order ("Practical
+/// Hash-based Owen Scrambling", Burley 2020, with the permutation of Laine and Karras 2011).
 template <class T>
 RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T>& key) {
   using Word = WordOf<T>;
@@ -81,25 +80,18 @@ RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T
   return {unit_interval(reversed_bits<Word>(x)), unit_interval(reversed_bits<Word>(y))};
 }
 
-/// The points of a pixel. A point depends only on seed, pixel, stream and index.
-class Sampler {
- public:
-  /// `seed` is that of the image; the pixel coordinates are those of the whole frame.
-  Sampler(std::uint64_t seed, std::uint32_t pixel_x, std::uint32_t pixel_y)
-      : key_(hash(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
-                  hash(pixel_x, pixel_y))) {}
+/// Returns the key of a pixel's streams, for the image's seed and coordinates in the whole frame.
+[[nodiscard]] inline std::uint32_t pixel_key(std::uint64_t seed, std::uint32_t x, std::uint32_t y) {
+  return hash(hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)),
+              hash(x, y));
+}
 
-  /// Returns the key from which streams of this pixel are derived.
-  [[nodiscard]] std::uint32_t key() const { return key_; }
-
-  /// Returns point `index` of the stream `dimension`, in [0, 1)^2.
-  [[nodiscard]] SquarePoint<float> operator()(std::uint32_t index, std::uint32_t dimension) const {
-    return sobol_point<float>(index, hash(key_, dimension));
-  }
-
- private:
-  std::uint32_t key_;
-};
+/// Returns point `index` of one of the streams of a key.
+template <class T>
+RAYGATE_INLINE SquarePoint<T> random_point(const WordOf<T>& index, const WordOf<T>& key,
+                                           std::uint32_t stream) {
+  return sobol_point<T>(index, hash(key, stream));
+}
 
 /// Two unit vectors perpendicular to the unit vector `axis` and to each other (Duff and others,
 /// "Building an orthonormal basis, revisited", 2017).
@@ -115,13 +107,14 @@ struct Frame {
   }
 };
 
-/// Returns the unit vector at an angle to the unit vector `axis`, rotated around it by the angle of
-/// the unit vector (`turned_x`, `turned_y`).
+/// Returns the unit vector at an angle to the unit vector `axis`, turned around it.
 template <class T>
 RAYGATE_INLINE Triple<T> spherical_direction(const Triple<T>& axis, const T& cosine, const T& sine,
-                                             const T& turned_x, const T& turned_y) {
+                                             const T& turns) {
   const Frame<T> frame(axis);
-  return axis * cosine + frame.u * (sine * turned_x) + frame.v * (sine * turned_y);
+  const auto turn = sine_cosine(wide(turns));
+  return axis * cosine + frame.u * (sine * narrow(turn.cosine)) +
+         frame.v * (sine * narrow(turn.sine));
 }
 
 }  // namespace raygate

@@ -9,25 +9,21 @@
 namespace raygate {
 namespace {
 
-// Points of the integral, denser at steep facets, where masking begins. By symmetry, half of all
-// azimuths suffice. Glass needs more points, as total reflection begins abruptly.
-struct Points {
-  int steps = 16, turns = 8;
-};
-
-/// Returns the fraction of light along `view` that leaves facets around +z: for mirrors if `index`
-/// is 0, otherwise for glass from both sides.
+/// Returns the fraction of light along a direction that leaves facets around +z: for mirrors if
+/// `index` is 0, otherwise for glass from both sides.
 template <class T>
 RAYGATE_INLINE FacetAlbedo::Shares<T> leaving(const T& cosine, float alpha, float index) {
   const Ggx<T> ggx({T{}, T{}, spread<T>(1.0f)}, spread<T>(alpha));
   const Triple<T> view = {root(1.0f - cosine * cosine), T{}, cosine};
-  const Points points = index == 0.0f ? Points{} : Points{32, 16};
+  // Points of the integral, denser at steep facets, where masking begins. By symmetry, half of all
+  // azimuths suffice. Glass needs more points, as total reflection begins abruptly.
+  const int steps = index == 0.0f ? 16 : 32, turns = steps / 2;
   FacetAlbedo::Shares<T> sum = {T{}, T{}};
-  for (int i = 0; i < points.steps; ++i) {
-    const float left = 1.0f - (static_cast<float>(i) + 0.5f) / static_cast<float>(points.steps);
-    const float weight = 2.0f * left / static_cast<float>(points.steps * points.turns);
-    for (int k = 0; k < points.turns; ++k) {
-      const float turn = (static_cast<float>(k) + 0.5f) / static_cast<float>(2 * points.turns);
+  for (int i = 0; i < steps; ++i) {
+    const float left = 1.0f - (static_cast<float>(i) + 0.5f) / static_cast<float>(steps);
+    const float weight = 2.0f * left / static_cast<float>(steps * turns);
+    for (int k = 0; k < turns; ++k) {
+      const float turn = (static_cast<float>(k) + 0.5f) / static_cast<float>(2 * turns);
       const Triple<T> facet = ggx.sample(view, {spread<T>(1.0f - left * left), spread<T>(turn)});
       const T inner = at_most(at_least(dot(view, facet), 0.0f), 1.0f);
       const T light = reflect(view, facet).z;

@@ -2,8 +2,6 @@
 // distribution of microfacets and a table of their albedo. T is float or FloatLanes.
 #pragma once
 
-#include "host/base/elementary.h"
-#include "host/base/triple.h"
 #include "host/light/sampler.h"
 
 namespace raygate {
@@ -63,10 +61,8 @@ struct Refraction {
 /// A rough interface of many small smooth facets: the GGX distribution of their normals (Walter,
 /// Marschner, Li and Torrance, "Microfacet models for refraction through rough surfaces", 2007),
 /// with height-correlated masking and shadowing (Heitz, "Understanding the masking-shadowing
-/// function", 2014). Single scattering: light that meets a second facet is lost.
-///
-/// alpha is the roughness, in [kLeast, 1]. Directions are unit vectors away from the surface;
-/// cosines are with the surface's unit normal.
+/// function", 2014). Single scattering: light that meets a second facet is lost. alpha is the
+/// roughness, in [kLeast, 1]. Directions are unit vectors away from the surface.
 template <class T>
 struct Ggx {
   static constexpr float kLeast = 0x1p-10f;  // resolved by float cosines
@@ -137,9 +133,9 @@ struct Ggx {
   }
 };
 
-/// Two single-scattering albedos of GGX facets, by the cosine of a direction and alpha. Each is an
-/// integral over the visible facets, computed on first use and interpolated bilinearly over square
-/// roots; the error is below 0.01 for cosines of at least 0.05.
+/// Two single-scattering albedos of GGX facets, by the cosine of a direction and alpha: integrals
+/// over the visible facets, interpolated bilinearly over square roots. The error is below 0.01 for
+/// cosines of at least 0.05.
 class FacetAlbedo {
  public:
   /// One value per lane.
@@ -190,9 +186,7 @@ class FacetAlbedo {
 
  private:
   static constexpr int kSize = 24;  // a multiple of kLanes
-  struct Cell {
-    float first = 0.0f, second = 0.0f;
-  };
+  using Cell = Shares<float>;
   /// A position between two rows or columns.
   template <class T>
   struct Place {
@@ -214,7 +208,7 @@ class FacetAlbedo {
   explicit FacetAlbedo(float index);  // index of glass, or 0 for mirrors
 
   Cell cells_[kSize][kSize];  // by alpha, then by cosine
-  Cell means_[kSize];
+  Cell means_[kSize] = {};
 };
 
 }  // namespace raygate

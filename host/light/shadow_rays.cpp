@@ -1,7 +1,6 @@
 #include "host/light/shadow_rays.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "host/light/bsdf.h"
@@ -16,20 +15,6 @@ constexpr std::size_t kManyPoints = 64;  // too few rays per light
 constexpr float kSureOfLight = 1.0f - 0x1p-10f;
 constexpr float kBeforeAreaLight = 1.0f - 0x1p-16f;
 constexpr float kNoEnd = std::numeric_limits<float>::infinity();
-
-/// Returns the fraction of light that passes straight through a hit surface, for shadows.
-/// Refractive surfaces transmit none or, if `bent`, as much as without refraction (caustics then
-/// appear in place of the shadow).
-glm::vec3 shadow_transmittance(const Scene& scene, const Bvh& bvh, const SurfaceHit& place,
-                               const MaterialParameters& material, bool bent) {
-  if (material.refracts && !bent) return glm::vec3(0.0f);
-  const HitKind kind = material.kind | weights_needed(scene, place);
-  const SurfaceHit places[] = {place};
-  const MaterialParameters* const materials[] = {&material};
-  const Triple<float> through =
-      Bsdf<float>(surface_at<float>(scene, bvh, kind, places), kind, materials).transmission();
-  return {through.x, through.y, through.z};
-}
 
 }  // namespace
 
@@ -100,17 +85,15 @@ void ShadowRays::trace_from_surface(std::span<ShadowRay> rays) {
   }
   origins_.resize(spawn_queries_.size());
   spawner_.find(spawn_queries_, origins_);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < next_.size(); ++i) {
-    if (!origins_[i]) {
-      rays[next_[i].index].radiance = glm::vec3(0.0f);
-      continue;
+  segments_.swap(next_);
+  next_.clear();
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    if (origins_[i]) {
+      next_.emplace_back(segments_[i].index, *origins_[i], spawn_queries_[i].primitive);
+    } else {
+      rays[segments_[i].index].radiance = glm::vec3(0.0f);
     }
-    next_[kept] = next_[i];
-    next_[kept].source = spawn_queries_[i].primitive;
-    next_[kept++].from = *origins_[i];
   }
-  next_.erase(next_.begin() + static_cast<std::ptrdiff_t>(kept), next_.end());
 }
 
 /// Traces all segments. Searches may end at hits before the fraction `enough` of the distance.
@@ -167,8 +150,11 @@ glm::vec3 ShadowRays::transmittance(std::size_t number) const {
                             instance_at(scene_, stored)};
   const MaterialParameters& material = materials_[place.face->material];
   if (material.has_mask && is_masked_out(scene_, bvh_, place)) return glm::vec3(1.0f);
-  if ((material.kind & kTransmits) == 0) return glm::vec3(0.0f);
-  return shadow_transmittance(scene_, bvh_, place, material, through_refraction_);
+  if ((material.kind & kTransmits) == 0 || (material.refracts && !through_refraction_)) {
+    return glm::vec3(0.0f);
+  }
+  const Triple<float> through = bsdf_at(scene_, bvh_, place, material).transmission;
+  return {through.x, through.y, through.z};
 }
 
 }  // namespace raygate

@@ -7,14 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "host/bvh/bvh.h"
 #include "host/intersect/intersector.h"
 #include "host/light/lights.h"
-#include "host/light/material_parameters.h"
 #include "host/light/prepared_scene.h"
 #include "host/light/spawn_ray.h"
-#include "host/light/surface.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -40,16 +36,15 @@ struct ShadowRay : LightSample {
 /// Traces shadow rays in batches.
 ///
 /// Rays of a point light start at the light, so that they share its polygon records, and end at the
-/// surface. Rounding the direction moves the end by about one float; so a hit in the last 2^-10 of
-/// the distance is not conclusive, and the ray is traced again from the surface. Hits of the
-/// surface's own triangle are ignored, since the ray's end is on the light's side of it. With so
-/// many point lights that few have several rays, all rays start at the surface. Rays to area lights
-/// start at the surface and end at 1 - 2^-16 of the distance; the light's own triangle is ignored.
-/// Rays to distant lights start at the surface and have no end. Surfaces that transmit light
-/// without refraction attenuate it.
+/// surface, whose own triangle is ignored. Rounding the direction moves the end by about one float;
+/// so a hit in the last 2^-10 of the distance is not conclusive, and the ray is traced again from
+/// the surface. With so many point lights that few have several rays, and for other lights, rays
+/// start at the surface. Rays to area lights end at 1 - 2^-16 of the distance, and the light's own
+/// triangle is ignored. Surfaces that transmit light without refraction attenuate it.
 class ShadowRays {
  public:
-  /// `through_refraction`: glass attenuates shadow rays as if it did not refract.
+  /// `through_refraction`: glass attenuates shadow rays as if it did not refract, so that caustics
+  /// replace its shadow.
   ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
              bool through_refraction);
 

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "host/base/triple.h"
 #include "host/bvh/closest_point.h"
@@ -19,7 +17,7 @@
 // - a.y >= sum w_i g_i for every y of S. If no g_i is negative, the plane between T and S keeps X
 // at least sum w_i g_i / |a| >= w sum g_i / |a| away from S, where w is the least weight. g_i may
 // be negative by up to `slack`, for rounding, which margin() compensates. The bound holds for every
-// a. The vectors a that are tried separate triangles that touch in an edge or a corner.
+// a; those tried separate triangles that touch in an edge or a corner.
 
 namespace raygate {
 namespace {
@@ -31,12 +29,9 @@ class NeighborClearanceSearch {
   NeighborClearanceSearch(const Corners& corners, double slack)
       : corners_(corners), from_(corners[0]), reach_(spawn_reach(corners)), slack_(slack) {
     const auto grown = static_cast<float>(1.125 * reach_);  // more than rounding removes
-    for (int k = 0; k < 3; ++k) {
-      vertex_[k] = corners[k] - from_;
-      low_[k] = static_cast<float>(std::min({corners[0][k], corners[1][k], corners[2][k]})) - grown;
-      high_[k] =
-          static_cast<float>(std::max({corners[0][k], corners[1][k], corners[2][k]})) + grown;
-    }
+    low = glm::vec3(lowest(corners)) - grown;
+    high = glm::vec3(highest(corners)) + grown;
+    for (int k = 0; k < 3; ++k) vertex_[k] = corners[k] - from_;
     const glm::dvec3 &b = vertex_[1], &c = vertex_[2];
     cross({b.x, b.y, b.z}, {c.x, c.y, c.z}, normal_, normal_sizes_);
     const glm::dvec3 normal(normal_[0], normal_[1], normal_[2]);
@@ -67,9 +62,6 @@ class NeighborClearanceSearch {
 
   /// Returns whether a positive c is still possible.
   [[nodiscard]] bool is_possible() const { return length_ > 0.0; }
-  /// Return the corners of the box outside which triangles are irrelevant.
-  [[nodiscard]] const glm::vec3& low() const { return low_; }
-  [[nodiscard]] const glm::vec3& high() const { return high_; }
 
   /// Updates c and the overlaps for the triangles of a leaf, except `primitive` itself.
   template <Vectors kCode>
@@ -92,8 +84,13 @@ class NeighborClearanceSearch {
       const std::uint32_t other = leaf.first + static_cast<std::uint32_t>(i);
       const Corners others = bvh.corners_of(other);
       if (lies_beyond(others, corners_, 1) && lies_beyond(others, corners_, -1)) continue;
-      if (apart[i] < kShareOfOverlaps * most_ && overlaps_.size() < kMaxOverlaps) {
-        overlaps_.push_back(overlap_of(other, others));
+      if (apart[i] < kShareOfOverlaps * most_ && overlaps.size() < kMaxOverlaps) {
+        Overlap& overlap = overlaps.emplace_back();
+        overlap.primitive = other;
+        for (int k = 0; k < 3; ++k) {
+          overlap.low[k] = float_below(lowest(others)[k]);
+          overlap.high[k] = float_above(highest(others)[k]);
+        }
       } else {
         length_ = apart[i];
       }
@@ -106,7 +103,7 @@ class NeighborClearanceSearch {
     if (!is_possible()) return result;
     // Accounts for rounding of unit vectors.
     const float length = float_below(length_ * (1.0 - 0x1p-20));
-    result.length = overlaps_.empty() ? length : -length;
+    result.length = overlaps.empty() ? length : -length;
     int exponent;
     std::frexp(kNormalError * (normal_sizes_[0] + normal_sizes_[1] + normal_sizes_[2]), &exponent);
     const double scale = std::ldexp(1.0, -exponent);
@@ -118,7 +115,9 @@ class NeighborClearanceSearch {
     }
     return result;
   }
-  [[nodiscard]] Overlaps& overlaps() { return overlaps_; }
+
+  glm::vec3 low, high;  ///< the box outside which triangles are irrelevant
+  Overlaps overlaps;    ///< among the triangles so far
 
  private:
   using Vectors3 = Triple<DoubleQuad>;
@@ -146,14 +145,8 @@ class NeighborClearanceSearch {
     return choose(size > 0.0, Vectors3{v.x / size, v.y / size, v.z / size}, zero<DoubleQuad>());
   }
 
-  static Overlap overlap_of(std::uint32_t primitive, const Corners& corners) {
-    Overlap overlap{primitive, {}, {}};
-    for (int k = 0; k < 3; ++k) {
-      overlap.low[k] = float_below(std::min({corners[0][k], corners[1][k], corners[2][k]}));
-      overlap.high[k] = float_above(std::max({corners[0][k], corners[1][k], corners[2][k]}));
-    }
-    return overlap;
-  }
+  static glm::dvec3 lowest(const Corners& t) { return glm::min(glm::min(t[0], t[1]), t[2]); }
+  static glm::dvec3 highest(const Corners& t) { return glm::max(glm::max(t[0], t[1]), t[2]); }
 
   /// Returns c for each of the triangles in the mask alone, or any value of at least length_.
   /// `exact`: their corners, if `corners` are rounded; otherwise null.
@@ -173,8 +166,8 @@ class NeighborClearanceSearch {
         }
         coordinates[v][k] = coordinate - from_[static_cast<int>(k)];
       }
-      near &= (minimum(minimum(corner[0], corner[1]), corner[2]) <= high_[static_cast<int>(k)]) &
-              (maximum(maximum(corner[0], corner[1]), corner[2]) >= low_[static_cast<int>(k)]);
+      near &= (minimum(minimum(corner[0], corner[1]), corner[2]) <= high[static_cast<int>(k)]) &
+              (maximum(maximum(corner[0], corner[1]), corner[2]) >= low[static_cast<int>(k)]);
     }
     Vectors3 y[3];
     for (int v = 0; v < 3; ++v) y[v] = {coordinates[v][0], coordinates[v][1], coordinates[v][2]};
@@ -219,7 +212,6 @@ class NeighborClearanceSearch {
   const Corners& corners_;
   glm::dvec3 from_;  // origin of relative coordinates
   double reach_, slack_;
-  glm::vec3 low_, high_;
   glm::dvec3 vertex_[3], edge_[3];
   // Axes that do not depend on the other triangle: perpendicular to an edge and in a coordinate
   // plane; perpendicular to an edge and in the triangle's plane; the normal, both ways.
@@ -228,7 +220,6 @@ class NeighborClearanceSearch {
   double normal_[3], normal_sizes_[3];
   double most_, length_;  // largest possible c, and c so far
   int leaves_ = 0;        // number of leaves considered
-  Overlaps overlaps_;
 };
 
 float largest_coordinate(const Bvh& bvh) {
@@ -270,10 +261,10 @@ NeighborClearances::Found NeighborClearances::compute(std::uint32_t primitive) c
         search.consider<code()>(bvh_, leaf, primitive);
         return !search.is_possible();
       };
-      (void)any_leaf_near<code()>(bvh_, search.low(), search.high(), visit);
+      (void)any_leaf_near<code()>(bvh_, search.low, search.high, visit);
     });
   }
-  return {search.found(), std::move(search.overlaps())};
+  return {search.found(), std::move(search.overlaps)};
 }
 
 const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const {
@@ -301,9 +292,9 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 
 // Side of candidate 0
 //
-// The error of X in
-// double is at most u / 16 on each axis; otherwise the lane is rejected. With X and m this
-// accurate, and no coordinate rounded by more than u / 2, candidate 0 is beyond the plane by
+// The error of X in double is at most u / 16 on each axis; otherwise the lane is rejected. With X
+// and m this accurate, and no coordinate rounded by more than u / 2, candidate 0 is beyond the
+// plane by
 //   u / |n|_max - (u / 2 + u / 16) |n|_1 > u (1 - 1.37 * 9 / 16) / |n|_max > 0.
 //
 // Error of X: a component of NeighborClearance::normal is off by less than 1, so D = (A - O) . N is
@@ -328,26 +319,6 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 // (8 of the 16 u suffice) and no overlap is within 16 u of the candidate.
 
 namespace {
-
-constexpr int kLastStep = 24;  // 2^24 steps: the magnitude of X's coordinate
-
-/// X in double, and the size of a step.
-struct HitPoint {
-  glm::dvec3 point;
-  double error;  // error bound of each coordinate
-  double step;   // u
-
-  HitPoint(const Ray& ray, const Interval& t) {
-    const glm::dvec3 direction(ray.direction), origin(ray.origin);
-    const double middle = 0.5 * (t.low + t.high);
-    point = origin + middle * direction;
-    error = 0x1p-51 * (largest(origin) + largest(middle * direction)) +
-            (t.high - t.low) * largest(direction);
-    const auto size = static_cast<float>(largest(point));
-    const float next = std::nextafter(size, std::numeric_limits<float>::infinity());
-    step = std::max(static_cast<double>(next) - static_cast<double>(size), error);
-  }
-};
 
 /// Returns whether double precision proves that no point of the triangle is in the box, by the
 /// separating axis theorem. The box's own axes have been tested before.
@@ -377,14 +348,6 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
     }
   }
   return separates(triangle_normal(triangle));
-}
-
-/// Returns the side of `other` on which the ray is just before or after it hits `hit`; 0: coplanar.
-int side_of_ray(const Ray& ray, const Corners& hit, const Corners& other, SpawnSide side) {
-  const int at_hit = plane_side_at_hit(ray, hit, other);
-  if (at_hit != 0) return at_hit;
-  const int before = orient3d(ray.origin, other);
-  return side == SpawnSide::kIncident ? before : -before;
 }
 
 /// Four hits at which rays are spawned.
@@ -441,12 +404,6 @@ RAYGATE_INLINE Triple<DoubleQuad> widened(const Triple<FloatQuad>& x) {
 
 /// Returns the distance from non-negative floats to the next ones.
 RAYGATE_INLINE FloatQuad step_of(const FloatQuad& x) { return float_of(bits_in(x) + 1) - x; }
-
-/// Returns the largest magnitudes.
-template <class T>
-RAYGATE_INLINE T largest_size(const Triple<T>& v) {
-  return maximum(absolute(v.z), maximum(absolute(v.y), absolute(v.x)));
-}
 
 /// Sets `point` to candidate 0 of each hit, on the incident side if `way` is -1 and on the
 /// transmitted side if it is 1. Valid if `is_clear` is -1 and no overlap is within `reach`.
@@ -587,9 +544,16 @@ void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin
 
 std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive,
                                             SpawnSide side) {
+  constexpr int kLastStep = 24;  // 2^24 steps: the magnitude of X's coordinate
   const Corners hit = bvh_.corners_of(primitive);
   const Interval t = hit_distance(ray, hit);
-  const HitPoint x(ray, t);
+  const glm::dvec3 from(ray.origin), along = 0.5 * (t.low + t.high) * glm::dvec3(ray.direction);
+  const glm::dvec3 x = from + along;
+  const double error = 0x1p-51 * (largest(from) + largest(along)) +
+                       (t.high - t.low) * static_cast<double>(largest(ray.direction));
+  const auto size = static_cast<float>(largest(x));
+  const float next = std::nextafter(size, std::numeric_limits<float>::infinity());
+  const double step = std::max(static_cast<double>(next) - static_cast<double>(size), error);  // u
   const int before = orient3d(ray.origin, hit);
   const int sign = side == SpawnSide::kIncident ? before : -before;
   const glm::dvec3 normal = triangle_normal(hit);
@@ -601,21 +565,25 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
     if (orient3d(candidate, hit) != sign) return false;
     // The box of X and the candidate, enlarged for the error of X and for rounding.
     const glm::dvec3 c(candidate);
-    const glm::vec3 low(glm::min(c, x.point) - 2.0 * x.step);
-    const glm::vec3 high(glm::max(c, x.point) + 2.0 * x.step);
+    const glm::vec3 low(glm::min(c, x) - 2.0 * step), high(glm::max(c, x) + 2.0 * step);
     const auto is_between = [&](std::uint32_t other_primitive, const Corners& other) {
       if (other_primitive == primitive || surely_apart(low, high, other) ||
           lies_beyond(other, hit, sign)) {
         return false;
       }
-      const int wanted = side_of_ray(ray, hit, other, side);
+      // The side of `other` on which the ray is just before or after the hit; 0: coplanar.
+      int wanted = plane_side_at_hit(ray, hit, other);
+      if (wanted == 0) {
+        const int from = orient3d(ray.origin, other);
+        wanted = side == SpawnSide::kIncident ? from : -from;
+      }
       return wanted != 0 && orient3d(candidate, other) != wanted;
     };
     return !any_primitive_near(bvh_, low, high, is_between);
   };
   for (int k = 0; k <= kLastStep; ++k) {
     for (const glm::dvec3& offset : offsets) {
-      const glm::vec3 candidate(x.point + std::ldexp(x.step, k) * offset);
+      const glm::vec3 candidate(x + std::ldexp(step, k) * offset);
       if (good(candidate)) return candidate;
     }
   }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <glm/glm.hpp>
@@ -14,9 +13,7 @@
 #include <vector>
 
 #include "host/base/lanes.h"
-#include "host/base/vectors.h"
 #include "host/bvh/bvh.h"
-#include "host/exact/exact.h"
 
 namespace raygate {
 
@@ -36,8 +33,8 @@ using Overlaps = std::vector<Overlap>;
 ///
 /// Every other triangle is at least c w - margin() away from each point of this one, where w is the
 /// smallest of the point's barycentric coordinates; or it is farther than spawn_reach(), one of the
-/// overlaps, or in the same plane. Most triangles touch others only at edges and vertices: they
-/// have no overlaps, and c is a fraction of their smallest height.
+/// overlaps, or in the same plane. Triangles that touch others only at edges and vertices have no
+/// overlaps, and c is a fraction of their smallest height.
 struct alignas(64) NeighborClearance {
   double normal[3] = {};  ///< (B-A) x (C-A) times a power of two: off by less than 1
   /// c, at most 1/8 of the smallest height. 0: unknown. Negative if there are overlaps.
@@ -51,12 +48,11 @@ struct alignas(64) NeighborClearance {
 [[nodiscard]] double spawn_reach(const Corners& corners);
 
 /// Returns whether no point of `other` is strictly on the given side (as in orient3d) of the plane
-/// of `hit`. Straight lines from that plane to that side then miss `other`, so neighbours along a
-/// convex edge are irrelevant, however flat the edge is.
+/// of `hit`. Lines from that plane to that side then miss `other`.
 [[nodiscard]] bool lies_beyond(const Corners& other, const Corners& hit, int side);
 
-/// The clearances and overlaps of all triangles of a BVH. Those of instances are not stored.
-/// Thread-safe: computed on first use, with the same result in every thread.
+/// The clearances and overlaps of all triangles of a BVH, computed on first use. Those of instances
+/// are not stored. Thread-safe.
 class NeighborClearances {
  public:
   /// `bvh` must outlive this object.
@@ -127,8 +123,7 @@ struct SpawnQuery {
 /// The origin of the spawned ray, if there is one.
 struct SpawnOrigin {
   glm::vec3 point{0.0f};
-  std::uint32_t exists =
-      0;  ///< non-zero if there is an origin (an integer, so that lanes store it)
+  std::uint32_t exists = 0;  ///< non-zero if there is an origin
 
   explicit operator bool() const { return exists != 0; }
   const glm::vec3& operator*() const { return point; }
@@ -144,16 +139,12 @@ struct SpawnOrigin {
 ///   * a ray from O' that leaves the triangle's plane (decided exactly by leaves()) never hits that
 ///     triangle again.
 ///
-/// X is computed in double from the corners, not from the unit's P, whose error would move O'
-/// farther from the surface.
-///
-/// Distance: let u be one float step (ulp) of X's largest coordinate, or the error of X in double
-/// if that is larger. If no other triangle is within 4 u of X, O' is within 1.5 u (3 u next to a
-/// power of two) of X in double on each axis (proof in spawn_ray.cpp); the distance from the exact
-/// X is larger by the error of X (1.528 u far from the origin). In narrower corners O' moves away
-/// from X by powers of two, along the normal or the ray, up to the ray's origin, so that a convex
-/// room always has an O' for kIncident. Corners narrower than the precision of float may have none;
-/// the path ends there.
+/// Distance: let u be one float step (ulp) of X's largest coordinate, or the error of X, which is
+/// computed in double from the corners, if that is larger. If no other triangle is within 4 u of X,
+/// O' is within 1.5 u (3 u next to a power of two) of the computed X on each axis (proof in
+/// spawn_ray.cpp). In narrower corners O' moves away from X by powers of two, along the normal or
+/// the ray, up to the ray's origin, so that a convex room always has an O' for kIncident. Corners
+/// narrower than the precision of float may have none; the path ends there.
 class RaySpawner {
  public:
   /// `clearances` must outlive this object.

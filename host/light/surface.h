@@ -7,11 +7,9 @@
 
 #include "host/base/triple.h"
 #include "host/bvh/bvh.h"
-#include "host/exact/exact.h"
 #include "host/light/material_parameters.h"
 #include "host/scene/instances.h"
 #include "host/scene/material_lookup.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -141,13 +139,14 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
                                      const SurfaceHit (&places)[kLanesOf<T>]) {
   using Wide = WideOf<T>;
   constexpr int kCount = kLanesOf<T>;
-  const auto ray = [&](int k) RAYGATE_BODY -> const Ray& { return *places[k].ray; };
-  const Triple<T> origin =
-      gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& { return ray(k).origin; });
-  const Triple<T> direction =
-      gather<T>([&](int k) RAYGATE_BODY -> const glm::vec3& { return ray(k).direction; });
+  const Ray* rays[kCount];
   Corners own_corners[kCount];
-  for (int k = 0; k < kCount; ++k) own_corners[k] = bvh.corners_of(places[k].primitive);
+  for (int k = 0; k < kCount; ++k) {
+    rays[k] = places[k].ray;
+    own_corners[k] = bvh.corners_of(places[k].primitive);
+  }
+  const Triple<T> origin = gather<T>(rays, &Ray::origin);
+  const Triple<T> direction = gather<T>(rays, &Ray::direction);
   const auto corner = [&](std::size_t c) RAYGATE_BODY {
     return gather<T>([&](int k) RAYGATE_BODY -> const glm::dvec3& { return own_corners[k][c]; });
   };
@@ -183,7 +182,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   const auto is_sure = unpack(slope.is_sure);
   surface.side = gather<T>([&](int k) RAYGATE_BODY {
     return is_sure[k] ? values[k]
-                      : static_cast<float>(direction_side(ray(k).direction, own_corners[k]));
+                      : static_cast<float>(direction_side(rays[k]->direction, own_corners[k]));
   });
   const auto towards = surface.side < 0.0f;  // against the triangle's own normal
 
@@ -193,11 +192,10 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
     const Triple<Wide> unscaled = unscaled_weights(wide(origin), wide(direction), corners);
     const Wide inverse = 1.0 / (unscaled.x + unscaled.y + unscaled.z);
     Triple<T> weights = narrow(unscaled * inverse);
-    const T third = spread<T>(1.0f / 3.0f);  // for triangles without area
-    const auto is_number = weights.x + weights.y + weights.z == weights.x + weights.y + weights.z;
-    weights = {choose(is_number, at_least(weights.x, 0.0f), third),
-               choose(is_number, at_least(weights.y, 0.0f), third),
-               choose(is_number, at_least(weights.z, 0.0f), third)};
+    const T third = spread<T>(1.0f / 3.0f), sum_of_weights = weights.x + weights.y + weights.z;
+    weights = {at_least(weights.x, 0.0f), at_least(weights.y, 0.0f), at_least(weights.z, 0.0f)};
+    // Triangles without area.
+    weights = choose(sum_of_weights == sum_of_weights, weights, {third, third, third});
     const auto weight = unpack(weights);
     surface.colour = gather<T>([&](int k) RAYGATE_BODY {
       const glm::vec3 diffuse = diffuse_at(scene, *places[k].face, glm::dvec3(weight[k]));

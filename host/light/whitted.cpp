@@ -1,6 +1,6 @@
 // Whitted's ray tracing: all lights, mirrors and glass; and the emission that the camera sees
 // directly, in mirrors and through glass.
-#include "host/light/shade.h"
+#include "host/light/hits.h"
 
 namespace raygate {
 namespace {
@@ -96,11 +96,11 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   ScatteredRays<T> next(hits);
   next.path.pdf = T{};
   next.path.scattered_at = next.path.normal = zero<T>();
-  next.path.throughput = hits.path.throughput * bsdf.mirror();
-  Triple<T> facet = surface.normal, transmitted = bsdf.transmission();
+  next.path.throughput = hits.path.throughput * bsdf.mirror;
+  Triple<T> facet = surface.normal, transmitted = bsdf.transmission;
   if (has_rough_facets(hits)) {
     // A random facet (Cook, Porter and Carpenter 1984).
-    const MetallicRoughnessLobes<T>& facets = bsdf.facets();
+    const MetallicRoughnessLobes<T>& facets = bsdf.facets;
     facet = facets.ggx.sample(surface.view, hits.random(kRoughFacet));
     const T cosine = at_most(at_least(dot(surface.view, facet), 0.0f), 1.0f);
     Triple<T> reflected = if_narrow(facets.ggx, facets.schlick(schlick_weight(cosine)));
@@ -108,7 +108,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
       const T glass = facets.glass * facets.glass_gain,
               mirrored = glass * fresnel_reflectance(cosine, facets.eta);
       reflected = reflected + facets.grey(mirrored);
-      const Refraction<T> bent(surface.view, facet, bsdf.eta());
+      const Refraction<T> bent(surface.view, facet, bsdf.eta);
       transmitted = facets.tint * ((glass - mirrored) * facets.g1(bent.direction));
     }
     reflected = reflected * facets.g2_over_g1(reflect(surface.view, facet));
@@ -128,7 +128,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
   next.is_wanted = worthwhile(shading, next.path.throughput);
   if (!goes_on) {
     const T least = minimum(minimum(transmitted.x, transmitted.y), transmitted.z);
-    next.is_wanted = next.is_wanted & !bsdf.is_refracting() & !(least < 1.0f);
+    next.is_wanted = next.is_wanted & !bsdf.is_refracting & !(least < 1.0f);
   }
   if (any(next.is_wanted)) {
     const MaskOf<T> is_way = next.pass_through(hits, facet);
@@ -157,11 +157,11 @@ RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
   };
   if ((hits.kind & kMirrors) != 0) {
     next.reflect_off(hits, normal);
-    send(0, bsdf.mirror(), T{} == 0.0f);
+    send(0, bsdf.mirror, T{} == 0.0f);
   }
   if ((hits.kind & kTransmits) != 0) {
     const MaskOf<T> is_way = next.pass_through(hits, normal);
-    send(1, bsdf.transmission(), is_way);
+    send(1, bsdf.transmission, is_way);
   }
 }
 
@@ -173,15 +173,15 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     const Bsdf<T>& bsdf = hits.bsdf;
     const bool goes_on = block.batch->depth < shading.max_depth;
-    Triple<T> emission = hits.emission(), glossy = bsdf.glossy();
+    Triple<T> emission = hits.emission(), glossy = bsdf.glossy;
     // Emission is omitted if lights were sampled at the previous hit.
     if ((kind & kEmits) != 0) emission = choose(hits.path.pdf > 0.0f, zero<T>(), emission);
     if (goes_on && has_rough_facets(hits)) {
-      const MetallicRoughnessLobes<T>& facets = bsdf.facets();
+      const MetallicRoughnessLobes<T>& facets = bsdf.facets;
       glossy = facets.specular - if_narrow(facets.ggx, facets.specular);
     }
     const Triple<T> shown =
-        emission + bsdf.unlit() + (bsdf.diffuse() + glossy) * spread<T>(shading.ambient);
+        emission + bsdf.unlit + (bsdf.diffuse + glossy) * spread<T>(shading.ambient);
     hits.set_radiance(hits.path.throughput * shown);
     sample_all_lights(shading, hits);
     if (goes_on || (kind & kTransmits) != 0) spawn_specular_rays(shading, hits, goes_on);
@@ -194,8 +194,7 @@ void shade_emitters(const ShadingScene& shading, HitBlock& block, HitKind kind,
     using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
     Triple<T> emitted = zero<T>();
     if ((kind & kEmits) != 0) {
-      emitted =
-          choose(hits.are_supersampled(), hits.path.throughput * hits.bsdf.emission(), emitted);
+      emitted = choose(hits.are_supersampled(), hits.path.throughput * hits.bsdf.emission, emitted);
     }
     hits.set_radiance(emitted);
     if (block.batch->depth > shading.max_depth || hits.bsdf.has_rough_glass()) return;

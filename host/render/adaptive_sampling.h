@@ -4,14 +4,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "host/film/film.h"
 #include "host/render/render_settings.h"
 
 namespace raygate {
 
 /// Error is estimated per block of 4 x 4 pixels, so that a pixel with a small error by chance does
-/// not stop early. Blocks form a grid from the frame's upper left corner. Blocks are independent of
-/// each other, so it does not matter which are rendered together.
+/// not stop early. Blocks form a grid from the frame's upper left corner and are independent.
 inline constexpr int kErrorBlock = 4;
 
 /// Errors are checked at 8, 16, 32, ... samples per pixel. The first check yields no error
@@ -46,10 +44,9 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
 ///
 /// The error is the root mean square over the block of the change in display steps (display_steps)
 /// by the last doubling of the samples. If the halves of the samples were independent, its expected
-/// square would be the variance of the mean: for means a and b, the mean of all is (a + b) / 2, a
-/// change of (b - a) / 2. The samples are scrambled Sobol points, whose halves complement each
-/// other, so the change slightly overestimates the error. The 95 % interval is 2.12 errors to each
-/// side (Student's t with 16 degrees of freedom).
+/// square would be the variance of the mean: for means a and b, the change is (b - a) / 2. Halves
+/// of scrambled Sobol points complement each other, so it slightly overestimates the error. The
+/// 95 % interval is 2.12 errors to each side (Student's t with 16 degrees of freedom).
 void update_block_error(Film& film, int x, int y, double exposure);
 
 struct PixelSamples {
@@ -62,8 +59,8 @@ struct PixelSamples {
 
 /// Returns the samples below `end` that the pixels of `tile` lack. With RenderSettings::error,
 /// pixels that have converged are skipped, and if few remain they take samples beyond `end`, so
-/// that batches have many rays. Pixels are ordered in squares of 8 x 8 and within these in blocks
-/// of 4 x 2, which become the cones and packets of intersectors.
+/// that batches have many rays. Pixels are in squares of 8 x 8 and within these in blocks of 4 x 2,
+/// which become the cones and packets of intersectors.
 [[nodiscard]] std::vector<PixelSamples> samples_to_trace(const RenderSettings& settings,
                                                          const Film& film, const PixelRect& tile,
                                                          int end);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "host/base/measure.h"
 #include "host/render/tiles.h"
@@ -34,12 +35,13 @@ HistoryMask with_prefixes(HistoryMask histories) {
 }  // namespace
 
 EmitterSupersampler::EmitterSupersampler(const RenderContext& context, Intersector& intersector,
-                                         bool counts_work)
+                                         bool counts_work, RenderStats& stats)
     : context_(context),
       intersector_(intersector),
       integrator_(IntegratorKind::kEmitters, context.prepared, context.lights, context.settings),
       counts_work_(counts_work),
-      all_(kDirect) {
+      all_(kDirect),
+      stats_(stats) {
   // Whitted images have few samples: finding more histories would take longer than it saves.
   if (context.settings.integrator == IntegratorKind::kPath &&
       std::ranges::any_of(context.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
@@ -80,6 +82,7 @@ void EmitterSupersampler::trace() {
     for (std::size_t i = 0; i < rays; i += integrator_.block_size()) {
       integrator_.shade(batch_, hits_, i, std::min(rays, i + integrator_.block_size()), output_);
     }
+    stats_.point_doubts += std::exchange(output_.point_doubts, 0);
     stats_.shade_seconds += watch.lap();
   }
 }
@@ -165,9 +168,9 @@ void EmitterSupersampler::supersample(std::span<const PixelSamples> pixels,
   for (std::size_t p = 0; p < pixels.size(); ++p) {
     const PixelSamples& pixel = pixels[p];
     if (histories[pixel.index] == 0) continue;
-    const Sampler sampler(context_.settings.seed, pixel.x, pixel.y);
+    const std::uint32_t key = pixel_key(context_.settings.seed, pixel.x, pixel.y);
     for (int i = pixel.first * kRaysPerSample; i < pixel.end * kRaysPerSample; ++i) {
-      add(camera_ray(context_, pixel.x, pixel.y, sampler, static_cast<std::uint32_t>(i),
+      add(camera_ray(context_, pixel.x, pixel.y, key, static_cast<std::uint32_t>(i),
                      kEmitterStream),
           histories[pixel.index]);
       pixel_of.push_back(p);
@@ -175,13 +178,6 @@ void EmitterSupersampler::supersample(std::span<const PixelSamples> pixels,
     }
   }
   trace_them();
-}
-
-void EmitterSupersampler::add_to(RenderStats& stats) const {
-  stats.rays += stats_.rays;
-  stats.camera_rays += stats_.camera_rays;
-  stats.shade_seconds += stats_.shade_seconds;
-  stats.point_doubts += integrator_.point_doubts();
 }
 
 }  // namespace raygate

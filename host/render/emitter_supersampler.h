@@ -7,10 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/film/film.h"
-#include "host/intersect/intersector.h"
 #include "host/light/integrator.h"
-#include "host/light/ray_batch.h"
 #include "host/render/adaptive_sampling.h"
 #include "host/render/render_context.h"
 
@@ -20,19 +17,20 @@ namespace raygate {
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 
-/// Emitters are usually much brighter than their surroundings, and the pixels on their outlines are
-/// the noisiest of an image, whether the camera sees them directly or through up to four mirrors
-/// and glass interfaces. Emission along such a path is cheap to compute: it needs no lights,
-/// shadows or choice of a lobe. So these pixels get additional rays that collect emission only, and
-/// the pixel's samples omit it.
+/// Emitters are much brighter than their surroundings, so pixels on their outlines are the noisiest
+/// of an image, whether the camera sees them directly or through up to four mirrors and glass
+/// interfaces. These pixels get additional rays that collect emission only, which is cheap: no
+/// lights, shadows or choice of a lobe. The pixel's samples omit it.
 ///
 /// A pixel has a history if rays through pixel corners, within the radius of the pixel's filter,
 /// find different emission with it. The choice does not depend on any sample, so it adds no bias.
 /// Emitters smaller than a pixel and between all corners are not found.
 class EmitterSupersampler {
  public:
-  /// The references must outlive this object. `counts_work`: counts tests and doubts of rays.
-  EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work);
+  /// The references must outlive this object. `counts_work`: counts tests and doubts of rays. Adds
+  /// the numbers of rays and point doubts, and the shading time, to `stats`.
+  EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work,
+                      RenderStats& stats);
 
   /// Finds the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
   /// Adds the work to `work`, by pixel of the tile, unless that is empty.
@@ -42,8 +40,6 @@ class EmitterSupersampler {
   /// Adds to sums[i] the emission that samples of pixels[i] omit, and the work to work[i], if any.
   void supersample(std::span<const PixelSamples> pixels, std::span<const HistoryMask> histories,
                    std::span<std::array<ExactAccumulator, 3>> sums, std::span<RayWork> work);
-
-  void add_to(RenderStats& stats) const;
 
  private:
   void add(const Ray& ray, HistoryMask histories);
@@ -58,7 +54,7 @@ class EmitterSupersampler {
   bool counts_work_;
   HistoryMask all_;     // histories that can occur
   float least_ = 0.0f;  // dimmer emission is not supersampled
-  RenderStats stats_;
+  RenderStats& stats_;
   RayBatch batch_;
   ShadingOutput output_;
   std::vector<NearestHit> hits_;

@@ -5,15 +5,8 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "host/film/film.h"
-#include "host/intersect/intersector.h"
 #include "host/light/light_paths.h"
-#include "host/light/lights.h"
-#include "host/light/prepared_scene.h"
-#include "host/light/ray_batch.h"
-#include "host/light/sampler.h"
 #include "host/render/render_settings.h"
-#include "host/scene/camera.h"
 
 namespace raygate {
 
@@ -36,29 +29,24 @@ struct RenderContext {
 // Streams of a pixel's random numbers.
 inline constexpr std::uint32_t kFilterStream = 0, kEmitterStream = 7, kLensStream = 8;
 
-/// Returns the camera ray of sample `index` of a pixel. `sampler` is the pixel's; `stream` is the
+/// Returns the camera ray of sample `index` of a pixel. `key` is its pixel_key; `stream` is the
 /// stream of the position in the filter. With one sample per pixel the ray goes through the centres
 /// of pixel and lens.
-[[nodiscard]] inline Ray camera_ray(const RenderContext& context, int pixel_x, int pixel_y,
-                                    const Sampler& sampler, std::uint32_t index,
-                                    std::uint32_t stream) {
+[[nodiscard]] RAYGATE_INLINE Ray camera_ray(const RenderContext& context, int pixel_x, int pixel_y,
+                                            std::uint32_t key, std::uint32_t index,
+                                            std::uint32_t stream) {
   const RenderSettings& settings = context.settings;
   const Camera& camera = context.camera;
   glm::dvec2 offset(0.0), lens(0.0);
   if (settings.samples > 1) {
-    const SquarePoint<float> u = sampler(index, stream);
+    const auto u = random_point<float>(index, key, stream);
     offset = filter_offset(settings.filter, {u.x, u.y});
   }
   const double x = (pixel_x + 0.5 + offset.x) / settings.width;
   const double y = (pixel_y + 0.5 + offset.y) / settings.height;
-  if (camera.is_pinhole()) {
-    Ray ray;
-    ray.origin = camera.eye();
-    ray.direction = camera.direction(x, y);
-    return ray;
-  }
+  if (camera.is_pinhole()) return {camera.eye(), camera.direction(x, y)};
   if (settings.samples > 1 && camera.aperture() > 0.0) {
-    const SquarePoint<float> u = sampler(index, kLensStream);
+    const auto u = random_point<float>(index, key, kLensStream);
     lens = {u.x, u.y};
   }
   return camera.ray(x, y, lens);

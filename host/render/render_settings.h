@@ -5,13 +5,13 @@
 #include <functional>
 
 #include "host/film/film.h"
-#include "host/intersect/intersect_counters.h"
+#include "host/intersect/intersector.h"
 #include "host/light/integrator_settings.h"
 
 namespace raygate {
 
 /// User settings of an image; constant during a render. The caller ensures that values are in
-/// range. The defaults are those of ./render and of the Python module; four samples as in Mitsuba.
+/// range. The defaults are those of ./render and of the Python module.
 struct RenderSettings : IntegratorSettings {
   int width = 640, height = 480;  ///< of the whole frame, at least 1
   PixelRect window;               ///< pixels to render, within the frame; empty: the whole frame
@@ -40,8 +40,8 @@ struct RenderSettings : IntegratorSettings {
 
 /// Callbacks of a render, called on the thread that called render(). Empty ones are skipped.
 struct RenderMonitor {
-  /// Receives the fraction of passes over tiles that are complete, in [0, 1], periodically. With an
-  /// error limit, the last passes may be short. Returning false stops the render.
+  /// Receives the fraction of passes over tiles that are complete, in [0, 1], periodically.
+  /// Returning false stops the render.
   std::function<bool(double)> progress{};
   /// Receives a copy of the current film every `snapshot_seconds`, or null if there is no memory
   /// for a copy. The threads continue meanwhile.

@@ -8,7 +8,6 @@
 #include <memory>
 #include <mutex>
 #include <new>
-#include <optional>
 #include <span>
 #include <system_error>
 #include <thread>
@@ -17,14 +16,11 @@
 
 #include "host/base/measure.h"
 #include "host/light/light_paths.h"
-#include "host/light/lights.h"
 #include "host/render/adaptive_sampling.h"
 #include "host/render/emitter_supersampler.h"
 #include "host/render/render_context.h"
-#include "host/render/splat_layer.h"
 #include "host/render/tile_renderer.h"
 #include "host/render/tiles.h"
-#include "host/scene/camera.h"
 
 namespace raygate {
 namespace {
@@ -59,14 +55,22 @@ class RenderThreads {
   void run() {
     report();
     const int wanted = std::min(context_.settings.threads, tiles_.count);
-    start(wanted);
+    try {
+      for (int i = 0; i < wanted; ++i) threads_.emplace_back([this] { work(); });
+    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): fewer threads will do
+    }
     const auto threads = static_cast<int>(threads_.size());
     stats_.missing_threads = wanted - std::max(1, threads);
     if (threads == 0) {
       is_alone_ = true;
       work();
     }
-    watch(threads);
+    for (std::unique_lock lock(mutex_); gone_ < threads;) {
+      changed_.wait_for(lock, kReport);
+      lock.unlock();
+      report();
+      lock.lock();
+    }
     threads_.clear();
     splats_.add_to(film_);
     if (error_) std::rethrow_exception(error_);
@@ -78,14 +82,6 @@ class RenderThreads {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kReport{50};  // maximum interval between reports
   static constexpr std::chrono::milliseconds kGrace{500};  // for threads to stop
-
-  /// Starts up to `count` threads, or fewer if the system cannot start as many.
-  void start(int count) {
-    try {
-      while (static_cast<int>(threads_.size()) < count) threads_.emplace_back([this] { work(); });
-    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): these will do
-    }
-  }
 
   /// Renders tiles until there are no more. Runs on each thread.
   void work() {
@@ -138,7 +134,7 @@ class RenderThreads {
     const std::scoped_lock lock(mutex_);
     renderer.write();
     splats_.add(renderer.splats());
-    queue_.end(step.tile);
+    queue_.end(step);
     changed_.notify_all();
     return true;
   }
@@ -156,17 +152,6 @@ class RenderThreads {
       if (!error_) error_ = std::move(error);
     }
     stop();
-  }
-
-  /// Waits until `threads` threads have ended.
-  void watch(int threads) {
-    std::unique_lock lock(mutex_);
-    while (gone_ < threads) {
-      changed_.wait_for(lock, kReport);
-      lock.unlock();
-      report();
-      lock.lock();
-    }
   }
 
   /// Reports progress, and saves when it is time.
@@ -254,30 +239,12 @@ class RenderThreads {
   std::vector<std::jthread> threads_;
 };
 
-Film empty_film(const RenderSettings& settings) {
-  const PixelRect frame{0, 0, settings.width, settings.height};
-  const bool is_crop = settings.window.width() > 0 && settings.window.height() > 0;
-  const PixelRect& window = is_crop ? settings.window : frame;
-  assert(window.x0 >= 0 && window.x1 <= settings.width);
-  assert(window.y0 >= 0 && window.y1 <= settings.height);
-  return make_film(settings.width, settings.height, window, settings.channels);
-}
-
 /// Returns whether light paths are requested and possible.
 bool wants_light_paths(const RenderJob& job) {
   const RenderSettings& settings = job.settings;
   return settings.caustics != Caustics::kOff && settings.integrator == IntegratorKind::kPath &&
          settings.samples > 1 && settings.error == 0.0 && !job.lights &&
          job.camera.projection() == Projection::kPerspective;
-}
-
-/// Returns the part of the frame that light paths must hit to reach the film's window.
-FrameView frame_view(const RenderJob& job, const Film& film) {
-  const glm::dvec2 size(film.width, film.height);
-  const double margin = filter_radius(job.settings.filter) + 1.0;
-  const PixelRect& window = film.window;
-  return {job.camera, film.width, film.height, (glm::dvec2(window.x0, window.y0) - margin) / size,
-          (glm::dvec2(window.x1, window.y1) + margin) / size};
 }
 
 }  // namespace
@@ -290,7 +257,10 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   const double busy = processor_seconds();
   stats = {};
   const Bvh& bvh = prepared.bvh;
-  Film film = empty_film(settings);
+  const bool is_crop = settings.window.width() > 0 && settings.window.height() > 0;
+  const PixelRect frame{0, 0, settings.width, settings.height};
+  Film film = make_film(settings.width, settings.height, is_crop ? settings.window : frame,
+                        settings.channels);
   auto first_intersector = make_intersector();
   const int end = settings.end_sample > 0 ? settings.end_sample : settings.samples;
   const Tiles tiles(film.window, end - settings.first_sample, first_intersector->traits().batch,
@@ -302,7 +272,13 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   const Lights& lights = own_lights ? *own_lights : prepared.lights(sampling);
   std::optional<LightPaths> light_paths;
   if (wants_light_paths(job)) {
-    light_paths.emplace(prepared, lights, frame_view(job, film));
+    // The part of the frame that they must hit to reach the film's window.
+    const glm::dvec2 size(film.width, film.height);
+    const double margin = filter_radius(settings.filter) + 1.0;
+    const glm::dvec2 low(film.window.x0, film.window.y0), high(film.window.x1, film.window.y1);
+    const FrameView view{camera, film.width, film.height, (low - margin) / size,
+                         (high + margin) / size};
+    light_paths.emplace(prepared, lights, view);
     if (!light_paths->exist()) light_paths.reset();
   }
   if (unfinished != nullptr) {

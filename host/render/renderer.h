@@ -3,14 +3,9 @@
 
 #include <optional>
 
-#include "host/bvh/bvh.h"
-#include "host/film/film.h"
-#include "host/intersect/intersector.h"
-#include "host/light/lights.h"
 #include "host/light/prepared_scene.h"
 #include "host/render/render_settings.h"
 #include "host/scene/camera.h"
-#include "host/scene/scene.h"
 
 namespace raygate {
 
@@ -32,13 +27,5 @@ struct RenderJob {
 /// kPrimary: see default_lights.
 [[nodiscard]] Film render(const RenderJob& job, const IntersectorFactory& make_intersector,
                           RenderStats& stats, const RenderMonitor& monitor = {});
-
-[[nodiscard]] inline Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
-                                 const RenderSettings& settings,
-                                 const IntersectorFactory& make_intersector, RenderStats& stats,
-                                 const RenderMonitor& monitor = {}) {
-  const PreparedScene prepared(scene, bvh);
-  return render({prepared, camera, settings}, make_intersector, stats, monitor);
-}
 
 }  // namespace raygate

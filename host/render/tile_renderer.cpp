@@ -1,19 +1,49 @@
 #include "host/render/tile_renderer.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <utility>
 
 #include "host/base/measure.h"
-#include "host/film/film.h"
 #include "host/render/tiles.h"
 
 namespace raygate {
-namespace {
 
-constexpr std::size_t kManyShadowRays = 1 << 17;  // per batch: 14 MB of queries
+SplatLayer::SplatLayer(const PixelRect& window, ReconstructionFilter filter)
+    : window_(window),
+      filter_(filter),
+      sums_(std::size_t(window.width()) * std::size_t(window.height())) {}
 
-}  // namespace
+void SplatLayer::add(std::span<const Splat> splats) {
+  const double radius = filter_radius(filter_);
+  for (const Splat& splat : splats) {
+    const glm::dvec2 low = splat.place - radius, high = splat.place + radius;
+    // Positions may exceed the range of int.
+    const auto pixel = [](double at, int first, int end) {
+      return static_cast<int>(std::clamp<double>(at, first, end));
+    };
+    const int x0 = pixel(std::ceil(low.x - 0.5), window_.x0, window_.x1);
+    const int x1 = pixel(std::floor(high.x - 0.5) + 1.0, window_.x0, window_.x1);
+    const int y0 = pixel(std::ceil(low.y - 0.5), window_.y0, window_.y1);
+    const int y1 = pixel(std::floor(high.y - 0.5) + 1.0, window_.y0, window_.y1);
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) {
+        const double weight = filter_density(filter_, splat.place - glm::dvec2(x + 0.5, y + 0.5));
+        const std::size_t row = std::size_t(y - window_.y0) * std::size_t(window_.width());
+        auto& sum = sums_[row + std::size_t(x - window_.x0)];
+        for (int k = 0; k < 3; ++k) sum[k].add(weight * splat.light[k]);
+      }
+    }
+  }
+}
+
+void SplatLayer::add_to(Film& film) const {
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const std::uint32_t samples = film.sums.samples[i];
+    for (std::size_t k = 0; k < 3; ++k) film.sums.color[i][k] += sums_[i][k];
+    if (samples != 0) film.color[i] = mean_of(film.sums.color[i], samples);
+  }
+}
 
 TileRenderer::TileRenderer(const RenderContext& context, Intersector& intersector, Film& film,
                            std::span<HistoryMask> emitter_histories)
@@ -24,9 +54,11 @@ TileRenderer::TileRenderer(const RenderContext& context, Intersector& intersecto
       integrator_(context.settings.integrator, context.prepared, context.lights, context.settings,
                   context.light_paths),
       shadow_rays_(context.prepared, context.lights, intersector,
-                   integrator_.shadows_through_refraction()),
+                   context.settings.integrator != IntegratorKind::kPath),
       is_counting_(!film.tests.empty() || !film.doubts.empty()) {
-  if (!emitter_histories.empty()) emitter_supersampler_.emplace(context, intersector, is_counting_);
+  if (!emitter_histories.empty()) {
+    emitter_supersampler_.emplace(context, intersector, is_counting_, stats_);
+  }
   if (context.light_paths == nullptr) return;
   light_integrator_.emplace(IntegratorKind::kLight, context.prepared, context.lights,
                             context.settings, context.light_paths);
@@ -36,16 +68,16 @@ void TileRenderer::make_camera_rays() {
   batch_.clear();
   batch_.depth = 0;
   for (const PixelSamples& pixel : pixels_) {
-    const Sampler sampler(context_.settings.seed, pixel.x, pixel.y);
+    const std::uint32_t key = pixel_key(context_.settings.seed, pixel.x, pixel.y);
     for (int i = pixel.first; i < pixel.end; ++i) {
       const auto index = static_cast<std::uint32_t>(i);
       PathState& state = batch_.states.emplace_back();
       state.sample = static_cast<std::uint32_t>(batch_.rays.size());
-      state.stream = sampler.key();
+      state.stream = key;
       state.index = index;
       if (!emitter_histories_.empty()) state.supersampled = emitter_histories_[pixel.index];
       const Ray& ray = batch_.rays.emplace_back(
-          camera_ray(context_, pixel.x, pixel.y, sampler, index, kFilterStream));
+          camera_ray(context_, pixel.x, pixel.y, key, index, kFilterStream));
       state.scattered_at = ray.origin;
     }
   }
@@ -58,7 +90,12 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   if (pixels_.empty()) return true;
   tile_ = tile;
   pixel_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
-  const bool is_empty = is_empty_tile();
+  const RenderSettings& settings = context_.settings;
+  const double margin = 1.0 + (settings.samples > 1 ? filter_radius(settings.filter) : 0.0);
+  // Whether camera rays can only meet the background.
+  const bool is_empty =
+      !integrator_.sees_environment() &&
+      !may_see_anything(context_.prepared.bvh, context_.camera, film_, tile_, margin);
   paths_ = 0;
   for (const PixelSamples& pixel : pixels_) paths_ += pixel.path_count();
   path_work_.assign(is_counting_ ? paths_ : 0, {});
@@ -71,14 +108,6 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   return (is_empty || trace_camera_rays(keep_going)) && trace_light_paths(keep_going);
 }
 
-/// Returns whether camera rays can only meet the background.
-bool TileRenderer::is_empty_tile() const {
-  const RenderSettings& settings = context_.settings;
-  const double margin = 1.0 + (settings.samples > 1 ? filter_radius(settings.filter) : 0.0);
-  return !integrator_.sees_environment() &&
-         !may_see_anything(context_.prepared.bvh, context_.camera, film_, tile_, margin);
-}
-
 bool TileRenderer::trace_camera_rays(const std::function<bool()>& keep_going) {
   Stopwatch watch;
   if (emitter_supersampler_ && emitter_histories_[pixels_[0].index] == kUnknownHistories) {
@@ -89,7 +118,10 @@ bool TileRenderer::trace_camera_rays(const std::function<bool()>& keep_going) {
   stats_.camera_rays += paths_;
   stats_.shade_seconds += watch.lap();
   if (!trace_batch(integrator_, keep_going)) return false;
-  supersample_emitters();
+  if (!emitter_supersampler_) return true;
+  std::vector<RayWork> work(is_counting_ ? pixels_.size() : 0);
+  emitter_supersampler_->supersample(pixels_, emitter_histories_, emitter_sums_, work);
+  for (std::size_t p = 0; p < work.size(); ++p) pixel_work_[place_in_tile(pixels_[p])] += work[p];
   return true;
 }
 
@@ -132,37 +164,25 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   return trace_batch(*light_integrator_, keep_going);
 }
 
-/// Adds the extra emission samples; see EmitterSupersampler.
-void TileRenderer::supersample_emitters() {
-  if (!emitter_supersampler_) return;
-  std::vector<RayWork> work(is_counting_ ? pixels_.size() : 0);
-  emitter_supersampler_->supersample(pixels_, emitter_histories_, emitter_sums_, work);
-  for (std::size_t p = 0; p < work.size(); ++p) pixel_work_[place_in_tile(pixels_[p])] += work[p];
-}
-
-/// Intersects the batch; sets hits_ and work_.
-void TileRenderer::intersect_batch() {
-  stats_.rays += batch_.rays.size();
-  hits_.resize(batch_.rays.size());
-  work_.resize(is_counting_ ? batch_.rays.size() : 0);
-  intersector_.nearest(batch_.rays, query_of(context_, batch_, work_), hits_);
-}
-
 /// Traces the rays of one depth, and the shadow rays from their hits: in several batches if there
 /// are many lights. Direct light is summed separately from other light, so that the order of a
 /// sample's sums does not depend on the batches.
 void TileRenderer::trace_wave(Integrator& integrator) {
-  intersect_batch();
+  constexpr std::size_t kManyShadowRays = 1 << 17;  // per batch: 14 MB of queries
+  const std::size_t rays = batch_.rays.size();
+  stats_.rays += rays;
+  hits_.resize(rays);
+  work_.resize(is_counting_ ? rays : 0);
+  intersector_.nearest(batch_.rays, query_of(context_, batch_, work_), hits_);
   Stopwatch watch;
-  const std::vector<Ray>& rays = batch_.rays;
   output_.next.clear();
   output_.next.depth = batch_.depth + 1;
-  for (std::size_t i = 0; i < work_.size(); ++i) count_work(work_[i], batch_.states[i].sample);
-  for (std::size_t i = 0; i < rays.size();) {
-    const std::size_t end = std::min(rays.size(), i + integrator.block_size());
+  for (std::size_t i = 0; i < work_.size(); ++i) path_work_[batch_.states[i].sample] += work_[i];
+  for (std::size_t i = 0; i < rays;) {
+    const std::size_t end = std::min(rays, i + integrator.block_size());
     integrator.shade(batch_, hits_, i, end, output_);
     i = end;
-    if (output_.shadows.size() < kManyShadowRays && i < rays.size()) continue;
+    if (output_.shadows.size() < kManyShadowRays && i < rays) continue;
     stats_.shade_seconds += watch.lap();
     trace_shadows();
     watch.lap();
@@ -173,31 +193,20 @@ void TileRenderer::trace_wave(Integrator& integrator) {
 
 void TileRenderer::trace_shadows() {
   const auto traced = [this](const RayWork& work, std::size_t shadow) {
-    count_work(work, output_.shadows[shadow].sample);
+    path_work_[output_.shadows[shadow].sample] += work;
   };
   shadow_rays_.resolve(output_.shadows,
                        is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
-  for (const ShadowRay& shadow : output_.shadows) {
-    if (shadow.is_to_camera != 0) {
-      add_splat(shadow);
-    } else {
-      direct_light_[shadow.sample] += shadow.radiance;
+  const glm::dvec2 size(context_.settings.width, context_.settings.height);
+  for (const ShadowRay& ray : output_.shadows) {
+    if (ray.is_to_camera == 0) {
+      direct_light_[ray.sample] += ray.radiance;
+    } else if (ray.radiance != glm::vec3(0.0f)) {  // a surface seen through a point of the lens
+      const auto place = context_.camera.place_of(glm::dvec3(ray.surface), glm::dvec3(ray.target));
+      if (place) splats_.push_back({*place * size, glm::dvec3(ray.radiance)});
     }
   }
   output_.shadows.clear();
-}
-
-/// Adds a splat at the image position of a surface seen through a point of the lens.
-void TileRenderer::add_splat(const ShadowRay& way) {
-  if (way.radiance == glm::vec3(0.0f)) return;
-  const auto place = context_.camera.place_of(glm::dvec3(way.surface), glm::dvec3(way.target));
-  if (!place) return;
-  splats_.push_back({*place * glm::dvec2(context_.settings.width, context_.settings.height),
-                     glm::dvec3(way.radiance)});
-}
-
-void TileRenderer::count_work(const RayWork& work, std::uint32_t sample) {
-  path_work_[sample] += work;
 }
 
 void TileRenderer::write() {
@@ -238,17 +247,14 @@ void TileRenderer::write() {
     film_.color[at] = mean_of(color, samples);
     if (has_albedo) film_.albedo[at] = mean_of(albedo, samples);
   }
-  if (context_.settings.error > 0.0) update_errors();
-  stats_.shade_seconds += watch.lap();
-}
-
-/// Updates the errors of blocks that have reached an error check.
-void TileRenderer::update_errors() {
-  for (const PixelSamples& pixel : pixels_) {
-    if (pixel.x % kErrorBlock != 0 || pixel.y % kErrorBlock != 0 || !is_error_check(pixel.end))
-      continue;
-    update_block_error(film_, pixel.x, pixel.y, context_.settings.exposure);
+  if (context_.settings.error > 0.0) {
+    for (const PixelSamples& pixel : pixels_) {
+      if (pixel.x % kErrorBlock != 0 || pixel.y % kErrorBlock != 0 || !is_error_check(pixel.end))
+        continue;
+      update_block_error(film_, pixel.x, pixel.y, context_.settings.exposure);
+    }
   }
+  stats_.shade_seconds += watch.lap();
 }
 
 /// Writes the channels that are those of the first sample.
@@ -274,10 +280,8 @@ void TileRenderer::add_to(RenderStats& stats) const {
   stats.rays += stats_.rays + shadow_rays;
   stats.camera_rays += stats_.camera_rays;
   stats.shadow_rays += shadow_rays;
-  stats.point_doubts += integrator_.point_doubts();
+  stats.point_doubts += stats_.point_doubts + output_.point_doubts;
   stats.intersect += intersector_.counters();
-  if (emitter_supersampler_) emitter_supersampler_->add_to(stats);
-  if (light_integrator_) stats.point_doubts += light_integrator_->point_doubts();
   stats.shade_seconds += stats_.shade_seconds;
 }
 

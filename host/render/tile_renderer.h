@@ -1,11 +1,11 @@
-// Tile renderer: renders the samples of a tile, batch by batch, on one thread.
+// Tile renderer: renders the samples of a tile, batch by batch, on one thread. Its light paths end
+// anywhere in the film, in the splat layer.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,9 +18,32 @@
 #include "host/render/adaptive_sampling.h"
 #include "host/render/emitter_supersampler.h"
 #include "host/render/render_context.h"
-#include "host/render/splat_layer.h"
 
 namespace raygate {
+
+/// A contribution at a position of the frame, in pixels from its upper left corner.
+struct Splat {
+  glm::dvec2 place{0.0};
+  glm::dvec3 light{0.0};
+};
+
+/// Exact sums of splats by pixel of a film's window, each weighted by the density of the pixel's
+/// filter. The order of splats does not matter.
+class SplatLayer {
+ public:
+  SplatLayer() = default;  ///< a layer without pixels
+  SplatLayer(const PixelRect& window, ReconstructionFilter filter);
+
+  void add(std::span<const Splat> splats);
+
+  /// Adds the splats to the sums of a film, and recomputes its means.
+  void add_to(Film& film) const;
+
+ private:
+  PixelRect window_;
+  ReconstructionFilter filter_ = ReconstructionFilter::kBox;
+  std::vector<std::array<ExactAccumulator, 3>> sums_;
+};
 
 /// Renders tiles into a film. All rays of one depth form a batch, and all shadow rays of that depth
 /// another, because intersectors are faster with large batches. A pixel does not depend on its
@@ -44,18 +67,12 @@ class TileRenderer {
 
  private:
   void make_camera_rays();
-  void supersample_emitters();
-  [[nodiscard]] bool is_empty_tile() const;
   bool trace_camera_rays(const std::function<bool()>& keep_going);
   bool trace_light_paths(const std::function<bool()>& keep_going);
   bool trace_batch(Integrator& integrator, const std::function<bool()>& keep_going);
-  void intersect_batch();
   void trace_wave(Integrator& integrator);
   void trace_shadows();
-  void add_splat(const ShadowRay& way);
-  void count_work(const RayWork& work, std::uint32_t sample);
   void write_channels(std::size_t pixel, std::size_t path);
-  void update_errors();
   [[nodiscard]] std::size_t place_in_tile(const PixelSamples& pixel) const {
     return std::size_t(pixel.y - tile_.y0) * std::size_t(tile_.width()) +
            std::size_t(pixel.x - tile_.x0);
@@ -65,11 +82,11 @@ class TileRenderer {
   Intersector& intersector_;
   Film& film_;
   std::span<HistoryMask> emitter_histories_;
-  std::optional<EmitterSupersampler> emitter_supersampler_;
+  RenderStats stats_;
+  std::optional<EmitterSupersampler> emitter_supersampler_;  // adds to stats_
   Integrator integrator_;
   std::optional<Integrator> light_integrator_;  // for light paths
   ShadowRays shadow_rays_;
-  RenderStats stats_;
   // The samples that were traced last, by pixel.
   std::vector<PixelSamples> pixels_;
   std::size_t paths_ = 0;           // number of all their paths

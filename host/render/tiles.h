@@ -7,9 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <glm/glm.hpp>
-#include <numeric>
 #include <optional>
-#include <vector>
 
 #include "host/bvh/bvh.h"
 #include "host/film/film.h"
@@ -65,29 +63,24 @@ class TileQueue {
     int tile, pass;
   };
 
-  TileQueue(int tiles, int passes)
-      : passes_(passes),
-        steps_(std::int64_t{tiles} * passes),
-        waiting_(static_cast<std::size_t>(tiles)),
-        begun_passes_(static_cast<std::size_t>(tiles), 0) {
-    std::iota(waiting_.begin(), waiting_.end(), 0);
+  TileQueue(int tiles, int passes) : passes_(passes), steps_(std::int64_t{tiles} * passes) {
+    for (int tile = 0; tile < tiles; ++tile) waiting_.push_back({tile, 0});
   }
 
-  /// Begins a pass of the tile that has waited longest. Returns nullopt if all are complete or
-  /// being rendered.
+  /// Begins the step that has waited longest. Returns nullopt if there is none.
   [[nodiscard]] std::optional<Step> begin() {
     if (waiting_.empty()) return std::nullopt;
-    const int tile = waiting_.front();
+    const Step step = waiting_.front();
     waiting_.pop_front();
     ++begun_;
-    return Step{tile, begun_passes_[static_cast<std::size_t>(tile)]++};
+    return step;
   }
 
-  /// Ends the current step of `tile`.
-  void end(int tile) {
+  /// Ends a step that was begun; the next pass of its tile can begin.
+  void end(const Step& step) {
     ++ended_;
     assert(ended_ <= begun_);
-    if (begun_passes_[static_cast<std::size_t>(tile)] < passes_) waiting_.push_back(tile);
+    if (step.pass + 1 < passes_) waiting_.push_back({step.tile, step.pass + 1});
   }
 
   [[nodiscard]] bool all_begun() const { return begun_ == steps_; }
@@ -99,8 +92,7 @@ class TileQueue {
  private:
   int passes_;
   std::int64_t steps_, begun_ = 0, ended_ = 0;
-  std::deque<int> waiting_;
-  std::vector<int> begun_passes_;  // by tile
+  std::deque<Step> waiting_;
 };
 
 /// Returns whether a camera ray through `tile`, or up to `margin` pixels beside it, may enter a

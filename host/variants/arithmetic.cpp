@@ -75,8 +75,6 @@ float Arithmetic::fit(double value, double rest) const {
   return static_cast<float>(rounded);
 }
 
-float Arithmetic::read(float x) const { return fit(x, 0.0); }
-
 float Arithmetic::multiply(float a, float b) const { return fit(static_cast<double>(a) * b, 0.0); }
 
 float Arithmetic::add(float a, float b) const {
@@ -114,8 +112,6 @@ float Arithmetic::dot(const glm::vec3& a, const glm::vec3& b) const {
   const auto [middle, rest] = two_sum(low, error_3);
   return fit(high, middle != 0.0 ? middle : rest);
 }
-
-double Arithmetic::unit_roundoff() const { return std::ldexp(1.0, -digits); }
 
 bool Arithmetic::is_normal(float x) const {
   const double magnitude = std::abs(static_cast<double>(x));

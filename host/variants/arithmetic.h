@@ -1,6 +1,7 @@
 // Bit-exact model of reduced-precision hardware arithmetic.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 
@@ -29,7 +30,7 @@ struct Arithmetic {
   friend bool operator==(const Arithmetic&, const Arithmetic&) = default;
 
   /// Returns a float rounded to this format.
-  [[nodiscard]] float read(float x) const;
+  [[nodiscard]] float read(float x) const { return fit(x, 0.0); }
   [[nodiscard]] glm::vec3 read(const glm::vec3& v) const {
     return {read(v.x), read(v.y), read(v.z)};
   }
@@ -41,7 +42,7 @@ struct Arithmetic {
 
   /// Returns the relative error bound of rounding to nearest, half an ulp; half of other
   /// directions'.
-  [[nodiscard]] double unit_roundoff() const;
+  [[nodiscard]] double unit_roundoff() const { return std::ldexp(1.0, -digits); }
   [[nodiscard]] int fraction_bits() const { return digits - 1; }
   /// Exponents of the smallest and the largest normal number.
   [[nodiscard]] int min_exponent() const { return 2 - (1 << (exponent_bits - 1)); }

@@ -14,9 +14,8 @@
 // 1. Record. |J . F - J . E| <= 2 u |F|_1 for its rounding; edge_normal's own error adds less than
 //    2^-7 u |F|_1 (see polygon_record.cpp).
 // 2. Direction. |(J - I) . E| <= 2 u (1 + u) |F|_1; nothing in float32, where J = I.
-// 3. Dot product. Three roundings for each product at most: 3 u / (1 - 3 u) |J|.|F| <= 6 u / (1 - 3
-// u)
-//    |F|_1. Rounded once: u |J . F| <= 2 u |F|_1.
+// 3. Dot product. Three roundings for each product at most: 3 u / (1 - 3 u) |J|.|F|, at most
+//    6 u / (1 - 3 u) |F|_1. Rounded once: u |J . F| <= 2 u |F|_1.
 // 4. Where the format is narrower the record's words have been rounded to float32 before:
 //    2 * 2^-24 (1 + u) |F|_1.
 // 5. Subnormals. With max |F_i| >= 1 (formats of few exponents) or far away from them (float32's):
@@ -28,7 +27,6 @@
 // division 59.2 numbers, over (1 - r), r = 56 u below 2^-5 for 11 digits: under 64 = 2^TErrorUnit.
 
 namespace raygate {
-
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -73,14 +71,14 @@ class SerialVariantTester : public SerialHitTester {
  private:
   /// Scales an error in binary32 to the format: as many ulps. Errors above 1/8 become infinite, as
   /// the bound of V's error does not hold for them.
-  [[nodiscard]] float point_error(const PolygonRecord& record, const glm::vec3& direction,
-                                  const glm::vec3& point) const override {
-    const float error = std::ldexp(plane_point(record, direction).error, 24 - math_.digits);
-    if (math_ == Arithmetic{}) return error;
+  void adapt_point_error(const PolygonRecord& record, const glm::vec3& direction,
+                         NearestHit& hit) const override {
+    if (math_ == Arithmetic{}) return;
+    hit.point_error = std::ldexp(hit.point_error, 24 - math_.digits);
     const Arithmetic host = to_nearest(math_);
     const bool in_range = !std::isinf(
-        format_error(host, host.read(record.d), host.read(direction), direction, point, 0));
-    return in_range && error <= 0.125f ? error : kInfinity;
+        format_error(host, host.read(record.d), host.read(direction), direction, hit.point, 0));
+    if (!in_range || hit.point_error > 0.125f) hit.point_error = kInfinity;
   }
 
   Arithmetic math_;
@@ -145,7 +143,7 @@ class VariantHitTester : public PipelineHitTester {
   VariantHitTester(const Variant& variant, std::unique_ptr<BurstUnit> unit)
       : PipelineHitTester(std::move(unit)), variant_(variant), twin_(variant.math) {}
 
-  // finish() starts the unit, with narrowed records; PipelineHitTester::start() would do it here.
+  // finish() starts the unit with narrowed records, which PipelineHitTester::start() would not do.
   // NOLINTNEXTLINE(bugprone-parent-virtual-call)
   void start(std::span<const RayBundle> batch) override { HitTester::start(batch); }
 

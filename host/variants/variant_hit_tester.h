@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "host/intersect/unit/hit_tester.h"
-#include "host/variants/arithmetic.h"
 #include "host/variants/variant_table.h"
 
 namespace raygate {
@@ -16,10 +15,10 @@ using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
 /// parameters.
 using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 
-/// Converts a record to a variant's format, as the host does for such a unit: N with d, and each
-/// edge, are scaled by powers of two if the format has fewer exponents than binary32, and rounded
-/// to nearest. The bounds are 0 without `doubts`. Otherwise |unit's U - exact I . E| < bound for
-/// any float32 I with components below 2 (the ray in the format is I rounded to nearest).
+/// Converts a record to a variant's format: N with d, and each edge, are scaled by powers of two if
+/// the format has fewer exponents than binary32, and rounded to nearest. The bounds are 0 without
+/// `doubts`. Otherwise |unit's U - exact I . E| < bound for any float32 I with components below 2
+/// (the ray in the format is I rounded to nearest).
 [[nodiscard]] PolygonRecord variant_record(const Variant& variant, const PolygonRecord& record);
 
 /// Returns the bound in units of 2^-digits |E|_1, for rounding to nearest.
@@ -31,15 +30,12 @@ using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
                               const glm::vec3& direction);
 
 /// Returns a tester for a pipelined variant, whose unit computes in the variant's format. Rays and
-/// records are converted to the format; doubts are resolved if the variant has them.
+/// records are converted to the format. P has the unit's bits.
 ///
-/// With doubts, HitTester's guarantee holds in any format of 11 digits or more, since the bounds
-/// scale with the format; narrower formats have more doubts. P has the unit's bits.
-///
-/// Without doubts, decisions are those of plain arithmetic: edge values of 0 are inside, a hit has
-/// three equal signs and a positive t, and the hit with the smaller t is nearer (the first of
-/// equals). Exact arithmetic is never used: t is reported as exact, and equal values of t are
-/// separated by less than an ulp.
+/// With doubts, HitTester's guarantee holds in any format of 11 digits or more. Without, decisions
+/// are those of plain arithmetic: edge values of 0 are inside, a hit has three equal signs and a
+/// positive t, and the hit with the smaller t is nearer (the first of equals). Exact arithmetic is
+/// never used: t is reported as exact, and equal values of t are separated by less than an ulp.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                              std::unique_ptr<BurstUnit> unit);
 

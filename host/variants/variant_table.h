@@ -22,8 +22,7 @@ using Json = nlohmann::ordered_json;
 ///   doubts           whether the host resolves doubts exactly; otherwise there are no bounds
 ///   brought          a folder of modules that replace those of hw/ (synth/brought.py); "": none
 ///
-/// An object is all that a new variant needs: CMake verilates its design if hw/ supports the
-/// parameters, and `make bench` and `make stress` read their rows from this table.
+/// CMake verilates the design of each object that hw/ supports.
 struct Variant {
   enum class Unit : std::uint8_t {
     kPipeline,  ///< decides hit, miss or doubt, orders hits, computes t and P

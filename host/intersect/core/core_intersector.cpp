@@ -10,16 +10,6 @@
 namespace raygate {
 namespace {
 
-CoreRay core_ray(const MemoryImage& image, const Ray& ray, const RayQuery& query,
-                 std::uint32_t number) {
-  CoreRay core{.ray = ray, .t_max = query.t_max_of(number), .tag = number};
-  if (!query.skip_ids.empty()) core.skip_id = image.line_of(query.skip_ids[number]);
-  if (!query.source_ids.empty()) core.source_id = image.line_of(query.source_ids[number]);
-  // Any hit before t_max ends the search if t_max is within any_hit_before.
-  core.any_hit = !query.any_hit_before.empty() && query.any_hit_before[number] >= core.t_max;
-  return core;
-}
-
 /// Throws InputError for a ray with an error: the core's memory is not that of a BVH.
 [[noreturn]] void throw_broken_memory(const CoreResult& end) {
   if (end.error == CoreResult::Error::kMemory) {
@@ -53,7 +43,14 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     if (!is_usable(rays[i].direction)) continue;
     if (!is_scaled(rays[i].direction)) throw_unscaled(rays[i]);
-    sent_.push_back(core_ray(*image_, rays[i], query, i));
+    CoreRay& sent = sent_.emplace_back();
+    sent.ray = rays[i];
+    sent.t_max = query.t_max_of(i);
+    sent.tag = i;
+    if (!query.skip_ids.empty()) sent.skip_id = image_->line_of(query.skip_ids[i]);
+    if (!query.source_ids.empty()) sent.source_id = image_->line_of(query.source_ids[i]);
+    // Any hit before t_max ends the search if t_max is within any_hit_before.
+    sent.any_hit = !query.any_hit_before.empty() && query.any_hit_before[i] >= sent.t_max;
   }
   results_.clear();
   core_->trace(image_->lines(), sent_, results_);
@@ -72,32 +69,25 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
       query.work[result.tag].tests += is_doubt ? 0 : result.tests;
       query.work[result.tag].doubts += is_doubt;
     }
-    resolve(rays[result.tag], query.t_max_of(result.tag), result, hits[result.tag]);
+    if (!is_doubt && !result.found) continue;
+    const Ray& ray = rays[result.tag];
+    NearestHit& best = hits[result.tag];
+    NearestHit hit{.primitive = image_->primitive_at(result.triangle)};
+    if (!is_doubt) hit.t = hit_distance(ray, bvh_.corners_of(hit.primitive));
+    if (core_->is_exact()) {
+      best = hit;
+    } else {
+      take_if_nearest(bvh_, ray, query.t_max_of(result.tag), hit, !is_doubt, best, counters_);
+    }
   }
   counters_.traverse += watch.lap();
   for (std::size_t i = 0; i < rays.size() && query.with_points; ++i) {
     if (hits[i].primitive == NearestHit::kNone) continue;
     const PolygonRecord plane = make_plane(rays[i].origin, bvh_.corners_of(hits[i].primitive));
-    const auto [point, error] = plane_point(plane, rays[i].direction);
-    hits[i].point = point;
-    hits[i].point_error = error;
+    set_point(plane, rays[i].direction, hits[i]);
     ++counters_.hit.plane_tests;
   }
   counters_.record += watch.lap();
-}
-
-/// Takes a sure hit or resolves a doubt.
-void CoreIntersector::resolve(const Ray& ray, float t_max, const CoreResult& result,
-                              NearestHit& best) {
-  const bool is_sure = result.kind == CoreResult::Kind::kEnd;
-  if (is_sure && !result.found) return;
-  NearestHit hit{.primitive = image_->primitive_at(result.triangle)};
-  if (is_sure) hit.t = hit_distance(ray, bvh_.corners_of(hit.primitive));
-  if (is_sure && core_->is_exact()) {
-    best = hit;
-  } else {
-    take_if_nearest(bvh_, ray, t_max, hit, is_sure, best, counters_);
-  }
 }
 
 }  // namespace raygate

@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "host/bvh/bvh.h"
-#include "host/exact/exact.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/intersector.h"
 
@@ -19,7 +17,7 @@ namespace raygate {
 
 /// A ray for the core.
 struct CoreRay {
-  static constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kNoTriangle = MemoryImage::kNoTriangle;
 
   Ray ray;  ///< the direction scaled (see is_scaled)
   /// Positive. Only hits with exact t < t_max count; +infinity: no limit.
@@ -80,12 +78,10 @@ struct CoreCounters {
   }
 };
 
-/// Traces rays through a memory image.
-///
-/// Guarantees: the nearest hit of a ray in exact arithmetic is the sure hit of its kEnd or one of
-/// its doubts; with any_hit it can be any hit instead. After an error a ray has no valid hit.
-/// Doubts can differ between cores and, because of memory timing, between runs. A core that
-/// is_exact has no doubts: the nearest hit is that of kEnd.
+/// Traces rays through a memory image. The nearest hit of a ray in exact arithmetic is the sure hit
+/// of its kEnd or one of its doubts; with any_hit it can be any hit instead. After an error a ray
+/// has no valid hit. Doubts can differ between cores and, because of memory timing, between runs. A
+/// core that is_exact has no doubts.
 class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
@@ -98,10 +94,9 @@ class CoreUnit {
   [[nodiscard]] virtual bool is_exact() const { return false; }
 };
 
-/// Resolves the core's doubts by exact arithmetic on the host. A core that is_exact leaves only the
-/// comparison of hits of a ray whose stack overflowed. The host computes P of each nearest hit,
-/// with the same bits as in other intersectors. Throws InputError if the core reads a line that the
-/// memory does not have, or a node below itself.
+/// Resolves the core's doubts by exact arithmetic on the host, which also computes P of each
+/// nearest hit, with the same bits as in other intersectors. Throws InputError if the core reads a
+/// line that the memory does not have, or a node below itself.
 class CoreIntersector : public Intersector {
  public:
   /// `image` is the memory image of `bvh`, which must outlive this object. Intersectors of one
@@ -117,7 +112,6 @@ class CoreIntersector : public Intersector {
 
  private:
   void trace(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits) override;
-  void resolve(const Ray& ray, float t_max, const CoreResult& result, NearestHit& best);
 
   const Bvh& bvh_;
   std::shared_ptr<const MemoryImage> image_;

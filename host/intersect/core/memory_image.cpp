@@ -1,7 +1,6 @@
 #include "host/intersect/core/memory_image.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "host/bvh/bvh.h"
-#include "host/exact/exact.h"
 
 namespace raygate {
 

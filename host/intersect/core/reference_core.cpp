@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <limits>
 
@@ -16,7 +15,7 @@ namespace {
 constexpr int kFracBits = 22, kEnterBits = 12;
 constexpr std::int64_t kWhole = std::int64_t{1} << kFracBits;  // 2^E, in units
 
-int field(float x) { return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23 & 0xFF); }
+int field(float x) { return Binary32::exponent_field(x); }
 
 /// Returns the significand with its integer bit, also for zeros and subnormals (below all units).
 std::int64_t significand(float x) {
@@ -56,11 +55,8 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
     const bool back = std::signbit(ray.inverse[k]);
     const int cap = exponent - node.exponent[k] + 129;  // exponent field of the largest inverse
     const bool capped = field(ray.inverse[k]) >= cap || field(ray.inverse[k]) == 0xFF;
-    float inverse = ray.inverse[k];
-    if (capped) {
-      inverse = std::bit_cast<float>(static_cast<std::uint32_t>(cap & 0xFF) << 23 |
-                                     (back ? 0x80000000u : 0u));
-    }
+    const auto largest = std::bit_cast<float>(static_cast<std::uint32_t>(cap & 0xFF) << 23);
+    const float inverse = capped ? std::copysign(largest, ray.inverse[k]) : ray.inverse[k];
     const float product = distance[k] * inverse;
     const bool open = (capped && (cap < 1 || cap > 254)) || field(product) == 0xFF;
     const int amount = exponent + 11 - field(product);
@@ -157,11 +153,6 @@ float sum(const glm::vec3& v) { return Binary32::add(Binary32::add(v.x, v.y), v.
 
 bool is_in_range(int field) { return field >= kLeastField && field < 255; }
 
-float edge_bound(float terms) {
-  if (!is_in_range(Binary32::exponent_field(terms))) return std::numeric_limits<float>::infinity();
-  return std::bit_cast<float>(Binary32::to_word(terms) - (std::uint32_t{kBoundShift} << 23));
-}
-
 }  // namespace
 
 SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle) {
@@ -175,7 +166,9 @@ SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle) {
   for (int k = 0; k < 3; ++k) {
     const CrossProduct edge = cross_product(corners[k], edges[k]);
     record.edges[k] = edge.product;
-    record.bounds[k] = edge_bound(sum(edge.terms));
+    const float terms = sum(edge.terms);
+    record.bounds[k] = is_in_range(field(terms)) ? std::ldexp(terms, -kBoundShift)
+                                                 : std::numeric_limits<float>::infinity();
   }
   const CrossProduct normal = cross_product(edges[2], edges[0]);
   record.normal = normal.product;
@@ -184,7 +177,7 @@ SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle) {
   record.d = sum(shares);
 
   const int vertex_field = largest_field(corners[0]), terms_field = largest_field(normal.terms);
-  const int d_field = Binary32::exponent_field(record.d);
+  const int d_field = field(record.d);
   const int normal_error = terms_field - largest_field(normal.product);
   const int distance_error = std::max(vertex_field + terms_field - d_field - kBias, 0);
   const bool is_good = is_in_range(terms_field) && vertex_field < 255 && is_in_range(d_field) &&
@@ -226,33 +219,32 @@ std::uint32_t take(const CoreResult& hit, CoreResult& nearest, float& limit) {
   return open;
 }
 
-/// The model of hw/ray_core for one ray.
-class RayTrace {
- public:
-  /// See ReferenceCore.
-  RayTrace(std::span<const MemoryLine> lines, const CoreRay& ray, int stack_depth, bool exact,
-           CoreCounters& counters, std::vector<CoreResult>& results)
-      : lines_(lines),
-        ray_(ray),
-        stack_depth_(static_cast<std::size_t>(stack_depth)),
-        exact_(exact),
-        counters_(counters),
-        results_(results),
-        limit_(ray.t_max) {}
+/// The model of hw/ray_core for one ray. See ReferenceCore for `stack_depth` and `exact`.
+struct RayTrace {
+  const std::span<const MemoryLine> lines;
+  const CoreRay& ray;
+  const std::size_t stack_depth;
+  const bool exact;
+  CoreCounters& counters;
+  std::vector<CoreResult>& results;
+
+  CoreResult result{.tag = ray.tag};
+  float limit = ray.t_max;  // hits at or beyond it are irrelevant
+  bool ended = false;
+  std::uint32_t candidate = CoreRay::kNoTriangle;  // the nearest hit among the doubts, if exact
 
   void run() {
-    if (!is_usable(ray_.ray.direction) || !is_scaled(ray_.ray.direction)) {
+    if (!is_usable(ray.ray.direction) || !is_scaled(ray.ray.direction)) {
       fail(CoreResult::Error::kDirection);
     }
     traverse();
-    if (exact_ && !ended_ && is_candidate_nearest()) test(TriangleLine(lines_[candidate_]), true);
-    ++counters_.rays;
-    counters_.triangles += end_.tests;
-    counters_.lines = counters_.nodes + counters_.triangles;
-    results_.push_back(end_);
+    if (exact && !ended && is_candidate_nearest()) test(TriangleLine(lines[candidate]), true);
+    ++counters.rays;
+    counters.triangles += result.tests;
+    counters.lines = counters.nodes + counters.triangles;
+    results.push_back(result);
   }
 
- private:
   /// Children of a node to visit: leaves at once, inner nodes one by one.
   struct OpenGroup {
     BoxGroup group;
@@ -260,13 +252,13 @@ class RayTrace {
   };
 
   void fail(CoreResult::Error error) {
-    end_.error = error;
-    ended_ = true;
+    result.error = error;
+    ended = true;
   }
   bool is_read(std::uint32_t line) {
-    if (line < lines_.size()) return true;
+    if (line < lines.size()) return true;
     fail(CoreResult::Error::kMemory);
-    end_.line = line;
+    result.line = line;
     return false;
   }
 
@@ -275,26 +267,26 @@ class RayTrace {
     std::size_t entered = 0;
     bool shared = false;  // has groups on the shared stack, see traversal.sv
     for (std::uint32_t line = MemoryImage::kRoot; is_read(line);) {
-      ++counters_.nodes;
+      ++counters.nodes;
       ++entered;
-      OpenGroup inside = enter(NodeLine(lines_[line]));
+      OpenGroup inside = enter(NodeLine(lines[line]));
       if (!inside.entries.empty()) stack.push_back(std::move(inside));
-      if (ended_) return;
+      if (ended) return;
       // Groups on the shared stack are always scheduled.
-      while (!stack.empty() && stack.size() <= stack_depth_ &&
-             is_beyond(stack.back().group, stack.back().entries.back(), limit_)) {
+      while (!stack.empty() && stack.size() <= stack_depth &&
+             is_beyond(stack.back().group, stack.back().entries.back(), limit)) {
         stack.pop_back();
       }
       if (stack.empty()) return;
-      if (entered == lines_.size() || stack.size() == MemoryImage::kMostDepth) {
+      if (entered == lines.size() || stack.size() == MemoryImage::kMostDepth) {
         return fail(CoreResult::Error::kCycle);
       }
       OpenGroup& top = stack.back();
       line = top.group.base + top.entries.back().offset;
       top.entries.pop_back();
       if (top.entries.empty()) stack.pop_back();
-      const bool shares = stack.size() >= stack_depth_;
-      counters_.overflows += shares && !shared;
+      const bool shares = stack.size() >= stack_depth;
+      counters.overflows += shares && !shared;
       shared = shares;
     }
   }
@@ -302,14 +294,14 @@ class RayTrace {
   /// Tests the leaves of a node, and returns its inner nodes.
   OpenGroup enter(const NodeLine& node) {
     OpenGroup inside{
-        enter_boxes(node, {ray_.ray.origin, 1.0f / ray_.ray.direction, limit_, ray_.no_cull}), {}};
+        enter_boxes(node, {ray.ray.origin, 1.0f / ray.ray.direction, limit, ray.no_cull}), {}};
     const BoxGroup& group = inside.group;
     for (const auto& entry : std::span(group.entry).first(static_cast<std::size_t>(group.size))) {
       if (entry.count == 0) inside.entries.push_back(entry);
-      if (ended_ || is_beyond(group, entry, limit_)) continue;
-      for (std::uint32_t k = 0; k < entry.count && end_.error == CoreResult::Error::kNone; ++k) {
+      if (ended || is_beyond(group, entry, limit)) continue;
+      for (std::uint32_t k = 0; k < entry.count && result.error == CoreResult::Error::kNone; ++k) {
         const std::uint32_t line = group.base + entry.offset + k;
-        if (is_read(line)) test(TriangleLine(lines_[line]), false);
+        if (is_read(line)) test(TriangleLine(lines[line]), false);
       }
     }
     std::ranges::reverse(inside.entries);
@@ -320,80 +312,68 @@ class RayTrace {
   /// hit.
   void test(const TriangleLine& triangle, bool settles) {
     const ReferenceBurstUnit unit;
-    const glm::vec3& direction = ray_.ray.direction;
-    ++end_.tests;
-    if (triangle.index == ray_.skip_id || triangle.index == ray_.source_id) {
-      ++counters_.misses;
+    const glm::vec3& direction = ray.ray.direction;
+    ++result.tests;
+    if (triangle.index == ray.skip_id || triangle.index == ray.source_id) {
+      ++counters.misses;
       return;
     }
-    const SetUpRecord set = set_up(ray_.ray.origin, triangle.corners);
+    const SetUpRecord set = set_up(ray.ray.origin, triangle.corners);
     const UnitVerdict verdict = unit.verdict(set.record, direction);
-    counters_.misses += verdict == UnitVerdict::kMiss;
-    counters_.hits += verdict == UnitVerdict::kHit;
-    counters_.doubts += verdict == UnitVerdict::kDoubt;
+    counters.misses += verdict == UnitVerdict::kMiss;
+    counters.hits += verdict == UnitVerdict::kHit;
+    counters.doubts += verdict == UnitVerdict::kDoubt;
     if (verdict == UnitVerdict::kMiss) return;
     const HitDistance distance = unit.distance(set.record, direction);
     const bool is_sure = verdict == UnitVerdict::kHit && is_good_hit(set, distance.error);
-    CoreResult hit = end_;
+    CoreResult hit = result;
     hit.found = true;
     hit.triangle = triangle.index;
     hit.t = is_sure ? distance.t : 0.0f;
     hit.t_error = is_sure ? t_error_exponent(set, distance.error) : CoreResult::kNoT;
     hit.point = is_sure ? unit.point(set.record, direction) : glm::vec3(0.0f);
     if (settles) {
-      end_ = hit;
+      result = hit;
     } else if (!is_sure) {
       report(triangle.index, false);
     } else {
-      const std::uint32_t open = take(hit, end_, limit_);
-      ended_ = ray_.any_hit && end_.found;
+      const std::uint32_t open = take(hit, result, limit);
+      ended = ray.any_hit && result.found;
       if (open == CoreRay::kNoTriangle) return;
-      ++counters_.near_ties;
+      ++counters.near_ties;
       report(open, true);
     }
   }
 
   /// Reports a doubt to the host or, if exact, resolves it as hw/ray_core/exact_resolver.sv does.
   void report(std::uint32_t line, bool is_hit) {
-    if (!exact_) {
-      results_.push_back({.kind = CoreResult::Kind::kDoubt, .tag = ray_.tag, .triangle = line});
-    } else if (!ended_ && (is_hit || hits_triangle(ray_.ray, corners_of(line))) &&
-               (candidate_ == CoreRay::kNoTriangle || is_nearer(line, candidate_))) {
-      candidate_ = line;
+    if (!exact) {
+      results.push_back({.kind = CoreResult::Kind::kDoubt, .tag = ray.tag, .triangle = line});
+    } else if (!ended && (is_hit || hits_triangle(ray.ray, corners_of(line))) &&
+               (candidate == CoreRay::kNoTriangle || is_nearer(line, candidate))) {
+      candidate = line;
     }
   }
 
   /// Returns whether the nearest hit among the doubts is nearer than the sure hit or the limit.
   [[nodiscard]] bool is_candidate_nearest() const {
-    if (candidate_ == CoreRay::kNoTriangle) return false;
-    return end_.found ? is_nearer(candidate_, end_.triangle)
-                      : limit_ == std::numeric_limits<float>::infinity() ||
-                            compare_hit_to_limit(ray_.ray, corners_of(candidate_), limit_) < 0;
+    if (candidate == CoreRay::kNoTriangle) return false;
+    return result.found ? is_nearer(candidate, result.triangle)
+                        : limit == std::numeric_limits<float>::infinity() ||
+                              compare_hit_to_limit(ray.ray, corners_of(candidate), limit) < 0;
   }
 
   [[nodiscard]] Corners corners_of(std::uint32_t line) const {
-    return widened(TriangleLine(lines_[line]).corners);
+    return widened(TriangleLine(lines[line]).corners);
   }
 
   /// Returns whether one of two triangles that are hit is nearer or, at equal t, has the lower
   /// rank.
   [[nodiscard]] bool is_nearer(std::uint32_t line, std::uint32_t other) const {
-    const int order = compare_hits(ray_.ray, corners_of(line), corners_of(other));
+    const int order = compare_hits(ray.ray, corners_of(line), corners_of(other));
     return order < 0 ||
-           (order == 0 && TriangleLine(lines_[line]).rank < TriangleLine(lines_[other]).rank);
+           (order == 0 && TriangleLine(lines[line]).rank < TriangleLine(lines[other]).rank);
   }
-
-  const std::span<const MemoryLine> lines_;
-  const CoreRay& ray_;
-  const std::size_t stack_depth_;
-  const bool exact_;
-  CoreCounters& counters_;
-  std::vector<CoreResult>& results_;
-
-  CoreResult end_{.tag = ray_.tag};
-  float limit_;  // hits at or beyond it are irrelevant
-  bool ended_ = false;
-  std::uint32_t candidate_ = CoreRay::kNoTriangle;  // the nearest hit among the doubts, if exact
 };
 
 }  // namespace
@@ -401,7 +381,7 @@ class RayTrace {
 void ReferenceCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
                           std::vector<CoreResult>& results) {
   for (const CoreRay& ray : rays) {
-    RayTrace(lines, ray, stack_depth_, exact_, counters_, results).run();
+    RayTrace{lines, ray, stack_depth_, exact_, counters_, results}.run();
   }
 }
 

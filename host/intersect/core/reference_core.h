@@ -5,9 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "host/exact/exact.h"
 #include "host/intersect/core/core_intersector.h"
-#include "host/intersect/core/memory_image.h"
 #include "host/intersect/polygon_record.h"
 
 namespace raygate {
@@ -66,7 +64,7 @@ class ReferenceCore : public CoreUnit {
  public:
   /// See ray_core.sv for `stack_depth` and `exact`.
   explicit ReferenceCore(int stack_depth = kStackDepth, bool exact = false)
-      : stack_depth_(stack_depth), exact_(exact) {}
+      : stack_depth_(static_cast<std::size_t>(stack_depth)), exact_(exact) {}
 
   void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
              std::vector<CoreResult>& results) override;
@@ -76,7 +74,7 @@ class ReferenceCore : public CoreUnit {
   static constexpr int kStackDepth = 8;
 
  private:
-  int stack_depth_;
+  std::size_t stack_depth_;
   bool exact_;
   CoreCounters counters_;
 };

@@ -1,6 +1,5 @@
 #include "host/intersect/cpu/cpu_intersector.h"
 
-#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -25,17 +24,17 @@ void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
 }
 
 void PointWriter::write() {
-  for (std::size_t first = 0; first < planes_; first += kPlanes) {
+  for (std::size_t first = 0; first < planes_; first += kQuad) {
     const auto plane = [&](std::size_t i) { return std::min(first + i, planes_ - 1); };
     const auto origin = [&](std::size_t i) { return rays_[firsts_[plane(i)]].origin; };
     const auto corners = [&](std::size_t i) { return bvh_.corners_of(primitives_[plane(i)]); };
     // Initialised in place: copies would wait for the words that were just stored.
     const PlaneViews views{{origin(0), origin(1), origin(2), origin(3)},
                            {corners(0), corners(1), corners(2), corners(3)}};
-    Planes four;
-    make_planes(views, four);
+    float words[4][kQuad];
+    make_planes(views, words);
     FloatQuad rows[kQuad];
-    for (int k = 0; k < kQuad; ++k) rows[k] = load<FloatQuad>(four.words[k]);
+    for (int k = 0; k < kQuad; ++k) rows[k] = load<FloatQuad>(words[k]);
     transpose(rows);
     std::memcpy(words_[first], rows, sizeof rows);
   }

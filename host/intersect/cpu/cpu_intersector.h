@@ -1,14 +1,11 @@
 // CPU intersector: intersects rays with triangles without a hit-test unit.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "host/base/lanes.h"
-#include "host/bvh/bvh.h"
 #include "host/intersect/intersector.h"
 #include "host/intersect/polygon_record.h"
 
@@ -31,7 +28,7 @@ class CpuIntersector : public Intersector {
   IntersectCounters counters_;
 };
 
-/// Computes P and its error with the bits of plane_point, and writes them to the hits of a query.
+/// Computes P and its error with the bits of set_point, and writes them to the hits of a query.
 class PointWriter {
  public:
   static constexpr std::size_t kMost = 256;

@@ -2,10 +2,8 @@
 // with rationals.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <limits>
 #include <map>
-#include <optional>
 #include <tuple>
 
 #include "host/exact/test/meshes.h"

@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <limits>
-#include <memory>
 
 #include "host/base/test/using_vectors.h"
 #include "host/intersect/cpu/cpu_intersector.h"

@@ -210,17 +210,16 @@ void expect_same(const glm::vec3& origin, const std::vector<Corners>& triangles)
     const PolygonRecord plane = make_plane(origin, triangles[i]);
     ASSERT_EQ(std::memcmp(&plane, &expected, 16), 0) << "triangle " << i;
     PlaneViews views;  // four origins, four triangles
-    for (std::size_t k = 0; k < kPlanes; ++k) {
+    for (std::size_t k = 0; k < kQuad; ++k) {
       views.origins[k] = origin * static_cast<float>(k + 1);
       views.triangles[k] = triangles[(i + k) % triangles.size()];
     }
-    Planes planes;
-    make_planes(views, planes);
-    for (std::size_t k = 0; k < kPlanes; ++k) {
+    float words[4][kQuad];
+    make_planes(views, words);
+    for (std::size_t k = 0; k < kQuad; ++k) {
       const PolygonRecord single = make_plane(views.origins[k], views.triangles[k]);
-      const float words[] = {planes.words[0][k], planes.words[1][k], planes.words[2][k],
-                             planes.words[3][k]};
-      ASSERT_EQ(std::memcmp(words, &single, sizeof words), 0);
+      const float found[] = {words[0][k], words[1][k], words[2][k], words[3][k]};
+      ASSERT_EQ(std::memcmp(found, &single, sizeof found), 0);
     }
   }
 }

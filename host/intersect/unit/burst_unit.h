@@ -16,9 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/base/lanes.h"
-#include "host/exact/ieee_floats.h"
-#include "host/intersect/intersect_counters.h"
+#include "host/intersect/intersector.h"
 #include "host/intersect/polygon_record.h"
 
 namespace raygate {
@@ -37,8 +35,7 @@ struct alignas(32) RayBundle {
   }
 };
 
-/// Tests batches of bundles in two steps, so that the unit is busy while the caller prepares the
-/// next batch.
+/// Tests batches of bundles in two steps, so that the unit is busy while the caller prepares another.
 template <class Result>
 class BatchTester {
  public:
@@ -59,8 +56,7 @@ class BatchTester {
     finish(results);
   }
 
-  /// Returns the number of tests below which a batch leaves the unit mostly idle, so that adding
-  /// tests beyond known hits is worthwhile.
+  /// Returns the number of tests below which a batch leaves the unit mostly idle.
   [[nodiscard]] virtual std::size_t enough_tests() const { return 0; }
 
  protected:
@@ -109,8 +105,7 @@ using BurstResults = std::vector<BurstResult>;
 ///   U_k is sure if b_k < |U_k| < infinity (not with a NaN or negative b_k)
 ///   miss   d is 0, or a sure U_k has the opposite sign of d
 ///   hit    otherwise, if all U_k are sure, V is normal and has d's sign, its exponent is at most
-///   12
-///          below the largest of N's, and t is a positive normal number
+///          12 below the largest of N's, and t is a positive normal number
 ///   doubt  otherwise
 ///
 /// The error of t is 2^(6 + e), where e is how far V's exponent is below the largest of N's, or 0
@@ -119,9 +114,9 @@ using BurstResults = std::vector<BurstResult>;
 /// their errors, the one that is not kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResult> {
  public:
-  /// Returns statistics since construction, without `unit_tests` and `input_bytes`. Clocks are 0
-  /// without simulation; idle clocks and stalls are counted per lane of the hardware: together they
-  /// are lanes * clocks - tests. Must not be called between start and finish.
+  /// Returns statistics since construction, without `unit_tests` and `input_bytes`. Idle clocks and
+  /// stalls are counted per lane of the hardware: together they are lanes * clocks - tests. Must
+  /// not be called between start and finish.
   [[nodiscard]] virtual HitCounters counters() const = 0;
 };
 
@@ -157,10 +152,8 @@ struct HitDistance {
 };
 
 /// Implements BurstUnit in the format and rounding of `Math` (Binary32, or Arithmetic of
-/// host/variants): all floats of records, rays and results are numbers of that format, as are
-/// "floats" between two distances, and the limit of grazing is hit_test_pkg::max_grazing for it.
-/// Operations and their order are those of hit_test_pipeline with these parameters, so all bits are
-/// equal.
+/// host/variants): all floats of records, rays and results are numbers of that format. Has the bits
+/// of hit_test_pipeline with these parameters.
 template <typename Math>
 class BasicReferenceBurstUnit : public BurstUnit {
  public:
@@ -304,19 +297,13 @@ class BasicReferenceBurstUnit : public BurstUnit {
 /// The reference model in the host's float arithmetic.
 using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
 
-/// P and its error bound, as in NearestHit.
-struct UnitPoint {
-  glm::vec3 point;
-  float error;
-};
-
-/// Computes BasicReferenceBurstUnit::point in binary32, and its error bound.
-[[nodiscard]] inline UnitPoint plane_point(const PolygonRecord& record,
-                                           const glm::vec3& direction) {
+/// Sets P of a hit, as BasicReferenceBurstUnit::point in binary32, and its error.
+inline void set_point(const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit) {
   const auto d = std::bit_cast<std::int32_t>(record.d),
              v = std::bit_cast<std::int32_t>(Binary32::dot(record.normal, direction));
   const std::int32_t error = point_error_of(d, v, grazing_of(largest_field(record.normal), v));
-  return {ReferenceBurstUnit().point(record, direction), std::bit_cast<float>(error)};
+  hit.point = ReferenceBurstUnit().point(record, direction);
+  hit.point_error = std::bit_cast<float>(error);
 }
 
 /// The reference model of the paper's unit; its points have the same bits as BurstUnit's.

@@ -62,11 +62,12 @@ void PipelineHitTester::finish(HitReports& reports) {
     const PolygonRecord& record = bundle.records[result.record];
     const glm::vec3 direction = bundle.lane_direction(static_cast<int>(result.lane));
     const bool is_hit = result.kind == Kind::kHit;
-    const auto [point, error] = plane_point(record, direction);
-    NearestHit hit{.primitive = bundle.first_tag + result.record,
-                   .point = is_hit ? result.point : point,
-                   .point_error = error};
-    if (is_hit) hit.t = around({result.t, result.t_error});
+    NearestHit hit{.primitive = bundle.first_tag + result.record};
+    set_point(record, direction, hit);
+    if (is_hit) {
+      hit.point = result.point;
+      hit.t = around({result.t, result.t_error});
+    }
     if (result.kind == Kind::kNearTie) {
       hit.t = around(ReferenceBurstUnit().distance(record, direction));
     }
@@ -109,13 +110,12 @@ void SerialHitTester::finish(HitReports& reports) {
     const PolygonRecord& record = bundle.records[number];
     const glm::vec3& direction = plane_tests_[i].direction;
     const bool is_sure = verdict == UnitVerdict::kHit;
-    reports.push_back({index,
-                       lane,
-                       is_sure,
-                       {.primitive = bundle.first_tag + number,
-                        .point = points_[i],
-                        .point_error = point_error(record, direction, points_[i]),
-                        .t = is_sure ? distance_bounds(record, direction) : Interval{}}});
+    NearestHit hit{.primitive = bundle.first_tag + number};
+    set_point(record, direction, hit);
+    hit.point = points_[i];
+    adapt_point_error(record, direction, hit);
+    if (is_sure) hit.t = distance_bounds(record, direction);
+    reports.push_back({index, lane, is_sure, hit});
   }
   drop_farther(reports, first);
 }
@@ -153,11 +153,6 @@ void SerialHitTester::drop_farther(HitReports& reports, std::size_t first) {
       std::count_if(reports.begin() + static_cast<std::ptrdiff_t>(first), reports.end(),
                     [](const HitReport& report) { return report.is_sure; }));
   if (left > 1) counters_.depth_doubts += left;
-}
-
-float SerialHitTester::point_error(const PolygonRecord& record, const glm::vec3& direction,
-                                   const glm::vec3& /*point*/) const {
-  return plane_point(record, direction).error;
 }
 
 }  // namespace raygate

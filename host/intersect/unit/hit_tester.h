@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "host/intersect/intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
@@ -62,9 +61,9 @@ class SerialHitTester : public HitTester {
   [[nodiscard]] HitCounters counters() const override;
 
  protected:
-  /// Returns the error bound of the unit's `point` (see NearestHit::point_error).
-  [[nodiscard]] virtual float point_error(const PolygonRecord& record, const glm::vec3& direction,
-                                          const glm::vec3& point) const;
+  /// Changes hit.point_error, which is that of binary32, to that of the unit's format.
+  virtual void adapt_point_error(const PolygonRecord& /*record*/, const glm::vec3& /*direction*/,
+                                 NearestHit& /*hit*/) const {}
 
  private:
   /// A (ray, polygon) pair in the unit.

@@ -31,7 +31,14 @@ void UnitIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   for (bool busy = true; busy;) {
     busy = false;
     for (Half& half : halves_) {
-      if (half.started) finish(half);
+      if (half.started) {
+        reports_.clear();
+        tester_->finish(reports_);
+        half.started = false;
+        merge(half);
+        if (!query_.work.empty()) count_work(half);
+        counters_.hit_tests += watch.lap();
+      }
       watch.lap();
       collect(half);
       counters_.traverse += watch.lap();
@@ -40,19 +47,9 @@ void UnitIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
       counters_.record += watch.lap();
       tester_->start(half.batch);
       half.started = busy = true;
+      watch.lap();
     }
   }
-}
-
-/// Processes the results of a half's batch.
-void UnitIntersector::finish(Half& half) {
-  Stopwatch watch;
-  reports_.clear();
-  tester_->finish(reports_);
-  half.started = false;
-  merge(half);
-  if (!query_.work.empty()) count_work(half);
-  counters_.hit_tests += watch.lap();
 }
 
 /// Fills packets by octant, in the order of the rays. Each half gets half of the packets.
@@ -96,26 +93,6 @@ void UnitIntersector::collect(Half& half) {
   }
 }
 
-namespace {
-
-/// Adds a bundle for each origin among the visiting rays, whose indices are `numbers`.
-void add_bundles(std::span<const Ray> rays, std::span<const std::uint32_t> numbers,
-                 const LeafVisit& visit, std::vector<RayBundle>& batch) {
-  for (LaneMask left = visit.lanes; left != 0; left &= ~batch.back().lanes) {
-    const glm::vec3& origin = rays[numbers[std::countr_zero(left)]].origin;
-    RayBundle& bundle = batch.emplace_back();
-    bundle.record_count = visit.count;
-    bundle.first_tag = visit.first;
-    for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
-      const Ray& ray = rays[numbers[lane]];
-      for (int k = 0; k < 3; ++k) bundle.direction[k][lane] = ray.direction[k];
-      if ((left >> lane & 1) != 0 && ray.origin == origin) bundle.lanes |= 1u << lane;
-    }
-  }
-}
-
-}  // namespace
-
 /// Advances every packet to its next leaf, adds the tests there to the batch, and returns their
 /// number. Finished packets are removed from the active ones.
 std::size_t UnitIntersector::visit_leaves(Half& half) {
@@ -127,7 +104,18 @@ std::size_t UnitIntersector::visit_leaves(Half& half) {
     half.active[kept++] = index;
     for (const LeafVisit& visit : leaf) {
       tests += visit.count * static_cast<std::size_t>(std::popcount(visit.lanes));
-      add_bundles(rays_, packet.rays, visit, half.batch);
+      // A bundle for each origin among the visiting rays.
+      for (LaneMask left = visit.lanes; left != 0; left &= ~half.batch.back().lanes) {
+        const glm::vec3& origin = rays_[packet.rays[std::countr_zero(left)]].origin;
+        RayBundle& bundle = half.batch.emplace_back();
+        bundle.record_count = visit.count;
+        bundle.first_tag = visit.first;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+          const Ray& ray = rays_[packet.rays[lane]];
+          for (int k = 0; k < 3; ++k) bundle.direction[k][lane] = ray.direction[k];
+          if ((left >> lane & 1) != 0 && ray.origin == origin) bundle.lanes |= 1u << lane;
+        }
+      }
     }
     half.owner.resize(half.batch.size(), index);
   }

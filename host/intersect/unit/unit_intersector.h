@@ -53,7 +53,6 @@ class UnitIntersector : public Intersector {
   [[nodiscard]] std::uint32_t ray_of(const Half& half, const HitReport& report) const;
   void offer(const Half& half, const HitReport& report);
   void offer_hidden(const Half& half, const HitReport& ignored);
-  void finish(Half& half);
   void merge(const Half& half);
   void count_work(const Half& half);
 

@@ -22,6 +22,10 @@ const Triple<float> kUp = {0.0f, 0.0f, 1.0f};
 
 glm::dvec3 vector(const Triple<float>& v) { return {v.x, v.y, v.z}; }
 
+SquarePoint<float> point(int index, std::uint32_t stream = 0) {
+  return random_point<float>(index, 7u, stream);
+}
+
 Triple<float> at_angles(double angle, double turn) {
   return {float(std::sin(angle) * std::cos(turn)), float(std::sin(angle) * std::sin(turn)),
           float(std::cos(angle))};
@@ -64,15 +68,14 @@ struct Balance {
 Balance balance(const Bsdf<float>& bsdf, int count = 1 << 14) {
   Balance sum;
   for (int i = 0; i < count; ++i) {
-    const Sampler sampler(7, 8, 9);
-    const Triple<float> way = bsdf.sample(sampler(i, 1), sampler(i, 2).x);
+    const Triple<float> way = bsdf.sample(point(i, 1), point(i, 2).x);
     const auto counts = [&](float z) { return z > 0.0f || (bsdf.has_rough_glass() && z < 0.0f); };
     if (counts(way.z)) {
       sum.sampled += bsdf.eval(way).x * std::abs(way.z) / bsdf.pdf(way) / count;
       sum.chosen += 1.0 / count;
       sum.off_unit = std::max(sum.off_unit, std::abs(dot(way, way) - 1.0f));
     }
-    const SquarePoint<float> u = sampler(i, 3);
+    const SquarePoint<float> u = point(i, 3);
     const Triple<float> fixed = at_angles(std::acos(2 * u.x - 1), 2 * pi * u.y);
     sum.integral += bsdf.eval(fixed).x * std::abs(fixed.z) * 4 * pi / count;
     if (counts(fixed.z)) sum.density += bsdf.pdf(fixed) * 4 * pi / count;
@@ -91,11 +94,7 @@ TEST(Fresnel, IsTheFormulaInAngles) {
         ASSERT_EQ(reflectance, 1.0f);
         continue;
       }
-      const double beyond = std::asin(sine);
-      const double across = std::sin(angle - beyond) / std::sin(angle + beyond);
-      const double parallel = std::tan(angle - beyond) / std::tan(angle + beyond);
-      ASSERT_NEAR(reflectance, 0.5 * (across * across + parallel * parallel), 5e-5)
-          << eta << " " << angle;
+      ASSERT_NEAR(reflectance, test::reflectance(angle, eta), 5e-5) << eta << " " << angle;
     }
     EXPECT_NEAR(fresnel_reflectance(1.0f, float(eta)), std::pow((eta - 1) / (eta + 1), 2), 1e-7);
     EXPECT_NEAR(fresnel_reflectance(0.0f, float(eta)), 1.0, 1e-7);
@@ -164,7 +163,7 @@ TEST(Bsdf, NarrowLobesKeepTheirShape) {
       EXPECT_NEAR(bsdf.eval(light).x, expected, 2e-2 * expected + 1e-30) << angle;
     }
     for (int i = 0; i < 1000; ++i) {
-      const Triple<float> light = bsdf.sample(Sampler(4, 5, 6)(i, 0));
+      const Triple<float> light = bsdf.sample(point(i));
       const glm::dvec3 mirror(-std::sin(0.6), 0.0, std::cos(0.6));
       ASSERT_LT(glm::length(vector(light) - mirror), 6.0 / std::sqrt(exponent));
     }
@@ -178,10 +177,9 @@ TEST(Bsdf, NoMaterialMakesEnergy) {
       for (const float opacity : {0.0f, 0.5f, 1.0f}) {
         for (const double angle : {0.0, 0.8, 1.5}) {
           const Bsdf<float> bsdf = seen(material(model, colour, colour, opacity), angle);
-          const Triple<float> sum =
-              bsdf.diffuse() + bsdf.glossy() + bsdf.mirror() + bsdf.transmission();
+          const Triple<float> sum = bsdf.diffuse + bsdf.glossy + bsdf.mirror + bsdf.transmission;
           EXPECT_LE(largest(sum), 1.0f + 1e-6f) << model << " " << colour;
-          EXPECT_GE(std::min({bsdf.transmission().x, bsdf.diffuse().x, bsdf.mirror().x}), 0.0f);
+          EXPECT_GE(std::min({bsdf.transmission.x, bsdf.diffuse.x, bsdf.mirror.x}), 0.0f);
         }
       }
     }
@@ -193,26 +191,26 @@ TEST(Bsdf, EachIllumDoesWhatItsTableSays) {
     return seen(material(model, 0.4f, 0.2f, opacity), 0.6);
   };
   const double fresnel = fresnel_reflectance(float(std::cos(0.6)), 1.5f);
-  EXPECT_EQ(of(0, 1).diffuse().x, 0.0f);
-  EXPECT_NEAR(of(0, 1).unlit().x, 0.4, 1e-7);
-  EXPECT_NEAR(of(1, 1).diffuse().x, 0.4, 1e-7);
-  EXPECT_EQ(of(1, 1).glossy().x, 0.0f);
-  EXPECT_NEAR(of(1, 0.25f).diffuse().x, 0.1, 1e-7);
-  EXPECT_NEAR(of(1, 0.25f).transmission().z, 0.75, 1e-7) << "straight, and not tinted";
-  EXPECT_NEAR(of(2, 1).glossy().x, 0.2, 1e-7);
-  EXPECT_NEAR(of(3, 1).mirror().x, 0.2, 1e-7);
-  EXPECT_NEAR(of(4, 0.5f).transmission().x, 0.5 * 0.9 * 0.8, 1e-7);
-  EXPECT_FALSE(of(4, 0.5f).is_refracting());
-  EXPECT_NEAR(of(5, 1).mirror().x, 0.2 + 0.8 * std::pow(1 - std::cos(0.6), 5), 1e-7);
-  EXPECT_TRUE(of(6, 0).is_refracting());
-  EXPECT_NEAR(of(6, 0).transmission().x, 0.9 * 0.8, 1e-7);
-  EXPECT_NEAR(of(7, 0).mirror().x, fresnel, 1e-6);
-  EXPECT_NEAR(of(7, 0).transmission().x, (1 - fresnel) * 0.9, 1e-6);
-  EXPECT_EQ(of(7, 1).transmission().x, of(7, 0).transmission().x)
+  EXPECT_EQ(of(0, 1).diffuse.x, 0.0f);
+  EXPECT_NEAR(of(0, 1).unlit.x, 0.4, 1e-7);
+  EXPECT_NEAR(of(1, 1).diffuse.x, 0.4, 1e-7);
+  EXPECT_EQ(of(1, 1).glossy.x, 0.0f);
+  EXPECT_NEAR(of(1, 0.25f).diffuse.x, 0.1, 1e-7);
+  EXPECT_NEAR(of(1, 0.25f).transmission.z, 0.75, 1e-7) << "straight, and not tinted";
+  EXPECT_NEAR(of(2, 1).glossy.x, 0.2, 1e-7);
+  EXPECT_NEAR(of(3, 1).mirror.x, 0.2, 1e-7);
+  EXPECT_NEAR(of(4, 0.5f).transmission.x, 0.5 * 0.9 * 0.8, 1e-7);
+  EXPECT_FALSE(of(4, 0.5f).is_refracting);
+  EXPECT_NEAR(of(5, 1).mirror.x, 0.2 + 0.8 * std::pow(1 - std::cos(0.6), 5), 1e-7);
+  EXPECT_TRUE(of(6, 0).is_refracting);
+  EXPECT_NEAR(of(6, 0).transmission.x, 0.9 * 0.8, 1e-7);
+  EXPECT_NEAR(of(7, 0).mirror.x, fresnel, 1e-6);
+  EXPECT_NEAR(of(7, 0).transmission.x, (1 - fresnel) * 0.9, 1e-6);
+  EXPECT_EQ(of(7, 1).transmission.x, of(7, 0).transmission.x)
       << "d 1 of a glass is left there by exporters";
-  EXPECT_EQ(of(8, 1).mirror().x, of(3, 1).mirror().x);
-  EXPECT_EQ(of(9, 0.5f).transmission().x, of(4, 0.5f).transmission().x);
-  EXPECT_NEAR(of(10, 1).diffuse().x, 0.4, 1e-7);
+  EXPECT_EQ(of(8, 1).mirror.x, of(3, 1).mirror.x);
+  EXPECT_EQ(of(9, 0.5f).transmission.x, of(4, 0.5f).transmission.x);
+  EXPECT_NEAR(of(10, 1).diffuse.x, 0.4, 1e-7);
 }
 
 // Facets cover the surface once, seen from above.
@@ -240,7 +238,6 @@ TEST(Ggx, SamplesHaveTheDensityThatIsClaimed) {
     for (const double angle : {0.0, 0.7, 1.4}) {
       const Ggx<float> ggx(kUp, alpha);
       const Triple<float> view = at_angles(angle, 0.5);
-      const Sampler sampler(1, 2, 3);
       constexpr int kCount = 1 << 16;
       double sampled[3] = {}, integral[3] = {};
       for (int i = 0; i < kCount; ++i) {
@@ -250,8 +247,8 @@ TEST(Ggx, SamplesHaveTheDensityThatIsClaimed) {
           sums[1] += weight * way.z * way.z;
           sums[2] += weight * (way.x - 0.3) * way.y;
         };
-        add(sampled, reflect(view, ggx.sample(view, sampler(i, 0))), 1.0);
-        const SquarePoint<float> u = sampler(i, 1);
+        add(sampled, reflect(view, ggx.sample(view, point(i))), 1.0);
+        const SquarePoint<float> u = point(i, 1);
         const Triple<float> way = at_angles(std::acos(u.x), 2 * pi * u.y);
         add(integral, way, 2 * pi * ggx.reflection_pdf(view.z, ggx.pair(view, way).d));
       }
@@ -263,11 +260,10 @@ TEST(Ggx, SamplesHaveTheDensityThatIsClaimed) {
 }
 
 TEST(MetallicRoughnessLobes, AreTheSameThereAndBack) {
-  const Sampler sampler(4, 5, 6);
   for (const float roughness : {0.1f, 0.4f, 1.0f}) {
     for (const float metallic : {0.0f, 0.3f, 1.0f}) {
       for (int i = 0; i < 200; ++i) {
-        const SquarePoint<float> u = sampler(i, 0);
+        const SquarePoint<float> u = point(i);
         const double a = 1.5 * u.x, b = 1.5 * u.y;
         const Material material = facets(metallic, roughness);
         // Both have their view in the plane of x and z.
@@ -284,52 +280,44 @@ TEST(MetallicRoughnessLobes, AreTheSameThereAndBack) {
 // reflect straight on.
 TEST(MetallicRoughnessLobes, ReflectBySpecularWeightAndColor) {
   Material material = facets(0.0f, 0.3f);
-  const Triple<float> plain = seen(material, 0.0).facets().f0;
+  const Triple<float> plain = seen(material, 0.0).facets.f0;
   material.metallic_roughness->specular_color = {1.0f, 0.5f, 0.0f};
-  const Triple<float> colored = seen(material, 0.0).facets().f0;
+  const Triple<float> colored = seen(material, 0.0).facets.f0;
   EXPECT_EQ(colored.x, plain.x);
   EXPECT_EQ(colored.y, 0.5f * plain.x);
   EXPECT_EQ(colored.z, 0.0f);
   material.metallic_roughness->specular = 0.0f;
   for (const double angle : {0.0, 1.4}) {
-    const Triple<float> none = seen(material, angle).glossy();
+    const Triple<float> none = seen(material, angle).glossy;
     EXPECT_EQ(none.x, 0.0f);
     EXPECT_EQ(none.z, 0.0f);
   }
 }
 
-// The white furnace: what absorbs nothing sends back all light from all sides, within 1 %.
+// The white furnace: what absorbs nothing sends on all light from all sides, within 1 %: facets
+// over a base, metal, and rough glass from either side.
 TEST(MetallicRoughnessLobes, KeepAllLight) {
+  const struct {
+    float metallic, transmission;
+    bool outside;
+  } kCases[] = {{0.0f, 0.0f, true},
+                {0.5f, 0.0f, true},
+                {1.0f, 0.0f, true},
+                {0.0f, 1.0f, true},
+                {0.0f, 1.0f, false}};
   double worst = 0.0;
-  for (const float roughness : {0.04f, 0.1f, 0.2f, 0.4f, 0.6f, 0.8f, 1.0f}) {
-    for (const float index : {1.1f, 1.5f, 2.5f}) {
-      for (const float metallic : {0.0f, 0.5f, 1.0f}) {
+  for (const auto& [metallic, transmission, outside] : kCases) {
+    for (const float roughness : {0.04f, 0.1f, 0.2f, 0.4f, 0.7f, 1.0f}) {
+      for (const float index : {1.1f, 1.5f, 2.5f}) {
         for (double angle = 0.0; angle < 1.5; angle += 0.25) {
-          const Material white = white_facets(metallic, roughness, 0.0f, index);
-          const Bsdf<float> bsdf = seen(white, angle);
+          const Material white = white_facets(metallic, roughness, transmission, index);
+          const Bsdf<float> bsdf = seen(white, angle, outside);
           const double all = balance(bsdf).sampled;
-          ASSERT_NEAR(all, 1.0, 1e-2)
-              << roughness << " " << index << " " << metallic << " " << angle;
-          EXPECT_NEAR(largest(bsdf.diffuse() + bsdf.glossy()), all, 1e-2);
-          worst = std::max(worst, std::abs(all - 1.0));
-        }
-      }
-    }
-  }
-  std::cout << "off by up to " << 100 * worst << " %\n";
-}
-
-// Rough glass, from either side: what it reflects and transmits is all there is.
-TEST(MetallicRoughnessLobes, RoughGlassKeepsAllLight) {
-  double worst = 0.0;
-  for (const float roughness : {0.04f, 0.1f, 0.2f, 0.4f, 0.7f, 1.0f}) {
-    for (const float index : {1.1f, 1.5f, 2.5f}) {
-      for (const bool outside : {true, false}) {
-        for (double angle = 0.0; angle < 1.5; angle += 0.25) {
-          const Material white = white_facets(0.0f, roughness, 1.0f, index);
-          const double all = balance(seen(white, angle, outside)).sampled;
-          EXPECT_NEAR(all, 1.0, 1e-2)
-              << roughness << " " << index << " " << outside << " " << angle;
+          EXPECT_NEAR(all, 1.0, 1e-2) << metallic << " " << transmission << " " << outside << " "
+                                      << roughness << " " << index << " " << angle;
+          if (transmission == 0.0f) {
+            EXPECT_NEAR(largest(bsdf.diffuse + bsdf.glossy), all, 1e-2);
+          }
           worst = std::max(worst, std::abs(all - 1.0));
         }
       }
@@ -344,18 +332,18 @@ TEST(MetallicRoughnessLobes, SmoothOnesLoseNothing) {
     Material white = white_facets(metallic, 0.0f);
     for (const double angle : {0.0, 0.8, 1.5}) {
       const Bsdf<float> bsdf = seen(white, angle);
-      EXPECT_NEAR(largest(bsdf.mirror() + bsdf.diffuse()), 1.0, 1e-6);
-      EXPECT_EQ(largest(bsdf.glossy()), 0.0f);
+      EXPECT_NEAR(largest(bsdf.mirror + bsdf.diffuse), 1.0, 1e-6);
+      EXPECT_EQ(largest(bsdf.glossy), 0.0f);
       double diffuse = 0.0;
       for (int i = 0; i < 4096; ++i) {
-        const Triple<float> light = bsdf.sample(Sampler(1, 1, 1)(i, 0));
+        const Triple<float> light = bsdf.sample(point(i));
         diffuse += bsdf.eval(light).x * light.z / bsdf.pdf(light) / 4096;
       }
-      EXPECT_NEAR(diffuse, bsdf.diffuse().x, 1e-3);
+      EXPECT_NEAR(diffuse, bsdf.diffuse.x, 1e-3);
     }
     white.metallic_roughness->transmission = 0.7f;
     const Bsdf<float> clear = seen(white, 0.8);
-    EXPECT_NEAR(largest(clear.mirror() + clear.transmission() + clear.diffuse()), 1.0, 1e-6);
+    EXPECT_NEAR(largest(clear.mirror + clear.transmission + clear.diffuse), 1.0, 1e-6);
   }
 }
 
@@ -385,11 +373,11 @@ TEST(MetallicRoughnessLobes, RoughGlassIsThatOfWalterAndOthers) {
         Material glass = facets(0.0f, 0.6f, 1.0f);
         glass.refraction_index = index;
         const Bsdf<float> bsdf = seen(glass, angle, outside);
-        const MetallicRoughnessLobes<float>& lobes = bsdf.facets();
+        const MetallicRoughnessLobes<float>& lobes = bsdf.facets;
         const glm::dvec3 in(lobes.view.x, lobes.view.y, lobes.view.z);
         int count = 0;
         for (int i = 0; i < 400; ++i) {
-          const SquarePoint<float> u = Sampler(1, 2, 4)(i, 0);
+          const SquarePoint<float> u = point(i);
           const Triple<float> way = at_angles(std::acos(-0.01 - 0.99 * u.x), 2 * pi * u.y);
           const double expected = walter(in, {way.x, way.y, way.z}, 0.36, lobes.eta) / -way.z;
           const Triple<float> value = bsdf.eval(way);

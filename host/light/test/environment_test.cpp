@@ -100,7 +100,7 @@ TEST(Environment, SamplesHaveTheDensityThatIsClaimed) {
     return glm::dvec3(way.x * way.x, way.y + 1.0, way.z * way.x + 1.0);
   };
   for (int i = 0; i < kCount; ++i) {
-    const Triple<float> way = environment.sample<float>(Sampler(3, 1, 4)(i, 0));
+    const Triple<float> way = environment.sample<float>(random_point<float>(i, 7u, 0));
     ASSERT_NEAR(dot(way, way), 1.0f, 1e-5f);
     sampled += tested({way.x, way.y, way.z}) / double(kCount);
     const Triple<float> light = environment.radiance(way);

@@ -8,9 +8,6 @@
 #include <optional>
 
 #include "host/base/test/using_vectors.h"
-#include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/hit_tester.h"
 #include "host/light/test/light_scenes.h"
 
 static thread_local bool refuse_large = false;  // memory, to this thread
@@ -25,6 +22,9 @@ class ManyAtOnce : public CpuIntersector {
  public:
   ManyAtOnce(const Bvh& bvh, std::size_t lanes) : CpuIntersector(bvh) { traits_.batch *= lanes; }
 };
+
+const Camera kWide = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
+const Camera kSquare = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
 
 class EveryIntegrator : public testing::TestWithParam<IntegratorKind> {
  protected:
@@ -41,7 +41,7 @@ class EveryIntegrator : public testing::TestWithParam<IntegratorKind> {
 
   Scene scene_ = everything();
   Bvh bvh_{scene_};
-  Camera camera_ = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
+  Camera camera_ = kWide;
 };
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryIntegrator,
@@ -60,13 +60,9 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
     const IntersectorFactory several = [&] { return std::make_unique<ManyAtOnce>(bvh_, lanes); };
     EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), several, stats)));
   }
-  const IntersectorFactory serial = [&] {
-    return std::make_unique<UnitIntersector>(
-        bvh_, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>()));
-  };
-  EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), serial, stats)));
-  const IntersectorFactory cpu = [&] { return std::make_unique<CpuIntersector>(bvh_); };
-  EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), cpu, stats)));
+  for (const auto& engine : {serial_model(bvh_), cpu(bvh_)}) {
+    EXPECT_TRUE(same(one, render(scene_, bvh_, camera_, options(150, 100), engine, stats)));
+  }
 }
 
 /// Counts the rays that name their source; none may hit it.
@@ -150,14 +146,13 @@ TEST(ManyLights, WindowsArePartsOfTheWhole) {
     scene.lights.push_back({{-1.8f + 0.09f * float(i), 1.7f, 0.3f}, glm::vec3(0.1f)});
   }
   const Bvh bvh(scene);
-  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
   RenderSettings options = light(IntegratorKind::kWhitted, 96, 96, 1);
   options.max_depth = 1;
   RenderStats stats;
-  const Film whole = render(scene, bvh, camera, options, pipeline_model(bvh), stats);
+  const Film whole = render(scene, bvh, kSquare, options, pipeline_model(bvh), stats);
   EXPECT_GT(stats.shadow_rays, 1u << 17);
   options.window = {50, 20, 77, 63};
-  const Film part = render(scene, bvh, camera, options, pipeline_model(bvh), stats);
+  const Film part = render(scene, bvh, kSquare, options, pipeline_model(bvh), stats);
   for (int y = 20; y < 63; ++y) {
     for (int x = 50; x < 77; ++x) {
       ASSERT_EQ(part.color[std::size_t(y - 20) * 27 + (x - 50)], whole.color[y * 96u + x]);
@@ -170,9 +165,8 @@ TEST(ManyLights, ShadowsAreTheSameFromEitherEnd) {
   Scene few = everything();
   Scene many = few;
   for (int i = 0; i < 70; ++i) many.lights.push_back({{0.0f, 1.0f, 0.0f}, glm::vec3(0.0f)});
-  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
   const RenderSettings options = light(IntegratorKind::kWhitted, 96, 96, 1);
-  const Film a = film_of(few, camera, options), b = film_of(many, camera, options);
+  const Film a = film_of(few, kSquare, options), b = film_of(many, kSquare, options);
   int different = 0;
   for (std::size_t i = 0; i < a.color.size(); ++i) different += a.color[i] != b.color[i];
   EXPECT_LT(different, 10) << "of 9,216: rays from the light end a float away";
@@ -241,13 +235,12 @@ TEST(EmptyTiles, HaveNoCameraRays) {
 TEST(Threshold, SavesRaysThatHardlyCount) {
   Scene scene = everything();
   const Bvh bvh(scene);
-  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 45.0);
   RenderSettings options = light(IntegratorKind::kWhitted, 64, 64, 1);
   RenderStats all, some;
   options.threshold = 0.0;
-  const Film exact = render(scene, bvh, camera, options, pipeline_model(bvh), all);
+  const Film exact = render(scene, bvh, kSquare, options, pipeline_model(bvh), all);
   options.threshold = 0.05;
-  const Film film = render(scene, bvh, camera, options, pipeline_model(bvh), some);
+  const Film film = render(scene, bvh, kSquare, options, pipeline_model(bvh), some);
   EXPECT_LT(some.rays, all.rays - 100);
   for (std::size_t i = 0; i < film.color.size(); ++i) {
     // At most 2^4 rays of a pixel are cut off, each showing at most the light's radiance of 6.
@@ -270,10 +263,9 @@ TEST(Snapshots, AreTakenOnTheWay) {
     seen = std::max(seen, film->color[600].r);
   };
   monitor.snapshot_seconds = 0.0;
-  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
   RenderStats stats;
   const Bvh bvh(scene);
-  (void)render(scene, bvh, camera, options, pipeline_model(bvh), stats, monitor);
+  (void)render(scene, bvh, kWide, options, pipeline_model(bvh), stats, monitor);
   EXPECT_GT(snapshots, 0);
   EXPECT_GT(seen, 0.0f);
 }
@@ -293,10 +285,9 @@ TEST(Snapshots, WithoutMemoryForACopyTheRenderGoesOn) {
     missing += film == nullptr;
   };
   monitor.snapshot_seconds = 0.0;
-  const Camera camera = camera_at({0.6, 0.4, 5.5}, {0, -0.3, 0}, 55.0, 4.0 / 3.0);
   RenderStats stats;
   const Bvh bvh(scene);
-  const Film film = render(scene, bvh, camera, options, pipeline_model(bvh), stats, monitor);
+  const Film film = render(scene, bvh, kWide, options, pipeline_model(bvh), stats, monitor);
   refuse_large = false;
   EXPECT_GT(missing, 0);
   EXPECT_FALSE(stats.cancelled);

@@ -106,7 +106,7 @@ TEST(Lanes, ArithmeticIsTheScalars) {
 
 TEST(Lanes, DirectionsAreTheScalars) {
   compare([](auto& in, auto& out) RAYGATE_BODY {
-    put(spherical_direction(normalized(triple(in)), in[3], in[4], in[5], in[3]), out);
+    put(spherical_direction(normalized(triple(in)), in[3], in[4], in[5]), out);
   });
   compare([](auto& in, auto& out) RAYGATE_BODY {
     using T = std::remove_cvref_t<decltype(in[0])>;

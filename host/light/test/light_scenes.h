@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <utility>
 #include <vector>
 
 #include "host/exact/test/meshes.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/test/model_intersector.h"
 #include "host/light/bsdf.h"
 #include "host/render/renderer.h"
@@ -74,6 +74,22 @@ inline void add(Scene& scene, const std::vector<Corners>& triangles, const Mater
 inline IntersectorFactory pipeline_model(const Bvh& bvh) {
   return [&bvh] { return model_intersector(bvh); };
 }
+inline IntersectorFactory cpu(const Bvh& bvh) {
+  return [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
+}
+inline IntersectorFactory serial_model(const Bvh& bvh) {
+  return [&bvh] {
+    return std::make_unique<UnitIntersector>(
+        bvh, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>()));
+  };
+}
+
+inline Film render(const Scene& scene, const Bvh& bvh, const Camera& camera,
+                   const RenderSettings& settings, const IntersectorFactory& make_intersector,
+                   RenderStats& stats, const RenderMonitor& monitor = {}) {
+  const PreparedScene prepared(scene, bvh);
+  return raygate::render({prepared, camera, settings}, make_intersector, stats, monitor);
+}
 
 inline RenderSettings light(IntegratorKind integrator, int width, int height, int samples) {
   RenderSettings options;
@@ -90,7 +106,7 @@ inline Film film_of(const Scene& scene, const Camera& camera, const RenderSettin
   RenderStats stats;
   const Bvh bvh(scene);
   const PreparedScene prepared(scene, bvh);
-  return render({prepared, camera, options, lights}, pipeline_model(bvh), stats);
+  return raygate::render({prepared, camera, options, lights}, pipeline_model(bvh), stats);
 }
 
 /// Of all pixels.
@@ -158,11 +174,16 @@ inline Bsdf<float> seen(const Material& material, double angle, bool outside = t
   const Bvh bvh(scene);
   const glm::vec3 eye(float(2 * std::sin(angle)), 0, float(2 * std::cos(angle)));
   const Ray ray = {eye, scaled_direction(glm::dvec3(-eye))};
-  const SurfaceHit places[] = {{&ray, 0, scene.triangles.data(), nullptr}};
-  const MaterialParameters parameters(material);
-  const MaterialParameters* const materials[] = {&parameters};
-  const HitKind kind = parameters.kind | weights_needed(scene, places[0]);
-  return {surface_at<float>(scene, bvh, kind, places), kind, materials};
+  return bsdf_at(scene, bvh, {&ray, 0, scene.triangles.data()}, MaterialParameters(material));
+}
+
+/// Fresnel's formula for glass of this index, in angles: sines and tangents, not cosines.
+inline double reflectance(double angle, double index = 1.5) {
+  const double bent = std::asin(std::sin(angle) / index);
+  if (angle < 1e-6) return std::pow((index - 1) / (index + 1), 2);
+  const double across = std::sin(angle - bent) / std::sin(angle + bent);
+  const double parallel = std::tan(angle - bent) / std::tan(angle + bent);
+  return 0.5 * (across * across + parallel * parallel);
 }
 
 }  // namespace raygate::test

@@ -14,14 +14,14 @@ namespace {
 // Of 2^k successive points, every box of 2^i x 2^j in the unit square of area 2^-k holds one.
 TEST(Sampler, EveryElementaryIntervalHoldsOnePoint) {
   for (const std::uint32_t dimension : {0u, 1u, 77u}) {
-    const Sampler sampler(5, 10, 20);
+    const std::uint32_t key = pixel_key(5, 10, 20);
     for (int k = 0; k <= 8; ++k) {
       const int count = 1 << k;
       for (const std::uint32_t first : {0u, 3u * count}) {
         for (int i = 0; i <= k; ++i) {
           std::set<std::pair<int, int>> boxes;
           for (int n = 0; n < count; ++n) {
-            const SquarePoint<float> p = sampler(first + n, dimension);
+            const SquarePoint<float> p = random_point<float>(first + n, key, dimension);
             ASSERT_TRUE(p.x >= 0.0f && p.x < 1.0f && p.y >= 0.0f && p.y < 1.0f);
             boxes.insert({int(p.x * (1 << i)), int(p.y * (1 << (k - i)))});
           }
@@ -38,11 +38,11 @@ TEST(Sampler, StreamsAndPixelsAreIndependent) {
   double streams = 0.0, neighbours = 0.0, mean = 0.0;
   for (int y = 0; y < kPixels; ++y) {
     for (int x = 0; x < kPixels; ++x) {
-      const Sampler here(1, x, y), beside(1, x + 1, y);
-      const double a = here(0, 3).x - 0.5;
+      const std::uint32_t here = pixel_key(1, x, y), beside = pixel_key(1, x + 1, y);
+      const double a = random_point<float>(0, here, 3).x - 0.5;
       mean += a;
-      streams += a * (here(0, 4).x - 0.5);
-      neighbours += a * (beside(0, 3).x - 0.5);
+      streams += a * (random_point<float>(0, here, 4).x - 0.5);
+      neighbours += a * (random_point<float>(0, beside, 3).x - 0.5);
     }
   }
   constexpr double kCount = kPixels * kPixels, kDeviation = 1.0 / 12.0 / 64.0;  // of a product
@@ -51,13 +51,9 @@ TEST(Sampler, StreamsAndPixelsAreIndependent) {
   EXPECT_LT(std::abs(neighbours / kCount), 4.0 * kDeviation);
 }
 
-TEST(Sampler, DependsOnSeedPixelIndexAndDimensionAlone) {
-  const auto x = [](std::uint64_t seed, std::uint32_t pixel_x, std::uint32_t pixel_y) {
-    return Sampler(seed, pixel_x, pixel_y)(4, 5).x;
-  };
-  EXPECT_EQ(x(1, 2, 3), x(1, 2, 3));
-  EXPECT_NE(x(1, 2, 3), x(std::uint64_t{1} << 32, 2, 3));
-  EXPECT_NE(x(1, 2, 3), x(1, 3, 2));
+TEST(Sampler, KeysDependOnSeedAndPixel) {
+  EXPECT_NE(pixel_key(1, 2, 3), pixel_key(std::uint64_t{1} << 32, 2, 3));
+  EXPECT_NE(pixel_key(1, 2, 3), pixel_key(1, 3, 2));
 }
 
 // Each filter's variance, from its formula: integrals of x^2 w(x) over those of w(x).
@@ -83,12 +79,11 @@ TEST(ReconstructionFilter, OffsetsHaveTheFiltersSpread) {
                 {ReconstructionFilter::kGauss,
                  variance_of([](double x) { return std::exp(-2.0 * x * x); }, 1.5)},
                 {ReconstructionFilter::kBlackmanHarris, variance_of(window, 1.5)}};
-  const Sampler sampler(0, 0, 0);
   for (const auto& c : kCases) {
     constexpr int kCount = 1 << 14;
     glm::dvec2 sum(0.0), squares(0.0);
     for (int i = 0; i < kCount; ++i) {
-      const SquarePoint<float> u = sampler(i, 0);
+      const SquarePoint<float> u = random_point<float>(i, 0u, 0);
       const glm::dvec2 offset = filter_offset(c.filter, {u.x, u.y});
       ASSERT_LE(std::max(std::abs(offset.x), std::abs(offset.y)), filter_radius(c.filter));
       sum += offset;

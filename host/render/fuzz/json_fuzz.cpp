@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <utility>
 
 #include "host/base/input_error.h"
 #include "host/render/fuzz/draw.h"

@@ -12,7 +12,6 @@
 #include <set>
 
 #include "host/film/display.h"
-#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
@@ -35,10 +34,6 @@ RenderSettings adaptive(int width, int height, int most, double error) {
   return options;
 }
 
-IntersectorFactory cpu(const Bvh& bvh) {
-  return [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
-}
-
 /// Of one scene, with each seed.
 void with_seeds(const Scene& scene, const Camera& camera, RenderSettings options,
                 const std::function<void(const Film&)>& each) {
@@ -47,7 +42,7 @@ void with_seeds(const Scene& scene, const Camera& camera, RenderSettings options
   for (int seed = 0; seed < seeds(); ++seed) {
     options.seed = static_cast<std::uint64_t>(seed);
     RenderStats stats;
-    each(render({prepared, camera, options}, cpu(bvh), stats));
+    each(raygate::render({prepared, camera, options}, cpu(bvh), stats));
   }
 }
 
@@ -163,7 +158,7 @@ struct Uneven {
   Film film(RenderSettings options, const IntersectorFactory& intersectors, RenderStats& stats,
             const Film* unfinished = nullptr) const {
     options.channels.sums = true;
-    return render({prepared, camera, options, {}, unfinished}, intersectors, stats);
+    return raygate::render({prepared, camera, options, {}, unfinished}, intersectors, stats);
   }
   Film film(const RenderSettings& options, const Film* unfinished = nullptr) const {
     RenderStats stats;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/intersect/cpu/cpu_intersector.h"
+#include "host/base/test/using_vectors.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
@@ -17,22 +17,13 @@ using std::numbers::pi;
 Film caustics_of(const Scene& scene, const Camera& camera, RenderSettings options) {
   RenderStats stats;
   const Bvh bvh(scene);
-  const IntersectorFactory cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
-  return render(scene, bvh, camera, options, cpu, stats);
+  return test::render(scene, bvh, camera, options, cpu(bvh), stats);
 }
 
 RenderSettings options_of(int size, int samples, Caustics caustics = Caustics::kOn) {
   RenderSettings options = light(IntegratorKind::kPath, size, size, samples);
   options.caustics = caustics;
   return options;
-}
-
-/// Fresnel's share of unpolarised light that glass of index 1.5 reflects.
-double reflectance(double angle, double bent) {
-  if (angle < 1e-6) return 0.04;
-  const double across = std::sin(angle - bent) / std::sin(angle + bent);
-  const double parallel = std::tan(angle - bent) / std::tan(angle + bent);
-  return 0.5 * (across * across + parallel * parallel);
 }
 
 constexpr float kHigh = 5.0f, kThick = 1.0f;  // of the slab: its upper side, and how thick
@@ -49,10 +40,10 @@ Camera above_floor() { return camera_at({0, 2, 0}, {0, 0, 0}, 2.0 * 180.0 / pi *
 // Every reflection inside the slab sends a little more through.
 TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
   for (const double degrees : {0.0, 5.0}) {
-    const double angle = degrees * pi / 180.0, bent = std::asin(std::sin(angle) / 1.5);
+    const double angle = degrees * pi / 180.0;
     Scene scene = slab();
     scene.directional_lights.push_back({{std::sin(angle), -std::cos(angle), 0.0}, glm::vec3(3.0f)});
-    const double r = reflectance(angle, bent);
+    const double r = reflectance(angle);
     const double expected = 3.0 * std::cos(angle) * (1.0 - r) / (1.0 + r) * 0.1 / pi;
     const double found = mean_colour(caustics_of(scene, above_floor(), options_of(16, 1024))).x;
     EXPECT_NEAR(found, expected, 0.01 * expected) << degrees;
@@ -79,7 +70,7 @@ TEST(Caustics, ASlabBendsALampsLightAsSnellSays) {
         (arrives(0.5 * (low + high)) < radius ? low : high) = 0.5 * (low + high);
       }
       const double step = 1e-6, slope = (arrives(low + step) - arrives(low)) / step;
-      const double r = reflectance(low, std::asin(std::sin(low) / kIndex));
+      const double r = reflectance(low);
       sum += 500.0 * std::sin(low) / (radius * slope) * (1 - r) * (1 - r) * std::pow(r, 2 * order);
     }
     return sum;
@@ -175,20 +166,14 @@ void add_smooth(Scene& scene, const glm::vec3& middle, float radius, const Mater
   }
 }
 
-// Smooth, rough and metallic balls under an environment with a bright part, which chance finds,
-// too.
-TEST(Caustics, OfAnEnvironmentHaveTheMeansOfChance) {
-  Scene scene;
-  add(scene, rectangle({-3, -1, -3}, {0, 0, 6}, {6, 0, 0}), matte({0.7f, 0.6f, 0.5f}));
-  add_smooth(scene, {-1, -0.2f, 0}, 0.7f, glass(1.5f));
-  add_smooth(scene, {1, -0.4f, 0.4f}, 0.5f, facets(0.0f, 0.3f, 1.0f));
-  add_smooth(scene, {0.2f, -0.5f, 1.2f}, 0.4f, facets(1.0f, 0.0f, 0.0f));
-  EnvironmentMap& map = scene.environment.emplace();
+/// A dim sky with a bright part, which chance finds, too.
+EnvironmentMap sky() {
+  EnvironmentMap map;
   map.width = 8;
   map.height = 4;
   map.texels.assign(32, glm::vec3(0.3f, 0.4f, 0.5f));
   map.texels[3] = map.texels[10] = glm::vec3(6, 5, 4);
-  expect_same_means(scene, camera_at({0.5, 2.5, 5}, {0, -0.7, 0}, 40.0), 256);
+  return map;
 }
 
 // Every kind of surface in a mirror, under a lamp and a sky with a bright part.
@@ -205,40 +190,35 @@ TEST(Caustics, InAMirrorHaveTheMeansOfChance) {
   half.illumination_model = 3;
   add_smooth(scene, {-1.9f, -0.6f, -2}, 0.4f, half);
   add_smooth(scene, {-0.6f, -0.6f, -2.4f}, 0.4f, facets(1.0f, 0.4f, 0.0f));
-  EnvironmentMap& map = scene.environment.emplace();
-  map.width = 8;
-  map.height = 4;
-  map.texels.assign(32, glm::vec3(0.3f, 0.4f, 0.5f));
-  map.texels[3] = map.texels[10] = glm::vec3(6, 5, 4);
+  scene.environment = sky();
   expect_same_means(scene, camera_at({0, 0.6, 2}, {0, -0.3, -3}, 60.0), 256);
 }
 
 TEST(Caustics, AreTheSameBytesWhoeverTraces) {
   Scene scene = everything();
   const Bvh bvh(scene);
-  const IntersectorFactory cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
   const PreparedScene prepared(scene, bvh);
   const Camera camera = into_room();
   const auto picture = [&](const RenderSettings& options, const IntersectorFactory& engine,
                            const Film* unfinished = nullptr) {
     RenderStats stats;
-    return render({prepared, camera, options, {}, unfinished}, engine, stats);
+    return raygate::render({prepared, camera, options, {}, unfinished}, engine, stats);
   };
   RenderSettings options = options_of(72, 8);
-  const Film whole = picture(options, cpu);
+  const Film whole = picture(options, cpu(bvh));
   options.caustics = Caustics::kOff;
-  EXPECT_FALSE(same(picture(options, cpu), whole));
+  EXPECT_FALSE(same(picture(options, cpu(bvh)), whole));
   options.caustics = Caustics::kAuto;
   EXPECT_TRUE(same(picture(options, pipeline_model(bvh)), whole));
   options.threads = 4;
-  EXPECT_TRUE(same(picture(options, cpu), whole));
-  const Vectors vectors = vectors_in_use();
-  use_vectors(Vectors::kBaseline);
-  EXPECT_TRUE(same(picture(options, cpu), whole));
-  use_vectors(vectors);
+  EXPECT_TRUE(same(picture(options, cpu(bvh)), whole));
+  {
+    const UsingVectors using_vectors(Vectors::kBaseline);
+    EXPECT_TRUE(same(picture(options, cpu(bvh)), whole));
+  }
 
   options.window = {9, 30, 50, 61};
-  const Film crop = picture(options, cpu);
+  const Film crop = picture(options, cpu(bvh));
   for (int y = 30; y < 61; ++y) {
     for (int x = 9; x < 50; ++x) {
       ASSERT_EQ(crop.color[crop.index_of(x, y)], whole.color[whole.index_of(x, y)])
@@ -250,17 +230,17 @@ TEST(Caustics, AreTheSameBytesWhoeverTraces) {
   // Broken off, and gone on with.
   options.channels.sums = true;
   options.end_sample = 3;
-  const Film first = picture(options, cpu);
+  const Film first = picture(options, cpu(bvh));
   options.end_sample = 0;
   options.threads = 1;
-  EXPECT_TRUE(same(picture(options, cpu, &first), whole));
+  EXPECT_TRUE(same(picture(options, cpu(bvh), &first), whole));
   // Any part of it, whose tiles have not come to the same samples.
   RenderStats stats;
   int asked = 0;
-  const Film part = render(scene, bvh, into_room(), options, cpu, stats,
-                           {.progress = [&](double) { return ++asked < 2; }});
+  const Film part = test::render(scene, bvh, into_room(), options, cpu(bvh), stats,
+                                 {.progress = [&](double) { return ++asked < 2; }});
   ASSERT_TRUE(stats.cancelled);
-  EXPECT_TRUE(same(picture(options, cpu, &part), whole));
+  EXPECT_TRUE(same(picture(options, cpu(bvh), &part), whole));
 }
 
 }  // namespace

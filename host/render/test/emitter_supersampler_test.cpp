@@ -8,7 +8,6 @@
 #include <cmath>
 #include <vector>
 
-#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/light/test/light_scenes.h"
 
 namespace raygate {
@@ -76,10 +75,9 @@ Found find(const Scene& scene, const Camera& camera, const RenderSettings& asked
   Found found;
   found.ways.resize(std::size_t{kSide} * kSide, kUnknownHistories);
   const RenderContext context{prepared, camera, asked, lights};
-  EmitterSupersampler emitters(context, intersector, false);
-  emitters.find(film, film.window, found.ways, {});
   RenderStats stats;
-  emitters.add_to(stats);
+  EmitterSupersampler emitters(context, intersector, false, stats);
+  emitters.find(film, film.window, found.ways, {});
   found.rays = stats.rays;
   return found;
 }
@@ -174,9 +172,8 @@ TEST(EmitterSupersampler, HaveTheSameMean) {
       RenderStats stats;
       asked.seed = static_cast<std::uint64_t>(seed);
       asked.caustics = Caustics::kOff;
-      const Film film = render(
-          scene, bvh, camera_of(Projection::kPerspective, lens * 1e-6), asked,
-          [&] { return std::make_unique<CpuIntersector>(bvh); }, stats);
+      const Film film = test::render(scene, bvh, camera_of(Projection::kPerspective, lens * 1e-6),
+                                     asked, test::cpu(bvh), stats);
       const double light = test::mean_colour(film).x;
       sum += light;
       squares += light * light;
@@ -207,9 +204,8 @@ TEST(EmitterSupersampler, AreNotMadeWhereNoLightCanBe) {
 double error(const Panel& panel, float left, float upper, float right, float lower, int samples) {
   RenderStats stats;
   const Bvh bvh(panel.scene);
-  const Film film = render(
-      panel.scene, bvh, panel.camera, options(samples),
-      [&] { return std::make_unique<CpuIntersector>(bvh); }, stats);
+  const Film film =
+      test::render(panel.scene, bvh, panel.camera, options(samples), test::cpu(bvh), stats);
   const auto covered = [](float low, float high, int pixel) {
     return std::max(0.0,
                     std::min(double{high}, pixel + 1.0) - std::max(double{low}, double(pixel)));

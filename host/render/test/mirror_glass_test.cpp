@@ -78,10 +78,7 @@ TEST(MirrorGlass, ASlabOfGlassShiftsWhatIsBehindIt) {
       const double in_air = (3.0 + 2.0 - thickness) * sine / -way.z;
       const double arrives = camera.eye().x + way.x / sine * (in_air + in_glass);
       if (std::abs(arrives) < 1e-5) continue;
-      const double angle = std::asin(sine), bent = std::asin(inside);
-      const double across = std::sin(angle - bent) / std::sin(angle + bent);
-      const double parallel = std::tan(angle - bent) / std::tan(angle + bent);
-      const double through = 1.0 - 0.5 * (across * across + parallel * parallel);
+      const double through = 1.0 - reflectance(std::asin(sine), index);
       const glm::vec4 colour = film.color[std::size_t(y) * 80 + x];
       ASSERT_NEAR(arrives < 0.0 ? colour.r : colour.g, through * through, 1e-6) << x << " " << y;
       ASSERT_EQ(arrives < 0.0 ? colour.g : colour.r, 0.0f) << x << " " << y;
@@ -112,10 +109,7 @@ TEST(MirrorGlass, TotalReflectionShowsTheGround) {
     EXPECT_EQ(seen(degrees), glm::vec4(0.5f, 0.25f, 0, 1)) << degrees;
   }
   for (const double degrees : {5.0, 30.0, critical - 0.1}) {
-    const double angle = glm::radians(degrees), bent = std::asin(std::sin(angle) * 4.0 / 3.0);
-    const double across = std::sin(angle - bent) / std::sin(angle + bent);
-    const double parallel = std::tan(angle - bent) / std::tan(angle + bent);
-    const double reflected = 0.5 * (across * across + parallel * parallel);
+    const double reflected = reflectance(glm::radians(degrees), 0.75);
     const glm::vec4 colour = seen(degrees);
     EXPECT_NEAR(colour.r, 0.5 * reflected, 1e-4) << degrees;
     EXPECT_NEAR(colour.b, 1.0 - reflected, 1e-4) << degrees;

@@ -52,24 +52,35 @@ void add_picture(Scene& scene, const Material& material) {
   scene.triangles[count - 1].texcoords = {first, first + 2, first + 3};
 }
 
+/// Grey behind the first texture as a mask.
+Material masked() {
+  Material material = matte(glm::vec3(0.5f));
+  material.opacity_map.texture = 0;
+  material.opacity_map.mapping.sampling = Wrap::kClamp;
+  return material;
+}
+
+/// Adds squares that a mask hides, one behind the other.
+void add_hidden(Scene& scene, int squares) {
+  scene.textures.emplace_back(1, 1, std::vector<Texture::Texel>{{0, 0, 0}});
+  for (int i = 0; i < squares; ++i) {
+    const std::size_t first = scene.positions.size();
+    add_picture(scene, masked());
+    for (std::size_t k = first; k < scene.positions.size(); ++k) {
+      scene.positions[k].z += 0.1f * static_cast<float>(i);
+    }
+  }
+}
+
 // What a mask hides is not there, for camera rays and for shadows.
 TEST(Surface, AMaskHidesHalfOfASquare) {
-  Material masked = matte(glm::vec3(0.5f));
-  masked.opacity_map.texture = 0;
-  masked.opacity_map.mapping.sampling = Wrap::kClamp;
   const auto scene_with = [&](bool has_square) {
     Scene scene;
-    scene.textures.emplace_back(8, 1,
-                                std::vector<Texture::Texel>{{0, 0, 0},
-                                                            {0, 0, 0},
-                                                            {0, 0, 0},
-                                                            {0, 0, 0},
-                                                            {255, 255, 255},
-                                                            {255, 255, 255},
-                                                            {255, 255, 255},
-                                                            {255, 255, 255}});
+    std::vector<Texture::Texel> texels(8, {0, 0, 0});
+    std::fill_n(texels.begin() + 4, 4, Texture::Texel{255, 255, 255});
+    scene.textures.emplace_back(8, 1, texels);
     add(scene, rectangle({-3, -3, -1}, {6, 0, 0}, {0, 6, 0}), matte(glm::vec3(0.8f)));
-    if (has_square) add_picture(scene, masked);
+    if (has_square) add_picture(scene, masked());
     scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
     scene.background = glm::vec3(0.1f);
     return scene;
@@ -101,20 +112,12 @@ TEST(Surface, AMaskHidesHalfOfASquare) {
 
 // However many surfaces are masked out one behind the other, what is behind them is seen.
 TEST(Surface, ManyMasksHideNothing) {
-  Material masked = matte(glm::vec3(0.5f));
-  masked.opacity_map.texture = 0;
   const auto center = [&](int squares, IntegratorKind integrator) {
     Scene scene;
-    scene.textures.emplace_back(1, 1, std::vector<Texture::Texel>{{0, 0, 0}});
     add(scene, rectangle({-3, -3, -1}, {3, 0, 0}, {0, 6, 0}), matte(glm::vec3(0.8f)));
     add(scene, rectangle({0, -3, -1}, {3, 0, 0}, {0, 6, 0}),
         integrator == kWhitted ? emitter(glm::vec3(1.0f)) : matte(glm::vec3(0.8f)));
-    for (int i = 0; i < squares; ++i) {
-      const std::size_t first = scene.positions.size();
-      add_picture(scene, masked);
-      for (std::size_t k = first; k < scene.positions.size(); ++k)
-        scene.positions[k].z += 0.1f * static_cast<float>(i);
-    }
+    add_hidden(scene, squares);
     scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
     RenderSettings options = light(integrator, 1, 1, integrator == kPath ? 256 : 4);
     options.ambient = 0.0;
@@ -127,19 +130,10 @@ TEST(Surface, ManyMasksHideNothing) {
 
 // Every channel shows what is seen through holes, or that nothing is.
 TEST(Surface, ChannelsShowWhatIsBehindHoles) {
-  Material masked = matte(glm::vec3(0.5f));
-  masked.opacity_map.texture = 0;
   const auto film_with = [&](int squares, IntegratorKind integrator) {
     Scene scene;
-    scene.textures.emplace_back(1, 1, std::vector<Texture::Texel>{{0, 0, 0}});
     add(scene, rectangle({-3, -3, -2}, {3, 0, 1}, {0, 6, 0}), matte({0.2f, 0.4f, 0.8f}));
-    for (int i = 0; i < squares; ++i) {
-      const std::size_t first = scene.positions.size();
-      add_picture(scene, masked);
-      for (std::size_t k = first; k < scene.positions.size(); ++k) {
-        scene.positions[k] += glm::vec3(0, 0, 0.1f * static_cast<float>(i));
-      }
-    }
+    add_hidden(scene, squares);
     scene.lights.push_back({{0, 0, 9}, glm::dvec3(80.0)});
     RenderSettings options = light(integrator, 9, 8, 4);
     options.channels = {.position = true, .albedo = true, .object = true};

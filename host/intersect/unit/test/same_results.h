@@ -1,7 +1,6 @@
 // Compares the results of two pipelined units.
 #pragma once
 
-#include <algorithm>
 #include <span>
 #include <string>
 

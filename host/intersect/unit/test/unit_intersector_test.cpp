@@ -120,23 +120,5 @@ TEST_F(UnitIntersectorTest, IgnoredSlotsDoNotCount) {
   EXPECT_GT(hits, 500);
 }
 
-// Three sheets in one leaf, behind each other: a burst reports the nearest alone.
-TEST(UnitIntersector, IgnoredHitsHideNothing) {
-  std::vector<Corners> sheets;
-  for (const float z : {1.0f, 1.01f, 1.02f}) {
-    sheets.push_back({glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)});
-  }
-  const Bvh bvh(test::scene_of(sheets));
-  const auto intersector = test::model_intersector(bvh);
-  const std::vector<Ray> rays = {{glm::vec3(0), glm::vec3(0, 0, 1)}};
-  std::vector<NearestHit> hits(1);
-  intersector->nearest(rays, {}, hits);
-  const std::uint32_t first = hits[0].primitive;
-  ASSERT_EQ(bvh.triangle_of(first), 0u);
-  intersector->occluded(rays, {.skip_ids = std::span(&first, 1)}, hits);
-  ASSERT_NE(hits[0].primitive, NearestHit::kNone);
-  EXPECT_EQ(bvh.triangle_of(hits[0].primitive), 1u);
-}
-
 }  // namespace
 }  // namespace raygate
