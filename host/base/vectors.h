@@ -95,7 +95,7 @@ template <class Body>
 }
 template <class Body>
 [[gnu::noinline, gnu::target(RAYGATE_AVX512)]] auto in_avx512(const Body& body) {
-  return body(VectorCode<Vectors::kAvx512>{});
+  return body(std::integral_constant<Vectors, Vectors::kAvx512>{});
 }
 #endif
 

@@ -59,9 +59,10 @@ class IntersectorSubject : public Subject {
     rays_.clear();
     for (const Shot& shot : shots) {
       for (const glm::dvec3& direction : shot.directions) {
-        const Ray& ray = rays_.emplace_back(glm::vec3(shot.origin), glm::vec3(direction));
+        Ray& ray = rays_.emplace_back(glm::vec3(shot.origin), glm::vec3(direction));
         answers.refused.push_back(is_finite(direction) && (glm::dvec3(ray.origin) != shot.origin ||
                                                            glm::dvec3(ray.direction) != direction));
+        if (answers.refused.back()) ray.direction = glm::vec3(1.0f);
       }
     }
     torn_.assign(rays_.size(), false);
