@@ -149,8 +149,10 @@ class OptionTable {
         names, value, help, expected,
         [&target, parse](const std::string& text) {
           const std::optional<T> parsed = parse(text);
-          if (parsed) target = *parsed;
-          return parsed.has_value();
+          if (!parsed) return false;
+          const T& found = *parsed;
+          target = found;
+          return true;
         },
         [&target, show] {
           const std::optional<T> current = target;

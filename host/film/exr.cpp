@@ -93,11 +93,11 @@ void require_channels(const std::filesystem::path& file, const Imf::ChannelList&
   for (const std::string& name : names) {
     const Imf::Channel* const found = channels.findChannel(name);
     if (found == nullptr) {
-      std::string there;
+      std::string text = file.string() + ": no channel " + name + "; the file has ";
       for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
-        there += (there.empty() ? "" : ", ") + std::string(channel.name());
+        text.append(channel == channels.begin() ? "" : ", ").append(channel.name());
       }
-      throw InputError(file.string() + ": no channel " + name + "; the file has " + there);
+      throw InputError(text);
     }
     if (found->xSampling != 1 || found->ySampling != 1) {
       throw InputError(file.string() + ": channel " + name +

@@ -196,8 +196,9 @@ struct Hits {
 
   /// Returns whether EmitterSupersampler adds the emission of the hit.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are_supersampled() const {
-    return gather<T>(materials, &MaterialParameters::emits_evenly) &
-           PathLanes<T>::has(path.supersampled, path.specular_history);
+    const auto are_even = gather<T>(materials, &MaterialParameters::emits_evenly);
+    const auto are_wanted = PathLanes<T>::has(path.supersampled, path.specular_history);
+    return are_even & are_wanted;
   }
   /// Returns the emission, without that added by EmitterSupersampler.
   [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {

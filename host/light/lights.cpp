@@ -107,6 +107,7 @@ bool is_lit_by_emitters(const Scene& scene, double size, bool is_preview) {
     return material.emission_map.texture != kNoIndex;
   };
   std::vector<double> radiance;
+  radiance.reserve(scene.materials.size());
   for (const Material& material : scene.materials) {
     radiance.push_back(mean(mean_emission(scene, material)) /
                        (is_picture(material) ? kPicture : kGlow));

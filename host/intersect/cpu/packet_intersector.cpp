@@ -116,12 +116,15 @@ RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
   walk.going &= ~(std::uint64_t{0xFF & ~cones.active[group]} << (8 * group));
 }
 
+constexpr std::size_t kRayWords = 6;
+
 /// Loads the directions of four rays, from their words, transposed. Each load includes the word
 /// before the direction.
 RAYGATE_INLINE void load_directions(const float* words, FloatQuad (&components)[3]) {
-  static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
+  static_assert(sizeof(Ray) == kRayWords * sizeof(float) &&
+                offsetof(Ray, direction) == 3 * sizeof(float));
   FloatQuad rows[kQuad];
-  for (int i = 0; i < kQuad; ++i) rows[i] = load<FloatQuad>(words + 6 * i + 2);
+  for (std::size_t i = 0; i < kQuad; ++i) rows[i] = load<FloatQuad>(words + kRayWords * i + 2);
   transpose(rows);
   for (int k = 0; k < 3; ++k) components[k] = rows[k + 1];
 }
@@ -136,19 +139,20 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
       const std::size_t count =
           begin < rays.size() ? std::min<std::size_t>(kLanes, rays.size() - begin) : 0;
       auto words = reinterpret_cast<const float*>(rays.data() + begin);
-      float padded[6 * kLanes];  // beyond the end: the last ray
+      float padded[kRayWords * kLanes];  // beyond the end: the last ray
       if (count < kLanes) {
         for (std::size_t i = 0; i < kLanes; ++i) {
-          std::memcpy(padded + 6 * i, &rays[std::min(begin + i, rays.size() - 1)], sizeof(Ray));
+          std::memcpy(padded + kRayWords * i, &rays[std::min(begin + i, rays.size() - 1)],
+                      sizeof(Ray));
         }
         words = padded;
       }
-      for (int line = 0; line < 3; ++line) {  // of the next packet
-        __builtin_prefetch(words + 6 * RayPacket::kRays + 16 * line);
+      for (std::size_t line = 0; line < 3; ++line) {  // of the next packet
+        __builtin_prefetch(words + kRayWords * RayPacket::kRays + 16 * line);
       }
       FloatQuad half[2][3];
       load_directions(words, half[0]);
-      load_directions(words + 6 * kQuad, half[1]);
+      load_directions(words + kRayWords * kQuad, half[1]);
       IntLanes largest = {};  // largest magnitude of each ray, as bits of a float
       for (int k = 0; k < 3; ++k) {
         const FloatLanes d =
@@ -719,14 +723,14 @@ class PacketIntersector {
       for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
         const int g = std::countr_zero(groups);
         double bounds[kLanes][2];
-        for (int half = 0; half < 2; ++half) {
+        for (std::size_t half = 0; half < 2; ++half) {
           const auto quad = [&](const IntLanes& bits) RAYGATE_BODY {
             const auto lanes = reinterpret_cast<const FloatLanes&>(bits);
             return widen<code()>(half == 0 ? FloatQuad(low_half(lanes)) : high_half(lanes));
           };
           const DoubleQuad low = quad(walk.low[g]), high = quad(walk.high[g]);
-          store(bounds[4 * half], __builtin_shufflevector(low, high, 0, 4, 1, 5));
-          store(bounds[4 * half + 2], __builtin_shufflevector(low, high, 2, 6, 3, 7));
+          store(bounds[kQuad * half], __builtin_shufflevector(low, high, 0, 4, 1, 5));
+          store(bounds[kQuad * half + 2], __builtin_shufflevector(low, high, 2, 6, 3, 7));
         }
         LaneMask lanes = 0xFF & ~sign_mask(walk.primitive[g]);
         for (; lanes != 0; lanes &= lanes - 1) {
