@@ -35,7 +35,8 @@ struct alignas(32) RayBundle {
   }
 };
 
-/// Tests batches of bundles in two steps, so that the unit is busy while the caller prepares another.
+/// Tests batches of bundles in two steps, so that the unit is busy while the caller prepares
+/// another.
 template <class Result>
 class BatchTester {
  public:
