@@ -7,8 +7,8 @@
 namespace raygate {
 
 /// An error in the user's input. The text is one line with what was found and what was expected,
-/// and with file and line if there are any ("scene.obj:12: vertex index 9 in a face, but the file
-/// has 8 vertices so far"). Caught in main, which prints it and exits with status 2.
+/// and with file and line if there are any. Caught in main, which prints it and exits with
+/// status 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

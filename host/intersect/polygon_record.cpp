@@ -96,9 +96,9 @@ PolygonRecord make_record(const glm::dvec3& origin, const Corners& t) {
   return record;
 }
 
-// Operations and their order are those of exact.cpp and polygon_record.cpp, so all bits are equal,
-// as long as double is accurate enough and all exponents are ordinary. For other triangles
-// make_record computes the record.
+// Operations and their order are those of exact.cpp and of the functions above, so all bits are
+// equal, as long as double is accurate enough and all exponents are ordinary. make_record computes
+// the others.
 
 namespace {
 

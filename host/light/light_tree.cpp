@@ -37,8 +37,8 @@ struct Sum {
     axes += other.axes;
     power += other.power;
   }
-  /// Returns the error measure of a cluster, as in Conty Estevez and Kulla: power times squared
-  /// size, times the spread of the axes, from 1 (parallel) to 4 (all directions).
+  /// Returns the error measure of Conty Estevez and Kulla: power times squared size, times the
+  /// spread of the axes, from 1 (parallel) to 4 (all directions).
   [[nodiscard]] double cost() const {
     if (!(power > 0.0)) return 0.0;
     const glm::dvec3 size = box.high - box.low;

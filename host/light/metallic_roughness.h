@@ -149,8 +149,7 @@ struct MetallicRoughnessLobes {
   }
 
   /// Samples a direction of the rough lobes: `u` selects the facet; `choice` in [0, 1) selects
-  /// reflection or refraction, if there is glass. Returns 0 where glass would refract to the wrong
-  /// side.
+  /// reflection or refraction by glass. Returns 0 where glass would refract to the wrong side.
   [[nodiscard]] RAYGATE_INLINE Triple<T> sample(const SquarePoint<T>& u, const T& choice) const {
     const Triple<T> facet = ggx.sample(view, u), mirrored = reflect(view, facet);
     if (!has_rough_glass()) return mirrored;

@@ -46,8 +46,8 @@ class SplatLayer {
 };
 
 /// Renders tiles into a film. All rays of one depth form a batch, and all shadow rays of that depth
-/// another, because intersectors are faster with large batches. A pixel does not depend on its
-/// tile: the light of each path is summed separately, depth by depth.
+/// another. A pixel does not depend on its tile: the light of each path is summed separately, depth
+/// by depth.
 class TileRenderer {
  public:
   /// `emitter_histories`: by pixel of the film, shared by all tiles; empty: no supersampling.

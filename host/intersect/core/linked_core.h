@@ -52,8 +52,8 @@ class WordLink {
 };
 
 /// A ray core with its own memory, behind a link. Sends the memory when it has changed, then rays,
-/// at most as many as the core holds, since a link may have no back-pressure. The board reports
-/// only the counts of rays, triangles, doubts and busy clocks.
+/// at most as many as the core holds, since a link may have no back-pressure. Counts only rays,
+/// triangles, doubts and clocks.
 class LinkedCore : public CoreUnit {
  public:
   LinkedCore(std::unique_ptr<WordLink> link, std::size_t rays)

@@ -36,7 +36,7 @@ struct alignas(32) RayBundle {
 };
 
 /// Tests batches of bundles in two steps, so that the unit is busy while the caller prepares
-/// another one.
+/// another.
 template <class Result>
 class BatchTester {
  public:

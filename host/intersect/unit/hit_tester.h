@@ -26,9 +26,8 @@ using HitReports = std::vector<HitReport>;
 
 /// Tests batches with a hit-test unit. Each thread has its own.
 ///
-/// Guarantees: in exact arithmetic on the records' coordinates, a sure hit is a hit, and a pair
-/// that is not reported is a miss or farther than a sure hit of its burst. Engines may differ in
-/// which pairs are in doubt, but not in the decisions that follow.
+/// In exact arithmetic on the records' coordinates, a sure hit is a hit, and a pair that is not
+/// reported is a miss or farther than a sure hit of its burst. Engines may differ in the doubts.
 class HitTester : public BatchTester<HitReport> {
  public:
   [[nodiscard]] virtual HitCounters counters() const = 0;
@@ -51,8 +50,8 @@ class PipelineHitTester : public HitTester {
 };
 
 /// The paper's unit intersects a ray with a polygon's plane; software decides whether the point is
-/// inside the polygon and which hit is nearest, as in the paper. Unlike there, pairs that the edge
-/// planes exclude are not sent to the unit, so a miss costs no clocks.
+/// inside the polygon and which hit is nearest. Unlike in the paper, pairs that the edge planes
+/// exclude are not sent to the unit.
 class SerialHitTester : public HitTester {
  public:
   explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit) : unit_(std::move(unit)) {}

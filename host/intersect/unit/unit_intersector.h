@@ -14,11 +14,9 @@
 namespace raygate {
 
 /// In each round every packet of eight rays traverses the tree to its next leaf. The tests of all
-/// these leaves form a batch for the tester, whose results shorten the rays. Packets are split into
-/// two halves: one traverses while the tester works on the other.
-///
-/// Polygon records are made when a ray reaches a leaf, once for all rays of its packet with the
-/// same origin.
+/// these leaves form a batch for the tester, whose results shorten the rays. One half of the
+/// packets traverses while the tester works on the other. Polygon records are made when a ray
+/// reaches a leaf, once for all rays of its packet with the same origin.
 class UnitIntersector : public Intersector {
  public:
   /// `bvh` must outlive this object.
