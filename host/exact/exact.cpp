@@ -131,17 +131,6 @@ int order_of_planes(const ExactRay& ray, const Corners& first, const Corners& se
 
 }  // namespace
 
-RecentredPosition recentred(const glm::dvec3& position, const glm::dvec3& origin) {
-  RecentredPosition result;
-  for (int k = 0; k < 3; ++k) {
-    const ExactPair difference = two_sum(position[k], -origin[k]);
-    result.position[k] = static_cast<float>(difference.value);
-    const double error = (double{result.position[k]} - difference.value) - difference.error;
-    result.error = std::max(result.error, std::abs(error));
-  }
-  return result;
-}
-
 bool has_exact_difference(double a, double b) { return two_sum(a, -b).error == 0.0; }
 
 glm::dvec3 exact_origin(std::span<const glm::dvec3> positions) {

@@ -35,14 +35,6 @@ template <class T>
 /// Largest magnitude of coordinates that BVHs and predicates accept.
 inline constexpr double kMostCoordinate = 0x1p126;
 
-/// A position relative to an origin, in binary32, and the largest error of its coordinates: 0 if
-/// and only if the position is exact.
-struct RecentredPosition {
-  glm::vec3 position{0.0f};
-  double error = 0.0;
-};
-[[nodiscard]] RecentredPosition recentred(const glm::dvec3& position, const glm::dvec3& origin);
-
 /// Returns whether a - b is a double.
 [[nodiscard]] bool has_exact_difference(double a, double b);
 

@@ -1,11 +1,15 @@
 #include "host/scene/scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstdio>
 #include <cstring>
 #include <type_traits>
 
 #include "host/base/input_error.h"
+#include "host/exact/exact.h"
+#include "host/exact/expansion.h"
 
 namespace raygate {
 namespace {
@@ -163,6 +167,20 @@ class Digest {
 };
 
 }  // namespace
+
+double Scene::add_vertex(const glm::dvec3& world) {
+  double largest_error = 0.0;
+  glm::vec3& position = positions.emplace_back();
+  glm::ivec3& rest = rests.emplace_back();
+  for (int k = 0; k < 3; ++k) {
+    const auto [value, error] = two_sum(world[k], -origin[k]);
+    const double exact = on_float_grid(value);
+    largest_error = std::max(largest_error, std::abs((exact - value) - error));
+    position[k] = static_cast<float>(exact);
+    rest[k] = rest_of(exact, position[k]);
+  }
+  return largest_error;
+}
 
 void add_light(Scene& scene, const WorldPointLight& light, const std::string& file) {
   const glm::vec3 position(light.position - scene.origin);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -258,14 +257,14 @@ void set_last(std::vector<T>& attributes, std::size_t count, const T& value, con
 }
 
 /// All geometry, materials and lights. Emissive triangles are lights, too. Positions are relative
-/// to `origin`, which is subtracted exactly: a position in binary32 and its rest are a binary64
-/// coordinate.
+/// to `origin`. A position and its rest are exact, in binary64; a position without one is rounded
+/// to binary32.
 ///
 /// Triangles are indexed in the order of `triangles`, followed by those of each instance in turn.
 /// Faces without area have indices, too (see is_left_out).
 struct Scene {
   std::vector<glm::vec3> positions;
-  /// What binary32 lacks of the first positions (see rest_of); 0 if missing.
+  /// Differences of the first positions from binary64 (see rest_of); 0 for all others.
   std::vector<glm::ivec3> rests;
   /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour.
   std::vector<glm::vec3> colors;
@@ -304,19 +303,8 @@ struct Scene {
     return exact;
   }
   /// Adds a position and its rest, given in world coordinates. All positions so far have rests.
-  /// Returns the largest error of a coordinate.
-  double add_vertex(const glm::dvec3& world) {
-    double error = 0.0;
-    glm::vec3& position = positions.emplace_back();
-    glm::ivec3& rest = rests.emplace_back();
-    for (int k = 0; k < 3; ++k) {
-      const double difference = world[k] - origin[k], exact = on_float_grid(difference);
-      error = std::max(error, std::abs(exact - difference));
-      position[k] = static_cast<float>(exact);
-      rest[k] = rest_of(exact, position[k]);
-    }
-    return error;
-  }
+  /// Returns the largest error of a coordinate: 0 if and only if all are exact.
+  double add_vertex(const glm::dvec3& world);
   /// Removes the rests if all are 0.
   void drop_zero_rests() {
     if (std::ranges::count(rests, glm::ivec3(0)) == std::ssize(rests)) rests = {};

@@ -31,12 +31,10 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
   if (largest(origin - scene_origin) > kMostCoordinate) {
     return "found an origin farther than 2^126 from the scene, expected a nearer one";
   }
-  // The ratio is a power of two, up to the rounding of the direction.
-  const int exponent = direction == glm::dvec3(0.0)
-                           ? 0
-                           : static_cast<int>(std::lround(
-                                 std::log2(largest(glm::dvec3(scaled_direction(direction)))) -
-                                 std::log2(largest(direction))));
+  // As in scaled_direction(): 2 is scaled to 1.
+  const double size = largest(direction);
+  int exponent = size == 0.0 ? 0 : -std::ilogb(size);
+  if (static_cast<float>(std::ldexp(size, exponent)) == 2.0f) --exponent;
   ExactRay exact;
   bool is_changed = false;
   for (int k = 0; k < 3; ++k) {

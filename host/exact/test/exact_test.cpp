@@ -263,5 +263,15 @@ TEST(Exact, OriginInThePlaneOrBehindIsNoHit) {
   EXPECT_FALSE(hits_triangle({glm::vec3(0), glm::vec3(0, 0, 1)}, {t[0], t[0], t[1]}));
 }
 
+TEST(ExactOrigin, KeepsFarPositionsInRange) {
+  std::vector<glm::dvec3> positions(2, glm::dvec3(-0x1.fp125, 0, 0));
+  for (int i = 0; i < 6; ++i) positions.emplace_back(0x1.fp125 + i * 0x1p80, 0, 0);
+  const glm::dvec3 origin = exact_origin(positions);
+  for (const glm::dvec3& at : positions) {
+    EXPECT_LE(largest(at - origin), kMostCoordinate);
+    EXPECT_TRUE(has_exact_difference(at.x, origin.x));
+  }
+}
+
 }  // namespace
 }  // namespace raygate

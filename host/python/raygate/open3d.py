@@ -112,9 +112,7 @@ class RaycastingScene:
 
     def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Array:
         """Returns whether each ray hits anything at tnear < t < tfar."""
-        if np.isnan(tnear) or np.isnan(tfar):
-            raise InputError(f"tnear, tfar: found {tnear}, {tfar}, expected numbers")
-        if tfar <= max(tnear, 0.0):
+        if not tfar > max(tnear, 0.0):
             return np.zeros(_rows("rays", rays, 6)[0], bool)
         if tnear > 0.0:  # hits up to tnear may be the nearest ones, so all are needed
             shape, hits = self._trace(rays, nthreads, "all", ["ray", "t"], tfar)

@@ -73,7 +73,6 @@ class Queries(unittest.TestCase):
                 ("nthreads: found 'all', expected", lambda: RaycastingScene("all")),
                 ("nsamples: found 2, expected an odd", lambda: self.scene.compute_occupancy([[0, 0, 0]], nsamples=2)),
                 ("nsamples: found 0, expected an odd", lambda: self.scene.compute_signed_distance([[0, 0, 0]], nsamples=0)),
-                ("tnear, tfar: found nan, 1, expected", lambda: self.scene.test_occlusions([[0, 0, 5, 0, 0, -1]], np.nan, 1)),
                 ("vertex_positions: found an array of shape (8, 2), expected (N, 3)",
                  lambda: self.scene.add_triangles(VERTICES[:, :2], FACES)),
                 ("vertex_positions: found [inf, 0.0, 0.0] in vertex 1",

@@ -105,30 +105,28 @@ void MeshBuilder::recentre(Scene& scene) {
   positions_.resize(used);
   for (FaceCorner& corner : corners_) corner.position = new_index[corner.position];
 
-  scene.origin = box.is_empty() ? glm::dvec3(0.0) : origin_for_box(box.low, box.high);
+  const glm::dvec3 origin = box.is_empty() ? glm::dvec3(0.0) : origin_for_box(box.low, box.high);
   const auto far = std::ranges::find_if(positions_, [&](const glm::dvec3& position) {
-    return !(largest(position - scene.origin) <= kMostCoordinate);
+    return !(largest(position - origin) <= kMostCoordinate);
   });
   if (far != positions_.end()) {
     const auto index = static_cast<std::uint32_t>(far - positions_.begin());
     fail(std::ranges::find(corners_, index, &FaceCorner::position),
          "found a corner farther than 2^126 from the scene's middle, expected a nearer one");
   }
-  for (const glm::dvec3& given : positions_) {
-    const auto [position, error] = recentred(given, scene.origin);
-    scene.positions.push_back(position);
-    scene.rounding.add({error != 0.0, error});
-  }
+  place(origin, false, scene);
 }
 
-void MeshBuilder::keep_rests(Scene& scene) const {
-  scene.origin = exact_origin(positions_);
+void MeshBuilder::place(const glm::dvec3& origin, bool keeps_rests, Scene& scene) const {
+  scene.origin = origin;
   scene.rounding = {};
   scene.positions.clear();
-  for (const glm::dvec3& position : positions_) {
-    const double error = scene.add_vertex(position);
+  for (std::uint32_t i = 0; i < positions_.size(); ++i) {
+    double error = scene.add_vertex(positions_[i]);
+    if (!keeps_rests) error += largest(glm::dvec3(scene.positions[i]) - scene.vertex(i));
     scene.rounding.add({error != 0.0, error});
   }
+  if (!keeps_rests) scene.rests = {};
   scene.drop_zero_rests();
 }
 
@@ -263,10 +261,12 @@ void MeshBuilder::build(const LoadOptions& options, Scene& scene) {
                              " colours of vertices that are not finite numbers, taken as white");
   }
   recentre(scene);
-  if (options.vertices == Vertices::kBinary64 && scene.rounding.corners > 0) keep_rests(scene);
+  if (options.vertices == Vertices::kBinary64 && scene.rounding.corners > 0) {
+    place(exact_origin(positions_), true, scene);
+  }
   auto groups = triangulate(scene, options.vertices == Vertices::kAsPictures);
   if (!groups) {
-    keep_rests(scene);
+    place(exact_origin(positions_), true, scene);
     scene.triangles.clear();
     groups = triangulate(scene, false);
   }

@@ -96,8 +96,8 @@ class MeshBuilder {
   [[noreturn]] void fail(std::vector<FaceCorner>::const_iterator corner,
                          const std::string& what) const;
   void recentre(Scene& scene);
-  /// Replaces the positions by exact ones, with an origin of their own.
-  void keep_rests(Scene& scene) const;
+  /// Replaces the positions by those relative to this origin.
+  void place(const glm::dvec3& origin, bool keeps_rests, Scene& scene) const;
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
   /// Returns whether a face has no area in the file's own numbers, before they are rounded.
   [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
