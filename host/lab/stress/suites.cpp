@@ -233,11 +233,10 @@ Shot near_tie_shot(Random& random) {
 /// Makes triangles that fill their boxes, in planes across an axis, equal or a few steps apart.
 Shot stack_shot(Random& random) {
   const int axis = random.below(3);
-  const double step = random.binary64_vertices ? 0x1p-52 : 0x1p-23;
   Mesh triangles;
   for (int i = 0; i < 24; ++i) {
     glm::dvec3 middle = random.point();
-    middle[axis] = 1.0 + step * random.below(3);
+    middle[axis] = 1.0 + (random.binary64_vertices ? 0x1p-52 : 0x1p-23) * random.below(3);
     Corners& t = triangles.emplace_back(Corners{middle, middle, middle});
     t[0][(axis + 1) % 3] -= 2.0;
     t[1][(axis + 1) % 3] += 2.0;

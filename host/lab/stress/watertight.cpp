@@ -11,8 +11,8 @@
 // edges, vertices: as in Woop, Benthin and Wald 2013. Rays from inside a sphere at its edges and
 //   vertices must hit.
 //
-// All are made with binary32 vertices, and with binary64 ones for the engines that take them. The
-// random numbers and the sphere's triangles differ from the originals.
+// Vertices are binary32, or binary64 for the engines that take them. The random numbers and the
+// sphere's triangles differ from the originals.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
