@@ -106,7 +106,8 @@ TEST(Lanes, ArithmeticIsTheScalars) {
 
 TEST(Lanes, DirectionsAreTheScalars) {
   compare([](auto& in, auto& out) RAYGATE_BODY {
-    put(spherical_direction(normalized(triple(in)), in[3], in[4], in[5]), out);
+    const auto turns = at_least(at_most(in[5], 1.0f), 0.0f);
+    put(spherical_direction(normalized(triple(in)), in[3], in[4], turns), out);
   });
   compare([](auto& in, auto& out) RAYGATE_BODY {
     using T = std::remove_cvref_t<decltype(in[0])>;
