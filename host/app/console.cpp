@@ -217,7 +217,7 @@ int run_guarded(const std::function<int()>& program) {
 
 int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program) {
-  return run_guarded([&] {
+  const auto body = [&] {
     require_ieee_floats();
     try {
       use_vectors(wanted_vectors());
@@ -225,7 +225,8 @@ int run_main(int argc, char** argv,
       throw InputError(error.what());
     }
     return program({argv + 1, argv + argc});
-  });
+  };
+  return run_guarded(std::ref(body));  // a copy would need memory, outside of what is guarded
 }
 
 void handle_interruptions(void (*handler)(int)) {
