@@ -77,6 +77,7 @@ template <typename T>
   return found == choices.end() ? std::nullopt : std::optional<T>(found->second);
 }
 
+/// Returns the names of all choices, in their order.
 template <typename T>
 [[nodiscard]] std::vector<std::string> names_of(const Choices<T>& choices) {
   std::vector<std::string> names;
@@ -209,7 +210,8 @@ class OptionTable {
 
   /// Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'" about the last value given.
   [[noreturn]] void fail_value(const std::string& name, const std::string& expected) const;
-  /// Throws InputError about the values of `names`, and the place of those in a scene file.
+  /// Throws InputError with this message and, if values of these options are in a scene file, their
+  /// place there.
   [[noreturn]] void fail(const std::string& message,
                          std::initializer_list<const char*> names) const;
 

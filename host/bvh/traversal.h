@@ -88,9 +88,9 @@ struct PacketBounds {
   }
 };
 
-/// Sets the origins of a ray's entries and exits so that neither is culled if it is rounded to
-/// binary32. With a rounded direction, entries and exits have another relative error of 2.1 u,
-/// which more growth of the exit and that of the cutoff exceed.
+/// Sets the origins of a ray's entries and exits so that rounding the ray to binary32 culls no box.
+/// A rounded direction adds a relative error of 2.1 u to entries and exits. The growth of
+/// cutoff_beyond exceeds it for entries; exits grow once more.
 RAYGATE_INLINE void spread(const ExactRay& ray, float (&entry)[3], float (&exit)[3],
                            float (&inverse_far)[3]) {
   const float growth = is_binary32(ray.direction) ? 1.0f : kExitGrowth;

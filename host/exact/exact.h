@@ -38,9 +38,9 @@ inline constexpr double kMostCoordinate = 0x1p126;
 /// Returns whether a - b is a double.
 [[nodiscard]] bool has_exact_difference(double a, double b);
 
-/// Returns an origin near the middle of most positions, from which the differences to all of them
-/// are doubles up to kMostCoordinate: on each axis a multiple of the least sufficient power of two,
-/// or 0.
+/// Returns an origin near the middle of most positions. Differences of positions from it are exact
+/// in double and up to kMostCoordinate. Each coordinate is a multiple of the least power of two
+/// that achieves this, or 0.
 [[nodiscard]] glm::dvec3 exact_origin(std::span<const glm::dvec3> positions);
 
 /// Returns the nearest multiple of 2^-149.

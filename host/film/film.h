@@ -186,7 +186,8 @@ static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
                   sizeof(Film) == 14 * sizeof(std::vector<int>) + 2 * sizeof(PixelRect),
               "for_each_field() has them all");
 
-/// Returns a film in which every pixel is a miss, with the optional channels of `extra`, no sums.
+/// Returns a film in which every pixel is a miss, with the optional channels of `extra` and
+/// without sums.
 [[nodiscard]] Film make_film(int width, int height, const PixelRect& window,
                              const ExtraChannels& extra);
 

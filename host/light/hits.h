@@ -367,7 +367,7 @@ struct IncidentLight {
   WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
 
   IncidentLight() = default;
-  /// Sets the geometry of light from a point.
+  /// Computes the fields of light from a point that depend on its position only.
   RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
       : target(position) {
     constexpr float kNear = 1e-30f;  // the inverse is within the range of float
@@ -376,7 +376,7 @@ struct IncidentLight {
     direction = way * (1.0f / root(distance_squared));
     cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
   }
-  /// Sets the geometry of a distant light in the direction of a unit vector.
+  /// Computes the fields of a distant light that depend on its direction only, a unit vector.
   RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
       : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
 
@@ -398,7 +398,7 @@ struct IncidentLight {
   }
 };
 
-/// Returns the light from point lights, one per lane, of which it leaves at `position`.
+/// Returns the light that leaves point lights, one per lane, at `position`.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
                                             const Lights::Light* const (&own)[kLanesOf<T>],

@@ -107,7 +107,8 @@ struct Frame {
   }
 };
 
-/// Returns the unit vector at an angle to the unit vector `axis`, turned around it.
+/// Returns the unit vector at an angle to the unit vector `axis`; `turns`, in [0, 1], is the
+/// azimuth around it.
 template <class T>
 RAYGATE_INLINE Triple<T> spherical_direction(const Triple<T>& axis, const T& cosine, const T& sine,
                                              const T& turns) {

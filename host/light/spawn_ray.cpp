@@ -574,8 +574,8 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
       // The side of `other` on which the ray is just before or after the hit; 0: coplanar.
       int wanted = plane_side_at_hit(ray, hit, other);
       if (wanted == 0) {
-        const int from = orient3d(ray.origin, other);
-        wanted = side == SpawnSide::kIncident ? from : -from;
+        const int start = orient3d(ray.origin, other);
+        wanted = side == SpawnSide::kIncident ? start : -start;
       }
       return wanted != 0 && orient3d(candidate, other) != wanted;
     };

@@ -25,7 +25,7 @@ TEST(ClosestPoint, OfOneTriangleByItsRegions) {
   EXPECT_EQ(closest_point(bvh, {1, -3, 4}).distance, 5.0);
 }
 
-// A sliver of height h is a segment, up to h.
+// Distances from a sliver of height h and from its longest side differ by up to h.
 TEST(ClosestPoint, OfSlivers) {
   test::Random random;
   const auto point = [&] { return glm::dvec3(random.point()); };

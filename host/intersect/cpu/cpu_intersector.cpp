@@ -42,7 +42,8 @@ void PointWriter::write() {
     using Floats = NativeFloats<code()>;
     constexpr std::size_t kHits = kLanesOf<Floats>;
     for (std::size_t first = 0; first < count_; first += kHits) {
-      // By quads of hits: after transposing, directions from [1] on, N and d of the planes.
+      // Four hits each, one per row; transposed, one word of all four. A ray's load starts a word
+      // before its direction.
       FloatQuad rays[kHits / kQuad][kQuad], planes[kHits / kQuad][kQuad];
       std::uint32_t number[kHits];
       for (std::size_t i = 0; i < kHits; ++i) {

@@ -167,7 +167,7 @@ struct QuadSides {
 
 /// Returns which of 1 to 4 triangles the ray does not surely miss by its edges. Coordinate k of
 /// corner v of triangle i is corners[(3 v + k) count + i]; memory up to corners[8 count + 3] must
-/// be readable. Results of `kIsRounded` are the same if nothing is.
+/// be readable. Without rounded parts, kIsRounded gives the same results.
 template <bool kIsRounded = false>
 [[nodiscard]] RAYGATE_INLINE LaneMask find_sides(const ShearedRay& ray, const float* corners,
                                                  std::uint32_t count, QuadSides& sides,

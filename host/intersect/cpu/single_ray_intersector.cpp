@@ -373,7 +373,7 @@ class SingleRayIntersector {
     return query_.exact_rays.empty() ? ExactRay(rays_[number]) : query_.exact_rays[number];
   }
 
-  /// Completes the state of a ray that may be rounded.
+  /// Sets the fields that depend on the rounding of a ray and of the vertices to binary32.
   void set_rounding(RayTraversal& walk) const {
     const ExactRay ray = exact_ray(walk.number);
     walk.exact_scale = std::abs(ray.direction[walk.sheared.axes[2]]);

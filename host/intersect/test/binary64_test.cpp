@@ -156,7 +156,7 @@ TEST_F(Binary64, AllSearchesFindWhatThePredicatesSay) {
   EXPECT_GT(hits_, 20'000);
 }
 
-// Neither by other rays of a query nor by all_hits().
+// Rays that binary32 holds have few doubts, also beside others in a query, and in all_hits().
 TEST_F(Binary64, RaysInBinary32HaveTheNarrowBounds) {
   int doubts = 0;
   for (int round = 0; round < 300; ++round) {

@@ -241,13 +241,13 @@ TEST(RaySpawner, StaysWithinTheBoundOnBothSides) {
   std::cout << "farthest " << farthest << " floats\n";
 }
 
-/// Of a point and a segment.
+/// Returns the distance of a point from a segment.
 double distance(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b) {
   const double t = std::clamp(glm::dot(x - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
   return glm::length(x - a - t * (b - a));
 }
 
-/// Of a point and a triangle.
+/// Returns the distance of a point from a triangle.
 double distance(const glm::dvec3& x, const Corners& t) {
   const glm::dvec3 v[3] = {glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
   const glm::dvec3 normal = glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]));
@@ -268,14 +268,14 @@ bool is_near(const Overlaps& overlaps, const glm::vec3& point, float reach) {
   });
 }
 
-/// A distance from x in which the overlaps is not; 0 where there is none.
+/// Returns a distance from x within which there is no overlap; 0 if there is none so small.
 double reach_beyond(const Overlaps& overlaps, const glm::dvec3& x) {
   float reach = 1.0f;
   while (reach > 0.0f && is_near(overlaps, glm::vec3(x), reach)) reach *= 0.5f;
   return reach;
 }
 
-/// Whether what is said of a triangle's vertices and plane holds.
+/// Checks the normal, the corner and the gradients of a clearance against its triangle.
 void check_shape(const NeighborClearance& clearance, const Corners& t) {
   const glm::dvec3 normal(clearance.normal[0], clearance.normal[1], clearance.normal[2]);
   const glm::dvec3 exact = triangle_normal(t);
@@ -296,7 +296,8 @@ void check_shape(const NeighborClearance& clearance, const Corners& t) {
 }
 
 struct Seen {
-  int points = 0, free = 0;  // those of triangles without a overlaps
+  int points = 0;  // of all triangles
+  int free = 0;    // of triangles without overlaps
 };
 
 /// Points of each triangle, most of them near its border.
@@ -392,7 +393,7 @@ TEST(NeighborClearance, WhatStandsOnATriangleIsItsOverlap) {
   EXPECT_FALSE(is_near(overlaps, glm::vec3(-0.01f, 0, 0), 0.0099f));
 }
 
-// What hovers over a triangle is no overlaps, unless it is very near.
+// A triangle above another one is an overlap only if it is very near.
 TEST(NeighborClearance, WhatIsBeyondReachDoesNotMatter) {
   for (const bool is_near : {false, true}) {
     const float height = is_near ? 0x1p-19f : 0x1p-17f;

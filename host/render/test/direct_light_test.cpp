@@ -160,9 +160,8 @@ TEST(DirectLight, ATexturedLightShinesByTexel) {
   }
 }
 
-/// What the camera's middle pixel shows of a point light of intensity 1 there, and of a lamp of
-/// radiance 3 at a height, from x -1 to 1 and z -2 to -0.5: by the BSDF of the surface at the
-/// origin.
+/// The expected radiance of the camera's middle pixel, which shows the origin: the BSDF there times
+/// the light of a lamp or of a point light of intensity 1.
 class Expected {
  public:
   Expected(const Scene& scene, const Camera& camera) {
@@ -199,8 +198,8 @@ std::vector<Corners> lamp(float height) {
 }
 std::vector<Corners> wide_floor() { return rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}); }
 
-// Of a rough floor under a light, seen at an angle: the integral over the light. Whether lights
-// are asked for or met by chance, wide lobes or narrow ones.
+// A rough floor under a lamp, seen at an angle, with wide and narrow lobes: the integral over the
+// lamp, whether paths sample it or meet it by chance.
 TEST(DirectLight, FacetsReflectALight) {
   for (const float roughness : {0.25f, 0.6f, 1.0f}) {
     Material material = facets(0.5f, roughness, 0.0f);

@@ -1,5 +1,5 @@
-// Tiles cover the window once, passes all samples, for any number of threads. Every pass of every
-// tile is begun once, a tile's in their order, and no tile waits for another.
+// For any number of threads, tiles cover the window once and passes cover all samples. Every pass
+// of every tile begins once, in the order of the tile's passes, and no tile waits for another.
 #include "host/render/tiles.h"
 
 #include <gtest/gtest.h>

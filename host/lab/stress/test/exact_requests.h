@@ -31,8 +31,8 @@ inline ExactCase case_of(const ExactRequest& request) {
 
 /// Makes cases shot by shot, of a suite in binary32. Each triangle that a ray hits is compared with
 /// a limit near it and with the next that the ray hits (or itself, turned round), and asked for
-/// alone; some that it misses are asked for, too. Of every case a fourth has no suite: random bits,
-/// whose exponents are as far apart as they can be, or near each other.
+/// alone; some that it misses are asked for, too. Each shot also adds a case of random numbers,
+/// whose exponents have the whole range of float or a range of 12.
 class ExactCases {
  public:
   ExactCases(const Suite& suite, std::uint64_t seed) : generate_(suite.make()), random_(seed) {}

@@ -220,13 +220,13 @@ TEST(LoadObj, CornersThatBinary32MovesAreCounted) {
     // What pictures do not show is rounded for them.
     const Scene near = load("v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", {.vertices = vertices});
     EXPECT_EQ(near.rests.empty(), vertices == Vertices::kAsPictures);
-    // So is a face without area, of any size, and one that rounding flattens but hardly moves.
+    // So are faces without area, and a face that rounding flattens but hardly moves.
     const Scene flat = load(
         "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 1\nv 1000000.1 0 0\nv 1000000.1 9 0\n"
         "v 1000000.101 5 0\nf 4 5 6\n",
         {.vertices = vertices});
     EXPECT_EQ(flat.rests.empty(), vertices == Vertices::kAsPictures);
-    // Rests that are all 0 are none: binary32 has these positions, relative to another origin.
+    // binary32 holds these positions relative to another origin, so no rests are stored.
     const Scene even = load(
         "v 5411987 0 0\nv 5411987 1 0\nv 5411987.25 0 0\nv 5411987.25 1 0\n"
         "v 0 0 0\nf 1 2 3\nf 1 2 4\nf 2 5 3\n",
