@@ -24,7 +24,7 @@ void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
 }
 
 void PointWriter::write() {
-  for (std::size_t first = 0; first < planes_; first += kQuad) {
+  for (std::size_t first = computed_; first < planes_; first += kQuad) {
     const auto plane = [&](std::size_t i) { return std::min(first + i, planes_ - 1); };
     const auto origin = [&](std::size_t i) { return rays_[firsts_[plane(i)]].origin; };
     const auto corners = [&](std::size_t i) { return bvh_.corners_of(primitives_[plane(i)]); };
@@ -57,32 +57,22 @@ void PointWriter::write() {
         transpose(rays[quad]);
         transpose(planes[quad]);
       }
-      Floats direction[3], n[4], point[3];
-      for (int k = 0; k < 4; ++k) {
-        if (k < 3)
-          direction[k] = joined<Floats>([&](int i) RAYGATE_BODY { return rays[i][k + 1]; });
+      Floats directions[3], n[3];
+      for (int k = 0; k < 3; ++k) {
+        directions[k] = joined<Floats>([&](int i) RAYGATE_BODY { return rays[i][k + 1]; });
         n[k] = joined<Floats>([&](int i) RAYGATE_BODY { return planes[i][k]; });
       }
-      NativeInts<code()> largest = {}, error;
+      const Floats d = joined<Floats>([&](int i) RAYGATE_BODY { return planes[i][3]; });
+      NativeInts<code()> largest = {};
       for (int k = 0; k < 3; ++k) largest = maximum(largest, bits_in(n[k]) >> 23 & 0xFF);
-      plane_points({n[0], n[1], n[2]}, n[3], largest, direction, point, error);
-      static_assert(offsetof(NearestHit, point_error) ==
-                    offsetof(NearestHit, point) + 3 * sizeof(float));
-      const Floats columns[4] = {point[0], point[1], point[2], float_of(error)};
-      for (std::size_t quad = 0; quad < kHits / kQuad; ++quad) {
-        FloatQuad rows[kQuad];
-        for (int k = 0; k < 4; ++k) {
-          rows[k] = load<FloatQuad>(reinterpret_cast<const float*>(&columns[k]) + quad * kQuad);
-        }
-        transpose(rows);
-        for (std::size_t i = 0; i < kQuad; ++i) {
-          std::memcpy(&hits_[number[quad * kQuad + i]].point, &rows[i], 16);
-        }
-      }
+      const auto hit = [&](std::size_t i) RAYGATE_BODY { return &hits_[number[i]]; };
+      write_lanes(n, d, largest, directions, hit);
     }
   });
   written_ += count_;
-  planes_ = count_ = 0;
+  count_ = 0;
+  if (!is_common_ || planes_ > kPlanes - kMost) planes_ = 0;
+  computed_ = planes_;
 }
 
 void all_hits(const Bvh& bvh, const ExactRay& ray, float t_max, std::vector<NearestHit>& hits,

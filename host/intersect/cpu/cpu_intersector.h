@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -31,9 +32,10 @@ class CpuIntersector : public Intersector {
 /// Computes P and its error with the bits of set_point, and writes them to the hits of a query.
 class PointWriter {
  public:
-  static constexpr std::size_t kMost = 256;
+  static constexpr std::size_t kMost = 256;  ///< hits that wait
 
-  /// `is_common`: all rays start at one point, so that hits of one primitive share its plane.
+  /// `is_common`: all rays start at one point, so that hits of one primitive share its plane, which
+  /// is kept for later hits.
   PointWriter(const Bvh& bvh, std::span<const Ray> rays, bool is_common, std::span<NearestHit> hits)
       : bvh_(bvh), rays_(rays), is_common_(is_common), hits_(hits) {}
 
@@ -45,9 +47,9 @@ class PointWriter {
   /// Adds the hit of a ray with a primitive. At most kMost are added before they are written.
   RAYGATE_INLINE void add(std::uint32_t number, std::uint32_t primitive) {
     std::uint16_t unused = 0xFFFF;
-    std::uint16_t& plane = is_common_ ? last_[primitive % kMost] : unused;
+    std::uint16_t& plane = is_common_ ? last_[primitive % kPlanes] : unused;
     // Branchless, as a branch would be unpredictable.
-    const bool known = (plane < planes_) & (primitives_[plane % kMost] == primitive);
+    const bool known = (plane < planes_) & (primitives_[plane % kPlanes] == primitive);
     plane = static_cast<std::uint16_t>(known ? plane : planes_);
     primitives_[planes_] = primitive;
     firsts_[planes_] = number;
@@ -59,20 +61,63 @@ class PointWriter {
   /// Writes the points of the hits that were added.
   void write();
 
+  /// Writes the points of eight hits of one primitive, of consecutive rays with these directions,
+  /// if the primitive's plane is known; returns whether it is.
+  template <Vectors kCode>
+  [[nodiscard]] RAYGATE_INLINE bool write(std::uint32_t number, std::uint32_t primitive,
+                                          const FloatLanes (&directions)[3]) {
+    const std::size_t plane = last_[primitive % kPlanes];
+    if (kCode == Vectors::kBaseline || plane >= computed_ || primitives_[plane] != primitive) {
+      return false;
+    }
+    const float* const words = words_[plane];
+    const FloatLanes n[3] = {spread<FloatLanes>(words[0]), spread<FloatLanes>(words[1]),
+                             spread<FloatLanes>(words[2])};
+    const IntLanes largest = spread<IntLanes>(largest_field({words[0], words[1], words[2]}));
+    const auto hit = [&](std::size_t i) RAYGATE_BODY { return &hits_[number + i]; };
+    write_lanes(n, spread<FloatLanes>(words[3]), largest, directions, hit);
+    written_ += kLanes;
+    return true;
+  }
+
  private:
+  /// Computes P for a plane and a direction in each lane, and writes it to hit(lane).
+  template <class Floats, class Hit>
+  static RAYGATE_INLINE void write_lanes(const Floats (&n)[3], const Floats& d,
+                                         const IntOf<Floats>& largest,
+                                         const Floats (&directions)[3], const Hit& hit) {
+    Floats point[3];
+    IntOf<Floats> error;
+    plane_points(n, d, largest, directions, point, error);
+    static_assert(offsetof(NearestHit, point_error) ==
+                  offsetof(NearestHit, point) + 3 * sizeof(float));
+    const Floats columns[4] = {point[0], point[1], point[2], float_of(error)};
+    for (std::size_t first = 0; first < kLanesOf<Floats>; first += kQuad) {
+      FloatQuad rows[kQuad];
+      for (int k = 0; k < 4; ++k) {
+        rows[k] = load<FloatQuad>(reinterpret_cast<const float*>(&columns[k]) + first);
+      }
+      transpose(rows);
+      for (std::size_t i = 0; i < kQuad; ++i) std::memcpy(&hit(first + i)->point, &rows[i], 16);
+    }
+  }
+
+  static constexpr std::size_t kPlanes = 2 * kMost;
+
   const Bvh& bvh_;
   const std::span<const Ray> rays_;
   const bool is_common_;
   const std::span<NearestHit> hits_;
   std::uint64_t written_ = 0;
-  std::size_t planes_ = 0, count_ = 0;
-  std::uint32_t primitives_[kMost + 1] = {};  // by plane, with a ray that hits it
-  std::uint32_t firsts_[kMost + 1];
+  std::size_t planes_ = 0, computed_ = 0;  // planes, and how many have words
+  std::size_t count_ = 0;
+  std::uint32_t primitives_[kPlanes + 1] = {};  // by plane, with a ray that hits it
+  std::uint32_t firsts_[kPlanes + 1];
   // Numbers of planes have 16 bits, as bytes might alias any other variable.
-  std::uint16_t last_[kMost] = {};  // by hash: the last plane of a primitive
-  std::uint32_t numbers_[kMost];    // of rays, with their planes
+  std::uint16_t last_[kPlanes] = {};  // by hash: the last plane of a primitive
+  std::uint32_t numbers_[kMost];      // of rays, with their planes
   std::uint16_t plane_of_[kMost];
-  float words_[kMost][4];  // of planes: N and d
+  float words_[kPlanes + kQuad][4];  // of planes: N and d; computed by four
 };
 
 // The two searches of CpuIntersector. `hits` are initialised to misses; misses are not counted.

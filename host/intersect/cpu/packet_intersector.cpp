@@ -455,6 +455,14 @@ RAYGATE_INLINE void test_ray(const ConeTraversal& walk, const QuadRecord& record
   bound_distance(verdict.low, verdict.high, v - v_bound, v + v_bound);
 }
 
+/// A leaf seen from an origin.
+struct SeenLeaf {
+  std::uint32_t first = NearestHit::kNone;  ///< its first primitive; kNone: no leaf
+  LaneMask there;                           ///< triangles that rays can hit
+  QuadRecord record;
+};
+constexpr int kSeenBits = 5;
+
 constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float
 
 /// Loads the query options of a group's rays. Lanes beyond the last ray are undefined.
@@ -649,19 +657,12 @@ class PacketIntersector {
           step_through<code()>(walk, tree, item.child.first, rays, groups);
           continue;
         }
-        QuadRecord record;
-        Bvh::LeafRoom room;
-        const float* const corners = tree.corners_of(item.child, room);
-        bvh_.is_binary32()
-            ? make_quad_record<false>(cones.whole.origin, corners, item.child.count, record)
-            : make_quad_record<true>(cones.whole.origin, corners, item.child.count, record);
-        LaneMask there = (1u << item.child.count) - 1;
-        if (record.unsure != 0) resolve_sides(item.child, record, there);
+        const SeenLeaf& leaf = seen(tree, item.child);
         LaneMask changed = 0;
         if (is_sparse(rays, groups, item.child.count)) {
-          test_rays(walk, record, item.child, there, rays, changed);
+          test_rays(walk, leaf.record, item.child, leaf.there, rays, changed);
         } else {
-          test_groups<code()>(walk, record, item.child, there, rays, changed);
+          test_groups<code()>(walk, leaf.record, item.child, leaf.there, rays, changed);
         }
         if (changed == 0) continue;
         for (; changed != 0; changed &= changed - 1) {
@@ -679,17 +680,32 @@ class PacketIntersector {
     });
   }
 
+  /// Returns a leaf as the rays' origin sees it, from those that were seen last if it is there.
+  RAYGATE_INLINE const SeenLeaf& seen(const BvhView& tree, const Bvh::Child& leaf) {
+    SeenLeaf& seen = leaves_[leaf.first * 0x9E3779B1u >> (32 - kSeenBits)];
+    if (seen.first == leaf.first) return seen;
+    seen.first = leaf.first;
+    Bvh::LeafRoom room;
+    const float* const corners = tree.corners_of(leaf, room);
+    const float origin[3] = {origin_.x, origin_.y, origin_.z};
+    bvh_.is_binary32() ? make_quad_record<false>(origin, corners, leaf.count, seen.record)
+                       : make_quad_record<true>(origin, corners, leaf.count, seen.record);
+    seen.there = (1u << leaf.count) - 1;
+    if (seen.record.unsure != 0) resolve_sides(leaf, seen);
+    return seen;
+  }
+
   /// Decides exactly on which side of each triangle the origin lies where float32 is not sure. No
-  /// ray hits a triangle whose plane contains the origin: such triangles are removed from `there`.
-  void resolve_sides(const Bvh::Child& leaf, QuadRecord& record, LaneMask& there) const {
-    for (LaneMask unsure = record.unsure; unsure != 0; unsure &= unsure - 1) {
+  /// ray hits a triangle whose plane contains the origin: such triangles are removed.
+  void resolve_sides(const Bvh::Child& leaf, SeenLeaf& seen) const {
+    for (LaneMask unsure = seen.record.unsure; unsure != 0; unsure &= unsure - 1) {
       const int i = std::countr_zero(unsure);
       const int side =
           orient3d(origin_, bvh_.corners_of(leaf.first + static_cast<std::uint32_t>(i)));
       if (side == 0) {
-        there &= ~(1u << i);
+        seen.there &= ~(1u << i);
       } else {
-        set_side(record, i, side);
+        set_side(seen.record, i, side);
       }
     }
   }
@@ -719,7 +735,7 @@ class PacketIntersector {
   /// Writes the nearest hits, and adds them to those whose P is to be computed.
   void finish(const ConeTraversal& walk) {
     in_vectors([&](auto code) RAYGATE_BODY {
-      const bool with_points = query_.with_points;
+      const auto& block = walk.block->direction;
       for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
         const int g = std::countr_zero(groups);
         double bounds[kLanes][2];
@@ -732,13 +748,22 @@ class PacketIntersector {
           store(bounds[kQuad * half], __builtin_shufflevector(low, high, 0, 4, 1, 5));
           store(bounds[kQuad * half + 2], __builtin_shufflevector(low, high, 2, 6, 3, 7));
         }
-        LaneMask lanes = 0xFF & ~sign_mask(walk.primitive[g]);
+        LaneMask lanes = 0xFF & ~sign_mask<code()>(walk.primitive[g]);
+        const std::uint32_t number = walk.number(g, 0);
+        bool are_points_due = query_.with_points;
+        if (are_points_due && lanes == 0xFF) {
+          const std::int32_t first = walk.primitive[g][0];
+          const FloatLanes directions[3] = {block[0][g], block[1][g], block[2][g]};
+          are_points_due =
+              sign_mask<code()>(walk.primitive[g] == first) != 0xFF ||
+              !points_.write<code()>(number, static_cast<std::uint32_t>(first), directions);
+        }
         for (; lanes != 0; lanes &= lanes - 1) {
-          const int lane = std::countr_zero(lanes);
-          NearestHit& hit = hits_[walk.number(g, lane)];
+          const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+          NearestHit& hit = hits_[number + lane];
           hit.primitive = static_cast<std::uint32_t>(walk.primitive[g][lane]);
           hit.t = {bounds[lane][0], bounds[lane][1]};
-          if (with_points) points_.add(walk.number(g, lane), hit.primitive);
+          if (are_points_due) points_.add(number + lane, hit.primitive);
         }
       }
     });
@@ -751,6 +776,7 @@ class PacketIntersector {
   const RayQuery query_;
   const std::span<NearestHit> hits_;
   PointWriter points_;
+  SeenLeaf leaves_[1 << kSeenBits];  // by hash
 };
 
 }  // namespace
