@@ -34,7 +34,7 @@ class Parts : public Render {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     expect_same_pictures("merged", "whole");
   }
-  /// These arguments, to go on from what was saved last, if anything was.
+  /// Returns the arguments of a run that goes on from what was saved last, if anything was.
   std::vector<std::string> resuming(const std::vector<std::string>& arguments) const {
     return folder_.read("a.exr").empty() ? arguments : joined(arguments, {"--resume", "a.exr"});
   }
@@ -112,7 +112,7 @@ TEST_F(Parts, WithLightPathsMakeThePicture) {
   const auto render = [&](const std::vector<std::string>& more) {
     const Outcome outcome = run(joined({kPaper, "--size", "60x44", "--spp", "6", "--integrator",
                                         "path", "--engine", "cpu", "--exposure", "0"},
-                                       more));  // merge's exposure
+                                       more));  // the exposure of merge
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   };
   render({"-o", "whole", "--threads", "1"});

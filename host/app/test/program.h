@@ -41,7 +41,7 @@ struct Outcome {
 
 [[nodiscard]] Outcome run_program(const Invocation& invocation);
 
-/// Whether `text` has `part`; the message of a failure shows both.
+/// Returns whether `text` contains `part`; the message of a failure shows both.
 [[nodiscard]] inline testing::AssertionResult contains(const std::string& text,
                                                        const std::string& part) {
   const bool is_there = text.find(part) != std::string::npos;

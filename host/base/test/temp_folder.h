@@ -27,6 +27,7 @@ std::string input_error_of(const Work& work) {
   return "(read)";
 }
 
+/// A new folder.
 class TempFolder {
  public:
   static std::filesystem::path on_disk() { return std::filesystem::temp_directory_path(); }

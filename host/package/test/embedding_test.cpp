@@ -130,7 +130,7 @@ TEST(Embedding, LeavesSignalsAndStreamsAlone) {
   }
 }
 
-/// Whether `work` returns true in a child process.
+/// Returns whether `work` returns true in a child process.
 template <class Work>
 bool in_child(const Work& work) {
   const pid_t child = ::fork();

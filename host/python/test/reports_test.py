@@ -112,11 +112,11 @@ def morphed(**of_node):
     return gltf.text(nodes=[{"mesh": 0, **of_node}])
 
 
-def sparse(corners, count=None, values=None):
-    """The square without the corners that are not given; of all four, one is elsewhere."""
+def sparse(corners, count=None, values=None, number=0):
+    """The square with a sparse accessor of these corners: one alone replaces the square's; of several, the others are 0."""
     gltf = Gltf(NORMAL=[(0., 0., 1.)] * 4)
     places = gltf.view([(3., 3., 0.) if k == 2 else CORNERS[k] for k in corners])
-    gltf.json["accessors"][0]["sparse"] = {"count": count or len(corners), "indices": {"bufferView": gltf.view(corners, "H"), "componentType": 5123},
+    gltf.json["accessors"][number]["sparse"] = {"count": count or len(corners), "indices": {"bufferView": gltf.view(corners, "H"), "componentType": 5123},
         "values": {"bufferView": places} if values is None else values}
     if len(corners) > 1:
         del gltf.json["accessors"][0]["bufferView"]
@@ -306,6 +306,7 @@ ROWS = [
     ("sparse accessors", {"a.gltf": sparse([0, 1, 2])}, {"rays": [LOWER], "warns": [NO_AREA]}),
     ("sparse accessors", {"a.gltf": sparse([2], count=9)}, {"error": r"accessor 0 \(POSITION\): beyond its buffer"}),
     ("sparse accessors", {"a.gltf": sparse([2], values={})}, {"error": r"accessor 0 \(POSITION\): found no buffer view, expected its number"}),
+    ("sparse accessors", {"a.gltf": sparse([2], values={}, number=2)}, {"warns": [r"accessor 2 \(NORMAL\): found no buffer view, expected its number, left out"]}),
     ("normals that are no numbers", {"a.gltf": Gltf(NORMAL=[(math.nan, 0., 1.), *[(0., 1., 1.)] * 3]).text()}, {"warns": [FLAT], "normal": (0, 0, 1)}),
     ("colours between corners", {"a.gltf": Gltf(COLOR_0=[(1., 0., 0.)] * 2 + [(0., 0., 1.)] * 2).text()}, {"colours": "BB/RR"}),
     ("attributes of others", {"a.gltf": Gltf(COLOR_1=[(1., 1., 1.)] * 4).text()}, {"warns": ["the attribute 'COLOR_1' is not read"]}),

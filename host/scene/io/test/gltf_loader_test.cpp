@@ -43,7 +43,7 @@ glm::dvec3 corner(const Scene& scene, std::size_t triangle, std::size_t k) {
   return scene.origin + glm::dvec3(scene.positions[scene.triangles[triangle].vertices[k]]);
 }
 
-/// Whether a triangle's front, by the order of its corners, is towards +z, and so is its normal.
+/// Expects that a triangle faces +z, by the order of its corners and by its normals.
 void expect_front(const Scene& scene, std::size_t triangle) {
   EXPECT_GT(glm::cross(corner(scene, triangle, 1) - corner(scene, triangle, 0),
                        corner(scene, triangle, 2) - corner(scene, triangle, 0))
