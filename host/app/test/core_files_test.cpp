@@ -6,16 +6,15 @@ namespace {
 
 class CoreFiles : public Render {
  protected:
-  Outcome run(std::vector<std::string> more) {
-    std::vector<std::string> words{kCornell, "--unit", "core", "--arith", "behavioural",
-                                   "--size", "16x16",  "-o",   "out"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_program({.arguments = words, .folder = folder_.path()});
+  Outcome run_core(const std::vector<std::string>& more) const {
+    return run(joined(
+        {kCornell, "--unit", "core", "--arith", "behavioural", "--size", "16x16", "-o", "out"},
+        more));
   }
 };
 
 TEST_F(CoreFiles, TheMemoryImage) {
-  const Outcome dumped = run({"--dump-image", "image"});
+  const Outcome dumped = run_core({"--dump-image", "image"});
   ASSERT_EQ(dumped.status, 0) << dumped.err;
   EXPECT_EQ(dumped.out, "wrote image, 42 lines\n");
   EXPECT_EQ(folder_.list(), std::vector{"image"s}) << "nothing is rendered";
@@ -23,7 +22,7 @@ TEST_F(CoreFiles, TheMemoryImage) {
 }
 
 TEST_F(CoreFiles, NoImageThatCannotBeWrittenIsBegun) {
-  EXPECT_EQ(run({"--dump-image", "absent/image"}).status, 2);
+  EXPECT_EQ(run_core({"--dump-image", "absent/image"}).status, 2);
   EXPECT_TRUE(folder_.list().empty());
 }
 
@@ -55,24 +54,22 @@ TEST_F(CoreFiles, ABoardDrawsTheSamePicture) {
 }
 
 TEST_F(CoreFiles, APortThatIsNoneIsAnInputError) {
-  const Outcome outcome = run_program(
-      {.arguments = {kCornell, "--unit", "board", "--board-port", "/dev/null", "-o", "out"},
-       .folder = folder_.path()});
+  const Outcome outcome =
+      run({kCornell, "--unit", "board", "--board-port", "/dev/null", "-o", "out"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("/dev/null: expected a serial port"), std::string::npos)
-      << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "/dev/null: expected a serial port"));
 }
 
 TEST_F(CoreFiles, TheWaveOfAPixelsRay) {
   folder_.write("link.vcd.unfinished", "of another program");
   std::filesystem::create_symlink("pixel.vcd", folder_.path() / "link.vcd");
-  const Outcome outcome = run({"--trace", "8,8=link.vcd"});
+  const Outcome outcome = run_core({"--trace", "8,8=link.vcd"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("the ray of pixel 8,8 hits triangle "), std::string::npos);
+  EXPECT_TRUE(contains(outcome.out, "the ray of pixel 8,8 hits triangle "));
   EXPECT_EQ(folder_.list(), (std::vector{"link.vcd"s, "link.vcd.unfinished"s, "pixel.vcd"s}));
   EXPECT_EQ(folder_.read("link.vcd.unfinished"), "of another program");
   EXPECT_TRUE(std::filesystem::is_symlink(folder_.path() / "link.vcd"));
-  EXPECT_NE(folder_.read("pixel.vcd").find("ray_core"), std::string::npos);
+  EXPECT_TRUE(contains(folder_.read("pixel.vcd"), "ray_core"));
 }
 
 }  // namespace

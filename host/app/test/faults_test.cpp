@@ -40,11 +40,8 @@ class Faults : public Render {
 
   /// The inputs of all runs.
   void SetUp() override {
-    const std::vector<std::string> picture = small_picture();
     const auto make = [&](const char* samples, const char* name) {
-      std::vector<std::string> arguments = picture;
-      arguments.insert(arguments.end(), {"--samples", samples, "-o", name});
-      ASSERT_EQ(run_program({.arguments = arguments, .folder = folder_.path()}).status, 0);
+      ASSERT_EQ(run(joined(small_picture(), {"--samples", samples, "-o", name})).status, 0);
     };
     make("0:2", "a.exr");
     make("2:4", "b.exr");
@@ -55,7 +52,7 @@ class Faults : public Render {
             "--crop", "4,2,20,16", "--integrator", "path",   "--threads", "2",     "--quiet"};
   }
 
-  Outcome run(const Job& job, const std::string& fault) const {
+  Outcome run_with(const Job& job, const std::string& fault) const {
     return run_program(
         {.arguments = job.arguments,
          .folder = folder_.path(),
@@ -66,7 +63,7 @@ class Faults : public Render {
   }
 
   void survive(const Job& job) {
-    const Outcome good = run(job, "");
+    const Outcome good = run_with(job, "");
     ASSERT_EQ(good.status, 0) << good.err;
     std::vector<std::string> made;
     for (const std::string& name : job.outputs) made.push_back(folder_.read(name));
@@ -81,7 +78,7 @@ class Faults : public Render {
       for (const long call : chosen(calls, random)) {
         SCOPED_TRACE(kind + ":"s + std::to_string(call));
         for (const std::string& name : job.outputs) folder_.write(name, "old " + name);
-        const Outcome outcome = run(job, kind + ":"s + std::to_string(call));
+        const Outcome outcome = run_with(job, kind + ":"s + std::to_string(call));
         ++runs;
         refused += outcome.status != 0;
         check(job, outcome, made);
@@ -116,9 +113,8 @@ class Faults : public Render {
 };
 
 TEST_F(Faults, OfARender) {
-  std::vector<std::string> arguments = small_picture();
-  arguments.insert(arguments.end(), {"-o", "c", "--stats", "stats.json"});
-  survive({arguments, {"c.exr", "c.png", "stats.json"}});
+  survive({joined(small_picture(), {"-o", "c", "--stats", "stats.json"}),
+           {"c.exr", "c.png", "stats.json"}});
 }
 
 /// Whose tree two threads build.
@@ -129,9 +125,8 @@ TEST_F(Faults, OfALargerScene) {
 }
 
 TEST_F(Faults, OfAResume) {
-  std::vector<std::string> arguments = small_picture();
-  arguments.insert(arguments.end(), {"--resume", "a.exr", "-o", "c", "--channels", "sums"});
-  survive({arguments, {"c.exr", "c.png"}});
+  survive({joined(small_picture(), {"--resume", "a.exr", "-o", "c", "--channels", "sums"}),
+           {"c.exr", "c.png"}});
 }
 
 /// Less and less address space than a picture takes, down to what the program starts with.

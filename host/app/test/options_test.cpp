@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "host/app/console.h"
-#include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 
 namespace raygate {
@@ -24,12 +23,7 @@ Options parse(std::initializer_list<const char*> arguments) {
 }
 
 std::string error_of(std::initializer_list<const char*> arguments) {
-  try {
-    (void)parse(arguments);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "(accepted)";
+  return input_error_of([&] { (void)parse(arguments); });
 }
 
 /// The error is one line and says `part`.

@@ -16,14 +16,10 @@ namespace {
 class Parts : public Render {
  protected:
   /// 12 samples a pixel of a small Cornell box, and more arguments.
-  Outcome part(const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {kCornell,       "--size", "60x44",     "--spp", "12",
-                                          "--integrator", "path",   "--threads", "1"};
-    if (std::ranges::find(more, "--engine") == more.end()) {
-      arguments.insert(arguments.end(), {"--engine", "cpu"});
-    }
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program({.arguments = arguments, .folder = folder_.path()});
+  Outcome part(const std::vector<std::string>& more) const {
+    return run(joined({kCornell, "--size", "60x44", "--spp", "12", "--integrator", "path",
+                       "--threads", "1", "--engine", "cpu"},
+                      more));
   }
   void make(const std::vector<std::string>& more) {
     const Outcome outcome = part(more);
@@ -33,35 +29,34 @@ class Parts : public Render {
     return run_program(
         {.arguments = std::move(arguments), .folder = folder_.path(), .program = RAYGATE_MERGE});
   }
-  void expect_merged(std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), {"-o", "merged"});
-    const Outcome outcome = merge(arguments);
+  void expect_merged(const std::vector<std::string>& arguments) {
+    const Outcome outcome = merge(joined(arguments, {"-o", "merged"}));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     expect_same_pictures("merged", "whole");
   }
+  /// Returns the arguments of a run that goes on from what was saved last, if anything was.
+  std::vector<std::string> resuming(const std::vector<std::string>& arguments) const {
+    return folder_.read("a.exr").empty() ? arguments : joined(arguments, {"--resume", "a.exr"});
+  }
   /// Renders, is killed at any time, goes on from what was saved last, and so on.
   void expect_to_survive(const std::vector<std::string>& long_run) {
-    std::vector<std::string> arguments = long_run;
-    arguments.insert(arguments.end(), {"-o", "whole"});
-    make(arguments);
+    make(joined(long_run, {"-o", "whole"}));
     std::mt19937 random(20261122);
     int killed = 0;
     const char* const wanted = std::getenv("RAYGATE_KILLS");  // make test LONG=kills
     const int kills = wanted == nullptr ? 4 : std::atoi(wanted);
+    const auto kill_soon = [&](int process) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(150 + random() % 300));
+      ::kill(process, SIGKILL);
+    };
     for (int runs = 0; killed < kills && runs < 2 * kills; ++runs) {
-      arguments = {kCornell, "--integrator", "path", "--threads", "2",    "--engine",
-                   "cpu",    "--save-every", "0.1",  "-o",        "a.exr"};
-      arguments.insert(arguments.end(), long_run.begin(), long_run.end());
-      if (!folder_.read("a.exr").empty()) arguments.insert(arguments.end(), {"--resume", "a.exr"});
-      const Outcome outcome =
-          run_program({.arguments = arguments,
-                       .folder = folder_.path(),
-                       .terminal = true,
-                       .when_said = {{"rendering: ", [&](int process) {
-                                        std::this_thread::sleep_for(
-                                            std::chrono::milliseconds(150 + random() % 300));
-                                        ::kill(process, SIGKILL);
-                                      }}}});
+      const Outcome outcome = run_program(
+          {.arguments = resuming(joined({kCornell, "--integrator", "path", "--threads", "2",
+                                         "--engine", "cpu", "--save-every", "0.1", "-o", "a.exr"},
+                                        long_run)),
+           .folder = folder_.path(),
+           .terminal = true,
+           .when_said = {{"rendering: ", kill_soon}}});
       if (outcome.signal == SIGKILL) {
         ++killed;
         continue;
@@ -72,15 +67,12 @@ class Parts : public Render {
     }
     EXPECT_GT(killed, 0);
     std::printf("killed %d times\n", killed);
-    arguments = long_run;
-    arguments.insert(arguments.end(), {"-o", "resumed"});
-    if (!folder_.read("a.exr").empty()) arguments.insert(arguments.end(), {"--resume", "a.exr"});
-    make(arguments);
+    make(resuming(joined(long_run, {"-o", "resumed"})));
     expect_same_pictures("resumed", "whole");
   }
   void expect_refused(const Outcome& outcome, const std::string& line) const {
     EXPECT_EQ(outcome.status, 2) << outcome.err;
-    EXPECT_NE(outcome.err.find("error: " + line), std::string::npos) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "error: " + line));
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
     EXPECT_EQ(folder_.read("merged.exr"), "");
   }
@@ -118,11 +110,9 @@ TEST_F(Parts, OfItsPixelsMakeThePicture) {
 /// Light paths bring light to the pixels of other parts.
 TEST_F(Parts, WithLightPathsMakeThePicture) {
   const auto render = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {kPaper, "--size",       "60x44", "--spp",
-                                          "6",    "--integrator", "path",  "--engine",
-                                          "cpu",  "--exposure",   "0"};  // as merge has it
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = run_program({.arguments = arguments, .folder = folder_.path()});
+    const Outcome outcome = run(joined({kPaper, "--size", "60x44", "--spp", "6", "--integrator",
+                                        "path", "--engine", "cpu", "--exposure", "0"},
+                                       more));  // the exposure of merge
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   };
   render({"-o", "whole", "--threads", "1"});
@@ -167,26 +157,17 @@ TEST_F(Parts, GoOnWhereTheyWere) {
 /// A picture that goes on and is interrupted again keeps what it went on from, whether or not the
 /// one that is asked for has sums.
 TEST_F(Parts, KeepTheirSumsWhenInterruptedAgain) {
-  const std::vector<std::string> picture = {kCornell, "--size",       "200x150", "--spp",
-                                            "4000",   "--integrator", "path",    "--threads",
-                                            "2",      "--engine",     "cpu"};
-  const auto with = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = picture;
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-  };
-  ASSERT_EQ(run_program(
-                {.arguments = with({"--samples", "0:4", "-o", "a.exr"}), .folder = folder_.path()})
-                .status,
-            0);
+  const std::vector<std::string> picture = {"--size", "200x150", "--spp", "4000", "--threads", "2"};
+  make(joined(picture, {"--samples", "0:4", "-o", "a.exr"}));
   for (const char* from : {"a.exr", "b.exr"}) {
-    const Outcome outcome = run_program({.arguments = with({"--resume", from, "-o", "b.exr"}),
-                                         .folder = folder_.path(),
-                                         .terminal = true,
-                                         .signal_when_busy = SIGINT});
+    const Outcome outcome = run_program(
+        {.arguments = joined(joined({kCornell, "--integrator", "path", "--engine", "cpu"}, picture),
+                             {"--resume", from, "-o", "b.exr"}),
+         .folder = folder_.path(),
+         .terminal = true,
+         .signal_when_busy = SIGINT});
     EXPECT_EQ(outcome.status, 128 + SIGINT) << outcome.err;
-    EXPECT_NE(outcome.err.find("--resume b.exr goes on from there"), std::string::npos)
-        << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "--resume b.exr goes on from there"));
   }
 }
 
@@ -199,10 +180,8 @@ TEST_F(Parts, WithSamplesByErrorSurviveBeingKilled) {
 }
 
 TEST_F(Parts, WithSamplesByErrorMakeThePicture) {
-  const std::vector<std::string> by_error = {"--error", "0.5", "--channels", "sums"};
-  const auto with = [&](std::vector<std::string> more) {
-    more.insert(more.end(), by_error.begin(), by_error.end());
-    return more;
+  const auto with = [&](const std::vector<std::string>& more) {
+    return joined(more, {"--error", "0.5", "--channels", "sums"});
   };
   make(with({"-o", "whole", "--spp", "70"}));
   make(with({"-o", "a.exr", "--spp", "70", "--crop", "0,0,32,20"}));
@@ -245,11 +224,9 @@ TEST_F(Parts, OfAnEditedSceneAreRefused) {
     folder_.write("s.mtl", "newmtl m\nKd "s + colour + "\n");
   };
   const auto render_part = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"s.obj",  "--engine", "cpu",
-                                          "--size", "20x15",    "--spp",
-                                          "4",      "--camera", "0.3,0.3,3,0.3,0.3,0,30"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program({.arguments = arguments, .folder = folder_.path()});
+    return run(joined({"s.obj", "--engine", "cpu", "--size", "20x15", "--spp", "4", "--camera",
+                       "0.3,0.3,3,0.3,0.3,0,30"},
+                      more));
   };
   const std::string line = ".exr: found another geometry, material or light, expected those";
   write_scene("0", "0.5 0.5 0.5");
@@ -269,9 +246,8 @@ TEST_F(Parts, OfAnotherCameraAreRefused) {
       "up": [0, 1, 0], "fov": 30, "aperture": 0.125, "focus": 2}})";
   const auto render_part = [&](const std::string& text, const char* samples, const char* name) {
     folder_.write("s.json", text);
-    return run_program({.arguments = {"s.json", "--engine", "cpu", "--size", "8x6", "--spp", "4",
-                                      "--samples", samples, "-o", name},
-                        .folder = folder_.path()});
+    return run({"s.json", "--engine", "cpu", "--size", "8x6", "--spp", "4", "--samples", samples,
+                "-o", name});
   };
   ASSERT_EQ(render_part(camera, "0:2", "a.exr").status, 0);
   ASSERT_EQ(render_part(camera, "2:4", "b.exr").status, 0);

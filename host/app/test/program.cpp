@@ -8,16 +8,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 namespace raygate {
 namespace {
-
-namespace fs = std::filesystem;
 
 void require(bool success, const char* what) {
   if (!success) throw std::runtime_error(std::string(what) + " failed");
@@ -136,39 +131,6 @@ Outcome run_program(const Invocation& invocation) {
   if (WIFEXITED(status)) outcome.status = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
   return outcome;
-}
-
-ScratchFolder::ScratchFolder() {
-  std::string pattern = (fs::temp_directory_path() / "raygate-test-XXXXXX").string();
-  require(::mkdtemp(pattern.data()) != nullptr, "mkdtemp");
-  path_ = pattern;
-  fs::permissions(path_, fs::perms(0755));  // others may look in
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  fs::permissions(path_, fs::perms::owner_all, ignored);
-  fs::remove_all(path_, ignored);
-}
-
-std::vector<std::string> ScratchFolder::list() const {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(path_)) {
-    names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-void ScratchFolder::write(const std::string& name, const std::string& bytes) const {
-  std::ofstream file(path_ / name, std::ios::binary);
-  file << bytes;
-  require(file.flush().good(), "writing a test's file");
-}
-
-std::string ScratchFolder::read(const std::string& name) const {
-  std::ifstream file(path_ / name, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace raygate

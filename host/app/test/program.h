@@ -1,11 +1,15 @@
 // The program `render`, run as its users run it.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "host/base/test/temp_folder.h"
 
 namespace raygate {
 
@@ -37,23 +41,18 @@ struct Outcome {
 
 [[nodiscard]] Outcome run_program(const Invocation& invocation);
 
-/// A new empty folder that is removed with all that is in it.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder();
+/// Returns whether `text` contains `part`; the message of a failure shows both.
+[[nodiscard]] inline testing::AssertionResult contains(const std::string& text,
+                                                       const std::string& part) {
+  const bool is_there = text.find(part) != std::string::npos;
+  return testing::AssertionResult(is_there) << "'" << part << "' in: " << text;
+}
 
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Names of all files in it, in order.
-  [[nodiscard]] std::vector<std::string> list() const;
-  void write(const std::string& name, const std::string& bytes) const;
-  /// The file's bytes; none if there is no such file.
-  [[nodiscard]] std::string read(const std::string& name) const;
-
- private:
-  std::filesystem::path path_;
-};
+/// Returns `words`, followed by `more`.
+[[nodiscard]] inline std::vector<std::string> joined(std::vector<std::string> words,
+                                                     const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
 
 }  // namespace raygate

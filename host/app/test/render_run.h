@@ -23,10 +23,12 @@ inline const std::string kPaper = RAYGATE_SCENES "/paper_room.json";
 /// Runs of ./render, each test in a folder of its own.
 class Render : public testing::Test {
  protected:
+  [[nodiscard]] Outcome run(const std::vector<std::string>& arguments) const {
+    return run_program({.arguments = arguments, .folder = folder_.path()});
+  }
   /// Runs, expects success, and keeps the statistics in `stats_`.
-  Outcome render(std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), {"--stats", "stats.json"});
-    const Outcome outcome = run_program({.arguments = arguments, .folder = folder_.path()});
+  Outcome render(const std::vector<std::string>& arguments) {
+    const Outcome outcome = run(joined(arguments, {"--stats", "stats.json"}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     stats_ = json::parse(folder_.read("stats.json"), nullptr, false);
     EXPECT_FALSE(stats_.is_discarded());
@@ -41,7 +43,7 @@ class Render : public testing::Test {
     EXPECT_TRUE(folder_.read(a + ".png") == folder_.read(b + ".png")) << a << " " << b;
   }
 
-  ScratchFolder folder_;
+  const TempFolder folder_{TempFolder::on_disk()};
   json stats_;
 };
 

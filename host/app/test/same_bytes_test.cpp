@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "host/app/test/render_run.h"
+#include "host/base/input.h"
 #include "host/base/vectors.h"
 #include "host/film/test/exr_reader.h"
 
@@ -33,23 +34,19 @@ std::vector<std::string> all_scenes() {
 class EveryScene : public Render, public testing::WithParamInterface<std::string> {};
 
 TEST_P(EveryScene, EnginesGiveTheSameBytes) {
-  const std::string& scene = GetParam();
-  render({scene, "--size", "64x48", "--engine", "cpu", "--spp", "1", "-o", "cpu"});
-  const json cpu = stats_;
-  EXPECT_GT(cpu.at("hits"), 0) << "an empty picture shows nothing";
-  EXPECT_EQ(cpu.at("clocks"), 0);
-  render({scene, "--size", "64x48", "--engine", "rtl", "--spp", "1", "-o", "rtl"});
+  const auto render_by = [&](const std::string& name, const std::vector<std::string>& engine) {
+    render(joined({GetParam(), "--size", "64x48", "--spp", "1", "-o", name}, engine));
+    expect_same_pictures("cpu", name);
+  };
+  render_by("cpu", {"--engine", "cpu"});
+  EXPECT_GT(stats_.at("hits"), 0) << "an empty picture shows nothing";
+  EXPECT_EQ(stats_.at("clocks"), 0);
+  render_by("rtl", {"--engine", "rtl"});
   EXPECT_GT(stats_.at("clocks"), 0);
   EXPECT_GT(stats_.at("quotients"), 0);  // how many each engine needs is its own affair
-  expect_same_pictures("cpu", "rtl");
-  render({scene, "--size", "64x48", "--lanes", "4", "--spp", "1", "-o", "lanes"});
-  expect_same_pictures("cpu", "lanes");
-  render({scene, "--size", "64x48", "--unit", "serial", "--engine", "model", "--spp", "1", "-o",
-          "serial"});
-  expect_same_pictures("cpu", "serial");
-  render({scene, "--size", "64x48", "--unit", "core", "--arith", "behavioural", "--spp", "1", "-o",
-          "core"});
-  expect_same_pictures("cpu", "core");
+  render_by("lanes", {"--lanes", "4"});
+  render_by("serial", {"--unit", "serial", "--engine", "model"});
+  render_by("core", {"--unit", "core", "--arith", "behavioural"});
 }
 
 TEST_P(EveryScene, VectorsGiveTheSameBytes) {
@@ -110,21 +107,16 @@ class InstancedScene : public Render {
 
 TEST_F(InstancedScene, IsTheSameKeptAndWrittenOut) {
   for (const char* integrator : {"primary", "whitted", "path"}) {
-    const std::vector<std::string> words = {"room.json", "--size",     "96x96",     "--engine",
-                                            "cpu",       "--spp",      "4",         "--integrator",
-                                            integrator,  "--channels", "P,objectId"};
-    const auto render_as = [&](const std::vector<std::string>& more) {
-      std::vector<std::string> all = words;
-      all.insert(all.end(), more.begin(), more.end());
-      render(all);
+    const auto render_as = [&](const char* name, const std::vector<std::string>& more) {
+      render(joined({"room.json", "--size", "96x96", "--engine", "cpu", "--spp", "4",
+                     "--integrator", integrator, "--channels", "P,objectId", "-o", name},
+                    more));
+      expect_same_pictures("written", name);
     };
-    render_as({"--instances", "write", "-o", "written"});
-    render_as({"--instances", "keep", "-o", "kept"});
-    expect_same_pictures("written", "kept");
-    render_as({"--instances", "keep", "--threads", "3", "-o", "threads"});
-    expect_same_pictures("written", "threads");
-    render_as({"-o", "auto"});
-    expect_same_pictures("written", "auto");
+    render_as("written", {"--instances", "write"});
+    render_as("kept", {"--instances", "keep"});
+    render_as("threads", {"--instances", "keep", "--threads", "3"});
+    render_as("auto", {});
   }
 }
 
@@ -140,15 +132,9 @@ TEST_F(InstancedScene, IsTheSameForEveryEngine) {
   }
 }
 
-std::string read_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 /// The gallery in scenes/README.md: commands that write a picture of scenes/gallery.
 std::vector<std::string> gallery_commands() {
-  std::ifstream readme(RAYGATE_SCENES "/README.md");
-  const std::string text{std::istreambuf_iterator<char>(readme), {}};
+  const std::string text = read_file(RAYGATE_SCENES "/README.md");
   const std::regex command("`\\./render ([^`]*-o scenes/gallery/[^`]*)`");
   std::vector<std::string> commands;
   for (std::sregex_iterator i(text.begin(), text.end(), command), end; i != end; ++i) {
@@ -193,11 +179,8 @@ INSTANTIATE_TEST_SUITE_P(Readme, Gallery, testing::ValuesIn(gallery_commands()),
 using Variants = Render;
 
 TEST_F(Variants, DrawTheirOwnPictures) {
-  const std::vector<std::string> cornell = {kCornell, "--size", "64x48", "--spp", "1"};
-  const auto picture = [&](const std::string& name, std::vector<std::string> words) {
-    words.insert(words.begin(), cornell.begin(), cornell.end());
-    words.insert(words.end(), {"-o", name + ".png"});
-    (void)render(words);
+  const auto picture = [&](const std::string& name, const std::vector<std::string>& words) {
+    render(joined({kCornell, "--size", "64x48", "--spp", "1", "-o", name + ".png"}, words));
     return folder_.read(name + ".png");
   };
   const std::string plain = picture("plain", {"--engine", "model"});
@@ -224,17 +207,17 @@ TEST_F(Render, ThreadsChangeNoByte) {
 // Rays that scatter at random, through glass too.
 TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
   for (const std::string scene : {"cornell", "paper"}) {
-    const auto with = [&](std::vector<std::string> rest) {
-      rest.insert(rest.end(), {RAYGATE_SCENES "/" + scene + ".obj", "--integrator", "path",
-                               "--size", "24x18", "--spp", "2"});
-      return rest;
+    const auto render_by = [&](const std::vector<std::string>& engine) {
+      render(joined({RAYGATE_SCENES "/" + scene + ".obj", "--integrator", "path", "--size", "24x18",
+                     "--spp", "2"},
+                    engine));
     };
-    render(with({"-o", "cpu", "--engine", "cpu"}));
+    render_by({"-o", "cpu", "--engine", "cpu"});
     EXPECT_GT(stats_.at("shadow_rays"), 0);
-    render(with({"-o", "rtl", "--engine", "rtl"}));
+    render_by({"-o", "rtl", "--engine", "rtl"});
     EXPECT_GT(stats_.at("clocks"), 0);
     expect_same_pictures("cpu", "rtl");
-    render(with({"-o", "serial", "--engine", "model", "--unit", "serial"}));
+    render_by({"-o", "serial", "--engine", "model", "--unit", "serial"});
     expect_same_pictures("cpu", "serial");
   }
 }
@@ -243,14 +226,11 @@ TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
 TEST_F(Render, EnginesGiveTheSameBytesThroughAnyLens) {
   for (const std::string projection : {"perspective", "orthographic", "panorama"}) {
     for (const std::string aperture : {"0", "20"}) {
-      const auto with = [&](std::vector<std::string> rest) {
-        rest.insert(rest.end(), {kCornell, "--projection", projection, "--aperture", aperture,
-                                 "--size", "24x18", "--spp", "2"});
-        return rest;
-      };
-      render(with({"-o", "cpu", "--engine", "cpu"}));
-      EXPECT_GT(stats_.at("hits"), 0);
-      render(with({"-o", "rtl", "--engine", "rtl"}));
+      for (const std::string engine : {"cpu", "rtl"}) {
+        render({kCornell, "--projection", projection, "--aperture", aperture, "--size", "24x18",
+                "--spp", "2", "-o", engine, "--engine", engine});
+        EXPECT_GT(stats_.at("hits"), 0);
+      }
       expect_same_pictures("cpu", "rtl");
       const ExrReader exr(folder_.read("cpu.exr"));
       EXPECT_EQ(exr.text("projection"), projection == "perspective" ? "(none)" : projection);
@@ -259,20 +239,11 @@ TEST_F(Render, EnginesGiveTheSameBytesThroughAnyLens) {
   }
 }
 
-TEST_F(Render, RunsAreRepeatable) {
-  render({kCornell, "--size", "40x30", "-o", "first"});
-  render({kCornell, "--size", "40x30", "-o", "second"});
-  expect_same_pictures("first", "second");
-}
-
 TEST_F(Render, SavingInBetweenChangesNothingInTheEnd) {
   const std::vector<std::string> scene{kCornell, "--size", "96x96", "--engine",
                                        "cpu",    "--spp",  "16"};
-  std::vector<std::string> plain = scene, saving = scene;
-  plain.insert(plain.end(), {"-o", "plain"});
-  saving.insert(saving.end(), {"-o", "saving", "--save-every", "0.1"});
-  render(plain);
-  render(saving);
+  render(joined(scene, {"-o", "plain"}));
+  render(joined(scene, {"-o", "saving", "--save-every", "0.1"}));
   expect_same_pictures("plain", "saving");
 }
 

@@ -38,7 +38,7 @@ class TraceRays : public testing::Test {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   }
 
-  ScratchFolder folder_;
+  const TempFolder folder_{TempFolder::on_disk()};
 };
 
 TEST_F(TraceRays, SaysWhatIsNearest) {
@@ -71,9 +71,7 @@ TEST_F(TraceRays, SaysTheSameByEveryEngine) {
       {"--engine", "rtl", "--arith", "behavioural"},
       {"--engine", "rtl", "--unit", "serial"}};
   for (const std::vector<std::string>& engine : engines) {
-    std::vector<std::string> arguments = common;
-    arguments.insert(arguments.end(), engine.begin(), engine.end());
-    const Outcome outcome = trace(arguments);
+    const Outcome outcome = trace(joined(common, engine));
     EXPECT_EQ(outcome.out, expected) << engine[1] << outcome.err;
   }
 }
@@ -152,7 +150,7 @@ TEST_F(TraceRays, EndsSoonAfterASignal) {
                         }}}});
     has_ended = true;
     EXPECT_EQ(outcome.status, 128 + SIGTERM);
-    EXPECT_NE(outcome.err.find("error: interrupted; "), std::string::npos) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "error: interrupted; "));
     EXPECT_EQ(folder_.list(),
               (std::vector<std::string>{"rays", "rays.csv", "sheets.obj", "warned.obj"}));
   }

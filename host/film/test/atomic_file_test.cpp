@@ -8,59 +8,42 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <fstream>
-#include <iterator>
 #include <utility>
 #include <vector>
 
-#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 
 namespace raygate {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 void replace_file(const fs::path& path, std::string_view bytes) {
   AtomicFile(path, bytes).commit();
 }
 
 std::string message_of(const fs::path& path, std::string_view bytes) {
-  try {
-    replace_file(path, bytes);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "(written)";
+  return input_error_of([&] { replace_file(path, bytes); });
 }
 
 class AtomicFileTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "raygate-test-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-    ::chmod(folder_.c_str(), 0755);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  /// Counts all files, including temporary ones.
+  [[nodiscard]] std::size_t file_count() const { return on_disk_.list().size(); }
+  [[nodiscard]] std::string read(const std::string& name) const { return on_disk_.read(name); }
 
-  /// Temporary files left behind would be counted here.
-  [[nodiscard]] std::ptrdiff_t file_count() const {
-    return std::distance(fs::directory_iterator(folder_), {});
-  }
+ private:
+  const TempFolder on_disk_{TempFolder::on_disk()};
 
-  fs::path folder_;
+ protected:
+  const fs::path folder_ = on_disk_.path();
 };
 
 TEST_F(AtomicFileTest, WritesANewFile) {
   const std::string bytes("a\0b\r\n", 5);
   replace_file(folder_ / "new", bytes);
-  EXPECT_EQ(read(folder_ / "new"), bytes);
-  EXPECT_EQ(file_count(), 1);
+  EXPECT_EQ(read("new"), bytes);
+  EXPECT_EQ(file_count(), 1u);
 }
 
 TEST_F(AtomicFileTest, NewFileHasTheUsualPermissions) {
@@ -76,26 +59,26 @@ TEST_F(AtomicFileTest, ChangesNothingBeforeCommit) {
   replace_file(folder_ / "file", "old");
   {
     AtomicFile abandoned(folder_ / "file", "new");
-    EXPECT_EQ(read(folder_ / "file"), "old");
+    EXPECT_EQ(read("file"), "old");
   }
-  EXPECT_EQ(read(folder_ / "file"), "old");
-  EXPECT_EQ(file_count(), 1);
+  EXPECT_EQ(read("file"), "old");
+  EXPECT_EQ(file_count(), 1u);
   AtomicFile first(folder_ / "file", "new");
   AtomicFile second(std::move(first));
   second.commit();
-  EXPECT_EQ(read(folder_ / "file"), "new");
-  EXPECT_EQ(file_count(), 1);
+  EXPECT_EQ(read("file"), "new");
+  EXPECT_EQ(file_count(), 1u);
 }
 
 TEST_F(AtomicFileTest, ReplacesAnOldFileAndKeepsItsPermissions) {
   replace_file(folder_ / "file", std::string(100000, 'x'));
   ::chmod((folder_ / "file").c_str(), 0604);
   replace_file(folder_ / "file", "short");
-  EXPECT_EQ(read(folder_ / "file"), "short");
+  EXPECT_EQ(read("file"), "short");
   struct stat status;
   ASSERT_EQ(::stat((folder_ / "file").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0604u);
-  EXPECT_EQ(file_count(), 1);
+  EXPECT_EQ(file_count(), 1u);
 }
 
 TEST_F(AtomicFileTest, FollowsSymbolicLinksAlsoToWhatIsNotThereYet) {
@@ -107,7 +90,7 @@ TEST_F(AtomicFileTest, FollowsSymbolicLinksAlsoToWhatIsNotThereYet) {
     replace_file(folder_ / "first", bytes);
     EXPECT_TRUE(fs::is_symlink(folder_ / "first"));
     EXPECT_TRUE(fs::is_symlink(folder_ / "second"));
-    EXPECT_EQ(read(folder_ / "disk" / "file"), bytes);
+    EXPECT_EQ(read("disk/file"), bytes);
   }
   fs::create_symlink("round", folder_ / "round");
   EXPECT_EQ(message_of(folder_ / "round", "x"),
@@ -118,8 +101,8 @@ TEST_F(AtomicFileTest, OtherNamesOfAnOldFileKeepIt) {
   replace_file(folder_ / "file", "old");
   fs::create_hard_link(folder_ / "file", folder_ / "other");
   replace_file(folder_ / "file", "new");
-  EXPECT_EQ(read(folder_ / "file"), "new");
-  EXPECT_EQ(read(folder_ / "other"), "old");
+  EXPECT_EQ(read("file"), "new");
+  EXPECT_EQ(read("other"), "old");
 }
 
 TEST_F(AtomicFileTest, BareNameGoesToTheCurrentFolder) {
@@ -128,16 +111,16 @@ TEST_F(AtomicFileTest, BareNameGoesToTheCurrentFolder) {
   require_writable("bare");
   replace_file("bare", "x");
   fs::current_path(before);
-  EXPECT_EQ(read(folder_ / "bare"), "x");
+  EXPECT_EQ(read("bare"), "x");
 }
 
 TEST_F(AtomicFileTest, RequireWritableLeavesNothing) {
   require_writable(folder_ / "new");
-  EXPECT_EQ(file_count(), 0);
+  EXPECT_EQ(file_count(), 0u);
   replace_file(folder_ / "old", "old");
   require_writable(folder_ / "old");
-  EXPECT_EQ(read(folder_ / "old"), "old");
-  EXPECT_EQ(file_count(), 1);
+  EXPECT_EQ(read("old"), "old");
+  EXPECT_EQ(file_count(), 1u);
 }
 
 TEST_F(AtomicFileTest, RefusesNamesThatNoFileCanHave) {
@@ -151,10 +134,10 @@ TEST_F(AtomicFileTest, RefusesNamesThatNoFileCanHave) {
     EXPECT_EQ(message_of(path, "x"), path.string() + ": cannot write: " + reason);
     EXPECT_THROW(require_writable(path), InputError);
   }
-  EXPECT_EQ(read(folder_ / "file"), "old");
+  EXPECT_EQ(read("file"), "old");
   // As long as a name can be: the temporary file must not need more.
   replace_file(folder_ / std::string(255, 'n'), "x");
-  EXPECT_EQ(read(folder_ / std::string(255, 'n')), "x");
+  EXPECT_EQ(read(std::string(255, 'n')), "x");
 }
 
 TEST_F(AtomicFileTest, RefusesWithoutPermission) {
@@ -167,21 +150,16 @@ TEST_F(AtomicFileTest, RefusesWithoutPermission) {
   }
   const std::string old_file = message_of(folder_ / "file", "new");
   const std::string new_file = message_of(folder_ / "new", "new");
-  bool refused_beforehand = false;
-  try {
-    require_writable(folder_ / "file");
-  } catch (const InputError&) {
-    refused_beforehand = true;
-  }
+  const std::string beforehand = input_error_of([&] { require_writable(folder_ / "file"); });
   if (is_root) {
     ASSERT_EQ(::setresuid(0, 0, 0), 0);
   }
   ::chmod(folder_.c_str(), 0755);
-  EXPECT_TRUE(refused_beforehand);
+  EXPECT_EQ(beforehand, old_file);
   EXPECT_EQ(old_file, (folder_ / "file").string() + ": cannot write: Permission denied");
   EXPECT_EQ(new_file, (folder_ / "new").string() + ": cannot write: Permission denied");
-  EXPECT_EQ(read(folder_ / "file"), "old");
-  EXPECT_EQ(file_count(), 1);
+  EXPECT_EQ(read("file"), "old");
+  EXPECT_EQ(file_count(), 1u);
 }
 
 /// The limit on file sizes stands in for a full disk: the write stops half way.
@@ -196,15 +174,15 @@ TEST_F(AtomicFileTest, FullDiskLeavesTheOldFile) {
   ::setrlimit(RLIMIT_FSIZE, &old_limit);
   ::signal(SIGXFSZ, old_handler);
   EXPECT_EQ(message, (folder_ / "file").string() + ": cannot write: File too large");
-  EXPECT_EQ(read(folder_ / "file"), "old");
-  EXPECT_EQ(file_count(), 1);
+  EXPECT_EQ(read("file"), "old");
+  EXPECT_EQ(file_count(), 1u);
 }
 
 TEST_F(AtomicFileTest, DevicesAreWrittenToAsTheyAre) {
   require_writable("/dev/full");
   EXPECT_EQ(message_of("/dev/full", "x"), "/dev/full: cannot write: No space left on device");
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
-  EXPECT_EQ(message_of("/dev/null", "x"), "(written)");
+  EXPECT_EQ(message_of("/dev/null", "x"), "(read)");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
@@ -237,15 +215,16 @@ TEST_F(AtomicFileTest, InputsAreNoOutputsUnderWhateverName) {
   const std::vector<fs::path> inputs{folder_ / "gone", folder_ / "in.mtl"};
   for (const char* name : {"in.mtl", "hard", "soft"}) {
     const std::vector<fs::path> outputs{folder_ / "new", folder_ / name};
-    try {
-      require_distinct(outputs, inputs);
-      ADD_FAILURE() << name;
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.what(),
-                (folder_ / name).string() + ": would overwrite " + (folder_ / "in.mtl").string());
-    }
+    EXPECT_EQ(input_error_of([&] { require_distinct(outputs, inputs); }),
+              (folder_ / name).string() + ": would overwrite " + (folder_ / "in.mtl").string());
   }
   require_distinct(std::vector<fs::path>{folder_ / "new"}, inputs);
+  fs::create_symlink("new", folder_ / "other");  // of a file that is not there yet
+  const fs::path link = folder_ / "other", file = folder_ / "new";
+  EXPECT_EQ(input_error_of([&] {
+              require_distinct({&link, 1}, {&file, 1});
+            }),
+            link.string() + ": would overwrite " + file.string());
 }
 
 }  // namespace

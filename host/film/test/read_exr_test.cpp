@@ -4,7 +4,6 @@
 
 #include <random>
 
-#include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 #include "host/film/exr.h"
 #include "host/film/test/sample_film.h"
@@ -15,12 +14,7 @@ namespace {
 class ExrFile : public testing::Test {
  protected:
   [[nodiscard]] std::string error_of(const std::filesystem::path& file) const {
-    try {
-      (void)read_exr(file);
-    } catch (const InputError& error) {
-      return std::string(error.what()).substr(folder_.path().string().size() + 1);
-    }
-    return "(read)";
+    return folder_.error_of([&] { (void)read_exr(file); });
   }
 
   const TempFolder folder_;

@@ -50,14 +50,6 @@ Material facets(float metallic, float roughness, float transmission = 0.0f) {
   return material;
 }
 
-Material white_facets(float metallic, float roughness, float transmission = 0.0f,
-                      float index = 1.0f) {
-  Material material = facets(metallic, roughness, transmission);
-  material.diffuse = glm::vec3(1.0f);
-  material.refraction_index = index;
-  return material;
-}
-
 /// What comes back, or goes through, of white light from all sides: by sample() and pdf(), and in
 /// the mean over fixed directions, which do not know how samples are chosen.
 struct Balance {
@@ -310,7 +302,8 @@ TEST(MetallicRoughnessLobes, KeepAllLight) {
     for (const float roughness : {0.04f, 0.1f, 0.2f, 0.4f, 0.7f, 1.0f}) {
       for (const float index : {1.1f, 1.5f, 2.5f}) {
         for (double angle = 0.0; angle < 1.5; angle += 0.25) {
-          const Material white = white_facets(metallic, roughness, transmission, index);
+          Material white = test::facets(metallic, roughness, transmission);
+          white.refraction_index = index;
           const Bsdf<float> bsdf = seen(white, angle, outside);
           const double all = balance(bsdf).sampled;
           EXPECT_NEAR(all, 1.0, 1e-2) << metallic << " " << transmission << " " << outside << " "
@@ -329,7 +322,7 @@ TEST(MetallicRoughnessLobes, KeepAllLight) {
 // Smooth surfaces reflect in one direction only, so no light is lost between facets.
 TEST(MetallicRoughnessLobes, SmoothOnesLoseNothing) {
   for (const float metallic : {0.0f, 0.5f, 1.0f}) {
-    Material white = white_facets(metallic, 0.0f);
+    Material white = test::facets(metallic, 0.0f, 0.0f);
     for (const double angle : {0.0, 0.8, 1.5}) {
       const Bsdf<float> bsdf = seen(white, angle);
       EXPECT_NEAR(largest(bsdf.mirror + bsdf.diffuse), 1.0, 1e-6);

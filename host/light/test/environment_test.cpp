@@ -153,10 +153,8 @@ TEST(Environment, IsSeenByAllThatSeesTheSky) {
       Scene scene;
       add(scene, sphere(2), material);
       scene.environment = map;
-      const Film film =
-          film_of(scene, camera_at({0, 0, 4}, {0, 0, 0}, 45.0), light(integrator, 16, 16, 16));
-      glm::dvec3 mean(0.0);
-      for (const glm::vec4& colour : film.color) mean += glm::dvec3(colour) / 256.0;
+      const glm::dvec3 mean = mean_colour(
+          film_of(scene, camera_at({0, 0, 4}, {0, 0, 0}, 45.0), light(integrator, 16, 16, 16)));
       // Some light stays in the glass.
       EXPECT_NEAR(mean.r, 0.25, 0.01);
       EXPECT_NEAR(mean.g, 0.5, 0.02);

@@ -130,6 +130,15 @@ TEST(Embedding, LeavesSignalsAndStreamsAlone) {
   }
 }
 
+/// Returns whether `work` returns true in a child process.
+template <class Work>
+bool in_child(const Work& work) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(work() ? 0 : 1);
+  int status = -1;
+  return child > 0 && ::waitpid(child, &status, 0) == child && status == 0;
+}
+
 TEST(Embedding, RefusesUnknownVectors) {
   const char* const vectors = std::getenv("RAYGATE_VECTORS");
   if (vectors != nullptr && std::string_view(vectors) == "foo") {
@@ -137,33 +146,22 @@ TEST(Embedding, RefusesUnknownVectors) {
     EXPECT_THROW((void)nearest(Tracer(all.triangles), all.rays), std::runtime_error);
     return;
   }
-  const pid_t child = ::fork();  // this test again, in a process that has not asked yet
-  ASSERT_GE(child, 0);
-  if (child == 0) {
+  EXPECT_TRUE(in_child([] {  // this test again, in a process that has not asked yet
     ::setenv("RAYGATE_VECTORS", "foo", 1);
     ::execl("/proc/self/exe", "embedding_test", "--gtest_filter=Embedding.RefusesUnknownVectors",
             "--gtest_brief=1", nullptr);
-    ::_exit(127);
-  }
-  int status = -1;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
+    return false;
+  }));
 }
 
 TEST(Embedding, WorksInAChildAfterFork) {
   const Case all(20000);
   const Tracer tracer(all.triangles, 2);
   const std::vector<std::uint32_t> expected = nearest(tracer, all.rays);
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    const bool same = nearest(tracer, all.rays) == expected &&
-                      nearest(Tracer(all.triangles, 2), all.rays) == expected;
-    ::_exit(same ? 0 : 1);
-  }
-  int status = -1;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(in_child([&] {
+    return nearest(tracer, all.rays) == expected &&
+           nearest(Tracer(all.triangles, 2), all.rays) == expected;
+  }));
 }
 
 /// Lets each allocation of `work` fail in turn: it throws std::bad_alloc, and all that it took is

@@ -105,22 +105,21 @@ def of_mode(mode, indices):
     return gltf.text()
 
 
-def morphed():
+def morphed(**of_node):
     gltf = Gltf()
     gltf.mesh["targets"] = [{"POSITION": gltf.add([(0., 0., 2.)] * 4)}, {"POSITION": gltf.add([(1., 0., 0.)] * 4)}]
     gltf.json["meshes"][0]["weights"] = [0.5, 0.25]
-    return gltf.text()
+    return gltf.text(nodes=[{"mesh": 0, **of_node}])
 
 
-def sparse(has_view):
-    gltf = Gltf()
-    position = gltf.json["accessors"][0]
-    corners = [0, 1, 2, 3] if not has_view else [2]
-    values = [(3., 3., 0.) if k == 2 else CORNERS[k] for k in corners]
-    position["sparse"] = {"count": len(corners), "indices": {"bufferView": gltf.view(corners, "H"), "componentType": 5123},
-        "values": {"bufferView": gltf.view(values)}}
-    if not has_view:
-        del position["bufferView"]
+def sparse(corners, count=None, values=None, number=0):
+    """The square with a sparse accessor of these corners: one alone replaces the square's; of several, the others are 0."""
+    gltf = Gltf(NORMAL=[(0., 0., 1.)] * 4)
+    places = gltf.view([(3., 3., 0.) if k == 2 else CORNERS[k] for k in corners])
+    gltf.json["accessors"][number]["sparse"] = {"count": count or len(corners), "indices": {"bufferView": gltf.view(corners, "H"), "componentType": 5123},
+        "values": {"bufferView": places} if values is None else values}
+    if len(corners) > 1:
+        del gltf.json["accessors"][0]["bufferView"]
     return gltf.text()
 
 
@@ -167,9 +166,9 @@ def normal_mapped(**attributes):
     return gltf.text()
 
 
-def spot(cone):
+def light(**members):
     gltf = Gltf()
-    gltf.json["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "spot", "spot": cone}]}}
+    gltf.json["extensions"] = {"KHR_lights_punctual": {"lights": [members]}}
     return extension("KHR_lights_punctual", {"light": 0}, where=node, gltf=gltf)
 
 
@@ -231,8 +230,8 @@ ROWS = [
     ("three.js#9204", {"a.obj": SQUARE + "vn 0 0 1\nf 1/1/1 2//1 3/3/1\n"}, {"rays": [LOWER], "warns": [NO_UV]}),
     ("tinyobjloader#385", {"a.obj": TEXTURED.replace("a.mtl", "my colours.mtl"), "pic two 01.png": image(),
                            "my colours.mtl": "newmtl m\nKd 1 1 1\nmap_Kd -o 0.5 0 0 -s 1 1 1 -clamp off pic two 01.png\n"}, {"colours": "GR/YB"}),
-    *(("meshlab#66, tinyobjloader-c#71", {"a.obj": TEXTURED.replace("a.mtl", name), "my colours.mtl": MTL, "pic.png": image()}, {"colours": "RG/BY"})
-      for name in ('"my colours.mtl"', r"my\ colours.mtl")),
+    *(("meshlab#66, tinyobjloader-c#71", {"a.obj": TEXTURED.replace("a.mtl", name), "my colours.mtl": MTL, "second.mtl": "newmtl n\n", "pic.png": image()}, {"colours": "RG/BY"})
+      for name in ('"my colours.mtl" "second.mtl"', r"my\ colours.mtl")),
     ("vol_cl_tools#13, f3d#1973", {"a.obj": "usemtl m\nmtllib ./elsewhere.mtl\n" + SQUARE + "f 1 2 3 4\n", "a.mtl": "newmtl m\nKd 0 0 1\n",
                                    "elsewhere.mtl": "newmtl m\nKd 1 0 0\n"}, {"colours": "RR/RR"}),
     ("tinyobjloader#106, meshlab#1137", {"a.obj": TEXTURED, "textures/pic.png": image(),
@@ -252,7 +251,11 @@ ROWS = [
      {"rays": [(.5, 1.5), (1.5, 1.5), (2.5, 1.5), (1.5, .5)], "distances": [5, math.inf, 5, 5]}),
     ("wings#391, mayo#341", {"a.obj": SQUARE + "f 1// 2// 3// 4//\n"}, {}),
     ("assimp#2435", {"a.obj": SQUARE + "f 1/1/ 2/2/ 3/3/ 4/4/\n"}, {}),
-    ("assimp#2435", {"a.obj": SQUARE + "vn 0 0 1\nf 1/9/1 2/9/1 3/9/1\n"}, {"rays": [LOWER], "warns": [NO_UV]}),
+    *(("assimp#2435", {"a.obj": SQUARE + f"vn 0 0 1\nf 1/{uv}/1 2/{uv}/1 3/{uv}/1\n"}, {"rays": [LOWER], "warns": [NO_UV]}) for uv in (9, 0)),
+    *(("corners without a normal", {"a.obj": SQUARE + f"vn 0 1 1\nf 1/1/1 2/2{corner} 3/3/1 4/4/1\n"}, {"warns": [":10: face corner without a normal"], "normal": (0, 0, 1)})
+      for corner in ("", "/2")),
+    ("colours that are no numbers", {"a.obj": SQUARE + "v 0 0 0 1 nan x\nf 1 2 3 4\nf 1 2 5\n"},
+     {"warns": [": 1 colours of vertices that are not finite numbers, taken as white"]}),
     *(("io_scene_owm#43, glTF#2333", with_texture(f"pic.{kind}", data), {"colours": "WW/WW", "warns": [f"pic.{kind}"]})
       for kind, data in (("tif", b"II*\0"), ("dds", b"DDS "), ("webp", b"RIFF"), ("psd", b"8BPS"), ("exr", b"v/1\1"), ("png", b""),
           ("png", image()[:40]))),
@@ -285,6 +288,8 @@ ROWS = [
     ("tobj#36", {"a.ply": ply(VERTICES + FACES.replace("face 1", "face 3"), POINTS + "2 0 1\n0\n4 0 1 2 3\n")}, {"warns": [SHORT]}),
     *(("kinds of colours", {"a.ply": ply_with([f"{kind} {c}" for c in ("red", "green", "blue")], [f"{full} 0 0"] * 4)}, {"colours": "RR/RR"})
       for kind, full in (("uchar", 255), ("ushort", 65535), ("float", 1))),
+    ("kinds of colours", {"a.ply": ply_with(["uchar red", "uchar green", "uchar blue", "uchar alpha"], ["0 0 255 9"] * 4)},
+     {"colours": "BB/BB", "warns": ["not read: 'alpha' of vertex"]}),
     ("trimesh#1494, #790, #44", {"a.ply": ply(VERTICES + FACES.replace("face 1", "face 3"), POINTS + "3 0 1 1\n3 0 1 2\n3 0 2 3\n")},
      {"rays": [LOWER, UPPER], "numbers": [1, 2], "warns": [NO_AREA]}),
     ("trimesh#1494, #790, #44", {"a.obj": SQUARE + "f 1 2 2\nf 1 2 3\nf 1 3 4\n"}, {"rays": [LOWER, UPPER], "numbers": [1, 2], "warns": [NO_AREA]}),
@@ -295,14 +300,22 @@ ROWS = [
      {"rays": [(500000.25, 4649777), (500000.5, 4649776.301)]}),
     # glTF: geometry.
     ("three.js#11796, cesium#9666", {"a.gltf": morphed()}, {"rays": [(1.2, .5), (-.8, .5)], "distances": [4, math.inf]}),
-    *(("godot#76875, three.js#12596, gltf-rs#266", {"a.gltf": sparse(has_view)},
-       {"rays": [(1.5, 1.5), LOWER], "numbers": [0, 0]}) for has_view in (True, False)),
+    ("weights of a node", {"a.gltf": morphed(weights=[0, 0.5])}, {"rays": [(1.4, .5), (-.6, .5)], "distances": [5, math.inf]}),
+    *(("godot#76875, three.js#12596, gltf-rs#266", {"a.gltf": sparse(corners)},
+       {"rays": [(1.5, 1.5), LOWER], "numbers": [0, 0]}) for corners in ([2], [0, 1, 2, 3])),
+    ("sparse accessors", {"a.gltf": sparse([0, 1, 2])}, {"rays": [LOWER], "warns": [NO_AREA]}),
+    ("sparse accessors", {"a.gltf": sparse([2], count=9)}, {"error": r"accessor 0 \(POSITION\): beyond its buffer"}),
+    ("sparse accessors", {"a.gltf": sparse([2], values={})}, {"error": r"accessor 0 \(POSITION\): found no buffer view, expected its number"}),
+    ("sparse accessors", {"a.gltf": sparse([2], values={}, number=2)}, {"warns": [r"accessor 2 \(NORMAL\): found no buffer view, expected its number, left out"]}),
+    ("normals that are no numbers", {"a.gltf": Gltf(NORMAL=[(math.nan, 0., 1.), *[(0., 1., 1.)] * 3]).text()}, {"warns": [FLAT], "normal": (0, 0, 1)}),
+    ("colours between corners", {"a.gltf": Gltf(COLOR_0=[(1., 0., 0.)] * 2 + [(0., 0., 1.)] * 2).text()}, {"colours": "BB/RR"}),
+    ("attributes of others", {"a.gltf": Gltf(COLOR_1=[(1., 1., 1.)] * 4).text()}, {"warns": ["the attribute 'COLOR_1' is not read"]}),
     ("castle-engine#336, glTF#2059", {"a.gltf": nodes({"scale": [-1, 1, 1]})}, {"sides": [-1]}),
     ("glTF-Sample-Models#273", {"a.gltf": nodes({"scale": [1, -2, .5]})}, {"rays": [(.5, 1.7)], "sides": [-1]}),
     ("glTF-Sample-Models#273", {"a.gltf": nodes({"scale": [0, 0, 0]}, {})}, {"numbers": [2]}),
     *(("glTFRuntime#57, three.js#21553", {"a.gltf": quantised(code, scale)}, {"colours": "RG/BY"}) for code, scale in (("H", 65535), ("B", 255))),
-    ("fans and strips", {"a.gltf": of_mode(6, None)}, {}),
-    ("fans and strips", {"a.gltf": of_mode(5, (0, 1, 3, 2))}, {}),
+    *(("fans and strips", {"a.gltf": of_mode(mode, indices)}, {"rays": [(0, -.5), (0, .5)], "numbers": [0, 1], "sides": [-1, -1]})
+      for mode, indices in ((6, None), (5, (0, 1, 3, 2)))),
     ("lines alone", {"a.gltf": of_mode(1, (0, 1))}, {"error": "no faces, expected at least one polygon"}),
     ("glTF#2402, glTFast#107", {"a.gltf": extension("EXT_mesh_gpu_instancing", {}, True, node)},
      {"error": "'EXT_mesh_gpu_instancing', which is not read"}),
@@ -319,14 +332,42 @@ ROWS = [
     ("glTF#1293", {"a.gltf": before_blue("MASK", 0.25, 0.25)}, {"colours": "RR/RR"}),
     ("glTF#1293", {"a.gltf": before_blue("MASK", 1.5, 1.)}, {"colours": "BB/BB"}),
     *((f"psz-godot#576, {s} {t}", {"a.gltf": material(image(), sampler={"wrapS": s, "wrapT": t}, TEXCOORD_0=[(2 * u, 2 - 2 * v) for u, v in UV]).text()}, {"colours": colours})
-      for s, t, colours in ((33648, 10497, "RGGR/BYYB/RGGR/BYYB"), (10497, 33648, "RGRG/BYBY/BYBY/RGRG"), (33648, 33648, "RGGR/BYYB/BYYB/RGGR"))),
+      for s, t, colours in ((33648, 10497, "RGGR/BYYB/RGGR/BYYB"), (10497, 33648, "RGRG/BYBY/BYBY/RGRG"), (33648, 33648, "RGGR/BYYB/BYYB/RGGR"),
+          (33071, 10497, "RGGG/BYYY/RGGG/BYYY"))),
     ("QGIS#54183", {"a.gltf": material(image(), sampler={"wrapS": 10242}).text()}, {"colours": "RG/BY", "warns": ["wrap mode 10242"]}),
     ("three.js#34032, glTF-Blender-IO#2366", {"a.gltf": extension("KHR_texture_transform", required=True, gltf=material(image(), texture={
         "extensions": {"KHR_texture_transform": {"rotation": math.pi / 2}}}))}, {"colours": "BR/YG"}),
+    ("scaled, turned and moved", {"a.gltf": material(image(), texture={"extensions": {"KHR_texture_transform": {
+        "rotation": math.pi / 2, "scale": [1, 2], "offset": [0, .5]}}}).text()}, {"colours": "RRBB/GGYY/RRBB/GGYY"}),
     *(("tinygltf#228, godot#47823, meshoptimizer#138", {"a.gltf": material(image()).text(images=[{"uri": name}]), file: image()},
        {"colours": "RG/BY"})
       for name, file in (("a%20b.png", "a b.png"), ("a b.png", "a b.png"), ("50%25.png", "50%.png"), ("ü.png", "ü.png"),
           ("tex%5Cinner.png", "tex/inner.png"))),
+    ("tinygltf#228", {"a.gltf": material(image()).text(images=[{"uri": "C:%5CTextures%5CPic.PNG"}]), "pic.png": image()},
+     {"colours": "RG/BY", "warns": [r"'C:\\Textures\\Pic.PNG' is missing, "]}),
+    *(("images that are none", {"a.gltf": material(image()).text(images=[picture]), "empty.png": b""}, {"colours": "WW/WW", "warns": [warning]})
+      for picture, warning in (
+          ({}, "image 0 has no picture, its material is plain instead"), ({"uri": "data:image/png;base64,"}, "image 0 has no picture"),
+          ({"uri": "empty.png"}, "empty.png: the file is empty, its material is plain instead"), ({"uri": "none.png"}, "the texture 'none.png' is missing"),
+          ({"bufferView": 0, "mimeType": "image/webp"}, "image 0: not a PNG, JPEG, TGA or BMP picture"),
+          ({"bufferView": 9}, "buffer view 9, but the file has 3, its material is plain instead"),
+          ({"uri": "data:image/x-png," + 9000 * "A"}, "^.*the texture 'data:image/x-png,AAA.{1,120}$"))),
+    ("images that are none", {"a.gltf": (lambda gltf: gltf.text(images=[{"bufferView": 0}], bufferViews=[
+        {"buffer": 0, "byteLength": 9999999}, *gltf.json["bufferViews"][1:]]))(material(image()))}, {"error": "beyond its buffer"}),
+    *(("members that are none", {"a.gltf": material(image(), texture=texture).text()}, {"colours": "WW/WW"})
+      for texture in ({"texCoord": -7}, {"extensions": {"KHR_texture_transform": {"texCoord": 1e300}}})),
+    *(("members that are none", {"a.gltf": material(more=more).text(textures=[{}])}, {"warns": [warning]}) for more, warning in (
+        ({"normalTexture": {}}, "'normalTexture' of a material is not as glTF has it, left out"),
+        ({"emissiveFactor": [1]}, "'emissiveFactor' of a material is not as glTF has it, left out"),
+        ({"occlusionTexture": {"index": 0}}, "occlusionTexture is not read"),
+        ({"normalTexture": {"index": 3}}, "texture 3, but the file has 1, its material is plain instead"))),
+    *(("members that are none", {"a.gltf": Gltf().text(nodes=[{"mesh": 0} | of_node], **more)}, {"warns": [warning]}) for of_node, more, warning in (
+        ({"camera": 0}, {"cameras": [{"type": "perspective"}]}, "a camera's yfov: expected more than 0 and less than pi, left out"),
+        ({"camera": 2}, {}, "camera 2, but the file has 0, left out"), ({"skin": 0}, {"skins": [{}]}, "a skin without joints is left out"),
+        ({}, {"animations": [{"samplers": [{}]}]}, "animations are not read"))),
+    *(("lights that are none", {"a.gltf": light(**members)}, {"warns": [warning]}) for members, warning in (
+        ({"type": "spot"}, "a spot light without 'spot' has the usual cone"), ({"type": "point", "intensity": -1}, "a light's intensity: expected no negative"),
+        ({}, "found a light of the type '', expected directional, point or spot, left out"))),
     ("kinds of data URIs", {"a.gltf": material(image()).text(images=[{"uri": uri(image(), "image/png;charset=utf-8")}])}, {"colours": "RG/BY"}),
     ("kinds of data URIs", {"a.gltf": material(image()).text(images=[{"uri": uri(bytes(3000), "image/webp")}])},
      {"colours": "WW/WW", "warns": ["^.{1,250}$"]}),
@@ -336,7 +377,7 @@ ROWS = [
     *(("cesium-native#609, three.js#20539", {"a.gltf": extension(name, {"source": 0}, where=lambda gltf: gltf.json["textures"][0], gltf=material(image()))},
        {"colours": "RG/BY", "warns": [f"the extension '{name}' is not read"]})
       for name in ("KHR_texture_basisu", "EXT_texture_webp", "MSFT_texture_dds")),
-    *(("GearVRf#941, glTF-Blender-IO#2349", {"a.gltf": spot(cone)}, {"warns": warns}) for cone, warns in (
+    *(("GearVRf#941, glTF-Blender-IO#2349", {"a.gltf": light(type="spot", spot=cone)}, {"warns": warns}) for cone, warns in (
         ({"innerConeAngle": .5, "outerConeAngle": .5}, []), ({"innerConeAngle": 0.}, []), ({"innerConeAngle": 1., "outerConeAngle": .5}, ["angles are limited"]))),
     ("two sets of texture coordinates", {"a.gltf": material(image(), texture={"texCoord": 1}, TEXCOORD_1=[(1 - u, v) for u, v in UV_DOWN]).text()},
      {"colours": "GR/YB"}),

@@ -2,10 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
-#include "host/base/input_error.h"
+#include "host/base/test/temp_folder.h"
 #include "host/trace/ray_table.h"
 
 namespace raygate {
@@ -15,17 +14,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class Table : public testing::Test {
  protected:
-  void SetUp() override {
-    path_ = std::filesystem::path(testing::TempDir()) /
-            (std::string("rays-") + testing::UnitTest::GetInstance()->current_test_info()->name());
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
-
-  void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
-
   RayTable read_all(const std::string& bytes, const glm::dvec3& origin = glm::dvec3(0.0)) {
-    write(bytes);
-    RayTableReader rays(path_, origin);
+    RayTableReader rays(folder_.write("rays", bytes), origin);
     RayTable all, block;
     rounded_ = 0;
     while (rays.read(3, block)) {
@@ -41,17 +31,12 @@ class Table : public testing::Test {
 
   /// What comes after the file's name.
   std::string refusal(const std::string& bytes) {
-    try {
-      read_all(bytes);
-    } catch (const InputError& error) {
-      const std::string what = error.what();
-      EXPECT_EQ(what.substr(0, path_.string().size()), path_.string());
-      return what.substr(path_.string().size());
-    }
-    return "nothing refused";
+    const std::string error = folder_.error_of([&] { read_all(bytes); });
+    EXPECT_TRUE(error.starts_with("rays")) << error;
+    return error.substr(4);
   }
 
-  std::filesystem::path path_;
+  const TempFolder folder_;
   std::uint64_t rounded_ = 0;
 };
 

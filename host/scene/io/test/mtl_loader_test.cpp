@@ -1,7 +1,6 @@
 // Materials: every field, the defaults, odd MTL files, and what is refused.
 #include <gtest/gtest.h>
 
-#include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/test/tga.h"
@@ -34,12 +33,7 @@ class LoadMtl : public testing::Test {
     return scene.warnings[0].substr(folder_.path().string().size() + 1);
   }
   std::string error(std::string_view mtl) {
-    try {
-      (void)load(mtl);
-    } catch (const InputError& error) {
-      return std::string(error.what()).substr(folder_.path().string().size() + 1);
-    }
-    return "no error";
+    return folder_.error_of([&] { (void)load(mtl); });
   }
 
   const TempFolder folder_;

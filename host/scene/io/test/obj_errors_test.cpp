@@ -1,25 +1,18 @@
 // Every bad file is refused, with its line and what is wrong.
 #include <gtest/gtest.h>
 
-#include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
 
 namespace raygate {
 namespace {
 
-// The error's message after "FILE:", which must be there.
+/// Returns the error's message after "FILE:", which must be there.
 std::string error_of(std::string_view text) {
   const TempFolder folder;
-  const std::filesystem::path file = folder.write("bad.obj", text);
-  try {
-    (void)load_obj(file);
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    EXPECT_TRUE(what.starts_with(file.string() + ":")) << what;
-    return what.substr(file.string().size() + 1);
-  }
-  return "no error";
+  const std::string error = folder.error_of([&] { (void)load_obj(folder.write("f.obj", text)); });
+  EXPECT_TRUE(error.starts_with("f.obj:")) << error;
+  return error.substr(6);
 }
 
 TEST(BadObj, IsRefused) {

@@ -1,8 +1,6 @@
 // Every valid file loads right: each odd kind of OBJ, to the last bit.
 #include <gtest/gtest.h>
 
-#include <clocale>
-
 #include "host/base/elementary.h"
 #include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
@@ -66,26 +64,6 @@ TEST(LoadObj, AQuadInManyForms) {
   }
 }
 
-TEST(LoadObj, ConcaveQuad) {
-  // A fan from the first corner would cover what is outside.
-  const Scene scene = load("v 2 1 0\nv 0 0 0\nv 2 -1 0\nv 0.5 0 0\nf 1 2 3 4\n");
-  EXPECT_EQ(vertices_of(scene), (std::vector<Indices>{{1, 2, 3}, {0, 1, 3}}));
-}
-
-TEST(LoadObj, LineEnds) {
-  for (const std::string end : {"\n", "\r\n", "\r"}) {
-    std::string text;
-    for (const char c : std::string(kSquare) + "g a\nusemtl b\nf 1 2 3 4") {
-      text += c == '\n' ? end : std::string(1, c);
-    }
-    const Scene scene = load(text);
-    EXPECT_EQ(vertices_of(scene), kTwoTriangles);
-    EXPECT_EQ(scene.objects.all(), std::vector<std::string>{"a"});
-    EXPECT_EQ(only_warning(scene),
-              "scene.obj:6: material 'b' is defined nowhere, the default instead");
-  }
-}
-
 TEST(LoadObj, AllCornerForms) {
   const std::string attributes = "vt 0 0\nvt 1 0.5\nvt 1\nvn 0 0 2\nvn 0 3 4\n";
   const Scene both = load_square(attributes + "f 1/1/2 2/2/2 3/3/1\n");
@@ -103,31 +81,9 @@ TEST(LoadObj, AllCornerForms) {
   EXPECT_EQ(normals.triangles[0].normals, (Indices{0, 0, 1}));
 }
 
-TEST(LoadObj, TrailingSlashesMeanNothing) {
-  for (const char* face : {"f 1/ 2/ 3/ 4/\n", "f 1// 2// 3// 4//\n"}) {
-    const Scene scene = load_square(std::string("vt 0 0\nvn 0 0 1\n") + face);
-    EXPECT_EQ(vertices_of(scene), kTwoTriangles);
-    EXPECT_EQ(scene.triangles[0].texcoords[0], kNoIndex);
-    EXPECT_EQ(scene.triangles[0].normals[0], kNoIndex);
-  }
-  const Scene scene = load_square("vt 0 0\nf 1/1/ 2/1/ 3/1/\n");
-  EXPECT_EQ(scene.triangles[0].texcoords, (Indices{0, 0, 0}));
-}
-
 TEST(LoadObj, NumbersOfAllKinds) {
   const Scene scene = load("v +1 .5 -2.\nv 1e-3 1E+2 -0\nv 1e-400 8.507059e37 0\nf 1 2 3\n");
   EXPECT_EQ(scene.positions, (Positions{{1, 0.5f, -2}, {0.001f, 100, 0}, {0, 8.507059e37f, 0}}));
-}
-
-// Numbers just above the middle of two floats: off by one unit of double, and the float is wrong.
-TEST(LoadObj, NumbersAreReadToTheNearestDouble) {
-  const Scene scene = load(
-      "v 861.04226684570324 462.39033508300787 0\nv 657.46560668945324 0 0\n"
-      "v 210.64176177978518 0 1\nf 1 2 3\n");
-  EXPECT_EQ(scene.positions[0].x, static_cast<float>(861.04226684570324));
-  EXPECT_EQ(scene.positions[0].y, static_cast<float>(462.39033508300787));
-  EXPECT_EQ(scene.positions[1].x, static_cast<float>(657.46560668945324));
-  EXPECT_EQ(scene.positions[2].x, static_cast<float>(210.64176177978518));
 }
 
 TEST(LoadObj, WeightsAndColoursOfVertices) {
@@ -236,30 +192,6 @@ TEST(LoadObj, CornersThatBinary32MovesAreCounted) {
   }
 }
 
-// A wall of 8 cm in UTM coordinates, and a face at their origin.
-constexpr const char* kWall =
-    "v 447123.456 5411987.321 231.789\nv 447127.456 5411987.321 231.789\n"
-    "v 447127.456 5411987.401 231.789\nv 447123.456 5411987.401 231.789\n"
-    "v 447123.456 5411987.321 234.789\nv 447127.456 5411987.321 234.789\n"
-    "v 447127.456 5411987.401 234.789\nv 447123.456 5411987.401 234.789\n"
-    "f -8 -5 -6 -7\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -6 -5 -1 -2\nf -7 -6 -2 -3\nf -8 -4 -1 -5\n"
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
-
-TEST(LoadObj, AWallFarFromAStrayFaceIsExact) {
-  for (const Vertices vertices : {Vertices::kBinary64, Vertices::kAsPictures}) {
-    const Scene scene = load(kWall, {.vertices = vertices});
-    EXPECT_TRUE(scene.warnings.empty());
-    EXPECT_EQ(scene.triangles.size(), 13u);
-    EXPECT_EQ(scene.origin + scene.vertex(0), glm::dvec3(447123.456, 5411987.321, 231.789));
-    EXPECT_EQ(scene.origin + scene.vertex(3), glm::dvec3(447123.456, 5411987.401, 231.789));
-    EXPECT_EQ(scene.origin + scene.vertex(9), glm::dvec3(1, 0, 0));
-  }
-}
-
-TEST(LoadObj, ARepeatedCornerOfAPolygonIsLeftOut) {
-  EXPECT_EQ(vertices_of(load("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 2 3\n")), kOneTriangle);
-}
-
 TEST(LoadObj, CrossingPolygonsAndZeroNormalsAreWarnedOf) {
   const Scene crossing = load("v 0 0 0\nv 3 3 0\nv 3 0 0\nv 0 2 0\nf 1 2 3 4\n");
   EXPECT_EQ(only_warning(crossing),
@@ -288,16 +220,6 @@ TEST(LoadObj, AVeryLongLine) {
   const Scene scene = load(text + " # " + std::string(1000000, 'x') + "\n");
   EXPECT_EQ(scene.triangles.size(), corners - 1u);
   EXPECT_TRUE(scene.warnings.empty());
-}
-
-TEST(LoadObj, NumbersDoNotDependOnTheLocale) {
-  const std::string before = std::setlocale(LC_ALL, nullptr);
-  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"}) {
-    if (std::setlocale(LC_ALL, name)) break;
-  }
-  const Scene scene = load("v 0.5 0 0\nv 1.5 0 0\nv 0 1.5 0\nf 1 2 3\n");
-  std::setlocale(LC_ALL, before.c_str());
-  EXPECT_EQ(scene.positions[0].x, 0.5f);
 }
 
 }  // namespace

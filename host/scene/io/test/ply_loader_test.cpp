@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 #include "host/scene/io/scene_loader.h"
 #include "host/scene/io/test/binary.h"
@@ -50,24 +49,6 @@ TEST_F(LoadPly, Ascii) {
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_TRUE(scene.warnings[0].ends_with("s.ply: not read: 'red' of vertex"));
   EXPECT_TRUE(scene.colors.empty()) << "red alone is no colour";
-}
-
-TEST_F(LoadPly, ColorsOfVertices) {
-  const auto scene_of = [&](const std::string& type, const std::string& full) {
-    return load(
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-        "property float z\nproperty " +
-        type + " red\nproperty " + type + " green\nproperty " + type +
-        " blue\nproperty uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\n"
-        "end_header\n0 0 0 " +
-        full + " 0 0 255\n1 0 0 0 " + full + " 0 255\n1 1 0 0 0 " + full + " 255\n3 0 1 2\n");
-  };
-  for (const auto& [type, full] :
-       {std::pair{"uchar", "255"}, {"ushort", "65535"}, {"float", "1"}}) {
-    const Scene scene = scene_of(type, full);
-    EXPECT_EQ(scene.colors, (std::vector<glm::vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})) << type;
-    EXPECT_EQ(scene.materials[0].diffuse, glm::vec3(1.0f));
-  }
 }
 
 TEST_F(LoadPly, BinaryOfBothOrders) {

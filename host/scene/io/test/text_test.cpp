@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "host/base/input_error.h"
 #include "host/base/test/temp_folder.h"
 
 namespace raygate {
@@ -25,12 +24,7 @@ Statements statements_of(std::string_view bytes) {
 }
 
 std::string reading_error_of(const std::filesystem::path& file) {
-  try {
-    TextLines lines(file);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return input_error_of([&] { TextLines lines(file); });
 }
 
 TEST(TextLines, EndInLfCrOrBoth) {
