@@ -135,7 +135,7 @@ SubjectKind kind(const char* name, const char* what, RTCSceneFlags flags) {
 }  // namespace
 
 std::vector<std::unique_ptr<Peer>> make_embrees(const Scene& scene) {
-  return make_embree_peers("Embree", {}, Embree3Queries(), scene);
+  return make_embree_peers("Embree3", {}, Embree3Queries(), scene);
 }
 
 std::vector<std::pair<std::string, std::vector<std::uint32_t>>> embree_hit_counts(

@@ -87,7 +87,7 @@ std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene& scene, const std::
 #define RAYGATE_LOAD(function) library.load(embree.function, #function);
   RAYGATE_EMBREE_FUNCTIONS(RAYGATE_LOAD)
 #undef RAYGATE_LOAD
-  return make_embree_peers("Embree 4", embree, Embree4Queries(library), scene);
+  return make_embree_peers("Embree4", embree, Embree4Queries(library), scene);
 }
 
 }  // namespace raygate::lab

@@ -229,7 +229,7 @@ std::vector<std::unique_ptr<Peer>> make_embree_peers(const std::string& name,
         embree_scene(embree, device, scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     const auto add = [&]<class Kind>(const char* mode, std::type_identity<Kind>) {
       peers.push_back(
-          std::make_unique<Kind>(name + " " + mode + (robust ? " robust" : ""), queries, loaded));
+          std::make_unique<Kind>(name + "-" + mode + (robust ? " robust" : ""), queries, loaded));
     };
     add("1", std::type_identity<RayPackets<1, Queries>>());
     add("8", std::type_identity<RayPackets<8, Queries>>());

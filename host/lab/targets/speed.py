@@ -42,16 +42,16 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
 
 PAGE = """# Rays per second next to Embree's
 
-How many times as many rays a second as Embree's fastest mode raygate traces, whose decisions are exact: beside all
-modes, and beside the robust ones. One thread, processor time; compare rows of one run. Modes are single rays, packets
-of 8 and of 16, and streams of 1,024 (Embree 3 alone), by Debian's Embree 3.13 and PyPI's 4.4 (embreex), with BVHs of
-high build quality, and the coherent flag for rays of one origin. Embree also computes u, v and the normal of a hit;
-raygate P and an interval that holds t. The cpu engine uses {{ of("rays")[0].engine_vectors }} of
+Rays per second of raygate, whose decisions are exact, over those of Embree's fastest mode: of all modes, and of the
+robust ones. One thread, processor time; compare rows of one run. Embree3 is Debian's 3.13, Embree4 PyPI's 4.4
+(embreex); -1 is single rays, -8 and -16 packets, -stream 1,024 rays. BVHs are of high build quality, and rays of one
+origin have the coherent flag. Embree also computes u, v and the normal of a hit; raygate P and an interval that holds
+t. The cpu engine uses {{ of("rays")[0].engine_vectors }} of
 {{ of("rays")[0].machine_vectors }} vectors, Embree the widest that it knows. ±: the spreads of the middle halves of the
 runs, added.
 
-{{ table(over_best, "scene", "rays", "raygate, Mrays/s = mrays :.1f", "over the fastest = fast", "which is = fast_mode",
-         "over the fastest robust = robust", "which is = robust_mode") }}
+{{ table(over_best, "scene", "rays", "raygate, Mrays/s = mrays :.1f", "over the fastest = fast", "mode = fast_mode",
+         "over the fastest robust = robust", "mode = robust_mode") }}
 {{ saved("speed-rays", of("rays"), "scene", "rays", "by", "Mrays/s = mrays_per_second :.2f", "spread, % = spread_percent :.1f",
 "raygate over it = raygate_over_peer :.2f", "agreed, % = agreed_percent :.5f") }} has all modes, and the share of rays of which both say the same.
 """
