@@ -6,7 +6,6 @@
 // At most 2**IdWidth lines are outstanding; more wait. A line is offered in the clock after that of its last beat.
 // bus_error_o: a beat of line error_number_o has come with an error, or with a wrong RLAST; the line is then offered
 // with line_error_o. No output of AXI depends on an input in the same clock.
-//
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.
 module axi_read_manager
   import ray_core_pkg::*;
