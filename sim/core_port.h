@@ -33,7 +33,6 @@ void put_ray(Top& top, const CoreRay& ray) {
   std::memset(&top.ray_i, 0, sizeof top.ray_i);
   PackedFields fields(top.ray_i);  // ray_core_pkg::ray_t
   fields.put(ray.tag);
-  fields.put(ray.no_cull, 1);
   fields.put(ray.any_hit, 1);
   fields.put(ray.source_id);
   fields.put(ray.skip_id);

@@ -1,12 +1,12 @@
 // The kinds of arithmetic, and the group widths of carry-select adders.
 //
-// Arith, a parameter of all that calculates, is one of arith_e (a number, as tools can only override those from outside).
-// Behavioural is the language's own +, * and <, for tools that know how to build those (DSP blocks, carry chains). The
-// others are structural: Booth recoding, carry-save trees and adders of that kind. All are the same modules with the same
-// stages and the same bits.
+// Arith, a parameter of all that calculates, is one of arith_e (a number, as tools can only override those from
+// outside). Behavioural is the language's own +, * and <, for tools that know how to build those (DSP blocks, carry
+// chains). The others are structural: Booth recoding, carry-save trees and adders of that kind. All have the same
+// stages and bits.
 //
-// A list of group widths is one flat vector of MaxGroups bytes: the lowest byte is the least
-// significant group, a byte of 0 ends the list.
+// A list of group widths is a vector of MaxGroups bytes: the lowest byte is the least significant group, a byte of 0
+// ends the list.
 package arith_pkg;
 
   typedef enum int unsigned {
@@ -19,9 +19,9 @@ package arith_pkg;
 
   localparam int unsigned MaxGroups = 16;
 
-  // Groups of 4 bits, the narrowest on top where 4 does not divide `width`; wider ones only where
-  // MaxGroups of 4 bits would not do. At 48 bits: 12 groups, the 14 full-adder delays of the paper
-  // (4 full adders, then 10 multiplexers to the carry that selects the last group's sums).
+  // Groups of 4 bits, the narrowest on top where 4 does not divide `width`; wider ones only where MaxGroups of 4 bits
+  // would not do. At 48 bits: 12 groups, the 14 full-adder delays of the paper (4 full adders, then 10 multiplexers to
+  // the carry that selects the last group's sums).
   function automatic bit [8*MaxGroups-1:0] uniform_groups(int unsigned width);
     int unsigned size, left;
     size = (width <= 4 * MaxGroups) ? 4 : (width + MaxGroups - 1) / MaxGroups;
@@ -33,15 +33,12 @@ package arith_pkg;
     end
   endfunction
 
-  // Groups graded so that, with a full adder and a multiplexer of one delay each, the carry reaches
-  // every group just when the group's own two sums are ready: each group one bit wider than the one
-  // below it, so that the widest, on top, has as many bits as the adder has delays.
-  //
-  // That many delays d are the least with d (d + 1) / 2 + 1 >= width (groups of 1, 1, 2 ... d
-  // bits). From the top down the groups take d, d - 1 ... bits, until what is left fits into one
-  // more group no wider than the last. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays
-  // of the paper.
-  // Good to 121 bits; beyond, MaxGroups can be too few and the adder refuses the list.
+  // Groups graded so that, with a full adder and a multiplexer of one delay each, the carry reaches every group just when
+  // the group's own two sums are ready: each group one bit wider than the one below it, so that the widest, on top, has
+  // as many bits as the adder has delays, d: the least with d (d + 1) / 2 + 1 >= width (groups of 1, 1, 2 ... d bits).
+  // From the top down the groups take d, d - 1 ... bits, until what is left fits into one more group no wider than the
+  // last. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays of the paper. Good to 121 bits; beyond, MaxGroups
+  // can be too few and the adder refuses the list.
   function automatic bit [8*MaxGroups-1:0] graded_groups(int unsigned width);
     int unsigned size, left;
     size = 1;

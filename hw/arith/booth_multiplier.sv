@@ -1,13 +1,11 @@
 // Unsigned multiplier: product_o = a_i * b_i.
 //
-// Radix-4 Booth recoding of b_i (13 partial products for 24 bits), constants in place of sign
-// extension, a carry-save tree, a carry-propagate adder of 2 * Width bits: the paper's multiplier
-// (section 3.4), for any Width from 2.
+// Radix-4 Booth recoding of b_i (13 partial products for 24 bits), constants in place of sign extension, a carry-save
+// tree, a carry-propagate adder of 2 * Width bits: the paper's multiplier (section 3.4), for any Width from 2.
 //
-// ConstantRow: 1 for the paper's tree, with the constants in a row of their own (14 rows, 12 adders
-// in 6 levels); 0 puts them into free places of the other rows (13 rows, 11 adders in 5 levels),
-// which saves a level.
-// Arith (a structural kind), GroupWidths, LookAhead: the last adder, see there. Combinational.
+// ConstantRow: 1 for the paper's tree, with the constants in a row of their own (14 rows, 12 adders in 6 levels); 0
+// puts them into free places of the other rows (13 rows, 11 adders in 5 levels). Arith (a structural kind),
+// GroupWidths, LookAhead: the last adder, see there. Combinational.
 module booth_multiplier #(
   parameter int unsigned Width = 24,
   parameter int unsigned Arith = arith_pkg::Graded,
@@ -45,9 +43,8 @@ module booth_multiplier #(
 
   // Partial products: row k has weight 4**k
   //
-  // With n the word `negative`, the rows lack n - n * 2**(Width+1). Modulo 2**(2*Width) the second
-  // is 2**(Width+1) + ~n * 2**(Width+1),
-  // where the odd bits of ~n are the constants that stand for all sign extensions.
+  // With n the word `negative`, the rows lack n - n * 2**(Width+1). Modulo 2**(2*Width) the second is 2**(Width+1)
+  // + ~n * 2**(Width+1), where the odd bits of ~n are the constants that stand for all sign extensions.
 
   logic [2*Width*Rows-1:0] rows;
 

@@ -1,9 +1,8 @@
 // Carry-save tree: the rows of rows_i add up to sum_o + carry_o modulo 2**Width.
 //
-// A queue: each carry-save adder takes the three oldest rows and appends its sum and its carry,
-// until two are left after Rows - 2 adders. So every level makes two rows of three and passes on
-// what is left: of 14 rows 10, 7, 5, 4, 3 and 2 by 12 adders in 6 levels, the paper's tree (section
-// 3.4).
+// A queue: each carry-save adder takes the three oldest rows and appends its sum and its carry, until two are left
+// after Rows - 2 adders. So every level makes two rows of three and passes on what is left: of 14 rows 10, 7, 5, 4, 3
+// and 2 by 12 adders in 6 levels, the paper's tree (section 3.4).
 //
 // Row r of rows_i is rows_i[Width*r +: Width]; the last ones may arrive late. Rows from 2.
 // Combinational; about log(Rows / 2) / log(1.5) full-adder delays.

@@ -1,9 +1,8 @@
 // Carry-select adder: {carry_o, sum_o} = a_i + b_i + carry_i.
 //
-// The operands are cut into groups. Each group computes its sum for both possible carries into it;
-// then one multiplexer a group passes the carry on, and each carry selects its group's sum.
-// Groups of one width make the paper's uniform adder, groups that grow towards the top its graded
-// one (section 3.4).
+// The operands are cut into groups. Each group computes its sum for both possible carries into it; then one multiplexer
+// a group passes the carry on, and each carry selects its group's sum. Groups of one width make the paper's uniform
+// adder, groups that grow towards the top its graded one (section 3.4).
 //
 // GroupWidths: see arith_pkg; the widths must add up to Width.
 // LookAhead: the groups add by carry look-ahead (1, as the paper's do) or by two ripple-carry adders each (0).
@@ -22,15 +21,10 @@ module carry_select_adder #(
 );
 
   localparam int unsigned NumGroups = arith_pkg::num_groups(GroupWidths);
+  localparam int unsigned Total = arith_pkg::group_low(GroupWidths, arith_pkg::MaxGroups);
 
-  if (arith_pkg::group_low(
-      GroupWidths, arith_pkg::MaxGroups
-    ) != Width || arith_pkg::group_low(
-      GroupWidths, NumGroups
-    ) != Width) begin : gen_check
-    $error(
-      "carry_select_adder: expected GroupWidths that add up to Width, without a 0 between them"
-    );
+  if (arith_pkg::group_low(GroupWidths, NumGroups) != Width || Total != Width) begin : gen_check
+    $error("carry_select_adder: expected GroupWidths that add up to Width, without a 0 between");
   end
 
   // Both sums of each group, without a carry into it and with one. The lowest knows its carry: carry_i

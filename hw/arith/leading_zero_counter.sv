@@ -1,10 +1,10 @@
 // Counts the zeros above the highest one of a word.
 //
-// The highest one is smeared over all places below it, which leaves a mark where the ones begin; bit j
-// of the count is the OR of all places whose number of zeros above has that bit.
+// The highest one is smeared over all places below it, which leaves a mark where the ones begin; bit j of the count is
+// the OR of all places whose number of zeros above has that bit.
 //
-// Combinational, $clog2(Width) levels, one AND, and an OR of half the places. For a_i = 0, zero_o is 1
-// and count_o is all ones.
+// Combinational, $clog2(Width) levels, one AND, and an OR of half the places. For a_i = 0, zero_o is 1 and count_o is
+// all ones.
 module leading_zero_counter #(
   parameter int unsigned Width = 24
 ) (

@@ -1,8 +1,8 @@
 // Word-wide multiplexer with a select line of its own for every bit:
 // out_o[i] = select_i[i] ? when_1_i[i] : when_0_i[i]. Combinational.
 //
-// Ordered: promises that when_0_i[i] implies when_1_i[i] (as a carry out of a group that comes even
-// without a carry into it), so that AND-OR without the inverted select is enough.
+// Ordered: promises that when_0_i[i] implies when_1_i[i] (as a carry out of a group that comes even without a carry
+// into it), so that AND-OR without the inverted select is enough.
 module multiplexer #(
   parameter int unsigned Width = 1,
   parameter bit Ordered = 1'b0

@@ -1,18 +1,16 @@
 // Divides significands: floor(2 * x / d * 4**Rows), and whether anything is left.
 //
-// Radix-4 SRT, a row for each digit: digits -2 .. 2, residual in carry-save form, so that no row waits
-// for a carry but that of its seven-bit estimate. A first digit of 1 .. 4, taken from the operands
-// themselves, brings the quotient's 2 x / d in (1, 4) to its place; Rows digits follow.
+// Radix-4 SRT, a row for each digit: digits -2 .. 2, residual in carry-save form, so that no row waits for a carry but
+// that of its seven-bit estimate. A first digit of 1 .. 4, taken from the operands themselves, brings the quotient's 2
+// x / d in (1, 4) to its place; Rows digits follow.
 //
-// dividend_i and divisor_i: normalised, one integer bit which must be 1 (else the outputs mean
-// nothing). quotient_o: two integer bits and 2 * Rows fraction bits, exact and cut off. side_i goes
-// along and comes out with its quotient.
+// dividend_i and divisor_i: normalised, one integer bit which must be 1 (else the outputs are invalid). quotient_o: two
+// integer bits and 2 * Rows fraction bits, exact and cut off. side_i comes out as side_o with its quotient.
 //
 // Pipelined: registers behind the first digit, each row, the remainder and the quotient. Latency: Rows + 3 clocks, a
-// division a clock; else combinational. Registers load only what is valid: valid_o is valid_i, as much later, and while it
-// is low the outputs of a pipelined divider mean nothing. Nothing is reset, so that valid_o means nothing at first.
-// Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection
-// constants and why they hold in srt_pkg.
+// division a clock; else combinational. Registers load only what is valid: valid_o is valid_i, as much later, and while
+// it is low the outputs of a pipelined divider are invalid. Nothing is reset, so valid_o is undefined at first.
+// Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection constants: srt_pkg.
 module srt_divider #(
   parameter int unsigned Width = 24,  // of both operands
   parameter int unsigned Rows  = 12,
@@ -96,22 +94,13 @@ module srt_divider #(
       .data_o(valid_q)
     );
     delay_line #(
-      .Width(2 * ResWidth),
+      .Width(3 * ResWidth + 2 * DigitsWidth + SideWidth),
       .Depth(32'(Pipelined))
-    ) u_residual (
+    ) u_cut_row (
       .clk_i,
       .enable_i(valid),
-      .data_i({next_sum, next_carry}),
-      .data_o({sum_q, carry_q})
-    );
-    delay_line #(
-      .Width(ResWidth + 2 * DigitsWidth + SideWidth),
-      .Depth(32'(Pipelined))
-    ) u_sideband (
-      .clk_i,
-      .enable_i(valid),
-      .data_i({divisor, positives, negatives, side}),
-      .data_o({divisor_q, positives_q, negatives_q, side_q})
+      .data_i({next_sum, next_carry, divisor, positives, negatives, side}),
+      .data_o({sum_q, carry_q, divisor_q, positives_q, negatives_q, side_q})
     );
   end
 

@@ -1,7 +1,7 @@
 // The first row of the radix-4 SRT divider: chooses a digit of 1 .. 4, w = 2 x - digit * d. Combinational.
 //
-// Residuals and divisor as in srt_row; 2 x and d are in [2, 4) and [1, 2), and taken as they are: nothing
-// is estimated. digit_o is the digit modulo 4.
+// Residuals and divisor as in srt_row; 2 x and d are in [2, 4) and [1, 2), and nothing is estimated. digit_o is the
+// digit modulo 4.
 module srt_first_row #(
   parameter int unsigned Width = 25
 ) (
@@ -29,8 +29,7 @@ module srt_first_row #(
   assign from_4 = y >= First4[sixteenth+:6];
   assign digit_o = {from_2 & ~from_4, ~from_2 | (from_3 & ~from_4)};
 
-  // ---- Subtract nothing or d, and nothing, 2 d or 4 d: a one for each complement goes to two free last
-  // places
+  // ---- Subtract nothing or d, and nothing, 2 d or 4 d: a one for each complement goes to two free last places
 
   logic [Width-1:0] upper, carry;
 

@@ -1,14 +1,13 @@
 // Quotient-digit selection of the radix-4 SRT divider: where each digit begins.
 //
-// With the divisor d in [1, 2) and the shifted residual y = 4 w, |w| <= 2/3 d, digit k of -2 .. 2
-// keeps |y - k d| <= 2/3 d for y in [(k - 2/3) d, (k + 2/3) d]. Intervals of neighbours overlap by
-// d/3, so a look at the divisor's first bits and at an estimate of y, too low by less than two of
-// its units, suffices: digit k or more is taken where the estimate is at least m_k, with
+// With the divisor d in [1, 2) and the shifted residual y = 4 w, |w| <= 2/3 d, digit k of -2 .. 2 keeps |y - k d| <=
+// 2/3 d for y in [(k - 2/3) d, (k + 2/3) d]. Intervals of neighbours overlap by d/3, so a look at the divisor's first
+// bits and at an estimate of y, too low by less than two of its units, suffices: digit k or more is taken where the
+// estimate is at least m_k, with
 //   m_k >= (k - 2/3) d               for every d of the interval (k isn't taken too early), and
 //   m_k <= (k - 1 + 2/3) d - 1 unit  (k - 1 isn't kept too long).
-// The functions give the smallest such m_k; sound() and first_sound() check the second condition,
-// and srt_divider refuses to elaborate without it.
-//
+// The functions give the smallest such m_k; sound() and first_sound() check the second condition, and srt_divider
+// refuses to elaborate without it.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3.
 package srt_pkg;
 
@@ -22,8 +21,8 @@ package srt_pkg;
     threshold = ceiling((3 * k - 2) * ((k > 0) ? i + 9 : i + 8), 3);
   endfunction
 
-  // m_k of all intervals, a byte each: in eighths, plus 64, so that they compare as unsigned
-  // numbers. Byte i is for a divisor in [1 + i/8, 1 + (i+1)/8).
+  // m_k of all intervals, a byte each: in eighths, plus 64, so that they compare as unsigned numbers. Byte i is for a
+  // divisor in [1 + i/8, 1 + (i+1)/8).
   function automatic bit [8*8-1:0] thresholds(int k);
     for (int i = 0; i < 8; i++) thresholds[8*i+:8] = 8'(threshold(k, i) + 64);
   endfunction
@@ -37,9 +36,8 @@ package srt_pkg;
     end
   endfunction
 
-  // The first digit, 1 .. 4, is of the doubled dividend y = 2 x in [2, 4) itself, cut off to
-  // eighths, by sixteenths of the divisor. Nothing is estimated, so the second condition loses its
-  // unit; nor need it hold above 4, where no y is.
+  // The first digit, 1 .. 4, is of the doubled dividend y = 2 x in [2, 4) itself, cut off to eighths, by sixteenths of the
+  // divisor. Nothing is estimated, so the second condition loses its unit; nor need it hold above 4, where no y is.
   function automatic int first_threshold(int k, int i);
     first_threshold = ceiling((3 * k - 2) * (i + 17), 6);
     if (first_threshold > 32) first_threshold = 32;

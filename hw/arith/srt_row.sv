@@ -1,8 +1,8 @@
 // One row of the radix-4 SRT divider: chooses a quotient digit, w' = 4 w - digit * d. Combinational.
 //
-// Residuals are in carry-save form: w = sum + carry, modulo 4, two integer bits (the upper one is
-// the sign) and Width - 2 fraction bits. d is in [1, 2) in the same places. |w| <= 2/3 d goes in
-// and comes out. The digit is positive_o - negative_o, one of which is 0.
+// Residuals are in carry-save form: w = sum + carry, modulo 4, two integer bits (the upper one is the sign) and Width -
+// 2 fraction bits. d is in [1, 2) in the same places. |w| <= 2/3 d goes in and comes out. The digit is positive_o -
+// negative_o, one of which is 0.
 module srt_row #(
   parameter int unsigned Width = 25,
   parameter int unsigned Arith = arith_pkg::Graded

@@ -1,6 +1,4 @@
-// Shifts a word right, and says whether a one was lost. Combinational.
-//
-// Amounts from Width on lose all there is. Any input.
+// Shifts a word right, and says whether a one was lost. Combinational. Amounts from Width on lose all there is.
 module sticky_right_shift #(
   parameter int unsigned Width = 26,
   parameter int unsigned AmountWidth = 8

@@ -32,9 +32,7 @@ module board_core
   input  logic [15:0] sdram_data_i
 );
 
-  localparam int unsigned ReadIdWidth = 1 + $clog2(
-    NodeLines > TriangleLines ? NodeLines : TriangleLines
-  );
+  localparam int unsigned ReadIdWidth = read_id_width(NodeLines, TriangleLines);
 
   logic invalidate, abort, outstanding, ray_valid, ray_ready, result_valid, result_ready;
   logic read_valid, read_ready, line_valid, line_ready, write_valid, write_ready;

@@ -3,15 +3,14 @@
 // A message's first word says what it is in bits 31:28, and in bits 27:0 a number:
 //   1     a line of that number; its 16 words follow
 //   2     memory has changed: it has so many lines, and the caches are emptied
-//   4-7   a ray: any_hit in bit 28, no_cull in bit 29; its tag, source_id, skip_id, t_max, and x, y, z of direction and origin
-//         follow, 10 words
-// All others say nothing. A result is 8 words, result_t from bit 0 on, zeros above it.
+//   4-7   a ray: any_hit in bit 28; its tag, source_id, skip_id, t_max, and x, y, z of direction and origin follow
+// Others are ignored. A result is 8 words, result_t from bit 0 on, zeros above it.
 //
-// The host sends lines, and says that memory has changed, while no ray is in the core; both wait until no line is
-// on its way to it. Words: valid/ready.
+// The host sends lines, and says that memory has changed, while no ray is in the core; both wait until no line is in
+// flight to it. Words: valid/ready.
 //
-// A break (break_i, for a clock) ends the host's session: the next word is a message's first, and the rays in the core are
-// aborted. Of their results only the one that is being sent goes out. Words are accepted again when no ray is left.
+// A break (break_i, for a clock) ends the host's session: the next word is a message's first, and the rays in the core
+// are aborted. Of their results only the one that is being sent goes out. Words are accepted again when no ray is left.
 module core_link
   import ray_core_pkg::*;
 (
@@ -122,7 +121,6 @@ module core_link
   assign ray_o.direction = words_q[Ray+128+:96];
   assign ray_o.origin    = words_q[Ray+224+:96];
   assign ray_o.any_hit   = kind_q[0];
-  assign ray_o.no_cull   = kind_q[1];
 
   // ---- Results
 

@@ -1,11 +1,11 @@
 // Memory of lines in one SDRAM of 16 bits: reads and writes of 64 bytes by number, valid/ready.
 //
-// A line is 32 neighbouring words of a row; a row has 16 lines, and neighbouring rows of lines are in the next bank. All
-// commands come out of registers. The SDRAM's clock is the inverse of clk_i: it takes a command half a clock after it
-// left, and the word of a read (CAS latency 2) is taken two clocks after its command left. So clk_i's half period must
-// hold the ways out and back and the SDRAM's access time: 6 ns and some 6 of pads, 40 MHz.
-// Reads that wait go after writes, both after refreshing. A line comes with its request's id and stays until it is taken.
-// A line to be written stays at the port until its last word leaves: it is not kept a second time here.
+// A line is 32 neighbouring words of a row; a row has 16 lines, and neighbouring rows of lines are in the next bank.
+// All commands come out of registers. The SDRAM's clock is the inverse of clk_i: it takes a command half a clock after
+// it left, and the word of a read (CAS latency 2) is taken two clocks after its command left. So clk_i's half period
+// must hold the delays out and back and the SDRAM's access time: 6 ns and some 6 of pads, 40 MHz. Writes have priority
+// over reads, refreshes over both. A line comes with its request's id and stays until it is taken. A line to be written
+// stays at the port until its last word leaves.
 //
 // Latency: 36 clocks at 40 MHz, from the clock that takes a read to line_valid_o. Throughput: a line in 37 clocks.
 // Source: data sheets of MT48LC16M16A2 (Micron) and AS4C16M16 (Alliance): 4 banks, 8,192 rows, 512 columns, 256 Mbit.

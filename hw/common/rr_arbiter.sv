@@ -1,6 +1,4 @@
-// Picks one of Width requests: the first at or above start_i, or else the first of all.
-//
-// Combinational.
+// Picks one of Width requests: the first at or above start_i, or else the first of all. Combinational.
 module rr_arbiter #(
   parameter int unsigned Width = 64,
   localparam int unsigned IndexWidth = $clog2(Width)

@@ -47,18 +47,16 @@ module exact_exponents
 
   logic [ExpWidth-1:0] lows_d[Vectors], highs_d[Vectors], lows_q[Vectors], highs_q[Vectors];
 
-  always_comb begin
+  always_comb begin : extremes
+    logic [ExpWidth-1:0] field;
     for (int unsigned v = 0; v < Vectors; v++) begin
       lows_d[v]  = '1;
       highs_d[v] = '0;
       for (int unsigned k = 0; k < 3; k++) begin
+        field = effective(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]);
         if (floats_i[Width*(3*v+k)+:Width-1] != '0) begin
-          if (effective(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]) < lows_d[v]) begin
-            lows_d[v] = effective(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]);
-          end
-          if (effective(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]) > highs_d[v]) begin
-            highs_d[v] = effective(floats_i[Width*(3*v+k)+FracWidth+:ExpWidth]);
-          end
+          if (field < lows_d[v]) lows_d[v] = field;
+          if (field > highs_d[v]) highs_d[v] = field;
         end
       end
     end

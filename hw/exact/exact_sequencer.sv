@@ -45,8 +45,8 @@ module exact_sequencer
   // ---- Fetch: the next instruction, and how far its digits go
 
   instruction_t fetched, instruction_q;
-  logic [6:0] compares, next_q, next_d, address_q;
-  logic more_q, more_d, busy_q, advance, finishes;
+  logic [6:0] compares, next_q, address_q;
+  logic more_q, busy_q, advance, finishes;
   logic [CountWidth-1:0] x_last_d, y_last_d, last_d, x_last_q, y_last_q, last_q;
   logic [CountWidth-1:0] normal_digits, fraction_digits;
 
@@ -88,28 +88,21 @@ module exact_sequencer
 
   // What follows the instruction that is fetched.
   assign compares = (against_i == AgainstLimit) ? exact_program_pkg::Limit
-                                                           : exact_program_pkg::Order;
+                                                : exact_program_pkg::Order;
   assign finishes = (fetched.kind == KindCompare)
                   | (fetched.last & (against_i == AgainstNothing));
-  assign next_d = !fetched.last ? next_q + 1'b1
-                : compares;
-  assign more_d = ~finishes;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      busy_q <= 1'b0;
-    end else if (abort_i) begin
-      busy_q <= 1'b0;
-    end else if (start_i | advance) begin
-      busy_q <= start_i | more_q;
-    end
+    if (!rst_ni) busy_q <= 1'b0;
+    else if (abort_i) busy_q <= 1'b0;
+    else if (start_i | advance) busy_q <= start_i | more_q;
   end
   always_ff @(posedge clk_i) begin
     if (begin_i) begin
       next_q <= hit_i ? exact_program_pkg::Hit : compares;
     end else if (start_i | advance) begin
-      next_q        <= next_d;
-      more_q        <= more_d;
+      next_q        <= fetched.last ? compares : next_q + 1'b1;
+      more_q        <= ~finishes;
       address_q     <= next_q;
       instruction_q <= fetched;
       x_last_q      <= x_last_d;

@@ -44,31 +44,28 @@ module exact_unit
   localparam int unsigned AddressWidth = $clog2(Depth);
   localparam int unsigned MaxShift = largest_gap(ExpWidth, Significand);
   localparam int unsigned ShiftWidth = $clog2(MaxShift + 1);
-  localparam int unsigned PlaceBits = PlaceWidth;
   localparam int unsigned Products = 6 * Digits;  // in a column, at most
   localparam int unsigned SumWidth = sum_width(DigitWidth, Products);
   localparam int unsigned Stages = 4;
 
   // ---- Request: the words, then their exponents
 
-  logic idle_q, done, asks_hit_q;
+  logic done, asks_hit_q;
   logic [1:0] against_q;
   logic [3:0] starts_q;
   logic [Floats*Width-1:0] floats_q;
 
-  assign ready_o = idle_q;
-
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      idle_q   <= 1'b1;
+      ready_o  <= 1'b1;
       starts_q <= '0;
     end else begin
-      idle_q   <= idle_q ? ~valid_i : valid_o & ready_i;
-      starts_q <= {starts_q[2:0], valid_i & idle_q};
+      ready_o  <= ready_o ? ~valid_i : valid_o & ready_i;
+      starts_q <= {starts_q[2:0], valid_i & ready_o};
     end
   end
   always_ff @(posedge clk_i) begin
-    if (idle_q) begin
+    if (ready_o) begin
       asks_hit_q <= hit_i;
       against_q  <= against_i;
       floats_q   <= floats_i;
@@ -144,64 +141,35 @@ module exact_unit
   );
 
   function automatic logic [Width-1:0] word(logic [Floats*Width-1:0] words,
-                                            logic [PlaceBits-1:0] place);
+                                            logic [PlaceWidth-1:0] place);
     word = '0;
     for (int unsigned k = 0; k < Floats; k++) begin
       if (32'(place) == k) word = words[Width*k+:Width];
     end
   endfunction
 
-  logic [Width-1:0] x_word_q, y_word_q;
+  logic [1:0][Width-1:0] words_q;  // of x, of y
   logic one_q, limit_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      valid_q <= '0;
-    end else begin
-      valid_q <= (stopped | done) ? '0 : {valid_q[Stages-1:1], valid};
-    end
+    if (!rst_ni) valid_q <= '0;
+    else valid_q <= (stopped | done) ? '0 : {valid_q[Stages-1:1], valid};
   end
   always_ff @(posedge clk_i) begin
     stage_q     <= {stage_q[Stages-1:1], issue};
     x_digit_1_q <= x_digit;
-    x_word_q    <= word(floats_q, x_place);
-    y_word_q    <= word(floats_q, y_place);
+    words_q     <= {word(floats_q, y_place), word(floats_q, x_place)};
     one_q       <= 32'(x_place) == PlaceOne;
     limit_q     <= 32'(x_place) == PlaceLimit;
   end
 
-  // ---- Stage 1: digits of numbers, from memory; digits of floats
+  // ---- Stage 1: digits of numbers, from memory; digits of floats; x of a limit or one has a shift of its own
 
   logic write, loads;
-  logic [DigitWidth-1:0] digit, x_digits, y_digits, x_slice, y_slice, x_q, y_q;
-  logic [ShiftWidth-1:0] x_shift, y_shift, unit;
+  logic [DigitWidth-1:0] digit;
+  logic [1:0][DigitWidth-1:0] operands_q;  // x, y
+  logic [ShiftWidth-1:0] unit;
   logic x_negative_q, y_taken_q, loads_q;
-
-  ram #(
-    .Width(DigitWidth),
-    .Depth(Depth)
-  ) u_x (
-    .clk_i,
-    .write_i        (write),
-    .write_address_i(stage_q[4].result),
-    .data_i         (digit),
-    .read_i         (1'b1),
-    .read_address_i (x_address),
-    .data_o         (x_digits)
-  );
-
-  ram #(
-    .Width(DigitWidth),
-    .Depth(Depth)
-  ) u_y (
-    .clk_i,
-    .write_i        (write),
-    .write_address_i(stage_q[4].result),
-    .data_i         (digit),
-    .read_i         (1'b1),
-    .read_address_i (y_address),
-    .data_o         (y_digits)
-  );
 
   function automatic logic [ShiftWidth-1:0] exponent(logic [ExpWidth-1:0] field);
     exponent = (field == '0) ? ShiftWidth'(1) : ShiftWidth'(field);
@@ -214,37 +182,43 @@ module exact_unit
   assign loads = stage_q[1].step.kind < KindCross;
   assign unit = (stage_q[1].step.kind == KindRay) ? ShiftWidth'(direction_exponent)
                                                       : ShiftWidth'(coordinate_exponent);
-  assign x_shift = one_q ? one_shift : limit_q ? limit_shift
-                 : exponent(x_word_q[FracWidth+:ExpWidth]) - unit;
-  assign y_shift = exponent(y_word_q[FracWidth+:ExpWidth]) - unit;
 
-  exact_slice #(
-    .SignificandWidth(Significand),
-    .MaxShift        (MaxShift),
-    .DigitWidth      (DigitWidth)
-  ) u_x_slice (
-    .significand_i(one_q ? Significand'(1) : significand(x_word_q[Width-2:0])),
-    .shift_i      (x_shift),
-    .digit_i      (x_digit_1_q),
-    .digit_o      (x_slice)
-  );
+  for (genvar n = 0; n < 2; n++) begin : gen_operand
+    logic is_one, is_limit;
+    logic [DigitWidth-1:0] stored, slice;
 
-  exact_slice #(
-    .SignificandWidth(Significand),
-    .MaxShift        (MaxShift),
-    .DigitWidth      (DigitWidth)
-  ) u_y_slice (
-    .significand_i(significand(y_word_q[Width-2:0])),
-    .shift_i      (y_shift),
-    .digit_i      (x_digit_1_q),
-    .digit_o      (y_slice)
-  );
+    assign is_one   = (n == 0) & one_q;
+    assign is_limit = (n == 0) & limit_q;
+
+    ram #(
+      .Width(DigitWidth),
+      .Depth(Depth)
+    ) u_digits (
+      .clk_i,
+      .write_i        (write),
+      .write_address_i(stage_q[4].result),
+      .data_i         (digit),
+      .read_i         (1'b1),
+      .read_address_i ((n == 0) ? x_address : y_address),
+      .data_o         (stored)
+    );
+    exact_slice #(
+      .SignificandWidth(Significand),
+      .MaxShift        (MaxShift),
+      .DigitWidth      (DigitWidth)
+    ) u_slice (
+      .significand_i(is_one ? Significand'(1) : significand(words_q[n][Width-2:0])),
+      .shift_i      (is_one ? one_shift : is_limit ? limit_shift
+                     : exponent(words_q[n][FracWidth+:ExpWidth]) - unit),
+      .digit_i      (x_digit_1_q),
+      .digit_o      (slice)
+    );
+    always_ff @(posedge clk_i) operands_q[n] <= loads ? slice : stored;
+  end
 
   always_ff @(posedge clk_i) begin
-    x_q          <= loads ? x_slice : x_digits;
-    y_q          <= loads ? y_slice : y_digits;
-    x_negative_q <= x_word_q[Width-1];
-    y_taken_q    <= ~y_word_q[Width-1];
+    x_negative_q <= words_q[0][Width-1];
+    y_taken_q    <= ~words_q[1][Width-1];
     loads_q      <= loads;
   end
 
@@ -257,8 +231,8 @@ module exact_unit
     .Width     (SumWidth),
     .Arith     (Arith)
   ) u_product (
-    .a_i     (x_q),
-    .b_i     (y_q),
+    .a_i     (operands_q[0]),
+    .b_i     (operands_q[1]),
     .negate_i(stage_q[2].step.negate),
     .sum_o   (product_sum),
     .carry_o (product_carry)
@@ -267,8 +241,8 @@ module exact_unit
   carry_save_adder #(
     .Width(SumWidth)
   ) u_difference (
-    .a_i    (SumWidth'(x_q) ^ {SumWidth{x_negative_q}}),
-    .b_i    (SumWidth'(y_q) ^ {SumWidth{y_taken_q}}),
+    .a_i    (SumWidth'(operands_q[0]) ^ {SumWidth{x_negative_q}}),
+    .b_i    (SumWidth'(operands_q[1]) ^ {SumWidth{y_taken_q}}),
     .c_i    (SumWidth'(x_negative_q)),
     .sum_o  (difference_sum),
     .carry_o(difference_carry)

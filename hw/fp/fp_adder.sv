@@ -2,15 +2,16 @@
 //
 // Two paths, of which the second needs no rounding and the first no long normalising shift:
 //   far   the smaller operand shifted right, one addition, the shared rounder
-//   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least
-//         the leading bit: exact, so only a leading-zero count and a left shift
+//   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least the leading bit:
+//         exact, so only a leading-zero count and a left shift
 //
 // Pipelined: registers between ordering and adding, between adding and rounding, and behind the result. Latency: 3
-// clocks, one operation a clock; else combinational. The rounding mode is used in several stages and should stay the same.
+// clocks, one operation a clock; else combinational. The rounding mode is used in several stages and should stay the
+// same.
 //
-// Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when
-// rounding down, unless both addends are zeros of one sign. Infinity minus infinity is invalid. A
-// subnormal sum is exact, so underflow is never raised and tininess_after_i changes nothing.
+// Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when rounding down, unless both
+// addends are zeros of one sign. Infinity minus infinity is invalid. A subnormal sum is exact, so underflow is never
+// raised and tininess_after_i changes nothing.
 // Source: IEEE 754-2019, clauses 5.4.1 and 6.3; the two paths: Farmwald, Stanford 1981.
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
@@ -68,29 +69,23 @@ module fp_adder #(
 
   // ---- Distance of the exponents, both ways at once beside the ordering
 
-  logic [ExpWidth-1:0] a_minus_b, b_minus_a, distance;
+  logic [1:0][ExpWidth-1:0] exps, differences;  // of a and b; a - b and b - a
+  logic [ExpWidth-1:0] distance;
 
-  adder #(
-    .Width(ExpWidth),
-    .Arith(Arith)
-  ) u_a_minus_b (
-    .a_i(a_exp),
-    .b_i(~b_exp),
-    .carry_i(1'b1),
-    .sum_o(a_minus_b),
-    .carry_o()
-  );
-  adder #(
-    .Width(ExpWidth),
-    .Arith(Arith)
-  ) u_b_minus_a (
-    .a_i(b_exp),
-    .b_i(~a_exp),
-    .carry_i(1'b1),
-    .sum_o(b_minus_a),
-    .carry_o()
-  );
-  assign distance = swap ? b_minus_a : a_minus_b;
+  assign exps = {b_exp, a_exp};
+  for (genvar n = 0; n < 2; n++) begin : gen_difference
+    adder #(
+      .Width(ExpWidth),
+      .Arith(Arith)
+    ) u_difference (
+      .a_i(exps[n]),
+      .b_i(~exps[1-n]),
+      .carry_i(1'b1),
+      .sum_o(differences[n]),
+      .carry_o()
+    );
+  end
+  assign distance = swap ? differences[1] : differences[0];
 
   // ---- First cut
 
@@ -115,26 +110,18 @@ module fp_adder #(
   assign near_1 = subtract & ordinary & (distance == ExpWidth'(1));
 
   delay_line #(
-    .Width(2 * ExpWidth + 5 + $bits(special)),
+    .Width(2 * (ExpWidth + SigWidth) + 5 + $bits(special)),
     .Depth(32'(Pipelined))
   ) u_ordered (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({sign, subtract, odd, near_0, near_1, special, big_exp, distance}),
-    .data_o({sign_1, subtract_1, odd_1, near_0_1, near_1_1, special_1, big_exp_1, distance_1})
-  );
-  delay_line #(
-    .Width(2 * SigWidth),
-    .Depth(32'(Pipelined))
-  ) u_significands (
-    .clk_i,
-    .enable_i(1'b1),
-    .data_i({big_sig, small_sig}),
-    .data_o({big_sig_1, small_sig_1})
+    .data_i({sign, subtract, odd, near_0, near_1, special, big_exp, distance, big_sig, small_sig}),
+    .data_o({sign_1, subtract_1, odd_1, near_0_1, near_1_1, special_1, big_exp_1, distance_1,
+             big_sig_1, small_sig_1})
   );
 
-  // ---- Far path: align. A difference is taken one place further left: its value, doubled, is in
-  // [1, 4) like that of a sum (but for those that the near path gives), and its exponent one less.
+  // ---- Far path: align. A difference is taken one place further left: its value, doubled, is in [1, 4) like that of a
+  // sum (but for those that the near path gives), and its exponent one less.
 
   logic [FarWidth-1:0] far_big, far_small, far_aligned;
   logic far_sticky;
@@ -151,8 +138,8 @@ module fp_adder #(
     .lost_o(far_sticky)
   );
 
-  // ---- Far path: add. A lost part of the subtrahend takes the place of the one that completes its
-  // complement: the difference is then too low by less than a place, which the sticky bit tells.
+  // ---- Far path: add. A lost part of the subtrahend takes the place of the one that completes its complement: the
+  // difference is then too low by less than a place, which the sticky bit tells.
 
   logic [FarWidth-1:0] far_sum;
 
@@ -206,27 +193,19 @@ module fp_adder #(
   fp_pkg::special_t special_2;
 
   delay_line #(
-    .Width(2 * ExpWidth + FarWidth + 3 + $bits(special)),
+    .Width(2 * ExpWidth + FarWidth + 2 * NearWidth + 3 + $bits(special)),
     .Depth(32'(Pipelined))
-  ) u_far (
+  ) u_added (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({sign_1, near, special_1, far_sticky, big_exp_1, far_exp, far_sum}),
-    .data_o({sign_2, near_2, special_2, far_sticky_2, big_exp_2, far_exp_2, far_sum_2})
-  );
-  delay_line #(
-    .Width(2 * NearWidth),
-    .Depth(32'(Pipelined))
-  ) u_near (
-    .clk_i,
-    .enable_i(1'b1),
-    .data_i({near_difference, near_mark}),
-    .data_o({near_difference_2, near_mark_2})
+    .data_i({sign_1, near, special_1, far_sticky, big_exp_1, far_exp, far_sum, near_difference,
+             near_mark}),
+    .data_o({sign_2, near_2, special_2, far_sticky_2, big_exp_2, far_exp_2, far_sum_2,
+             near_difference_2, near_mark_2})
   );
 
-  // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one:
-  // what is left is subnormal, or zero, and has the exponent field 0. Nothing is counted where this path
-  // isn't taken.
+  // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one: what is left is
+  // subnormal, or zero, and has the exponent field 0. Nothing is counted where this path isn't taken.
 
   logic [NearWidth-1:0] near_normal;
   logic [CountWidth-1:0] near_count;

@@ -1,8 +1,8 @@
 // Floating-point compare: equal, less, unordered.
 //
-// NaN is unordered with everything, itself included: equal_o = less_o = 0. -0 equals +0. The only
-// flag is invalid: with signaling_i = 1 for any NaN, as < and <= have it, else for a signalling NaN
-// alone, as == has it. (a <= b is less_o | equal_o, a > b is less_o with the operands exchanged.)
+// NaN is unordered with everything, itself included: equal_o = less_o = 0. -0 equals +0. The only flag is invalid: with
+// signaling_i = 1 for any NaN, as < and <= have it, else for a signalling NaN alone, as == has it. (a <= b is
+// less_o | equal_o, a > b is less_o with the operands exchanged.)
 //
 // Combinational; takes every bit pattern. Source: IEEE 754-2019, clause 5.11.
 module fp_compare #(

@@ -2,15 +2,15 @@
 //
 // Unpack, normalise subnormals, divide the significands digit by digit (srt_divider), round.
 //
-// QuotientBits = 0 is IEEE 754: correctly rounded. Other values reproduce a divider whose significand
-// is cut off, not rounded, after that many bits, counting the leading one (21 gives the quotients
-// printed in the paper's worked example, up to 5 ulp low in binary32). Only a subnormal result is
-// then still rounded, from what the cut has left; what was cut off raises no flag.
+// QuotientBits = 0 is IEEE 754: correctly rounded. Other values reproduce a divider whose significand is cut off after
+// that many bits, counting the leading one (21 gives the quotients printed in the paper's worked example, up to 5 ulp
+// low in binary32). Only a subnormal result is then still rounded, from what the cut has left; what was cut off raises
+// no flag.
 //
-// Pipelined: registers behind normalising, each stage of the significands' division (Rows + 3, see srt_divider; Rows: two
-// bits of the quotient each, 12 in binary32) and the result. Latency: Rows + 5 clocks, a division a clock; else
-// combinational. Registers load only what came with valid_i; in other clocks the outputs of a pipelined divider mean
-// nothing. The rounding mode is the last stage's.
+// Pipelined: registers behind normalising, each stage of the significands' division (Rows + 3, see srt_divider; Rows:
+// two bits of the quotient each, 12 in binary32) and the result. Latency: Rows + 5 clocks, a division a clock; else
+// combinational. Registers load only what came with valid_i; in other clocks the outputs of a pipelined divider are
+// invalid. The rounding mode is the last stage's.
 //
 // A finite number by zero is infinity and raises divide_by_zero; 0/0 and inf/inf are invalid.
 // Source: IEEE 754-2019, clauses 5.4.1 and 7; Choi and Chung, Trans. KIEE 48A-5-21, section 4.2.
@@ -45,11 +45,12 @@ module fp_divider #(
     $error("fp_divider: expected at most FracWidth + 1 QuotientBits and 27 rows");
   end
 
-  // ---- Unpack
+  // ---- Unpack: of each pair [0] is a's, [1] b's
 
-  logic a_sign, b_sign;
-  logic [ExpWidth-1:0] a_exp, b_exp;
-  logic [SigWidth-1:0] a_sig, b_sig;
+  logic [1:0] sign;
+  logic [1:0][ExpWidth-1:0] exp;
+  logic [1:0][SigWidth-1:0] sig, norm, norm_1;
+  logic [1:0][CountWidth-1:0] count;
   fp_pkg::class_t a_class, b_class;
 
   fp_unpack #(
@@ -57,48 +58,38 @@ module fp_divider #(
     .FracWidth(FracWidth)
   ) u_unpack (
     .packed_i({b_i, a_i}),
-    .sign_o({b_sign, a_sign}),
-    .exponent_o({b_exp, a_exp}),
-    .significand_o({b_sig, a_sig}),
+    .sign_o(sign),
+    .exponent_o(exp),
+    .significand_o(sig),
     .class_o({b_class, a_class})
   );
 
   // ---- Normalise
 
-  logic [SigWidth-1:0] a_norm, b_norm;
-  logic [CountWidth-1:0] a_count, b_count;
-
-  leading_zero_counter #(
-    .Width(SigWidth)
-  ) u_count_a (
-    .a_i(a_sig),
-    .count_o(a_count),
-    .zero_o()
-  );
-  leading_zero_counter #(
-    .Width(SigWidth)
-  ) u_count_b (
-    .a_i(b_sig),
-    .count_o(b_count),
-    .zero_o()
-  );
-  assign a_norm = a_sig << a_count;
-  assign b_norm = b_sig << b_count;
+  for (genvar n = 0; n < 2; n++) begin : gen_normalise
+    leading_zero_counter #(
+      .Width(SigWidth)
+    ) u_count (
+      .a_i(sig[n]),
+      .count_o(count[n]),
+      .zero_o()
+    );
+    assign norm[n] = sig[n] << count[n];
+  end
 
   // ---- Exponent for the rounder: that of a/b, less one because the quotient comes doubled, less one
   // because the rounder wants it so: (a_exp - a_count) - (b_exp - b_count) + bias - 2
 
   localparam logic [RoundExpWidth-1:0] Offset = RoundExpWidth'(2 ** (ExpWidth - 1) - 3);
   logic [RoundExpWidth-1:0] a_exp_offset, exp_difference, count_difference;
-  logic [RoundExpWidth-1:0] a_count_wide, b_count_wide;
+  logic [RoundExpWidth-1:0] a_count_wide;
 
-  assign a_count_wide = RoundExpWidth'(a_count);
-  assign b_count_wide = RoundExpWidth'(b_count);
+  assign a_count_wide = RoundExpWidth'(count[0]);
   adder #(
     .Width(RoundExpWidth),
     .Arith(Arith)
   ) u_offset (
-    .a_i({2'b00, a_exp}),
+    .a_i({2'b00, exp[0]}),
     .b_i(Offset),
     .carry_i(1'b0),
     .sum_o(a_exp_offset),
@@ -109,7 +100,7 @@ module fp_divider #(
     .Arith(Arith)
   ) u_exp_difference (
     .a_i(a_exp_offset),
-    .b_i(~{2'b00, b_exp}),
+    .b_i(~{2'b00, exp[1]}),
     .carry_i(1'b1),
     .sum_o(exp_difference),
     .carry_o()
@@ -118,7 +109,7 @@ module fp_divider #(
     .Width(RoundExpWidth),
     .Arith(Arith)
   ) u_count_difference (
-    .a_i(b_count_wide),
+    .a_i(RoundExpWidth'(count[1])),
     .b_i(~a_count_wide),
     .carry_i(1'b1),
     .sum_o(count_difference),
@@ -143,7 +134,6 @@ module fp_divider #(
 
   // ---- First cut, and what goes beside the division
 
-  logic [SigWidth-1:0] a_norm_1, b_norm_1;
   logic [RoundExpWidth-1:0] exp_difference_1, count_difference_1, exponent, exponent_2;
   logic sign_1, sign_2, valid_1, divided;
   fp_pkg::special_t special_1, special_2;
@@ -158,22 +148,13 @@ module fp_divider #(
     .data_o(valid_1)
   );
   delay_line #(
-    .Width(2 * SigWidth),
+    .Width(2 * SigWidth + 2 * RoundExpWidth + 1 + $bits(special)),
     .Depth(32'(Pipelined))
-  ) u_significands (
+  ) u_normalised (
     .clk_i,
     .enable_i(valid_i),
-    .data_i({a_norm, b_norm}),
-    .data_o({a_norm_1, b_norm_1})
-  );
-  delay_line #(
-    .Width(2 * RoundExpWidth + 1 + $bits(special)),
-    .Depth(32'(Pipelined))
-  ) u_exponents (
-    .clk_i,
-    .enable_i(valid_i),
-    .data_i({exp_difference, count_difference, a_sign ^ b_sign, special}),
-    .data_o({exp_difference_1, count_difference_1, sign_1, special_1})
+    .data_i({norm, exp_difference, count_difference, ^sign, special}),
+    .data_o({norm_1, exp_difference_1, count_difference_1, sign_1, special_1})
   );
 
   adder #(
@@ -201,8 +182,8 @@ module fp_divider #(
   ) u_divide (
     .clk_i,
     .valid_i(valid_1),
-    .dividend_i(a_norm_1),
-    .divisor_i(b_norm_1),
+    .dividend_i(norm_1[0]),
+    .divisor_i(norm_1[1]),
     .side_i({exponent, sign_1, special_1}),
     .quotient_o(quotient),
     .remainder_o(remainder),

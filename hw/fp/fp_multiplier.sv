@@ -1,16 +1,15 @@
 // Floating-point multiply: a_i * b_i.
 //
-// The significands go into the multiplier as they are, a subnormal one with its leading zeros; how
-// far the product must move is found from the operands alone, beside the multiplication: to the
-// left by the leading zeros, but not beyond the smallest exponent, or to the right for a subnormal
-// result. Behind the multiplier are left one shift and the shared rounder.
+// The significands are multiplied as they are, a subnormal one with its leading zeros. How far the product must be
+// shifted is found from the operands, beside the multiplication: to the left by the leading zeros, but not beyond the
+// smallest exponent, or to the right for a subnormal result. One shift and the shared rounder follow the product.
 //
 // Arith: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
 // Pipelined: registers before the product, behind it, and behind the result. Latency: 3 clocks, one operation a clock;
 // else combinational. The rounding mode is the last stage's.
 //
-// Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the
-// operands' signs, also that of zeros and infinities. Zero times infinity is invalid.
+// Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the operands' signs, also that of zeros
+// and infinities. Zero times infinity is invalid.
 // Source: IEEE 754-2019, clause 5.4.1; the paper's multiplier, section 3.4.
 module fp_multiplier #(
   parameter int unsigned ExpWidth    = 8,

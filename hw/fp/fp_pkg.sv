@@ -1,16 +1,14 @@
 // What all floating-point cores share: rounding modes and exception flags.
 //
-// Every core takes a format as two parameters, ExpWidth and FracWidth (binary32: 8 and 23,
-// binary16: 5 and 10, bfloat16: 8 and 7), packed as IEEE 754 has it: sign, biased exponent,
-// fraction. Subnormals are read and given; every NaN result is the one quiet NaN with sign 0 and
-// only the top fraction bit set (0x7fc00000 in binary32). Formats need 3 <= ExpWidth and 2 <= FracWidth <=
-// 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2 signed bits; the divider needs FracWidth <= 53,
-// the multiplier, with arith_pkg's groups, FracWidth <= 75.
+// Every core takes a format as two parameters, ExpWidth and FracWidth (binary32: 8 and 23, binary16: 5 and 10,
+// bfloat16: 8 and 7), packed as in IEEE 754: sign, biased exponent, fraction. Subnormals are read and given; every NaN
+// result is the one quiet NaN with sign 0 and only the top fraction bit set (0x7fc00000 in binary32). Formats need 3 <=
+// ExpWidth and 2 <= FracWidth <= 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2 signed bits;
+// the divider needs FracWidth <= 53, the multiplier, with arith_pkg's groups, FracWidth <= 75.
 //
-// What the cores are made of: sums and differences of significands and exponents are instances of hw/arith's adder (its
-// kind is their parameter Arith), products and quotients of its multiplier and divider. Steps by one or two and comparisons
-// are the language's operators, which synthesis makes no slower than structures of ours.
-//
+// Sums and differences of significands and exponents are instances of hw/arith's adder (of kind Arith), products and
+// quotients of its multiplier and divider. Steps by one or two and comparisons are the language's operators, which
+// synthesis makes no slower than structures of ours.
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
 package fp_pkg;
 

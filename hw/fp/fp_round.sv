@@ -1,25 +1,22 @@
 // The one rounder: an exact value in, an IEEE number and its flags out.
 //
 // The value is (-1)**sign_i * significand_i / 2**(FracWidth+3) * 2**(exponent_i + 1 - bias), with
-//   significand_i  two integer bits, FracWidth fraction bits, guard, round, sticky (the OR of all
-//                  bits further down). In [1, 4): a product or a quotient need not be normalised,
-//                  the choice between [1, 2) and [2, 4) is made here.
-//   exponent_i     the biased exponent *less one*, signed. So the packed word is exponent_i with
-//                  the integer bits added; a negative one means that the result may be subnormal,
-//                  and its complement is how far to shift right, with no adder on the way.
+//   significand_i  two integer bits, FracWidth fraction bits, guard, round, sticky (the OR of all bits further down).
+//                  In [1, 4): a product or a quotient need not be normalised.
+//   exponent_i     the biased exponent *less one*, signed. The packed word is exponent_i plus the integer bits; below 0,
+//                  the result may be subnormal, and the complement of exponent_i is how far to shift right.
 //
-// SubnormalShift = 0 takes the right shift out, for a core that has its significand in place
-// already: exponent_i is then never negative, and where it is 0 significand_i may be anything in
-// [0, 4), zero included. (A sum's subnormal results are exact and come out in place.)
+// SubnormalShift = 0 takes the right shift out, for a core that has its significand in place already: exponent_i is
+// then never negative, and where it is 0 significand_i may be anything in [0, 4), zero included. (A sum's subnormal
+// results are exact and come out in place.)
 //
-// What overrides what, first to last: special_i's nan (the canonical NaN), infinity, zero, overflow, the
-// rounded value. Any of the three silences overflow, underflow and inexact; invalid and divide_by_zero go
-// straight to the flags. sign_i is the sign of every result but NaN.
+// Priority: special_i's nan (the canonical NaN), infinity, zero, then overflow, then the rounded value. Any of the
+// first three silences overflow, underflow and inexact; invalid and divide_by_zero go straight to the flags. sign_i is
+// the sign of every result but NaN.
 //
 // rounding_mode_i: fp_pkg::rounding_mode_e; the reserved values 5, 6 and 7 round towards zero.
-//
-// Tininess is detected after rounding with tininess_after_i = 1 (the value rounded with unbounded
-// exponent is below 2**(1-bias)), else before; underflow is tininess with inexactness.
+// Tininess is detected after rounding with tininess_after_i = 1 (the value rounded with unbounded exponent is below
+// 2**(1-bias)), else before; underflow is tininess with inexactness.
 //
 // Combinational. Error: none but the rounding, 0.5 ulp to nearest, below 1 ulp in other modes.
 // Source: IEEE 754-2019, clauses 4.3 and 7.4 to 7.6.
@@ -115,8 +112,8 @@ module fp_round #(
   // Found beside the increment and not after it.
   assign overflow = (field >= InfField) | ((field == InfField - 1'b1) & (&fraction) & increment);
 
-  // ---- Tininess: a leading bit below the smallest exponent. After rounding, it is not tiny if the
-  // unbounded rounding, one bit further down, carries into that bit: all ones, and an increment.
+  // ---- Tininess: a leading bit below the smallest exponent. After rounding, it is not tiny if the unbounded rounding,
+  // one bit further down, carries into that bit: all ones, and an increment.
 
   logic tiny, increment_below;
   assign increment_below = (nearest & placed[1]) | (away & |placed[1:0]);

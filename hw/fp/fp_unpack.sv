@@ -1,10 +1,8 @@
 // Takes the two operands of an operation apart, IEEE numbers: fields, hidden bits, classes.
 //
-// value = (-1)**sign_o * significand_o / 2**FracWidth * 2**(exponent_o - bias) for every finite
-// number: a subnormal or zero has hidden bit 0 and the exponent of the smallest normal one, and is
-// not normalised here. Infinities and NaNs have the exponent field as it is, and mean nothing by
-// their value.
-//
+// A finite number is (-1)**sign_o * significand_o / 2**FracWidth * 2**(exponent_o - bias): a subnormal or zero has
+// hidden bit 0 and the exponent of the smallest normal one, and is not normalised here. Infinities and NaNs keep their
+// exponent field; their value is invalid.
 // Combinational; takes every bit pattern. Source: IEEE 754-2019, clause 3.4.
 module fp_unpack #(
   parameter int unsigned ExpWidth  = 8,

@@ -1,8 +1,8 @@
-// The general form of the hit test, for comparison: t = -(d + N . O) / (N . I), P = O + t I, for a
-// ray from any origin O, with one multiplier, one adder and one divider of the same cores.
+// The general form of the hit test, for comparison: t = -(d + N . O) / (N . I), P = O + t I, for a ray from any origin
+// O, with one multiplier, one adder and one divider of the same cores.
 //
-// N = (a, b, c) and d are the plane N . P + d = 0 (so d has the other sign than hit_test_unit's,
-// where d = N . V), I the ray's direction. Ten words come in, three go out:
+// N = (a, b, c) and d are the plane N . P + d = 0 (so d has the other sign than hit_test_unit's), I is the ray's
+// direction. Ten words come in, three go out:
 //
 //   edge    bus in      what happens at this clock edge
 //   1       d           into the accumulator
@@ -10,19 +10,16 @@
 //   5-7     Ox Oy Oz    shift into V-6 ... V-1
 //   6-8                 accumulator + N-1 * V-6 into it, at edge 8 into the numerator; N rotates
 //   8-10    Ix Iy Iz    shift into V-6 ... V-1, which then hold I and O
-//   9-11                N-1 * V-6 into the accumulator, then added to it, at edge 11 into the
-//                       divisor; N rotates
+//   9-11                N-1 * V-6 into the accumulator, then added to it, at edge 11 into the divisor; N rotates
 //   12                  -numerator / divisor into t
 //   13-15   the next N  V-1 + t * V-4 into Output: Px Py Pz; V shifts
 //
-// valid_i with the first word while ready_o; the other nine words follow in consecutive clocks.
+// valid_i comes with the first word while ready_o; the other nine words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in the clock after each of edges 13, 14 and 15.
 // Throughput: a test every 10 clocks, for ten words on one bus; the multiplier works in 9 of them.
 // Latency: 15 clocks, the least where a clock holds a multiplication and an addition or a division.
 //
-// Operations: 9 multiplications, 8 additions, 1 division; each is rounded once, in RoundingMode, in
-// the order of the table. All of IEEE 754 holds, as in hit_test_unit.
-//
+// Operations: 9 multiplications, 8 additions, 1 division, rounded as in hit_test_unit.
 // Source: the paper's equations 4 and 5; the timetable is this project's.
 module general_hit_test_unit #(
   parameter int unsigned ExpWidth = 8,
@@ -144,13 +141,9 @@ module general_hit_test_unit #(
       vector_2_q <= vector_3_q;
       vector_1_q <= vector_2_q;
     end
-    if (load_d) begin
-      accumulator_q <= bus_i;
-    end else if (dot_first) begin
-      accumulator_q <= product;
-    end else if (dot_origin || dot_direction) begin
-      accumulator_q <= sum;
-    end
+    if (load_d) accumulator_q <= bus_i;
+    else if (dot_first) accumulator_q <= product;
+    else if (dot_origin || dot_direction) accumulator_q <= sum;
     if (word == 4'd7) numerator_q <= sum;
     if (dot_last) divisor_q <= sum;
     if (divide) t_q <= quotient;
@@ -159,16 +152,10 @@ module general_hit_test_unit #(
 
   // ---- Output
 
-  logic valid_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      valid_q <= 1'b0;
-    end else begin
-      valid_q <= move;
-    end
+    if (!rst_ni) valid_o <= 1'b0;
+    else valid_o <= move;
   end
-
-  assign valid_o = valid_q;
   assign bus_o = output_q;
 
 endmodule

@@ -1,16 +1,15 @@
 // Verdict of a test, hit, miss or doubt, from its four dot products and their error bounds.
 //
-// U_k = I . E_k is sure where bound_k < |U_k| < infinity; then its sign is the exact one. d's sign
-// is exact, and that of the exact I . N for every ray that hits ahead of its origin. A NaN for d says
-// that nobody knows its sign: then two edges of opposite signs still are a miss.
+// U_k = I . E_k is sure where bound_k < |U_k| < infinity; then its sign is the exact one. d's sign is exact, and that
+// of the exact I . N for every ray that hits ahead of its origin. A NaN for d says that its sign is unknown: then two
+// edges of opposite signs still are a miss.
 //   miss   d = 0, or a sure U_k of the other sign than d, or than another sure U_k
-//   hit    all U_k sure with d's sign, and V = I . N good for a division: a normal number of d's
-//          sign whose exponent is at most max_grazing below the largest of N's
+//   hit    all U_k sure with d's sign, and V = I . N good for a division: a normal number of d's sign whose exponent is
+//          at most max_grazing below the largest of N's
 //   doubt  everything else
 // Exactly one is true. A NaN is never sure. All comparisons are of words as integers.
 //
-// t_error_o: see hit_test_pkg; means something for a hit only.
-// Combinational.
+// t_error_o: see hit_test_pkg; valid for a hit only. Combinational.
 module hit_decision
   import hit_test_pkg::*;
 #(

@@ -1,13 +1,11 @@
 // Several pipelined hit-test units side by side, and their counters.
 //
-// One wide word of tests in, one wide word of results out, with a slot for each lane; each slot has
-// valid/ready of its own, so that no lane waits for another. All tests of a burst go to one lane, and
-// its results come from that lane's slot, in order. What a slot holds: see hit_test_pipeline; slot n
-// of every port is the n-th from the bottom.
+// One wide word of tests in, one wide word of results out, with a slot for each lane and a valid/ready of its own, so
+// that no lane waits for another. All tests of a burst go to one lane, and its results come from that lane's slot, in
+// order. What a slot holds: see hit_test_pipeline; slot n of every port is the n-th from the bottom.
 //
-// Counters: counter_o is the count_select_i-th of count_e, summed over the lanes since
-// reset, modulo 2**CounterWidth, three clocks late; other numbers give 0. Clocks are counted per lane:
-// with 4 lanes, 4 a clock.
+// counter_o is counter count_select_i of count_e, summed over the lanes since reset, modulo 2**CounterWidth, three
+// clocks late; other numbers give 0. Clocks are counted per lane: with 4 lanes, 4 a clock.
 module hit_test_array
   import hit_test_pkg::*;
 #(
@@ -44,7 +42,6 @@ module hit_test_array
   input  logic [3:0]                   count_select_i,
   output logic [CounterWidth-1:0]      counter_o
 );
-
 
   // ---- Lanes
 

@@ -1,32 +1,31 @@
-// The pipelined hit-test unit: a ray direction and a polygon record in each clock; hit, miss or doubt
-// of each test, and the nearest hit of each burst of tests with its t and P.
+// The pipelined hit-test unit: a ray direction and a polygon record in each clock; hit, miss or doubt of each test, and
+// the nearest hit of each burst of tests with its t and P.
 //
 //   scale    each coordinate of I times five  15 multipliers, see hit_dots; their first registers take the test
 //   add      V = N . I, U_k = E_k . I         8 adders
 //   decide   hit, miss or doubt               see hit_decision
 //   divide   t = d / V                        a divider
 //   nearest  the nearest hit of the burst     see nearest_hit
-//   point    P_k = (d I_k) / V, equation 10   3 dividers, see point_unit
+//   point    P_k = (d I_k) / V, equation 10   3 dividers: nearly every other test may be a nearest hit
 //
-// Throughput one test a clock. Latency DotLatency + divide_latency + 3 clocks (see hit_test_pkg): from
-// the clock edge that takes a test to the one after which its report, or its burst's end, is there.
-// A test whose I differs from that of its burst's others is a mistake of the user.
+// Throughput one test a clock. Latency DotLatency + divide_latency + 3 clocks (see hit_test_pkg): from the clock edge
+// that takes a test to the one after which its report, or its burst's end, is there. All tests of a burst must have the
+// same I.
 //
 // Input: valid/ready; first_i and last_i mark the ends of a burst, tag_i is the user's and comes back.
 // Output: valid/ready; one word carries up to three things:
 //   report_o         not ReportNone: the test report_tag_o is in doubt or in a near tie
-//   closed_o         a burst is over; bursts end in the order in which they came. If found_o, its
-//                    nearest hit is test tag_o, at t_o (error: see hit_test_pkg), and its P follows.
-//                    If neither found_o nor a report, report_tag_o is the tag of the last test.
+//   closed_o         a burst is over; bursts end in the order in which they came. If found_o, its nearest hit is test
+//                    tag_o, at t_o (error: see hit_test_pkg), and its P follows. If neither found_o nor a report,
+//                    report_tag_o is the tag of the last test.
 //   point_valid_o    point_o is the P of a burst that was closed (and found) earlier; in their order
 //
-// ready_o and valid_o are registers. What has been taken in never stands still: a test is taken only while
-// the queue of results has room for all that may be on its way, a word from every clock of the latency.
-// So ready_o is low only where results are not taken.
+// ready_o and valid_o are registers. The pipeline never stalls: a test is taken only while the queue of results has
+// room for all that may be in flight, a word from every clock of the latency. So ready_o is low only where results are
+// not taken.
 //
-// All words are IEEE numbers of the format ExpWidth, FracWidth; dot products are
-// (x + y) + z, rounded after each operation. RoundingMode: one for all, RoundNearestEven for
-// verdicts that are never wrong.
+// All words are IEEE numbers of the format ExpWidth, FracWidth; dot products are (x + y) + z, rounded after each
+// operation. RoundingMode: one for all, RoundNearestEven for verdicts that are never wrong.
 module hit_test_pipeline
   import hit_test_pkg::*;
 #(
@@ -241,23 +240,35 @@ module hit_test_pipeline
 
   // ---- Point
 
-  logic point_valid;
+  logic point_asked, point_valid;
+  logic [DivideLatency-1:0] point_q;
   logic [3*Width-1:0] point;
 
-  point_unit #(
-    .ExpWidth(ExpWidth),
-    .FracWidth(FracWidth),
-    .Arith(Arith),
-    .RoundingMode(RoundingMode)
-  ) u_point (
-    .clk_i,
-    .rst_ni,
-    .valid_i(closed & found),
-    .dividends_i(nearest_payload[Width+:3*Width]),
-    .v_i(nearest_payload[0+:Width]),
-    .valid_o(point_valid),
-    .point_o(point)
-  );
+  assign point_asked = closed & found;
+  assign point_valid = point_q[DivideLatency-1];
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) point_q <= '0;
+    else point_q <= {point_q[DivideLatency-2:0], point_asked};
+  end
+
+  for (genvar k = 0; k < 3; k++) begin : gen_coordinate
+    fp_divider #(
+      .ExpWidth(ExpWidth),
+      .FracWidth(FracWidth),
+      .Arith(Arith),
+      .Pipelined(1'b1)
+    ) u_point_divider (
+      .clk_i,
+      .valid_i(point_asked),
+      .a_i(nearest_payload[Width*(1+k)+:Width]),
+      .b_i(nearest_payload[0+:Width]),
+      .rounding_mode_i(RoundingMode),
+      .tininess_after_i(1'b0),
+      .result_o(point[Width*k+:Width]),
+      .flags_o()
+    );
+  end
 
   // ---- Results: the queue keeps a word free for each clock edge at which what is on its way may end
 

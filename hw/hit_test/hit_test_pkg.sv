@@ -24,12 +24,11 @@ package hit_test_pkg;
 
   // ---- How far off t may be: at most 2**(TErrorUnit + t_error) units in its last place
   //
-  // With u = 2**-(FracWidth+1), V = fl(N . I), e(x) the exponent of x and g = max e(N_k) - e(V):
-  // the components of I are below 2 and the record's words are the exact ones within 1.01 u, so
-  // |V - exact| <= 4.04 u * 2 |N|_1 < 48.5 u 2**max e(N_k), at most r = 48.5 u 2**g of V. d adds 2 u
-  // and the division u. Between t and the exact value lie then at most (48.5 * 2**g + 3.2) / (1 - r)
-  // numbers, which is below 2**(6 + max(g, 0)) while r <= 0.2: for every g up to max_grazing, in
-  // formats with FracWidth >= 7. Rays that graze the plane more than that are doubts.
+  // With u = 2**-(FracWidth+1), V = fl(N . I), e(x) the exponent of x and g = max e(N_k) - e(V): the components of I
+  // are below 2 and the record's words are the exact ones within 1.01 u, so |V - exact| <= 4.04 u * 2 |N|_1 <
+  // 48.5 u 2**max e(N_k), at most r = 48.5 u 2**g of V. d adds 2 u and the division u. Between t and the exact value
+  // lie then at most (48.5 * 2**g + 3.2) / (1 - r) numbers, which is below 2**(6 + max(g, 0)) while r <= 0.2: for every
+  // g up to max_grazing, in formats with FracWidth >= 7. Rays that graze the plane more than that are doubts.
   // Holds for RoundNearestEven; the other modes have twice the error.
   localparam int unsigned TErrorUnit = 6;
   localparam int unsigned TErrorWidth = 4;

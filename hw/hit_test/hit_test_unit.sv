@@ -1,9 +1,9 @@
-// The paper's hit-test unit: where a ray meets a polygon's plane, P = d I / (I . N), seen from the
-// ray's origin, with one multiplier, one adder, one divider, eight registers and two multiplexers.
+// The paper's hit-test unit: where a ray meets a polygon's plane, P = d I / (I . N), seen from the ray's origin, with
+// one multiplier, one adder, one divider, eight registers and two multiplexers.
 //
-// I = (Ix, Iy, Iz) is the ray's direction, N = (a, b, c) the plane's normal (the paper's H) and
-// d = N . V for a vertex V of the polygon. Seven words come in, three go out. As figure 4 draws it,
-// the bus leads to N and d alone, and N to I-3 or to the multiplier:
+// I = (Ix, Iy, Iz) is the ray's direction, N = (a, b, c) the plane's normal (the paper's H), and d = N . V for a vertex
+// V of the polygon. Seven words come in, three go out. As in figure 4, the bus leads to N and d alone, and N to I-3 or
+// to the multiplier:
 //
 //   edge   bus in       what happens at this clock edge
 //   1-3    Ix Iy Iz     each into N
@@ -13,19 +13,16 @@
 //   7      d            into d
 //   8-10   the next I   (d * I-1) / divisor into Output: Px Py Pz; the next I follows through N
 //
-// I-3, I-2 and I-1 shift at every edge. The way through N costs no clock: when Iz reaches I-3, at
-// edge 4, the first factor a reaches N. So the paper's drawing, its 7 clocks a test and its 10 from
-// first word to last component hold together; the 8 of its section 4.2 are those until Px.
+// I-3, I-2 and I-1 shift at every edge. When Iz reaches I-3, at edge 4, the first factor a reaches N, so the way
+// through N costs no clock. The 8 clocks of the paper's section 4.2 are those until Px.
 //
-// valid_i with the first word while ready_o; the other six words follow in consecutive clocks.
+// valid_i comes with the first word while ready_o; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in the clock after each of edges 8, 9 and 10.
 // Throughput: a test every 7 clocks. Latency: 10 clocks from first word to last component.
 //
-// Each operation is rounded once, in RoundingMode; the order is that of the table, the accumulator
-// starting from +0. All of IEEE 754 holds: subnormals, infinities, NaN (always the canonical one).
-// A ray parallel to the plane gives infinities, or NaN where d I is zero too. QuotientBits = 21
-// cuts quotients off as the paper's divider did; 0 rounds them.
-//
+// Each operation is rounded once, in RoundingMode, in the order of the table; the accumulator starts from +0. All of
+// IEEE 754 holds. A ray parallel to the plane gives infinities, or NaN where d I is zero too. QuotientBits = 21 cuts
+// quotients off as the paper's divider did; 0 rounds them.
 // Source: the paper's equation 10, figures 4 and 9.
 module hit_test_unit #(
   parameter int unsigned ExpWidth = 8,
@@ -135,26 +132,17 @@ module hit_test_unit #(
     end else begin
       normal_q <= bus_i;
     end
-    if (clear) begin
-      accumulator_q <= '0;
-    end else if (accumulate) begin
-      accumulator_q <= sum;
-    end
+    if (clear) accumulator_q <= '0;
+    else if (accumulate) accumulator_q <= sum;
     if (divide) output_q <= quotient;
   end
 
   // ---- Output
 
-  logic valid_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      valid_q <= 1'b0;
-    end else begin
-      valid_q <= divide;
-    end
+    if (!rst_ni) valid_o <= 1'b0;
+    else valid_o <= divide;
   end
-
-  assign valid_o = valid_q;
   assign bus_o = output_q;
 
 endmodule

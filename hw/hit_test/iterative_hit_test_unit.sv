@@ -1,9 +1,8 @@
-// The paper's hit-test unit with a short clock: where a ray meets a polygon's plane, P = d I / (I . N), with its words, its
-// period and its bits (see hit_test_unit), of pipelined cores.
+// The paper's hit-test unit with a short clock: where a ray meets a polygon's plane, P = d I / (I . N), with its words,
+// its period and its bits (see hit_test_unit), of pipelined cores.
 //
-// The same seven words come in, Ix Iy Iz a b c d, and the same three go out. Six products go through one
-// multiplier, two sums through one adder, three quotients by the one divisor I . N through one divider. With M = 3, A = 3
-// and D = divide_latency the clocks of the multiplier, the adder and the divider, counted from the first word's clock edge:
+// Six products go through one multiplier, two sums through one adder, three quotients by the one divisor I . N through
+// one divider. With M = 3, A = 3 and D = divide_latency the clocks of these, counted from the first word's clock edge:
 //
 //   clock      what is there
 //   1-3        Ix Iy Iz shift into I-3, I-2, I-1, which turn while they are multiplied
@@ -13,10 +12,9 @@
 //   M+2A+5     I . N, the divisor; in the clocks after it the last three products follow it
 //   M+2A+D+6.. Px Py Pz
 //
-// valid_i with the first word while ready_o; the other six words follow in consecutive clocks.
+// valid_i comes with the first word while ready_o; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in three consecutive clocks.
 // Throughput: a test every 7 clocks. Latency: M + 2A + D + 8 clocks from first word to last component, 34 in binary32.
-//
 // Source: the paper's equation 10; the timetable is this project's.
 module iterative_hit_test_unit
   import hit_test_pkg::*;

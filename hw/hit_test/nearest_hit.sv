@@ -1,20 +1,19 @@
 // Keeps the nearest sure hit of each burst of tests, one test a clock.
 //
-// Distances are compared as integers, which orders positive floats. Two that differ by no more than
-// the sum of their errors (2**(TErrorUnit + t_error) units in the last place each) may be the other
-// way round in truth: a near tie. The smaller number is kept (of equal ones the first), the other
-// one is reported. So every hit that is dropped in silence is surely farther than the one kept then,
-// and that one is kept, reported, or surely farther than another in its turn.
+// Distances are compared as integers, which orders positive floats. Two that differ by no more than the sum of their
+// errors (2**(TErrorUnit + t_error) units in the last place each) are a near tie: either may be the nearer one. The
+// smaller number is kept (of equal ones the first), the other one is reported. So a hit that is dropped without a
+// report is certainly farther than the one kept then, which is itself kept, reported, or certainly farther than
+// another.
 //
 // A sure hit whose t is no positive normal number is reported as a doubt.
 //
-// All other outputs are registers, one clock after the test. What comes out with the last test of a burst:
-//   closed_o  for this clock; then found_o says whether the burst has a nearest hit, and tag, t,
-//             t_error and payload_o are that hit's. closed_o and found_o are reset.
-//   report_o, report_tag_o may come with it, and concern this test or the one it ousted. Where
-//             nothing is reported report_tag_o is the test's own tag.
-//
-// Payload: whatever else is wanted of the nearest hit.
+// Outputs but sure_hit_o are registers, one clock after the test. With the last test of a burst come:
+//   closed_o  for this clock; then found_o says whether the burst has a nearest hit, and tag, t, t_error and payload_o
+//             are that hit's. closed_o and found_o are reset.
+//   report_o, report_tag_o may come with it, and concern this test or the one it ousted. Without a report, report_tag_o
+//             is the test's own tag.
+// payload_i is whatever else is wanted of the nearest hit.
 module nearest_hit
   import hit_test_pkg::*;
 #(

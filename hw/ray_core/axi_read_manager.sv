@@ -1,13 +1,11 @@
 // AXI4 read manager: the core's memory port, a burst for each 64-byte line.
 //
-// A line's burst has as many beats as DataWidth makes of 64 bytes, and begins at a multiple of 64: no burst
-// crosses 4 KiB. Each burst in flight has an AXI ID of its own, which stands for the line's id: so bursts may be
-// answered in any order, and their beats come mixed. base_i is the address of line 0.
+// A line's burst begins at a multiple of 64 bytes: none crosses 4 KiB. Each burst in flight has an AXI ID of its own,
+// so bursts may be answered in any order, and their beats come mixed. base_i is the address of line 0.
 //
 // At most 2**IdWidth lines are outstanding; more wait. A line is offered in the clock after that of its last beat.
-// bus_error_o: a beat has come with an error, or RLAST where it is not its burst's last or not where it is, of line
-// error_number_o; that goes on with line_error_o. No output of AXI depends on an input in the same clock.
-//
+// bus_error_o: a beat of line error_number_o has come with an error, or with a wrong RLAST; the line is then offered
+// with line_error_o. No output of AXI depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.
 module axi_read_manager
   import ray_core_pkg::*;
@@ -53,11 +51,8 @@ module axi_read_manager
   localparam int unsigned BeatWidth = (Beats == 1) ? 1 : $clog2(Beats);
   localparam logic [1:0] BurstIncrement = 2'b01;
 
-  if (DataWidth < 32 || Beats * DataWidth != LineWidth || DataWidth % 32 != 0 || IdWidth < 1)
-  begin : gen_check
-    $error(
-      "axi_read_manager: expected a DataWidth of 32 to 512, a power of two, and an IdWidth of 1 or more"
-    );
+  if (Beats * DataWidth != LineWidth || DataWidth % 32 != 0 || IdWidth < 1) begin : gen_check
+    $error("axi_read_manager: expected a DataWidth of 32, 64, ... 512 and an IdWidth of 1 or more");
   end
 
   // ---- Requests: a free ID for each

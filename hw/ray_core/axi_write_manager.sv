@@ -1,8 +1,7 @@
 // AXI4 write manager: records of 32 bytes to memory, one after the other, a burst each.
 //
 // Record n goes to base_i + 32 n, n from 0 on, while n is below length_i; those that come then wait until rewind_i,
-// after which n is 0 again. written_o: records whose writes have been answered. Writes are answered in their order: all
-// have the same AXI ID, which is not a port.
+// after which n is 0 again. written_o: records whose writes have been answered, in order, as all have the same AXI ID.
 //
 // Throughput: a record in as many clocks as its burst has beats, 256 / DataWidth, or one. Of a wider port a beat uses
 // the half that its address says. No output of AXI depends on an input in the same clock.
@@ -49,12 +48,12 @@ module axi_write_manager #(
     $error("axi_write_manager: expected a DataWidth of 32 to 512, a power of two");
   end
 
-  logic [31:0] next_q, written_q;
+  logic [31:0] next_q;
   logic [2:0] left_q;  // beats after the one that is offered
   logic [RecordWidth-1:0] record_q;
   logic fire, some_room, address_free, data_free;
 
-  assign busy_o         = next_q != written_q;
+  assign busy_o         = next_q != written_o;
   assign some_room      = next_q < length_i;
   assign full_o         = record_valid_i & ~some_room & ~busy_o;
   assign address_free   = ~axi_awvalid_o | axi_awready_i;
@@ -65,12 +64,12 @@ module axi_write_manager #(
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       next_q        <= '0;
-      written_q     <= '0;
+      written_o     <= '0;
       axi_awvalid_o <= 1'b0;
       axi_wvalid_o  <= 1'b0;
     end else begin
       next_q        <= rewind_i ? '0 : next_q + 32'(fire);
-      written_q     <= rewind_i ? '0 : written_q + 32'(axi_bvalid_i);
+      written_o     <= rewind_i ? '0 : written_o + 32'(axi_bvalid_i);
       axi_awvalid_o <= fire | ~address_free;
       axi_wvalid_o  <= fire | ~data_free;
     end
@@ -100,7 +99,6 @@ module axi_write_manager #(
   end
   assign axi_bready_o  = 1'b1;
   assign bus_error_o   = axi_bvalid_i & axi_bresp_i[1];
-  assign written_o     = written_q;
 
   logic unused;  // EXOKAY is never answered
   assign unused = ^{axi_bresp_i[0], base_i[5:0]};

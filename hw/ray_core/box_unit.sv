@@ -19,7 +19,6 @@
 //      inverse_i    1 / I_k, rounded to nearest (infinite where I_k is zero); the largest I_k is in [1, 2)
 //      t_max_i      a positive binary32 number without its sign, or infinity: a hit farther than it is
 //                   not wanted
-//      no_cull_i    all children are entered
 // Out: ctx_o, boxes_o  the group; entries that are in neither mask mean nothing
 //
 // No box is left out in which the ray has a point O + t I with 0 < t <= t_max, in exact arithmetic:
@@ -46,7 +45,7 @@ module box_unit
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays = 64,
-  parameter int unsigned Clocks = 1,  // of a node, see slab_tests
+  parameter int unsigned Clocks = 1,  // of a node: 1, or Children or more
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
@@ -57,7 +56,6 @@ module box_unit
   input  logic [95:0]         origin_i,
   input  logic [95:0]         inverse_i,
   input  logic [30:0]         t_max_i,
-  input  logic                no_cull_i,
   output logic [RayWidth-1:0] ctx_o,
   output boxes_t              boxes_o
 );
@@ -74,8 +72,9 @@ module box_unit
   localparam int unsigned Sort = 4;
   localparam int unsigned Latency = BoxLatency + ((Clocks == 1) ? 0 : Children);
 
-  if (BoxLatency != Take + Subtract + Scale + Multiply + Align + Slab + Sort) begin : gen_check
-    $error("box_unit: expected BoxLatency to be the number of its stages");
+  if (BoxLatency != Take + Subtract + Scale + Multiply + Align + Slab + Sort
+      || (Clocks != 1 && Clocks < Children)) begin : gen_check
+    $error("box_unit: expected BoxLatency to be that of its stages, and Clocks of 1, or 7 or more");
   end
 
   // ---- Take
@@ -83,8 +82,6 @@ module box_unit
   logic [LineWidth-1:0] first_q, node_q;
   logic [95:0] origin_q, inverse_q;
   logic [30:0] t_max_q;
-  logic no_cull_q;
-
   logic [Latency:1] valid_q;  // so many clocks ago it came
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -106,7 +103,7 @@ module box_unit
     first_q <= node_i.line;
     if (node_i.error) first_q[NodeKinds+:Children*KindWidth] <= '0;  // all absent
     node_q  <= first_q;
-    {origin_q, inverse_q, t_max_q, no_cull_q} <= {origin_i, inverse_i, t_max_i, no_cull_i};
+    {origin_q, inverse_q, t_max_q} <= {origin_i, inverse_i, t_max_i};
   end
 
   // What goes along: base, kinds and boxes, and of the ray what the planes need
@@ -118,19 +115,11 @@ module box_unit
   typedef struct packed {
     logic [ChildrenWidth-1:0] children;
     logic [30:0]              t_max;
-    logic                     no_cull;
   } sideband_t;
-  typedef struct packed {
-    logic [8:0]  exponent;
-    logic [95:0] inverse;
-    logic [32:0] caps;
-    logic [2:0]  is_capped;
-    logic [2:0]  is_open;
-  } scale_t;
 
   sideband_t taken, subtracted, scaled, multiplied;
 
-  assign taken = {node_q[LineWidth-1:Base], t_max_q, no_cull_q};
+  assign taken = {node_q[LineWidth-1:Base], t_max_q};
 
   // ---- Subtract
 
@@ -168,11 +157,7 @@ module box_unit
     .inverse_i(inverse),
     .cells_i(cells),
     .t_max_i(subtracted.t_max[30:23]),
-    .exponent_o(scale.exponent),
-    .inverse_o(scale.inverse),
-    .caps_o(scale.caps),
-    .is_capped_o(scale.is_capped),
-    .is_open_o(scale.is_open)
+    .scale_o(scale)
   );
   delay_line #(
     .Width($bits(taken) + 96),
@@ -211,16 +196,15 @@ module box_unit
 
   // ---- Align
 
-  logic [3*PlaneWidth-1:0] near_q, far_q, step_near_q, step_far_q;  // a_k -+ r_k
+  logic [1:0][2:0][PlaneWidth-1:0] planes_q, next_planes_q;  // a_k - r_k; a_k + r_k
   logic [3*StepWidth-1:0] step_q;
-  logic [2:0] back, aligned_back, stepped_back;
+  logic [2:0] back, aligned_back, next_back_q;
   logic [8:0] aligned_exponent, sorted_exponent;
   logic [ChildrenWidth-1:0] children;
-  logic aligned_no_cull;
 
   for (genvar k = 0; k < 3; k++) begin : gen_align
-    logic [PlaneWidth-1:0] near, far;
-    logic [StepWidth-1:0] step;
+    logic [1:0][PlaneWidth-1:0] axis_planes;
+    logic [StepWidth-1:0] axis_step;
 
     slab_setup #(
       .Arith(Arith)
@@ -232,23 +216,17 @@ module box_unit
       .cap_i(multiplied_scale.caps[11*k +: 11]),
       .is_capped_i(multiplied_scale.is_capped[k]),
       .is_open_i(multiplied_scale.is_open[k]),
-      .near_o(near),
-      .far_o(far),
-      .step_o(step)
+      .planes_o(axis_planes),
+      .step_o(axis_step)
     );
     assign back[k] = multiplied_scale.inverse[32*k+31];
 
     always_ff @(posedge clk_i) begin
-      near_q[PlaneWidth*k +: PlaneWidth] <= near;
-      far_q[PlaneWidth*k +: PlaneWidth]  <= far;
-      step_q[StepWidth*k +: StepWidth]   <= step;
+      {planes_q[1][k], planes_q[0][k]} <= axis_planes;
+      step_q[StepWidth*k +: StepWidth] <= axis_step;
     end
   end
-  always_ff @(posedge clk_i) begin
-    step_near_q  <= near_q;
-    step_far_q   <= far_q;
-    stepped_back <= aligned_back;
-  end
+  always_ff @(posedge clk_i) {next_planes_q, next_back_q} <= {planes_q, aligned_back};
 
   logic signed [10:0] t_max_amount;
   logic [UnitBits:0] t_max_shifted_q, t_max_units_q, entered_t_max;
@@ -267,23 +245,32 @@ module box_unit
   end
 
   delay_line #(
-    .Width(ChildrenWidth + 1 + 9 + 3),
+    .Width(ChildrenWidth + 9 + 3),
     .Depth(Align)
   ) u_sideband_align (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({multiplied.children, multiplied.no_cull, multiplied_scale.exponent, back}),
-    .data_o({children, aligned_no_cull, aligned_exponent, aligned_back})
+    .data_i({multiplied.children, multiplied_scale.exponent, back}),
+    .data_o({children, aligned_exponent, aligned_back})
   );
 
-  // ---- Step and enter: a key for each child, {left out, enter}
+  // ---- Step and enter: a key for each child, {left out, enter}; all children at once, or one a clock
 
+  localparam int unsigned Tests = (Clocks == 1) ? Children : 1;
   localparam int unsigned KeyWidth = UnitBits + 2;
 
-  logic [Children*KeyWidth-1:0] keys;
   logic [Boxes-1:0] stepped_node, sorted_node;  // base and kinds
   logic [8:0] stepped_exponent;
-  logic stepped_no_cull;
+  logic [Children*KeyWidth-1:0] keys;
+  logic [Tests*KeyWidth-1:0] tested;
+
+  // What the tests take: as it comes, or kept for all children
+  logic [Children*BoxWidth-1:0] boxes;
+  logic [2:0] step_back, next_back;
+  logic [3*StepWidth-1:0] step;
+  logic [1:0][2:0][PlaneWidth-1:0] next_planes;
+  logic [UnitBits:0] t_max;
+  logic [Children*KindWidth-1:0] kinds;
 
   delay_line #(
     .Width(UnitBits + 1),
@@ -295,13 +282,13 @@ module box_unit
     .data_o(entered_t_max)
   );
   delay_line #(
-    .Width(Boxes + 9 + 1),
+    .Width(Boxes + 9),
     .Depth(Slab - 1)
   ) u_sideband_step (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({children[Boxes-1:0], aligned_exponent, aligned_no_cull}),
-    .data_o({stepped_node, stepped_exponent, stepped_no_cull})
+    .data_i({children[Boxes-1:0], aligned_exponent}),
+    .data_o({stepped_node, stepped_exponent})
   );
   delay_line #(
     .Width(Boxes + 9),
@@ -312,23 +299,44 @@ module box_unit
     .data_i({stepped_node, stepped_exponent}),
     .data_o({sorted_node, sorted_exponent})
   );
-  slab_tests #(
-    .Clocks(Clocks),
-    .Arith(Arith)
-  ) u_children (
-    .clk_i,
-    .start_i(valid_q[Take+Subtract+Scale+Multiply+Align]),
-    .boxes_i(children[Boxes +: Children*BoxWidth]),
-    .back_i(aligned_back),
-    .step_i(step_q),
-    .near_i(step_near_q),
-    .far_i(step_far_q),
-    .next_back_i(stepped_back),
-    .t_max_i(entered_t_max),
-    .kinds_i(stepped_node[Kinds +: Children*KindWidth]),
-    .no_cull_i(stepped_no_cull),
-    .keys_o(keys)
-  );
+
+  for (genvar i = 0; i < Tests; i++) begin : gen_child
+    slab_test #(
+      .Arith(Arith)
+    ) u_child (
+      .clk_i,
+      .box_i(boxes[BoxWidth*i +: BoxWidth]),
+      .back_i(step_back),
+      .step_i(step),
+      .next_planes_i(next_planes),
+      .next_back_i(next_back),
+      .t_max_i(t_max),
+      .kind_i(kinds[KindWidth*i +: KindWidth]),
+      .key_o(tested[KeyWidth*i +: KeyWidth])
+    );
+  end
+
+  if (Clocks == 1) begin : gen_all
+    assign boxes = children[Boxes +: Children*BoxWidth];
+    assign {step_back, step} = {aligned_back, step_q};
+    assign {next_planes, next_back} = {next_planes_q, next_back_q};
+    assign t_max = entered_t_max;
+    assign kinds = stepped_node[Kinds +: Children*KindWidth];
+    assign keys  = tested;
+  end else begin : gen_turns
+    localparam int unsigned Aligned = Take + Subtract + Scale + Multiply + Align;
+    logic [(Children-1)*KeyWidth-1:0] keys_q;  // the latest highest
+
+    always_ff @(posedge clk_i) begin
+      boxes <= valid_q[Aligned] ? children[Boxes +: Children*BoxWidth] : boxes >> BoxWidth;
+      kinds <= valid_q[Aligned+3] ? stepped_node[Kinds +: Children*KindWidth] : kinds >> KindWidth;
+      if (valid_q[Aligned]) {step_back, step} <= {aligned_back, step_q};
+      if (valid_q[Aligned+1]) {next_planes, next_back} <= {next_planes_q, next_back_q};
+      if (valid_q[Aligned+2]) t_max <= entered_t_max;
+      keys_q <= keys[Children*KeyWidth-1:KeyWidth];
+    end
+    assign keys = {tested, keys_q};
+  end
 
   // ---- Sort
 

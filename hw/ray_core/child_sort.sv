@@ -25,6 +25,7 @@ module child_sort
   localparam int unsigned SortLatency = 3;
   logic [Children*WordWidth-1:0] words, ordered, sorted;
   logic [Children-1:0][KindWidth-1:0] kinds;
+  logic [Children-1:0][OffsetWidth-1:0] next_offsets, offsets;
   logic [AddressWidth-1:0] base;
   logic [8:0] last_field;  // of numbers that begin with the highest bit of 12 below 2**E
 
@@ -39,18 +40,16 @@ module child_sort
     .sorted_o(ordered)
   );
   delay_line #(
-    .Width(Children * KindWidth + AddressWidth + 9),
+    .Width(Children * (KindWidth + OffsetWidth) + AddressWidth + 9),
     .Depth(SortLatency)
   ) u_sideband (
     .clk_i,
     .enable_i(1'b1),
-    .data_i({kinds_i, base_i, exponent_i - 9'd1}),
-    .data_o({kinds, base, last_field})
+    .data_i({kinds_i, next_offsets, base_i, exponent_i - 9'd1}),
+    .data_o({kinds, offsets, base, last_field})
   );
 
   // ---- The children's first lines follow each other
-
-  logic [Children-1:0][OffsetWidth-1:0] next_offsets, offsets;
 
   always_comb begin : lines
     logic [OffsetWidth-1:0] next;
@@ -59,20 +58,9 @@ module child_sort
     for (int unsigned i = 0; i < Children; i++) begin
       next_offsets[i] = next;
       kind = kinds_i[KindWidth*i +: KindWidth];
-      next = next + ((kind == KindInner) ? OffsetWidth'(1)
-                                                       : OffsetWidth'(kind[LeafWidth-1:0]));
+      next = next + ((kind == KindInner) ? OffsetWidth'(1) : OffsetWidth'(kind[LeafWidth-1:0]));
     end
   end
-
-  delay_line #(
-    .Width(Children * OffsetWidth),
-    .Depth(SortLatency)
-  ) u_offsets (
-    .clk_i,
-    .enable_i(1'b1),
-    .data_i(next_offsets),
-    .data_o(offsets)
-  );
 
   // ---- Entries
 

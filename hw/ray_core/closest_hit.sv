@@ -9,9 +9,9 @@
 // Credits count tests in flight, from test_i on, and doubts that wait: tests_allowed_o is low while all Queue are used.
 // So neither a test nor a line from memory ever waits for a doubt to leave.
 //
-// With Exact no doubt leaves: open_o passes each to exact_resolver in the clock in which its test ends. If one turns
-// out to be the ray's nearest hit, it is tested again with settle_i and kept whatever that test says, with t and P if
-// it is a certain hit, else with NoT. It is the ray's last test.
+// With Exact no doubt leaves: open_o passes each to exact_resolver in the clock in which its test ends. If one is the
+// ray's nearest hit, it is tested again with settle_i and kept whatever that test says, with t and P if it is a certain
+// hit, else with NoT. It is the ray's last test.
 //
 // A result is taken in each clock and compared in the next one. A ray's tests are over when as many results have been
 // compared as there were clocks with test_i.
@@ -50,10 +50,7 @@ module closest_hit
   input  logic [RayWidth-1:0]     box_ray_i,
   output logic [30:0]             box_t_max_o,
   input  logic [RayWidth-1:0]     exact_ray_i,
-  output logic                    exact_found_o,
-  output logic                    exact_ended_o,
-  output logic [AddressWidth-1:0] exact_triangle_o,  // of the nearest sure hit
-  output logic [30:0]             exact_t_max_o,
+  output known_t                  exact_o,
   output logic [Rays-1:0]         testing_o,
   // doubts
   output doubt_t                  doubt_o,
@@ -71,11 +68,6 @@ module closest_hit
 );
 
   localparam int unsigned CountWidth = $clog2(Queue + 2);  // with a test of settle_i
-  localparam logic [31:0] Infinity = 32'h7f80_0000;
-
-  if (TErrorWidth != set_up_pkg::TErrorExponentWidth) begin : gen_check
-    $error("closest_hit: expected TErrorWidth of ray_core_pkg to be set_up_pkg's");
-  end
 
   logic [30:0] t_max[Rays];
   logic [31:0] nearest_t[Rays];
@@ -98,10 +90,10 @@ module closest_hit
   assign leaf_t_max_o        = t_max[leaf_ray_q];
   assign leaf_ended_o        = ended[leaf_ray_q];
   assign box_t_max_o         = t_max[box_ray_q];
-  assign exact_found_o       = found_q[exact_ray_i];
-  assign exact_ended_o       = ended[exact_ray_i];
-  assign exact_triangle_o    = AddressWidth'(nearest_triangle[exact_ray_i]);
-  assign exact_t_max_o       = t_max[exact_ray_i];
+  assign exact_o.ended       = ended[exact_ray_i];
+  assign exact_o.found       = found_q[exact_ray_i];
+  assign exact_o.line        = AddressWidth'(nearest_triangle[exact_ray_i]);
+  assign exact_o.t_max       = t_max[exact_ray_i];
 
   // ---- Read: the result, and the nearest so far
 
@@ -111,25 +103,7 @@ module closest_hit
   logic [31:0] margin, sum, t_q, low_q, high_q, tag_q, triangle_q, old_low_q, old_triangle_q;
   logic [30:0] old_t_max_q;
   logic [95:0] point_q;
-
-  if (Exact) begin : gen_settle
-    logic [Rays-1:0] settling_q;
-
-    always_ff @(posedge clk_i or negedge rst_ni) begin
-      if (!rst_ni) begin
-        settling_q <= '0;
-        settled_q  <= 1'b0;
-      end else begin
-        if (load_i) settling_q[load_ray_i] <= 1'b0;
-        if (test_i && settle_i) settling_q[test_ray_i] <= 1'b1;
-        settled_q <= result_i.valid & settling_q[result_ray_i];
-      end
-    end
-  end else begin : gen_no_settle
-    logic unused_settle;
-    assign unused_settle = settle_i;
-    assign settled_q     = 1'b0;
-  end
+  logic [Rays-1:0] settling_q;
 
   assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_i.t_error), result_i.normal_error);
   assign t_error = set_up_pkg::t_error_exponent(
@@ -140,8 +114,12 @@ module closest_hit
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      {is_over_q, is_sure_q, is_vague_q} <= '0;
+      {is_over_q, is_sure_q, is_vague_q, settled_q} <= '0;
+      settling_q <= '0;
     end else begin
+      if (load_i) settling_q[load_ray_i] <= 1'b0;
+      if (test_i && settle_i) settling_q[test_ray_i] <= 1'b1;
+      settled_q  <= Exact & result_i.valid & settling_q[result_ray_i];
       is_over_q  <= result_i.valid;
       is_sure_q  <= result_i.valid & ~result_i.is_skipped & result_i.found & good;
       is_vague_q <= result_i.valid & ~result_i.is_skipped
@@ -156,7 +134,7 @@ module closest_hit
     t_error_q      <= t_error;
     point_q        <= result_i.point;
     low_q          <= (result_i.t > margin) ? result_i.t - margin : '0;
-    high_q         <= (sum < Infinity) ? sum : Infinity;
+    high_q         <= (sum < {1'b0, Infinity}) ? sum : {1'b0, Infinity};
     old_found_q    <= forward | found_q[result_ray_i];
     old_t_max_q    <= forward ? high_q[30:0] : t_max[result_ray_i];
     old_low_q      <= forward ? low_q : nearest_low[result_ray_i];
@@ -209,9 +187,7 @@ module closest_hit
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) here_q <= '0;
-    else begin
-      here_q <= here_q + CountWidth'(taken) - CountWidth'(returned) - CountWidth'(doubt_fire_i);
-    end
+    else here_q <= here_q + CountWidth'(taken) - CountWidth'(returned) - CountWidth'(doubt_fire_i);
   end
 
   fifo #(
@@ -259,9 +235,7 @@ module closest_hit
       testing_o <= '0;
     end else begin
       test_q <= test_i;
-      if (is_over_q && !same && counts[ray_q] == CountWidth'(1)) begin
-        testing_o[ray_q] <= 1'b0;
-      end
+      if (is_over_q && !same && counts[ray_q] == CountWidth'(1)) testing_o[ray_q] <= 1'b0;
       if (test_i) testing_o[test_ray_i] <= 1'b1;
     end
   end

@@ -1,62 +1,59 @@
 // Control and status registers of the ray core, on AXI4-Lite: what to draw, from which memory, counters, flags.
 //
-// Words, bits, and what is refused while the core is busy: registers.md, of which csr_pkg is made.
-//
-// One write and one read at a time; no output of AXI depends on an input in the same clock.
-// interrupt_o is high while a flag is that is enabled.
+// Words, bits, and what is refused while the core is busy: registers.md, from which csr_pkg is made. One write and one
+// read at a time; no output of AXI depends on an input in the same clock. interrupt_o is high while an enabled flag is.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
 module csr
   import ray_core_pkg::*, csr_pkg::*;
 #(
-  parameter bit [31:0] Capability = '0,
-  localparam int unsigned RegisterAddressWidth = 12
+  parameter bit [31:0] Capability = '0
 ) (
-  input  logic                            clk_i,
-  input  logic                            rst_ni,
+  input  logic                    clk_i,
+  input  logic                    rst_ni,
   // AXI4-Lite
-  input  logic                            axi_awvalid_i,
-  output logic                            axi_awready_o,
-  input  logic [RegisterAddressWidth-1:0] axi_awaddr_i,
-  input  logic                            axi_wvalid_i,
-  output logic                            axi_wready_o,
-  input  logic [31:0]                     axi_wdata_i,
-  input  logic [3:0]                      axi_wstrb_i,
-  output logic                            axi_bvalid_o,
-  input  logic                            axi_bready_i,
-  output logic [1:0]                      axi_bresp_o,
-  input  logic                            axi_arvalid_i,
-  output logic                            axi_arready_o,
-  input  logic [RegisterAddressWidth-1:0] axi_araddr_i,
-  output logic                            axi_rvalid_o,
-  input  logic                            axi_rready_i,
-  output logic [31:0]                     axi_rdata_o,
-  output logic [1:0]                      axi_rresp_o,
+  input  logic                    axi_awvalid_i,
+  output logic                    axi_awready_o,
+  input  logic [11:0]             axi_awaddr_i,
+  input  logic                    axi_wvalid_i,
+  output logic                    axi_wready_o,
+  input  logic [31:0]             axi_wdata_i,
+  input  logic [3:0]              axi_wstrb_i,
+  output logic                    axi_bvalid_o,
+  input  logic                    axi_bready_i,
+  output logic [1:0]              axi_bresp_o,
+  input  logic                    axi_arvalid_i,
+  output logic                    axi_arready_o,
+  input  logic [11:0]             axi_araddr_i,
+  output logic                    axi_rvalid_o,
+  input  logic                    axi_rready_i,
+  output logic [31:0]             axi_rdata_o,
+  output logic [1:0]              axi_rresp_o,
   // the core's side
-  output logic                            start_o,  // this clock's commands
-  output logic                            invalidate_o,
-  output logic                            abort_o,  // until no ray is left
-  output logic                            drawing_o,  // a rectangle's rays are on their way
-  output logic [63:0]                     base_o,
-  output logic [AddressWidth-1:0]         lines_o,
-  output logic [31:0]                     corner_o,
-  output logic [31:0]                     size_o,
-  output logic [4*96-1:0]                 camera_o,  // eye lowest, then first, right, down
-  output logic [63:0]                     results_o,
-  output logic [31:0]                     length_o,
-  output logic                            rewind_o,  // this clock's command
-  input  logic                            camera_busy_i,
-  input  logic                            core_busy_i,  // has rays
-  input  logic                            outstanding_i,
-  input  logic                            writing_i,
-  input  logic [31:0]                     written_i,
-  input  logic                            doubt_i,  // this clock's
-  input  logic                            ray_error_i,
-  input  logic                            full_i,
-  input  logic                            write_error_i,
-  input  logic                            bus_error_i,
-  input  logic [AddressWidth-1:0]         error_number_i,
-  input  logic [NumEvents-1:0]            events_i,
-  output logic                            interrupt_o
+  output logic                    start_o,  // this clock's commands
+  output logic                    invalidate_o,
+  output logic                    abort_o,  // until no ray is left
+  output logic                    drawing_o,  // a rectangle's rays are on their way
+  output logic [63:0]             base_o,
+  output logic [AddressWidth-1:0] lines_o,
+  output logic [31:0]             corner_o,
+  output logic [31:0]             size_o,
+  output logic [4*96-1:0]         camera_o,  // eye lowest, then first, right, down
+  output logic [63:0]             results_o,
+  output logic [31:0]             length_o,
+  output logic                    rewind_o,  // this clock's command
+  input  logic                    camera_busy_i,
+  input  logic                    core_busy_i,  // has rays
+  input  logic                    outstanding_i,
+  input  logic                    writing_i,
+  input  logic [31:0]             written_i,
+  input  logic                    doubt_i,  // this clock's
+  input  logic                    ray_error_i,
+  input  logic                    full_i,
+  input  logic                    write_error_i,
+  input  logic                    bus_error_i,
+  input  logic [AddressWidth-1:0] error_number_i,
+  input  logic [NumEvents-1:0]    events_i,
+  output logic                    interrupt_o
 );
 
   localparam logic [31:0] Identity = 32'h5247_0001;
@@ -90,7 +87,7 @@ module csr
     end
   end
   always_ff @(posedge clk_i) begin
-    if (!address_q) write_word_q <= axi_awaddr_i[RegisterAddressWidth-1:2];
+    if (!address_q) write_word_q <= axi_awaddr_i[11:2];
     if (!data_q) {strobes_q, write_data_q} <= {axi_wstrb_i, axi_wdata_i};
     if (write) axi_bresp_o <= {refused, 1'b0};
   end
@@ -147,10 +144,10 @@ module csr
   // ---- Flags
 
   logic [NumFlags-1:0] enable_q, flags_q, raised, lowered;
-  logic drawing_q, done, abort_q;
+  logic done;
   logic [AddressWidth-1:0] error_line_q;
 
-  assign done    = drawing_q & ~camera_busy_i & ~core_busy_i;
+  assign done    = drawing_o & ~camera_busy_i & ~core_busy_i;
   assign raised[FlagsDoubt]    = doubt_i;
   assign raised[FlagsDone]     = done;
   assign raised[FlagsBusError] = bus_error_i;
@@ -165,8 +162,8 @@ module csr
     if (!rst_ni) begin
       enable_q  <= '0;
       flags_q   <= '0;
-      drawing_q <= 1'b0;
-      abort_q   <= 1'b0;
+      drawing_o <= 1'b0;
+      abort_o   <= 1'b0;
       error_line_q <= '0;
     end else begin
       if (write && write_word_q == WordEnable) begin
@@ -174,14 +171,11 @@ module csr
                   | (enable_q & ~mask[NumFlags-1:0]);
       end
       flags_q   <= (flags_q & ~lowered) | raised;
-      drawing_q <= start_o | camera_busy_i | (drawing_q & ~done);
+      drawing_o <= start_o | camera_busy_i | (drawing_o & ~done);
       if (bus_error_i && !flags_q[FlagsBusError]) error_line_q <= error_number_i;
-      abort_q <= (command & commands[CommandAbort]) | (abort_q & (camera_busy_i | core_busy_i));
+      abort_o <= (command & commands[CommandAbort]) | (abort_o & (camera_busy_i | core_busy_i));
     end
   end
-
-  assign drawing_o = drawing_q;
-  assign abort_o   = abort_q;
 
   // ---- Counters
 
@@ -208,7 +202,7 @@ module csr
   assign read          = axi_arvalid_i & axi_arready_o;
   assign axi_arready_o = ~axi_rvalid_o;
   assign axi_rresp_o   = 2'b00;
-  assign read_word     = axi_araddr_i[RegisterAddressWidth-1:2];
+  assign read_word     = axi_araddr_i[11:2];
   assign status[StatusGenerating] = camera_busy_i;
   assign status[StatusTracing]    = core_busy_i;
   assign status[StatusReading]    = outstanding_i;
@@ -218,9 +212,7 @@ module csr
     value = (read_word < 10'd32) ? words[read_word[4:0]] : '0;
     high  = high_q;
     for (int unsigned n = 0; n < NumCounters; n++) begin
-      if (read_word == WordCounters + 10'(2 * n)) begin
-        {high, value} = counters[n];
-      end
+      if (read_word == WordCounters + 10'(2 * n)) {high, value} = counters[n];
       if (read_word == WordCounters + 10'(2 * n + 1)) value = 32'(high_q);
     end
     if (read_word == WordIdentity) value = Identity;

@@ -2,8 +2,8 @@
 //
 // Of a ray's doubts it keeps the nearest that is hit, the candidate:
 //
-//   a doubt   Does the ray hit it, unless that is certain, and is it nearer than the candidate, if there is one? Then
-//             it becomes the candidate.
+//   a doubt   Does the ray hit it, unless that is certain, and is it nearer than the candidate, if there is one? Then it
+//             becomes the candidate.
 //   settling  When nothing else of the ray is left to do: is the candidate nearer than closest_hit's certain hit or, if
 //             there is none, than the user's t_max? Then its triangle is tested once more, for t and P.
 //
@@ -11,8 +11,8 @@
 // clocks of exact_unit, eight more, and up to two reads through the triangle cache. A ray's questions follow each
 // other; those of different rays are spread over Units exact_units. Doubts of a ray that has ended are dropped.
 //
-// closest_hit's credits give every doubt room here, so that tests never wait for the resolver: it waits for lines that
-// come behind them.
+// closest_hit's credits give every doubt room here, so that tests never wait for the resolver, which waits for lines
+// that come behind them.
 module exact_resolver
   import ray_core_pkg::*;
 #(
@@ -38,10 +38,7 @@ module exact_resolver
   output logic [Rays-1:0]         busy_o,
   // the ray whose turn it is; what is known of it, in the same clock
   output logic [RayWidth-1:0]     ctx_o,
-  input  logic                    ended_i,  // it needs no hit, or no other
-  input  logic                    found_i,  // a sure hit, and its line
-  input  logic [AddressWidth-1:0] found_line_i,
-  input  logic [30:0]             t_max_i,  // without one: the user's
+  input  known_t                  known_i,
   // its lines: for here, or (not exact) to be tested, kept whatever the test says
   output triangle_request_t       request_o,
   input  logic                    request_ready_i,
@@ -52,7 +49,6 @@ module exact_resolver
   localparam int unsigned CountWidth = $clog2(Queue + 1);
   localparam int unsigned CornersWidth = 9 * 32;
   localparam int unsigned AboutWidth = 1 + RayWidth + AddressWidth;  // {settling, context, line}
-  localparam logic [30:0] Infinity = 31'h7f80_0000;
 
   if (Units < 1) begin : gen_check
     $error("exact_resolver: expected Units of 1 or more");
@@ -73,12 +69,9 @@ module exact_resolver
 
   // ---- Doubts that wait
 
-  logic push, pop, queued, queued_hit;
+  logic queued, queued_hit;
   logic [RayWidth-1:0] queued_ctx;
   logic [AddressWidth-1:0] queued_line;
-
-  assign push    = open_i.valid;
-  assign taken_o = pop;
 
   fifo #(
     .Width(RayWidth + 1 + AddressWidth),
@@ -87,10 +80,10 @@ module exact_resolver
   ) u_doubts (
     .clk_i,
     .rst_ni,
-    .push_i(push),
+    .push_i(open_i.valid),
     .data_i({open_ctx_i, open_i.is_hit, open_i.line}),
     .space_o(),
-    .pop_i(pop),
+    .pop_i(taken_o),
     .valid_o(queued),
     .data_o({queued_ctx, queued_hit, queued_line})
   );
@@ -103,20 +96,19 @@ module exact_resolver
   logic [CountWidth-1:0] lasts[Rays];  // the number of its last doubt
   logic [AddressWidth-1:0] candidates[Rays];  // lines
   logic [Rays-1:0] doubtful_q, candidate_q, open_q, ready_q;
-  logic [RayWidth-1:0] ready_ctx, next_ctx, ctx_q;
+  logic [RayWidth-1:0] ready_ctx, next_ctx;
   logic settle, begin_any, done, doubt_done, is_last, keep, drop;
   logic settling_q, is_hit_q;  // what is asked; of the doubt that it is surely hit
   logic [AddressWidth-1:0] line_q;  // of the doubt, or the candidate
 
   assign busy_o  = doubtful_q | open_q | candidate_q;
-  assign ctx_o   = ctx_q;
-  assign is_last = (state_q == StateLook) & ~settling_q & (lasts[ctx_q] == popped_q);
+  assign is_last = (state_q == StateLook) & ~settling_q & (lasts[ctx_o] == popped_q);
 
   rr_arbiter #(
     .Width(Rays)
   ) u_settle (
     .requests_i(ready_q & candidate_q),
-    .start_i(ctx_q),
+    .start_i(ctx_o),
     .valid_o(settle),
     .index_o(ready_ctx)
   );
@@ -130,20 +122,20 @@ module exact_resolver
       open_q      <= '0;
       ready_q     <= '0;
     end else begin
-      pushed_q <= pushed_q + CountWidth'(push);
-      popped_q <= popped_q + CountWidth'(pop);
-      if (is_last) doubtful_q[ctx_q] <= 1'b0;
-      if (push) doubtful_q[open_ctx_i] <= 1'b1;
-      if (keep) candidate_q[ctx_q] <= 1'b1;
-      if (drop) candidate_q[ctx_q] <= 1'b0;
+      pushed_q <= pushed_q + CountWidth'(open_i.valid);
+      popped_q <= popped_q + CountWidth'(taken_o);
+      if (is_last) doubtful_q[ctx_o] <= 1'b0;
+      if (open_i.valid) doubtful_q[open_ctx_i] <= 1'b1;
+      if (keep) candidate_q[ctx_o] <= 1'b1;
+      if (drop) candidate_q[ctx_o] <= 1'b0;
       if (begin_any) open_q[next_ctx] <= 1'b1;
-      if (done) open_q[ctx_q] <= 1'b0;
+      if (done) open_q[ctx_o] <= 1'b0;
       ready_q <= candidate_q & ~doubtful_q & ~open_q & idle_i;
     end
   end
   always_ff @(posedge clk_i) begin
-    if (push) lasts[open_ctx_i] <= pushed_q + 1'b1;
-    if (keep) candidates[ctx_q] <= line_q;
+    if (open_i.valid) lasts[open_ctx_i] <= pushed_q + 1'b1;
+    if (keep) candidates[ctx_o] <= line_q;
   end
 
   // ---- The question
@@ -160,13 +152,13 @@ module exact_resolver
   logic [Units*AboutWidth-1:0] abouts;
   logic [AboutWidth-1:0] about;  // of the one that has answered
 
-  assign candidate     = candidates[ctx_q];
-  assign has_candidate = candidate_q[ctx_q];
+  assign candidate     = candidates[ctx_o];
+  assign has_candidate = candidate_q[ctx_o];
 
   always_comb begin
     against = exact_pkg::AgainstNothing;
     if (settling_q ? found_q : has_candidate) against = exact_pkg::AgainstOther;
-    else if (settling_q && t_max_i != Infinity) against = exact_pkg::AgainstLimit;
+    else if (settling_q && known_i.t_max != Infinity) against = exact_pkg::AgainstLimit;
   end
   // Nothing is to be asked.
   assign simple = (against == exact_pkg::AgainstNothing) & (settling_q | is_hit_q);
@@ -186,9 +178,7 @@ module exact_resolver
         else state_d = StateFetch;
       StateFetch: if (request_ready_i) state_d = StateWait;
       StateWait:
-        if (line_here) begin
-          state_d = line_i.error ? StateAnswer : lacks_q ? StateFetch : StateAsk;
-        end
+        if (line_here) state_d = line_i.error ? StateAnswer : lacks_q ? StateFetch : StateAsk;
       StateAsk:    state_d = StateIdle;
       StateAnswer: state_d = (settling_q && nearer_q) ? StateTest : StateIdle;
       StateTest:   if (request_ready_i) state_d = StateAnswer;
@@ -199,7 +189,7 @@ module exact_resolver
   assign begin_any  = (state_q == StateIdle) & (answered == '0) & (free != '0)
                     & (settle | (queued & ~open_q[queued_ctx]));
   assign next_ctx   = settle ? ready_ctx : queued_ctx;
-  assign pop        = begin_any & ~settle;
+  assign taken_o    = begin_any & ~settle;
   assign done       = ((state_q == StateChoose) & (ended_q | (simple & ~settling_q)))
                     | ((state_q == StateAnswer) & ~(settling_q & nearer_q));
   assign doubt_done = done & ~settling_q;
@@ -218,11 +208,11 @@ module exact_resolver
   end
   always_ff @(posedge clk_i) begin
     if (state_q == StateIdle && answered != '0) begin
-      {settling_q, ctx_q, line_q} <= about;
+      {settling_q, ctx_o, line_q} <= about;
       nearer_q <= (nearer & answered) != '0;
     end else if (begin_any) begin
       settling_q <= settle;
-      ctx_q      <= next_ctx;
+      ctx_o      <= next_ctx;
       is_hit_q   <= settle | queued_hit;
       line_q     <= settle ? candidates[ready_ctx] : queued_line;
     end
@@ -230,9 +220,9 @@ module exact_resolver
     // is taken into state_q, and goes no further in its clock.
     if (state_q == StateWait || state_q == StateTest) nearer_q <= 1'b0;
     if (state_q == StateLook) begin
-      ended_q      <= ended_i;
-      found_q      <= found_i;
-      other_line_q <= settling_q ? found_line_i : candidate;
+      ended_q      <= known_i.ended;
+      found_q      <= known_i.found;
+      other_line_q <= settling_q ? known_i.line : candidate;
     end
     if (state_q == StateChoose) begin
       against_q <= against;
@@ -256,7 +246,7 @@ module exact_resolver
     .write_address_i(load_ctx_i),
     .data_i({load_direction_i, load_origin_i}),
     .read_i(1'b1),
-    .read_address_i(ctx_q),
+    .read_address_i(ctx_o),
     .data_o({direction, origin})
   );
 
@@ -284,7 +274,7 @@ module exact_resolver
 
     always_ff @(posedge clk_i) begin
       if (ask) begin
-        about_q    <= {settling_q, ctx_q, line_q};
+        about_q    <= {settling_q, ctx_o, line_q};
         wins_tie_q <= (against_q == exact_pkg::AgainstNothing)
                     | ((against_q == exact_pkg::AgainstOther) & (rank_q < other_rank_q));
       end
@@ -299,7 +289,7 @@ module exact_resolver
       .ready_o(unit_ready[u]),
       .hit_i(~is_hit_q),
       .against_i(against_q),
-      .floats_i({1'b0, t_max_i, other_q, corners_q, direction, origin}),
+      .floats_i({1'b0, known_i.t_max, other_q, corners_q, direction, origin}),
       .valid_o(unit_valid[u]),
       .ready_i((state_q == StateIdle) & answered[u]),
       .hit_o(hit),

@@ -1,8 +1,8 @@
 // Non-blocking cache of memory lines of one kind, nodes or triangles: eight ways, read only.
 //
-// The lowest bits of a line's number are its set. A miss takes a way of its set and asks memory for the line. Until the
-// line comes, further requests for it join the miss as its targets. If all ways of the set wait for other lines, the
-// request waits. The victim is the way after the one that was used last.
+// The lowest bits of a line's number are its set. A miss takes a way of its set, the one after the way that was used
+// last, and asks memory for the line. Until the line comes, further requests for it join the miss as its targets. If
+// all ways of the set wait for other lines, the request waits.
 //
 //   ask      a request is taken; the tags of its set are read
 //   compare  which of them are the line's
@@ -14,11 +14,10 @@
 //
 // A line from memory is taken when the one before has left or leaves: it is written, and its latest target looked up.
 // From the next clock on it goes to its targets, one a clock, the latest first. Lines leave in any order, one a clock,
-// each with the ray that asked; meanwhile hits wait in their queue, and requests are looked up as before.
+// each with the ray that asked; meanwhile hits wait in their queue, and requests are looked up as before. A line with
+// an error goes to its targets with error_o, and is not kept.
 //
-// A line that comes with an error goes to its targets with error_o, and is not kept.
-//
-// invalidate_i empties the cache; no request and no line may be on its way then.
+// invalidate_i empties the cache; no request and no line may be in flight then.
 module line_cache
   import ray_core_pkg::*;
 #(

@@ -1,7 +1,7 @@
 // Memory port of the ray core: a cache of nodes, a cache of triangles, and the reads that they send to memory.
 //
 // A read has an id, {is a triangle's, cache entry}; its line may come back at any time and in any order. Both caches
-// can give a line in the same clock.
+// can give a line in the same clock. A line with an error goes to the rays that wait for it and is not kept.
 //
 // A node to be prefetched (prefetch_i) is looked up in a clock in which no node is asked for, and forgotten if too many
 // wait. Its line may come after the last ray has ended: while outstanding_o is high, memory must not change and the
@@ -9,8 +9,6 @@
 //
 // Lines leave with step_o, which is high in one of Clocks clocks, and wait for nothing else: line_ready_o does not
 // depend on results.
-//
-// A line with an error goes to the rays that wait for it and is not kept.
 module memory_subsystem
   import ray_core_pkg::*;
 #(
@@ -20,9 +18,7 @@ module memory_subsystem
   parameter bit Exact = 1'b0,  // triangles have ranks, and some are for exact_resolver
   parameter int unsigned Clocks = 1,
   localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned EntryWidth =
-      $clog2(NodeLines > TriangleLines ? NodeLines : TriangleLines),
-  localparam int unsigned ReadIdWidth = 1 + EntryWidth
+  localparam int unsigned ReadIdWidth = read_id_width(NodeLines, TriangleLines)
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -58,6 +54,7 @@ module memory_subsystem
   localparam int unsigned RequestWidth = RayWidth + AddressWidth;
   localparam int unsigned WhoWidth = RayWidth + (Exact ? 1 : 0);  // {for exact_resolver, context}
   localparam int unsigned KeptWidth = TriangleWidth + (Exact ? RankWidth : 0);
+  localparam int unsigned EntryWidth = ReadIdWidth - 1;
   localparam int unsigned MissWidth = EntryWidth + AddressWidth;
 
   // ---- Requests
@@ -122,7 +119,6 @@ module memory_subsystem
   logic [AddressWidth-1:0] node_number, triangle_number;
   logic [$clog2(NodeLines)-1:0] node_entry;
   logic [$clog2(TriangleLines)-1:0] triangle_entry;
-  logic [MissWidth-1:0] node_miss, triangle_miss;
   logic node_looking;
   logic node_miss_valid, node_miss_ready, triangle_miss_valid, triangle_miss_ready;
 
@@ -216,20 +212,18 @@ module memory_subsystem
   assign {triangle_o.rank, triangle_o.line} =
       (RankWidth + TriangleWidth)'(triangle_kept);
 
-  assign node_miss     = {EntryWidth'(node_entry), node_number};
-  assign triangle_miss = {EntryWidth'(triangle_entry), triangle_number};
-
   // ---- Misses, in turn
 
   localparam int unsigned CountWidth = $clog2(NodeLines + TriangleLines + 1);
 
   logic [MissWidth:0] out;
-  logic out_ready, ask, node_last_q;  // the last request was a node's
+  logic out_ready, ask, ask_node, node_last_q;  // the last request was a node's
   logic ask_q, done_q;  // counted a clock late
   logic [CountWidth-1:0] lines_q;  // asked for, and not in the caches
 
   assign node_miss_ready     = out_ready & (~triangle_miss_valid | ~node_last_q);
-  assign triangle_miss_ready = out_ready & ~(node_miss_valid & node_miss_ready);
+  assign ask_node            = node_miss_valid & node_miss_ready;
+  assign triangle_miss_ready = out_ready & ~ask_node;
   assign ask                 = out_ready & (node_miss_valid | triangle_miss_valid);
   assign line_done           = line_valid & (fill_triangle ? triangle_fill_ready : node_fill_ready);
   assign outstanding_o       = (lines_q != '0) | ask_q | prefetch_valid | node_looking;
@@ -239,7 +233,7 @@ module memory_subsystem
       {node_last_q, ask_q, done_q} <= '0;
       lines_q <= '0;
     end else begin
-      if (ask) node_last_q <= node_miss_valid & node_miss_ready;
+      if (ask) node_last_q <= ask_node;
       {ask_q, done_q} <= {ask, line_done};
       lines_q <= lines_q + CountWidth'(ask_q) - CountWidth'(done_q);
     end
@@ -252,7 +246,8 @@ module memory_subsystem
     .clk_i,
     .rst_ni,
     .push_i(ask),
-    .data_i((node_miss_valid & node_miss_ready) ? {1'b0, node_miss} : {1'b1, triangle_miss}),
+    .data_i(ask_node ? {1'b0, EntryWidth'(node_entry), node_number}
+                     : {1'b1, EntryWidth'(triangle_entry), triangle_number}),
     .space_o(out_ready),
     .pop_i(read_valid_o & read_ready_i),
     .valid_o(read_valid_o),

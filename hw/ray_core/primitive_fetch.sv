@@ -24,7 +24,6 @@ module primitive_fetch
   input  logic                triangle_ready_i
 );
 
-
   // ---- Groups that wait
 
   logic push, queued, load;

@@ -5,13 +5,12 @@
 //   traversal         its stack; picks the ray that visits its next node      box_unit        which children it enters
 //   primitive_fetch   asks for the triangles of the leaves it enters          triangle_test   hit, miss or doubt
 //   closest_hit       its nearest hit and t_max, its doubts                   exact_resolver  decides the doubts
-//   memory_subsystem  the caches of nodes and triangles                       ray_errors      why a ray has failed
+//   memory_subsystem  the caches of nodes and triangles
 //
 // Rays and results: valid/ready. A ray's direction must be scaled so that its largest component is in [1, 2). Hits at
 // t >= t_max (compared exactly), on triangle skip_id and on source_id, the triangle that the ray leaves, do not count.
-// With any_hit a ray ends at its first certain hit; with no_cull it enters every box. Results of different rays come
-// interleaved, each with its ray's tag, and rays end in any order: see result_e. The end of a ray with an error says
-// nothing else: see error_e.
+// With any_hit a ray ends at its first certain hit. Results of different rays come interleaved, each with its ray's tag,
+// and rays end in any order: see result_e. The end of a ray with an error says nothing else: see error_e.
 //
 // Memory: reads of lines by number, valid/ready, each with an id; lines come back with it in any order, valid/ready.
 // One with line_error_i fails the rays that wait for it, and is read again for the next ray. Nodes are also prefetched,
@@ -24,15 +23,13 @@ module ray_core
 #(
   parameter int unsigned Rays  = 64,  // of the table; a power of two
   parameter int unsigned Depth = 8,   // groups on a ray's own stack
-  parameter int unsigned Levels = MaxLevels,  // with those shared, see traversal
   parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
   parameter int unsigned Clocks = 1,  // of a node and a triangle: pipelines; or 7 or more, in turns
   parameter int unsigned Exact = 0,  // exact_units, for which triangles have ranks; 0: doubts leave
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays),
-  localparam int unsigned ReadIdWidth = 1 + $clog2(
-      NodeLines > TriangleLines ? NodeLines : TriangleLines)
+  localparam int unsigned ReadIdWidth = read_id_width(NodeLines, TriangleLines)
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
@@ -66,7 +63,6 @@ module ray_core
     start_ctx, ending_ctx, end_ctx, node_line_ctx, triangle_line_ctx, direction_ctx;
   logic [95:0] start_inverse, node_origin, node_inverse, triangle_origin, direction;
   logic [31:0] skip_id, source_id;
-  logic no_cull;
   logic [31:0] tags[Rays];
   ray_t start;
 
@@ -91,16 +87,16 @@ module ray_core
     .start_fire_i(start_fire)
   );
   ram #(
-    .Width(96 + 96 + 1),
+    .Width(96 + 96),
     .Depth(Rays)
   ) u_node_contexts (
     .clk_i,
     .write_i(start_fire),
     .write_address_i(start_ctx),
-    .data_i({start.origin, start_inverse, start.no_cull}),
+    .data_i({start.origin, start_inverse}),
     .read_i(1'b1),
     .read_address_i(node_line_ctx),
-    .data_o({node_origin, node_inverse, no_cull})
+    .data_o({node_origin, node_inverse})
   );
   ram #(
     .Width(96 + 2 * 32),
@@ -140,8 +136,7 @@ module ray_core
 
   traversal #(
     .Rays(Rays),
-    .Depth(Depth),
-    .Levels(Levels)
+    .Depth(Depth)
   ) u_traversal (
     .clk_i,
     .rst_ni,
@@ -178,7 +173,6 @@ module ray_core
     .origin_i(node_origin),
     .inverse_i(node_inverse),
     .t_max_i(box_t_max),
-    .no_cull_i(no_cull),
     .ctx_o(box_ctx),
     .boxes_o(boxes)
   );
@@ -233,13 +227,12 @@ module ray_core
     .verdict_o(verdict)
   );
 
-  // ---- Hits, doubts and errors
+  // ---- Hits and doubts
 
   logic [RayWidth-1:0] open_ctx;
   logic [Rays-1:0] doubtful, idle;
-  logic doubt_fire, doubt_taken, exact_found, exact_ended, computing, near_tie;
-  logic [AddressWidth-1:0] exact_found_line;
-  logic [30:0] exact_t_max;
+  logic doubt_fire, doubt_taken, computing, near_tie;
+  known_t known;
   logic [95:0] end_point;
   open_t open;
   doubt_t doubt;
@@ -276,10 +269,7 @@ module ray_core
     .box_t_max_o(box_t_max),
     .testing_o(testing),
     .exact_ray_i(exact_ctx),
-    .exact_found_o(exact_found),
-    .exact_ended_o(exact_ended),
-    .exact_triangle_o(exact_found_line),
-    .exact_t_max_o(exact_t_max),
+    .exact_o(known),
     .doubt_o(doubt),
     .doubt_fire_i(doubt_fire | doubt_taken),
     .open_ray_o(open_ctx),
@@ -309,10 +299,7 @@ module ray_core
       .idle_i(idle),
       .busy_o(doubtful),
       .ctx_o(exact_ctx),
-      .ended_i(exact_ended),
-      .found_i(exact_found),
-      .found_line_i(exact_found_line),
-      .t_max_i(exact_t_max),
+      .known_i(known),
       .request_o(exact),
       .request_ready_i(triangle_ready),
       .line_i(triangle_line),
@@ -321,30 +308,9 @@ module ray_core
   end else begin : gen_doubts
     logic unused_exact;
     assign {doubt_taken, doubtful, exact, exact_ctx, computing} = '0;
-    assign unused_exact = ^{
-      exact_found, exact_ended, exact_found_line, exact_t_max, open_ctx, open, triangle_line.rank
-    };
+    assign unused_exact = ^{known, open_ctx, open, triangle_line.rank};
   end
 
-  ray_errors #(
-    .Rays(Rays)
-  ) u_errors (
-    .clk_i,
-    .rst_ni,
-    .abort_i,
-    .start_i(start_fire),
-    .start_ctx_i(start_ctx),
-    .start_scaled_i(is_scaled(start.direction)),
-    .node_i(node_line.valid & node_line.error),
-    .node_ctx_i(node_line_ctx),
-    .triangle_i(triangle_line.valid & triangle_line.error),
-    .triangle_ctx_i(triangle_line_ctx),
-    .cycle_i(cycle),
-    .cycle_ctx_i(cycle_ctx),
-    .failed_o(failed),
-    .end_ctx_i(end_ctx),
-    .end_error_o(ended.error)
-  );
   ray_retire #(
     .Rays(Rays)
   ) u_retire (
@@ -364,6 +330,54 @@ module ray_core
     .result_ready_i,
     .result_o
   );
+
+  // ---- Errors: the first of each ray. It has failed from the second clock after its error on, no later than its end is
+  // told, until another begins in its context. While abort_i is high, all rays in the core fail.
+
+  logic [Rays-1:0][2:0] errors_q;
+  logic node_error_q, triangle_error_q, cycle_q;
+  logic [RayWidth-1:0] node_error_ctx_q, triangle_error_ctx_q, cycle_ctx_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) {node_error_q, triangle_error_q, cycle_q} <= '0;
+    else begin
+      node_error_q     <= node_line.valid & node_line.error;
+      triangle_error_q <= triangle_line.valid & triangle_line.error;
+      cycle_q          <= cycle;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    node_error_ctx_q     <= node_line_ctx;
+    triangle_error_ctx_q <= triangle_line_ctx;
+    cycle_ctx_q          <= cycle_ctx;
+  end
+
+  for (genvar r = 0; r < Rays; r++) begin : gen_error
+    logic [2:0] error_d;
+
+    assign failed[r] = errors_q[r] != ErrorNone;
+
+    always_comb begin
+      error_d = errors_q[r];
+      if (!failed[r]) begin
+        if (cycle_q && cycle_ctx_q == RayWidth'(r)) error_d = ErrorCycle;
+        if ((node_error_q && node_error_ctx_q == RayWidth'(r))
+            || (triangle_error_q && triangle_error_ctx_q == RayWidth'(r))) begin
+          error_d = ErrorMemory;
+        end
+        if (abort_i) error_d = ErrorAbort;
+      end
+      if (start_fire && start_ctx == RayWidth'(r)) begin
+        error_d = !is_scaled(start.direction) ? ErrorDirection : abort_i ? ErrorAbort : ErrorNone;
+      end
+    end
+    always_ff @(posedge clk_i or negedge rst_ni) begin
+      if (!rst_ni) errors_q[r] <= ErrorNone;
+      else errors_q[r] <= error_d;
+    end
+  end
+
+  assign ended.error = errors_q[end_ctx];
 
   // ---- Memory
 

@@ -7,9 +7,8 @@
 //   axi_write_manager  results to memory if register `length` is not 0; else they leave by the stream
 //
 // AxPROT and AxCACHE are constant. By default accesses are non-secure, unprivileged, to data; memory is normal, not
-// cacheable, bufferable, so bridges may merge beats. Writes have ID 0.
-// The user's rays (ray_*) wait while a rectangle is drawn or rays are given up. A generated ray has no t_max, skips no
-// triangle, and begins at the root. For the rest see those modules.
+// cacheable, bufferable, so bridges may merge beats. Writes have ID 0. The user's rays (ray_*) wait while a rectangle
+// is drawn or rays are aborted. A generated ray has no t_max and skips no triangle.
 module ray_core_axi
   import ray_core_pkg::*;
 #(
@@ -23,82 +22,78 @@ module ray_core_axi
   parameter int unsigned IdWidth   = 6,
   parameter bit [2:0] AxProt  = 3'b010,
   parameter bit [3:0] AxCache = 4'b0011,
-  parameter int unsigned Arith = arith_pkg::Graded,
-  localparam int unsigned RegisterAddressWidth = 12
+  parameter int unsigned Arith = arith_pkg::Graded
 ) (
-  input  logic                            clk_i,
-  input  logic                            rst_ni,
-  output logic                            interrupt_o,
+  input  logic                   clk_i,
+  input  logic                   rst_ni,
+  output logic                   interrupt_o,
   // registers: AXI4-Lite
-  input  logic                            s_axil_awvalid,
-  output logic                            s_axil_awready,
-  input  logic [RegisterAddressWidth-1:0] s_axil_awaddr,
-  input  logic                            s_axil_wvalid,
-  output logic                            s_axil_wready,
-  input  logic [31:0]                     s_axil_wdata,
-  input  logic [3:0]                      s_axil_wstrb,
-  output logic                            s_axil_bvalid,
-  input  logic                            s_axil_bready,
-  output logic [1:0]                      s_axil_bresp,
-  input  logic                            s_axil_arvalid,
-  output logic                            s_axil_arready,
-  input  logic [RegisterAddressWidth-1:0] s_axil_araddr,
-  output logic                            s_axil_rvalid,
-  input  logic                            s_axil_rready,
-  output logic [31:0]                     s_axil_rdata,
-  output logic [1:0]                      s_axil_rresp,
+  input  logic                   s_axil_awvalid,
+  output logic                   s_axil_awready,
+  input  logic [11:0]            s_axil_awaddr,
+  input  logic                   s_axil_wvalid,
+  output logic                   s_axil_wready,
+  input  logic [31:0]            s_axil_wdata,
+  input  logic [3:0]             s_axil_wstrb,
+  output logic                   s_axil_bvalid,
+  input  logic                   s_axil_bready,
+  output logic [1:0]             s_axil_bresp,
+  input  logic                   s_axil_arvalid,
+  output logic                   s_axil_arready,
+  input  logic [11:0]            s_axil_araddr,
+  output logic                   s_axil_rvalid,
+  input  logic                   s_axil_rready,
+  output logic [31:0]            s_axil_rdata,
+  output logic [1:0]             s_axil_rresp,
   // memory: AXI4, reads
-  output logic                            m_axi_arvalid,
-  input  logic                            m_axi_arready,
-  output logic [IdWidth-1:0]              m_axi_arid,
-  output logic [63:0]                     m_axi_araddr,
-  output logic [7:0]                      m_axi_arlen,
-  output logic [2:0]                      m_axi_arsize,
-  output logic [1:0]                      m_axi_arburst,
-  output logic [3:0]                      m_axi_arcache,
-  output logic [2:0]                      m_axi_arprot,
-  input  logic                            m_axi_rvalid,
-  output logic                            m_axi_rready,
-  input  logic [IdWidth-1:0]              m_axi_rid,
-  input  logic [DataWidth-1:0]            m_axi_rdata,
-  input  logic [1:0]                      m_axi_rresp,
-  input  logic                            m_axi_rlast,
+  output logic                   m_axi_arvalid,
+  input  logic                   m_axi_arready,
+  output logic [IdWidth-1:0]     m_axi_arid,
+  output logic [63:0]            m_axi_araddr,
+  output logic [7:0]             m_axi_arlen,
+  output logic [2:0]             m_axi_arsize,
+  output logic [1:0]             m_axi_arburst,
+  output logic [3:0]             m_axi_arcache,
+  output logic [2:0]             m_axi_arprot,
+  input  logic                   m_axi_rvalid,
+  output logic                   m_axi_rready,
+  input  logic [IdWidth-1:0]     m_axi_rid,
+  input  logic [DataWidth-1:0]   m_axi_rdata,
+  input  logic [1:0]             m_axi_rresp,
+  input  logic                   m_axi_rlast,
   // rays
-  input  logic                            ray_valid_i,
-  output logic                            ray_ready_o,
-  input  ray_t                            ray_i,
+  input  logic                   ray_valid_i,
+  output logic                   ray_ready_o,
+  input  ray_t                   ray_i,
   // results to memory: AXI4, writes
-  output logic                            m_axi_awvalid,
-  input  logic                            m_axi_awready,
-  output logic [IdWidth-1:0]              m_axi_awid,
-  output logic [63:0]                     m_axi_awaddr,
-  output logic [7:0]                      m_axi_awlen,
-  output logic [2:0]                      m_axi_awsize,
-  output logic [1:0]                      m_axi_awburst,
-  output logic [3:0]                      m_axi_awcache,
-  output logic [2:0]                      m_axi_awprot,
-  output logic                            m_axi_wvalid,
-  input  logic                            m_axi_wready,
-  output logic [DataWidth-1:0]            m_axi_wdata,
-  output logic [DataWidth/8-1:0]          m_axi_wstrb,
-  output logic                            m_axi_wlast,
-  input  logic                            m_axi_bvalid,
-  output logic                            m_axi_bready,
+  output logic                   m_axi_awvalid,
+  input  logic                   m_axi_awready,
+  output logic [IdWidth-1:0]     m_axi_awid,
+  output logic [63:0]            m_axi_awaddr,
+  output logic [7:0]             m_axi_awlen,
+  output logic [2:0]             m_axi_awsize,
+  output logic [1:0]             m_axi_awburst,
+  output logic [3:0]             m_axi_awcache,
+  output logic [2:0]             m_axi_awprot,
+  output logic                   m_axi_wvalid,
+  input  logic                   m_axi_wready,
+  output logic [DataWidth-1:0]   m_axi_wdata,
+  output logic [DataWidth/8-1:0] m_axi_wstrb,
+  output logic                   m_axi_wlast,
+  input  logic                   m_axi_bvalid,
+  output logic                   m_axi_bready,
   // verilator lint_off UNUSEDSIGNAL
-  input  logic [IdWidth-1:0]              m_axi_bid,  // 0
+  input  logic [IdWidth-1:0]     m_axi_bid,  // 0
   // verilator lint_on UNUSEDSIGNAL
-  input  logic [1:0]                      m_axi_bresp,
+  input  logic [1:0]             m_axi_bresp,
   // results: AXI4-Stream, a record a transfer, see registers.md
-  output logic                            m_axis_tvalid,
-  input  logic                            m_axis_tready,
-  output logic [255:0]                    m_axis_tdata,
-  output logic                            m_axis_tlast
+  output logic                   m_axis_tvalid,
+  input  logic                   m_axis_tready,
+  output logic [255:0]           m_axis_tdata,
+  output logic                   m_axis_tlast
 );
 
-  localparam int unsigned ReadIdWidth = 1 + $clog2(
-    NodeLines > TriangleLines ? NodeLines : TriangleLines
-  );
-  localparam logic [30:0] Infinity = 31'h7f80_0000;
+  localparam int unsigned ReadIdWidth = read_id_width(NodeLines, TriangleLines);
   localparam logic [31:0] NoTriangle = 32'hffff_ffff;
   localparam logic [31:0] Capability = {  // see registers.md
     4'b0111, 8'(Clocks), 4'($clog2(DataWidth / 8)), 4'(Exact), 4'($clog2(Rays)), 8'd1
@@ -211,7 +206,7 @@ module ray_core_axi
   assign core_valid   = camera_valid | (ray_valid_i & ~closed_q);
   assign camera_ready = core_ready;
   assign generated = {
-    camera[0+:96], camera_direction, Infinity, {2{NoTriangle}}, 2'b00, pixel
+    camera[0+:96], camera_direction, Infinity, {2{NoTriangle}}, 1'b0, pixel
   };
   assign ray_ready_o  = core_ready & ~closed_q;
   assign ray_fire     = core_valid & core_ready;

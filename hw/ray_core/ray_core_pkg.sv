@@ -70,7 +70,17 @@ package ray_core_pkg;
   localparam int unsigned StepWidth = 33;  // of s, up to 2**32, in 256ths of a unit
   localparam int unsigned PlaneWidth = 36;  // of planes, two's complement
 
+  typedef struct packed {  // of a ray in a node; words and bits by axis, x lowest
+    logic [8:0]  exponent;   // E
+    logic [95:0] inverse;    // 1 / I_k, but at most the cap 2**(E + 2 - e_k); with its sign
+    logic [32:0] caps;       // the exponents of the caps, 11 signed bits each
+    logic [2:0]  is_capped;  // the cap is given
+    logic [2:0]  is_open;    // the cap is not a binary32 number: the axis says nothing
+  } scale_t;
+
   // ---- A ray, as it comes
+
+  localparam logic [30:0] Infinity = 31'h7f80_0000;  // a t_max: no limit
 
   typedef struct packed {
     logic [95:0]             origin;     // binary32, x lowest
@@ -79,7 +89,6 @@ package ray_core_pkg;
     logic [31:0]             skip_id;
     logic [31:0]             source_id;
     logic                    any_hit;
-    logic                    no_cull;
     logic [31:0]             tag;
   } ray_t;
 
@@ -110,10 +119,8 @@ package ray_core_pkg;
     end
   endfunction
 
-  localparam int unsigned TErrorWidth = 5;  // set_up_pkg::TErrorExponentWidth
-  localparam logic [TErrorWidth-1:0] NoT = 5'd31;  // of a hit whose t and P are not known
-  // hit_test_pkg::TErrorWidth and set_up_pkg::PlaneErrorWidth
-  localparam int unsigned VerdictErrorWidth = 4;
+  localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth;
+  localparam logic [TErrorWidth-1:0] NoT = '1;  // of a hit whose t and P are not known
 
   typedef struct packed {
     logic                    kind;      // result_e
@@ -126,6 +133,12 @@ package ray_core_pkg;
     logic [TestsWidth-1:0]   tests;
     logic [2:0]              error;     // ResultEnd: error_e
   } result_t;
+
+  // Bits of a read's id: {is a triangle's, entry of its cache}.
+  function automatic int unsigned read_id_width(int unsigned node_lines,
+                                                int unsigned triangle_lines);
+    read_id_width = 1 + $clog2((node_lines > triangle_lines) ? node_lines : triangle_lines);
+  endfunction
 
   // ---- Links between the parts of the core; beside each goes the number of a ray's context
 
@@ -163,16 +176,16 @@ package ray_core_pkg;
 
   // A test is over: a doubt, a sure hit (found) or a miss
   typedef struct packed {
-    logic                         valid;
-    logic                         is_skipped;  // it counts for nothing
-    logic                         doubt;
-    logic                         found;
-    logic [31:0]                  triangle;
-    logic [31:0]                  t;
-    logic [VerdictErrorWidth-1:0] t_error;  // beside the plane's, see set_up_pkg
-    logic [VerdictErrorWidth-1:0] normal_error;
-    logic [VerdictErrorWidth-1:0] distance_error;
-    logic [95:0]                  point;
+    logic                                   valid;
+    logic                                   is_skipped;  // it counts for nothing
+    logic                                   doubt;
+    logic                                   found;
+    logic [31:0]                            triangle;
+    logic [31:0]                            t;
+    logic [hit_test_pkg::TErrorWidth-1:0]   t_error;  // beside the plane's, see set_up_pkg
+    logic [set_up_pkg::PlaneErrorWidth-1:0] normal_error;
+    logic [set_up_pkg::PlaneErrorWidth-1:0] distance_error;
+    logic [95:0]                            point;
   } verdict_t;
 
   typedef struct packed {  // a ray's nearest hit so far
@@ -200,6 +213,13 @@ package ray_core_pkg;
     logic                    is_hit;  // surely; else the ray may miss it
     logic [AddressWidth-1:0] line;
   } open_t;
+
+  typedef struct packed {  // what exact_resolver is told of a ray
+    logic                    ended;  // it needs no hit, or no other
+    logic                    found;  // a sure hit, and its line
+    logic [AddressWidth-1:0] line;
+    logic [30:0]             t_max;  // without one: the user's
+  } known_t;
 
   // ---- Events of a clock, for counters
 

@@ -1,10 +1,8 @@
 // Exit of rays: detects that a ray has ended, and queues results.
 //
 // A ray has ended when it has no node, no leaf, no test and no doubt left. Its context is free at once; its nearest hit
-// waits in a queue. A ray's doubts leave before its end. Fields that say nothing are zero: a doubt has only its tag and
-// triangle, an end without a hit no triangle, t, t_error or P.
-//
-// Throughput: one ray ends and one result leaves in a clock.
+// waits in a queue. A ray's doubts leave before its end. Unused fields are zero: a doubt has only its tag and triangle,
+// an end without a hit no triangle, t, t_error or P. Throughput: one ray ends and one result leaves in a clock.
 module ray_retire
   import ray_core_pkg::*;
 #(
@@ -32,10 +30,6 @@ module ray_retire
 );
 
   localparam int unsigned Depth = 8;  // for an end a clock
-
-  if (Rays < 2 || 2 ** RayWidth != Rays) begin : gen_check
-    $error("ray_retire: expected Rays of 2 or more, a power of two");
-  end
 
   // ---- The end of a ray
 

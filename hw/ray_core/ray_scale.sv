@@ -6,22 +6,16 @@
 //      inverse_i    1 / I_k, binary32, x lowest
 //      cells_i      the grid's exponents e_k, eight bits an axis
 //      t_max_i      t_max's exponent
-// Out: exponent_o   E, at least -100
-//      inverse_o    1 / I_k, or 2**(E + 2 - e_k), with its sign, where s_k is above 2**(E + 2)
-//      caps_o       the exponent of that power of two, 11 signed bits an axis
-//      is_capped_o  it is given
-//      is_open_o    it is not a binary32 number: the axis says nothing
-module ray_scale (
+// Out: scale_o      see ray_core_pkg; E is at least -100
+module ray_scale
+  import ray_core_pkg::*;
+(
   input  logic        clk_i,
   input  logic [23:0] distances_i,
   input  logic [95:0] inverse_i,
   input  logic [23:0] cells_i,
   input  logic [7:0]  t_max_i,
-  output logic [8:0]  exponent_o,
-  output logic [95:0] inverse_o,
-  output logic [32:0] caps_o,
-  output logic [2:0]  is_capped_o,
-  output logic [2:0]  is_open_o
+  output scale_t      scale_o
 );
 
   localparam logic signed [10:0] NoExponent = 11'sd511;
@@ -67,22 +61,25 @@ module ray_scale (
     exponent_q <= (least < LeastExponent) ? LeastExponent : least;
     inverse_q  <= reach_inverse_q;
   end
-  assign exponent_o = exponent_q[8:0];
+  assign scale_o.exponent = exponent_q[8:0];
 
   // ---- Caps
 
   for (genvar k = 0; k < 3; k++) begin : gen_cap
     logic [7:0] inverse_field;
     logic signed [10:0] rest_q, cap;
-    assign inverse_field = inverse_q[32*k+23+:8];
+    logic is_capped;
+
     always_ff @(posedge clk_i) rest_q <= 11'sd129 - $signed({3'b0, reach_cells_q[8*k+:8]});
 
-    assign cap = exponent_q + rest_q;
-    assign caps_o[11*k +: 11] = cap;
-    assign is_capped_o[k] = (&inverse_field) | ($signed({3'b0, inverse_field}) >= cap);
-    assign is_open_o[k] = is_capped_o[k] & (cap < 11'sd1 | cap > 11'sd254);
-    assign inverse_o[32*k +: 32] =
-        is_capped_o[k] ? {inverse_q[32*k+31], cap[7:0], 23'd0} : inverse_q[32*k +: 32];
+    assign inverse_field = inverse_q[32*k+23+:8];
+    assign cap           = exponent_q + rest_q;
+    assign is_capped     = (&inverse_field) | ($signed({3'b0, inverse_field}) >= cap);
+    assign scale_o.caps[11*k +: 11] = cap;
+    assign scale_o.is_capped[k] = is_capped;
+    assign scale_o.is_open[k]   = is_capped & (cap < 11'sd1 | cap > 11'sd254);
+    assign scale_o.inverse[32*k +: 32] =
+        is_capped ? {inverse_q[32*k+31], cap[7:0], 23'd0} : inverse_q[32*k +: 32];
   end
 
 endmodule

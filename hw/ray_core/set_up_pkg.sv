@@ -1,4 +1,4 @@
-// What triangle_test and those who use its records share: format, latency, and how far off its planes are.
+// What triangle_test and those who use its records share: the format, and how far off its planes are.
 package set_up_pkg;
 
   // verilator lint_off UNUSEDPARAM
@@ -7,10 +7,6 @@ package set_up_pkg;
   localparam int unsigned ExpWidth = 8;  // binary32, for which the bounds are proven
   localparam int unsigned FracWidth = 23;
   localparam int unsigned Width = 1 + ExpWidth + FracWidth;
-
-  // From the clock edge that takes a triangle to that after which its record is there: two differences,
-  // a product between them, and a dot product.
-  localparam int unsigned Latency = 18;
 
   // ---- How far off N and d are: see triangle_test
 

@@ -4,22 +4,21 @@
 // In:  product_i    a = D / I, binary32; any
 //      inverse_i    1 / |I|, capped; exponent_i, cap_i: E and the cap, with binary32's bias
 //      is_capped_i  the inverse was above the cap; is_open_i: and the cap is no binary32 number
-// Out: near_o, far_o  a - r and a + r, two's complement; step_o: s in 256ths of a unit
+// Out: planes_o     a - r, lowest, and a + r, two's complement; step_o: s in 256ths of a unit
 module slab_setup
   import ray_core_pkg::*;
 #(
   parameter int unsigned Arith = arith_pkg::Graded
 ) (
-  input  logic                  clk_i,
-  input  logic [31:0]           product_i,
-  input  logic [30:0]           inverse_i,
-  input  logic [8:0]            exponent_i,
-  input  logic [10:0]           cap_i,
-  input  logic                  is_capped_i,
-  input  logic                  is_open_i,
-  output logic [PlaneWidth-1:0] near_o,
-  output logic [PlaneWidth-1:0] far_o,
-  output logic [StepWidth-1:0]  step_o
+  input  logic                       clk_i,
+  input  logic [31:0]                product_i,
+  input  logic [30:0]                inverse_i,
+  input  logic [8:0]                 exponent_i,
+  input  logic [10:0]                cap_i,
+  input  logic                       is_capped_i,
+  input  logic                       is_open_i,
+  output logic [1:0][PlaneWidth-1:0] planes_o,
+  output logic [StepWidth-1:0]       step_o
 );
 
   localparam int unsigned SizeWidth = 34;  // of |a|, up to 2**33
@@ -29,7 +28,7 @@ module slab_setup
   logic signed [10:0] amount, step_amount;
   logic [SizeWidth-1:0] size_q;
   logic [StepWidth-1:0] step_q;
-  logic [PlaneWidth-1:0] a, room, near, far;
+  logic [PlaneWidth-1:0] a, room;
   logic says_nothing_q, is_negative_q, is_capped_q;
 
   assign product_field = product_i[23 +: 8];
@@ -53,7 +52,6 @@ module slab_setup
 
   // ---- a -+ r
 
-
   adder #(
     .Width(PlaneWidth),
     .Arith(Arith)
@@ -64,29 +62,21 @@ module slab_setup
     .sum_o(a),
     .carry_o()
   );
-  adder #(
-    .Width(PlaneWidth),
-    .Arith(Arith)
-  ) u_near (
-    .a_i(a),
-    .b_i(~room),
-    .carry_i(1'b1),
-    .sum_o(near),
-    .carry_o()
-  );
-  adder #(
-    .Width(PlaneWidth),
-    .Arith(Arith)
-  ) u_far (
-    .a_i(a),
-    .b_i(room),
-    .carry_i(1'b0),
-    .sum_o(far),
-    .carry_o()
-  );
+  for (genvar side = 0; side < 2; side++) begin : gen_side
+    logic [PlaneWidth-1:0] plane;
 
-  assign near_o = says_nothing_q ? -Far : near;
-  assign far_o  = says_nothing_q ? Far : far;
+    adder #(
+      .Width(PlaneWidth),
+      .Arith(Arith)
+    ) u_plane (
+      .a_i(a),
+      .b_i((side == 0) ? ~room : room),
+      .carry_i((side == 0)),
+      .sum_o(plane),
+      .carry_o()
+    );
+    assign planes_o[side] = !says_nothing_q ? plane : (side == 0) ? -Far : Far;
+  end
   assign step_o = says_nothing_q ? '0 : step_q;
 
 endmodule

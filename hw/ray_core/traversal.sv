@@ -3,13 +3,13 @@
 // A stack entry is a group: the children of a node that a ray enters and has not visited yet, the nearest on top. In
 // each clock one ray is picked, of those that neither wait for a node nor have leaves to be fetched. Its groups whose
 // nearest child lies beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for.
-// Rays without tests in flight come first: what they ask for is needed for all that is known so far.
+// Rays without tests in flight come first, as their t_max is final for now; among these is a ray that starts.
 //
 // Each ray has Depth groups of its own. Levels - Depth more are shared by all rays. One ray at a time holds them, on
-// top of its own, from when it asks for a node with its own stack full until there is room in its own again;
-// overflow_o tells of each ray that takes them. Others that need them wait; their holder needs no other ray to go on,
-// so each gets its turn. Few rays overflow, so of the shared groups only the topmost is looked at, and it is not
-// dropped for t_max: box_unit leaves out what lies beyond.
+// top of its own, from when it asks for a node with its own stack full until there is room in its own again; overflow_o
+// tells of each ray that takes them. Others that need them wait; their holder needs no other ray to go on, so each gets
+// its turn. Of the shared groups only the topmost is looked at, and it is not dropped for t_max: box_unit leaves out
+// what lies beyond.
 //
 // In a tree a ray enters each node once, and has at most one group for each level. A ray that is about to enter more
 // than lines_i nodes, or has Levels groups, is in a cycle: its stack is dropped, and cycle_o says so.
@@ -20,8 +20,6 @@
 //   choose   the group
 //   fetch    the group from memory
 //   ask      for the line of its nearest child; or, in a clock without one, for the root, for a ray that starts
-//
-// A ray that starts goes before those that have tests in flight.
 module traversal
   import ray_core_pkg::*;
 #(
@@ -247,11 +245,8 @@ module traversal
   assign start_fire_o = start_valid_i & ~asked_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      {asked_q, next_valid_q, next_started_q} <= '0;
-    end else begin
-      {asked_q, next_valid_q, next_started_q} <= {go, asked_q, start_fire_o};
-    end
+    if (!rst_ni) {asked_q, next_valid_q, next_started_q} <= '0;
+    else {asked_q, next_valid_q, next_started_q} <= {go, asked_q, start_fire_o};
   end
   always_ff @(posedge clk_i) begin
     asking_ray_q  <= choosing_ray_q;

@@ -1,7 +1,7 @@
 // What the pipelined unit makes of its words, whatever functions its cores compute: V and U_k are
 // (x + y) + z of products of the record's words and the direction's, the verdict is hit_decision's of them,
 // t = d / V, and P_k = (d I_k) / V of what came for it. The same words, all at once, are compared
-// with those that enter nearest_hit, and those that leave point_unit, after the unit's latency.
+// with those that enter nearest_hit, and those of P, after the unit's latency.
 // opened_hit_test_pipeline is the unit with these as outputs. That tests come there once and in order, with
 // their tags: pipeline_keeps_tags.
 module pipeline_computes #(
@@ -49,14 +49,13 @@ module pipeline_computes #(
     .\u_nearest.t_i (t),
     .\u_nearest.t_error_i (t_error),
     .\u_nearest.payload_i (payload),
-    .\u_point.valid_i (point_asked),
-    .\u_point.dividends_i (dividends),
-    .\u_point.v_i (divisor),
-    .\u_point.valid_o (found),
-    .\u_point.point_o (point)
+    .point_asked(point_asked),
+    .nearest_payload({dividends, divisor}),
+    .point_valid(found),
+    .point(point)
   );
 
-  // ---- The words of Latency clocks ago, and those that the point unit was given
+  // ---- The words of Latency clocks ago, and those of the nearest hit that P was asked for
 
   logic [3*Width-1:0] direction, old_dividends;
   logic [RecordWidth-1:0] record;

@@ -65,7 +65,7 @@ module pipeline_keeps_credits #(
     .dividing_q(dividing_q),
     .report(report),
     .closed(closed),
-    .\u_point.valid_q (point_q),
+    .point_q(point_q),
     .\u_results.push_i (push),
     .\u_results.count_q (count_q),
     .\u_results.read_q (read_q),

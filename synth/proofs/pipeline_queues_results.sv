@@ -1,5 +1,5 @@
 // What the pipelined unit puts into its queue it takes out as it put it in: with a wire for a queue each
-// port of the results is what the nearest hit and the point units say, and there is a result exactly when one of
+// port of the results is what nearest_hit and the dividers of P say, and there is a result exactly when one of
 // them says something. That a queue keeps words and their order: fifo_keeps_order.
 module pipeline_queues_results #(
   parameter int unsigned ExpWidth  = 5,
@@ -25,7 +25,7 @@ module pipeline_queues_results #(
   logic [TErrorWidth-1:0] t_error_out, nearest_t_error;
   logic [3*Width-1:0] point_out, point;
 
-  opened_hit_test_pipeline dut (  // with what the two units say as outputs, from any state
+  opened_hit_test_pipeline dut (  // with what these say as outputs, from any state
     .clk_i(clk),
     .rst_ni(reset_n),
     .valid_i(valid_in),
@@ -53,8 +53,8 @@ module pipeline_queues_results #(
     .\u_nearest.tag_o (nearest_tag),
     .\u_nearest.t_o (t),
     .\u_nearest.t_error_o (nearest_t_error),
-    .\u_point.valid_o (point_valid),
-    .\u_point.point_o (point)
+    .point_valid(point_valid),
+    .point(point)
   );
 
   always_comb begin

@@ -26,7 +26,6 @@ struct CoreRay {
   std::uint32_t source_id = kNoTriangle;  ///< index of the triangle that the ray leaves
   std::uint32_t tag = 0;                  ///< returned with all results of the ray
   bool any_hit = false;                   ///< the search ends at the first sure hit
-  bool no_cull = false;                   ///< the ray enters all boxes
 };
 
 /// A result of the core. Results of different rays interleave; kEnd is the last result of a ray.

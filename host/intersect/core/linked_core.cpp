@@ -29,7 +29,7 @@ void send_all(WordLink& link, std::span<const std::uint32_t> words) {
 std::array<std::uint32_t, 11> ray_message(const CoreRay& ray) {
   std::array<std::uint32_t, 11> message{};
   PackedFields fields(message);
-  fields.put((4u | (ray.any_hit ? 1u : 0u) | (ray.no_cull ? 2u : 0u)) << 28);
+  fields.put((4u | (ray.any_hit ? 1u : 0u)) << 28);
   for (const std::uint32_t word : {ray.tag, ray.source_id, ray.skip_id}) fields.put(word);
   fields.put(std::bit_cast<std::uint32_t>(ray.t_max));
   fields.put(ray.ray.direction);

@@ -92,7 +92,6 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
       enter = std::max(enter, at(axis.near, axis.back ? child.high[k] : child.low[k]));
       leave = std::min(leave, at(axis.far, axis.back ? child.low[k] : child.high[k]));
     }
-    if (ray.no_cull) enter = leave = 0;
     const bool met = child.kind != NodeLine::kAbsent && enter <= leave;
     size += met ? 1 : 0;
     keys[i] = (std::int64_t{!met} << 26) | (met ? enter << 3 : 0) | static_cast<std::int64_t>(i);
@@ -293,8 +292,7 @@ struct RayTrace {
 
   /// Tests the leaves of a node, and returns its inner nodes.
   OpenGroup enter(const NodeLine& node) {
-    OpenGroup inside{
-        enter_boxes(node, {ray.ray.origin, 1.0f / ray.ray.direction, limit, ray.no_cull}), {}};
+    OpenGroup inside{enter_boxes(node, {ray.ray.origin, 1.0f / ray.ray.direction, limit}), {}};
     const BoxGroup& group = inside.group;
     for (const auto& entry : std::span(group.entry).first(static_cast<std::size_t>(group.size))) {
       if (entry.count == 0) inside.entries.push_back(entry);

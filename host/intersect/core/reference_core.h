@@ -15,7 +15,6 @@ struct BoxRay {
   glm::vec3 origin{0.0f};
   glm::vec3 inverse{0.0f};  ///< 1 / I_k, rounded to nearest; infinite if I_k is 0
   float t_max = 0.0f;       ///< positive or +infinity: hits beyond it do not count
-  bool no_cull = false;     ///< the ray enters all children
 };
 
 /// The children that a ray enters, nearest first (a group in hw/ray_core/ray_core_pkg.sv).

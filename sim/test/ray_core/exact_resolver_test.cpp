@@ -152,9 +152,7 @@ TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
   const MemoryImage image(bvh);
   std::vector<CoreRay> rays;
   for (std::uint32_t n = 0; n < 20; ++n) {
-    rays.push_back({.ray = {glm::vec3(-1, 0.01f * static_cast<float>(n % 3), 0), {}},
-                    .tag = n,
-                    .no_cull = true});
+    rays.push_back({.ray = {glm::vec3(-1, 0.01f * static_cast<float>(n % 3), 0), {}}, .tag = n});
     rays.back().ray.direction =
         scaled_direction(glm::dvec3(1, 0, 0) - glm::dvec3(rays.back().ray.origin));
   }

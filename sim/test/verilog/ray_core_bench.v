@@ -20,7 +20,7 @@ module bench;
   ray_core dut (
     .clk_i(clk), .rst_ni(reset_n), .invalidate_i(1'b0), .outstanding_o(outstanding), .abort_i(1'b0), .lines_i(28'd5),
     .ray_valid_i(ray), .ray_ready_o(ray_ready),
-    .ray_i({origin, 64'd0, 32'h3f800000, 31'h7f800000, skip, source, 2'd0, tag}), .result_valid_o(result),
+    .ray_i({origin, 64'd0, 32'h3f800000, 31'h7f800000, skip, source, 1'd0, tag}), .result_valid_o(result),
     .result_ready_i(result_ready),
     .result_o({kind, result_tag, found, triangle, t, t_error, point, tests, error}),
     .read_valid_o(read),

@@ -14,9 +14,8 @@ struct BoxCase {
   NodeLine node;
   Ray ray;  ///< scaled; what the unit reads of it is `read()`
   float limit = std::numeric_limits<float>::infinity();
-  bool no_cull = false;
 
-  [[nodiscard]] BoxRay read() const { return {ray.origin, 1.0f / ray.direction, limit, no_cull}; }
+  [[nodiscard]] BoxRay read() const { return {ray.origin, 1.0f / ray.direction, limit}; }
 };
 
 /// Always the same cases for the same seed.
@@ -79,7 +78,6 @@ class BoxCases {
     }
     if (one_in(64)) box.limit = std::ldexp(1.0f, between(-149, 127));
     if (box.limit == 0.0f) box.limit = 1.0f;
-    box.no_cull = one_in(16);
     return box;
   }
 
