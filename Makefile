@@ -110,7 +110,6 @@ ifdef WHEEL
 	@build/wheel/fresh/bin/python -m unittest host/python/test/raygate_test.py
 	@ls build/wheel/*.whl
 else
-	$(call build,build,float_cores)
 	@test -e build/python/bin/pip || python3 -m venv build/python
 	@rm -rf build-pip
 	@build/python/bin/pip install --quiet --disable-pip-version-check -r host/python/requirements.txt
