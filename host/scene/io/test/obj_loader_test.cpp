@@ -45,7 +45,7 @@ TEST(LoadObj, Triangle) {
   EXPECT_EQ(vertices_of(scene), kOneTriangle);
   EXPECT_EQ(scene.triangles[0].normals, (Indices{kNoIndex, kNoIndex, kNoIndex}));
   EXPECT_EQ(scene.triangles[0].texcoords, (Indices{kNoIndex, kNoIndex, kNoIndex}));
-  EXPECT_EQ(scene.objects.all(), std::vector<std::string>{"default"});
+  EXPECT_EQ(scene.objects, std::vector<std::string>{"default"});
   ASSERT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.materials[0].name, "default");
   EXPECT_EQ(scene.origin, glm::dvec3(0));
@@ -80,7 +80,7 @@ TEST(LoadObj, LineEnds) {
     }
     const Scene scene = load(text);
     EXPECT_EQ(vertices_of(scene), kTwoTriangles);
-    EXPECT_EQ(scene.objects.all(), std::vector<std::string>{"a"});
+    EXPECT_EQ(scene.objects, std::vector<std::string>{"a"});
     EXPECT_EQ(only_warning(scene),
               "scene.obj:6: material 'b' is defined nowhere, the default instead");
   }
@@ -170,7 +170,7 @@ TEST(LoadObj, ObjectsAndGroups) {
       "f 1 2 3\no room\nf 1 2 3\ng  a  b \nf 1 2 3\nf 2 3 4\no\nf 1 2 3\ng\nf 1 2 3\no room\ng a "
       "b\n"
       "f 1 2 3\ng unused\n");
-  EXPECT_EQ(scene.objects.all(), (std::vector<std::string>{"default", "room", "room/a b", "a b"}));
+  EXPECT_EQ(scene.objects, (std::vector<std::string>{"default", "room", "room/a b", "a b"}));
   std::vector<std::uint32_t> objects;
   for (const Triangle& triangle : scene.triangles) objects.push_back(triangle.object);
   EXPECT_EQ(objects, (std::vector<std::uint32_t>{0, 1, 2, 2, 3, 0, 2}));
