@@ -78,7 +78,7 @@ class Camera {
   /// Returns half the height of the image plane at distance 1 along forward().
   [[nodiscard]] double half_height() const { return half_height_; }
 
-  /// Returns whether all rays start at the eye, so that they fill a pyramid: not with a thin lens.
+  /// Returns whether this is a perspective camera without a lens: its rays fill a pyramid.
   [[nodiscard]] bool is_pinhole() const {
     return projection_ == Projection::kPerspective && aperture_ == 0.0;
   }

@@ -167,7 +167,6 @@ class JsonValue {
   [[nodiscard]] std::optional<JsonValue> find(const std::string& key) const {
     return value_->contains(key) ? std::optional(member(key)) : std::nullopt;
   }
-  /// Returns the value of a required key.
   [[nodiscard]] JsonValue at(const std::string& key) const {
     const auto found = find(key);
     if (!found) throw InputError(file_->name, line(), label() + "'" + key + "' is missing");
