@@ -69,7 +69,7 @@ LONG_traffic = RAYGATE_TRAFFIC=$(or $(EPOCHS),3000) build/sim/axi_traffic_test
 LONG_kills = RAYGATE_KILLS=$(or $(KILLS),100) build/run_test --gtest_filter='*SurviveBeingKilled'
 LONG_faults = RAYGATE_FAULTS=0 build/faults_test
 LONG_guards = python3 .ci/guards.py try $(GUARDS)
-LONG_commands = python3 -B host/docs/commands.py
+LONG_commands = python3 -B host/test/commands.py
 LONG_image = .ci/image
 LONG_damage = python3 -B host/test/damage_files.py build/render build/trace --count $(or $(COUNT),300) --seed $(or $(SEED),1)
 LONG_trimesh = RAYGATE_TRIMESH=1 PYTHONPATH=build/host/python $(PYTHON) -B host/python/test/trimesh_test.py
@@ -110,7 +110,6 @@ ifdef WHEEL
 	@build/wheel/fresh/bin/python -m unittest host/python/test/raygate_test.py
 	@ls build/wheel/*.whl
 else
-	$(call build,build,float_cores)
 	@test -e build/python/bin/pip || python3 -m venv build/python
 	@rm -rf build-pip
 	@build/python/bin/pip install --quiet --disable-pip-version-check -r host/python/requirements.txt

@@ -22,8 +22,9 @@ Scene load(const SceneFile& file, const LoadOptions& options, const EnvironmentS
   Scene scene = load_scene(file, options);
   require_numbers(scene, file.file);
   if (environment.file.empty()) return scene;
-  const std::optional<glm::dvec3>& known = up ? up : file.up();
-  load_environment(environment, known ? *known : scene.up, scene);
+  const std::optional<glm::dvec3>& of_file =
+      file.camera.camera ? file.camera.camera->up : file.camera.up;
+  load_environment(environment, up.value_or(of_file.value_or(scene.up)), scene);
   return scene;
 }
 

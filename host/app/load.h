@@ -15,7 +15,7 @@ namespace raygate {
 
 /// Loads the model, instances and lights of a scene file, and an environment map whose up direction
 /// is `up`, else the file's, else the format's usual one. Throws InputError as load_scene() and
-/// load_environment() do, and if the scene has too many triangles or objects to number.
+/// load_environment() do, and if the scene has too many triangles to number.
 [[nodiscard]] Scene load(const SceneFile& file, const LoadOptions& options,
                          const EnvironmentSetting& environment = {},
                          const std::optional<glm::dvec3>& up = {});

@@ -51,7 +51,8 @@ int run(const std::vector<std::string>& words) {
   whole.film.keeps_sums = is_part || options.channels.sums;
   StagedFiles ready = stage_files(options, whole.film, whole.metadata);
   for (AtomicFile& file : ready.files) file.commit();
-  print("wrote " + listed(ready.paths) + ": samples " + to_string(samples_of(whole.metadata)) +
+  print("wrote " + listed(options.pictures()) + ": samples " +
+        to_string(samples_of(whole.metadata)) +
         (is_part ? ", of a picture that has more\n" : "\n"));
   return 0;
 }

@@ -70,14 +70,12 @@ template <typename T>
   return std::ranges::find(choices, value, &std::pair<std::string, T>::second)->first;
 }
 
-/// Returns the value with this name, or none.
 template <typename T>
 [[nodiscard]] std::optional<T> value_of(const Choices<T>& choices, const std::string& name) {
   const auto found = std::ranges::find(choices, name, &std::pair<std::string, T>::first);
   return found == choices.end() ? std::nullopt : std::optional<T>(found->second);
 }
 
-/// Returns the names of all choices, in their order.
 template <typename T>
 [[nodiscard]] std::vector<std::string> names_of(const Choices<T>& choices) {
   std::vector<std::string> names;

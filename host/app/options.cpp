@@ -177,8 +177,7 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
       [](const std::string& text) { return value_of(kAxes, text); }, vector_text, kInExr | kInPage);
   table.number("--fov", "DEGREES", "vertical field of view of any camera (35)", request.fov,
                kFovRange, kInExr | kInPage);
-  table.choice<Projection>("--projection", "NAME",
-                           "perspective (default), orthographic or panorama",
+  table.choice<Projection>("--projection", "NAME", "perspective (default) or orthographic",
                            request.lens.projection,
                            {std::begin(kProjections), std::end(kProjections)}, kInExr | kInPage);
   table.number("--aperture", "R", "lens radius for depth of field; needs --spp (0)",
@@ -358,11 +357,16 @@ SceneFile scene_file_of(const fs::path& scene) {
 std::string to_string(Engine engine) { return name_of(kEngines, engine); }
 std::string to_string(Arith arith) { return name_of(kAriths, arith); }
 
-std::vector<fs::path> OutputOptions::paths() const {
+std::vector<fs::path> OutputOptions::pictures() const {
   std::vector<fs::path> all;
   if (exr) all.push_back(*exr);
   if (png) all.push_back(*png);
   for (const FalseColorOutput& output : false_colors) all.push_back(output.path);
+  return all;
+}
+
+std::vector<fs::path> OutputOptions::paths() const {
+  std::vector<fs::path> all = pictures();
   if (stats) all.push_back(*stats);
   return all;
 }
@@ -483,11 +487,8 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
               settings.end_sample = range.end;
               return range.end > 0;
             });
-  table.choice<ReconstructionFilter>("--filter", "NAME", "pixel filter: box, tent, gauss or {}",
-                                     settings.filter,
+  table.choice<ReconstructionFilter>("--filter", "NAME", "pixel filter: box or {}", settings.filter,
                                      {{"box", ReconstructionFilter::kBox},
-                                      {"tent", ReconstructionFilter::kTent},
-                                      {"gauss", ReconstructionFilter::kGauss},
                                       {"blackman-harris", ReconstructionFilter::kBlackmanHarris}},
                                      kInExr | kInPython | kInSceneFile | kInPage);
   static constexpr Range<int> kDepths{0, 1000};

@@ -66,7 +66,8 @@ struct OutputOptions {
   DisplayOptions display;                      ///< of the PNG
   double save_seconds = 0.0;                   ///< between saves of the unfinished picture; 0: none
 
-  /// All files, statistics last.
+  [[nodiscard]] std::vector<std::filesystem::path> pictures() const;
+  /// The pictures and the statistics.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
   /// The channels that a film needs for these files.
   [[nodiscard]] ExtraChannels needed_channels() const;

@@ -12,17 +12,13 @@ namespace raygate {
 StagedFiles stage_files(const OutputOptions& options, const Film& film, const ExrMetadata& metadata,
                         int threads) {
   StagedFiles ready;
-  const auto add = [&](const std::filesystem::path& path, const std::string& bytes) {
-    ready.files.emplace_back(path, bytes);
-    ready.paths.push_back(path);
-  };
   const auto add_png = [&](const std::filesystem::path& path, Image8 picture) {
     if (metadata.attributes.contains(kPartialAttribute)) {
       picture.texts.emplace_back("Comment", kPartial);
     }
-    add(path, encode_png(picture));
+    ready.files.emplace_back(path, encode_png(picture));
   };
-  if (options.exr) add(*options.exr, encode_exr(film, metadata, threads));
+  if (options.exr) ready.files.emplace_back(*options.exr, encode_exr(film, metadata, threads));
   if (options.png) add_png(*options.png, to_display(film, options.display));
   for (const FalseColorOutput& output : options.false_colors) {
     const Image8 picture = false_color(film, output.channel);
@@ -57,8 +53,7 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
   const HitCounters& hit = work.hit;
   const PixelRect& window = options.render.window;
   std::vector<std::string> pictures;
-  pictures.reserve(report.pictures.size());
-  for (const auto& path : report.pictures) pictures.push_back(path.string());
+  for (const auto& path : options.output.pictures()) pictures.push_back(path.string());
   return {
       {"software", kSoftware},
       {"scene", options.scene_file.obj.string()},
@@ -193,7 +188,8 @@ std::string to_text(const Report& report, const Options& options) {
     text += row("rounded", format_count(report.rounding.corners, "corner") +
                                " to binary32, by up to " + format_number(report.rounding.most));
   }
-  text += row("wrote", listed(report.pictures) + " in " + format_duration(report.total_seconds));
+  text += row("wrote",
+              listed(options.output.pictures()) + " in " + format_duration(report.total_seconds));
   if (!report.view.empty()) text += row("view", report.view);
   for (const std::string& legend : report.legends) text += row("scale", legend);
   return options.verbose ? text + details(report, options) : text;

@@ -18,7 +18,6 @@ namespace raygate {
 /// Pictures of a film under temporary names.
 struct StagedFiles {
   std::vector<AtomicFile> files;
-  std::vector<std::filesystem::path> paths;
   std::vector<std::string> legends;  ///< of the false-colour pictures
 };
 
@@ -39,7 +38,6 @@ struct Report {
   double tree_seconds = 0.0;   ///< building the tree
   double write_seconds = 0.0;  ///< encoding and writing the pictures
   double total_seconds = 0.0;
-  std::vector<std::filesystem::path> pictures;
   std::string view;                  ///< Framing::text
   std::vector<std::string> legends;  ///< scales of the false-colour pictures
 };

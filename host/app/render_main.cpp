@@ -115,8 +115,7 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
                       const IntersectorFactory& make_intersector, RenderStats& stats) {
   ProgressLine line(!options.quiet);
   metadata.attributes[kPartialAttribute] = kPartial;
-  OutputOptions outputs = options.output;
-  outputs.stats.reset();
+  const OutputOptions& outputs = options.output;
   const auto write = [&](const Film& film) {
     for (AtomicFile& file : stage_files(outputs, film, metadata, options.threads).files) {
       file.commit();
@@ -129,7 +128,7 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
       throw Interrupted(signal, "no file was changed");
     }
     write(film);
-    std::string outcome = "wrote what there was: " + listed(outputs.paths());
+    std::string outcome = "wrote what there was: " + listed(outputs.pictures());
     if (film.keeps_sums && outputs.exr) {
       outcome += "; --resume " + outputs.exr->string() + " goes on from there";
     }
@@ -150,7 +149,7 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
         if (film == nullptr) throw std::bad_alloc();
         write(*film);
       } catch (const std::bad_alloc&) {
-        trouble = listed(outputs.paths()) + ": cannot write: out of memory";
+        trouble = listed(outputs.pictures()) + ": cannot write: out of memory";
       } catch (const std::exception& error) {
         trouble = error.what();
       }
@@ -255,7 +254,6 @@ void run(const Options& options) {
   // All files are staged before the first takes its name: a full disk changes none of them.
   lap.lap();
   StagedFiles staged = stage_files(outputs, film, metadata, options.threads);
-  report.pictures = staged.paths;
   report.legends = staged.legends;
   report.write_seconds = lap.lap();
   report.total_seconds = total.lap();

@@ -125,10 +125,9 @@ void trace_rays(const TraceOptions& options) {
   };
   write(answers.header());
   Stopwatch stopwatch;
-  const TraceCounts counts =
-      trace([&](std::size_t most, RayTable& block) { return rays.read(most, block); }, options.hits,
-            bvh, answers, make_intersector_factory(options.engine, bvh), options.engine.threads,
-            write, [] { return true; });
+  const TraceCounts counts = trace(
+      [&](std::size_t most, RayTable& block) { return rays.read(most, block); }, options.hits, bvh,
+      answers, make_intersector_factory(options.engine, bvh), options.engine.threads, write);
   handle_interruptions(SIG_IGN);
   if (file) file->commit();
   const double seconds = stopwatch.lap();
@@ -148,8 +147,8 @@ int run(const std::vector<std::string>& words) {
                      {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}});
   table.text(
       "--columns", "NAMES",
-      "ray,hit,triangle,object,material,t,point,uv,normal,side,doubts, unit-point,unit-error (all "
-      "but material, side and the last two; of any: ray,hit)",
+      "ray,hit,triangle,object,material,t,point,uv,normal,side,doubts (all but material and side; "
+      "of any: ray,hit)",
       columns);
   add_engine_options(table, options.engine);
   table.flag("-q,--quiet", "print no summary (on standard error)", options.quiet);
@@ -167,7 +166,10 @@ int run(const std::vector<std::string>& words) {
     }
   }
   const auto names = columns.empty() ? std::vector<std::string>() : split_at_commas(columns);
-  options.columns = columns_of(names, options.hits, options.engine.engine == Engine::kCpu, "--");
+  options.columns = columns_of(names, options.hits, "--");
+  if (options.hits == Hits::kAll && options.engine.engine != Engine::kCpu) {
+    table.fail_value("engine", "cpu with --hits all");  // units return nearest hits only
+  }
   trace_rays(options);
   return 0;
 }

@@ -82,7 +82,6 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const Pix
   return header;
 }
 
-/// Returns the data window.
 PixelRect window_of(const Imf::Header& header) {
   const Imath::Box2i& data = header.dataWindow();
   return {data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};

@@ -1,7 +1,6 @@
 #include "host/film/film.h"
 
 #include <cstring>
-#include <numbers>
 #include <type_traits>
 
 #include "host/base/elementary.h"
@@ -87,22 +86,13 @@ void copy_region(const Film& from, const PixelRect& rect, Film& to) {
 
 namespace {
 
-constexpr double kRadius = 1.5;  // of Gauss and Blackman-Harris
-
-double gauss(double x) { return binary_power(-2.0 * std::numbers::log2e * x * x); }
-
-/// Returns the minimum 4-term window (Harris 1978, "On the use of windows for harmonic analysis").
-double blackman_harris(double x) {
-  const double turns = 0.5 * (x / kRadius + 1.0);
-  return 0.35875 - 0.48829 * sine_cosine(turns).cosine + 0.14128 * sine_cosine(2.0 * turns).cosine -
-         0.01168 * sine_cosine(3.0 * turns).cosine;
-}
-
-/// Table of the inverse cumulative distribution of a filter.
-class Inverse {
+/// The minimum four-term window (Harris 1978, "On the use of windows for harmonic analysis") and a
+/// table of its inverse cumulative distribution.
+class BlackmanHarris {
  public:
-  template <class Weight>
-  explicit Inverse(Weight weight) {
+  static constexpr double kRadius = 1.5;
+
+  BlackmanHarris() {
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i) {
       cumulative_[i] = sum;
@@ -116,7 +106,7 @@ class Inverse {
     }
   }
 
-  [[nodiscard]] double operator()(double u) const {
+  [[nodiscard]] double offset(double u) const {
     int step = first_[static_cast<int>(u * kStarts)];
     while (step < kSteps - 1 && cumulative_[step + 1] <= u) ++step;
     const double within = (u - cumulative_[step]) / (cumulative_[step + 1] - cumulative_[step]);
@@ -134,45 +124,38 @@ class Inverse {
  private:
   static constexpr int kSteps = 1024, kStarts = 8 * kSteps;  // many starts shorten searches
   static double place(double step) { return (2.0 * step / kSteps - 1.0) * kRadius; }
+  static double weight(double x) {
+    const double turns = 0.5 * (x / kRadius + 1.0);
+    return 0.35875 - 0.48829 * sine_cosine(turns).cosine +
+           0.14128 * sine_cosine(2.0 * turns).cosine - 0.01168 * sine_cosine(3.0 * turns).cosine;
+  }
+
   std::array<double, kSteps + 1> cumulative_;
   std::array<std::uint16_t, kStarts> first_;  // the step that contains u = i / kStarts
 };
 
-double tent(double u) {
-  return u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - u));
-}
-
-struct Kernel {
-  double radius;
-  double (*offset)(double u);
-  double (*density)(double at);
-};
-
-const Kernel& kernel_of(ReconstructionFilter filter) {
-  static const Inverse gauss_table(gauss), blackman_harris_table(blackman_harris);
-  static constexpr Kernel kKernels[] = {
-      {0.5, [](double u) { return u - 0.5; },
-       [](double at) { return at >= -0.5 && at < 0.5 ? 1.0 : 0.0; }},
-      {1.0, tent, [](double at) { return std::max(0.0, 1.0 - std::abs(at)); }},
-      {kRadius, [](double u) { return gauss_table(u); },
-       [](double at) { return gauss_table.density(at); }},
-      {kRadius, [](double u) { return blackman_harris_table(u); },
-       [](double at) { return blackman_harris_table.density(at); }}};
-  return kKernels[static_cast<std::size_t>(filter)];
+const BlackmanHarris& blackman_harris() {
+  static const BlackmanHarris table;
+  return table;
 }
 
 }  // namespace
 
 double filter_density(ReconstructionFilter filter, const glm::dvec2& offset) {
-  const Kernel& kernel = kernel_of(filter);
-  return kernel.density(offset.x) * kernel.density(offset.y);
+  const auto density = [&](double at) {
+    if (filter == ReconstructionFilter::kBox) return at >= -0.5 && at < 0.5 ? 1.0 : 0.0;
+    return blackman_harris().density(at);
+  };
+  return density(offset.x) * density(offset.y);
 }
 
 glm::dvec2 filter_offset(ReconstructionFilter filter, const glm::dvec2& u) {
-  const Kernel& kernel = kernel_of(filter);
-  return {kernel.offset(u.x), kernel.offset(u.y)};
+  if (filter == ReconstructionFilter::kBox) return u - 0.5;
+  return {blackman_harris().offset(u.x), blackman_harris().offset(u.y)};
 }
 
-double filter_radius(ReconstructionFilter filter) { return kernel_of(filter).radius; }
+double filter_radius(ReconstructionFilter filter) {
+  return filter == ReconstructionFilter::kBox ? 0.5 : BlackmanHarris::kRadius;
+}
 
 }  // namespace raygate

@@ -216,8 +216,6 @@ void copy_region(const Film& from, const PixelRect& rect, Film& to);
 /// Filters around a pixel's centre; all are non-negative and separable.
 enum class ReconstructionFilter {
   kBox,             ///< 1 within the pixel: radius 0.5
-  kTent,            ///< falls linearly to 0 at radius 1
-  kGauss,           ///< standard deviation 0.5, cut off at radius 1.5
   kBlackmanHarris,  ///< four-term window of radius 1.5: sharper than Gauss, and it ends smoothly
 };
 

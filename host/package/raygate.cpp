@@ -11,6 +11,7 @@
 #include "host/scene/scene.h"
 #include "host/trace/hit_table.h"
 #include "host/trace/ray_table.h"
+#include "host/trace/tracer.h"
 
 namespace raygate {
 namespace {
@@ -62,8 +63,7 @@ void require_room(std::size_t rays, std::size_t room) {
 }  // namespace
 
 struct Tracer::Tree {
-  Tree(Scene&& given, int threads)
-      : origin(given.origin), scene(std::move(given)), bvh(scene, threads) {
+  Tree(Scene&& given, int threads) : scene(std::move(given)), bvh(scene, threads) {
     scene.positions = {};
     if (bvh.is_binary32()) scene.triangles = {};
   }
@@ -77,18 +77,11 @@ struct Tracer::Tree {
 
   [[nodiscard]] std::vector<NearestHit> find(const RayTable& block, bool any) const {
     std::vector<NearestHit> hits(block.rays.size());
-    RayQuery query{.t_max = block.limits, .exact_rays = block.exact_rays};
     CpuIntersector intersector(bvh);
-    if (any) {
-      query.any_hit_before = block.limits;
-      intersector.occluded(block.rays, query, hits);
-    } else {
-      intersector.nearest(block.rays, query, hits);
-    }
+    find_hits(intersector, block, any, hits);
     return hits;
   }
 
-  glm::dvec3 origin;
   Scene scene;  // what the BVH refers to
   Bvh bvh;
 };
@@ -110,7 +103,7 @@ Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
   const IeeeFloats guard;
   require_room(rays.size(), hits.size());
-  const RayTable block = block_of(rays, tree_->origin);
+  const RayTable block = block_of(rays, tree_->scene.origin);
   const std::vector<NearestHit> found = tree_->find(block, false);
   for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = tree_->answer(block, i, found[i]);
 }
@@ -118,7 +111,7 @@ void Tracer::nearest(std::span<const Ray> rays, std::span<Hit> hits) const {
 void Tracer::any(std::span<const Ray> rays, std::span<std::uint8_t> is_hit) const {
   const IeeeFloats guard;
   require_room(rays.size(), is_hit.size());
-  const std::vector<NearestHit> found = tree_->find(block_of(rays, tree_->origin), true);
+  const std::vector<NearestHit> found = tree_->find(block_of(rays, tree_->scene.origin), true);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     is_hit[i] = found[i].primitive == NearestHit::kNone ? 0 : 1;
   }
@@ -126,7 +119,7 @@ void Tracer::any(std::span<const Ray> rays, std::span<std::uint8_t> is_hit) cons
 
 std::vector<Tracer::Hit> Tracer::all(const Ray& ray) const {
   const IeeeFloats guard;
-  const RayTable block = block_of({&ray, 1}, tree_->origin);
+  const RayTable block = block_of({&ray, 1}, tree_->scene.origin);
   std::vector<NearestHit> found;
   RayWork work;
   all_hits(tree_->bvh, block.exact_ray(0), block.limits[0], found, work);

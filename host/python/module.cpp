@@ -25,6 +25,7 @@
 #include "host/app/load.h"
 #include "host/app/options.h"
 #include "host/base/input_error.h"
+#include "host/base/measure.h"
 #include "host/base/threads.h"
 #include "host/bvh/bvh.h"
 #include "host/bvh/closest_point.h"
@@ -32,9 +33,6 @@
 #include "host/film/display.h"
 #include "host/film/exr.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/burst_unit.h"
-#include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/unit_intersector.h"
 #include "host/light/prepared_scene.h"
 #include "host/render/renderer.h"
 #include "host/scene/io/mesh_builder.h"
@@ -50,8 +48,9 @@ namespace nb = nanobind;
 namespace raygate {
 namespace {
 
-using Vectors3 = nb::ndarray<nb::ro, nb::shape<-1, 3>, nb::device::cpu, nb::c_contig>;
-using Numbers = nb::ndarray<nb::ro, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
+// Arrays of float32 are converted.
+using Vectors3 = nb::ndarray<const double, nb::shape<-1, 3>, nb::device::cpu, nb::c_contig>;
+using Numbers = nb::ndarray<const double, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
 using Three = std::array<double, 3>;
 using Texts = nb::typed<nb::list, nb::str>;
 
@@ -73,9 +72,6 @@ struct Keywords : OptionTable {
   Keywords() : OptionTable("", "", "") {
     number("--threads", "", "", threads, kThreadRange, kInPython);
   }
-  void add_engine() {
-    choice<bool>("--engine", "", "", uses_model, {{"cpu", false}, {"model", true}}, kInPython);
-  }
   void read(const Settings& settings) {
     std::vector<OptionValue> values;
     for (const auto& [name, text] : settings) {
@@ -86,7 +82,6 @@ struct Keywords : OptionTable {
   }
 
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool uses_model = false;  // use the reference model of the hit-test unit
 };
 
 struct SceneKeywords : Keywords {
@@ -97,48 +92,9 @@ struct SceneKeywords : Keywords {
   std::optional<double> smooth;
 };
 
-/// Read access to an array of float32 or float64, without a copy.
-class Elements {
- public:
-  template <class Array>
-  Elements(const char* name, const Array& array) : data_(array.data()) {
-    is_double_ = array.dtype() == nb::dtype<double>();
-    if (!is_double_ && array.dtype() != nb::dtype<float>()) {
-      throw InputError(std::string(name) + ": expected an array of float32 or float64");
-    }
-  }
-  double operator[](std::size_t i) const {
-    return is_double_ ? static_cast<const double*>(data_)[i]
-                      : double{static_cast<const float*>(data_)[i]};
-  }
-  [[nodiscard]] glm::dvec3 vector(std::size_t i) const {
-    return {(*this)[3 * i], (*this)[3 * i + 1], (*this)[3 * i + 2]};
-  }
-
- private:
-  const void* data_;
-  bool is_double_ = false;
-};
-
-/// Number of rays that a thread traces between two checkpoints: about 50 ms of work.
-class BlockSize {
- public:
-  [[nodiscard]] std::size_t value() const { return value_; }
-
-  /// Adapts the size to the time since the last call.
-  void end_round() {
-    const auto now = std::chrono::steady_clock::now();
-    const std::chrono::duration<double> round = now - last_;
-    last_ = now;
-    const double factor = std::clamp(0.05 / std::max(round.count(), 1e-6), 0.1, 4.0);
-    value_ =
-        static_cast<std::size_t>(std::clamp(factor * static_cast<double>(value_), 16.0, 0x1p14));
-  }
-
- private:
-  std::size_t value_ = 256;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
+glm::dvec3 vector_at(const Vectors3& vectors, std::size_t i) {
+  return {vectors(i, 0), vectors(i, 1), vectors(i, 2)};
+}
 
 /// Returns text from the system as a str: bytes that are not UTF-8 become surrogates.
 nb::object text_of(const std::string& text) {
@@ -189,13 +145,12 @@ class PythonScene {
   /// Makes a scene of triangles from their corners. `name` is the array's name in messages.
   PythonScene(const std::string& name, const Vectors3& corners, const Settings& settings) {
     const SceneKeywords keywords(settings);
-    const Elements points("triangles", corners);
     const nb::gil_scoped_release release;
     MeshBuilder mesh(name, MeshBuilder::Source::kArray);
     for (std::size_t i = 0; i + 2 < corners.shape(0); i += 3) {
       std::array<FaceCorner, 3> face;
       for (std::size_t k = 0; k < 3; ++k) {
-        mesh.add_position(points.vector(i + k));
+        mesh.add_position(vector_at(corners, i + k));
         face[k].position = static_cast<std::uint32_t>(i + k);
       }
       mesh.add_face(face, i / 3 + 1);
@@ -223,23 +178,25 @@ class PythonScene {
     keywords.choice<Hits>("--hits", "", "", asked,
                           {{"nearest", Hits::kNearest}, {"any", Hits::kAny}, {"all", Hits::kAll}},
                           kInPython);
-    keywords.add_engine();
     keywords.read(settings);
-    const Elements from("origins", origins), way("directions", directions);
-    std::optional<Elements> limit;
-    if (limits) limit.emplace("limits", *limits);
-    const HitTable answers(scene_, *bvh_, columns_of(columns, asked, !keywords.uses_model, ""),
-                           TableFormat::kBinary);
-    BlockSize size;
+    const HitTable answers(scene_, *bvh_, columns_of(columns, asked, ""), TableFormat::kBinary);
+    // Rays that a thread traces between two checkpoints: about 50 ms of work.
+    double block_size = 64.0;
+    bool is_new_round = true;
+    Stopwatch round;
     const auto read = [&, next = std::size_t{0}](std::size_t most, RayTable& block) mutable {
+      if (std::exchange(is_new_round, false)) {
+        const double factor = std::clamp(0.05 / std::max(round.lap(), 1e-6), 0.1, 4.0);
+        block_size = std::clamp(factor * block_size, 16.0, 0x1p14);
+      }
       block.clear(next);
-      for (; block.rays.size() < std::min(most, size.value()) && next < count; ++next) {
-        const glm::dvec3 direction = way.vector(next);
+      for (; block.rays.size() < std::min(most, std::size_t(block_size)) && next < count; ++next) {
+        const glm::dvec3 direction = vector_at(directions, next);
         const char* const wrong =
             direction == glm::dvec3(0.0)
                 ? "found the direction (0, 0, 0), expected another one"
-                : block.add(from.vector(next), direction,
-                            limit ? (*limit)[next] : std::numeric_limits<double>::infinity(),
+                : block.add(vector_at(origins, next), direction,
+                            limits ? (*limits)(next) : std::numeric_limits<double>::infinity(),
                             scene_.origin);
         if (wrong != nullptr) throw InputError("ray " + std::to_string(next) + ": " + wrong);
       }
@@ -249,15 +206,11 @@ class PythonScene {
     rows->reserve(count * answers.fields().size() * 8);
     {
       const nb::gil_scoped_release release;
-      (void)trace(
-          read, asked, *bvh_, answers, intersectors(keywords.uses_model),
-          static_cast<unsigned>(keywords.threads),
-          [&](std::string_view bytes) { rows->append(bytes); },
-          [&] {
-            size.end_round();
-            checkpoint();
-            return true;
-          });
+      (void)trace(read, asked, *bvh_, answers, intersectors(),
+                  static_cast<unsigned>(keywords.threads), [&](std::string_view bytes) {
+                    rows->append(bytes);
+                    is_new_round = true;
+                  });
     }
     return {bytes_of(rows, rows->data(), rows->size()), answers.fields()};
   }
@@ -268,28 +221,17 @@ class PythonScene {
       std::int64_t triangle;
       double distance, x, y, z;
     };
-    const Elements from("points", points);
     const auto rows = std::make_shared<std::vector<Row>>(points.shape(0));
     {
       const nb::gil_scoped_release release;
       for (std::size_t i = 0; i < rows->size(); ++i) {
         checkpoint();
-        const ClosestPoint found = closest_point(*bvh_, from.vector(i) - scene_.origin);
+        const ClosestPoint found = closest_point(*bvh_, vector_at(points, i) - scene_.origin);
         const glm::dvec3 at = found.point + scene_.origin;
         (*rows)[i] = {bvh_->triangle_of(found.primitive), found.distance, at.x, at.y, at.z};
       }
     }
     return bytes_of(rows, rows->data(), rows->size() * sizeof(Row));
-  }
-
-  /// Returns the open edges, relative to the scene's origin, as bytes: seven float64 each.
-  [[nodiscard]] Bytes open_edge_rows() const {
-    const auto rows = std::make_shared<std::vector<OpenEdge>>();
-    {
-      const nb::gil_scoped_release release;
-      *rows = open_edges(scene_);
-    }
-    return bytes_of(rows, rows->data(), rows->size() * sizeof(OpenEdge));
   }
 
   /// Returns the film's channels by name, and the film.
@@ -303,7 +245,6 @@ class PythonScene {
     keywords.number("--width", "", "", chosen.width, kSideRange, kInPython);
     keywords.number("--height", "", "", chosen.height, kSideRange, kInPython);
     keywords.number("--fov", "", "", camera.fov, kFovRange, kInPython);
-    keywords.add_engine();
     add_light_options(keywords, chosen);
     keywords.read(settings);
     check_light_options(keywords, scene_.environment.has_value(), chosen);
@@ -321,8 +262,8 @@ class PythonScene {
     {
       const nb::gil_scoped_release release;
       RenderStats stats;
-      *film = render({*prepared_, framing.camera, chosen, framing.lights},
-                     intersectors(keywords.uses_model), stats, {.progress = [](double) {
+      *film = render({*prepared_, framing.camera, chosen, framing.lights}, intersectors(), stats,
+                     {.progress = [](double) {
                        checkpoint();
                        return true;
                      }});
@@ -347,13 +288,7 @@ class PythonScene {
     prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);
   }
 
-  [[nodiscard]] IntersectorFactory intersectors(bool uses_model) const {
-    if (uses_model) {
-      return [this] {
-        return std::make_unique<UnitIntersector>(
-            *bvh_, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
-      };
-    }
+  [[nodiscard]] IntersectorFactory intersectors() const {
     return [this] { return std::make_unique<CpuIntersector>(*bvh_); };
   }
 
@@ -491,7 +426,7 @@ NB_MODULE(_raygate, m) {
           "triangle_count", [](const PythonScene& s) { return s.scene().triangles.size(); },
           "Number of triangles, including those without area.")
       .def_prop_ro(
-          "objects", [](const PythonScene& s) { return texts_of(s.scene().objects.all()); },
+          "objects", [](const PythonScene& s) { return texts_of(s.scene().objects); },
           "Names of the objects (`o` and `g` of an OBJ file), by the numbers in hits[\"object\"].")
       .def_prop_ro("materials", &PythonScene::material_names,
                    "Names of the materials, by the numbers in hits[\"material\"].")
@@ -516,14 +451,8 @@ NB_MODULE(_raygate, m) {
           },
           "Number of vertices that are not stored as in the file, and the largest error of a "
           "coordinate. Files of glTF, meshes with instances and numbers below 2^-97 are rounded.")
-      .def_prop_ro("_origin",
-                   [](const PythonScene& s) {
-                     const glm::dvec3& o = s.scene().origin;
-                     return Three{o.x, o.y, o.z};
-                   })
       .def("_trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
            "columns"_a, "settings"_a)
-      .def("_open_edges", &PythonScene::open_edge_rows)
       .def("_closest", &PythonScene::closest_points, "points"_a)
       .def("_render", &PythonScene::render_film, "eye"_a.none(), "target"_a.none(), "up"_a.none(),
            "settings"_a);

@@ -21,7 +21,7 @@ struct RenderContext {
 /// Returns the query for a batch of rays. `work` is empty or has the size of the batch.
 [[nodiscard]] inline RayQuery query_of(const RenderContext& context, const RayBatch& batch,
                                        std::span<RayWork> work) {
-  return {.common_origin = batch.depth == 0 && context.camera.has_common_origin(),
+  return {.common_origin = batch.depth == 0 && context.camera.is_pinhole(),
           .source_ids = batch.sources,
           .work = work};
 }

@@ -1,8 +1,5 @@
 #include "host/scene/bounds.h"
 
-#include <array>
-#include <utility>
-
 namespace raygate {
 namespace {
 
@@ -64,30 +61,6 @@ Bounds3 position_bounds(const Scene& scene) {
   Bounds3 box = bounds_of(scene.positions);
   expand_by_instances(scene, box);
   return box;
-}
-
-std::vector<OpenEdge> open_edges(const Scene& scene) {
-  using Ends = std::array<double, 6>;
-  std::vector<std::pair<Ends, int>> edges;  // the smaller end first; 1 or -1: its direction
-  for_each_face(scene, [&](const Corners& t, const Triangle&) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const glm::dvec3 &a = t[k], &b = t[(k + 1) % 3];
-      const Ends ends{a.x, a.y, a.z, b.x, b.y, b.z}, back{b.x, b.y, b.z, a.x, a.y, a.z};
-      edges.emplace_back(std::min(ends, back), back < ends ? -1 : 1);
-    }
-  });
-  std::ranges::sort(edges);
-  std::vector<OpenEdge> open;
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    int times = 0;
-    for (end = i; end < edges.size() && edges[end].first == edges[i].first; ++end) {
-      times += edges[end].second;
-    }
-    const auto& [ax, ay, az, bx, by, bz] = edges[i].first;
-    if (times > 0) open.push_back({{ax, ay, az}, {bx, by, bz}, static_cast<double>(times)});
-    if (times < 0) open.push_back({{bx, by, bz}, {ax, ay, az}, static_cast<double>(-times)});
-  }
-  return open;
 }
 
 }  // namespace raygate

@@ -1,4 +1,4 @@
-// Bounding boxes of scenes, with their instances, a visitor of their triangles, and open edges.
+// Bounding boxes of scenes, with their instances, and a visitor of their triangles.
 #pragma once
 
 #include <algorithm>
@@ -62,14 +62,5 @@ void for_each_face(const Scene& scene, const Visit& visit) {
     });
   }
 }
-
-/// An edge that triangles pass `times` times more often from its start to its end than back.
-struct OpenEdge {
-  double from[3], to[3];
-  double times;  ///< at least 1
-};
-
-/// Returns the open edges of all triangles. Vertices are one if they have the same coordinates.
-[[nodiscard]] std::vector<OpenEdge> open_edges(const Scene& scene);
 
 }  // namespace raygate

@@ -50,41 +50,28 @@ Camera Camera::look_at(const CameraSetting& setting, double aspect) {
 /// Models a thin lens: all rays of an image point meet in the plane of focus.
 Ray Camera::ray(double x, double y, const glm::dvec2& lens) const {
   const double across = 2.0 * x - 1.0, along = 1.0 - 2.0 * y;
+  const glm::dvec3 offset = across * half_width_ * right_ + along * half_height_ * up_;
   glm::dvec3 origin(eye_), towards = forward_;
-  switch (projection_) {
-    case Projection::kPerspective:
-      towards += across * half_width_ * right_ + along * half_height_ * up_;
-      break;
-    case Projection::kOrthographic:
-      origin += distance_ * (across * half_width_ * right_ + along * half_height_ * up_);
-      break;
-    case Projection::kPanorama: {
-      const SineCosine<double> turn = sine_cosine(0.5 * across), angle = sine_cosine(0.5 * y);
-      towards = angle.sine * (turn.cosine * forward_ + turn.sine * right_) + angle.cosine * up_;
-      break;
-    }
+  if (projection_ == Projection::kOrthographic) {
+    origin += distance_ * offset;
+  } else {
+    towards += offset;
   }
   if (aperture_ > 0.0) {
     const glm::dvec3 sharp = origin + focus_ * towards;
-    // Perpendicular to the view; a panorama's lens turns with the ray.
-    glm::dvec3 u = right_, v = up_;
-    if (projection_ == Projection::kPanorama) {
-      const SineCosine<double> turn = sine_cosine(0.5 * across);
-      u = turn.cosine * right_ - turn.sine * forward_;
-      v = glm::cross(u, towards);
-    }
-    const SineCosine<double> turn = sine_cosine(lens.y);
-    origin += aperture_ * std::sqrt(lens.x) * (turn.cosine * u + turn.sine * v);
+    origin += lens_offset(lens);
     towards = sharp - glm::dvec3(glm::vec3(origin));
   }
   return {glm::vec3(origin), scaled_direction(towards)};
 }
 
-glm::dvec3 Camera::lens_point(const glm::dvec2& lens) const {
-  if (!(aperture_ > 0.0)) return glm::dvec3(eye_);
+glm::dvec3 Camera::lens_offset(const glm::dvec2& lens) const {
   const SineCosine<double> turn = sine_cosine(lens.y);
-  return glm::dvec3(eye_) +
-         aperture_ * std::sqrt(lens.x) * (turn.cosine * right_ + turn.sine * up_);
+  return aperture_ * std::sqrt(lens.x) * (turn.cosine * right_ + turn.sine * up_);
+}
+
+glm::dvec3 Camera::lens_point(const glm::dvec2& lens) const {
+  return aperture_ > 0.0 ? glm::dvec3(eye_) + lens_offset(lens) : glm::dvec3(eye_);
 }
 
 /// Finds the image point whose ray through the lens's centre meets the same focus point.
@@ -96,10 +83,6 @@ std::optional<glm::dvec2> Camera::place_of(const glm::dvec3& point,
   const glm::dvec3 at = (lens_point - glm::dvec3(eye_)) / focus_ + offset / distance;
   return glm::dvec2(0.5 + 0.5 * glm::dot(at, right_) / half_width_,
                     0.5 - 0.5 * glm::dot(at, up_) / half_height_);
-}
-
-double Camera::depth(const glm::dvec3& point) const {
-  return projection_ == Projection::kPanorama ? glm::length(point) : glm::dot(point, forward_);
 }
 
 glm::vec3 Camera::direction(double x, double y) const {

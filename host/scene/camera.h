@@ -13,7 +13,6 @@ namespace raygate {
 enum class Projection {
   kPerspective,
   kOrthographic,  ///< parallel rays; objects at the target have their perspective size
-  kPanorama,      ///< all directions, in the layout of EnvironmentMap, centred on the target
 };
 
 /// Projection and lens of a camera. Unset members have the defaults given here.
@@ -21,8 +20,7 @@ struct LensSetting {
   std::optional<Projection> projection;  ///< default: kPerspective
   /// Radius of the lens, at least 0; default: 0 (everything is sharp).
   std::optional<double> aperture;
-  /// Distance of the plane of focus from the lens along the view, or from the eye for a panorama.
-  /// Default: the distance of the target.
+  /// Distance of the plane of focus from the lens along the view; default: that of the target.
   std::optional<double> focus;
 
   /// Returns these settings, overridden by those that are set in `other`.
@@ -56,9 +54,7 @@ struct CameraRequest {
 
 /// The names of projections in scene files and on the command line.
 inline constexpr std::pair<const char*, Projection> kProjections[] = {
-    {"perspective", Projection::kPerspective},
-    {"orthographic", Projection::kOrthographic},
-    {"panorama", Projection::kPanorama}};
+    {"perspective", Projection::kPerspective}, {"orthographic", Projection::kOrthographic}};
 
 /// Coordinates are relative to Scene::origin. The camera's frame is right-handed: in the image,
 /// `right` is +x and `up` is +y, and the camera looks along `forward`.
@@ -82,11 +78,7 @@ class Camera {
   /// Returns half the height of the image plane at distance 1 along forward().
   [[nodiscard]] double half_height() const { return half_height_; }
 
-  /// Returns whether all rays start at the eye: false for orthographic cameras and for thin lenses.
-  [[nodiscard]] bool has_common_origin() const {
-    return projection_ != Projection::kOrthographic && aperture_ == 0.0;
-  }
-  /// Returns whether this is a perspective camera without a lens, whose rays fill a pyramid.
+  /// Returns whether this is a perspective camera without a lens: its rays fill a pyramid.
   [[nodiscard]] bool is_pinhole() const {
     return projection_ == Projection::kPerspective && aperture_ == 0.0;
   }
@@ -105,14 +97,17 @@ class Camera {
                                                    const glm::dvec3& lens_point) const;
   /// Returns the area of the image plane at distance 1 along forward().
   [[nodiscard]] double picture_area() const { return 4.0 * half_width_ * half_height_; }
-  /// Returns the depth along the axis (panorama: the distance) of a point relative to the eye.
-  [[nodiscard]] double depth(const glm::dvec3& point) const;
+  /// Returns the depth along the axis of a point relative to the eye.
+  [[nodiscard]] double depth(const glm::dvec3& point) const { return glm::dot(point, forward_); }
 
   /// Returns the direction of the pinhole ray through a point of the image: x from 0 (left edge) to
   /// 1 (right), y from 0 (upper edge) to 1 (lower). The length is that of scaled_direction().
   [[nodiscard]] glm::vec3 direction(double x, double y) const;
 
  private:
+  /// Returns lens_point() relative to the eye.
+  [[nodiscard]] glm::dvec3 lens_offset(const glm::dvec2& lens) const;
+
   glm::vec3 eye_{0.0f};
   glm::dvec3 right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, forward_{0.0, 0.0, -1.0};
   double vertical_fov_degrees_ = 0.0;

@@ -244,10 +244,6 @@ void require_numbers(const Scene& scene, const std::filesystem::path& file) {
     throw InputError(file.string() + ": found " + std::to_string(triangles) +
                      " triangles with all instances, expected fewer than 2^31");
   }
-  if (scene.objects.size() > kNoIndex) {
-    throw InputError(file.string() + ": found " + std::to_string(scene.objects.size()) +
-                     " objects with all instances, expected fewer than 2^32");
-  }
 }
 
 void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::path& file) {

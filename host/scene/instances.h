@@ -131,8 +131,8 @@ enum class InstanceMode {
 };
 inline constexpr std::uint64_t kFlattenLimit = 4'000'000;
 
-/// Throws InputError, which names `file`, for about 2^31 triangles or 2^32 objects and more, which
-/// exceed the index types. Call this before any loop over all of them.
+/// Throws InputError, which names `file`, for about 2^31 triangles and more, which exceed the index
+/// types. Call this before any loop over all of them.
 void require_numbers(const Scene& scene, const std::filesystem::path& file);
 
 /// Flattens instances as `mode` requires, and always those that emit, as area lights are lists of

@@ -1,6 +1,5 @@
 #include "host/scene/scene.h"
 
-#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstdio>
@@ -8,7 +7,6 @@
 #include <type_traits>
 
 #include "host/base/input_error.h"
-#include "host/exact/exact.h"
 #include "host/exact/expansion.h"
 
 namespace raygate {
@@ -103,10 +101,6 @@ class Digest {
     if (emission_map.texture != kNoIndex) add(emission_map);
     if (opacity_blends) add(opacity_blends);
     if (has_vertex_opacity) add(has_vertex_opacity);
-  }
-  void add(const NameList& names) {
-    word(names.size());
-    for (std::size_t i = 0; i < names.size(); ++i) add(names[i]);
   }
   void add(const Texture& t) { add(t.width(), t.height(), t.texels()); }
   void add(const Mesh& m) {

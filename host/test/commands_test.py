@@ -8,9 +8,7 @@ import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "docs"))
-
-import commands  # noqa: E402
+import commands
 
 PAGE = """# A page
 

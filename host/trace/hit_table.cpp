@@ -43,73 +43,63 @@ struct Row {
   void put(const glm::dvec3& v) {
     for (int k = 0; k < 3; ++k) put(is_hit ? v[k] : kNan);
   }
-  /// Appends a point that is given relative to the ray's origin, in world coordinates.
-  void put_from_origin(const glm::dvec3& way) { put(scene.origin + (ray.origin + way)); }
+  /// Appends the fields of a column.
+  void put_column(HitColumn column) {
+    using enum HitColumn;
+    switch (column) {
+      case kRay:
+        return put(std::int64_t(rays.first + found.ray));
+      case kHit:
+        return put(std::int64_t{is_hit});
+      case kTriangle:
+        return put(triangle);
+      case kObject:
+        return put(is_hit ? std::int64_t{object_at(scene, stored)} : -1);
+      case kMaterial:
+        return put(is_hit ? std::int64_t{face_at(scene, stored).material} : -1);
+      case kT:
+        return put(std::ldexp(place.t, rays.exponents[found.ray]));
+      case kPoint:
+        return put(scene.origin + (ray.origin + place.t * ray.direction));
+      case kUv:
+        put(place.u);
+        return put(place.v);
+      case kNormal:
+        return put(glm::normalize(triangle_normal(corners)));
+      case kSide:
+        return put(std::int64_t{is_hit ? direction_side(ray.direction, corners) : 0});
+      case kDoubts:
+        return put(std::int64_t{found.doubts});
+    }
+  }
 };
 
 struct Column {
   std::string_view name;
   bool is_integer;
   std::array<std::string_view, 3> fields;  // unused ones are empty
-  void (*write)(Row&);
 };
 
 /// Columns in the order of HitColumn.
-constexpr Column kColumns[] = {
-    {"ray", true, {"ray"}, [](Row& r) { r.put(std::int64_t(r.rays.first + r.found.ray)); }},
-    {"hit", true, {"hit"}, [](Row& r) { r.put(std::int64_t{r.is_hit}); }},
-    {"triangle", true, {"triangle"}, [](Row& r) { r.put(r.triangle); }},
-    {"object",
-     true,
-     {"object"},
-     [](Row& r) { r.put(r.is_hit ? std::int64_t{object_at(r.scene, r.stored)} : -1); }},
-    {"material",
-     true,
-     {"material"},
-     [](Row& r) { r.put(r.is_hit ? std::int64_t{face_at(r.scene, r.stored).material} : -1); }},
-    {"t",
-     false,
-     {"t"},
-     [](Row& r) { r.put(std::ldexp(r.place.t, r.rays.exponents[r.found.ray])); }},
-    {"point",
-     false,
-     {"x", "y", "z"},
-     [](Row& r) { r.put_from_origin(r.place.t * r.ray.direction); }},
-    {"uv",
-     false,
-     {"u", "v"},
-     [](Row& r) {
-       r.put(r.place.u);
-       r.put(r.place.v);
-     }},
-    {"normal",
-     false,
-     {"nx", "ny", "nz"},
-     [](Row& r) { r.put(glm::normalize(triangle_normal(r.corners))); }},
-    {"side",
-     true,
-     {"side"},
-     [](Row& r) {
-       r.put(std::int64_t{r.is_hit ? direction_side(r.ray.direction, r.corners) : 0});
-     }},
-    {"doubts", true, {"doubts"}, [](Row& r) { r.put(std::int64_t{r.found.doubts}); }},
-    {"unit-point",
-     false,
-     {"unit_x", "unit_y", "unit_z"},
-     [](Row& r) { r.put_from_origin(glm::dvec3(r.found.hit.point)); }},
-    {"unit-error", false, {"unit_error"}, [](Row& r) {
-       r.put(r.is_hit ? double{r.found.hit.point_error} : kNan);
-     }}};
+constexpr Column kColumns[] = {{"ray", true, {"ray"}},
+                               {"hit", true, {"hit"}},
+                               {"triangle", true, {"triangle"}},
+                               {"object", true, {"object"}},
+                               {"material", true, {"material"}},
+                               {"t", false, {"t"}},
+                               {"point", false, {"x", "y", "z"}},
+                               {"uv", false, {"u", "v"}},
+                               {"normal", false, {"nx", "ny", "nz"}},
+                               {"side", true, {"side"}},
+                               {"doubts", true, {"doubts"}}};
+
+const Column& known(HitColumn column) { return kColumns[static_cast<std::size_t>(column)]; }
 
 }  // namespace
 
-std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits, bool is_cpu,
+std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
                                   const std::string& dashes) {
   using enum HitColumn;
-  // Units return nearest hits only.
-  if (hits == Hits::kAll && !is_cpu) {
-    throw InputError(dashes + "engine: expected cpu with " + dashes + "hits all");
-  }
   if (names.empty()) {
     if (hits == Hits::kAny) return {kRay, kHit};
     return {kRay, kHit, kTriangle, kObject, kT, kPoint, kUv, kNormal, kDoubts};
@@ -122,7 +112,7 @@ std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
     const auto* const at = std::ranges::find(kColumns, name, &Column::name);
     if (at == std::end(kColumns)) {
       std::string list;
-      for (const Column& known : kColumns) list.append(list.empty() ? "" : ", ").append(known.name);
+      for (const Column& other : kColumns) list.append(list.empty() ? "" : ", ").append(other.name);
       fail(name, "some of " + list);
     }
     const auto column = static_cast<HitColumn>(at - std::begin(kColumns));
@@ -130,9 +120,6 @@ std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
     // Which hit is found first depends on the engine, but not whether there is one.
     if (hits == Hits::kAny && column != kRay && column != kHit && column != kDoubts) {
       fail(name, "ray, hit or doubts with " + dashes + "hits any");
-    }
-    if (hits == Hits::kAll && (column == kUnitPoint || column == kUnitError)) {
-      fail(name, "none of the unit's with " + dashes + "hits all");
     }
     columns.push_back(column);
   }
@@ -148,10 +135,8 @@ HitPoint hit_point_of(const ExactRay& ray, const Corners& corners) {
 std::vector<std::pair<std::string, std::string>> HitTable::fields() const {
   std::vector<std::pair<std::string, std::string>> fields;
   for (const HitColumn column : columns_) {
-    const Column& known = kColumns[static_cast<std::size_t>(column)];
-    for (const std::string_view field : known.fields) {
-      if (field.empty()) continue;
-      fields.emplace_back(field, known.is_integer ? "<i8" : "<f8");
+    for (const std::string_view field : known(column).fields) {
+      if (!field.empty()) fields.emplace_back(field, known(column).is_integer ? "<i8" : "<f8");
     }
   }
   return fields;
@@ -165,15 +150,16 @@ std::string HitTable::header() const {
 
 void HitTable::append(const RayTable& rays, const RayHit& found, std::string& bytes) const {
   Row row{scene_, rays, found, format_, bytes};
+  const std::uint32_t primitive = found.hit.primitive;
   if (row.is_hit) {
-    row.triangle = bvh_.triangle_of(found.hit.primitive);
-    row.stored = bvh_.face_of(found.hit.primitive);
+    row.triangle = bvh_.triangle_of(primitive);
+    row.stored = bvh_.face_of(primitive);
   }
   if (row.is_hit && needs_corners_) {
-    row.corners = bvh_.corners_of(found.hit.primitive);
+    row.corners = bvh_.corners_of(primitive);
     row.place = hit_point_of(row.ray, row.corners);
   }
-  for (const HitColumn column : columns_) kColumns[static_cast<std::size_t>(column)].write(row);
+  for (const HitColumn column : columns_) row.put_column(column);
   if (format_ == TableFormat::kCsv) bytes.back() = '\n';
 }
 

@@ -17,19 +17,18 @@ namespace raygate {
 
 /// A column of the table, or the columns of a vector.
 enum class HitColumn {
-  kRay,        ///< index of the ray, from 0
-  kHit,        ///< 1: a hit; 0: a miss, and the other columns are -1, inf or nan
-  kTriangle,   ///< index of the triangle, from 0: the file's faces in order, cut into triangles
-  kObject,     ///< index of its `o` or `g`, from 0, in the order of the file
-  kMaterial,   ///< index of its material, from 0
-  kT,          ///< P = O + t D
-  kPoint,      ///< x, y, z: P in the file's coordinates
-  kUv,         ///< u, v: P = (1 - u - v) A + u B + v C; 0 <= u, 0 <= v, u + v <= 1
-  kNormal,     ///< nx, ny, nz: (B - A) x (C - A) normalised; not flipped towards the ray
-  kSide,       ///< exact sign of D . N: -1 for the front, 1 for the back
-  kDoubts,     ///< tests of this ray that binary32 left in doubt, resolved exactly
-  kUnitPoint,  ///< unit_x, unit_y, unit_z: P with the bits of the hit-test unit
-  kUnitError,  ///< unit_error: its error bound, as NearestHit::point_error
+  kRay,       ///< index of the ray, from 0
+  kHit,       ///< 1: a hit; 0: a miss, and the other columns are -1, inf or nan
+  kTriangle,  ///< index of the triangle, from 0: the file's faces in order, cut into triangles
+  kObject,    ///< index of its `o` or `g`, from 0, in the order of the file
+  kMaterial,  ///< index of its material, from 0
+  // From kT to kSide: columns that need the corners of the triangle.
+  kT,       ///< P = O + t D
+  kPoint,   ///< x, y, z: P in the file's coordinates
+  kUv,      ///< u, v: P = (1 - u - v) A + u B + v C; 0 <= u, 0 <= v, u + v <= 1
+  kNormal,  ///< nx, ny, nz: (B - A) x (C - A) normalised; not flipped towards the ray
+  kSide,    ///< exact sign of D . N: -1 for the front, 1 for the back
+  kDoubts,  ///< tests of this ray that binary32 left in doubt, resolved exactly
 };
 
 /// Hits to report for each ray.
@@ -39,11 +38,11 @@ enum class Hits {
   kAll,      ///< one row per hit, nearest first, in exact order; none for a miss
 };
 
-/// Returns the columns of these names ("ray", "unit-point" ...), or the default ones without names.
+/// Returns the columns of these names ("ray", "t" ...), or the default ones without names.
 /// Throws InputError "--columns: found ..., expected ..." (`dashes` replaces "--") for a name that
-/// is unknown, repeated or not available with `hits`, and for Hits::kAll unless `cpu`.
+/// is unknown, repeated or not available with `hits`.
 [[nodiscard]] std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
-                                                bool is_cpu, const std::string& dashes);
+                                                const std::string& dashes);
 
 /// The position of a hit on its triangle.
 struct HitPoint {
@@ -71,11 +70,6 @@ class HitTable {
   HitTable(const Scene& scene, const Bvh& bvh, std::vector<HitColumn> columns, TableFormat format)
       : scene_(scene), bvh_(bvh), columns_(std::move(columns)), format_(format) {}
 
-  /// Returns whether rows have one of these columns.
-  [[nodiscard]] bool has_any(std::initializer_list<HitColumn> columns) const {
-    return std::ranges::find_first_of(columns_, columns) != columns_.end();
-  }
-
   /// Returns the first line of a CSV file.
   [[nodiscard]] std::string header() const;
 
@@ -92,8 +86,9 @@ class HitTable {
   const Bvh& bvh_;
   std::vector<HitColumn> columns_;
   TableFormat format_;
-  bool needs_corners_ = has_any(
-      {HitColumn::kT, HitColumn::kPoint, HitColumn::kUv, HitColumn::kNormal, HitColumn::kSide});
+  bool needs_corners_ = std::ranges::any_of(columns_, [](HitColumn column) {
+    return column >= HitColumn::kT && column <= HitColumn::kSide;
+  });
 };
 
 }  // namespace raygate

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <iostream>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <system_error>
@@ -61,6 +63,7 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
 
 namespace {
 
+constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // of a line
 constexpr const char* kWanted = "expected OX,OY,OZ,DX,DY,DZ or OX,OY,OZ,DX,DY,DZ,LIMIT";
 
 std::string_view trimmed(std::string_view text) {
@@ -84,17 +87,20 @@ bool begins_as_number(std::string_view text) {
 RayTableReader::RayTableReader(const std::filesystem::path& file, const glm::dvec3& scene_origin)
     : name_(file == "-" ? "standard input" : file.string()),
       scene_origin_(scene_origin),
-      file_(file == "-" ? stdin : std::fopen(file.c_str(), "rb")) {
-  if (file_ == nullptr) fail_reading();
-  fill(1);
-  if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
+      stream_(file == "-" ? std::cin : file_),
+      text_(kMostBytes) {
+  if (file == "-") {
+    std::ios::sync_with_stdio(false);  // which buffers std::cin
+  } else {
+    file_.open(file, std::ios::binary);
+    if (!file_.is_open()) fail_reading();
+  }
+  const int first = stream_.peek();
+  if (stream_.bad()) fail_reading();
+  if (first == 0xFF || first == 0xFE) {
     throw InputError(name_ + ": found UTF-16 text, expected ASCII or UTF-8");
   }
-  if (text_.starts_with("\xEF\xBB\xBF")) begin_ = 3;
-}
-
-RayTableReader::~RayTableReader() {
-  if (file_ != nullptr && file_ != stdin) std::fclose(file_);
+  if (first == 0xEF) stream_.ignore(3);  // UTF-8's byte order mark
 }
 
 void RayTableReader::fail_reading() const {
@@ -103,35 +109,16 @@ void RayTableReader::fail_reading() const {
 
 void RayTableReader::fail(const std::string& what) const { throw InputError(name_, line_, what); }
 
-std::string_view RayTableReader::fill(std::size_t count) {
-  constexpr std::size_t kPiece = std::size_t{1} << 18;
-  while (text_.size() - begin_ < count && !at_end_) {
-    if (begin_ > kMostBytes) text_.erase(0, std::exchange(begin_, 0));
-    const std::size_t old = text_.size();
-    text_.resize(old + kPiece);
-    const std::size_t got = std::fread(text_.data() + old, 1, kPiece, file_);
-    text_.resize(old + got);
-    if (got < kPiece && std::ferror(file_) != 0) fail_reading();
-    at_end_ = got == 0;
-  }
-  return std::string_view(text_).substr(begin_);
-}
-
 int RayTableReader::next(double (&numbers)[kMostNumbers]) {
   while (true) {
-    std::string_view text = fill(1);
-    if (text.empty()) return 0;
+    stream_.getline(text_.data(), std::ssize(text_));
+    auto size = static_cast<std::size_t>(stream_.gcount());
+    if (stream_.bad()) fail_reading();
+    if (size == 0) return 0;
     ++line_;
-    std::size_t end = text.find('\n');
-    if (end == std::string_view::npos) {
-      text = fill(kMostBytes);
-      end = std::min(text.find('\n'), text.size());
-      if (end >= kMostBytes) {
-        fail(std::string("found a line of over 1,000,000 bytes, ") + kWanted);
-      }
-    }
-    const std::string_view line = trimmed(text.substr(0, end));
-    begin_ += std::min(end + 1, text.size());
+    if (stream_.fail()) fail(std::string("found a line of over 1,000,000 bytes, ") + kWanted);
+    if (!stream_.eof()) --size;  // the line's end
+    const std::string_view line = trimmed({text_.data(), size});
     if (line.empty() || line.front() == '#') continue;
     if (const int count = split(line, numbers)) return count;
   }

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <glm/glm.hpp>
 #include <string>
 #include <string_view>
@@ -54,9 +54,6 @@ class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".
   RayTableReader(const std::filesystem::path& file, const glm::dvec3& scene_origin);
-  ~RayTableReader();
-  RayTableReader(const RayTableReader&) = delete;
-  RayTableReader& operator=(const RayTableReader&) = delete;
 
   /// Replaces `block` by the next rays, at most `most`; returns false at the end. Throws InputError
   /// with the line, what was found and what was expected.
@@ -64,10 +61,7 @@ class RayTableReader {
 
  private:
   static constexpr int kMostNumbers = 7;
-  static constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // of a line
 
-  /// Returns at least `count` unread bytes, or all that remain. Valid until the next call.
-  std::string_view fill(std::size_t count);
   /// Reads the next row of 6 or 7 numbers. Returns their count, or 0 at the end.
   int next(double (&numbers)[kMostNumbers]);
   /// Reads the numbers of a line. Returns their count, or 0 for a header.
@@ -77,10 +71,11 @@ class RayTableReader {
 
   std::string name_;
   glm::dvec3 scene_origin_;
-  std::FILE* file_;
-  std::string text_;  // read from the file, from the line before begin_ on
-  std::size_t begin_ = 0, line_ = 0;
-  bool at_end_ = false, past_header_ = false;
+  std::ifstream file_;
+  std::istream& stream_;    // the file, or standard input
+  std::vector<char> text_;  // room for a line
+  std::size_t line_ = 0;
+  bool past_header_ = false;
   std::uint64_t number_ = 0;  // of rays that were read
 };
 

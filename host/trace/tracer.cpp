@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/base/threads.h"
@@ -23,11 +24,11 @@ struct Desk {
   std::vector<RayWork> work;
   std::vector<RayHit> found;
   std::string rows;
-  TraceCounts counts;  ///< counts of these rows
+  std::uint64_t hits = 0;  ///< of these rows
 
   void write_found(const HitTable& answers) {
     answers.append(block, found, rows);
-    counts.hits += static_cast<std::uint64_t>(std::ranges::count_if(
+    hits += static_cast<std::uint64_t>(std::ranges::count_if(
         found, [](const RayHit& ray) { return ray.hit.primitive != NearestHit::kNone; }));
     found.clear();
   }
@@ -39,16 +40,7 @@ void find_one(Desk& desk, Hits asked, const HitTable& answers) {
   desk.nearest.assign(count, {});
   desk.work.assign(count, {});
   if (!desk.intersector->traits().takes_exact_rays) desk.block.round();
-  RayQuery query{.t_max = desk.block.limits,
-                 .exact_rays = desk.block.exact_rays,
-                 .work = desk.work,
-                 .with_points = answers.has_any({HitColumn::kUnitPoint, HitColumn::kUnitError})};
-  if (asked == Hits::kAny) {
-    query.any_hit_before = desk.block.limits;
-    desk.intersector->occluded(desk.block.rays, query, desk.nearest);
-  } else {
-    desk.intersector->nearest(desk.block.rays, query, desk.nearest);
-  }
+  find_hits(*desk.intersector, desk.block, asked == Hits::kAny, desk.nearest, desk.work);
   for (std::uint32_t i = 0; i < count; ++i) {
     desk.found.push_back({i, desk.nearest[i], desk.work[i].doubts});
   }
@@ -70,15 +62,26 @@ void find_all(Desk& desk, const Bvh& bvh, const HitTable& answers) {
 
 }  // namespace
 
+void find_hits(Intersector& intersector, const RayTable& block, bool any,
+               std::span<NearestHit> hits, std::span<RayWork> work) {
+  RayQuery query{
+      .t_max = block.limits, .exact_rays = block.exact_rays, .work = work, .with_points = false};
+  if (any) {
+    query.any_hit_before = block.limits;
+    intersector.occluded(block.rays, query, hits);
+  } else {
+    intersector.nearest(block.rays, query, hits);
+  }
+}
+
 TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const HitTable& answers,
                   const IntersectorFactory& make_intersector, unsigned threads,
-                  const std::function<void(std::string_view)>& write,
-                  const std::function<bool()>& keep_going) {
+                  const std::function<void(std::string_view)>& write) {
   constexpr std::size_t kBlock = std::size_t{1} << 14;
   TraceCounts counts;
   std::vector<Desk> desks(threads);
   std::size_t first = 0, busy = 0;  // desks [first, busy) have rows to find or to write
-  while (keep_going()) {
+  while (true) {
     if (first == busy) {
       first = busy = 0;
       while (busy < desks.size() && read(kBlock, desks[busy].block)) desks[busy++].next = 0;
@@ -97,8 +100,7 @@ TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const HitTab
       Desk& desk = desks[first];
       write(desk.rows);
       desk.rows.clear();
-      counts.hits += desk.counts.hits;
-      desk.counts = {};
+      counts.hits += std::exchange(desk.hits, 0);
       if (desk.next < desk.block.rays.size()) break;
       counts.rays += desk.block.rays.size();
       counts.rounded += desk.block.rounded;

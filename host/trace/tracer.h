@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string_view>
 
 #include "host/bvh/bvh.h"
@@ -21,13 +22,17 @@ struct TraceCounts {
 /// Replaces a block by at most the given number of next rays; returns false at the end.
 using ReadRays = std::function<bool(std::size_t, RayTable&)>;
 
+/// Finds the nearest hit of each ray of a block, or the first one found if `any`. `work` is empty
+/// or receives the work of each ray.
+void find_hits(Intersector& intersector, const RayTable& block, bool any,
+               std::span<NearestHit> hits, std::span<RayWork> work = {});
+
 /// Reads all rays and passes the rows to `write`, block by block in the order of the rays. At most
 /// `threads` blocks are in memory, with about 1 MB of rows each, plus the rows of one ray.
-/// Exceptions of `read` and `write` end it. `keep_going` is called between blocks.
+/// Exceptions of `read` and `write` end it.
 [[nodiscard]] TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh,
                                 const HitTable& answers, const IntersectorFactory& make_intersector,
                                 unsigned threads,
-                                const std::function<void(std::string_view)>& write,
-                                const std::function<bool()>& keep_going);
+                                const std::function<void(std::string_view)>& write);
 
 }  // namespace raygate

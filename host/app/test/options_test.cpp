@@ -117,7 +117,7 @@ TEST(Options, ValuesThatAreImpossible) {
       {"--view", {"above", "33", "33,24,1", "33,91", "0,nan", "361,0"}, "front, back, "},
       {"--up", {"w", "0,0,1", "+z"}, "x, y, z, "},
       {"--fov", {"0", "180", "wide"}, "degrees above 0"},
-      {"--projection", {"fisheye"}, "perspective, "},
+      {"--projection", {"fisheye"}, "perspective or orthographic"},
       {"--aperture", {"-1"}, "the radius of a lens"},
       {"--focus", {"0"}, "a distance"},
       {"--smooth", {"-1", "181", "nan", "flat"}, "degrees from 0 to 180"},
@@ -143,7 +143,7 @@ TEST(Options, ValuesThatAreImpossible) {
       {"--spp", {"0"}, "a whole number from 1"},
       {"--error", {"0", "-1", "256", "nan", "few"}, "steps of an 8-bit display"},
       {"--depth", {"-1"}, "a whole number from 0"},
-      {"--filter", {"lanczos"}, "box, tent, gauss"},
+      {"--filter", {"lanczos"}, "box or blackman-harris"},
       {"--threshold", {"2", "nan"}, "a number from 0 to 1"},
       {"--point-error", {"-1", "nan"}, "a fraction of the distance"},
       {"--ambient", {"inf"}, "a radiance"},
@@ -358,12 +358,12 @@ TEST(OutputOptions, LightByName) {
   }
   EXPECT_EQ(parse({"a.obj", "--engine", "cpu", "--spp", "1"}).render.samples, 1);
   const RenderSettings path = parse({"a.obj", "--integrator", "path", "--spp", "16", "--filter",
-                                     "tent", "--threshold", "0.5", "--ambient", "0"})
+                                     "box", "--threshold", "0.5", "--ambient", "0"})
                                   .render;
   EXPECT_EQ(path.integrator, IntegratorKind::kPath);
   EXPECT_EQ(path.depth(), 64);
   EXPECT_EQ(path.samples, 16);
-  EXPECT_EQ(path.filter, ReconstructionFilter::kTent);
+  EXPECT_EQ(path.filter, ReconstructionFilter::kBox);
   EXPECT_EQ(path.threshold, 0.5);
   EXPECT_EQ(path.ambient, 0.0);
   EXPECT_EQ(parse({"a.obj", "--depth", "0"}).render.depth(), 0);

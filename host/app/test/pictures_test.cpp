@@ -122,7 +122,7 @@ TEST_F(Render, IdsAreTheNumbersOfFacesInTheFile) {
 TEST_F(Render, AnExrSaysHowItIsMadeAgain) {
   render({kCornell, "--size",       "24x20", "--engine",     "cpu",          "--spp",
           "3",      "--depth",      "2",     "--fov",        "41.1",         "--filter",
-          "tent",   "--integrator", "path",  "--seed",       "11",           "--point-error",
+          "box",    "--integrator", "path",  "--seed",       "11",           "--point-error",
           "0.001",  "-o",           "a.exr", "--projection", "orthographic", "--aperture",
           "7.5",    "--focus",      "900"});
   const ExrReader reader(folder_.read("a.exr"));

@@ -67,7 +67,7 @@ class TraceSubject : public Subject {
     (void)trace(
         read, hits, target_->bvh, target_->table,
         [this] { return std::make_unique<CpuIntersector>(target_->bvh); }, 1,
-        [&](std::string_view more) { bytes += more; }, [] { return true; });
+        [&](std::string_view more) { bytes += more; });
     std::vector<RowOfTable> rows(bytes.size() / sizeof(RowOfTable));
     std::memcpy(rows.data(), bytes.data(), bytes.size());
     return rows;

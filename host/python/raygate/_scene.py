@@ -15,8 +15,6 @@ from ._arrays import Array
 from ._raygate import InputError
 
 Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
-Engine = Literal["cpu", "model"]
-Degenerate = Literal["leave out", "refuse"]
 
 _DIRECTION = np.array([0.36, 0.48, 0.8], np.float32)  # of rays that count crossings; arbitrary
 
@@ -52,84 +50,64 @@ class Scene(_raygate.Scene):
     """Triangles, materials and lights. Pickling a scene keeps the absolute name of its file or copies of its arrays,
     and its options; unpickling reads the file or builds the scene again."""
 
-    _edges: npt.NDArray[np.float64] | None = None  # the open ones
-
     @overload
-    def __init__(self, file: Path, /, *, smooth: float | None = None, degenerate: Degenerate = "leave out",
-                 threads: int | None = None) -> None: ...
+    def __init__(self, file: Path, /, *, smooth: float | None = None, threads: int | None = None) -> None: ...
 
     @overload
     def __init__(self, vertices: npt.ArrayLike, /, faces: npt.ArrayLike, *, smooth: float | None = None,
-                 degenerate: Degenerate = "leave out", threads: int | None = None) -> None: ...
+                 threads: int | None = None) -> None: ...
 
     @in_context
     def __init__(self, file: Any, /, faces: npt.ArrayLike | None = None, *, smooth: float | None = None,
-                 degenerate: Degenerate = "leave out", threads: int | None = None) -> None:
+                 threads: int | None = None) -> None:
         """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Or takes arrays: vertices of shape (N, 3), float32
         or float64, and faces of shape (M, 3), whole numbers: three vertices, counted from 0, in each row.
 
-        Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them, and
-        `warnings` counts them; degenerate="refuse": an InputError instead. `smooth`: faces without normals that meet at
-        no more than so many degrees are shaded smoothly. `threads`: one per processor by default. Raises InputError, a
-        ValueError, which names the file and line, or the face, that cannot be used."""
-        options = {"smooth": smooth, "degenerate": degenerate, "threads": threads}
+        Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them;
+        `degenerate_faces` lists them. `smooth`: faces without normals that meet at no more than so many degrees are
+        shaded smoothly. `threads`: one per processor by default. Raises InputError, a ValueError, which names the file
+        and line, or the face, that cannot be used."""
+        options = {"smooth": smooth, "threads": threads}
         if faces is None and isinstance(file, (str, bytes, os.PathLike)):
             name = os.fsencode(file)
             if b"\0" in name:
                 raise InputError(f"file: found {file!r}, expected a name without a null byte")
             self._recipe: tuple[Any, ...] = Scene, (os.path.abspath(name),), options
-            super().__init__(name, _settings(smooth=smooth, threads=threads))
-            self._check(degenerate)
+            super().__init__(name, _settings(**options))
             return
         vertices = np.array(_arrays.vectors("vertices", file))
         numbers = np.array(_arrays.vertex_numbers(faces, len(vertices)))
         self._recipe = Scene, (vertices, numbers), options
-        super().__init__("faces", _arrays.triangles("faces", vertices[numbers]),
-                         _settings(smooth=smooth, threads=threads))
-        self._check(degenerate)
-
-    def _check(self, degenerate: Degenerate) -> None:
-        if degenerate not in ("leave out", "refuse"):
-            raise InputError(f"degenerate: found {degenerate!r}, expected 'leave out' or 'refuse'")
-        if degenerate == "refuse" and (faces := self.degenerate_faces):
-            raise InputError(f"found face {faces[0]} without area, of {len(faces)}, expected none")
+        super().__init__("faces", _arrays.triangles("faces", vertices[numbers]), _settings(**options))
 
     @classmethod
     @in_context
-    def of_triangles(cls, corners: npt.ArrayLike, *, degenerate: Degenerate = "leave out",
-                     threads: int | None = None) -> Scene:
+    def of_triangles(cls, corners: npt.ArrayLike, *, threads: int | None = None) -> Scene:
         """Returns a scene of grey triangles from their corners, of shape (N, 3, 3), float32 or float64. Triangles
         without area are as in Scene(). Raises InputError, which names the triangle that cannot be used."""
         scene = cls.__new__(cls)
         kept = np.array(_arrays.reals("triangles", corners), order="C")
-        scene._recipe = cls.of_triangles, (kept,), {"degenerate": degenerate, "threads": threads}
+        scene._recipe = cls.of_triangles, (kept,), {"threads": threads}
         super(Scene, scene).__init__("triangles", _arrays.triangles("triangles", kept), _settings(threads=threads))
-        scene._check(degenerate)
         return scene
 
     def __reduce__(self) -> tuple[Any, ...]:
         make, arguments, options = self._recipe
         return functools.partial(make, **options), arguments
 
-    @property
-    def origin(self) -> Array:
-        """The point that stored positions are relative to: float64, shape (3,)."""
-        return np.array(self._origin)
-
     @in_context
     def trace(self, origins: npt.ArrayLike, directions: npt.ArrayLike, limits: npt.ArrayLike | None = None, *,
               hits: Literal["nearest", "any", "all"] = "nearest", columns: str | Iterable[str] | None = None,
-              engine: Engine = "cpu", threads: int | None = None) -> Array:
+              threads: int | None = None) -> Array:
         """Returns the hits of rays: a structured array with a field for each answer.
 
-        origins, directions: shape (N, 3), float32 or float64, read without a copy if they are in C order. One of them
-        may be one vector for all rays, of shape (3,) or (1, 3). Hits are at origin + t direction, 0 < t < limit;
+        origins, directions: shape (N, 3); float64 in C order is read without a copy. One of them may be one vector for all
+        rays, of shape (3,) or (1, 3). Hits are at origin + t direction, 0 < t < limit;
         directions need not have length 1. limits: shape (N,), or one number for all rays; none by default. hits:
         "nearest", a row for each ray; "any", a row for each ray that says whether it hits anything, which takes less
         time; "all", a row for each hit of each ray, near before far. columns: one or several of ray, hit, triangle,
-        object, material, t, point (fields x, y, z), uv (u, v), normal (nx, ny, nz), side, doubts, unit-point,
-        unit-error; host/docs/reference.md explains them. engine: "cpu", or "model", the reference model of the
-        hit-test unit, for which rays are rounded to float32. threads: one per processor by default.
+        object, material, t, point (fields x, y, z), uv (u, v), normal (nx, ny, nz), side, doubts;
+        host/docs/reference.md explains them. threads: one per processor by default.
 
         No rays, shape (0, 3), give no rows. Raises InputError for other shapes, masked elements and unknown names; for
         inf, NaN, directions of 0, limits that are not above 0 and origins farther than 2^126 from the scene it names
@@ -146,14 +124,12 @@ class Scene(_raygate.Scene):
         if not isinstance(columns, (str, Iterable, type(None))):
             raise InputError(f"columns: found {columns!r}, expected a name or several names")
         names = [columns] if isinstance(columns, str) else [str(column) for column in columns or []]
-        rows, fields = self._trace(origins, directions, limits, names,
-                                   _settings(hits=hits, engine=engine, threads=threads))
+        rows, fields = self._trace(origins, directions, limits, names, _settings(hits=hits, threads=threads))
         return rows.view(np.dtype(fields))
 
     @in_context
     def render(self, width: int | None = None, height: int | None = None, *, eye: npt.ArrayLike | None = None,
-               target: npt.ArrayLike | None = None, up: npt.ArrayLike | None = None, engine: Engine = "cpu",
-               **options: Any) -> Picture:
+               target: npt.ArrayLike | None = None, up: npt.ArrayLike | None = None, **options: Any) -> Picture:
         """Returns a Picture: a dictionary of arrays of `height` rows, the top one first, and `width` columns, in
         pixels.
 
@@ -162,15 +138,10 @@ class Scene(_raygate.Scene):
         uint32, 4294967295 where nothing is hit. eye, target, up: three numbers each, in the file's coordinates; the
         camera of the scene file by default, or one that sees the whole scene. Other keywords are options of ./render,
         with its defaults: spp, error, integrator, fov (degrees), depth, seed, filter, threshold, ambient, threads.
-        engine: as in trace(). Raises InputError, which names the option, for values that cannot be used."""
+        Raises InputError, which names the option, for values that cannot be used."""
         channels, film = self._render(_arrays.point("eye", eye), _arrays.point("target", target), _arrays.point("up", up),
-                                      _settings(width=width, height=height, engine=engine, **options))
+                                      _settings(width=width, height=height, **options))
         return Picture(channels, film)
-
-    def _crossings(self, points: Array) -> Array:
-        """Returns how often a ray from each point leaves surfaces, less how often it enters them."""
-        hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
-        return np.bincount(hits["ray"], hits["side"], minlength=len(points))
 
     @in_context
     def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
@@ -178,50 +149,10 @@ class Scene(_raygate.Scene):
         answers are exact, for points as trace() rounds origins: they count how often a ray from the point leaves and
         enters surfaces. They have no meaning for an open surface or for a point on a surface. Raises InputError, which
         names the point, for inf, NaN and coordinates beyond 2^125."""
-        is_inside: npt.NDArray[np.bool_] = self._crossings(_arrays.points(points, 125)) != 0
-        return is_inside
-
-    @in_context
-    def winding_number(self, points: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Returns how often the surfaces wind around points, of shape (N, 3), and the largest error of each number: two
-        arrays of float64, of shape (N,). Around a closed surface, also one that crosses itself, the number is whole, and
-        exact: 1 inside, 0 outside. Of an open one it is the solid angle seen from the point over 4 pi. The error is inf
-        if a point is so near a surface that it may cross it by rounding, as trace() rounds origins. They have no meaning
-        for a point on a surface. Raises InputError as inside() does.
-
-        Crossings of a ray are counted exactly, as if each open edge were closed by a strip that goes to infinity against
-        the ray; the solid angles of these strips are subtracted."""
         points = _arrays.points(points, 125)
-        if self._edges is None:
-            self._edges = self._open_edges().view(np.float64).reshape(-1, 7)
-        winding, errors = self._crossings(points).astype(np.float64), np.zeros(len(points))
-        towards = -_DIRECTION.astype(np.float64) / np.linalg.norm(_DIRECTION.astype(np.float64))
-        exact, origin = points.astype(np.float64), self.origin
-        from_origin = exact - origin
-        seen = from_origin - exact  # two_sum of host/exact/expansion.h
-        lost = np.linalg.norm((exact - (from_origin - seen)) - (origin + seen), axis=-1)
-        moved = np.flatnonzero(lost)
-        if len(moved):
-            near = self.closest(points[moved])["distance"] <= 2.0 ** -40 * np.linalg.norm(from_origin[moved], axis=-1)
-            errors[moved[near]] = np.inf
-        for first in range(0, len(self._edges), 1024):
-            edges = self._edges[first:first + 1024]
-            for part in range(0, len(points), 1024):
-                at, off = from_origin[part:part + 1024, None], lost[part:part + 1024, None]
-                a, b = edges[:, :3] - at, edges[:, 3:6] - at
-                size_a, size_b = np.linalg.norm(a, axis=-1), np.linalg.norm(b, axis=-1)
-                # Half of the solid angle of a, b and the direction (Van Oosterom and Strackee, 1983).
-                y = np.cross(a, b) @ towards
-                x = size_a * size_b + (a * b).sum(-1) + (b @ towards) * size_a + (a @ towards) * size_b
-                winding[part:part + 1024] += (np.arctan2(y, x) * edges[:, 6]).sum(-1) / (2 * np.pi)
-                # (x, y) is off by less than 2^-47 |a| |b|, and by 4.2 off (|a| + |b| + off) as the point is: as (|a||b|,
-                # a.b, b.t |a|, a.t |b|) each change by off (|a| + |b| + off) at most, and y by off (|a| + |b|). The angle
-                # over 2 pi is off by a quarter of that over |(x, y)|, or by 1 where pi may be -pi. The rest of the bound
-                # covers the rounding of arctan2 and of the sums.
-                off = 2.0 ** -46 * size_a * size_b + 4.2 * off * (size_a + size_b + off)
-                rounding = np.where((x <= off) & (np.abs(y) <= off), 1.0, off / np.maximum(np.hypot(x, y), 1e-300))
-                errors[part:part + 1024] += (rounding * edges[:, 6]).sum(-1) + 2.0 ** -52 * np.abs(winding[part:part + 1024])
-        return winding, errors
+        hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
+        is_inside: npt.NDArray[np.bool_] = np.bincount(hits["ray"], hits["side"], minlength=len(points)) != 0
+        return is_inside
 
     @in_context
     def closest(self, points: npt.ArrayLike) -> Array:

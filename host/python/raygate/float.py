@@ -13,19 +13,15 @@ kind of the operands. Arrays of any shape are broadcast; empty ones give empty r
 operands raise an InputError.
 
 Results are those of the reference model that this repository's tests (sim/test/fp) compare with the simulated cores of
-hw/fp, bit by bit. With `cores`, the path of this repository's program float_cores (cmake --build build --target
-float_cores), the Verilated cores compute them, in the four formats below. A NaN result is always the positive quiet
-NaN.
+hw/fp, bit by bit. A NaN result is always the positive quiet NaN.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import enum
-import os
-import subprocess
 import warnings
-from typing import Any, Literal, NamedTuple, Sequence, Union
+from typing import Any, Literal, NamedTuple, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -38,7 +34,6 @@ from ._raygate import InputError
 Rounding = Literal["nearest-even", "toward-zero", "down", "up", "nearest-away"]
 Tininess = Literal["after", "before"]
 Relation = Literal["==", "<", "<="]
-_Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 
 ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")
 RELATIONS = ("==", "<", "<=")
@@ -102,42 +97,40 @@ class Result(NamedTuple):
 
 @in_context
 def fp_add(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
-           tininess: Tininess = "after", cores: _Path | None = None) -> Result:
+           tininess: Tininess = "after") -> Result:
     """Returns a + b. `rounding`: one of ROUNDINGS. `tininess`: whether the size of a result is judged "before" or
-    "after" rounding; it affects the flag UNDERFLOW alone. `cores`: path of the program float_cores, to compute with
-    the simulated cores. Raises InputError for operands that are no numbers of the format, and for shapes that cannot
-    be broadcast."""
-    return _run("+", a, b, format, rounding, tininess, cores)
+    "after" rounding; it affects the flag UNDERFLOW alone. Raises InputError for operands that are no numbers of the
+    format, and for shapes that cannot be broadcast."""
+    return _run("+", a, b, format, rounding, tininess)
 
 
 @in_context
 def fp_subtract(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
-                tininess: Tininess = "after", cores: _Path | None = None) -> Result:
+                tininess: Tininess = "after") -> Result:
     """Returns a - b; arguments as of fp_add."""
-    return _run("-", a, b, format, rounding, tininess, cores)
+    return _run("-", a, b, format, rounding, tininess)
 
 
 @in_context
 def fp_multiply(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
-                tininess: Tininess = "after", cores: _Path | None = None) -> Result:
+                tininess: Tininess = "after") -> Result:
     """Returns a * b; arguments as of fp_add."""
-    return _run("*", a, b, format, rounding, tininess, cores)
+    return _run("*", a, b, format, rounding, tininess)
 
 
 @in_context
 def fp_divide(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
-              tininess: Tininess = "after", cores: _Path | None = None) -> Result:
+              tininess: Tininess = "after") -> Result:
     """Returns a / b; arguments as of fp_add."""
-    return _run("/", a, b, format, rounding, tininess, cores)
+    return _run("/", a, b, format, rounding, tininess)
 
 
 @in_context
-def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: Format = BINARY32,
-               cores: _Path | None = None) -> Result:
+def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: Format = BINARY32) -> Result:
     """Returns whether a `relation` b, as bool. `relation`: one of RELATIONS; "==" is quiet, the others signal INVALID
     for any NaN. Other arguments as of fp_add."""
     _one_of("relation", relation, RELATIONS)
-    return _run(relation, a, b, format, "nearest-even", "after", cores)
+    return _run(relation, a, b, format, "nearest-even", "after")
 
 
 @in_context
@@ -181,8 +174,8 @@ def decode(bits: npt.ArrayLike, format: Format) -> Any:
     return np.where(bits >> format.width - 1 == 1, -size, size)[()]
 
 
-def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rounding: Rounding, tininess: Tininess,
-         cores: _Path | None) -> Result:
+def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rounding: Rounding,
+         tininess: Tininess) -> Result:
     _one_of("rounding", rounding, ROUNDINGS)
     _one_of("tininess", tininess, _TININESS)
     operands = a, b
@@ -202,12 +195,8 @@ def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rou
         raise InputError(f"found arrays of shape {a.shape} and {b.shape}, expected shapes that can "
                          "be broadcast together") from None
     x_words, y_words = np.ascontiguousarray(x).ravel(), np.ascontiguousarray(y).ravel()
-    if cores is None:
-        value, flags = _raygate.float_run(
-            _OPERATIONS.index(operation), x_words, y_words, format.exponent_bits,
-            format.fraction_bits, ROUNDINGS.index(rounding), tininess == "before")
-    else:
-        value, flags = _by_cores(cores, operation, x_words, y_words, format, rounding, tininess)
+    value, flags = _raygate.float_run(_OPERATIONS.index(operation), x_words, y_words, format.exponent_bits,
+                                      format.fraction_bits, ROUNDINGS.index(rounding), tininess == "before")
     if operation in RELATIONS:
         value = value != 0
     elif kinds == {"f"}:
@@ -229,22 +218,6 @@ def _numbers(x: npt.ArrayLike) -> Array:
                              "below 2^53")
         return wide
     return array
-
-
-def _by_cores(cores: _Path, operation: str, x: Array, y: Array, format: Format, rounding: Rounding,
-              tininess: Tininess) -> tuple[Array, Array]:
-    """Returns results and flags that the program float_cores computes."""
-    words = [os.fsdecode(cores), operation, str(format.exponent_bits), str(format.fraction_bits),
-             str(ROUNDINGS.index(rounding)), str(int(tininess == "before"))]
-    try:
-        done = subprocess.run(words, input=np.stack([x, y], axis=1).astype("<u4").tobytes(),
-                              capture_output=True)
-    except OSError as error:
-        raise InputError(f"cores: found {words[0]}, expected the program float_cores ({error.strerror})") from None
-    if done.returncode != 0:
-        raise InputError(done.stderr.decode(errors="replace").strip())
-    pairs = np.frombuffer(done.stdout, "<u4").reshape(-1, 2).astype(np.uint32)
-    return pairs[:, 0].copy(), pairs[:, 1].astype(np.uint8)
 
 
 def _words(array: Array, format: Format) -> Array:

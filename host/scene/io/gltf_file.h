@@ -163,7 +163,6 @@ class GltfFile {
     }
   }
 
-  /// Throws InputError, "file: what".
   [[noreturn]] void fail(const std::string& what) const { throw InputError(name + ": " + what); }
   /// Adds the warning "file: what" unless there is one.
   void warn_once(const std::string& what) { add_warning(name + ": " + what); }
@@ -191,7 +190,6 @@ class GltfFile {
   [[nodiscard]] const Json& accessor(int index) const {
     return at(list("accessors"), index, "accessor");
   }
-  /// Returns the number of elements of an accessor.
   [[nodiscard]] std::size_t count(int accessor) const {
     return size_in(this->accessor(accessor), "count");
   }

@@ -11,7 +11,6 @@
 #include <set>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,14 +31,6 @@ constexpr double kLumensPerWatt = 683.0;
 constexpr double kMostFloat = std::numeric_limits<float>::max();
 constexpr int kTriangles = 4, kTriangleFan = 6;    // modes of primitives
 constexpr std::size_t kMostVertices = 12'000'000;  // plus the number of bytes of the file
-
-/// Returns whether an attribute may be missed. Texture coordinates that no texture uses, and joints
-/// without a skin, change no picture.
-bool is_unread(std::string_view name) {
-  return name != "POSITION" && name != "NORMAL" && name != "TANGENT" && name != "COLOR_0" &&
-         !name.starts_with("TEXCOORD_") && !name.starts_with("JOINTS_") &&
-         !name.starts_with("WEIGHTS_");
-}
 
 /// The index of a mesh, and the weights of its morph targets.
 using Shape = std::pair<int, std::vector<double>>;
@@ -427,9 +418,6 @@ class GltfReader {
     const Json& attributes = member(primitive, "attributes");
     if (!attributes.contains("POSITION")) {
       return file_.warn_once("a primitive without positions is left out");
-    }
-    for (const auto& [name, accessor] : attributes.items()) {
-      if (is_unread(name)) file_.warn_once("the attribute " + in_quotes(name) + " is not read");
     }
     const std::size_t vertices = file_.count(index_in(attributes, "POSITION"));
     count(vertices);

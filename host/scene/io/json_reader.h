@@ -134,7 +134,6 @@ class JsonFile {
 /// another type: "a.json:7: camera.eye[1]: 'up', expected a number within the range of float".
 class JsonValue {
  public:
-  /// The whole file's value.
   explicit JsonValue(const JsonFile& file) : JsonValue(file.root, file, "") {}
 
   [[noreturn]] void fail(const std::string& expected) const {
@@ -168,14 +167,12 @@ class JsonValue {
   [[nodiscard]] std::optional<JsonValue> find(const std::string& key) const {
     return value_->contains(key) ? std::optional(member(key)) : std::nullopt;
   }
-  /// Returns the value of a required key.
   [[nodiscard]] JsonValue at(const std::string& key) const {
     const auto found = find(key);
     if (!found) throw InputError(file_->name, line(), label() + "'" + key + "' is missing");
     return *found;
   }
 
-  /// Returns the elements of an array.
   [[nodiscard]] std::vector<JsonValue> elements() const {
     if (!value_->is_array()) fail("an array");
     std::vector<JsonValue> all;
@@ -249,7 +246,6 @@ class JsonValue {
   [[nodiscard]] JsonValue member(const std::string& key) const {
     return {(*value_)[key], *file_, JsonFile::member_path(path_, key)};
   }
-  /// Returns the path for messages.
   [[nodiscard]] std::string label() const { return (path_.empty() ? "scene" : path_) + ": "; }
 
   const Json* value_;

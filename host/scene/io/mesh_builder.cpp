@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "host/base/elementary.h"
 #include "host/base/input_error.h"

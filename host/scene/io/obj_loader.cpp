@@ -43,7 +43,7 @@ class ObjReader {
   void read(const LoadOptions& options) {
     while (auto statement = lines_.next()) read_statement(*statement);
     mesh_.build(options, scene_);
-    scene_.objects = NameList(in_order(objects_));
+    scene_.objects = in_order(objects_);
     scene_.files = {libraries_.begin(), libraries_.end()};
     scene_.files.emplace_back(mesh_.file_name());
     assign_materials();

@@ -40,8 +40,7 @@ CameraRequest read_camera(const JsonValue& value) {
   request.fov =
       value.number_in("fov", kLeast, std::nextafter(180.0, 0.0), "degrees above 0 and below 180");
   if (const auto name = value.find("projection")) {
-    const std::string expected = "perspective, orthographic or panorama",
-                      found = name->string(expected);
+    const std::string expected = "perspective or orthographic", found = name->string(expected);
     for (const auto& [known, projection] : kProjections) {
       if (found == known) request.lens.projection = projection;
     }
@@ -289,16 +288,14 @@ Scene load_scene(const SceneFile& file, const LoadOptions& options) {
   for (const InstanceSetting& setting : file.instances) {
     Scene model = load_scene(setting.model, of_models);
     resolve_instances(model, InstanceMode::kFlatten, setting.model);
-    const std::vector<std::string> objects = model.objects.all();
+    const std::vector<std::string> objects = model.objects;
     MeshInstancer instancer(scene, std::move(model));
-    std::size_t object = scene.objects.size();
-    scene.objects.append(objects, setting.transforms.size());
     for (const glm::dmat4& transform : setting.transforms) {
-      if (!instancer.add(transform, static_cast<std::uint32_t>(object))) {
+      if (!instancer.add(transform, static_cast<std::uint32_t>(scene.objects.size()))) {
         throw InputError(file.file.string() + ": an instance of " + setting.model.string() +
                          " is beyond the range of float");
       }
-      object += objects.size();
+      scene.objects.insert(scene.objects.end(), objects.begin(), objects.end());
     }
   }
   add_lights(file, scene);

@@ -90,11 +90,6 @@ struct SceneFile {
   std::optional<glm::vec3> background = {};  ///< radiance, scene-linear RGB, none negative
   std::vector<InstanceSetting> instances = {};
   std::vector<OptionValue> options = {};
-
-  /// Returns "camera.up", which may be there without a camera.
-  [[nodiscard]] const std::optional<glm::dvec3>& up() const {
-    return camera.camera ? camera.camera->up : camera.up;
-  }
 };
 
 /// Reads a scene file (.json). For a file with another ending, returns a SceneFile with that model

@@ -37,32 +37,6 @@ std::vector<std::uint32_t> numbers_of(const Scene& scene) {
   return numbers;
 }
 
-/// Corners that smooth edges connect, as a forest: a corner refers to one before it, or to itself.
-class JoinedCorners {
- public:
-  explicit JoinedCorners(std::size_t count) : joined_(count), is_joined_(count) {
-    std::iota(joined_.begin(), joined_.end(), 0u);
-  }
-  [[nodiscard]] Corner root(Corner corner) {
-    while (joined_[corner] != corner) {
-      joined_[corner] = joined_[joined_[corner]];
-      corner = joined_[corner];
-    }
-    return corner;
-  }
-  void join(Corner a, Corner b) {
-    is_joined_[a] = is_joined_[b] = true;
-    a = root(a);
-    b = root(b);
-    joined_[std::max(a, b)] = std::min(a, b);
-  }
-  [[nodiscard]] bool is_joined(Corner corner) const { return is_joined_[corner]; }
-
- private:
-  std::vector<Corner> joined_;
-  std::vector<bool> is_joined_;
-};
-
 }  // namespace
 
 void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<double> angle,
@@ -107,7 +81,21 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
                     [](const Edge& edge) { return std::tuple(edge.low, edge.high, edge.corner); });
 
   const auto count = static_cast<Corner>(3 * scene.triangles.size());
-  JoinedCorners corners(count);
+  // Corners that smooth edges connect, as a forest: a corner refers to one before it, or to itself.
+  std::vector<Corner> joined(count);
+  std::iota(joined.begin(), joined.end(), 0u);
+  std::vector<bool> is_joined(count);
+  const auto root = [&](Corner corner) {
+    for (; joined[corner] != corner; corner = joined[corner]) {
+      joined[corner] = joined[joined[corner]];
+    }
+    return corner;
+  };
+  const auto join = [&](Corner a, Corner b) {
+    is_joined[a] = is_joined[b] = true;
+    const auto [low, high] = std::minmax({root(a), root(b)});
+    joined[high] = low;
+  };
   for (auto first = edges.begin(), end = first; first != edges.end(); first = end) {
     const auto is_same = [&](const Edge& e) {
       return e.low == first->low && e.high == first->high;
@@ -116,21 +104,20 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
     const Edge &a = *first, &b = *(end - 1);
     if (end - first != 2 || a.is_forward == b.is_forward) continue;
     if (!is_smooth(a.corner / 3, b.corner / 3)) continue;
-    corners.join(a.corner, next(b.corner));
-    corners.join(next(a.corner), b.corner);
+    join(a.corner, next(b.corner));
+    join(next(a.corner), b.corner);
   }
 
   std::vector<glm::dvec3> sums(count, glm::dvec3(0.0));
   for (Corner corner = 0; corner < count; ++corner) {
-    if (is_wanted(corner / 3)) sums[corners.root(corner)] += weighted_normal(corner);
+    if (is_wanted(corner / 3)) sums[root(corner)] += weighted_normal(corner);
   }
   std::vector<std::uint32_t> normals(count, kNoIndex);
   for (Corner first = 0; first < count; first += 3) {
     if (!is_wanted(first / 3)) continue;
-    if (!corners.is_joined(first) && !corners.is_joined(first + 1) && !corners.is_joined(first + 2))
-      continue;
+    if (!is_joined[first] && !is_joined[first + 1] && !is_joined[first + 2]) continue;
     for (Corner corner = first; corner < first + 3; ++corner) {
-      const Corner kept = corners.root(corner);
+      const Corner kept = root(corner);
       if (normals[kept] == kNoIndex) {
         normals[kept] = static_cast<std::uint32_t>(scene.normals.size());
         // If the normals of the faces cancel out, use that of one of them.

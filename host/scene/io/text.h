@@ -29,7 +29,6 @@ inline std::size_t find_comment(std::string_view line) {
   return at;
 }
 
-/// Returns the text with the letters A to Z in lower case.
 inline std::string in_lower_case(std::string text) {
   for (char& letter : text) letter = in_lower_case(letter);
   return text;
@@ -92,11 +91,9 @@ class Words {
     find_word(begin);
   }
 
-  /// Returns the line of the next word.
   [[nodiscard]] std::size_t line() const { return line_; }
   /// Returns "file:line: " for the next word.
   [[nodiscard]] std::string place() const { return InputError::location(*file_, line_); }
-  /// Throws InputError with the line of the next word.
   [[noreturn]] void fail(const std::string& what) const { throw InputError(*file_, line_, what); }
 
  private:

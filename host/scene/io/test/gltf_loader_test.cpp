@@ -59,7 +59,7 @@ TEST_F(LoadGltf, ASquare) {
   EXPECT_EQ(corner(scene, 1, 2), glm::dvec3(0, 1, 0));
   EXPECT_EQ(scene.normals[scene.triangles[1].normals[2]], glm::vec3(0, 0, 1));
   EXPECT_EQ(scene.triangles[0].texcoords[0], kNoIndex) << "no texture asks for them";
-  EXPECT_EQ(scene.objects.all(), std::vector<std::string>{"square"});
+  EXPECT_EQ(scene.objects, std::vector<std::string>{"square"});
   EXPECT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.up, glm::dvec3(0, 1, 0));
   EXPECT_FALSE(scene.camera);
@@ -95,7 +95,7 @@ TEST_F(LoadGltf, MeshesOfSeveralNodesAreKeptOnce) {
   EXPECT_EQ(kept.meshes.size(), 2u) << "one is mirrored";
   const Scene written = load(json);
   EXPECT_TRUE(written.instances.empty());
-  EXPECT_EQ(written.objects.all(), (std::vector<std::string>{"one", "two", "three"}));
+  EXPECT_EQ(written.objects, (std::vector<std::string>{"one", "two", "three"}));
   ASSERT_EQ(written.triangles.size(), 6u);
   EXPECT_EQ(kept.origin, written.origin);
   std::size_t number = 0;

@@ -43,7 +43,7 @@ TEST(LoadObj, Triangle) {
   EXPECT_EQ(vertices_of(scene), kOneTriangle);
   EXPECT_EQ(scene.triangles[0].normals, (Indices{kNoIndex, kNoIndex, kNoIndex}));
   EXPECT_EQ(scene.triangles[0].texcoords, (Indices{kNoIndex, kNoIndex, kNoIndex}));
-  EXPECT_EQ(scene.objects.all(), std::vector<std::string>{"default"});
+  EXPECT_EQ(scene.objects, std::vector<std::string>{"default"});
   ASSERT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.materials[0].name, "default");
   EXPECT_EQ(scene.origin, glm::dvec3(0));
@@ -126,7 +126,7 @@ TEST(LoadObj, ObjectsAndGroups) {
       "f 1 2 3\no room\nf 1 2 3\ng  a  b \nf 1 2 3\nf 2 3 4\no\nf 1 2 3\ng\nf 1 2 3\no room\ng a "
       "b\n"
       "f 1 2 3\ng unused\n");
-  EXPECT_EQ(scene.objects.all(), (std::vector<std::string>{"default", "room", "room/a b", "a b"}));
+  EXPECT_EQ(scene.objects, (std::vector<std::string>{"default", "room", "room/a b", "a b"}));
   std::vector<std::uint32_t> objects;
   for (const Triangle& triangle : scene.triangles) objects.push_back(triangle.object);
   EXPECT_EQ(objects, (std::vector<std::uint32_t>{0, 1, 2, 2, 3, 0, 2}));

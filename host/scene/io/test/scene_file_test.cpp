@@ -113,7 +113,7 @@ TEST_F(ReadSceneFile, ValuesOfTheWrongKindOrOutOfRange) {
       {R"({"camera": {"eye": [1, 2, 3], "target": [1, 2, 3]}})",
        "1: camera.target: an array of 3, expected another point than the eye"},
       {R"({"camera": {"projection": "fisheye"}})",
-       "1: camera.projection: 'fisheye', expected perspective, orthographic or panorama"},
+       "1: camera.projection: 'fisheye', expected perspective or orthographic"},
       {R"({"camera": {"aperture": -1}})",
        "1: camera.aperture: -1, expected the radius of a lens, 0 or more"},
       {R"({"camera": {"focus": 0}})", "1: camera.focus: 0, expected a distance, more than 0"},
@@ -142,10 +142,10 @@ TEST_F(ReadSceneFile, ValuesOfTheWrongKindOrOutOfRange) {
 
 TEST_F(ReadSceneFile, LensesAndEnvironments) {
   const SceneFile file = read(R"({
-      "camera": {"eye": [0, 0, 1], "target": [0, 0, 0], "projection": "panorama", "aperture": 0.5,
+      "camera": {"eye": [0, 0, 1], "target": [0, 0, 0], "projection": "orthographic", "aperture": 0.5,
                  "focus": 3},
       "environment": {"file": "sky.exr", "rotation": 90, "strength": 2}})");
-  EXPECT_EQ(file.camera.lens.projection, Projection::kPanorama);
+  EXPECT_EQ(file.camera.lens.projection, Projection::kOrthographic);
   EXPECT_EQ(file.camera.lens.aperture, 0.5);
   EXPECT_EQ(file.camera.lens.focus, 3.0) << "also of views";
   EXPECT_EQ(file.environment.file, folder_.path() / "sky.exr");

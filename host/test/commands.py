@@ -1,6 +1,6 @@
 """Runs the commands of README.md and the tutorials as written, in order.
 
-`python3 host/docs/commands.py`: runs all commands, from installation to proofs, in a clone of this commit,
+`python3 host/test/commands.py`: runs all commands, from installation to proofs, in a clone of this commit,
 build/commands. Takes hours. With --quick: runs only those of this build's programs and of the Python module, with small
 pictures. Their output is kept in build/commands-PAGE.log. Exit status 1 if a command fails.
 """
