@@ -34,7 +34,6 @@
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/unit_intersector.h"
 #include "host/light/prepared_scene.h"
 #include "host/render/renderer.h"
 #include "host/scene/io/mesh_builder.h"
@@ -350,7 +349,7 @@ class PythonScene {
   [[nodiscard]] IntersectorFactory intersectors(bool uses_model) const {
     if (uses_model) {
       return [this] {
-        return std::make_unique<UnitIntersector>(
+        return make_unit_intersector(
             *bvh_, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
       };
     }

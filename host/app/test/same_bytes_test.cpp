@@ -40,7 +40,6 @@ TEST_P(EveryScene, EnginesGiveTheSameBytes) {
   EXPECT_EQ(cpu.at("clocks"), 0);
   render({scene, "--size", "64x48", "--engine", "rtl", "--spp", "1", "-o", "rtl"});
   EXPECT_GT(stats_.at("clocks"), 0);
-  EXPECT_GT(stats_.at("quotients"), 0);  // how many each engine needs is its own affair
   expect_same_pictures("cpu", "rtl");
   render({scene, "--size", "64x48", "--lanes", "4", "--spp", "1", "-o", "lanes"});
   expect_same_pictures("cpu", "lanes");
@@ -61,12 +60,6 @@ TEST_P(EveryScene, VectorsGiveTheSameBytes) {
     unsetenv("RAYGATE_VECTORS");
     expect_same_pictures("baseline", name);
   }
-}
-
-TEST_P(EveryScene, CheckFindsNoDifference) {
-  const std::string& scene = GetParam();
-  render({scene, "--size", "80x60", "--engine", "check"});
-  EXPECT_GT(stats_.at("plane_tests"), 0) << "nothing was compared";
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(all_scenes()), [](const auto& info) {
@@ -132,7 +125,7 @@ TEST_F(InstancedScene, IsTheSameForEveryEngine) {
   render({"room.json", "--size", "40x40", "--engine", "cpu", "--spp", "1", "--instances", "write",
           "-o", "cpu"});
   const json written = stats_;
-  for (const char* engine : {"rtl", "model", "check"}) {
+  for (const char* engine : {"rtl", "model"}) {
     render({"room.json", "--size", "40x40", "--engine", engine, "--spp", "1", "--instances", "keep",
             "-o", engine});
     EXPECT_EQ(stats_.at("triangles"), written.at("triangles"));
