@@ -160,7 +160,6 @@ class ArrayModel : public BurstModel {
             .edge_doubts = read(kDoubts),
             .depth_doubts = read(kNearTies),
             .plane_tests = read(kPoints),
-            .quotients = read(kDistances) + 3 * read(kPoints),
             .clocks = models_.front().clocks(),
             .idle_clocks = read(kIdleClocks),
             .output_stalls = read(kOutputStalls)};

@@ -96,7 +96,7 @@ class CoreModel : public CoreUnit {
   [[nodiscard]] bool is_exact() const override { return set_.exact; }
   [[nodiscard]] CoreCounters counters() const override {
     CoreCounters sum;
-    for (const Core& core : cores_) sum += core.counters();
+    for (const Core& core : cores_) add_counters(sum, core.counters());
     sum.clocks = cores_.front().clocks();
     return sum;
   }

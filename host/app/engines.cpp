@@ -5,14 +5,12 @@
 #include "host/app/console.h"
 #include "host/base/input_error.h"
 #include "host/film/atomic_file.h"
-#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/linked_core.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/unit_intersector.h"
 #include "host/variants/variant_hit_tester.h"
 #include "sim/rtl_core.h"
 #include "sim/rtl_units.h"
@@ -39,8 +37,7 @@ std::unique_ptr<CoreUnit> make_core(const EngineOptions& options) {
     return std::make_unique<ReferenceCore>(ReferenceCore::kStackDepth, true);
   }
   if (!options.board_port.empty()) {
-    return std::make_unique<LinkedCore>(std::make_unique<SerialLink>(options.board_port),
-                                        kBoardRays);
+    return std::make_unique<LinkedCore>(open_serial_link(options.board_port), kBoardRays);
   }
   if (options.unit == "board") return make_rtl_board();
   return make_rtl_core({}, {}, {.cores = options.cores, .exact = true, .arith = options.arith});
@@ -59,22 +56,15 @@ void prepare_engine(const EngineOptions& options) {
 
 IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,
                                             std::shared_ptr<const MemoryImage> image) {
-  IntersectorFactory make_cpu = [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
-  if (options.engine == Engine::kCpu) return make_cpu;
-  IntersectorFactory make_unit;
-  if (options.has_core()) {
-    if (!image) image = make_memory_image(options, bvh);
-    make_unit = [options, &bvh, image] {
-      return std::make_unique<CoreIntersector>(bvh, image, make_core(options));
-    };
-  } else {
-    make_unit = [options, &bvh] {
-      return std::make_unique<UnitIntersector>(bvh, make_tester(options));
-    };
+  if (options.engine == Engine::kCpu) {
+    return [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
   }
-  if (options.engine != Engine::kCheck) return make_unit;
-  return [&bvh, make_unit, make_cpu] {
-    return std::make_unique<CheckIntersector>(bvh, make_unit(), make_cpu());
+  if (!options.has_core()) {
+    return [options, &bvh] { return make_unit_intersector(bvh, make_tester(options)); };
+  }
+  if (!image) image = make_memory_image(options, bvh);
+  return [options, &bvh, image] {
+    return std::make_unique<CoreIntersector>(bvh, image, make_core(options));
   };
 }
 

@@ -35,20 +35,16 @@ Writes SCENE.exr and SCENE.png into the current folder.
 )";
 
 constexpr const char* kFooter =
-    R"(Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
-line, the scene or an output cannot be used; 130 interrupted (partial pictures).)";
+    R"(Exit status: 0 done; 1 an internal error; 2 the command line, the scene or an
+output cannot be used; 130 interrupted (partial pictures).)";
 
 // Values of options. Only a lack of memory at the start could make them throw.
 // NOLINTBEGIN(bugprone-throwing-static-initialization)
 
-const Choices<Engine> kEngines{{"rtl", Engine::kRtl},
-                               {"model", Engine::kModel},
-                               {"cpu", Engine::kCpu},
-                               {"check", Engine::kCheck}};
+const Choices<Engine> kEngines{
+    {"rtl", Engine::kRtl}, {"model", Engine::kModel}, {"cpu", Engine::kCpu}};
 const Choices<Arith> kAriths{{"structural", Arith::kStructural},
                              {"behavioural", Arith::kBehavioural}};
-const Choices<Caustics> kCaustics{
-    {"on", Caustics::kOn}, {"off", Caustics::kOff}, {"auto", Caustics::kAuto}};
 const Choices<bool ExtraChannels::*> kExtraChannels{
     {"P", &ExtraChannels::position},      {"Albedo", &ExtraChannels::albedo},
     {"objectId", &ExtraChannels::object}, {"tests", &ExtraChannels::tests},
@@ -282,7 +278,7 @@ void check_core_files(const OptionTable& table, const Options& options) {
   }
   if (files.wave.empty()) return;
   if (!options.has_core() || !options.simulates()) {
-    table.fail_value("trace", "with --unit core and --engine rtl or check");
+    table.fail_value("trace", "with --unit core and --engine rtl");
   }
   const RenderSettings& render = options.render;
   const glm::ivec2& pixel = files.pixel;
@@ -391,8 +387,7 @@ std::vector<fs::path> CoreFileOptions::paths() const {
 void add_engine_options(OptionTable& table, EngineOptions& options) {
   if (!has_simulation()) options.engine = Engine::kCpu;
   table.choice("--engine", "NAME",
-               "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster; check: "
-               "rtl and cpu ({})",
+               "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster ({})",
                options.engine, kEngines, kInStats | kInPage);
   table.choice<std::string>(
       "--unit", "NAME", "pipeline, serial (the paper's), core, board ({})", options.unit,
@@ -500,8 +495,8 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
         return settings.max_depth && kDepths.contains(*settings.max_depth);
       },
       [&] { return std::to_string(settings.depth()); }, kEverywhere);
-  table.choice("--caustics", "WHEN", "path: light paths find caustics: on, off or {}",
-               settings.caustics, kCaustics, kInExr | kInPython);
+  table.choice<bool>("--caustics", "auto|off", "path: light paths find caustics ({})",
+                     settings.caustics, {{"auto", true}, {"off", false}}, kInExr | kInPython);
   table.number("--threshold", "X", "whitted: ignore rays that weigh less ({})", settings.threshold,
                Range{0.0, 1.0}, kInExr | kInPython | kInSceneFile | kInPage);
   table.number("--ambient", "X", "whitted: ambient radiance (background or lights)",
@@ -514,7 +509,7 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
 
 void check_engine_options(const OptionTable& table, EngineOptions& options) {
   if (!table.given("cores").empty() && !(options.unit == "core" && options.simulates())) {
-    table.fail_value("cores", "with --unit core and --engine rtl or check");
+    table.fail_value("cores", "with --unit core and --engine rtl");
   }
   if (options.variant) {
     const std::string unit =
@@ -580,17 +575,6 @@ void check_light_options(const OptionTable& table, bool has_environment, RenderS
       table.fail_value("spp", "more than the " + std::to_string(kMinAdaptiveSamples) +
                                   " that adaptive sampling to an error begins with");
     }
-  }
-  // With --caustics auto there are none then.
-  if (settings.caustics != Caustics::kOn) return;
-  if (settings.integrator != IntegratorKind::kPath) {
-    table.fail("--caustics on: expected --integrator path", {"caustics", "integrator"});
-  }
-  if (settings.samples == 1) {
-    table.fail("--caustics on: expected --spp 2 or more", {"caustics", "spp"});
-  }
-  if (settings.error > 0.0) {
-    table.fail("--caustics on and --error exclude each other", {"caustics", "error"});
   }
 }
 

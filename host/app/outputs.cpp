@@ -80,8 +80,6 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
       {"point_doubts", render.point_doubts, "hit points computed by the host (--point-error)"},
       {"plane_tests", hit.plane_tests, "points P computed by the unit"},
       {"unit_tests", hit.unit_tests, "tests by the hit-test unit; 0 with --engine cpu"},
-      {"quotients", hit.quotients, "divisions by the unit"},
-      {"input_bytes", hit.input_bytes, "bytes that the unit read for its tests"},
       {"clocks", hit.clocks, "simulated clocks"},
       {"idle_clocks", hit.idle_clocks, "clocks of pipelined lanes without input"},
       {"output_stalls", hit.output_stalls, "clocks of pipelined lanes stalled by the consumer"},
@@ -95,9 +93,7 @@ std::vector<Statistic> statistics(const Report& report, const Options& options) 
       {"seconds.processor", render.processor_seconds, "processor time of all threads meanwhile"},
       {"seconds.write", report.write_seconds, "elapsed: writing the pictures"},
       {"seconds.total", report.total_seconds, "elapsed: the whole run"},
-      {"thread_seconds.boxes", work.traverse, "traversal"},
-      {"thread_seconds.records", work.record, "making polygon records"},
-      {"thread_seconds.hit_tests", work.hit_tests, "tests and exact decisions"},
+      {"thread_seconds.tracing", work.seconds, "traversal, tests and exact decisions"},
       {"thread_seconds.shading", render.shade_seconds, "making, shading and spawning rays"}};
 }
 
@@ -181,9 +177,6 @@ std::string to_text(const Report& report, const Options& options) {
       row("tests", format_count(hit.tests) + ", " + format_fixed(ratio(hit.tests, render.rays), 1) +
                        " per ray" + clocks + ": " + rate(hit.tests, render.wall_seconds, "tests"));
   if (options.render.error > 0.0) text += samples_line(report, options.render);
-  if (options.engine == Engine::kCheck) {
-    text += row("check", "rtl and cpu agreed on all " + format_count(render.rays) + " rays");
-  }
   if (report.rounding.corners > 0) {
     text += row("rounded", format_count(report.rounding.corners, "corner") +
                                " to binary32, by up to " + format_number(report.rounding.most));

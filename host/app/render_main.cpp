@@ -21,7 +21,6 @@
 #include "host/film/display.h"
 #include "host/film/film.h"
 #include "host/film/merge.h"
-#include "host/intersect/check_intersector.h"
 #include "host/light/prepared_scene.h"
 #include "host/render/renderer.h"
 #include "host/scene/instances.h"
@@ -217,10 +216,6 @@ void run(const Options& options) {
   const Scene unframed = options.serve ? scene : Scene();
   if (framing.has_ground) add_ground(scene, framing.up);
   report.view = framing.text;
-  if (settings.caustics == Caustics::kOn &&
-      (framing.lights || framing.camera.projection() != Projection::kPerspective)) {
-    throw InputError("--caustics on: expected a perspective camera and a scene with lights");
-  }
   resolve_instances(scene, options.instances, options.scene);
   if (core_files.paths().empty()) prepare_engine(options);
   lap.lap();

@@ -3,6 +3,9 @@
 // 61966-2-1), which converts between scene-linear light and 8-bit codes.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "host/base/triple.h"
@@ -90,14 +93,32 @@ RAYGATE_INLINE D power(const D& base, const D& exponent) {
   return binary_power<D>(binary_logarithm(base) * exponent);
 }
 
-/// Returns the sRGB code from 0 to 255 nearest to scene-linear `linear`: 0 below 0 and for NaN, 255
-/// above 1. Monotonic, and the inverse of `srgb_to_linear` for all 256 codes.
-[[nodiscard]] std::uint8_t linear_to_srgb(float linear);
+/// Returns the scene-linear value of an sRGB code from 0 to 255, which may be fractional.
+[[nodiscard]] inline double srgb_to_linear(double code) {
+  const double value = code / 255.0;
+  return value <= 0.04045 ? value / 12.92 : power((value + 0.055) / 1.055, 2.4);
+}
 
 /// Returns the continuous sRGB curve of light from 0 on; above 1 for light above white.
-[[nodiscard]] double srgb_curve_above(double linear);
+[[nodiscard]] inline double srgb_curve_above(double linear) {
+  const double x = linear;
+  return x <= 0.0031308 ? 12.92 * x : 1.055 * power(x, 1.0 / 2.4) - 0.055;
+}
 
-/// Returns the scene-linear value of an sRGB code from 0 to 255, which may be fractional.
-[[nodiscard]] double srgb_to_linear(double code);
+/// Returns the sRGB code from 0 to 255 nearest to scene-linear `linear`: 0 below 0 and for NaN, 255
+/// above 1. Monotonic, and the inverse of `srgb_to_linear` for all 256 codes.
+[[nodiscard]] inline std::uint8_t linear_to_srgb(float linear) {
+  // Entry k is the least linear value whose nearest code is k + 1.
+  static const auto thresholds = [] {
+    std::array<double, 255> thresholds{};
+    for (std::size_t k = 0; k < thresholds.size(); ++k) {
+      thresholds[k] = srgb_to_linear(static_cast<double>(k) + 0.5);
+    }
+    return thresholds;
+  }();
+  if (std::isnan(linear)) return 0;
+  return static_cast<std::uint8_t>(
+      std::ranges::upper_bound(thresholds, static_cast<double>(linear)) - thresholds.begin());
+}
 
 }  // namespace raygate

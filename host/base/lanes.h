@@ -50,41 +50,29 @@ template <class Element>
 struct VecOf<Element, 1> {
   using Type = Element;
 };
-template <class T>
-struct LanesInfo;
-template <class T>
-requires std::is_arithmetic_v<T>
-struct LanesInfo<T> {
-  static constexpr int kCount = 1;
-  using Mask = bool;
-};
-template <class T>
-requires requires(const T& x) { (x < x)[0]; }
-struct LanesInfo<T> {
-  static constexpr int kCount = sizeof(T) / sizeof(std::declval<T&>()[0]);
-  using Mask = std::remove_cvref_t<decltype(std::declval<T>() < std::declval<T>())>;
-};
 }  // namespace detail
 
 // Operations on T, which is a number (one lane) or a vector. No lane depends on another one, so
 // results have the same bits for any number of lanes. Comparisons return masks for choose(), & and
 // |; `!` negates them.
 
-/// Number of lanes of T.
+/// Result type of comparisons of T.
 template <class T>
-inline constexpr int kLanesOf = detail::LanesInfo<T>::kCount;
+using MaskOf = std::remove_cvref_t<decltype(std::declval<T>() < std::declval<T>())>;
+template <class T>
+inline constexpr int kLanesOf = 1;
+template <class T>
+requires requires(const T& x) { x[0]; }
+inline constexpr int kLanesOf<T> = sizeof(T) / sizeof(std::declval<T&>()[0]);
 /// Vector with the same number of lanes of another element type.
 template <class T, class Element>
-using Like = typename detail::VecOf<Element, detail::LanesInfo<T>::kCount>::Type;
+using Like = typename detail::VecOf<Element, kLanesOf<T>>::Type;
 template <class T>
 using IntOf = Like<T, std::int32_t>;
 template <class T>
 using WordOf = Like<T, std::uint32_t>;
 template <class T>
 using WideOf = Like<T, double>;
-/// Result type of comparisons of T.
-template <class T>
-using MaskOf = typename detail::LanesInfo<T>::Mask;
 
 /// Load lanes from an array or another object, and store them.
 template <class T, class From>
@@ -175,7 +163,6 @@ RAYGATE_INLINE T absolute(const T& x) {
   }
 }
 
-/// Returns correctly rounded square roots.
 template <class T>
 RAYGATE_INLINE T root(const T& x) {
   if constexpr (std::is_arithmetic_v<T>) {

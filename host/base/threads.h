@@ -17,26 +17,22 @@ namespace raygate {
 class CheckpointScope {
  public:
   explicit CheckpointScope(std::function<void()> check)
-      : check_(std::move(check)), outer_(std::exchange(innermost(), this)) {}
+      : check_(std::move(check)), outer_(std::exchange(innermost_, this)) {}
   CheckpointScope(const CheckpointScope&) = delete;
   CheckpointScope& operator=(const CheckpointScope&) = delete;
-  ~CheckpointScope() { innermost() = outer_; }
+  ~CheckpointScope() { innermost_ = outer_; }
 
  private:
   friend void checkpoint();
 
-  static CheckpointScope*& innermost() {
-    thread_local CheckpointScope* scope = nullptr;
-    return scope;
-  }
-
+  static inline thread_local CheckpointScope* innermost_ = nullptr;
   std::function<void()> check_;
   CheckpointScope* outer_;
 };
 
 /// Calls this thread's innermost check, if any. Long work calls it several times per 100 ms.
 inline void checkpoint() {
-  if (const CheckpointScope* const scope = CheckpointScope::innermost()) scope->check_();
+  if (CheckpointScope::innermost_ != nullptr) CheckpointScope::innermost_->check_();
 }
 
 /// Calls work(i) once for each i below `count`, in any order, on up to `threads` threads including

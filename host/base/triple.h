@@ -13,31 +13,30 @@ namespace raygate {
 template <class T>
 struct Triple {
   T x, y, z;
+
+  RAYGATE_INLINE Triple operator+(const Triple& b) const { return {x + b.x, y + b.y, z + b.z}; }
+  RAYGATE_INLINE Triple operator-(const Triple& b) const { return {x - b.x, y - b.y, z - b.z}; }
+  RAYGATE_INLINE Triple operator-() const { return {-x, -y, -z}; }
+  RAYGATE_INLINE Triple operator*(const Triple& b) const { return {x * b.x, y * b.y, z * b.z}; }
+  RAYGATE_INLINE Triple operator*(const T& b) const { return {x * b, y * b, z * b}; }
 };
 
 template <class T>
-RAYGATE_INLINE Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class T>
-RAYGATE_INLINE Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class T>
-RAYGATE_INLINE Triple<T> operator-(const Triple<T>& a) {
-  return {-a.x, -a.y, -a.z};
-}
-template <class T>
-RAYGATE_INLINE Triple<T> operator*(const Triple<T>& a, const Triple<T>& b) {
-  return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-template <class T>
-RAYGATE_INLINE Triple<T> operator*(const Triple<T>& a, const T& b) {
-  return {a.x * b, a.y * b, a.z * b};
-}
-template <class T>
 RAYGATE_INLINE T dot(const Triple<T>& a, const Triple<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class T>
+RAYGATE_INLINE Triple<T> cross(const Triple<T>& u, const Triple<T>& v) {
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+/// Returns u x v, and for each component the sum of the magnitudes of its two products. V is a
+/// Triple or a glm vector.
+template <class V>
+RAYGATE_INLINE V cross(const V& u, const V& v, V& size) {
+  const V plus = {u.y * v.z, u.z * v.x, u.x * v.y}, minus = {v.y * u.z, v.z * u.x, v.x * u.y};
+  size = {absolute(plus.x) + absolute(minus.x), absolute(plus.y) + absolute(minus.y),
+          absolute(plus.z) + absolute(minus.z)};
+  return plus - minus;
 }
 /// Returns the largest of three non-negative numbers.
 template <class T>
@@ -55,6 +54,10 @@ RAYGATE_INLINE Triple<T> zero() {
 template <class T>
 RAYGATE_INLINE Triple<T> spread(const glm::vec3& v) {
   return {spread<T>(v.x), spread<T>(v.y), spread<T>(v.z)};
+}
+template <class T>
+RAYGATE_INLINE Triple<T> absolute(const Triple<T>& a) {
+  return {absolute(a.x), absolute(a.y), absolute(a.z)};
 }
 template <class T>
 RAYGATE_INLINE Triple<T> normalized(const Triple<T>& a) {

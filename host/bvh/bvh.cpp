@@ -100,13 +100,10 @@ class BvhWriter {
   };
 
   static void clear(Bvh::Node& node) {
-    for (int k = 0; k < 3; ++k) {
-      for (int i = 0; i < Bvh::kWidth; ++i) {
-        node.bounds[0][k][i] = std::numeric_limits<float>::infinity();
-        node.bounds[1][k][i] = -std::numeric_limits<float>::infinity();
-      }
-    }
-    for (Bvh::Child& child : node.child) child = {};
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (auto& lows : node.bounds[0]) std::ranges::fill(lows, kInfinity);
+    for (auto& highs : node.bounds[1]) std::ranges::fill(highs, -kInfinity);
+    std::ranges::fill(node.child, Bvh::Child{});
   }
 
   [[nodiscard]] float area(Ref ref) const {

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "host/base/threads.h"
@@ -26,16 +27,11 @@ struct Run {
   [[nodiscard]] std::uint32_t size() const { return end - begin; }
 };
 
-/// Computes a box's centre in lanes 0 to 2, and its negation in lanes 4 to 6: a box of size 0.
-RAYGATE_INLINE void middle_of(const Box& box, Box& middle) {
+/// Returns a box's centre in lanes 0 to 2, and its negation in lanes 4 to 6: a box of size 0.
+RAYGATE_INLINE Box middle_of(const Box& box) {
   const FloatLanes half = 0.5f * box;
-  middle = half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
+  return half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
 }
-
-/// Bounds of a range's primitives, and of their centres.
-struct Around {
-  Box box, middles;
-};
 
 /// Equal bins of the centres' box on each axis.
 struct Slices {
@@ -52,9 +48,7 @@ struct Slices {
   }
   /// Computes the bins of a box's centre; lanes 0 to 2.
   RAYGATE_INLINE void of(const Box& box, IntLanes& slice) const {
-    Box middle;
-    middle_of(box, middle);
-    middle = (middle - low) * scale;
+    Box middle = (middle_of(box) - low) * scale;
     middle[3] = 0.0f;
     slice = __builtin_convertvector(middle, IntLanes);
     slice = slice < count - 1 ? slice : IntLanes{} + (count - 1);
@@ -68,15 +62,15 @@ struct Cut {
   int part = 0;
 };
 
-RAYGATE_INLINE void look_at(std::span<const Primitive> run, Around& around) {
-  clear(around.box);
-  clear(around.middles);
+/// Computes the bounds of a range's primitives, and of their centres.
+RAYGATE_INLINE void find_bounds(std::span<const Primitive> run, Box& bounds, Box& middles) {
+  clear(bounds);
+  clear(middles);
   for (const Primitive& primitive : run) {
-    Box box, middle;
+    Box box;
     primitive.get(box);
-    middle_of(box, middle);
-    grow(around.box, box);
-    grow(around.middles, middle);
+    grow(bounds, box);
+    grow(middles, middle_of(box));
   }
 }
 
@@ -175,16 +169,14 @@ RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
   if (best.axis != 2) sort_along(run, best.axis);
 }
 
-}  // namespace
-
 /// Splits a range in two, and returns the size of the first part. `room` is as large as the range.
 /// Splits in halves near the maximum depth, `depths_left` away, and if no split is found.
 std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left, Box& box) {
   return in_vectors([&](auto) RAYGATE_BODY -> std::uint32_t {
     const auto size = static_cast<std::uint32_t>(run.size());
-    Around around;
-    look_at(run, around);
-    box = around.box;
+    Box bounds, middles;
+    find_bounds(run, bounds, middles);
+    box = bounds;
     if (size == 2) return 1;
     Cut cut;
     const bool is_deep = static_cast<int>(std::bit_width(size)) >= depths_left;
@@ -195,15 +187,13 @@ std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left
       cut_few(run, unit_of(box), cut);
       if (cut.part > 0) return static_cast<std::uint32_t>(cut.part);
     } else {
-      const Slices slices(around.middles, size);
+      const Slices slices(middles, size);
       cut_between_slices(run, slices, unit_of(box), cut);
       if (cut.cost < kNever) return part_at(cut, slices, run, room);
     }
     return size / 2;
   });
 }
-
-namespace {
 
 /// Splits ranges until there are none left.
 class SahBuilder {

@@ -3,12 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <glm/glm.hpp>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "host/base/lanes.h"

@@ -1,15 +1,10 @@
 #include "host/exact/exact.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <memory>
 #include <vector>
 
-#include "host/base/lanes.h"
+#include "host/base/triple.h"
 #include "host/exact/expansion.h"
 
 namespace raygate {
@@ -31,13 +26,7 @@ struct Estimate {
 struct Cross {
   glm::dvec3 value, magnitude;
 
-  Cross(const glm::dvec3& u, const glm::dvec3& v) {
-    const double from[3] = {u.x, u.y, u.z}, to[3] = {v.x, v.y, v.z};
-    double product[3], size[3];
-    cross(from, to, product, size);
-    value = {product[0], product[1], product[2]};
-    magnitude = {size[0], size[1], size[2]};
-  }
+  Cross(const glm::dvec3& u, const glm::dvec3& v) { value = cross(u, v, magnitude); }
 
   /// Returns whether each component's error is surely at most 2^-34 of |value|_1. The bound is 8u,
   /// not 5u, to cover the rounding of this comparison.
@@ -343,16 +332,6 @@ int orient2d(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   const glm::dvec2 corners[] = {a, b, c};
   double area = 0.0;
   return area_sign(corners, area);
-}
-
-bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const auto flat = [](const glm::dvec3& p, int i, int j) { return glm::dvec2(p[i], p[j]); };
-  for (int axis = 0; axis < 3; ++axis) {
-    const int i = (axis + 1) % 3;
-    const int j = (axis + 2) % 3;
-    if (orient2d(flat(a, i, j), flat(b, i, j), flat(c, i, j)) != 0) return false;
-  }
-  return true;
 }
 
 }  // namespace raygate

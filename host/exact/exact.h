@@ -75,7 +75,6 @@ inline constexpr double kMostCoordinate = 0x1p126;
   return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
 
-/// Returns whether all components are floats.
 [[nodiscard]] inline bool is_binary32(const glm::dvec3& v) { return glm::dvec3(glm::vec3(v)) == v; }
 
 template <class T>
@@ -187,7 +186,7 @@ struct Barycentric {
 [[nodiscard]] glm::dvec3 edge_normal(const glm::dvec3& origin, const glm::dvec3& p,
                                      const glm::dvec3& q);
 
-/// Returns (b-a) x (c-a), as accurate as edge_normal.
+/// Returns (b-a) x (c-a), as accurate as edge_normal; 0 only if the corners are exactly collinear.
 [[nodiscard]] glm::dvec3 triangle_normal(const Corners& triangle);
 
 /// Returns 1 if a, b, c are in counter-clockwise order, -1 if clockwise, 0 if they are exactly
@@ -197,8 +196,5 @@ struct Barycentric {
 /// Returns 1 if the closed polygon's signed area is positive (counter-clockwise), -1 if negative, 0
 /// if exactly zero. Coordinates are as in orient2d. Sets `area` to the rounded area.
 [[nodiscard]] int area_sign(std::span<const glm::dvec2> polygon, double& area);
-
-/// Returns whether the three points are exactly collinear (or coincide).
-[[nodiscard]] bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
 }  // namespace raygate

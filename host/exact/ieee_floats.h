@@ -73,6 +73,7 @@ struct Binary32 {
   }
 
   static std::uint32_t to_word(float x) { return std::bit_cast<std::uint32_t>(x); }
+  static float from_word(std::uint32_t word) { return std::bit_cast<float>(word); }
   static int exponent_field(float x) { return static_cast<int>(to_word(x) >> 23 & 0xFF); }
   static bool is_normal(float x) { return exponent_field(x) != 0 && exponent_field(x) != 0xFF; }
   static constexpr int fraction_bits() { return 23; }

@@ -36,8 +36,6 @@ struct HitCounters {
   std::uint64_t plane_tests = 0;   ///< points P = d I / (I . N) computed
   // The fields below are 0 without a unit.
   std::uint64_t unit_tests = 0;     ///< tests done by the unit
-  std::uint64_t quotients = 0;      ///< divisions done by the unit
-  std::uint64_t input_bytes = 0;    ///< bytes sent to the unit: records, or rays and planes
   std::uint64_t clocks = 0;         ///< simulated clock cycles
   std::uint64_t idle_clocks = 0;    ///< clocks of the pipelined unit's lanes without a test
   std::uint64_t output_stalls = 0;  ///< clocks of the lanes stalled by the consumer
@@ -56,10 +54,7 @@ struct IntersectCounters {
   std::uint64_t exact_depth = 0;   ///< exact comparisons of two hits, or of a hit and t_max
   std::uint64_t ended_early = 0;   ///< rays ended early by RayQuery::any_hit_before
   std::uint64_t records = 0;       ///< polygon records made
-  // Seconds.
-  double traverse = 0.0;   ///< boxes
-  double record = 0.0;     ///< records
-  double hit_tests = 0.0;  ///< tests and resolving doubts; without a unit: total time
+  double seconds = 0.0;            ///< spent in nearest() and occluded()
 
   IntersectCounters& operator+=(const IntersectCounters& other) {
     hit += other.hit;
@@ -67,9 +62,7 @@ struct IntersectCounters {
     exact_depth += other.exact_depth;
     ended_early += other.ended_early;
     records += other.records;
-    traverse += other.traverse;
-    record += other.record;
-    hit_tests += other.hit_tests;
+    seconds += other.seconds;
     return *this;
   }
 };
@@ -85,11 +78,6 @@ struct NearestHit {
   float point_error = std::numeric_limits<float>::infinity();
   Interval t{};  ///< contains the exact t
 };
-
-/// Returns whether the relative error of P may exceed `most` (finite), so that the host computes P.
-[[nodiscard]] inline bool is_point_doubt(const NearestHit& hit, float most) {
-  return !(hit.point_error <= most);
-}
 
 /// Work done for one ray.
 struct RayWork {
@@ -161,8 +149,6 @@ class Intersector {
   [[nodiscard]] virtual IntersectCounters counters() const = 0;
 
  protected:
-  friend class CheckIntersector;
-
   /// Does the work of nearest() and occluded(); `hits` are initialised to misses, and `work` to 0.
   virtual void trace(std::span<const Ray> rays, const RayQuery& query,
                      std::span<NearestHit> hits) = 0;

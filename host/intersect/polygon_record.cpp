@@ -30,14 +30,9 @@ namespace raygate {
 
 namespace {
 
-// Words with exponents in this range are safe from under- and overflow in all later steps.
-constexpr double kSmallest = 0x1p-60, kLargest = 0x1p61;
-
-/// Returns whether x is 0 or in that range; false for NaN.
-bool ordinary(double x) {
-  const double size = std::abs(x);
-  return size == 0.0 || (size >= kSmallest && size < kLargest);
-}
+/// Returns whether x is 0 or has an exponent in [-60, 60], which is safe from under- and overflow
+/// in all later steps; false for NaN.
+bool ordinary(double x) { return x == 0.0 || (std::abs(x) >= 0x1p-60 && std::abs(x) < 0x1p61); }
 
 bool lower(const glm::dvec3& a, const glm::dvec3& b) {
   return std::pair(a.x, std::pair(a.y, a.z)) < std::pair(b.x, std::pair(b.y, b.z));
@@ -76,6 +71,103 @@ bool set_plane(const glm::dvec3& origin, const Corners& t, PolygonRecord& record
   return false;
 }
 
+// Operations and their order are those of exact.cpp and of the functions above, so all bits are
+// equal, as long as double is accurate enough and all exponents are ordinary. make_record computes
+// the others.
+
+constexpr double kU = 0x1p-53;  // as in exact.cpp
+
+using Points = Triple<DoubleQuad>;
+
+/// Clears `good` in lanes whose value is neither 0 nor has an exponent in [-60, 60].
+RAYGATE_INLINE void require_ordinary(const DoubleQuad& size, LongQuad& good) {
+  good &= ((size >= 0x1p-60) & (size < 0x1p61)) | (size == 0.0);
+}
+
+/// Computes u x v; clears `good` in lanes in which it is not accurate enough or not ordinary.
+RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& value, Points& size,
+                                   LongQuad& good) {
+  value = cross(u, v, size);
+  const Points s = absolute(value);
+  good &= 8.0 * kU * largest(size) <= 0x1p-34 * (s.x + s.y + s.z);
+  require_ordinary(largest(s), good);
+}
+
+/// Stores four words of each of four records, from `first` on; words[i] are those of record i.
+template <std::size_t kWords>
+RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const FloatQuad& c,
+                                const FloatQuad& d, float (&words)[kQuad][kWords],
+                                std::size_t first = 0) {
+  FloatQuad record[kQuad] = {a, b, c, d};
+  transpose(record);
+  for (int i = 0; i < kQuad; ++i) std::memcpy(&words[i][first], &record[i], 16);
+}
+
+/// Returns the bound of an edge: its sum of magnitudes times a constant, rounded up.
+RAYGATE_INLINE FloatQuad edge_bound(const Triple<FloatQuad>& words) {
+  const Points e = absolute(wide(words));
+  const DoubleQuad exact = kEdgeBound * 0x1p-24 * (e.x + e.y + e.z);
+  const FloatQuad nearest = narrow(exact);
+  return float_of(bits_in(nearest) - whole(wide(nearest) < exact));
+}
+
+/// Loads the corners of four triangles, lane by lane: vector loads after single stores would stall.
+RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
+  const Corners(&of)[kQuad] = views.triangles;
+  for (std::size_t v = 0; v < 3; ++v) {
+    const auto axis = [&](int k) RAYGATE_BODY {
+      return DoubleQuad{of[0][v][k], of[1][v][k], of[2][v][k], of[3][v][k]};
+    };
+    t[v] = {axis(0), axis(1), axis(2)};
+  }
+}
+
+/// Computes N and d from the corners and the first corner relative to the origin; clears `good` in
+/// lanes in which they are not accurate.
+RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal,
+                                DoubleQuad& d, LongQuad& good) {
+  Points size;
+  accurate_cross(t[1] - t[0], t[2] - t[0], normal, size, good);
+  d = dot(a, normal);
+  const DoubleQuad error = 10.0 * kU * dot(absolute(a), size);
+  const DoubleQuad distance = absolute(d);
+  good &= (error <= 0x1p-32 * distance) & (distance > error);
+  require_ordinary(distance, good);
+}
+
+/// Computes the 16 words of four records. Bit i of the result is set if record i is valid.
+LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&words)[kQuad][16]) {
+  return in_vectors([&](auto) RAYGATE_BODY {
+    Points t[3];
+    load_corners(views, t);
+    const Points o = wide(spread<FloatQuad>(origin));
+    const Points from_o[3] = {t[0] - o, t[1] - o, t[2] - o};
+    LongQuad good = LongQuad{} - 1;
+    Points normal, size;
+    DoubleQuad d;
+    find_planes(t, from_o[0], normal, d, good);
+    const Triple<FloatQuad> n = narrow(normal);
+    Triple<FloatQuad> edges[3];
+    FloatQuad bounds[3];
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      const Points &p = t[k], &q = t[next];
+      const LongQuad lower =
+          (p.x < q.x) | ((p.x == q.x) & ((p.y < q.y) | ((p.y == q.y) & (p.z < q.z))));
+      Points edge;
+      accurate_cross(choose(lower, from_o[k], from_o[next]), choose(lower, q - p, p - q), edge,
+                     size, good);
+      edges[k] = narrow(choose(lower, edge, -edge));
+      bounds[k] = edge_bound(edges[k]);
+    }
+    store_words(n.x, n.y, n.z, narrow(d), words);
+    store_words(edges[0].x, edges[0].y, edges[0].z, edges[1].x, words, 4);
+    store_words(edges[1].y, edges[1].z, edges[2].x, edges[2].y, words, 8);
+    store_words(edges[2].z, bounds[0], bounds[1], bounds[2], words, 12);
+    return sign_mask(whole(good));
+  });
+}
+
 }  // namespace
 
 PolygonRecord make_plane(const glm::dvec3& origin, const Corners& t) {
@@ -96,137 +188,20 @@ PolygonRecord make_record(const glm::dvec3& origin, const Corners& t) {
   return record;
 }
 
-// Operations and their order are those of exact.cpp and of the functions above, so all bits are
-// equal, as long as double is accurate enough and all exponents are ordinary. make_record computes
-// the others.
-
-namespace {
-
-constexpr double kU = 0x1p-53;  // as in exact.cpp
-
-using Points = DoubleQuad[3];
-
-RAYGATE_INLINE void subtract(const Points& a, const Points& b, Points& result) {
-  for (int k = 0; k < 3; ++k) result[k] = a[k] - b[k];
-}
-
-RAYGATE_INLINE DoubleQuad largest_of(const Points& p) { return maximum(maximum(p[0], p[1]), p[2]); }
-
-/// Clears `good` in lanes whose value is neither 0 nor has an exponent in [-60, 60].
-RAYGATE_INLINE void require_ordinary(const DoubleQuad& size, LongQuad& good) {
-  good &= ((size >= 0x1p-60) & (size < 0x1p61)) | (size == 0.0);
-}
-
-/// Computes u x v; clears `good` in lanes in which it is not accurate enough or not ordinary.
-RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& value, Points& size,
-                                   LongQuad& good) {
-  cross(u, v, value, size);
-  Points s;
-  for (int k = 0; k < 3; ++k) s[k] = absolute(value[k]);
-  good &= 8.0 * kU * largest_of(size) <= 0x1p-34 * (s[0] + s[1] + s[2]);
-  require_ordinary(largest_of(s), good);
-}
-
-/// Stores four words of each of four records, from `first` on; words[i] are those of record i.
-template <std::size_t kWords>
-RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const FloatQuad& c,
-                                const FloatQuad& d, float (&words)[kQuad][kWords],
-                                std::size_t first = 0) {
-  FloatQuad record[kQuad] = {a, b, c, d};
-  transpose(record);
-  for (int i = 0; i < kQuad; ++i) std::memcpy(&words[i][first], &record[i], 16);
-}
-
-RAYGATE_INLINE void to_floats(const Points& p, FloatQuad (&words)[3]) {
-  for (int k = 0; k < 3; ++k) words[k] = narrow(p[k]);
-}
-
-/// Returns the bound of an edge: its sum of magnitudes times a constant, rounded up.
-RAYGATE_INLINE FloatQuad edge_bound(const FloatQuad (&words)[3]) {
-  DoubleQuad e[3];
-  for (int k = 0; k < 3; ++k) e[k] = absolute(wide(words[k]));
-  const DoubleQuad exact = kEdgeBound * 0x1p-24 * (e[0] + e[1] + e[2]);
-  const FloatQuad nearest = narrow(exact);
-  return float_of(bits_in(nearest) - whole(wide(nearest) < exact));
-}
-
-/// Loads the corners of four triangles, lane by lane: vector loads after single stores would stall.
-RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
-  const Corners(&of)[kQuad] = views.triangles;
-  for (int v = 0; v < 3; ++v) {
-    for (int k = 0; k < 3; ++k) {
-      t[v][k] = DoubleQuad{of[0][v][k], of[1][v][k], of[2][v][k], of[3][v][k]};
-    }
-  }
-}
-
-/// Computes N and d from the corners and the first corner relative to the origin; clears `good` in
-/// lanes in which they are not accurate.
-RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal,
-                                DoubleQuad& d, LongQuad& good) {
-  Points to_b, to_c, size, far;
-  subtract(t[1], t[0], to_b);
-  subtract(t[2], t[0], to_c);
-  accurate_cross(to_b, to_c, normal, size, good);
-  d = a[0] * normal[0] + a[1] * normal[1] + a[2] * normal[2];
-  for (int k = 0; k < 3; ++k) far[k] = absolute(a[k]);
-  const DoubleQuad error = 10.0 * kU * (far[0] * size[0] + far[1] * size[1] + far[2] * size[2]);
-  const DoubleQuad distance = absolute(d);
-  good &= (error <= 0x1p-32 * distance) & (distance > error);
-  require_ordinary(distance, good);
-}
-
-/// Computes the 16 words of four records. Bit i of the result is set if record i is valid.
-LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&words)[kQuad][16]) {
-  return in_vectors([&](auto) RAYGATE_BODY {
-    Points t[3], from_o[3];
-    load_corners(views, t);
-    const Points o = {DoubleQuad{} + origin.x, DoubleQuad{} + origin.y, DoubleQuad{} + origin.z};
-    for (int v = 0; v < 3; ++v) subtract(t[v], o, from_o[v]);
-    LongQuad good = LongQuad{} - 1;
-    Points normal, size;
-    DoubleQuad d;
-    find_planes(t, from_o[0], normal, d, good);
-    FloatQuad n[3], edges[3][3], bounds[3];
-    to_floats(normal, n);
-
-    for (int k = 0; k < 3; ++k) {
-      const Points &p = t[k], &q = t[(k + 1) % 3];
-      const LongQuad lower =
-          (p[0] < q[0]) | ((p[0] == q[0]) & ((p[1] < q[1]) | ((p[1] == q[1]) & (p[2] < q[2]))));
-      const Points &pf = from_o[k], &qf = from_o[(k + 1) % 3];
-      Points start, way, edge;
-      for (int i = 0; i < 3; ++i) {
-        start[i] = lower ? pf[i] : qf[i];
-        way[i] = lower ? q[i] - p[i] : p[i] - q[i];
-      }
-      accurate_cross(start, way, edge, size, good);
-      for (int i = 0; i < 3; ++i) edge[i] = lower ? edge[i] : -edge[i];
-      to_floats(edge, edges[k]);
-      bounds[k] = edge_bound(edges[k]);
-    }
-    store_words(n[0], n[1], n[2], narrow(d), words);
-    store_words(edges[0][0], edges[0][1], edges[0][2], edges[1][0], words, 4);
-    store_words(edges[1][1], edges[1][2], edges[2][0], edges[2][1], words, 8);
-    store_words(edges[2][2], bounds[0], bounds[1], bounds[2], words, 12);
-    return sign_mask(whole(good));
-  });
-}
-
-}  // namespace
-
 void make_planes(const PlaneViews& views, float (&words)[4][kQuad]) {
   const LaneMask good_lanes = in_vectors([&](auto) RAYGATE_BODY {
-    Points t[3], a, normal;
+    Points t[3], normal;
     load_corners(views, t);
-    for (int k = 0; k < 3; ++k) {
-      const glm::vec3(&from)[kQuad] = views.origins;
-      a[k] = t[0][k] - wide(FloatQuad{from[0][k], from[1][k], from[2][k], from[3][k]});
-    }
+    const glm::vec3(&from)[kQuad] = views.origins;
+    const auto axis = [&](int k) RAYGATE_BODY {
+      return wide(FloatQuad{from[0][k], from[1][k], from[2][k], from[3][k]});
+    };
     LongQuad good = LongQuad{} - 1;
     DoubleQuad d;
-    find_planes(t, a, normal, d, good);
-    for (int k = 0; k < 3; ++k) store(words[k], narrow(normal[k]));
+    find_planes(t, t[0] - Points{axis(0), axis(1), axis(2)}, normal, d, good);
+    store(words[0], narrow(normal.x));
+    store(words[1], narrow(normal.y));
+    store(words[2], narrow(normal.z));
     store(words[3], narrow(d));
     return sign_mask(whole(good));
   });

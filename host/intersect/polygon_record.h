@@ -10,7 +10,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "host/base/lanes.h"
+#include "host/base/triple.h"
 #include "host/exact/exact.h"
 
 namespace raygate {

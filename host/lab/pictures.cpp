@@ -12,7 +12,7 @@
 #include "host/film/atomic_file.h"
 #include "host/film/display.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/unit/unit_intersector.h"
+#include "host/intersect/unit/hit_tester.h"
 #include "host/lab/lab.h"
 #include "host/light/lights.h"
 #include "host/render/renderer.h"
@@ -126,8 +126,8 @@ Row audit_decisions(const Bvh& bvh, const Camera& camera, int width, int height,
   const glm::vec3 eye = camera.eye();
   const std::vector<Ray> rays = camera_rays(camera, width, height);
   std::vector<NearestHit> seen(rays.size()), exact(rays.size());
-  UnitIntersector(bvh, std::make_shared<AuditTester>(bvh, eye, tester, counts))
-      .nearest(rays, {.common_origin = true}, seen);
+  make_unit_intersector(bvh, std::make_shared<AuditTester>(bvh, eye, tester, counts))
+      ->nearest(rays, {.common_origin = true}, seen);
   CpuIntersector(bvh).nearest(rays, {.common_origin = true}, exact);
   std::vector<double> t_errors, point_errors;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -236,8 +236,7 @@ class Pictures {
     const PreparedScene prepared(scene_, bvh_);
     film = render(
         {prepared, camera(asked.width, asked.height), options, lights_},
-        [&] { return std::make_unique<UnitIntersector>(bvh_, tester_of(variant, by_hardware)); },
-        stats);
+        [&] { return make_unit_intersector(bvh_, tester_of(variant, by_hardware)); }, stats);
     return {{"table", "pictures"},
             {"scene", asked.scene},
             {"width", asked.width},

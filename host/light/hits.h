@@ -282,11 +282,11 @@ struct ScatteredRays {
 
   RAYGATE_INLINE void send(Hits<T>& hits, std::size_t number) const {
     const Triple<T> ahead = scaled(direction), aside = scaled(flat);
-    const auto leaving = hits.surface.leaving(ahead, is_transmitted);
-    const auto wanted = is_wanted & (leaving.leaves | (!leaving.is_sure) | has_flat);
+    const typename Surface<T>::Slope slope(hits.surface, ahead);
+    const auto leaves = hits.surface.leaves(slope, is_transmitted);
+    const auto wanted = is_wanted & (leaves | (!slope.is_sure) | has_flat);
     static_assert(offsetof(ScatteredRay, direction) == 64 && sizeof(ScatteredRay) == 96);
-    const T flags =
-        flag_words<T>(wanted, leaving.leaves & leaving.is_sure, has_flat, is_transmitted);
+    const T flags = flag_words<T>(wanted, leaves & slope.is_sure, has_flat, is_transmitted);
     const T rest[] = {ahead.x, ahead.y, ahead.z, aside.x, aside.y, aside.z, flags};
     T words[24] = {};
     path.put(words);
@@ -398,21 +398,31 @@ struct IncidentLight {
   }
 };
 
-/// Returns the light that leaves point lights, one per lane, at `position`.
+/// Returns the light that leaves point lights, one per lane, with these indices: from a random
+/// point of a sphere, or from its middle if it is `in_middle`.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
                                             const Lights::Light* const (&own)[kLanesOf<T>],
-                                            const Triple<T>& position) {
+                                            const WordOf<T>& indices, bool in_middle,
+                                            std::uint32_t random_purpose) {
   using Light = Lights::Light;
+  const Triple<T> middle = gather<T>(own, &Light::position);
+  const T radius = gather<T>(own, &Light::radius);
+  const bool is_random = !in_middle && any(radius > 0.0f);
+  const Triple<T> position = is_random ? Lights::point_on<T>(middle, radius, hits.surface.point,
+                                                             hits.random(random_purpose))
+                                       : middle;
   IncidentLight<T> light(lights, hits, position);
   light.emission = gather<T>(own, &Light::emission);
   if (any(gather<T>(own, &Light::is_spot))) {
-    const IncidentLight<T> middle(lights, hits, gather<T>(own, &Light::position));
-    const T cosine = -dot(middle.direction, gather<T>(own, &Light::spot_axis));
+    const T cosine =
+        -dot(IncidentLight<T>(lights, hits, middle).direction, gather<T>(own, &Light::spot_axis));
     light.emission = light.emission * spot_falloff(cosine, gather<T>(own, &Light::spot_scale),
                                                    gather<T>(own, &Light::spot_offset));
   }
   light.target = position - hits.surface.point;
+  light.is_point_light = !(radius > 0.0f);
+  light.index = choose(light.is_point_light, indices, light.index);
   return light;
 }
 
@@ -453,13 +463,13 @@ RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number,
                                      bool is_to_camera = false) {
   static_assert(sizeof(LightSample) == 32);
   const auto none = T{} > 0.0f;
-  const auto is_dark = (sent.x == 0.0f) & (sent.y == 0.0f) & (sent.z == 0.0f);
+  const auto is_asked = light.is_asked & !((sent.x == 0.0f) & (sent.y == 0.0f) & (sent.z == 0.0f));
   const auto is_behind = hits.bsdf.has_rough_glass()
                              ? MaskOf<T>(dot(hits.surface.flat_normal, light.direction) < 0.0f)
                              : none;
   const T index = float_of(light.index);
-  const T flags = flag_words<T>(light.is_asked, is_dark, is_behind & !is_dark, light.is_point_light,
-                                is_to_camera ? !none : none);
+  const T flags =
+      flag_words<T>(is_asked, is_behind, light.is_point_light, is_to_camera ? !none : none);
   const Triple<T>& target = light.target;
   const T words[] = {sent.x, sent.y, sent.z, target.x, target.y, target.z, index, flags};
   LightSample* samples[Hits<T>::kCount];

@@ -133,7 +133,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
       output.radiance[state.sample] += state.throughput * behind;
       continue;
     }
-    const bool is_doubtful = is_point_doubt(hit, shading_.settings.point_error);
+    const bool is_doubtful = !(hit.point_error <= shading_.settings.point_error);
     output.point_doubts += is_doubtful ? 1 : 0;
     const FaceRef stored = shading_.bvh.face_of(hit.primitive);
     const Triangle& face = face_at(scene, stored);
@@ -221,18 +221,13 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
   });
 }
 
-/// Drops light samples and scattered rays that contribute nothing, and lists spawn queries for
-/// those left of the hit at position i.
+/// Drops scattered rays that contribute nothing, and lists spawn queries for the light samples and
+/// rays left of the hit at position i.
 void Integrator::list_spawn_queries(std::size_t i) {
   const SurfaceHit& place = block_.places[i];
   bool any_at[2] = {};  // by side
-  for (LightSample& sample : block_.light_samples_of(i)) {
-    if (sample.is_asked == 0) continue;
-    if (sample.is_dark != 0) {
-      sample.is_asked = 0;
-    } else {
-      any_at[sample.is_transmitted] = true;
-    }
+  for (const LightSample& sample : block_.light_samples_of(i)) {
+    if (sample.is_asked != 0) any_at[sample.is_transmitted] = true;
   }
   for (ScatteredRay& scattered : block_.scattered_of(i)) {
     if (scattered.is_wanted == 0) continue;

@@ -14,15 +14,6 @@ enum class IntegratorKind {
   kEmitters,  ///< emitters that the camera sees: directly, in mirrors and through glass
 };
 
-/// The default relative error of the hit-test unit's P above which the host computes the point.
-inline constexpr float kPointError = 0x1p-16f;
-
-enum class Caustics {
-  kOff,   ///< found only by camera paths
-  kOn,    ///< found by light paths; an error if that is not possible
-  kAuto,  ///< found by light paths if possible
-};
-
 /// User options of the integrators. The defaults are those of ./render and of the Python module.
 struct IntegratorSettings {
   IntegratorKind integrator = IntegratorKind::kWhitted;
@@ -31,11 +22,12 @@ struct IntegratorSettings {
   std::optional<int> max_depth{};
   double threshold = 1.0 / 256.0;   ///< Whitted: rays with a throughput below this are not traced
   std::optional<double> ambient{};  ///< Whitted: ambient radiance; default: Lights::ambient()
-  /// For kPath only. Requires several samples, no camera lights, and a perspective camera.
-  Caustics caustics = Caustics::kAuto;
+  /// For kPath: whether light paths find caustics where they can: with several samples, no camera
+  /// lights, and a perspective camera.
+  bool caustics = true;
   /// The host computes the hit point P if the relative error of the unit's P may exceed this. 0:
   /// always; the largest float: only if the unit has no P.
-  float point_error = kPointError;
+  float point_error = 0x1p-16f;
 
   /// Returns max_depth. Defaults: 4 for Whitted, as in the paper; 64 for paths (Russian roulette).
   [[nodiscard]] int depth() const {

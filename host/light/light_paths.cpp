@@ -86,25 +86,25 @@ void LightPaths::find_balls(const PreparedScene& prepared) {
   };
   std::map<std::uint32_t, Bounds3> boxes;
   visit([&](std::uint32_t object, const glm::dvec3& corner) { boxes[object].expand(corner); });
-  std::map<std::uint32_t, std::size_t> numbers;
+  const bool are_many = boxes.size() > kMostBalls;
   Bounds3 all;
   for (const auto& [object, box] : boxes) {
     all.expand(box.low);
     all.expand(box.high);
-    const std::size_t number = boxes.size() > kMostBalls ? 0 : balls_.size();
-    numbers[object] = number;
-    if (number == balls_.size()) balls_.push_back({box.middle(), 0.0});
   }
-  if (boxes.size() > kMostBalls) balls_[0].middle = all.middle();
+  std::map<std::uint32_t, Ball> balls;  // by object, or one
   visit([&](std::uint32_t object, const glm::dvec3& corner) {
-    Ball& ball = balls_[numbers[object]];
+    const auto [at, is_new] = balls.try_emplace(are_many ? 0 : object);
+    Ball& ball = at->second;
+    if (is_new) ball.middle = are_many ? all.middle() : boxes[object].middle();
     ball.radius = std::max(ball.radius, glm::distance(ball.middle, corner));
   });
   constexpr double kRounding = 1.0 + 0x1p-20;
-  for (Ball& ball : balls_) {
+  for (auto& [object, ball] : balls) {
     ball.radius *= kRounding;
     const double radius = ball.radius * lights_.per_unit();
     discs_ += kPi * radius * radius;
+    balls_.push_back(ball);
   }
 }
 
@@ -115,23 +115,15 @@ void LightPaths::weigh_sources() {
     const Lights::Source& source = lights_.source(i);
     const Lights::Light& light = lights_.light(source.light);
     double flux = mean(glm::dvec3(light.emission));
-    switch (light.kind) {
-      case Lights::Kind::kNone:
-        break;
-      case Lights::Kind::kPoint:
-        flux *= solid_angle(glm::dvec3(light.position));
-        break;
-      case Lights::Kind::kArea:
-        flux *= solid_angle(
-                    wide(lights_.sample_patches<float>({source.patch}, {0.5f, 0.5f}).position)) /
-                double{source.per_area};
-        break;
-      case Lights::Kind::kDirection:
-        flux *= discs_;
-        break;
-      case Lights::Kind::kEnvironment:
-        flux = 4.0 * kPi * mean(lights_.environment()->mean_radiance()) * discs_;
-        break;
+    if (light.kind == Lights::Kind::kPoint) {
+      flux *= solid_angle(glm::dvec3(light.position));
+    } else if (light.kind == Lights::Kind::kArea) {
+      const auto middle = lights_.sample_patches<float>({source.patch}, {0.5f, 0.5f});
+      flux *= solid_angle(wide(middle.position)) / double{source.per_area};
+    } else if (light.kind == Lights::Kind::kDirection) {
+      flux *= discs_;
+    } else {
+      flux = 4.0 * kPi * mean(lights_.environment()->mean_radiance()) * discs_;
     }
     if (flux > 0.0 && std::isfinite(flux)) sum += flux;
     source_cdf_.push_back(sum);

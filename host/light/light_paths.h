@@ -92,8 +92,8 @@ class LightPaths {
  private:
   /// Bounding sphere of an object's mirrors and glass.
   struct Ball {
-    glm::dvec3 middle;
-    double radius;
+    glm::dvec3 middle{0.0};
+    double radius = 0.0;
     /// Returns the sphere's solid angle seen from a point.
     [[nodiscard]] double solid_angle(const glm::dvec3& point) const;
     /// Returns whether a ray, or with `both_ways` a line, meets the sphere.

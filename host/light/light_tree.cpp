@@ -52,11 +52,10 @@ using Group = std::span<std::uint32_t>;  // source indices
 
 class LightTree::Builder {
  public:
-  Builder(std::span<const LightBounds> sources, LightTree& tree) : sources_(sources), tree_(tree) {
-    for (const LightBounds& source : sources) {
-      most_power_ = std::max(most_power_, source.power);
-    }
-  }
+  Builder(std::span<const LightBounds> sources, LightTree& tree)
+      : sources_(sources),
+        tree_(tree),
+        most_power_(std::ranges::max(sources, {}, &LightBounds::power).power) {}
 
   /// Adds the nodes of a group, and returns the index of the root.
   std::uint32_t add(Group group, std::uint32_t parent, std::uint32_t place) {
@@ -218,7 +217,7 @@ class LightTree::Builder {
 
   std::span<const LightBounds> sources_;
   LightTree& tree_;
-  double most_power_ = 0.0;
+  double most_power_;
 };
 
 LightTree::LightTree(std::span<const LightBounds> sources) {

@@ -17,20 +17,6 @@
 namespace raygate {
 namespace {
 
-/// Returns the emissive primitives in the order of the scene's triangles, so that lights do not
-/// depend on how the BVH is built.
-std::vector<std::uint32_t> emitting_primitives(const Scene& scene, const Bvh& bvh) {
-  std::vector<std::uint32_t> primitives;
-  for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
-    if (emits(scene.materials[scene.triangles[bvh.triangle_of(primitive)].material])) {
-      primitives.push_back(primitive);
-    }
-  }
-  std::ranges::sort(primitives, {},
-                    [&](std::uint32_t primitive) { return bvh.triangle_of(primitive); });
-  return primitives;
-}
-
 /// Returns the ambient radiance: the reflected part F r / (1 - r) of the lights' flux from one
 /// side, over pi times the total area. r is the mean reflectance.
 glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lights) {
@@ -195,10 +181,9 @@ Lights::Lights(const Scene& scene, const Bvh& bvh, Sampling sampling,
     add_patches(light, record);
   }
   for (const DirectionalLight& light : scene.directional_lights) {
-    Light& record = lights_.emplace_back();
-    record.kind = Kind::kDirection;
-    record.emission = light.irradiance;
-    record.position = glm::vec3(-light.direction);
+    lights_.push_back({.kind = Kind::kDirection,
+                       .emission = light.irradiance,
+                       .position = glm::vec3(-light.direction)});
   }
   if (scene.environment) {
     environment_.emplace(*scene.environment);
@@ -228,19 +213,27 @@ glm::vec3 Lights::textured_radiance(std::uint32_t primitive, const glm::vec3& po
 
 /// Groups the emissive triangles into area lights.
 void Lights::find_areas() {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
-  for (const std::uint32_t primitive : emitting_primitives(scene_, bvh_)) {
+  std::vector<std::uint32_t> emitting;
+  for (std::uint32_t primitive = 0; primitive < bvh_.primitive_count(); ++primitive) {
     const Triangle& face = scene_.triangles[bvh_.triangle_of(primitive)];
+    if (emits(scene_.materials[face.material])) emitting.push_back(primitive);
+  }
+  // In the scene's order, so that lights do not depend on how the BVH is built.
+  std::ranges::sort(emitting, {}, [&](std::uint32_t each) { return bvh_.triangle_of(each); });
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
+  for (const std::uint32_t primitive : emitting) {
+    const Triangle& face = scene_.triangles[bvh_.triangle_of(primitive)];
+    const Material& material = scene_.materials[face.material];
+    const Corners corners = bvh_.corners_of(primitive);
+    const glm::vec3 corner(corners[0]);
     const auto [at, is_new] = known.try_emplace({face.object, face.material}, areas_.size());
     if (is_new) {
-      areas_.emplace_back();
-      const Material& material = scene_.materials[face.material];
-      areas_.back().radiance = mean_emission(scene_, material);
-      areas_.back().is_textured = material.emission_map.texture != kNoIndex;
+      areas_.push_back({.low = corner,
+                        .high = corner,
+                        .radiance = mean_emission(scene_, material),
+                        .is_textured = material.emission_map.texture != kNoIndex});
     }
     AreaLight& light = areas_[at->second];
-    const Corners corners = bvh_.corners_of(primitive);
-    if (is_new) light.low = light.high = glm::vec3(corners[0]);
     for (const glm::dvec3& corner : corners) {
       light.low = glm::min(light.low, glm::vec3(corner));
       light.high = glm::max(light.high, glm::vec3(corner));

@@ -64,7 +64,7 @@ enum class OuterSide : std::uint8_t {
 
 /// The emitting faces of one object and material, as one light. Both sides of each face emit.
 struct AreaLight {
-  std::vector<std::uint32_t> primitives;
+  std::vector<std::uint32_t> primitives{};
   double area = 0.0;
   glm::vec3 low{0.0f}, high{0.0f};  ///< bounds
   glm::dvec3 radiance{0.0};         ///< mean

@@ -270,31 +270,18 @@ struct ChosenLights {
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> are(Kind kind) const {
     return kinds == static_cast<std::uint32_t>(kind);
   }
-  template <class Member>
-  [[nodiscard]] RAYGATE_INLINE auto get(Member Lights::Light::*member) const {
-    return gather<T>(lights, member);
-  }
-
   [[nodiscard]] RAYGATE_INLINE IncidentLight<T> points(const Lights& all,
                                                        const Hits<T>& hits) const {
-    const Triple<T> middle = get(&Lights::Light::position);
-    const T radius = get(&Lights::Light::radius);
-    const bool any_ball = any(radius > 0.0f);
-    const Triple<T> position =
-        any_ball ? Lights::point_on<T>(middle, radius, hits.surface.point, hits.random(kLightPoint))
-                 : middle;
-    IncidentLight<T> light = point_light(all, hits, lights, position);
+    IncidentLight<T> light = point_light(
+        all, hits, lights, gather<T>(sources, &Lights::Source::light), false, kLightPoint);
     light.is_asked = are(Kind::kPoint);
     light.pdf = pmf;
-    light.is_point_light = !(radius > 0.0f);
-    light.index =
-        choose(light.is_point_light, gather<T>(sources, &Lights::Source::light), light.index);
     return light;
   }
   [[nodiscard]] RAYGATE_INLINE IncidentLight<T> directions(const Hits<T>& hits) const {
-    IncidentLight<T> light(hits, get(&Lights::Light::position));
+    IncidentLight<T> light(hits, gather<T>(lights, &Lights::Light::position));
     light.is_asked = are(Kind::kDirection);
-    light.emission = get(&Lights::Light::emission);
+    light.emission = gather<T>(lights, &Lights::Light::emission);
     light.pdf = pmf;
     return light;
   }

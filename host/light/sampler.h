@@ -19,12 +19,8 @@ RAYGATE_INLINE W hash(W x) {
 }
 
 /// Returns a hash of two words.
-template <class W>
-RAYGATE_INLINE W hash(const W& a, const W& b) {
-  return hash<W>(hash<W>(a + 0x9E3779B9u) ^ b);
-}
-template <class W>
-RAYGATE_INLINE W hash(const W& a, std::uint32_t b) requires(!std::is_same_v<W, std::uint32_t>) {
+template <class W, class V>
+RAYGATE_INLINE W hash(const W& a, const V& b) {
   return hash<W>(hash<W>(a + 0x9E3779B9u) ^ b);
 }
 

@@ -31,8 +31,8 @@ ShadowRays::ShadowRays(const PreparedScene& prepared, const Lights& lights,
         return material.has_mask || (material.kind & kTransmits) != 0;
       })) {}
 
-void ShadowRays::resolve(std::span<ShadowRay> rays, const TracedFunction& traced) {
-  traced_ = traced ? &traced : nullptr;
+void ShadowRays::resolve(std::span<ShadowRay> rays, std::span<RayWork> work) {
+  work_of_samples_ = work;
   next_.clear();
   const std::size_t points = lights_.points().size();
   const bool from_points = points <= kManyPoints;
@@ -135,12 +135,14 @@ void ShadowRays::trace(std::span<const ShadowRay> rays, bool from_light, float e
   RayQuery search{
       .common_origin = from_light, .t_max = limits_, .source_ids = sources_, .skip_ids = ignored_};
   if (!any_clear_) search.any_hit_before = enough_;  // any occluder ends the search
-  work_.resize(traced_ != nullptr ? batch_.size() : 0);
+  work_.resize(work_of_samples_.empty() ? 0 : batch_.size());
   search.work = work_;
   hits_.resize(batch_.size());
   intersector_.occluded(batch_, search, hits_);
   rays_ += batch_.size();
-  for (std::size_t i = 0; i < work_.size(); ++i) (*traced_)(work_[i], segments_[i].index);
+  for (std::size_t i = 0; i < work_.size(); ++i) {
+    work_of_samples_[rays[segments_[i].index].sample] += work_[i];
+  }
 }
 
 glm::vec3 ShadowRays::transmittance(std::size_t number) const {

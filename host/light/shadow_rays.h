@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -21,8 +20,8 @@ struct alignas(16) LightSample {
   glm::vec3 target{0.0f};
   /// Index of a point light, or primitive of the target; kNone: a distant light.
   std::uint32_t index = 0;
-  std::uint32_t is_asked : 1 = 0, is_dark : 1 = 0;  ///< dark: the contribution is 0
-  std::uint32_t is_transmitted : 1 = 0;             ///< through rough glass
+  std::uint32_t is_asked : 1 = 0;        ///< the contribution is not 0
+  std::uint32_t is_transmitted : 1 = 0;  ///< through rough glass
   std::uint32_t is_point_light : 1 = 0, is_to_camera : 1 = 0;
 };
 
@@ -48,11 +47,9 @@ class ShadowRays {
   ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
              bool through_refraction);
 
-  /// Callback for each traced ray with its work and the index of its shadow ray.
-  using TracedFunction = std::function<void(const RayWork& work, std::size_t shadow_ray)>;
-
-  /// Multiplies each ray's `radiance` by the transmittance along the ray. `traced` may be empty.
-  void resolve(std::span<ShadowRay> rays, const TracedFunction& traced = {});
+  /// Multiplies each ray's `radiance` by the transmittance along the ray. Adds the work to `work`,
+  /// by ShadowRay::sample, unless that is empty.
+  void resolve(std::span<ShadowRay> rays, std::span<RayWork> work = {});
 
   [[nodiscard]] std::uint64_t rays() const { return rays_; }  ///< number of rays traced so far
 
@@ -92,7 +89,7 @@ class ShadowRays {
   std::vector<RayWork> work_;
   std::vector<float> limits_, enough_;
   std::vector<std::uint32_t> ignored_, sources_;
-  const TracedFunction* traced_ = nullptr;
+  std::span<RayWork> work_of_samples_;
 };
 
 }  // namespace raygate

@@ -29,20 +29,18 @@ class NeighborClearanceSearch {
   NeighborClearanceSearch(const Corners& corners, double slack)
       : corners_(corners), from_(corners[0]), reach_(spawn_reach(corners)), slack_(slack) {
     const auto grown = static_cast<float>(1.125 * reach_);  // more than rounding removes
-    low = glm::vec3(lowest(corners)) - grown;
-    high = glm::vec3(highest(corners)) + grown;
+    low = glm::vec3(glm::min(glm::min(corners[0], corners[1]), corners[2])) - grown;
+    high = glm::vec3(glm::max(glm::max(corners[0], corners[1]), corners[2])) + grown;
     for (int k = 0; k < 3; ++k) vertex_[k] = corners[k] - from_;
-    const glm::dvec3 &b = vertex_[1], &c = vertex_[2];
-    cross({b.x, b.y, b.z}, {c.x, c.y, c.z}, normal_, normal_sizes_);
-    const glm::dvec3 normal(normal_[0], normal_[1], normal_[2]);
-    const double area = glm::length(normal);
-    const glm::dvec3 unit_normal = area > 0.0 ? normal / area : glm::dvec3(0.0);
+    normal_ = cross(vertex_[1], vertex_[2], normal_sizes_);
+    const double area = glm::length(normal_);
+    const glm::dvec3 unit_normal = area > 0.0 ? normal_ / area : glm::dvec3(0.0);
     // The planes through the edges, perpendicular to the triangle or parallel to the coordinate
     // axis that is closest to the normal. Most neighbours are behind one of the latter.
-    const glm::dvec3 sizes = glm::abs(normal);
+    const glm::dvec3 sizes = glm::abs(normal_);
     const int wider = sizes.x < sizes.y ? 1 : 0, along = sizes[wider] < sizes.z ? 2 : wider;
     glm::dvec3 parallel(0.0);
-    parallel[along] = normal[along] < 0.0 ? -1.0 : 1.0;
+    parallel[along] = normal_[along] < 0.0 ? -1.0 : 1.0;
     double longest = 0.0;
     for (int k = 0; k < 3; ++k) {
       const glm::dvec3 edge = edge_[k] = vertex_[(k + 1) % 3] - vertex_[k];
@@ -88,8 +86,8 @@ class NeighborClearanceSearch {
         Overlap& overlap = overlaps.emplace_back();
         overlap.primitive = other;
         for (int k = 0; k < 3; ++k) {
-          overlap.low[k] = float_below(lowest(others)[k]);
-          overlap.high[k] = float_above(highest(others)[k]);
+          overlap.low[k] = float_below(std::min({others[0][k], others[1][k], others[2][k]}));
+          overlap.high[k] = float_above(std::max({others[0][k], others[1][k], others[2][k]}));
         }
       } else {
         length_ = apart[i];
@@ -105,7 +103,7 @@ class NeighborClearanceSearch {
     const float length = float_below(length_ * (1.0 - 0x1p-20));
     result.length = overlaps.empty() ? length : -length;
     int exponent;
-    std::frexp(kNormalError * (normal_sizes_[0] + normal_sizes_[1] + normal_sizes_[2]), &exponent);
+    std::frexp(kNormalError * (normal_sizes_.x + normal_sizes_.y + normal_sizes_.z), &exponent);
     const double scale = std::ldexp(1.0, -exponent);
     for (int k = 0; k < 3; ++k) {
       result.normal[k] = scale * normal_[k];
@@ -136,17 +134,11 @@ class NeighborClearanceSearch {
   static RAYGATE_INLINE Vectors3 vectors(const glm::dvec3& v) {
     return {spread<DoubleQuad>(v.x), spread<DoubleQuad>(v.y), spread<DoubleQuad>(v.z)};
   }
-  static RAYGATE_INLINE Vectors3 product(const Vectors3& a, const Vectors3& b) {
-    return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
-  }
   /// Returns unit vectors, or 0 for 0.
   static RAYGATE_INLINE Vectors3 unit(const Vectors3& v) {
     const DoubleQuad size = root(dot(v, v));
     return choose(size > 0.0, Vectors3{v.x / size, v.y / size, v.z / size}, zero<DoubleQuad>());
   }
-
-  static glm::dvec3 lowest(const Corners& t) { return glm::min(glm::min(t[0], t[1]), t[2]); }
-  static glm::dvec3 highest(const Corners& t) { return glm::max(glm::max(t[0], t[1]), t[2]); }
 
   /// Returns c for each of the triangles in the mask alone, or any value of at least length_.
   /// `exact`: their corners, if `corners` are rounded; otherwise null.
@@ -180,13 +172,12 @@ class NeighborClearanceSearch {
     for (const glm::dvec3& axis : axes_) {
       if (try_axis(vectors(axis))) return best;
     }
-    const Vectors3 normal = unit(product(y[1] - y[0], y[2] - y[0]));
+    const Vectors3 normal = unit(cross(y[1] - y[0], y[2] - y[0]));
     if (try_axis(normal) || try_axis(-normal)) return best;
     for (int j = 0; j < 3; ++j) {
       const Vectors3 edge = y[(j + 1) % 3] - y[j];
       for (int k = -1; k < 3; ++k) {
-        const Vectors3 axis =
-            unit(k < 0 ? product(normal, edge) : product(edge, vectors(edge_[k])));
+        const Vectors3 axis = unit(k < 0 ? cross(normal, edge) : cross(edge, vectors(edge_[k])));
         if (try_axis(axis) || try_axis(-axis)) return best;
       }
     }
@@ -217,18 +208,14 @@ class NeighborClearanceSearch {
   // plane; perpendicular to an edge and in the triangle's plane; the normal, both ways.
   glm::dvec3 axes_[8];
   double inverse_height_[3];
-  double normal_[3], normal_sizes_[3];
+  glm::dvec3 normal_, normal_sizes_;
   double most_, length_;  // largest possible c, and c so far
   int leaves_ = 0;        // number of leaves considered
 };
 
 float largest_coordinate(const Bvh& bvh) {
-  float size = 0.0f;
-  for (int i = 0; i < Bvh::kWidth; ++i) {
-    const auto [low, high] = bvh.nodes()[0].box(i);
-    if (low.x <= high.x) size = std::max({size, largest(low), largest(high)});
-  }
-  return size;
+  const auto [low, high] = bvh.nodes()[0].box();
+  return low.x <= high.x ? std::max(largest(low), largest(high)) : 0.0f;
 }
 
 }  // namespace

@@ -67,17 +67,6 @@ struct Surface {
   /// without normals, from which the vertices are counter-clockwise.
   MaskOf<T> outside;
 
-  /// Result of leaving(): whether a direction leaves the triangle to the ray's side or, if
-  /// `transmitted`, to the other side. Exact in lanes with `is_sure`.
-  struct Leaving {
-    MaskOf<T> leaves, is_sure;
-  };
-  [[nodiscard]] RAYGATE_INLINE Leaving leaving(const Triple<T>& direction,
-                                               const MaskOf<T>& transmitted) const {
-    const Slope slope(*this, direction);
-    return {((slope.value < 0.0f) == (side < 0.0f)) == transmitted, slope.is_sure};
-  }
-
   /// Dot product of a direction and the triangle's normal, in double, and whether its sign is sure.
   struct Slope {
     T value;
@@ -86,15 +75,20 @@ struct Surface {
     RAYGATE_INLINE Slope(const Surface& surface, const Triple<T>& direction) {
       const Triple<WideOf<T>> way = wide(direction);
       const WideOf<T> product = dot(way, surface.own_normal);
-      const WideOf<T> size = absolute(way.x) * surface.own_size.x +
-                             absolute(way.y) * surface.own_size.y +
-                             absolute(way.z) * surface.own_size.z;
+      const WideOf<T> size = dot(absolute(way), surface.own_size);
       value = narrow(product);
       const MaskOf<T> is_far = narrow(absolute(product) - 0x1p-49 * size) > 0.0f;
       const MaskOf<T> is_some = absolute(value) > 0.0f;
       is_sure = is_far & is_some;
     }
   };
+  /// Returns whether a direction with this slope leaves the triangle to the ray's side or, if
+  /// `transmitted`, to the other side. Exact where the slope is sure.
+  [[nodiscard]] RAYGATE_INLINE MaskOf<T> leaves(const Slope& slope,
+                                                const MaskOf<T>& transmitted) const {
+    return ((slope.value < 0.0f) == (side < 0.0f)) == transmitted;
+  }
+
   /// Tilts the shading normal so that it does not face away from the view.
   RAYGATE_INLINE void tilt() {
     const T facing = dot(untilted, view);
@@ -126,9 +120,7 @@ RAYGATE_INLINE Triple<D> unscaled_weights(const Triple<D>& origin, const Triple<
   D weights[3];
   for (int k = 0; k < 3; ++k) {
     const Triple<D>&from = corners[(k + 1) % 3], &to = corners[(k + 2) % 3];
-    const Triple<D> u = from - origin, v = to - from;
-    const Triple<D> normal = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
-    weights[k] = dot(direction, normal);
+    weights[k] = dot(direction, cross<D>(from - origin, to - from));
   }
   return {weights[0], weights[1], weights[2]};
 }
@@ -166,15 +158,10 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   }
 
   const Triple<Wide> corners[3] = {corner(0), corner(1), corner(2)};
-  const Triple<Wide> u = corners[1] - corners[0], v = corners[2] - corners[0];
-  const Wide from[3] = {u.x, u.y, u.z}, to[3] = {v.x, v.y, v.z};
-  Wide value[3], size[3];
-  cross(from, to, value, size);
-  const Triple<Wide> normal = {value[0], value[1], value[2]};
-  surface.flat_normal = narrow(normal * (1.0 / root(dot(normal, normal))));
-
+  const Triple<Wide> normal =
+      cross<Triple<Wide>>(corners[1] - corners[0], corners[2] - corners[0], surface.own_size);
   surface.own_normal = normal;
-  surface.own_size = {size[0], size[1], size[2]};
+  surface.flat_normal = narrow(normal * (1.0 / root(dot(normal, normal))));
 
   // Decide the side in double, or exactly where that is not sure.
   const typename Surface<T>::Slope slope(surface, direction);

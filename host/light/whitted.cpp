@@ -45,21 +45,11 @@ RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits
     light.is_asked = hits.bsdf.scatters();
     return light;
   }
-  const Triple<T> middle = spread<T>(own.position);
   if (own.kind == Kind::kPoint) {
-    const bool is_ball = own.radius > 0.0f;
-    const Triple<T> position =
-        is_ball && shading.settings.samples > 1
-            ? Lights::point_on<T>(middle, spread<T>(own.radius), hits.surface.point,
-                                  hits.random(kFirstPointLight + i))
-            : middle;
-    light = point_light(lights, hits, same, position);
-    if (!is_ball) {
-      light.is_point_light = T{} == 0.0f;
-      light.index = WordOf<T>{} + i;
-    }
+    light = point_light(lights, hits, same, WordOf<T>{} + i, shading.settings.samples == 1,
+                        kFirstPointLight + i);
   } else {
-    light = IncidentLight<T>(hits, middle);
+    light = IncidentLight<T>(hits, spread<T>(own.position));
     light.emission = spread<T>(own.emission);
   }
   light.is_asked = T{} == 0.0f;

@@ -55,9 +55,8 @@ void update_block_error(Film& film, int x, int y, double exposure) {
                         std::min(y + kErrorBlock, film.window.y1)};
   const std::uint32_t samples = sums.samples[film.index_of(x, y)];
   const auto visit = [&](const auto& each) {
-    for (int row = block.y0; row < block.y1; ++row) {
-      for (int column = block.x0; column < block.x1; ++column) each(film.index_of(column, row));
-    }
+    for_blocks(block, 1, 1,
+               [&](const PixelRect& pixel) { each(film.index_of(pixel.x0, pixel.y0)); });
   };
   double squares = 0.0;
   visit([&](std::size_t i) {
@@ -88,8 +87,13 @@ std::vector<PixelSamples> samples_to_trace(const RenderSettings& settings, const
         if (first >= end) return;
         const int last =
             std::max(end, std::min({first + ahead, next_error_check(first), settings.samples}));
-        pixels.push_back(
-            {.x = pixel.x0, .y = pixel.y0, .index = index, .first = first, .end = last});
+        const std::size_t row = std::size_t(pixel.y0 - tile.y0) * std::size_t(tile.width());
+        pixels.push_back({.x = pixel.x0,
+                          .y = pixel.y0,
+                          .index = index,
+                          .place = row + std::size_t(pixel.x0 - tile.x0),
+                          .first = first,
+                          .end = last});
       });
     });
   });

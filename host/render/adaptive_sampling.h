@@ -52,6 +52,7 @@ void update_block_error(Film& film, int x, int y, double exposure);
 struct PixelSamples {
   int x, y;
   std::size_t index;  ///< of the pixel, in the film
+  std::size_t place;  ///< of the pixel, in the tile
   int first, end;     ///< samples [first, end)
 
   [[nodiscard]] std::size_t path_count() const { return static_cast<std::size_t>(end - first); }

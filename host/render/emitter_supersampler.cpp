@@ -159,7 +159,7 @@ void EmitterSupersampler::supersample(std::span<const PixelSamples> pixels,
         const glm::dvec3 light(radiance(i, history));
         for (int k = 0; k < 3; ++k) sums[pixel_of[i]][k].add(light[k] / kRaysPerSample);
       });
-      if (counts_work_) work[pixel_of[i]] += ray_work_[i];
+      if (counts_work_) work[pixels[pixel_of[i]].place] += ray_work_[i];
     }
     batch_.clear();
     pixel_of.clear();

@@ -37,7 +37,7 @@ class EmitterSupersampler {
   void find(const Film& film, const PixelRect& tile, std::span<HistoryMask> histories,
             std::span<RayWork> work);
 
-  /// Adds to sums[i] the emission that samples of pixels[i] omit, and the work to work[i], if any.
+  /// Adds to sums[i] the emission that samples of pixels[i] omit. `work` as in find().
   void supersample(std::span<const PixelSamples> pixels, std::span<const HistoryMask> histories,
                    std::span<std::array<ExactAccumulator, 3>> sums, std::span<RayWork> work);
 

@@ -44,8 +44,6 @@ class RenderThreads {
         queue_(tiles.count, tiles.passes()) {
     if (context.light_paths != nullptr) splats_ = SplatLayer(film.window, context.settings.filter);
   }
-  RenderThreads(const RenderThreads&) = delete;
-  RenderThreads& operator=(const RenderThreads&) = delete;
   ~RenderThreads() {
     stop();
     threads_.clear();
@@ -94,7 +92,7 @@ class RenderThreads {
       const std::scoped_lock lock(mutex_);
       renderer.add_to(stats_);
     } catch (...) {
-      fail(std::current_exception());
+      stop(std::current_exception());
     }
     const std::scoped_lock lock(mutex_);
     ++gone_;
@@ -113,11 +111,7 @@ class RenderThreads {
   [[nodiscard]] std::optional<TileQueue::Step> next() {
     std::unique_lock lock(mutex_);
     std::optional<TileQueue::Step> step;
-    changed_.wait(lock, [&] {
-      if (stopped_ || queue_.all_begun()) return true;
-      step = queue_.begin();
-      return step.has_value();
-    });
+    changed_.wait(lock, [&] { return stopped_ || queue_.all_begun() || (step = queue_.begin()); });
     return step;
   }
 
@@ -139,19 +133,12 @@ class RenderThreads {
     return true;
   }
 
-  /// Tells the threads to stop.
-  void stop() {
+  /// Tells the threads to stop. Keeps the first error.
+  void stop(const std::exception_ptr& error = nullptr) {
     const std::scoped_lock lock(mutex_);
+    if (!error_) error_ = error;
     stopped_ = true;
     changed_.notify_all();
-  }
-
-  void fail(std::exception_ptr error) {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (!error_) error_ = std::move(error);
-    }
-    stop();
   }
 
   /// Reports progress, and saves when it is time.
@@ -181,7 +168,7 @@ class RenderThreads {
       since_snapshot_ = 0.0;
       watch_.lap();
     } catch (...) {
-      fail(std::current_exception());
+      stop(std::current_exception());
     }
   }
 
@@ -242,7 +229,7 @@ class RenderThreads {
 /// Returns whether light paths are requested and possible.
 bool wants_light_paths(const RenderJob& job) {
   const RenderSettings& settings = job.settings;
-  return settings.caustics != Caustics::kOff && settings.integrator == IntegratorKind::kPath &&
+  return settings.caustics && settings.integrator == IntegratorKind::kPath &&
          settings.samples > 1 && settings.error == 0.0 && !job.lights &&
          job.camera.projection() == Projection::kPerspective;
 }

@@ -119,9 +119,7 @@ bool TileRenderer::trace_camera_rays(const std::function<bool()>& keep_going) {
   stats_.shade_seconds += watch.lap();
   if (!trace_batch(integrator_, keep_going)) return false;
   if (!emitter_supersampler_) return true;
-  std::vector<RayWork> work(is_counting_ ? pixels_.size() : 0);
-  emitter_supersampler_->supersample(pixels_, emitter_histories_, emitter_sums_, work);
-  for (std::size_t p = 0; p < work.size(); ++p) pixel_work_[place_in_tile(pixels_[p])] += work[p];
+  emitter_supersampler_->supersample(pixels_, emitter_histories_, emitter_sums_, pixel_work_);
   return true;
 }
 
@@ -192,11 +190,7 @@ void TileRenderer::trace_wave(Integrator& integrator) {
 }
 
 void TileRenderer::trace_shadows() {
-  const auto traced = [this](const RayWork& work, std::size_t shadow) {
-    path_work_[output_.shadows[shadow].sample] += work;
-  };
-  shadow_rays_.resolve(output_.shadows,
-                       is_counting_ ? ShadowRays::TracedFunction(traced) : nullptr);
+  shadow_rays_.resolve(output_.shadows, path_work_);
   const glm::dvec2 size(context_.settings.width, context_.settings.height);
   for (const ShadowRay& ray : output_.shadows) {
     if (ray.is_to_camera == 0) {
@@ -239,7 +233,7 @@ void TileRenderer::write() {
     }
     color[3].add(hits);
     for (int k = 0; k < 3; ++k) color[k] += emitter_sums_[p][k];
-    if (is_counting_) count(pixel_work_[place_in_tile(pixel)]);
+    if (is_counting_) count(pixel_work_[pixel.place]);
     const int samples = pixel.end - context_.settings.first_sample;
     if (!kept.samples.empty()) kept.samples[at] = static_cast<std::uint32_t>(samples);
     if (!kept.color.empty()) kept.color[at] = color;
@@ -247,10 +241,9 @@ void TileRenderer::write() {
     film_.color[at] = mean_of(color, samples);
     if (has_albedo) film_.albedo[at] = mean_of(albedo, samples);
   }
-  if (context_.settings.error > 0.0) {
-    for (const PixelSamples& pixel : pixels_) {
-      if (pixel.x % kErrorBlock != 0 || pixel.y % kErrorBlock != 0 || !is_error_check(pixel.end))
-        continue;
+  for (const PixelSamples& pixel : pixels_) {
+    const bool is_first = pixel.x % kErrorBlock == 0 && pixel.y % kErrorBlock == 0;
+    if (context_.settings.error > 0.0 && is_first && is_error_check(pixel.end)) {
       update_block_error(film_, pixel.x, pixel.y, context_.settings.exposure);
     }
   }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
@@ -73,10 +72,6 @@ class TileRenderer {
   void trace_wave(Integrator& integrator);
   void trace_shadows();
   void write_channels(std::size_t pixel, std::size_t path);
-  [[nodiscard]] std::size_t place_in_tile(const PixelSamples& pixel) const {
-    return std::size_t(pixel.y - tile_.y0) * std::size_t(tile_.width()) +
-           std::size_t(pixel.x - tile_.x0);
-  }
 
   RenderContext context_;
   Intersector& intersector_;

@@ -1,7 +1,6 @@
 #include "host/variants/arithmetic.h"
 
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include "host/exact/expansion.h"
@@ -18,19 +17,12 @@ float not_a_number() { return std::bit_cast<float>(0x7FC00000u); }
 /// Returns `value` (not zero) rounded to a multiple of 2^quantum.
 double rounded_to(double value, int quantum, Rounding rounding) {
   const double scaled = std::ldexp(value, -quantum);
-  switch (rounding) {
-    case Rounding::kNearestEven:
-      return std::ldexp(std::nearbyint(scaled), quantum);
-    case Rounding::kTowardZero:
-      return std::ldexp(std::trunc(scaled), quantum);
-    case Rounding::kDown:
-      return std::ldexp(std::floor(scaled), quantum);
-    case Rounding::kUp:
-      return std::ldexp(std::ceil(scaled), quantum);
-    case Rounding::kNearestAway:
-      break;
-  }
-  return std::ldexp(std::round(scaled), quantum);
+  const double whole = rounding == Rounding::kNearestEven  ? std::nearbyint(scaled)
+                       : rounding == Rounding::kTowardZero ? std::trunc(scaled)
+                       : rounding == Rounding::kDown       ? std::floor(scaled)
+                       : rounding == Rounding::kUp         ? std::ceil(scaled)
+                                                           : std::round(scaled);
+  return std::ldexp(whole, quantum);
 }
 
 /// Returns value + rest rounded to odd: sets the last bit if `rest` is not 0 (Boldo and Melquiond,

@@ -43,13 +43,6 @@ float rounded_up(const Arithmetic& math, double x) {
   return nearest > x ? nearest : math.from_word(math.to_word(nearest) + 1);
 }
 
-/// Returns the interval of possible values for a positive t with this error code.
-Interval around(const Arithmetic& math, float t, std::uint32_t error) {
-  const std::uint32_t word = math.to_word(t), margin = 64u << error;
-  return {math.from_word(word - std::min(word, margin)),
-          math.from_word(std::min(word + margin, math.to_word(kInfinity)))};
-}
-
 /// Returns NearestHit's point_error for a `point` computed in the format, or infinity if the
 /// format's range is too small for a coordinate. `wide` is the direction before conversion.
 float format_error(const Arithmetic& math, float d, const glm::vec3& direction,
@@ -61,28 +54,6 @@ float format_error(const Arithmetic& math, float d, const glm::vec3& direction,
   }
   return static_cast<float>(std::ldexp(math.unit_roundoff(), 6 + static_cast<int>(t_error)));
 }
-
-/// The paper's unit in a variant's format. Software decides in binary32, so only P differs.
-class SerialVariantTester : public SerialHitTester {
- public:
-  SerialVariantTester(const Variant& variant, std::unique_ptr<PlaneUnit> unit)
-      : SerialHitTester(std::move(unit)), math_(variant.math) {}
-
- private:
-  /// Scales an error in binary32 to the format: as many ulps. Errors above 1/8 become infinite, as
-  /// the bound of V's error does not hold for them.
-  void adapt_point_error(const PolygonRecord& record, const glm::vec3& direction,
-                         NearestHit& hit) const override {
-    if (math_ == Arithmetic{}) return;
-    hit.point_error = std::ldexp(hit.point_error, 24 - math_.digits);
-    const Arithmetic host = to_nearest(math_);
-    const bool in_range = !std::isinf(
-        format_error(host, host.read(record.d), host.read(direction), direction, hit.point, 0));
-    if (!in_range || hit.point_error > 0.125f) hit.point_error = kInfinity;
-  }
-
-  Arithmetic math_;
-};
 
 }  // namespace
 
@@ -172,16 +143,13 @@ class VariantHitTester : public PipelineHitTester {
       // If a doubt is a hit, its P is as accurate as that of a sure hit, provided that V can be a
       // divisor and d was not clamped.
       const float v = variant_.math.dot(record.normal, direction);
-      const bool divisible =
-          variant_.math.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
-          static_cast<int>(distance.error) <= std::max(variant_.math.fraction_bits() - 11, 0) &&
-          !std::isinf(record.bounds[0]);
+      const bool divisible = twin_.is_divisor(record, v) && !std::isinf(record.bounds[0]);
       if (report.is_sure || divisible) {
         report.hit.point_error =
             format_error(variant_.math, record.d, direction, wide.lane_direction(lane),
                          report.hit.point, distance.error);
       }
-      if (report.is_sure) report.hit.t = around(variant_.math, distance.t, distance.error);
+      if (report.is_sure) report.hit.t = around(distance, variant_.math);
       reports.push_back(report);
     }
   }
@@ -241,7 +209,17 @@ std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
 
 std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                std::unique_ptr<PlaneUnit> unit) {
-  return std::make_unique<SerialVariantTester>(variant, std::move(unit));
+  if (variant.math == Arithmetic{}) return std::make_unique<SerialHitTester>(std::move(unit));
+  // Scales an error in binary32 to the format: as many ulps. Errors above 1/8 become infinite, as
+  // the bound of V's error does not hold for them.
+  const auto adapt = [digits = variant.math.digits, host = to_nearest(variant.math)](
+                         const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit) {
+    hit.point_error = std::ldexp(hit.point_error, 24 - digits);
+    const bool in_range = !std::isinf(
+        format_error(host, host.read(record.d), host.read(direction), direction, hit.point, 0));
+    if (!in_range || hit.point_error > 0.125f) hit.point_error = kInfinity;
+  };
+  return std::make_unique<SerialHitTester>(std::move(unit), adapt);
 }
 
 std::unique_ptr<HitTester> make_variant_tester(const Variant& variant) {

@@ -54,9 +54,9 @@ TEST(Options, OnlyASceneMeansTheDefaults) {
 
 TEST(Options, ReadsEveryOption) {
   std::istringstream line(
-      "--size 320x200 --crop=1,2,30,40 --camera -1,-.5,1e3,0,0,-2.5,40 --engine check --unit "
-      "serial "
-      "--threads 7 --seed 18446744073709551615 --up -z --fov=50 --stats run.json -q a.obj "
+      "--size 320x200 --crop=1,2,30,40 --camera -1,-.5,1e3,0,0,-2.5,40 --engine model "
+      "--unit serial --threads 7 --seed 18446744073709551615 --up -z --fov=50 --stats run.json -q "
+      "a.obj "
       "-o b");
   const Options options = parse_options({std::istream_iterator<std::string>(line), {}});
   EXPECT_EQ(options.render.width, 320);
@@ -72,7 +72,7 @@ TEST(Options, ReadsEveryOption) {
   EXPECT_EQ(options.camera.up, glm::dvec3(0, 0, -1));
   EXPECT_EQ(options.camera.fov, 50.0);
   EXPECT_FALSE(options.camera.angles);
-  EXPECT_EQ(options.engine, Engine::kCheck);
+  EXPECT_EQ(options.engine, Engine::kModel);
   EXPECT_EQ(options.threads, 7);
   EXPECT_EQ(options.render.seed, 18446744073709551615u);
   EXPECT_TRUE(options.quiet);
@@ -147,7 +147,7 @@ TEST(Options, ValuesThatAreImpossible) {
       {"--threshold", {"2", "nan"}, "a number from 0 to 1"},
       {"--point-error", {"-1", "nan"}, "a fraction of the distance"},
       {"--ambient", {"inf"}, "a radiance"},
-      {"--caustics", {"maybe"}, "on, off or auto"}};
+      {"--caustics", {"on"}, "auto or off"}};
   for (const auto& [option, values, expected] : rows) {
     for (const char* value : values) {
       const std::string error = error_of({"a.obj", option, value});
@@ -174,11 +174,6 @@ TEST(Options, ThatExcludeEachOther) {
   expect_error({"a.obj", "--view", "top", "--camera", "0,0,9,0,0,0"},
                "--view and --camera exclude each other");
   expect_error({"a.obj", "--channels", "P", "-o", "a.png"}, "--channels: expected an EXR");
-  expect_error({"a.obj", "--caustics", "on"}, "--caustics on: expected --integrator path");
-  expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--spp", "1"},
-               "--caustics on: expected --spp 2 or more");
-  expect_error({"a.obj", "--caustics", "on", "--integrator", "path", "--error", "1"},
-               "--caustics on and --error exclude each other");
 }
 
 TEST(Options, PartOfAFrameTooLargeForOneRun) {
@@ -353,7 +348,7 @@ TEST(OutputOptions, LightByName) {
   const RenderSettings plain = parse({"a.obj"}).render;
   EXPECT_EQ(plain.integrator, IntegratorKind::kWhitted);
   EXPECT_EQ(plain.depth(), 4);
-  for (const char* engine : {"rtl", "model", "cpu", "check"}) {
+  for (const char* engine : {"rtl", "model", "cpu"}) {
     EXPECT_EQ(parse({"a.obj", "--engine", engine}).render.samples, 4) << "whatever the engine";
   }
   EXPECT_EQ(parse({"a.obj", "--engine", "cpu", "--spp", "1"}).render.samples, 1);
@@ -368,9 +363,7 @@ TEST(OutputOptions, LightByName) {
   EXPECT_EQ(path.ambient, 0.0);
   EXPECT_EQ(parse({"a.obj", "--depth", "0"}).render.depth(), 0);
   EXPECT_EQ(parse({"a.obj", "--max-depth", "7"}).render.depth(), 7);
-  EXPECT_EQ(parse({"a.obj", "--caustics", "off"}).render.caustics, Caustics::kOff);
-  EXPECT_EQ(parse({"a.obj", "--caustics", "on", "--integrator", "path"}).render.caustics,
-            Caustics::kOn);
+  EXPECT_FALSE(parse({"a.obj", "--caustics", "off"}).render.caustics);
   EXPECT_EQ(plain.point_error, 0x1p-16f);
   const auto point_error = [](const char* text) {
     return parse({"a.obj", "--point-error", text}).render.point_error;

@@ -62,11 +62,12 @@ TEST(AreaSign, IsExactWhereRoundingIsNot) {
   EXPECT_EQ(area_sign(bow_tie, area), 0);
 }
 
-TEST(Collinear, NeedsAllThreeProjections) {
-  EXPECT_TRUE(collinear({0, 0, 0}, {1, 2, 3}, {2, 4, 6}));
-  EXPECT_TRUE(collinear({1, 1, 1}, {1, 1, 1}, {5, 0, 2}));
-  EXPECT_FALSE(collinear({0, 0, 0}, {1, 2, 3}, {2, 4, std::nextafter(6.0f, 7.0f)}));
-  EXPECT_FALSE(collinear({0, 0, 0}, {1, 0, 0}, {2, 0x1p-149f, 0}));
+TEST(TriangleNormal, IsZeroOnlyForCollinearCorners) {
+  const auto is_zero = [](const Corners& t) { return triangle_normal(t) == glm::dvec3(0.0); };
+  EXPECT_TRUE(is_zero({glm::dvec3(0, 0, 0), {1, 2, 3}, {2, 4, 6}}));
+  EXPECT_TRUE(is_zero({glm::dvec3(1, 1, 1), {1, 1, 1}, {5, 0, 2}}));
+  EXPECT_FALSE(is_zero({glm::dvec3(0, 0, 0), {1, 2, 3}, {2, 4, std::nextafter(6.0f, 7.0f)}}));
+  EXPECT_FALSE(is_zero({glm::dvec3(0, 0, 0), {1, 0, 0}, {2, 0x1p-149f, 0}}));
 }
 
 }  // namespace

@@ -29,8 +29,6 @@ IntersectCounters CoreIntersector::counters() const {
   counters.hit.hits = core.hits;
   counters.hit.edge_doubts = core.doubts;
   counters.hit.depth_doubts = core.near_ties;
-  counters.hit.quotients = 3 * core.rays + 4 * core.hits;  // 1 / I, t, P
-  counters.hit.input_bytes = core.lines * sizeof(MemoryLine);
   counters.hit.clocks = core.clocks;
   counters.hit.exact_clocks = core.exact_clocks;
   return counters;
@@ -80,14 +78,13 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
       take_if_nearest(bvh_, ray, query.t_max_of(result.tag), hit, !is_doubt, best, counters_);
     }
   }
-  counters_.traverse += watch.lap();
   for (std::size_t i = 0; i < rays.size() && query.with_points; ++i) {
     if (hits[i].primitive == NearestHit::kNone) continue;
     const PolygonRecord plane = make_plane(rays[i].origin, bvh_.corners_of(hits[i].primitive));
     set_point(plane, rays[i].direction, hits[i]);
     ++counters_.hit.plane_tests;
   }
-  counters_.record += watch.lap();
+  counters_.seconds += watch.lap();
 }
 
 }  // namespace raygate

@@ -70,11 +70,6 @@ struct CoreCounters {
   std::uint64_t waits = 0;         ///< clocks in which memory did not accept a request
   std::uint64_t exact_clocks = 0;  ///< busy clocks of the exact unit
   std::uint64_t clocks = 0;
-
-  CoreCounters& operator+=(const CoreCounters& other) {
-    add_counters(*this, other);
-    return *this;
-  }
 };
 
 /// Traces rays through a memory image. The nearest hit of a ray in exact arithmetic is the sure hit

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,99 @@ void send_all(WordLink& link, std::span<const std::uint32_t> words) {
     while (!link.send(word)) link.wait();
   }
 }
+
+/// See open_serial_link.
+class SerialLink : public WordLink {
+ public:
+  explicit SerialLink(std::filesystem::path port)
+      : port_(std::move(port)),
+        file_(open(port_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+    termios settings{};
+    if (file_ < 0) fail(std::strerror(errno));
+    if (tcgetattr(file_, &settings) != 0) {
+      const std::string what = errno == ENOTTY ? "expected a serial port" : std::strerror(errno);
+      close(file_);
+      fail(what);
+    }
+    cfmakeraw(&settings);
+    settings.c_cflag |= CLOCAL | CREAD;
+    cfsetspeed(&settings, B2000000);
+    tcsetattr(file_, TCSANOW, &settings);
+  }
+
+  SerialLink(const SerialLink&) = delete;
+  SerialLink& operator=(const SerialLink&) = delete;
+  ~SerialLink() override { close(file_); }
+
+  bool send(std::uint32_t word) override {
+    if (out_.size() + 4 > kBuffer) return false;
+    for (unsigned byte = 0; byte < 4; ++byte) {
+      out_.push_back(static_cast<unsigned char>(word >> 8 * byte));
+    }
+    return true;
+  }
+
+  std::optional<std::uint32_t> receive() override {
+    if (in_.size() < 4) return std::nullopt;
+    std::uint32_t word = 0;
+    for (unsigned byte = 0; byte < 4; ++byte) word |= std::uint32_t{in_[byte]} << 8 * byte;
+    in_.erase(in_.begin(), in_.begin() + 4);
+    return word;
+  }
+
+  void wait() override {
+    pollfd ready{.fd = file_, .events = POLLIN, .revents = 0};
+    if (!out_.empty()) ready.events |= POLLOUT;
+    const int found = poll(&ready, 1, 1'000 * kPatience);
+    if (found < 0 && errno != EINTR) fail(std::strerror(errno));
+    if (found == 0) fail("no word of the board for " + std::to_string(kPatience) + " s");
+    if ((ready.revents & POLLIN) != 0) read_some();
+    if ((ready.revents & POLLOUT) != 0) write_some();
+    if ((ready.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) fail("the board is gone");
+  }
+
+  void restart() override {
+    out_.clear();
+    tcflush(file_, TCIOFLUSH);
+    if (tcsendbreak(file_, 0) != 0) fail(std::strerror(errno));
+    pollfd ready{.fd = file_, .events = POLLIN, .revents = 0};
+    for (int reads = 0; poll(&ready, 1, kQuiet) > 0; ++reads) {
+      if (reads == 1'000) fail("found input after a break, expected a board that waits");
+      read_some();
+    }
+    in_.clear();
+  }
+
+ private:
+  static constexpr int kPatience = 30;
+  static constexpr int kQuiet = 100;            // ms without input after a break
+  static constexpr std::size_t kBuffer = 4096;  // bytes to be written
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(port_.string() + ": " + what);
+  }
+
+  /// Returns the result of a read or write, or 0 if nothing was possible yet.
+  [[nodiscard]] std::ptrdiff_t checked(std::ptrdiff_t count) const {
+    if (count < 0 && errno != EAGAIN && errno != EINTR) fail(std::strerror(errno));
+    return std::max<std::ptrdiff_t>(count, 0);
+  }
+
+  void write_some() {
+    out_.erase(out_.begin(), out_.begin() + checked(write(file_, out_.data(), out_.size())));
+  }
+
+  void read_some() {
+    std::array<unsigned char, 4096> bytes{};
+    in_.insert(in_.end(), bytes.begin(),
+               bytes.begin() + checked(read(file_, bytes.data(), bytes.size())));
+  }
+
+  std::filesystem::path port_;
+  int file_;
+  std::deque<unsigned char> in_;
+  std::vector<unsigned char> out_;
+};
 
 }  // namespace
 
@@ -86,80 +180,8 @@ void LinkedCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRa
   counters_.clocks += link_->clocks() - begin;
 }
 
-SerialLink::SerialLink(std::filesystem::path port)
-    : port_(std::move(port)),
-      file_(open(port_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
-  termios settings{};
-  if (file_ < 0) fail(std::strerror(errno));
-  if (tcgetattr(file_, &settings) != 0) {
-    const std::string what = errno == ENOTTY ? "expected a serial port" : std::strerror(errno);
-    close(file_);
-    fail(what);
-  }
-  cfmakeraw(&settings);
-  settings.c_cflag |= CLOCAL | CREAD;
-  cfsetspeed(&settings, B2000000);
-  tcsetattr(file_, TCSANOW, &settings);
-}
-
-SerialLink::~SerialLink() { close(file_); }
-
-void SerialLink::fail(const std::string& what) const {
-  throw InputError(port_.string() + ": " + what);
-}
-
-bool SerialLink::send(std::uint32_t word) {
-  if (out_.size() + 4 > kBuffer) return false;
-  for (unsigned byte = 0; byte < 4; ++byte) {
-    out_.push_back(static_cast<unsigned char>(word >> 8 * byte));
-  }
-  return true;
-}
-
-std::optional<std::uint32_t> SerialLink::receive() {
-  if (in_.size() < 4) return std::nullopt;
-  std::uint32_t word = 0;
-  for (unsigned byte = 0; byte < 4; ++byte) word |= std::uint32_t{in_[byte]} << 8 * byte;
-  in_.erase(in_.begin(), in_.begin() + 4);
-  return word;
-}
-
-void SerialLink::wait() {
-  pollfd ready{.fd = file_, .events = POLLIN, .revents = 0};
-  if (!out_.empty()) ready.events |= POLLOUT;
-  const int found = poll(&ready, 1, 1'000 * kPatience);
-  if (found < 0 && errno != EINTR) fail(std::strerror(errno));
-  if (found == 0) fail("no word of the board for " + std::to_string(kPatience) + " s");
-  if ((ready.revents & POLLIN) != 0) read_some();
-  if ((ready.revents & POLLOUT) != 0) write_some();
-  if ((ready.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) fail("the board is gone");
-}
-
-void SerialLink::restart() {
-  out_.clear();
-  tcflush(file_, TCIOFLUSH);
-  if (tcsendbreak(file_, 0) != 0) fail(std::strerror(errno));
-  pollfd ready{.fd = file_, .events = POLLIN, .revents = 0};
-  for (int reads = 0; poll(&ready, 1, kQuiet) > 0; ++reads) {
-    if (reads == 1'000) fail("found input after a break, expected a board that waits");
-    read_some();
-  }
-  in_.clear();
-}
-
-std::ptrdiff_t SerialLink::checked(std::ptrdiff_t count) const {
-  if (count < 0 && errno != EAGAIN && errno != EINTR) fail(std::strerror(errno));
-  return std::max<std::ptrdiff_t>(count, 0);
-}
-
-void SerialLink::write_some() {
-  out_.erase(out_.begin(), out_.begin() + checked(write(file_, out_.data(), out_.size())));
-}
-
-void SerialLink::read_some() {
-  std::array<unsigned char, 4096> bytes{};
-  in_.insert(in_.end(), bytes.begin(),
-             bytes.begin() + checked(read(file_, bytes.data(), bytes.size())));
+std::unique_ptr<WordLink> open_serial_link(const std::filesystem::path& port) {
+  return std::make_unique<SerialLink>(port);
 }
 
 }  // namespace raygate

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -77,35 +76,8 @@ class LinkedCore : public CoreUnit {
   CoreCounters counters_;
 };
 
-/// A serial port: four bytes per word, lowest first, 8N1, 2 Mbaud. Throws InputError with the
-/// port's name if it cannot be opened, or if the board is silent for kPatience seconds.
-class SerialLink : public WordLink {
- public:
-  explicit SerialLink(std::filesystem::path port);
-  SerialLink(const SerialLink&) = delete;
-  SerialLink& operator=(const SerialLink&) = delete;
-  ~SerialLink() override;
-
-  bool send(std::uint32_t word) override;
-  std::optional<std::uint32_t> receive() override;
-  void wait() override;
-  void restart() override;
-
- private:
-  static constexpr int kPatience = 30;
-  static constexpr int kQuiet = 100;            ///< ms without input after a break
-  static constexpr std::size_t kBuffer = 4096;  ///< bytes to be written
-
-  [[noreturn]] void fail(const std::string& what) const;
-  /// Returns the result of a read or write, or 0 if nothing was possible yet.
-  [[nodiscard]] std::ptrdiff_t checked(std::ptrdiff_t count) const;
-  void write_some();
-  void read_some();
-
-  std::filesystem::path port_;
-  int file_;
-  std::deque<unsigned char> in_;
-  std::vector<unsigned char> out_;
-};
+/// Opens a serial port: four bytes per word, lowest first, 8N1, 2 Mbaud. Throws InputError with the
+/// port's name if it cannot be opened; the link does if the board is silent for 30 seconds.
+[[nodiscard]] std::unique_ptr<WordLink> open_serial_link(const std::filesystem::path& port);
 
 }  // namespace raygate

@@ -25,12 +25,11 @@ struct Bounds {
   }
 };
 
-/// Returns the next float above x, which is not 0.
-float up(float x) {
-  const auto bits = std::bit_cast<std::int32_t>(x);
-  return std::bit_cast<float>(bits + (1 | bits >> 31));
+/// Returns the next number above x.
+template <class T>
+T up(T x) {
+  return std::nextafter(x, std::numeric_limits<T>::infinity());
 }
-double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
 
 /// Return the difference of two floats, rounded up or down.
 double above(double a, double b) {
@@ -119,9 +118,6 @@ class ImageWriter {
     }
     return bounds;
   }
-  [[nodiscard]] std::uint32_t primitive_at(std::uint32_t number) const {
-    return tree_.primitives[number].number;
-  }
 
   /// Decides which nodes are leaves. Returns the sum of the areas of the triangles' boxes.
   double plan(Ref ref) {
@@ -136,14 +132,9 @@ class ImageWriter {
   [[nodiscard]] std::vector<Ref> children(Ref ref) const {
     std::vector<Ref> refs = {ref};
     while (refs.size() < NodeLine::kChildren) {
-      auto largest = refs.end();
-      double area = -1.0;
-      for (auto at = refs.begin(); at != refs.end(); ++at) {
-        if (is_leaf(*at) || bounds(*at).area() <= area) continue;
-        largest = at;
-        area = bounds(*at).area();
-      }
-      if (largest == refs.end()) break;
+      const auto largest = std::ranges::max_element(
+          refs, {}, [&](Ref each) { return is_leaf(each) ? -1.0 : bounds(each).area(); });
+      if (is_leaf(*largest)) break;
       const Ref opened = *largest;
       *largest = tree_.nodes[opened].child[0];
       refs.insert(largest + 1, tree_.nodes[opened].child[1]);
@@ -195,7 +186,7 @@ class ImageWriter {
       } else {
         for (std::uint32_t k = 0; k < node.child[i].kind; ++k) {
           TriangleLine triangle;
-          triangle.primitive = primitive_at(tree_.first(refs[i]) + k);
+          triangle.primitive = tree_.primitives[tree_.first(refs[i]) + k].number;
           triangle.corners = bvh_.float_corners_of(triangle.primitive);
           triangle.rank = bvh_.triangle_of(triangle.primitive);
           triangle.index = next + k;

@@ -125,30 +125,17 @@ constexpr int kBoundShift = 20;
 constexpr int kBias = 127;
 constexpr int kMostPlaneError = 14;
 constexpr std::uint32_t kTErrorUnit = 8;
+constexpr auto kNan = std::bit_cast<float>(0x7FC00000u);
 
-float subtract(float a, float b) { return Binary32::add(a, -b); }
-
-glm::vec3 difference(const glm::vec3& a, const glm::vec3& b) {
-  return {subtract(a.x, b.x), subtract(a.y, b.y), subtract(a.z, b.z)};
-}
-
-struct CrossProduct {
-  glm::vec3 product;
-  glm::vec3 terms;  // |a_i b_j| + |a_j b_i|
-};
-
-CrossProduct cross_product(const glm::vec3& a, const glm::vec3& b) {
-  CrossProduct cross;
+/// Returns u x v with the hardware's NaN, and for each component the sum of the magnitudes of its
+/// two products.
+glm::vec3 cross_product(const glm::vec3& u, const glm::vec3& v, glm::vec3& terms) {
+  glm::vec3 product = cross(u, v, terms);
   for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const float left = Binary32::multiply(a[i], b[j]), right = Binary32::multiply(a[j], b[i]);
-    cross.product[k] = subtract(left, right);
-    cross.terms[k] = Binary32::add(std::abs(left), std::abs(right));
+    if (std::isnan(product[k])) product[k] = kNan;
   }
-  return cross;
+  return product;
 }
-
-float sum(const glm::vec3& v) { return Binary32::add(Binary32::add(v.x, v.y), v.z); }
 
 bool is_in_range(int field) { return field >= kLeastField && field < 255; }
 
@@ -159,25 +146,22 @@ SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle) {
   PolygonRecord& record = result.record;
   FloatCorners corners, edges;
   for (int k = 0; k < 3; ++k) {
-    corners[k] = difference(triangle[k], origin);
-    edges[k] = difference(triangle[(k + 1) % 3], triangle[k]);
+    corners[k] = triangle[k] - origin;
+    edges[k] = triangle[(k + 1) % 3] - triangle[k];
   }
+  glm::vec3 terms;
   for (int k = 0; k < 3; ++k) {
-    const CrossProduct edge = cross_product(corners[k], edges[k]);
-    record.edges[k] = edge.product;
-    const float terms = sum(edge.terms);
-    record.bounds[k] = is_in_range(field(terms)) ? std::ldexp(terms, -kBoundShift)
-                                                 : std::numeric_limits<float>::infinity();
+    record.edges[k] = cross_product(corners[k], edges[k], terms);
+    const float sum = terms.x + terms.y + terms.z;
+    record.bounds[k] = is_in_range(field(sum)) ? std::ldexp(sum, -kBoundShift)
+                                               : std::numeric_limits<float>::infinity();
   }
-  const CrossProduct normal = cross_product(edges[2], edges[0]);
-  record.normal = normal.product;
-  glm::vec3 shares;
-  for (int k = 0; k < 3; ++k) shares[k] = Binary32::multiply(normal.product[k], corners[0][k]);
-  record.d = sum(shares);
+  record.normal = cross_product(edges[2], edges[0], terms);
+  record.d = Binary32::dot(record.normal, corners[0]);
 
-  const int vertex_field = largest_field(corners[0]), terms_field = largest_field(normal.terms);
+  const int vertex_field = largest_field(corners[0]), terms_field = largest_field(terms);
   const int d_field = field(record.d);
-  const int normal_error = terms_field - largest_field(normal.product);
+  const int normal_error = terms_field - largest_field(record.normal);
   const int distance_error = std::max(vertex_field + terms_field - d_field - kBias, 0);
   const bool is_good = is_in_range(terms_field) && vertex_field < 255 && is_in_range(d_field) &&
                        normal_error <= kMostPlaneError && distance_error <= kMostPlaneError;
@@ -185,7 +169,7 @@ SetUpRecord set_up(const glm::vec3& origin, const FloatCorners& triangle) {
     result.normal_error = static_cast<std::uint32_t>(normal_error);
     result.distance_error = static_cast<std::uint32_t>(distance_error);
   } else {
-    record.d = std::bit_cast<float>(0x7FC00000u);
+    record.d = kNan;
   }
   return result;
 }

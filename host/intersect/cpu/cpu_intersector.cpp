@@ -20,7 +20,7 @@ void CpuIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   }
   counters.misses += (counters.tests - before.tests) - (counters.hits - before.hits) -
                      (counters.edge_doubts - before.edge_doubts);
-  counters_.hit_tests += watch.lap();
+  counters_.seconds += watch.lap();
 }
 
 void PointWriter::write() {

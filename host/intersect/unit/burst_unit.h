@@ -115,9 +115,9 @@ using BurstResults = std::vector<BurstResult>;
 /// their errors, the one that is not kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResult> {
  public:
-  /// Returns statistics since construction, without `unit_tests` and `input_bytes`. Idle clocks and
-  /// stalls are counted per lane of the hardware: together they are lanes * clocks - tests. Must
-  /// not be called between start and finish.
+  /// Returns statistics since construction, without `unit_tests`. Idle clocks and stalls are
+  /// counted per lane of the hardware: together they are lanes * clocks - tests. Must not be called
+  /// between start and finish.
   [[nodiscard]] virtual HitCounters counters() const = 0;
 };
 
@@ -151,6 +151,15 @@ struct HitDistance {
   float t = 0.0f;
   std::uint32_t error = 0;
 };
+
+/// Returns the range of a positive t within its error.
+template <class Math>
+Interval around(const HitDistance& distance, const Math& math) {
+  const std::uint32_t word = math.to_word(distance.t), margin = 64u << distance.error;
+  const std::uint32_t infinity = math.to_word(std::numeric_limits<float>::infinity());
+  return {math.from_word(word - std::min(word, margin)),
+          math.from_word(std::min(word + margin, infinity))};
+}
 
 /// Implements BurstUnit in the format and rounding of `Math` (Binary32, or Arithmetic of
 /// host/variants): all floats of records, rays and results are numbers of that format. Has the bits
@@ -200,6 +209,12 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return all_sure ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
+  /// Returns whether V = `v` can be the divisor of t.
+  [[nodiscard]] bool is_divisor(const PolygonRecord& record, float v) const {
+    return math_.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
+           grazing(record.normal, v) <= std::max(math_.fraction_bits() - 11, 0);  // max_grazing
+  }
+
   /// Returns BurstUnit's t and its error for a record that the ray surely hits.
   [[nodiscard]] HitDistance distance(const PolygonRecord& record,
                                      const glm::vec3& direction) const {
@@ -225,9 +240,6 @@ class BasicReferenceBurstUnit : public BurstUnit {
            math_.exponent_field(v);
   }
 
-  /// Returns hit_test_pkg::max_grazing.
-  [[nodiscard]] int max_grazing() const { return std::max(math_.fraction_bits() - 11, 0); }
-
   [[nodiscard]] HitDistance distance(const PolygonRecord& record, float v) const {
     return {math_.divide(record.d, v),
             static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
@@ -238,9 +250,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
                                    float v) const {
     const UnitVerdict inside = edges_verdict(record, direction);
     if (inside != UnitVerdict::kHit) return inside;
-    const bool divisible = math_.is_normal(v) && std::signbit(v) == std::signbit(record.d) &&
-                           grazing(record.normal, v) <= max_grazing();
-    return divisible ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+    return is_divisor(record, v) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
   /// Returns whether two positive distances differ by at most the sum of their errors.
@@ -263,7 +273,6 @@ class BasicReferenceBurstUnit : public BurstUnit {
       UnitVerdict verdict = decide(record, direction, v);
       HitDistance hit;
       if (verdict == UnitVerdict::kHit) {
-        ++counters_.quotients;
         hit = distance(record, v);
         if (!math_.is_normal(hit.t)) verdict = UnitVerdict::kDoubt;
       }
@@ -287,7 +296,6 @@ class BasicReferenceBurstUnit : public BurstUnit {
     if (!found) return;
     best.point = point(bundle.records[best.record], direction);
     ++counters_.plane_tests;
-    counters_.quotients += 3;
     results.push_back(best);
   }
 

@@ -10,15 +10,6 @@
 namespace raygate {
 namespace {
 
-/// Returns the range of t within its error.
-Interval around(const HitDistance& distance) {
-  constexpr std::uint32_t kInfinity = 0x7F800000;
-  const auto bits = std::bit_cast<std::uint32_t>(distance.t);
-  const std::uint32_t margin = 64u << distance.error;
-  return {std::bit_cast<float>(bits - std::min(bits, margin)),
-          std::bit_cast<float>(std::min(bits + margin, kInfinity))};
-}
-
 /// Returns the bundle of a unit's result. Throws std::runtime_error if there is none, or if it has
 /// no such lane or record, which means that the unit is broken.
 const RayBundle& bundle_of(const BurstResult& result, std::span<const RayBundle> batch) {
@@ -66,10 +57,10 @@ void PipelineHitTester::finish(HitReports& reports) {
     set_point(record, direction, hit);
     if (is_hit) {
       hit.point = result.point;
-      hit.t = around({result.t, result.t_error});
+      hit.t = around({result.t, result.t_error}, Binary32());
     }
     if (result.kind == Kind::kNearTie) {
-      hit.t = around(ReferenceBurstUnit().distance(record, direction));
+      hit.t = around(ReferenceBurstUnit().distance(record, direction), Binary32());
     }
     reports.push_back({result.bundle, result.lane, result.kind != Kind::kDoubt, hit});
   }
@@ -78,15 +69,12 @@ void PipelineHitTester::finish(HitReports& reports) {
 HitCounters PipelineHitTester::counters() const {
   HitCounters counters = unit_->counters();
   counters.unit_tests = counters.tests;
-  counters.input_bytes = counters.tests * sizeof(PolygonRecord);
   return counters;
 }
 
 HitCounters SerialHitTester::counters() const {
   HitCounters counters = counters_;
   counters.unit_tests = counters.plane_tests;
-  counters.quotients = 3 * counters.plane_tests;
-  counters.input_bytes = counters.plane_tests * sizeof(PlaneTest);
   counters.clocks = unit_->clocks();
   return counters;
 }
@@ -113,7 +101,7 @@ void SerialHitTester::finish(HitReports& reports) {
     NearestHit hit{.primitive = bundle.first_tag + number};
     set_point(record, direction, hit);
     hit.point = points_[i];
-    adapt_point_error(record, direction, hit);
+    if (adapt_point_error_) adapt_point_error_(record, direction, hit);
     if (is_sure) hit.t = distance_bounds(record, direction);
     reports.push_back({index, lane, is_sure, hit});
   }

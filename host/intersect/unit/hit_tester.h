@@ -1,11 +1,14 @@
-// Hit testers: hit-test units, simulated or as reference models, and the software around them.
+// Hit testers: hit-test units, simulated or as reference models, and the software around them; and
+// the intersector that uses them.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "host/intersect/intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
@@ -54,15 +57,15 @@ class PipelineHitTester : public HitTester {
 /// exclude are not sent to the unit.
 class SerialHitTester : public HitTester {
  public:
-  explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit) : unit_(std::move(unit)) {}
+  /// Changes hit.point_error, which is that of binary32, to that of the unit's format.
+  using Adapt =
+      std::function<void(const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit)>;
+
+  explicit SerialHitTester(std::unique_ptr<PlaneUnit> unit, Adapt adapt_point_error = {})
+      : unit_(std::move(unit)), adapt_point_error_(std::move(adapt_point_error)) {}
 
   void finish(HitReports& reports) override;
   [[nodiscard]] HitCounters counters() const override;
-
- protected:
-  /// Changes hit.point_error, which is that of binary32, to that of the unit's format.
-  virtual void adapt_point_error(const PolygonRecord& /*record*/, const glm::vec3& /*direction*/,
-                                 NearestHit& /*hit*/) const {}
 
  private:
   /// A (ray, polygon) pair in the unit.
@@ -75,11 +78,17 @@ class SerialHitTester : public HitTester {
   void drop_farther(HitReports& reports, std::size_t first);
 
   std::unique_ptr<PlaneUnit> unit_;
+  Adapt adapt_point_error_;
   HitCounters counters_;
   // Reused for all batches.
   std::vector<Pair> pairs_;  // ordered by bundle, lane and record
   std::vector<PlaneTest> plane_tests_;
   std::vector<glm::vec3> points_;
 };
+
+/// Returns an intersector that collects leaf tests in batches for the tester while other rays
+/// traverse. `bvh` must outlive it.
+[[nodiscard]] std::unique_ptr<Intersector> make_unit_intersector(const Bvh& bvh,
+                                                                 std::shared_ptr<HitTester> tester);
 
 }  // namespace raygate

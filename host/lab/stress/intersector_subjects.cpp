@@ -10,7 +10,6 @@
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/unit_intersector.h"
 #include "host/lab/stress/subjects.h"
 #include "host/variants/variant_hit_tester.h"
 #include "sim/rtl_core.h"
@@ -171,7 +170,7 @@ SubjectKind cpu(const char* name, const char* what, bool one_origin) {
 }
 
 IntersectorOf by_unit(const std::shared_ptr<HitTester>& tester) {
-  return [tester](const Bvh& bvh) { return std::make_unique<UnitIntersector>(bvh, tester); };
+  return [tester](const Bvh& bvh) { return make_unit_intersector(bvh, tester); };
 }
 
 template <class Tester, class Unit, class... Lanes>

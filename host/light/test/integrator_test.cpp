@@ -97,7 +97,7 @@ TEST_P(EveryIntegrator, RaysNameTheTriangleThatTheyLeave) {
   RenderStats stats;
   RenderSettings one_thread = options(150, 100);
   one_thread.threads = 1;
-  one_thread.caustics = Caustics::kOff;  // paths from lights begin off them, and have no source
+  one_thread.caustics = false;  // paths from lights begin off them, and have no source
   EXPECT_TRUE(same(film(one_thread), render(scene_, bvh_, camera_, one_thread, guard, stats)));
   if (GetParam() == IntegratorKind::kPrimary) return;
   EXPECT_GT(named, 10'000u);

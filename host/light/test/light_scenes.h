@@ -79,7 +79,7 @@ inline IntersectorFactory cpu(const Bvh& bvh) {
 }
 inline IntersectorFactory serial_model(const Bvh& bvh) {
   return [&bvh] {
-    return std::make_unique<UnitIntersector>(
+    return make_unit_intersector(
         bvh, std::make_unique<SerialHitTester>(std::make_unique<ReferencePlaneUnit>()));
   };
 }

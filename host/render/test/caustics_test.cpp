@@ -20,7 +20,7 @@ Film caustics_of(const Scene& scene, const Camera& camera, RenderSettings option
   return test::render(scene, bvh, camera, options, cpu(bvh), stats);
 }
 
-RenderSettings options_of(int size, int samples, Caustics caustics = Caustics::kOn) {
+RenderSettings options_of(int size, int samples, bool caustics = true) {
   RenderSettings options = light(IntegratorKind::kPath, size, size, samples);
   options.caustics = caustics;
   return options;
@@ -47,8 +47,7 @@ TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
     const double expected = 3.0 * std::cos(angle) * (1.0 - r) / (1.0 + r) * 0.1 / pi;
     const double found = mean_colour(caustics_of(scene, above_floor(), options_of(16, 1024))).x;
     EXPECT_NEAR(found, expected, 0.01 * expected) << degrees;
-    EXPECT_EQ(mean_colour(caustics_of(scene, above_floor(), options_of(16, 4, Caustics::kOff))).x,
-              0.0);
+    EXPECT_EQ(mean_colour(caustics_of(scene, above_floor(), options_of(16, 4, false))).x, 0.0);
   }
 }
 
@@ -97,7 +96,7 @@ TEST(Caustics, AMirrorIsAnotherLamp) {
   add(with_lamp, rectangle({5, 3, -0.5f}, {0, 1, 0.3f}, {0, 0, 1}), emitter({3.2f, 2.4f, 1.6f}));
   const glm::dvec3 expected =
       mean_colour(caustics_of(with_lamp, above_floor(), options_of(16, 1024)));
-  for (const Caustics caustics : {Caustics::kOff, Caustics::kOn}) {
+  for (const bool caustics : {false, true}) {
     const glm::dvec3 found =
         mean_colour(caustics_of(with_mirror, above_floor(), options_of(16, 1024, caustics)));
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k], expected[k], 0.01 * expected[k]);
@@ -111,7 +110,7 @@ void expect_same_means(const Scene& scene, const Camera& camera, int samples) {
   struct Sums {
     double sum[12] = {}, squares[12] = {};
   };
-  const auto sums_of = [&](Caustics caustics, int spp) {
+  const auto sums_of = [&](bool caustics, int spp) {
     Sums sums;
     for (int seed = 0; seed < kSeeds; ++seed) {
       RenderSettings options = options_of(kSize, spp, caustics);
@@ -129,7 +128,7 @@ void expect_same_means(const Scene& scene, const Camera& camera, int samples) {
     }
     return sums;
   };
-  const Sums by_chance = sums_of(Caustics::kOff, samples), on = sums_of(Caustics::kOn, samples / 4);
+  const Sums by_chance = sums_of(false, samples), on = sums_of(true, samples / 4);
   for (int k = 0; k < 12; ++k) {
     const double variance = by_chance.squares[k] - by_chance.sum[k] * by_chance.sum[k] +
                             on.squares[k] - on.sum[k] * on.sum[k];
@@ -206,9 +205,9 @@ TEST(Caustics, AreTheSameBytesWhoeverTraces) {
   };
   RenderSettings options = options_of(72, 8);
   const Film whole = picture(options, cpu(bvh));
-  options.caustics = Caustics::kOff;
+  options.caustics = false;
   EXPECT_FALSE(same(picture(options, cpu(bvh)), whole));
-  options.caustics = Caustics::kAuto;
+  options.caustics = true;
   EXPECT_TRUE(same(picture(options, pipeline_model(bvh)), whole));
   options.threads = 4;
   EXPECT_TRUE(same(picture(options, cpu(bvh)), whole));

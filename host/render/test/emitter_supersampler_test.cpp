@@ -171,7 +171,7 @@ TEST(EmitterSupersampler, HaveTheSameMean) {
       RenderSettings asked = options(256);
       RenderStats stats;
       asked.seed = static_cast<std::uint64_t>(seed);
-      asked.caustics = Caustics::kOff;
+      asked.caustics = false;
       const Film film = test::render(scene, bvh, camera_of(Projection::kPerspective, lens * 1e-6),
                                      asked, test::cpu(bvh), stats);
       const double light = test::mean_colour(film).x;

@@ -190,7 +190,7 @@ std::optional<std::vector<std::uint32_t>> MeshBuilder::triangulate(Scene& scene,
     if (polygon.size() > 3) {
       kind = clipper.cut(polygon);
       pieces = clipper.triangles();
-    } else if (collinear(polygon[0], polygon[1], polygon[2])) {
+    } else if (triangle_normal({polygon[0], polygon[1], polygon[2]}) == glm::dvec3(0.0)) {
       kind = PolygonKind::kZeroArea;
     }
     Triangle whole{.material = face.attributes.material, .object = face.attributes.object};

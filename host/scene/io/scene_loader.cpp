@@ -154,8 +154,11 @@ void add_lights(const SceneFile& file, Scene& scene) {
                                            corner + light.edges[1]};
     const bool is_near = std::ranges::all_of(
         corners, [](const glm::vec3& at) { return largest(at) <= kMostCoordinate; });
-    if (!is_near || collinear(corners[0], corners[1], corners[2]) ||
-        collinear(corners[0], corners[2], corners[3])) {
+    const auto is_flat = [](const FloatCorners& triangle) {
+      return triangle_normal(widened(triangle)) == glm::dvec3(0.0);
+    };
+    if (!is_near || is_flat({corners[0], corners[1], corners[2]}) ||
+        is_flat({corners[0], corners[2], corners[3]})) {
       throw InputError(file.file.string() + ": area_lights[" + std::to_string(number) +
                        "] is beyond the range of float, or too small for its place");
     }

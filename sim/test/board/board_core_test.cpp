@@ -12,13 +12,13 @@
 #include <utility>
 
 #include "host/base/input_error.h"
-#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/linked_core.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/intersector.h"
+#include "host/intersect/test/check_intersector.h"
 #include "sim/model_loader.h"
 #include "sim/rtl_core.h"
 
@@ -221,14 +221,14 @@ class BoardAtAPort {
 /// A host that ends in the middle of a message, by bytes or words, and whose rays are in the core:
 /// the next host is none the wiser.
 void leave_a_mess(const std::string& port, std::span<const Ray> rays) {
-  SerialLink link(port);
+  const std::unique_ptr<WordLink> link = open_serial_link(port);
   const auto send = [&](const Ray& ray, std::size_t words) {
     const auto message = ray_message({.ray = ray, .tag = 7});
-    for (const std::uint32_t word : std::span(message).first(words)) EXPECT_TRUE(link.send(word));
+    for (const std::uint32_t word : std::span(message).first(words)) EXPECT_TRUE(link->send(word));
   };
   for (const Ray& ray : rays.first(kBoardRays - 1)) send(ray, ray_message({}).size());
   send(rays.back(), 8);
-  while (!link.receive()) link.wait();
+  while (!link->receive()) link->wait();
   const int file = open(port.c_str(), O_RDWR | O_NOCTTY);
   EXPECT_EQ(write(file, "x", 1), 1);
   usleep(50'000);  // the board takes the byte
@@ -246,7 +246,7 @@ TEST(SerialLink, HitsAreTheCpuIntersectors) {
         bvh,
         std::make_unique<CoreIntersector>(
             bvh, std::make_shared<MemoryImage>(bvh),
-            std::make_unique<LinkedCore>(std::make_unique<SerialLink>(board.port()), kBoardRays)),
+            std::make_unique<LinkedCore>(open_serial_link(board.port()), kBoardRays)),
         std::make_unique<CpuIntersector>(bvh));
     std::vector<NearestHit> hits(rays.size());
     check.nearest(rays, {}, hits);
@@ -254,8 +254,8 @@ TEST(SerialLink, HitsAreTheCpuIntersectors) {
 }
 
 TEST(SerialLink, WhatIsNoPortIsAnInputError) {
-  EXPECT_THROW(SerialLink("/dev/null"), InputError);
-  EXPECT_THROW(SerialLink("/nowhere/ttyUSB0"), InputError);
+  EXPECT_THROW((void)open_serial_link("/dev/null"), InputError);
+  EXPECT_THROW((void)open_serial_link("/nowhere/ttyUSB0"), InputError);
 }
 
 }  // namespace

@@ -29,7 +29,6 @@ void expect_same_events(const HitCounters& rtl, const HitCounters& cpu) {
   EXPECT_EQ(rtl.edge_doubts, cpu.edge_doubts);
   EXPECT_EQ(rtl.depth_doubts, cpu.depth_doubts);
   EXPECT_EQ(rtl.plane_tests, cpu.plane_tests);
-  EXPECT_EQ(rtl.quotients, cpu.quotients);
 }
 
 class RtlBurstUnitTest : public testing::TestWithParam<std::tuple<Arith, int>> {};
@@ -82,7 +81,6 @@ TEST_P(RtlBurstUnitTest, HasTheTwinsBits) {
   EXPECT_GT(cpu.counters().hits, done / 20);
   EXPECT_GT(cpu.counters().edge_doubts, done / 20);
   EXPECT_GT(cpu.counters().depth_doubts, done / 1000);
-  EXPECT_GT(cpu.counters().quotients, cpu.counters().hits);
 }
 
 std::string name(const testing::TestParamInfo<std::tuple<Arith, int>>& info) {

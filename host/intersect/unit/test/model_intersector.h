@@ -5,12 +5,11 @@
 
 #include "host/intersect/unit/burst_unit.h"
 #include "host/intersect/unit/hit_tester.h"
-#include "host/intersect/unit/unit_intersector.h"
 
 namespace raygate::test {
 
 inline std::unique_ptr<Intersector> model_intersector(const Bvh& bvh) {
-  return std::make_unique<UnitIntersector>(
+  return make_unit_intersector(
       bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
 }
 

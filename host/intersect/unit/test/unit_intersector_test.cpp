@@ -1,6 +1,4 @@
 // Rays of any origins find what trying every triangle in exact arithmetic finds.
-#include "host/intersect/unit/unit_intersector.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
