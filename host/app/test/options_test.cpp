@@ -124,7 +124,7 @@ TEST(Options, ValuesThatAreImpossible) {
       {"--ground", {"yes"}, "on or off"},
       {"--environment-rotation", {"10"}, "--environment, too"},
       {"--environment-strength", {"-1"}, "a factor"},
-      {"--engine", {"gpu"}, "rtl, model, cpu or check"},
+      {"--engine", {"gpu"}, "rtl, model or cpu"},
       {"--variant", {"e8p"}, "exponent bits and digits"},
       {"--unit", {"warp"}, "pipeline, serial, core or board"},
       {"--lanes", {"0", "3", "16", "-1", "x"}, "1, 2, 4 or 8"},
