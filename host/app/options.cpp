@@ -35,14 +35,16 @@ Writes SCENE.exr and SCENE.png into the current folder.
 )";
 
 constexpr const char* kFooter =
-    R"(Exit status: 0 done; 1 an internal error; 2 the command line, the scene or an
-output cannot be used; 130 interrupted (partial pictures).)";
+    R"(Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
+line, the scene or an output cannot be used; 130 interrupted (partial pictures).)";
 
 // Values of options. Only a lack of memory at the start could make them throw.
 // NOLINTBEGIN(bugprone-throwing-static-initialization)
 
-const Choices<Engine> kEngines{
-    {"rtl", Engine::kRtl}, {"model", Engine::kModel}, {"cpu", Engine::kCpu}};
+const Choices<Engine> kEngines{{"rtl", Engine::kRtl},
+                               {"model", Engine::kModel},
+                               {"cpu", Engine::kCpu},
+                               {"check", Engine::kCheck}};
 const Choices<Arith> kAriths{{"structural", Arith::kStructural},
                              {"behavioural", Arith::kBehavioural}};
 const Choices<bool ExtraChannels::*> kExtraChannels{
@@ -278,7 +280,7 @@ void check_core_files(const OptionTable& table, const Options& options) {
   }
   if (files.wave.empty()) return;
   if (!options.has_core() || !options.simulates()) {
-    table.fail_value("trace", "with --unit core and --engine rtl");
+    table.fail_value("trace", "with --unit core and --engine rtl or check");
   }
   const RenderSettings& render = options.render;
   const glm::ivec2& pixel = files.pixel;
@@ -387,7 +389,8 @@ std::vector<fs::path> CoreFileOptions::paths() const {
 void add_engine_options(OptionTable& table, EngineOptions& options) {
   if (!has_simulation()) options.engine = Engine::kCpu;
   table.choice("--engine", "NAME",
-               "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster ({})",
+               "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster; check: "
+               "rtl and cpu, compared ({})",
                options.engine, kEngines, kInStats | kInPage);
   table.choice<std::string>(
       "--unit", "NAME", "pipeline, serial (the paper's), core, board ({})", options.unit,
@@ -509,7 +512,7 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
 
 void check_engine_options(const OptionTable& table, EngineOptions& options) {
   if (!table.given("cores").empty() && !(options.unit == "core" && options.simulates())) {
-    table.fail_value("cores", "with --unit core and --engine rtl");
+    table.fail_value("cores", "with --unit core and --engine rtl or check");
   }
   if (options.variant) {
     const std::string unit =

@@ -177,6 +177,9 @@ std::string to_text(const Report& report, const Options& options) {
       row("tests", format_count(hit.tests) + ", " + format_fixed(ratio(hit.tests, render.rays), 1) +
                        " per ray" + clocks + ": " + rate(hit.tests, render.wall_seconds, "tests"));
   if (options.render.error > 0.0) text += samples_line(report, options.render);
+  if (options.engine == Engine::kCheck) {
+    text += row("check", "rtl and cpu agreed on all " + format_count(render.rays) + " rays");
+  }
   if (report.rounding.corners > 0) {
     text += row("rounded", format_count(report.rounding.corners, "corner") +
                                " to binary32, by up to " + format_number(report.rounding.most));
