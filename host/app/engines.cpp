@@ -57,11 +57,10 @@ void prepare_engine(const EngineOptions& options) {
 
 IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,
                                             std::shared_ptr<const MemoryImage> image) {
-  if (options.engine == Engine::kCpu) {
-    return [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
-  }
-  if (options.has_core() && !image) image = make_memory_image(options, bvh);
-  return [options, &bvh, image] {
+  if (!image) image = make_memory_image(options, bvh);
+  return [options, &bvh, image]() -> std::unique_ptr<Intersector> {
+    auto cpu = std::make_unique<CpuIntersector>(bvh);
+    if (options.engine == Engine::kCpu) return cpu;
     std::unique_ptr<Intersector> made;
     if (options.has_core()) {
       made = std::make_unique<CoreIntersector>(bvh, image, make_core(options));
@@ -69,8 +68,7 @@ IntersectorFactory make_intersector_factory(const EngineOptions& options, const 
       made = make_unit_intersector(bvh, make_tester(options));
     }
     if (options.engine != Engine::kCheck) return made;
-    return std::unique_ptr<Intersector>(std::make_unique<CheckIntersector>(
-        bvh, std::move(made), std::make_unique<CpuIntersector>(bvh)));
+    return std::make_unique<CheckIntersector>(bvh, std::move(made), std::move(cpu));
   };
 }
 
