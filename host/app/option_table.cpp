@@ -171,7 +171,10 @@ std::vector<std::string> split_at_commas(const std::string& text) {
 
 std::string list_text(std::initializer_list<double> values) {
   std::string text;
-  for (const double value : values) text.append(text.empty() ? "" : ",").append(number_text(value));
+  for (const double value : values) {
+    if (!text.empty()) text += ',';
+    text += number_text(value);
+  }
   return text;
 }
 

@@ -88,12 +88,8 @@ std::vector<PixelSamples> samples_to_trace(const RenderSettings& settings, const
         const int last =
             std::max(end, std::min({first + ahead, next_error_check(first), settings.samples}));
         const std::size_t row = std::size_t(pixel.y0 - tile.y0) * std::size_t(tile.width());
-        pixels.push_back({.x = pixel.x0,
-                          .y = pixel.y0,
-                          .index = index,
-                          .place = row + std::size_t(pixel.x0 - tile.x0),
-                          .first = first,
-                          .end = last});
+        const std::size_t place = row + std::size_t(pixel.x0 - tile.x0);
+        pixels.push_back({pixel.x0, pixel.y0, index, place, first, last});
       });
     });
   });

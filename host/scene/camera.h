@@ -34,9 +34,9 @@ struct LensSetting {
 struct CameraSetting {
   glm::dvec3 eye{0.0}, target{0.0};  ///< must differ
   /// Up direction in the image; not zero or parallel to the view; default: +y.
-  std::optional<glm::dvec3> up;
+  std::optional<glm::dvec3> up = {};
   /// Vertical field of view in degrees, in (0, 180); default: kDefaultFov.
-  std::optional<double> fov;
+  std::optional<double> fov = {};
   LensSetting lens = {};
 };
 

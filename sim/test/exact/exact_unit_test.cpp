@@ -91,7 +91,9 @@ TYPED_TEST(ExactUnitTest, EqualsItsReference) {
         ASSERT_EQ(order, wanted.order) << suite.name << ", seed " << kSeed << ", case " << here;
         ASSERT_EQ(expected.hit, wanted.hit);
         ASSERT_EQ(expected.order, wanted.order);
-        if (TypeParam::kWidth == 48) ASSERT_LE(clocks, most_clocks(wanted.request));
+        if (TypeParam::kWidth == 48) {
+          ASSERT_LE(clocks, most_clocks(wanted.request));
+        }
         ASSERT_EQ(clocks, expected.clocks) << suite.name << ", seed " << kSeed << ", case " << here;
         model->ready_i = 1;
         model.clock();
