@@ -32,12 +32,6 @@ static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use no
 constexpr std::size_t kReserve = std::size_t{1} << 20;
 std::atomic<void*> reserve = nullptr;
 
-void give_reserve_back() {
-  void* const memory = reserve.exchange(nullptr);
-  if (memory == nullptr) throw std::bad_alloc();
-  ::operator delete(memory);
-}
-
 void note(int signal) { noted_signal = signal; }
 
 /// Returns the length of the UTF-8 character at the start of `text` if it is printable, else 0.
@@ -90,11 +84,11 @@ std::string format_duration(double seconds) {
   }
   const long whole = std::lround(seconds);
   const bool minutes = whole < 3600;
-  const long small = minutes ? whole % 60 : whole % 3600 / 60;
-  std::string text = std::to_string(minutes ? whole / 60 : whole / 3600);
-  text += minutes ? " min " : " h ";
-  if (small < 10) text += '0';
-  return text + std::to_string(small) + (minutes ? " s" : " min");
+  const long unit = minutes ? 1 : 60;
+  char text[64];
+  std::snprintf(text, sizeof text, minutes ? "%ld min %02ld s" : "%ld h %02ld min",
+                whole / unit / 60, whole / unit % 60);
+  return text;
 }
 
 std::string format_number(double value) {
@@ -189,7 +183,11 @@ int run_guarded(const std::function<int()>& program) {
     try {
       // The reserve is optional: a second call of run_guarded may find no memory for it.
       ::operator delete(reserve.exchange(::operator new(kReserve, std::nothrow)));
-      std::set_new_handler(give_reserve_back);
+      std::set_new_handler([] {
+        void* const memory = reserve.exchange(nullptr);
+        if (memory == nullptr) throw std::bad_alloc();
+        ::operator delete(memory);
+      });
       int status = 0;
       try {
         status = program();

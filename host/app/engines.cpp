@@ -5,6 +5,7 @@
 #include "host/app/console.h"
 #include "host/base/input_error.h"
 #include "host/film/atomic_file.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/linked_core.h"
 #include "host/intersect/core/reference_core.h"
@@ -56,15 +57,18 @@ void prepare_engine(const EngineOptions& options) {
 
 IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,
                                             std::shared_ptr<const MemoryImage> image) {
-  if (options.engine == Engine::kCpu) {
-    return [&bvh] { return std::make_unique<CpuIntersector>(bvh); };
-  }
-  if (!options.has_core()) {
-    return [options, &bvh] { return make_unit_intersector(bvh, make_tester(options)); };
-  }
   if (!image) image = make_memory_image(options, bvh);
-  return [options, &bvh, image] {
-    return std::make_unique<CoreIntersector>(bvh, image, make_core(options));
+  return [options, &bvh, image]() -> std::unique_ptr<Intersector> {
+    auto cpu = std::make_unique<CpuIntersector>(bvh);
+    if (options.engine == Engine::kCpu) return cpu;
+    std::unique_ptr<Intersector> made;
+    if (options.has_core()) {
+      made = std::make_unique<CoreIntersector>(bvh, image, make_core(options));
+    } else {
+      made = make_unit_intersector(bvh, make_tester(options));
+    }
+    if (options.engine != Engine::kCheck) return made;
+    return std::make_unique<CheckIntersector>(bvh, std::move(made), std::move(cpu));
   };
 }
 

@@ -35,14 +35,16 @@ Writes SCENE.exr and SCENE.png into the current folder.
 )";
 
 constexpr const char* kFooter =
-    R"(Exit status: 0 done; 1 an internal error; 2 the command line, the scene or an
-output cannot be used; 130 interrupted (partial pictures).)";
+    R"(Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
+line, the scene or an output cannot be used; 130 interrupted (partial pictures).)";
 
 // Values of options. Only a lack of memory at the start could make them throw.
 // NOLINTBEGIN(bugprone-throwing-static-initialization)
 
-const Choices<Engine> kEngines{
-    {"rtl", Engine::kRtl}, {"model", Engine::kModel}, {"cpu", Engine::kCpu}};
+const Choices<Engine> kEngines{{"rtl", Engine::kRtl},
+                               {"model", Engine::kModel},
+                               {"cpu", Engine::kCpu},
+                               {"check", Engine::kCheck}};
 const Choices<Arith> kAriths{{"structural", Arith::kStructural},
                              {"behavioural", Arith::kBehavioural}};
 const Choices<bool ExtraChannels::*> kExtraChannels{
@@ -84,13 +86,6 @@ std::optional<Variant> parse_variant(const std::string& text) {
   }
 }
 
-/// Parses a fraction of the distance; "inf": the unit's point wherever it has one.
-std::optional<float> parse_point_error(const std::string& text) {
-  const double error = text == "inf" ? kLargest : parse_number<double>(text).value_or(-1.0);
-  if (!(error >= 0.0 && error <= kLargest)) return std::nullopt;
-  return float_below(error);
-}
-
 std::optional<CameraSetting> parse_camera(const std::string& text) {
   const std::vector<double> n = parse_list<double>(text);
   if (n.size() != 6 && n.size() != 7) return std::nullopt;
@@ -102,13 +97,6 @@ std::optional<CameraSetting> parse_camera(const std::string& text) {
     return std::nullopt;
   }
   return camera;
-}
-
-std::optional<Angles> parse_view(const std::string& text) {
-  const std::vector<double> n = parse_list<double>(text);
-  if (n.size() != 2) return value_of(kViews, text);
-  if (!(std::abs(n[0]) <= 360.0 && std::abs(n[1]) <= 90.0)) return std::nullopt;
-  return Angles(n[0], n[1]);
 }
 
 std::string vector_text(const glm::dvec3& v) { return list_text({v.x, v.y, v.z}); }
@@ -142,7 +130,12 @@ void add_core_options(OptionTable& table, Options& options) {
       "compute points on the host where the unit's may be off by X of t (2^-16; 0: always; inf: "
       "never)",
       "a fraction of the distance, 0 or more, or inf", options.render.point_error,
-      parse_point_error, [](float error) { return number_text(double{error}); }, kInExr | kInPage);
+      [](const std::string& text) -> std::optional<float> {
+        const double error = text == "inf" ? kLargest : parse_number<double>(text).value_or(-1.0);
+        if (!(error >= 0.0 && error <= kLargest)) return std::nullopt;
+        return float_below(error);
+      },
+      [](float error) { return number_text(double{error}); }, kInExr | kInPage);
 }
 
 void add_camera_options(OptionTable& table, CameraRequest& request) {
@@ -162,7 +155,13 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
       "the whole scene: " + listed(names_of(kViews), ", ") + ", or azimuth and elevation (33,24)",
       listed(names_of(kViews), ", ") +
           ", or AZIMUTH,ELEVATION in degrees (from -360 to 360, and from -90 to 90)",
-      request.angles, parse_view,
+      request.angles,
+      [](const std::string& text) -> std::optional<Angles> {
+        const std::vector<double> n = parse_list<double>(text);
+        if (n.size() != 2) return value_of(kViews, text);
+        if (!(std::abs(n[0]) <= 360.0 && std::abs(n[1]) <= 90.0)) return std::nullopt;
+        return Angles(n[0], n[1]);
+      },
       [](const Angles& angles) {
         return list_text({angles.first, angles.second});
       },
@@ -278,7 +277,7 @@ void check_core_files(const OptionTable& table, const Options& options) {
   }
   if (files.wave.empty()) return;
   if (!options.has_core() || !options.simulates()) {
-    table.fail_value("trace", "with --unit core and --engine rtl");
+    table.fail_value("trace", "with --unit core and --engine rtl or check");
   }
   const RenderSettings& render = options.render;
   const glm::ivec2& pixel = files.pixel;
@@ -387,7 +386,8 @@ std::vector<fs::path> CoreFileOptions::paths() const {
 void add_engine_options(OptionTable& table, EngineOptions& options) {
   if (!has_simulation()) options.engine = Engine::kCpu;
   table.choice("--engine", "NAME",
-               "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster ({})",
+               "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster; check: "
+               "rtl and cpu, compared ({})",
                options.engine, kEngines, kInStats | kInPage);
   table.choice<std::string>(
       "--unit", "NAME", "pipeline, serial (the paper's), core, board ({})", options.unit,
@@ -509,7 +509,7 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
 
 void check_engine_options(const OptionTable& table, EngineOptions& options) {
   if (!table.given("cores").empty() && !(options.unit == "core" && options.simulates())) {
-    table.fail_value("cores", "with --unit core and --engine rtl");
+    table.fail_value("cores", "with --unit core and --engine rtl or check");
   }
   if (options.variant) {
     const std::string unit =

@@ -26,6 +26,7 @@ enum class Engine {
   kRtl,    ///< the simulated hardware
   kModel,  ///< the hardware's reference model in C++
   kCpu,    ///< the host's own tests
+  kCheck,  ///< rtl and cpu, compared ray by ray
 };
 
 struct EngineOptions {
@@ -44,7 +45,9 @@ struct EngineOptions {
   [[nodiscard]] bool has_core() const {
     return (unit == "core" || unit == "board") && engine != Engine::kCpu;
   }
-  [[nodiscard]] bool simulates() const { return engine == Engine::kRtl; }
+  [[nodiscard]] bool simulates() const {
+    return engine == Engine::kRtl || engine == Engine::kCheck;
+  }
 };
 
 /// A picture of one channel in false colours.
@@ -104,7 +107,7 @@ inline constexpr Range<double> kFovRange{0x1p-1022, 180.0 - 0x1p-45,
                                          "degrees above 0 and below 180"},
     kSmoothRange{0.0, 180.0, "degrees from 0 to 180"};
 
-/// "rtl", "model" or "cpu".
+/// "rtl", "model", "cpu" or "check".
 [[nodiscard]] std::string to_string(Engine engine);
 /// "structural" or "behavioural".
 [[nodiscard]] std::string to_string(Arith arith);

@@ -130,17 +130,6 @@ std::string headline(const Report& report, const Options& options) {
   return line + ", " + format_count(options.threads, "thread") + "\n";
 }
 
-/// Returns the line about the samples that --error took and saved.
-std::string samples_line(const Report& report, const RenderSettings& render) {
-  const double all =
-      static_cast<double>(render.window.width()) * render.window.height() * render.samples;
-  const double taken = all - static_cast<double>(report.render.spare_samples);
-  return row("samples", format_fixed(100.0 * taken / all, 1) + " % of " +
-                            format_count(static_cast<std::uint64_t>(render.samples)) +
-                            " per pixel; skipped " + format_count(report.render.spare_samples) +
-                            " that --error did not need");
-}
-
 /// Returns all numbers, a line each: key, value, meaning.
 std::string details(const Report& report, const Options& options) {
   std::string text;
@@ -176,7 +165,18 @@ std::string to_text(const Report& report, const Options& options) {
   text +=
       row("tests", format_count(hit.tests) + ", " + format_fixed(ratio(hit.tests, render.rays), 1) +
                        " per ray" + clocks + ": " + rate(hit.tests, render.wall_seconds, "tests"));
-  if (options.render.error > 0.0) text += samples_line(report, options.render);
+  if (const RenderSettings& asked = options.render; asked.error > 0.0) {
+    const double all =
+        static_cast<double>(asked.window.width()) * asked.window.height() * asked.samples;
+    const double taken = all - static_cast<double>(render.spare_samples);
+    text += row("samples", format_fixed(100.0 * taken / all, 1) + " % of " +
+                               format_count(static_cast<std::uint64_t>(asked.samples)) +
+                               " per pixel; skipped " + format_count(render.spare_samples) +
+                               " that --error did not need");
+  }
+  if (options.engine == Engine::kCheck) {
+    text += row("check", "rtl and cpu agreed on all " + format_count(render.rays) + " rays");
+  }
   if (report.rounding.corners > 0) {
     text += row("rounded", format_count(report.rounding.corners, "corner") +
                                " to binary32, by up to " + format_number(report.rounding.most));

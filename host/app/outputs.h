@@ -42,7 +42,7 @@ struct Report {
   std::vector<std::string> legends;  ///< scales of the false-colour pictures
 };
 
-/// Returns the summary of a run: four lines, more for --error, legends, views and
+/// Returns the summary of a run: four lines, more for --engine check, --error, legends, views and
 /// rounded corners; all statistics with --verbose. Ends with a newline.
 [[nodiscard]] std::string to_text(const Report& report, const Options& options);
 

@@ -32,6 +32,9 @@
 namespace raygate {
 namespace {
 
+constexpr std::int64_t kMostServedPixels = std::int64_t{1} << 24;
+constexpr int kMostServedSamples = 1 << 16;
+
 /// A request with the decoded parameters of its query.
 struct Request {
   mg_connection* connection;
@@ -206,6 +209,14 @@ class PictureServer {
     Options options = with_values(options_, std::move(given));
     if (options.has_core() && scene_.prepared.bvh.has_instances()) {
       throw InputError("--unit core: expected --instances write with --serve");
+    }
+    if (std::int64_t{options.render.width} * options.render.height > kMostServedPixels) {
+      throw InputError("--size: expected at most " + std::to_string(kMostServedPixels) +
+                       " pixels with --serve");
+    }
+    if (options.render.samples > kMostServedSamples) {
+      throw InputError("--spp: expected at most " + std::to_string(kMostServedSamples) +
+                       " with --serve");
     }
     return options;
   }

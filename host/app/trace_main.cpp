@@ -44,8 +44,8 @@ elsewhere. Answers are exact for the numbers as given, in binary64. The summary
 reports rays and corners that had to be rounded: to binary32 by --engine rtl and
 model, and in meshes with instances.
 
-Exit status: 0 done; 1 an internal error; 2 the command line, the scene, the rays
-or the output cannot be used; 130 interrupted.)";
+Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
+line, the scene, the rays or the output cannot be used; 130 interrupted.)";
 
 struct TraceOptions {
   std::filesystem::path scene, rays, output = "-";

@@ -15,6 +15,7 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -34,6 +35,7 @@
 #include "host/film/exr.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/light/prepared_scene.h"
+#include "host/python/winding_number.h"
 #include "host/render/renderer.h"
 #include "host/scene/io/mesh_builder.h"
 #include "host/scene/io/scene_loader.h"
@@ -87,14 +89,19 @@ struct Keywords : OptionTable {
 struct SceneKeywords : Keywords {
   explicit SceneKeywords(const Settings& settings) {
     number("--smooth", "", "", smooth, kSmoothRange, kInPython);
+    choice<bool>("--degenerate", "", "", refuses, {{"leave out", false}, {"refuse", true}},
+                 kInPython);
     read(settings);
   }
   std::optional<double> smooth;
+  bool refuses = false;  // faces without area
 };
 
 glm::dvec3 vector_at(const Vectors3& vectors, std::size_t i) {
   return {vectors(i, 0), vectors(i, 1), vectors(i, 2)};
 }
+
+glm::dvec3 vector_of(const Three& v) { return {v[0], v[1], v[2]}; }
 
 /// Returns text from the system as a str: bytes that are not UTF-8 become surrogates.
 nb::object text_of(const std::string& text) {
@@ -139,7 +146,7 @@ class PythonScene {
     file_ = read_scene_file(path);
     scene_ = load(file_, {.smooth = keywords.smooth}, file_.environment);
     resolve_instances(scene_, InstanceMode::kFlatten, path);
-    build(keywords.threads);
+    build(keywords);
   }
 
   /// Makes a scene of triangles from their corners. `name` is the array's name in messages.
@@ -156,10 +163,17 @@ class PythonScene {
       mesh.add_face(face, i / 3 + 1);
     }
     mesh.build_plain({.smooth = keywords.smooth}, scene_);
-    build(keywords.threads);
+    build(keywords);
   }
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] std::vector<std::size_t> degenerate_faces() const {
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < scene_.triangles.size(); ++i) {
+      if (is_left_out(scene_.triangles[i])) numbers.push_back(i);
+    }
+    return numbers;
+  }
   [[nodiscard]] Texts material_names() const {
     Texts names;
     for (const Material& material : scene_.materials) names.append(text_of(material.name));
@@ -234,6 +248,23 @@ class PythonScene {
     return bytes_of(rows, rows->data(), rows->size() * sizeof(Row));
   }
 
+  /// Returns a WindingNumbers::Number for each point, as bytes. `crossings` are those of rays in
+  /// this direction.
+  [[nodiscard]] Bytes winding_numbers(const Vectors3& points, const Numbers& crossings,
+                                      const Three& direction) const {
+    const auto rows = std::make_shared<std::vector<WindingNumbers::Number>>(points.shape(0));
+    {
+      const nb::gil_scoped_release release;
+      std::call_once(has_winding_, [&] { winding_.emplace(scene_, *bvh_); });
+      const glm::dvec3 away = -glm::normalize(vector_of(direction));
+      for (std::size_t i = 0; i < rows->size(); ++i) {
+        checkpoint();
+        (*rows)[i] = winding_->at(vector_at(points, i), crossings(i), away);
+      }
+    }
+    return bytes_of(rows, rows->data(), rows->size() * sizeof(WindingNumbers::Number));
+  }
+
   /// Returns the film's channels by name, and the film.
   std::pair<nb::typed<nb::dict, nb::str, nb::ndarray<nb::numpy>>, PythonFilm> render_film(
       const std::optional<Three>& eye, const std::optional<Three>& target,
@@ -253,10 +284,9 @@ class PythonScene {
     if (std::int64_t{width} * height > kMaxPixels) {
       throw InputError("width, height: expected at most " + std::to_string(kMaxPixels) + " pixels");
     }
-    const auto vector = [](const Three& v) { return glm::dvec3(v[0], v[1], v[2]); };
-    if (eye) camera.eye = vector(*eye);
-    if (target) camera.target = vector(*target);
-    if (up) camera.up = vector(*up);
+    if (eye) camera.eye = vector_of(*eye);
+    if (target) camera.target = vector_of(*target);
+    if (up) camera.up = vector_of(*up);
     const Framing framing = frame_picture(camera, scene_, static_cast<double>(width) / height);
     const auto film = std::make_shared<Film>();
     {
@@ -283,8 +313,12 @@ class PythonScene {
   }
 
  private:
-  void build(int threads) {
-    bvh_ = std::make_unique<Bvh>(scene_, threads);
+  void build(const SceneKeywords& keywords) {
+    if (const auto faces = degenerate_faces(); keywords.refuses && !faces.empty()) {
+      throw InputError("found face " + std::to_string(faces[0]) + " without area, of " +
+                       std::to_string(faces.size()) + ", expected none");
+    }
+    bvh_ = std::make_unique<Bvh>(scene_, keywords.threads);
     prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);
   }
 
@@ -296,6 +330,8 @@ class PythonScene {
   Scene scene_;
   std::unique_ptr<Bvh> bvh_;
   std::unique_ptr<PreparedScene> prepared_;
+  mutable std::once_flag has_winding_;
+  mutable std::optional<WindingNumbers> winding_;
 };
 
 // Arithmetic of raygate.float by the reference model of the simulated float cores.
@@ -430,17 +466,8 @@ NB_MODULE(_raygate, m) {
           "Names of the objects (`o` and `g` of an OBJ file), by the numbers in hits[\"object\"].")
       .def_prop_ro("materials", &PythonScene::material_names,
                    "Names of the materials, by the numbers in hits[\"material\"].")
-      .def_prop_ro(
-          "degenerate_faces",
-          [](const PythonScene& s) {
-            nb::typed<nb::list, nb::int_> numbers;
-            const std::vector<Triangle>& faces = s.scene().triangles;
-            for (std::size_t i = 0; i < faces.size(); ++i) {
-              if (is_left_out(faces[i])) numbers.append(nb::int_(i));
-            }
-            return numbers;
-          },
-          "Numbers of the triangles without area.")
+      .def_prop_ro("degenerate_faces", &PythonScene::degenerate_faces,
+                   "Numbers of the triangles without area.")
       .def_prop_ro(
           "warnings", [](const PythonScene& s) { return texts_of(s.scene().warnings); },
           "A line for each thing in the file that was ignored or changed.")
@@ -453,6 +480,7 @@ NB_MODULE(_raygate, m) {
           "coordinate. Files of glTF, meshes with instances and numbers below 2^-97 are rounded.")
       .def("_trace", &PythonScene::trace_rays, "origins"_a, "directions"_a, "limits"_a.none(),
            "columns"_a, "settings"_a)
+      .def("_winding", &PythonScene::winding_numbers, "points"_a, "crossings"_a, "direction"_a)
       .def("_closest", &PythonScene::closest_points, "points"_a)
       .def("_render", &PythonScene::render_film, "eye"_a.none(), "target"_a.none(), "up"_a.none(),
            "settings"_a);

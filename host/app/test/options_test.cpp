@@ -54,7 +54,7 @@ TEST(Options, OnlyASceneMeansTheDefaults) {
 
 TEST(Options, ReadsEveryOption) {
   std::istringstream line(
-      "--size 320x200 --crop=1,2,30,40 --camera -1,-.5,1e3,0,0,-2.5,40 --engine model "
+      "--size 320x200 --crop=1,2,30,40 --camera -1,-.5,1e3,0,0,-2.5,40 --engine check "
       "--unit serial --threads 7 --seed 18446744073709551615 --up -z --fov=50 --stats run.json -q "
       "a.obj "
       "-o b");
@@ -72,7 +72,7 @@ TEST(Options, ReadsEveryOption) {
   EXPECT_EQ(options.camera.up, glm::dvec3(0, 0, -1));
   EXPECT_EQ(options.camera.fov, 50.0);
   EXPECT_FALSE(options.camera.angles);
-  EXPECT_EQ(options.engine, Engine::kModel);
+  EXPECT_EQ(options.engine, Engine::kCheck);
   EXPECT_EQ(options.threads, 7);
   EXPECT_EQ(options.render.seed, 18446744073709551615u);
   EXPECT_TRUE(options.quiet);
@@ -124,7 +124,7 @@ TEST(Options, ValuesThatAreImpossible) {
       {"--ground", {"yes"}, "on or off"},
       {"--environment-rotation", {"10"}, "--environment, too"},
       {"--environment-strength", {"-1"}, "a factor"},
-      {"--engine", {"gpu"}, "rtl, model or cpu"},
+      {"--engine", {"gpu"}, "rtl, model, cpu or check"},
       {"--variant", {"e8p"}, "exponent bits and digits"},
       {"--unit", {"warp"}, "pipeline, serial, core or board"},
       {"--lanes", {"0", "3", "16", "-1", "x"}, "1, 2, 4 or 8"},
@@ -348,7 +348,7 @@ TEST(OutputOptions, LightByName) {
   const RenderSettings plain = parse({"a.obj"}).render;
   EXPECT_EQ(plain.integrator, IntegratorKind::kWhitted);
   EXPECT_EQ(plain.depth(), 4);
-  for (const char* engine : {"rtl", "model", "cpu"}) {
+  for (const char* engine : {"rtl", "model", "cpu", "check"}) {
     EXPECT_EQ(parse({"a.obj", "--engine", engine}).render.samples, 4) << "whatever the engine";
   }
   EXPECT_EQ(parse({"a.obj", "--engine", "cpu", "--spp", "1"}).render.samples, 1);

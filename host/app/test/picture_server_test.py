@@ -98,6 +98,8 @@ class Http(unittest.TestCase):
                     ("/picture", {"width": 3}, "unknown option"),
                     ("/picture", {"output": "a.png"}, "unknown option"),
                     ("/picture", {"size": "3"}, "--size: expected WIDTHxHEIGHT"),
+                    ("/picture", {"size": "5000x5000"}, "--size: expected at most 16777216 pixels"),
+                    ("/picture", {"spp": 100000}, "--spp: expected at most 65536"),
                     ("/picture", {"slot": "left"}, "unknown option"),
                     ("/picture", {"false-colour": "nothing=a.png"}, "nothing"),
                     ("/picture", {"variant": "e8p9-raw"}, "--engine: expected model with --variant e8p9-raw, got 'cpu'")):

@@ -114,6 +114,12 @@ TEST_F(Render, WithoutVerilatorTheSimulatedUnitsAreNamed) {
   }
 }
 
+TEST_F(Render, ACheckSaysThatTheEnginesAgreed) {
+  const Outcome outcome = render({kCornell, "--size", "16x16", "--engine", "check"});
+  EXPECT_NE(outcome.out.find("\ncheck    rtl and cpu agreed on all "), std::string::npos)
+      << outcome.out;
+}
+
 TEST_F(Render, WarningsAreSaidOnce) {
   folder_.write("a.obj",
                 "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"

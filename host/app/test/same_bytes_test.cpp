@@ -59,6 +59,12 @@ TEST_P(EveryScene, VectorsGiveTheSameBytes) {
   }
 }
 
+TEST_P(EveryScene, CheckFindsNoDifference) {
+  const std::string& scene = GetParam();
+  render({scene, "--size", "80x60", "--engine", "check"});
+  EXPECT_GT(stats_.at("plane_tests"), 0) << "nothing was compared";
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(all_scenes()), [](const auto& info) {
   std::string name = fs::path(info.param).stem().string();
   std::replace_if(
@@ -117,7 +123,7 @@ TEST_F(InstancedScene, IsTheSameForEveryEngine) {
   render({"room.json", "--size", "40x40", "--engine", "cpu", "--spp", "1", "--instances", "write",
           "-o", "cpu"});
   const json written = stats_;
-  for (const char* engine : {"rtl", "model"}) {
+  for (const char* engine : {"rtl", "model", "check"}) {
     render({"room.json", "--size", "40x40", "--engine", engine, "--spp", "1", "--instances", "keep",
             "-o", engine});
     EXPECT_EQ(stats_.at("triangles"), written.at("triangles"));

@@ -66,7 +66,7 @@ TEST_F(TraceRays, SaysTheSameByEveryEngine) {
   EXPECT_EQ(std::count(expected.begin(), expected.end(), '\n'), 4);
   const std::vector<std::vector<std::string>> engines = {
       {"--engine", "rtl"},
-      {"--engine", "rtl", "--lanes", "2"},
+      {"--engine", "check", "--lanes", "2"},
       {"--engine", "model"},
       {"--engine", "rtl", "--arith", "behavioural"},
       {"--engine", "rtl", "--unit", "serial"}};

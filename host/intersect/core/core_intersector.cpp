@@ -8,18 +8,6 @@
 #include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {
-namespace {
-
-/// Throws InputError for a ray with an error: the core's memory is not that of a BVH.
-[[noreturn]] void throw_broken_memory(const CoreResult& end) {
-  if (end.error == CoreResult::Error::kMemory) {
-    throw InputError("ray core's memory: no line " + std::to_string(end.line));
-  }
-  throw InputError("ray core's memory: a node is below itself, or below more than " +
-                   std::to_string(MemoryImage::kMostDepth - 1) + " others");
-}
-
-}  // namespace
 
 IntersectCounters CoreIntersector::counters() const {
   IntersectCounters counters = counters_;
@@ -53,7 +41,12 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
   results_.clear();
   core_->trace(image_->lines(), sent_, results_);
   for (const CoreResult& result : results_) {
-    if (result.error != CoreResult::Error::kNone) throw_broken_memory(result);
+    if (result.error != CoreResult::Error::kNone) {  // the core's memory is not that of a BVH
+      throw InputError(result.error == CoreResult::Error::kMemory
+                           ? "ray core's memory: no line " + std::to_string(result.line)
+                           : "ray core's memory: a node is below itself, or below more than " +
+                                 std::to_string(MemoryImage::kMostDepth - 1) + " others");
+    }
     const bool is_doubt = result.kind == CoreResult::Kind::kDoubt;
     if (result.tag >= rays.size() ||
         ((is_doubt || result.found) &&

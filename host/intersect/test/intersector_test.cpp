@@ -8,8 +8,8 @@
 #include <functional>
 
 #include "host/exact/test/meshes.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/cpu/cpu_intersector.h"
-#include "host/intersect/test/check_intersector.h"
 #include "host/intersect/unit/test/model_intersector.h"
 
 namespace raygate {
@@ -65,7 +65,7 @@ TEST_F(CheckIntersectorTest, IntersectorsThatAgreePass) {
   EXPECT_EQ(complaint([](auto) {}, {.t_max = limits, .any_hit_before = limits}), "");
 }
 
-TEST_F(CheckIntersectorTest, DifferencesAreThrownWithTheRay) {
+TEST_F(CheckIntersectorTest, OneBitOfPIsThrownWithTheRay) {
   const std::string what = complaint(
       [](std::span<NearestHit> hits) {
         float& y = hits[7].point.y;
@@ -73,9 +73,23 @@ TEST_F(CheckIntersectorTest, DifferencesAreThrownWithTheRay) {
       },
       {});
   EXPECT_NE(what.find("ray 3E800000 3E800000 3E800000, "), std::string::npos) << what;
+  EXPECT_NE(what.find("limit 7F800000: triangle "), std::string::npos) << what;
+  EXPECT_NE(what.find("; reference: triangle "), std::string::npos) << what;
+}
+
+TEST_F(CheckIntersectorTest, AnotherTriangleOrDistanceOrNoHitIsThrown) {
   EXPECT_NE(complaint([](auto hits) { hits[3].primitive ^= 1; }, {}), "");
   EXPECT_NE(complaint([](auto hits) { hits[3].primitive = NearestHit::kNone; }, {}), "");
   EXPECT_NE(complaint([](auto hits) { hits[3].t = {2.0, 2.0}; }, {}), "");
+}
+
+// Any hit will do, but not one that is beyond.
+TEST_F(CheckIntersectorTest, OfRaysThatMayEndAnywhereTheAnswerIsWhetherThereIsAHit) {
+  const std::vector<float> enough(rays_.size(), 100.0f), little(rays_.size(), 0.01f);
+  const auto other = [](auto hits) { hits[3].primitive ^= 1; };
+  EXPECT_EQ(complaint(other, {.any_hit_before = enough}), "");
+  EXPECT_NE(complaint(other, {.any_hit_before = little}), "");
+  EXPECT_NE(complaint([](auto hits) { hits[3] = {}; }, {.any_hit_before = enough}), "");
 }
 
 // An unscaled direction lost hits in cones once: every intersector refuses it.

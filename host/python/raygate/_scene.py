@@ -15,6 +15,7 @@ from ._arrays import Array
 from ._raygate import InputError
 
 Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+Degenerate = Literal["leave out", "refuse"]
 
 _DIRECTION = np.array([0.36, 0.48, 0.8], np.float32)  # of rays that count crossings; arbitrary
 
@@ -51,23 +52,24 @@ class Scene(_raygate.Scene):
     and its options; unpickling reads the file or builds the scene again."""
 
     @overload
-    def __init__(self, file: Path, /, *, smooth: float | None = None, threads: int | None = None) -> None: ...
+    def __init__(self, file: Path, /, *, smooth: float | None = None, degenerate: Degenerate = "leave out",
+                 threads: int | None = None) -> None: ...
 
     @overload
     def __init__(self, vertices: npt.ArrayLike, /, faces: npt.ArrayLike, *, smooth: float | None = None,
-                 threads: int | None = None) -> None: ...
+                 degenerate: Degenerate = "leave out", threads: int | None = None) -> None: ...
 
     @in_context
     def __init__(self, file: Any, /, faces: npt.ArrayLike | None = None, *, smooth: float | None = None,
-                 threads: int | None = None) -> None:
+                 degenerate: Degenerate = "leave out", threads: int | None = None) -> None:
         """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Or takes arrays: vertices of shape (N, 3), float32
         or float64, and faces of shape (M, 3), whole numbers: three vertices, counted from 0, in each row.
 
         Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them;
-        `degenerate_faces` lists them. `smooth`: faces without normals that meet at no more than so many degrees are
-        shaded smoothly. `threads`: one per processor by default. Raises InputError, a ValueError, which names the file
-        and line, or the face, that cannot be used."""
-        options = {"smooth": smooth, "threads": threads}
+        `degenerate_faces` lists them; degenerate="refuse" raises InputError for them. `smooth`: faces without normals
+        that meet at no more than so many degrees are shaded smoothly. `threads`: one per processor by default. Raises
+        InputError, a ValueError, which names the file and line, or the face, that cannot be used."""
+        options = {"smooth": smooth, "degenerate": degenerate, "threads": threads}
         if faces is None and isinstance(file, (str, bytes, os.PathLike)):
             name = os.fsencode(file)
             if b"\0" in name:
@@ -82,13 +84,15 @@ class Scene(_raygate.Scene):
 
     @classmethod
     @in_context
-    def of_triangles(cls, corners: npt.ArrayLike, *, threads: int | None = None) -> Scene:
+    def of_triangles(cls, corners: npt.ArrayLike, *, degenerate: Degenerate = "leave out",
+                     threads: int | None = None) -> Scene:
         """Returns a scene of grey triangles from their corners, of shape (N, 3, 3), float32 or float64. Triangles
         without area are as in Scene(). Raises InputError, which names the triangle that cannot be used."""
         scene = cls.__new__(cls)
         kept = np.array(_arrays.reals("triangles", corners), order="C")
-        scene._recipe = cls.of_triangles, (kept,), {"threads": threads}
-        super(Scene, scene).__init__("triangles", _arrays.triangles("triangles", kept), _settings(threads=threads))
+        options = {"degenerate": degenerate, "threads": threads}
+        scene._recipe = cls.of_triangles, (kept,), options
+        super(Scene, scene).__init__("triangles", _arrays.triangles("triangles", kept), _settings(**options))
         return scene
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -143,16 +147,30 @@ class Scene(_raygate.Scene):
                                       _settings(width=width, height=height, **options))
         return Picture(channels, film)
 
+    def _crossings(self, points: Array) -> Array:
+        """Returns how often a ray from each point leaves surfaces, less how often it enters them."""
+        hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
+        return np.bincount(hits["ray"], hits["side"], minlength=len(points))
+
     @in_context
     def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Returns whether points, of shape (N, 3), are inside of closed surfaces: an array of bool, of shape (N,). The
         answers are exact, for points as trace() rounds origins: they count how often a ray from the point leaves and
         enters surfaces. They have no meaning for an open surface or for a point on a surface. Raises InputError, which
         names the point, for inf, NaN and coordinates beyond 2^125."""
-        points = _arrays.points(points, 125)
-        hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
-        is_inside: npt.NDArray[np.bool_] = np.bincount(hits["ray"], hits["side"], minlength=len(points)) != 0
+        is_inside: npt.NDArray[np.bool_] = self._crossings(_arrays.points(points, 125)) != 0
         return is_inside
+
+    @in_context
+    def winding_number(self, points: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Returns how often the surfaces wind around points, of shape (N, 3), and the largest error of each number: two
+        arrays of float64, of shape (N,). Around a closed surface, also one that crosses itself, the number is whole and
+        exact: 1 inside, 0 outside. Around an open one it is the solid angle seen from the point over 4 pi. The error is
+        inf if a point is so near a surface that rounding, as of origins in trace(), may move it across. The numbers have
+        no meaning for a point on a surface. Raises InputError as inside() does."""
+        points = _arrays.points(points, 125)
+        rows = self._winding(points, self._crossings(points), _DIRECTION.tolist()).view(np.float64)
+        return rows[0::2].copy(), rows[1::2].copy()
 
     @in_context
     def closest(self, points: npt.ArrayLike) -> Array:

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -322,18 +321,13 @@ class GltfFile {
   static std::string decode_base64(std::string_view text) {
     constexpr std::string_view kDigits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::array<int, 256> values;
-    values.fill(-1);
-    for (std::size_t i = 0; i < kDigits.size(); ++i) {
-      values[static_cast<unsigned char>(kDigits[i])] = static_cast<int>(i);
-    }
     std::string decoded;
     decoded.reserve(text.size() / 4 * 3);
     std::uint32_t bits = 0;
     int count = 0;
     for (const char digit : text) {
-      const int value = values[static_cast<unsigned char>(digit)];
-      if (value < 0) break;
+      const std::size_t value = kDigits.find(digit);
+      if (value == kDigits.npos) break;
       bits = bits << 6 | static_cast<std::uint32_t>(value);
       count += 6;
       if (count < 8) continue;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <regex>
 #include <set>
 #include <span>
 #include <string>
@@ -418,6 +419,14 @@ class GltfReader {
     const Json& attributes = member(primitive, "attributes");
     if (!attributes.contains("POSITION")) {
       return file_.warn_once("a primitive without positions is left out");
+    }
+    // Texture coordinates that no texture uses, and joints without a skin, change no picture.
+    static const std::regex kRead(
+        "^(POSITION$|NORMAL$|TANGENT$|COLOR_0$|(TEXCOORD|JOINTS|WEIGHTS)_)");
+    for (const auto& [name, accessor] : attributes.items()) {
+      if (!std::regex_search(name, kRead)) {
+        file_.warn_once("the attribute " + in_quotes(name) + " is not read");
+      }
     }
     const std::size_t vertices = file_.count(index_in(attributes, "POSITION"));
     count(vertices);

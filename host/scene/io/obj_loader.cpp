@@ -73,7 +73,9 @@ class ObjReader {
       set_object();
       mesh_.add_face(corners_, words.line(), face_);
     } else if (keyword == "g") {
-      set_group(words);
+      group_.clear();  // "a b" may be one name or two; it is taken as one
+      while (!words.at_end()) group_.append(group_.empty() ? "" : " ").append(words.take());
+      object_is_known_ = false;
     } else if (keyword == "o") {
       object_ = words.rest();
       object_is_known_ = false;
@@ -180,13 +182,6 @@ class ObjReader {
 
   void warn_once(std::string_view keyword, const Words& words, const std::string& what) {
     if (warned_of_.emplace(keyword).second) scene_.warnings.push_back(words.place() + what);
-  }
-
-  /// Sets the group. "a b" may be one name or two; it is taken as one.
-  void set_group(Words& words) {
-    group_.clear();
-    while (!words.at_end()) group_.append(group_.empty() ? "" : " ").append(words.take());
-    object_is_known_ = false;
   }
 
   void set_smoothing(Words& words) {

@@ -12,13 +12,13 @@
 #include <utility>
 
 #include "host/base/input_error.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/linked_core.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/intersector.h"
-#include "host/intersect/test/check_intersector.h"
 #include "sim/model_loader.h"
 #include "sim/rtl_core.h"
 

@@ -9,13 +9,13 @@
 
 #include "Vray_core_shared.h"
 #include "Vray_core_small.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/intersector.h"
-#include "host/intersect/test/check_intersector.h"
 #include "sim/core_model.h"
 #include "sim/rtl_core.h"
 

@@ -17,13 +17,13 @@
 #include <vector>
 
 #include "host/base/input_error.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/memory_image.h"
 #include "host/intersect/core/reference_core.h"
 #include "host/intersect/core/test/box_cases.h"
 #include "host/intersect/core/test/core_cases.h"
 #include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/intersector.h"
-#include "host/intersect/test/check_intersector.h"
 #include "host/intersect/unit/test/model_intersector.h"
 
 namespace raygate {

@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "host/exact/test/meshes.h"
-#include "host/intersect/test/check_intersector.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/unit/test/same_results.h"
 #include "host/scene/camera.h"
 

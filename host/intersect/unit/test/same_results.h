@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "host/intersect/test/check_intersector.h"
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/unit/burst_unit.h"
 
 namespace raygate {

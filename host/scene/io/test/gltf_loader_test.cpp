@@ -451,6 +451,14 @@ TEST_F(LoadGltf, TwoSetsOfTextureCoordinates) {
   }
 }
 
+TEST_F(LoadGltf, UnknownAttributesAreWarnedOf) {
+  std::string json = square_json(kOneNode);
+  json.insert(json.find("\"NORMAL\""), R"("COLOR_1": 0, )");
+  const Scene scene = load(json);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_TRUE(scene.warnings[0].ends_with("the attribute 'COLOR_1' is not read"));
+}
+
 TEST_F(LoadGltf, WhatIsRefused) {
   expect_error("{}", "not a glTF 2.0 file that can be read: ");
   expect_error(square_json(R"([{"mesh": 1}])"), "mesh 1, but the file has 1");

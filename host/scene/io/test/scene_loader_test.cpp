@@ -122,9 +122,9 @@ void expect_sound(const Scene& scene) {
         ASSERT_LT(triangle.texcoords[k], scene.texcoords.size());
       }
     }
-    ASSERT_TRUE(is_left_out(triangle) || !collinear(scene.positions[triangle.vertices[0]],
-                                                    scene.positions[triangle.vertices[1]],
-                                                    scene.positions[triangle.vertices[2]]));
+    const auto& [a, b, c] = triangle.vertices;
+    const FloatCorners corners{scene.positions[a], scene.positions[b], scene.positions[c]};
+    ASSERT_TRUE(is_left_out(triangle) || triangle_normal(widened(corners)) != glm::dvec3(0.0));
     ASSERT_LT(triangle.material, scene.materials.size());
     ASSERT_LT(triangle.object, scene.objects.size());
   }

@@ -16,7 +16,7 @@
 namespace raygate {
 
 /// Thrown where two implementations differ. The text is one line with the inputs in hexadecimal,
-/// ready to replay.
+/// ready to replay, and both results.
 class EngineMismatch : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -60,9 +60,9 @@ class CheckIntersector : public Intersector {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (agree(rays[i], query, i, hits[i], expected_[i])) continue;
       const float limit = query.t_max_of(i);
-      throw EngineMismatch("the intersectors differ: ray" + hex_words({&rays[i].origin.x, 3}) +
-                           "," + hex_words({&rays[i].direction.x, 3}) + ", limit" +
-                           hex_words({&limit, 1}));
+      throw EngineMismatch("the engines differ: ray" + hex(rays[i].origin) + "," +
+                           hex(rays[i].direction) + ", limit" + hex_words({&limit, 1}) + ": " +
+                           describe(hits[i]) + "; reference: " + describe(expected_[i]));
     }
   }
 
@@ -76,9 +76,15 @@ class CheckIntersector : public Intersector {
       return is_before(bvh_, ray, a, enough) && is_before(bvh_, ray, b, enough);
     }
     return a.primitive == b.primitive && a.t.low <= b.t.high && b.t.low <= a.t.high &&
-           (!query.with_points || (hex_words({&a.point.x, 3}) == hex_words({&b.point.x, 3}) &&
-                                   a.point_error == b.point_error));
+           (!query.with_points || (hex(a.point) == hex(b.point) && a.point_error == b.point_error));
   }
+
+  [[nodiscard]] std::string describe(const NearestHit& hit) const {
+    if (hit.primitive == NearestHit::kNone) return "no hit";
+    return "triangle " + std::to_string(bvh_.triangle_of(hit.primitive)) + " at t " +
+           std::to_string(hit.t.low) + ", P" + hex(hit.point);
+  }
+  static std::string hex(const glm::vec3& v) { return hex_words({&v.x, 3}); }
 
   const Bvh& bvh_;
   std::unique_ptr<Intersector> intersector_, reference_;
