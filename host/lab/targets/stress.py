@@ -11,7 +11,6 @@ from host.lab.steps import LAB, Step
 COUNTS = ("tests", "rays", "refused", "wrong", "wrong_ties", "escapes", "double_hits",
           "wrong_nearest", "wrong_tied_nearest", "orders", "wrong_order", "doubts")
 LARGEST = ("delivered_t_ulp", "delivered_point_ulp", "t_of_bound", "point_of_bound", "point_of_said")
-# What an exact subject never does.
 FAULTS = ("wrong", "escapes", "double_hits", "wrong_nearest", "wrong_tied_nearest", "wrong_order")
 # Kinds of wrong results per ray, reported separately.
 KINDS = ("escapes", "double_hits", "wrong_nearest")
