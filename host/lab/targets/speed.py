@@ -47,8 +47,9 @@ robust ones. One thread, processor time; compare rows of one run. Embree3 is Deb
 (embreex); -1 is single rays, -8 and -16 packets, -stream 1,024 rays. BVHs are of high build quality, and rays of one
 origin have the coherent flag. Embree also computes u, v and the normal of a hit; raygate P and an interval that holds
 t. The cpu engine uses {{ of("rays")[0].engine_vectors }} of
-{{ of("rays")[0].machine_vectors }} vectors, Embree the widest that it knows. ±: the spreads of the middle halves of the
-runs, added.
+{{ of("rays")[0].machine_vectors }} vectors, Embree the widest that it knows.
+
+±: the spreads of the middle halves of the runs, added.
 
 {{ table(over_best, "scene", "rays", "raygate, Mrays/s = mrays :.1f", "over the fastest = fast", "mode = fast_mode",
          "over the fastest robust = robust", "mode = robust_mode") }}
