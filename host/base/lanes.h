@@ -59,6 +59,7 @@ struct VecOf<Element, 1> {
 /// Result type of comparisons of T.
 template <class T>
 using MaskOf = std::remove_cvref_t<decltype(std::declval<T>() < std::declval<T>())>;
+/// Number of lanes of T.
 template <class T>
 inline constexpr int kLanesOf = 1;
 template <class T>
@@ -163,6 +164,7 @@ RAYGATE_INLINE T absolute(const T& x) {
   }
 }
 
+/// Returns correctly rounded square roots.
 template <class T>
 RAYGATE_INLINE T root(const T& x) {
   if constexpr (std::is_arithmetic_v<T>) {

@@ -75,6 +75,7 @@ inline constexpr double kMostCoordinate = 0x1p126;
   return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
 
+/// Returns whether all components are floats.
 [[nodiscard]] inline bool is_binary32(const glm::dvec3& v) { return glm::dvec3(glm::vec3(v)) == v; }
 
 template <class T>

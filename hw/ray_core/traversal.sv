@@ -8,8 +8,8 @@
 // Each ray has Depth groups of its own. Levels - Depth more are shared by all rays. One ray at a time holds them, on
 // top of its own, from when it asks for a node with its own stack full until there is room in its own again; overflow_o
 // tells of each ray that takes them. Others that need them wait; their holder needs no other ray to go on, so each gets
-// its turn. Of the shared groups only the topmost is looked at, and it is not dropped for t_max: box_unit leaves out
-// what lies beyond.
+// its turn. Only the topmost shared group is examined. It is never dropped for t_max, as box_unit culls what lies
+// beyond.
 //
 // In a tree a ray enters each node once, and has at most one group for each level. A ray that is about to enter more
 // than lines_i nodes, or has Levels groups, is in a cycle: its stack is dropped, and cycle_o says so.

@@ -64,8 +64,8 @@ class PointWriter {
   /// Writes the points of eight hits of one primitive, of consecutive rays with these directions,
   /// if the primitive's plane is known; returns whether it is.
   template <Vectors kCode>
-  [[nodiscard]] RAYGATE_INLINE bool write(std::uint32_t number, std::uint32_t primitive,
-                                          const FloatLanes (&directions)[3]) {
+  [[nodiscard]] RAYGATE_INLINE bool write_group(std::uint32_t number, std::uint32_t primitive,
+                                                const FloatLanes (&directions)[3]) {
     const std::size_t plane = last_[primitive % kPlanes];
     if (kCode == Vectors::kBaseline || plane >= computed_ || primitives_[plane] != primitive) {
       return false;

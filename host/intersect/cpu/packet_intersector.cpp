@@ -455,13 +455,13 @@ RAYGATE_INLINE void test_ray(const ConeTraversal& walk, const QuadRecord& record
   bound_distance(verdict.low, verdict.high, v - v_bound, v + v_bound);
 }
 
-/// A leaf seen from an origin.
-struct SeenLeaf {
-  std::uint32_t first = NearestHit::kNone;  ///< its first primitive; kNone: no leaf
+/// Entry of the cache of leaves: a leaf as seen from the rays' origin.
+struct CachedLeaf {
+  std::uint32_t first = NearestHit::kNone;  ///< first primitive; kNone: an empty entry
   LaneMask there;                           ///< triangles that rays can hit
   QuadRecord record;
 };
-constexpr int kSeenBits = 5;
+constexpr int kCacheBits = 5;  ///< log2 of the number of entries
 
 constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float
 
@@ -657,7 +657,7 @@ class PacketIntersector {
           step_through<code()>(walk, tree, item.child.first, rays, groups);
           continue;
         }
-        const SeenLeaf& leaf = seen(tree, item.child);
+        const CachedLeaf& leaf = cached(tree, item.child);
         LaneMask changed = 0;
         if (is_sparse(rays, groups, item.child.count)) {
           test_rays(walk, leaf.record, item.child, leaf.there, rays, changed);
@@ -680,32 +680,32 @@ class PacketIntersector {
     });
   }
 
-  /// Returns a leaf as the rays' origin sees it, from those that were seen last if it is there.
-  RAYGATE_INLINE const SeenLeaf& seen(const BvhView& tree, const Bvh::Child& leaf) {
-    SeenLeaf& seen = leaves_[leaf.first * 0x9E3779B1u >> (32 - kSeenBits)];
-    if (seen.first == leaf.first) return seen;
-    seen.first = leaf.first;
+  /// Returns the leaf's entry in the cache, computed if another leaf has its place.
+  RAYGATE_INLINE const CachedLeaf& cached(const BvhView& tree, const Bvh::Child& leaf) {
+    CachedLeaf& cached = leaves_[leaf.first * 0x9E3779B1u >> (32 - kCacheBits)];
+    if (cached.first == leaf.first) return cached;
+    cached.first = leaf.first;
     Bvh::LeafRoom room;
     const float* const corners = tree.corners_of(leaf, room);
     const float origin[3] = {origin_.x, origin_.y, origin_.z};
-    bvh_.is_binary32() ? make_quad_record<false>(origin, corners, leaf.count, seen.record)
-                       : make_quad_record<true>(origin, corners, leaf.count, seen.record);
-    seen.there = (1u << leaf.count) - 1;
-    if (seen.record.unsure != 0) resolve_sides(leaf, seen);
-    return seen;
+    bvh_.is_binary32() ? make_quad_record<false>(origin, corners, leaf.count, cached.record)
+                       : make_quad_record<true>(origin, corners, leaf.count, cached.record);
+    cached.there = (1u << leaf.count) - 1;
+    if (cached.record.unsure != 0) resolve_sides(leaf, cached);
+    return cached;
   }
 
   /// Decides exactly on which side of each triangle the origin lies where float32 is not sure. No
   /// ray hits a triangle whose plane contains the origin: such triangles are removed.
-  void resolve_sides(const Bvh::Child& leaf, SeenLeaf& seen) const {
-    for (LaneMask unsure = seen.record.unsure; unsure != 0; unsure &= unsure - 1) {
+  void resolve_sides(const Bvh::Child& leaf, CachedLeaf& cached) const {
+    for (LaneMask unsure = cached.record.unsure; unsure != 0; unsure &= unsure - 1) {
       const int i = std::countr_zero(unsure);
       const int side =
           orient3d(origin_, bvh_.corners_of(leaf.first + static_cast<std::uint32_t>(i)));
       if (side == 0) {
-        seen.there &= ~(1u << i);
+        cached.there &= ~(1u << i);
       } else {
-        set_side(seen.record, i, side);
+        set_side(cached.record, i, side);
       }
     }
   }
@@ -760,7 +760,7 @@ class PacketIntersector {
         if (with_points && met == 0xFF &&
             sign_mask<code()>(walk.primitive[g] == walk.primitive[g][0]) == met) {
           const FloatLanes directions[3] = {block[0][g], block[1][g], block[2][g]};
-          if (points_.write<code()>(number, primitives[0], directions)) {
+          if (points_.write_group<code()>(number, primitives[0], directions)) {
             for (std::uint32_t lane = 0; lane < kLanes; ++lane) write_hit(lane);
             continue;
           }
@@ -781,7 +781,7 @@ class PacketIntersector {
   const RayQuery query_;
   const std::span<NearestHit> hits_;
   PointWriter points_;
-  SeenLeaf leaves_[1 << kSeenBits];  // by hash
+  CachedLeaf leaves_[1 << kCacheBits];  // by hash
 };
 
 }  // namespace

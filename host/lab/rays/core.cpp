@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "host/intersect/check_intersector.h"
 #include "host/intersect/core/core_intersector.h"
 #include "host/intersect/core/memory_image.h"
+#include "host/intersect/cpu/cpu_intersector.h"
 #include "host/intersect/intersector.h"
 #include "host/lab/lab.h"
 #include "host/lab/rays/rays.h"
@@ -40,8 +42,11 @@ void measure(const Options& options, const std::string& scene, const std::string
   for (const int latency : options.latencies) {
     const std::shared_ptr<CoreUnit> core =
         make_rtl_core({.latency = latency}, {}, {.exact = options.exact});
-    const auto count = static_cast<double>(
-        trace([&] { return std::make_unique<CoreIntersector>(bvh, image, core); }));
+    const auto count = static_cast<double>(trace([&] {
+      return std::make_unique<CheckIntersector>(bvh,
+                                                std::make_unique<CoreIntersector>(bvh, image, core),
+                                                std::make_unique<CpuIntersector>(bvh));
+    }));
     const CoreCounters counters = core->counters();
     const auto a_ray = [&](std::uint64_t of) { return static_cast<double>(of) / count; };
     const auto percent = [&](std::uint64_t clocks) {

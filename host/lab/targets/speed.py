@@ -42,11 +42,10 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
 
 PAGE = """# Rays per second next to Embree's
 
-Rays per second of raygate, whose decisions are exact, over those of Embree's fastest mode: of all modes, and of the
-robust ones. One thread, processor time; compare rows of one run. Embree3 is Debian's 3.13, Embree4 PyPI's 4.4 (embreex); -1 is single rays, -8 and -16 packets, -stream 1,024 rays. BVHs are of high build quality, and rays of one
-origin have the coherent flag. Embree also computes u, v and the normal of a hit; raygate P and an interval that holds
-t. The cpu engine uses {{ of("rays")[0].engine_vectors }} of
-{{ of("rays")[0].machine_vectors }} vectors, Embree the widest that it knows.
+Rays per second of raygate, whose decisions are exact, over those of Embree's fastest mode: of all modes, and of the robust ones. One thread,
+processor time; compare rows of one run. Embree3 is Debian's 3.13, Embree4 PyPI's 4.4 (embreex); -1 is single rays, -8 and -16 packets, -stream 1,024
+rays. BVHs are of high build quality, and rays of one origin have the coherent flag. Embree also computes u, v and the normal of a hit; raygate P and an
+interval that holds t. The cpu engine uses {{ of("rays")[0].engine_vectors }} of {{ of("rays")[0].machine_vectors }} vectors, Embree the widest that it knows.
 
 ±: the spreads of the middle halves of the runs, added.
 

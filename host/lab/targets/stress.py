@@ -8,12 +8,10 @@ import subprocess
 from host.lab.rows import grouped, of
 from host.lab.steps import LAB, Step
 
-COUNTS = ("tests", "rays", "refused", "wrong", "wrong_ties", "escapes", "double_hits",
-          "wrong_nearest", "wrong_tied_nearest", "orders", "wrong_order", "doubts")
+COUNTS = ("tests", "rays", "refused", "wrong", "wrong_ties", "escapes", "double_hits", "wrong_nearest", "wrong_tied_nearest", "orders", "wrong_order", "doubts")
 LARGEST = ("delivered_t_ulp", "delivered_point_ulp", "t_of_bound", "point_of_bound", "point_of_said")
 FAULTS = ("wrong", "escapes", "double_hits", "wrong_nearest", "wrong_tied_nearest", "wrong_order")
-# Kinds of wrong results per ray, reported separately.
-KINDS = ("escapes", "double_hits", "wrong_nearest")
+KINDS = FAULTS[1:4]  # reported separately, per ray
 
 
 def steps(part: str, given: argparse.Namespace, tests: int, *words: object) -> list[Step]:
@@ -30,8 +28,7 @@ def watertight(given: argparse.Namespace) -> Step:
 
 # Half a million tests per suite on the core's reference model, 50,000 on the simulated hardware.
 PARTS = {"all": lambda given: [*steps("all", given, 10_000_000), watertight(given)],
-         "core": lambda given: steps("core", given, 2_500_000, "--subject", "model core", "rtl core",
-                                     "model exact core", "rtl exact core")}
+         "core": lambda given: steps("core", given, 2_500_000, "--subject", "model core", "rtl core", "model exact core", "rtl exact core")}
 USUAL = ("all",)
 
 
@@ -61,8 +58,7 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
             "watertight": grouped(of(rows, "watertight"), ("test", "triangles"), "by"),
             "leaks": sum(row["escapes"] + (row["double_hits"] or 0) for row in of(rows, "watertight") if row["exact"]),
             "cases": {key: cases(mine, key) for key in ("exact", "binary64", "simulated")},
-            "kinds": [{**suite, "key": key} for suite in suites for key in KINDS
-                      if any(row[key] for row in suite["at"].values())]}
+            "kinds": [{**suite, "key": key} for suite in suites for key in KINDS if any(row[key] for row in suite["at"].values())]}
 
 
 def failures(rows: list[dict]) -> list[str]:
@@ -96,7 +92,7 @@ variants these suites. Tests in float32 and Embree get the same vertices and ray
 
 {{ saved("stress-subjects", totals, "subject", "what it is = subject_is", "cases = tests :d", "doubts, % = 100 * doubts / tests :.2f", "rays out of its range = refused :d", "delivered t, ulp = delivered_t_ulp or none :.3g",
          "delivered P, ulp = delivered_point_ulp or none :.3g", "largest t over bound = t_of_bound or none :.3f",
-         "largest P over bound = point_of_bound or none :.3f", "largest P over what the hit says = point_of_said or none :.3f") }} says what each subject is, and has the largest errors, in ulp and over their bounds.
+         "largest P over bound = point_of_bound or none :.3f", "largest P over what the hit says = point_of_said or none :.3f") }} says what each subject is, and has doubts and the largest errors, in ulp and over their bounds.
 
 {% if watertight %}
 ## Public tests of watertightness
