@@ -153,17 +153,16 @@ class Trace(unittest.TestCase):
 
 
 class Pages(unittest.TestCase):
-    def test_lines_of_readme_and_tutorial_run(self):
-        blocks = [re.findall(r"```python\n(.*?)```", (SCENES.parent / page).read_text(), re.DOTALL) for page in ("README.md", "host/docs/python.md")]
-        self.assertTrue(all(blocks))
+    def test_lines_of_the_tutorial_run(self):
+        lines = re.findall(r"```python\n(.*?)```", (SCENES.parent / "host/docs/python.md").read_text(), re.DOTALL)
+        self.assertGreater(len(lines), 2)
         before = os.getcwd()
         with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
             warnings.simplefilter("ignore", raygate.float.RoundingWarning)
             os.symlink(SCENES, os.path.join(folder, "scenes"))
             os.chdir(folder)
             try:
-                for lines in ["\n".join(block) for block in blocks]:
-                    exec(lines, {})
+                exec("\n".join(lines), {})
                 self.assertTrue(pathlib.Path("teapot.png").read_bytes().startswith(b"\x89PNG"))
             finally:
                 os.chdir(before)
