@@ -34,9 +34,9 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     """Writes OUT.v, OUT.list and OUT.il; returns the number of faults. Raises ToolFailed and MissingTool."""
     files = dict.fromkeys(file for core in cores.names() for file in cores.files(core))
     kept = " ".join(f"--blackboxed-module {module}" for module in around)
-    # Yosys writes what a module derives from its parameters as parameters, too.
+    # Yosys writes what a module derives from its parameters, and variables of its loops, as parameters, too.
     derived = [f"setparam {' '.join(f'-unset {name}' for name in names)} t:{file.stem}" for file in files if file.stem in around
-               if (names := re.findall(r"^ +localparam [^=;]*?(\w+) *=", file.read_text(), re.M))]
+               if (names := re.findall(r"\b(?:localparam [^=;]*?|genvar +)(\w+) *=", file.read_text()))]
     faults = out.with_suffix(".list")
     chosen_from = 2 * count + 20  # of the modes that Yosys chooses from three in five are of use here
     # Shifts as such: as parts of a word they begin outside of it, where Verilator reads other bits.
