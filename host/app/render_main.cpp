@@ -217,7 +217,6 @@ void run(const Options& options) {
   if (framing.has_ground) add_ground(scene, framing.up);
   report.view = framing.text;
   resolve_instances(scene, options.instances, options.scene);
-  if (core_files.paths().empty()) prepare_engine(options);
   lap.lap();
   const Bvh bvh(scene, options.threads);
   report.tree_seconds = lap.lap();

@@ -142,18 +142,15 @@ struct SpotCone {
 };
 
 /// A point light. The irradiance at distance r is intensity / r^2.
-struct PointLight {
-  glm::vec3 position{0.0f};           ///< relative to Scene::origin
+template <class Position>
+struct PointLightAt {
+  Position position{0.0f};
   glm::dvec3 intensity{0.0};          ///< radiant, scene-linear RGB; of a spot light along its axis
   std::optional<SpotCone> spot = {};  ///< none: isotropic
 };
-
-/// A point light in world coordinates, for scenes whose origin is not known yet.
-struct WorldPointLight {
-  glm::dvec3 position{0.0};
-  glm::dvec3 intensity{0.0};  ///< as PointLight::intensity
-  std::optional<SpotCone> spot = {};
-};
+using PointLight = PointLightAt<glm::vec3>;  ///< position relative to Scene::origin
+/// Position in world coordinates, for scenes whose origin is not known yet.
+using WorldPointLight = PointLightAt<glm::dvec3>;
 
 /// A directional light, infinitely far away.
 struct DirectionalLight {
