@@ -318,14 +318,11 @@ void check_serve(const OptionTable& table, const Options& options) {
 /// Throws InputError if an output would overwrite the scene or another output.
 void require_distinct_outputs(const Options& options) {
   // The next run would read a scene file beside the model.
-  std::vector<fs::path> others{options.scene, options.scene_file.obj, options.scene_file.file,
-                               fs::path(options.scene_file.obj).replace_extension(".json")};
+  const fs::path inputs[] = {options.scene, options.scene_file.obj, options.scene_file.file,
+                             fs::path(options.scene_file.obj).replace_extension(".json")};
   std::vector<fs::path> outputs = options.output.paths();
   for (const fs::path& path : options.core_files.paths()) outputs.push_back(path);
-  for (const fs::path& output : outputs) {
-    require_distinct({&output, 1}, others);
-    others.push_back(output);
-  }
+  require_distinct(outputs, inputs);
 }
 
 /// Reads the scene file that was named, or the one beside a model. Without one: the model alone.

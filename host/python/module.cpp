@@ -257,8 +257,8 @@ class PythonScene {
     });
   }
 
-  /// Returns a WindingNumbers::Number for each point, as bytes. `crossings` are those of rays in
-  /// this direction.
+  /// Returns a WindingNumbers::Number for each point, as bytes. `crossings`: how often a ray from
+  /// the point in this direction leaves triangles, less how often it enters them.
   [[nodiscard]] Bytes winding_numbers(const Vectors3& points, const Numbers& crossings,
                                       const Three& direction) const {
     const glm::dvec3 away = -glm::normalize(vector_of(direction));

@@ -54,7 +54,7 @@ class RenderThreads {
     const int wanted = std::min(context_.settings.threads, tiles_.count);
     try {
       for (int i = 0; i < wanted; ++i) {
-        threads_.emplace_back(&RenderThreads::work, this, std::move(intersector));
+        threads_.emplace_back(&RenderThreads::work, this, std::exchange(intersector, nullptr));
       }
     } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): fewer threads will do
     }

@@ -68,11 +68,9 @@ class EarClipper {
   /// Returns whether a box and a counter-clockwise triangle are separated by one of the box's axes
   /// or by an edge, on whose outer side even the box's innermost corner is.
   static bool are_separate(const Ear& triangle, const glm::dvec2& low, const glm::dvec2& high) {
-    for (int axis = 0; axis < 2; ++axis) {
-      const auto [least, most] =
-          std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
-      if (high[axis] < least || low[axis] > most) return true;
-    }
+    const auto& [a, b, c] = triangle;
+    const glm::dvec2 least = glm::min(glm::min(a, b), c), most = glm::max(glm::max(a, b), c);
+    if (high.x < least.x || high.y < least.y || low.x > most.x || low.y > most.y) return true;
     for (int i = 0; i < 3; ++i) {
       const glm::dvec2 &from = triangle[i], &to = triangle[(i + 1) % 3];
       const glm::dvec2 innermost(to.y > from.y ? low.x : high.x, to.x > from.x ? high.y : low.y);

@@ -44,17 +44,14 @@ class GltfMaterials {
     return converted_.emplace(material, converted).first->second;
   }
 
-  /// Returns whether a material has a mask or blends.
-  [[nodiscard]] bool has_opacity(int material) const {
-    const std::string mode = text_in(this->material(material), "alphaMode");
-    return mode == "MASK" || mode == "BLEND";
-  }
-
-  /// Lets the opacities of vertices multiply a material's.
-  void use_vertex_opacity(int material) {
+  /// Lets the opacities of vertices multiply a material's. Returns whether it has a mask or blends;
+  /// otherwise it is opaque and remains unchanged.
+  [[nodiscard]] bool use_vertex_opacity(int material) {
     const Converted converted = convert(material);
+    Material& to = scene_.materials[converted.number];
     sets_ = converted.texcoord_sets;
-    set_opacity(this->material(material), true, scene_.materials[converted.number]);
+    set_opacity(this->material(material), true, to);
+    return to.has_vertex_opacity;
   }
 
  private:
