@@ -27,7 +27,7 @@ class GltfMaterials {
 
   struct Converted {
     std::uint32_t number;  ///< index into Scene::materials
-    /// The sets that its textures use, the base colour's first; -1: none.
+    /// Sets of coordinates of its textures, the base colour's first; -1: none.
     std::array<int, 2> texcoord_sets;
   };
 
