@@ -339,15 +339,14 @@ class PythonScene {
 
 // Arithmetic of raygate.float by the reference model of the simulated float cores.
 
-template <class T>
-using FloatColumn = nb::ndarray<const T, nb::ndim<1>, nb::device::cpu, nb::c_contig>;
+using FloatWords = nb::ndarray<const std::uint32_t, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
 
 constexpr std::size_t kOperations = 1 << 12;  // between two checkpoints
 
 /// Returns a FloatResult for each pair of words, as bytes. Both columns have the same length, and
 /// all words fit the format; float.py checks that. `is_after`: Tininess::kAfterRounding.
-Bytes float_run(int op, const FloatColumn<std::uint32_t>& a, const FloatColumn<std::uint32_t>& b,
-                int exp_bits, int frac_bits, int rounding, bool is_after) {
+Bytes float_run(int op, const FloatWords& a, const FloatWords& b, int exp_bits, int frac_bits,
+                int rounding, bool is_after) {
   const FloatFormat format{exp_bits, frac_bits};
   const auto operation = static_cast<FloatOp>(op);
   return computed_rows<FloatResult>(a.shape(0), kOperations, [&](std::size_t i) {
@@ -378,7 +377,7 @@ ExactValue exact_value(double x) {
 }
 
 /// Returns a FloatResult for each value, as bytes.
-Bytes float_encode(const FloatColumn<double>& values, int exp_bits, int frac_bits, int rounding,
+Bytes float_encode(const Numbers& values, int exp_bits, int frac_bits, int rounding,
                    bool is_after) {
   return computed_rows<FloatResult>(values.shape(0), kOperations, [&](std::size_t i) {
     return round_exact({exp_bits, frac_bits}, exact_value(values.data()[i]), rounding_of(rounding),
