@@ -200,7 +200,7 @@ int run_guarded(const std::function<int()>& program) {
     } catch (const InputError& unusable) {
       return report_error(kUserError, unusable.what());
     } catch (const Interrupted& interrupted) {
-      return report_error(kSignalBase + interrupted.signal(), interrupted.what());
+      return report_error(kSignalBase + interrupted.signal, interrupted.what());
     } catch (const std::bad_alloc&) {
       return report_error(kUserError, kOutOfMemory);
     } catch (const std::length_error&) {  // more than any memory has

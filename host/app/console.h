@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -103,17 +102,13 @@ void note_interruptions();
 [[nodiscard]] int interruption();
 
 /// Thrown to end a run after a signal.
-class Interrupted : public std::exception {
+class Interrupted : public std::runtime_error {
  public:
   /// `outcome`: what happened to the output files, for the message.
-  Interrupted(int signal, const std::string& outcome)
-      : signal_(signal), what_("interrupted; " + outcome) {}
-  [[nodiscard]] int signal() const { return signal_; }
-  [[nodiscard]] const char* what() const noexcept override { return what_.c_str(); }
+  Interrupted(int from, const std::string& outcome)
+      : std::runtime_error("interrupted; " + outcome), signal(from) {}
 
- private:
-  int signal_;
-  std::string what_;
+  const int signal;
 };
 
 }  // namespace raygate

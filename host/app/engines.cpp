@@ -46,18 +46,13 @@ std::unique_ptr<CoreUnit> make_core(const EngineOptions& options) {
 
 }  // namespace
 
-void prepare_engine(const EngineOptions& options) {
-  if (!options.simulates() || !options.board_port.empty()) return;
-  if (options.has_core()) {
-    (void)make_core(options);
-  } else {
-    (void)make_tester(options);
-  }
-}
-
 IntersectorFactory make_intersector_factory(const EngineOptions& options, const Bvh& bvh,
                                             std::shared_ptr<const MemoryImage> image) {
   if (!image) image = make_memory_image(options, bvh);
+  // Threads would wait for the simulated model if it were built at its first use.
+  const bool builds_model = options.simulates() && options.board_port.empty();
+  if (builds_model && options.has_core()) (void)make_core(options);
+  if (builds_model && !options.has_core()) (void)make_tester(options);
   return [options, &bvh, image]() -> std::unique_ptr<Intersector> {
     auto cpu = std::make_unique<CpuIntersector>(bvh);
     if (options.engine == Engine::kCpu) return cpu;

@@ -11,12 +11,9 @@
 
 namespace raygate {
 
-/// Builds the simulated model of the engine unless it is built already, so that threads do not wait
-/// for it later. Throws InputError if it cannot be built.
-void prepare_engine(const EngineOptions& options);
-
 /// Returns a factory of intersectors, which own their simulated models. The tree must outlive both.
-/// `image`: the tree's memory image for ray cores; null: made if needed.
+/// `image`: the tree's memory image for ray cores; null: made if needed. Builds the simulated model
+/// of the engine unless it is built already. Throws InputError if it cannot be built.
 [[nodiscard]] IntersectorFactory make_intersector_factory(
     const EngineOptions& options, const Bvh& bvh,
     std::shared_ptr<const MemoryImage> image = nullptr);

@@ -1,5 +1,5 @@
-// The scene of a picture or of a table of rays, loaded as all programs and the Python module do,
-// and the camera of a picture, with the lights and the ground that go with it.
+// Loads the scene of a picture or of a table of rays, for all programs and the Python module, and
+// chooses the camera of a picture, with its default lights and ground.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -20,14 +20,14 @@ namespace raygate {
                          const EnvironmentSetting& environment = {},
                          const std::optional<glm::dvec3>& up = {});
 
-/// A camera and what goes with it.
+/// A camera with its lights and ground.
 struct Framing {
   Camera camera;
   std::optional<CameraLights> lights;  ///< in place of the scene's, which has none
   bool has_ground;   ///< whether the picture has a ground that catches shadows, see add_ground()
   glm::dvec3 up;     ///< up direction of the view, for the ground
   std::string text;  ///< command-line options for the chosen view; "" if a camera was given
-  CameraRequest request;  ///< that gives the same framing; its members that do not matter are unset
+  CameraRequest request;  ///< gives the same framing; members without effect are unset
 };
 
 /// Chooses the camera: the requested one, else the scene's, else a view of the whole scene. Scenes

@@ -25,7 +25,7 @@ std::string camel_case(const std::string& name) {
 void OptionTable::add(const std::string& names, const char* value, const std::string& help,
                       const std::string& expected, const Read& read, const Show& show,
                       unsigned places) {
-  Row row{split_at_commas(names), "", value, help, group_, expected, read, show, places, {}};
+  Row row{split_at(',', names), "", value, help, group_, expected, read, show, places, {}};
   row.name = std::ranges::find_if(row.names, [](const auto& n) { return n[1] == '-'; })->substr(2);
   if (const std::size_t at = help.find("{}"); at != help.npos) row.help.replace(at, 2, show());
   rows_.push_back(std::move(row));
@@ -159,12 +159,12 @@ std::vector<std::pair<std::string, std::string>> OptionTable::values(OptionPlace
   return found;
 }
 
-std::vector<std::string> split_at_commas(const std::string& text) {
+std::vector<std::string> split_at(char separator, const std::string& text) {
   std::vector<std::string> words;
   for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', start), text.size());
-    words.push_back(text.substr(start, comma - start));
-    start = comma + 1;
+    const std::size_t end = std::min(text.find(separator, start), text.size());
+    words.push_back(text.substr(start, end - start));
+    start = end + 1;
   }
   return words;
 }

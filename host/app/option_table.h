@@ -37,13 +37,13 @@ template <typename T>
 }
 
 /// Splits "a,b" into words, which may be empty; returns at least one.
-[[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
+[[nodiscard]] std::vector<std::string> split_at(char separator, const std::string& text);
 
 /// Parses "0,0,10,20"; returns no numbers if a word is not a number.
 template <typename T>
-[[nodiscard]] std::vector<T> parse_list(const std::string& text) {
+[[nodiscard]] std::vector<T> parse_list(const std::string& text, char separator = ',') {
   std::vector<T> values;
-  for (const std::string& word : split_at_commas(text)) {
+  for (const std::string& word : split_at(separator, text)) {
     const std::optional<T> value = parse_number<T>(word);
     if (!value) return {};
     values.push_back(*value);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <thread>
 
 #include "host/base/input_error.h"
@@ -65,12 +64,10 @@ std::string size_text(int width, int height) {
 }
 
 bool read_size(const std::string& text, RenderSettings& settings) {
-  const std::size_t x = std::min(text.find('x'), text.size());
-  const auto width = parse_number<int>(std::string_view(text).substr(0, x));
-  const auto height =
-      parse_number<int>(std::string_view(text).substr(std::min(x + 1, text.size())));
-  settings.width = width.value_or(0);
-  settings.height = height.value_or(0);
+  const std::vector<int> sides = parse_list<int>(text, 'x');
+  if (sides.size() != 2) return false;
+  settings.width = sides[0];
+  settings.height = sides[1];
   return kSideRange.contains(settings.width) && kSideRange.contains(settings.height);
 }
 
@@ -321,14 +318,11 @@ void check_serve(const OptionTable& table, const Options& options) {
 /// Throws InputError if an output would overwrite the scene or another output.
 void require_distinct_outputs(const Options& options) {
   // The next run would read a scene file beside the model.
-  std::vector<fs::path> others{options.scene, options.scene_file.obj, options.scene_file.file,
-                               fs::path(options.scene_file.obj).replace_extension(".json")};
+  const fs::path inputs[] = {options.scene, options.scene_file.obj, options.scene_file.file,
+                             fs::path(options.scene_file.obj).replace_extension(".json")};
   std::vector<fs::path> outputs = options.output.paths();
   for (const fs::path& path : options.core_files.paths()) outputs.push_back(path);
-  for (const fs::path& output : outputs) {
-    require_distinct({&output, 1}, others);
-    others.push_back(output);
-  }
+  require_distinct(outputs, inputs);
 }
 
 /// Reads the scene file that was named, or the one beside a model. Without one: the model alone.
@@ -434,7 +428,7 @@ void add_picture_options(OptionTable& table, OutputOptions& options) {
             "some of " + listed(channels, ", ") + " with commas between",
             [&options, channels](const std::string& text) {
               options.channels = {};
-              for (const std::string& word : split_at_commas(text)) {
+              for (const std::string& word : split_at(',', text)) {
                 if (std::ranges::count(channels, word) == 0) return false;
                 for (const auto& [name, member] : kExtraChannels) {
                   if (word == name || word == "all") options.channels.*member = true;
@@ -566,9 +560,13 @@ void name_outputs(const OptionTable& table, const fs::path& scene, OutputOptions
 }
 
 void check_light_options(const OptionTable& table, bool has_environment, RenderSettings& settings) {
-  constexpr int kMostSamples = 1024;
+  constexpr int kPathSamples = 16, kMostSamples = 1024;
   const bool has_samples = !table.given("spp").empty();
-  settings.choose_integrator(has_environment, !table.given("integrator").empty(), has_samples);
+  // Whitted neither shadows nor samples the environment.
+  if (has_environment && table.given("integrator").empty()) {
+    settings.integrator = IntegratorKind::kPath;
+    if (!has_samples) settings.samples = kPathSamples;
+  }
   if (settings.error > 0.0) {
     if (!has_samples) settings.samples = kMostSamples;
     if (settings.samples <= kMinAdaptiveSamples) {
@@ -595,7 +593,8 @@ Options parse_options(const std::vector<std::string>& words) {
   return with_values(options, std::move(given));
 }
 
-Options with_values(const Options& scene, std::vector<OptionValue> given) {
+Options with_values(const Options& scene, std::vector<OptionValue> given,
+                    const std::vector<OptionValue>& requested) {
   Options options;
   options.scene = scene.scene;
   options.scene_file = scene.scene_file;
@@ -603,6 +602,8 @@ Options with_values(const Options& scene, std::vector<OptionValue> given) {
   options.environment = options.scene_file.environment;
   OptionTable table;
   add_render_options(table, options);
+  for (const OptionValue& value : requested) table.require(value, kInPage);
+  given.insert(given.end(), requested.begin(), requested.end());
   table.read(given);
   options.given = std::move(given);
   RenderSettings& render = options.render;
@@ -629,13 +630,6 @@ Options with_values(const Options& scene, std::vector<OptionValue> given) {
   render.exposure = options.output.display.exposure;
   render.channels = options.output.needed_channels();
   return options;
-}
-
-void require_page_option(const OptionValue& value) {
-  Options options;
-  OptionTable table;
-  add_render_options(table, options);
-  table.require(value, kInPage);
 }
 
 std::vector<std::pair<std::string, std::string>> option_values(Options options,

@@ -133,11 +133,10 @@ void check_light_options(const OptionTable& table, bool has_environment, RenderS
 /// overrides. Throws InputError, and Information for --help and --version.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
-/// Returns the options of a scene, whose file was read, with other values given. Throws InputError.
-[[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given);
-
-/// Throws InputError unless requests to --serve may have this option.
-void require_page_option(const OptionValue& value);
+/// Returns the options of a scene, whose file was read, with other values: `given` and then those
+/// of a request to --serve, which must be options at kInPage. Throws InputError.
+[[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given,
+                                  const std::vector<OptionValue>& requested = {});
 
 /// Name/value pairs of the options shown at `place`.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> option_values(Options options,

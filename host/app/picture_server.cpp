@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -14,7 +13,6 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -42,18 +40,12 @@ struct Request {
   std::vector<OptionValue> parameters{};
 
   explicit Request(mg_connection* from) : connection(from) {
-    std::istringstream words(info->query_string == nullptr ? "" : info->query_string);
-    for (std::string word; std::getline(words, word, '&');) {
-      const auto [name, text] = split_at_equals(word);
-      parameters.push_back({decoded(name), decoded(text)});
+    std::string query = info->query_string == nullptr ? "" : info->query_string;
+    mg_header fields[MG_MAX_HEADERS];
+    const int count = mg_split_form_urlencoded(query.data(), fields, MG_MAX_HEADERS);
+    for (int i = 0; i < count; ++i) {
+      parameters.push_back({fields[i].name, fields[i].value == nullptr ? "" : fields[i].value});
     }
-  }
-  static std::string decoded(const std::string& text) {
-    std::string result(text.size() + 1, '\0');
-    const int size = mg_url_decode(text.data(), static_cast<int>(text.size()), result.data(),
-                                   static_cast<int>(result.size()), 1);
-    result.resize(static_cast<std::size_t>(std::max(0, size)));
-    return result;
   }
   [[nodiscard]] std::string header(const char* name) const {
     const char* const text = mg_get_header(connection, name);
@@ -200,13 +192,9 @@ class PictureServer {
       if (value.name == "camera" || value.name == "view") replaced.insert({"camera", "view"});
     }
     erase(given, replaced);
-    for (const OptionValue& value : request.parameters) {
-      require_page_option(value);
-      given.push_back(value);
-    }
     // The default depends on the camera, but the scene is built.
     given.push_back({"ground", scene_.has_ground ? "on" : "off"});
-    Options options = with_values(options_, std::move(given));
+    Options options = with_values(options_, std::move(given), request.parameters);
     if (options.has_core() && scene_.prepared.bvh.has_instances()) {
       throw InputError("--unit core: expected --instances write with --serve");
     }
@@ -236,7 +224,6 @@ class PictureServer {
       pollfd end{.fd = socket, .events = POLLRDHUP, .revents = 0};
       return interruption() == 0 && ::poll(&end, 1, 0) == 0;
     };
-    prepare_engine(options);
     const Bvh& bvh = scene_.prepared.bvh;
     if (!image_) image_ = make_memory_image(options, bvh);
     RenderStats stats;

@@ -46,14 +46,9 @@ ExrMetadata make_metadata(const Options& options, const Framing& framing, const 
   const Camera& camera = framing.camera;
   const RenderSettings& render = options.render;
   const glm::dvec3 eye = scene.origin + glm::dvec3(camera.eye());
-  glm::mat4 world_to_camera(1.0f);
-  const glm::dvec3 axes[] = {camera.right(), camera.up(), camera.forward()};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      world_to_camera[column][row] = static_cast<float>(axes[row][column]);
-    }
-    world_to_camera[3][row] = static_cast<float>(-glm::dot(axes[row], eye));
-  }
+  const glm::dmat3 turn = glm::transpose(glm::dmat3(camera.right(), camera.up(), camera.forward()));
+  glm::mat4 world_to_camera{glm::mat3(turn)};
+  world_to_camera[3] = glm::vec4(-(turn * eye), 1.0f);
   Options same = options;
   same.camera = framing.request;
   const double height = 2.0 * camera.half_height();
@@ -178,7 +173,7 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
   return film;
 }
 
-/// Renders what the options ask for, or serves it. Prints the summary on standard output, or on
+/// Renders a picture, or serves the page of --serve. Prints the summary on standard output, or on
 /// standard error if an output goes there. No output file has changed if it throws, except for
 /// Interrupted, before which it writes the unfinished pictures.
 void run(const Options& options) {
@@ -217,7 +212,6 @@ void run(const Options& options) {
   if (framing.has_ground) add_ground(scene, framing.up);
   report.view = framing.text;
   resolve_instances(scene, options.instances, options.scene);
-  if (core_files.paths().empty()) prepare_engine(options);
   lap.lap();
   const Bvh bvh(scene, options.threads);
   report.tree_seconds = lap.lap();

@@ -99,8 +99,8 @@ void trace_rays(const TraceOptions& options) {
        .vertices = options.engine.rounds_vertices ? Vertices::kBinary32 : Vertices::kBinary64});
   resolve_instances(scene, options.engine.instances, options.scene);
   print_warnings(scene.warnings, false);
-  prepare_engine(options.engine);
   const Bvh bvh(scene, options.engine.threads);
+  const IntersectorFactory make_intersector = make_intersector_factory(options.engine, bvh);
   if (has_file) {
     std::vector<std::filesystem::path> inputs = scene.files;
     inputs.insert(inputs.end(), {options.scene, options.rays});
@@ -125,9 +125,9 @@ void trace_rays(const TraceOptions& options) {
   };
   write(answers.header());
   Stopwatch stopwatch;
-  const TraceCounts counts = trace(
-      [&](std::size_t most, RayTable& block) { return rays.read(most, block); }, options.hits, bvh,
-      answers, make_intersector_factory(options.engine, bvh), options.engine.threads, write);
+  const TraceCounts counts =
+      trace([&](std::size_t most, RayTable& block) { return rays.read(most, block); }, options.hits,
+            bvh, answers, make_intersector, options.engine.threads, write);
   handle_interruptions(SIG_IGN);
   if (file) file->commit();
   const double seconds = stopwatch.lap();
@@ -165,7 +165,7 @@ int run(const std::vector<std::string>& words) {
       table.fail_value(name, "with --engine rtl, model or check");
     }
   }
-  const auto names = columns.empty() ? std::vector<std::string>() : split_at_commas(columns);
+  const auto names = columns.empty() ? std::vector<std::string>() : split_at(',', columns);
   options.columns = columns_of(names, options.hits, "--");
   if (options.hits == Hits::kAll && options.engine.engine != Engine::kCpu) {
     table.fail_value("engine", "cpu with --hits all");  // units return nearest hits only

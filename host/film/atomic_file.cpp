@@ -9,6 +9,7 @@
 #include <system_error>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "host/base/input_error.h"
 
@@ -149,14 +150,16 @@ bool is_standard_output(const fs::path& file) {
 
 void require_distinct(std::span<const fs::path> outputs, std::span<const fs::path> inputs) {
   std::error_code ignored;  // such paths are refused when they are read or written
+  std::vector<fs::path> others(inputs.begin(), inputs.end());
   for (const fs::path& output : outputs) {
     const fs::path target = target_of(output, ignored);
-    for (const fs::path& input : inputs) {
-      if (fs::equivalent(output, input, ignored) ||
-          (!target.empty() && target == target_of(input, ignored))) {
-        throw InputError(output.string() + ": would overwrite " + input.string());
+    for (const fs::path& other : others) {
+      if (fs::equivalent(output, other, ignored) ||
+          (!target.empty() && target == target_of(other, ignored))) {
+        throw InputError(output.string() + ": would overwrite " + other.string());
       }
     }
+    others.push_back(output);
   }
 }
 

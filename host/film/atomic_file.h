@@ -52,8 +52,8 @@ class AtomicFile {
   int descriptor_ = -1;                ///< -1: closed
 };
 
-/// Throws InputError if one of `outputs` is, or will be, the same file as one of `inputs`, under
-/// any name: "a.png: would overwrite scene.mtl".
+/// Throws InputError if one of `outputs` is, or will be, the same file as one of `inputs` or
+/// another output, under any name: "a.png: would overwrite scene.mtl".
 void require_distinct(std::span<const std::filesystem::path> outputs,
                       std::span<const std::filesystem::path> inputs);
 

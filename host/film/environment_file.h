@@ -9,7 +9,7 @@
 namespace raygate {
 
 /// Reads a Radiance picture with 32-bit RGBE pixels in standard orientation (Ward, "Real pixels",
-/// 1991): flat, or run-length encoded by component; not in the runs of whole pixels of before 1991.
+/// 1991): flat, or run-length encoded by component. The older runs of whole pixels are not read.
 /// EXPOSURE lines are undone. Throws InputError if the file cannot be read, is not such a picture,
 /// is damaged, or has more than 2^26 pixels.
 [[nodiscard]] EnvironmentMap read_hdr(const std::filesystem::path& file);

@@ -160,9 +160,7 @@ auto with_file(const std::filesystem::path& path, const Read& read) {
   } catch (const std::exception& error) {
     // The library's messages may have several lines and repeat the file name.
     std::string what = error.what();
-    for (char& c : what) {
-      if (c == '\n') c = ' ';
-    }
+    std::ranges::replace(what, '\n', ' ');
     throw InputError(path.string() + ": damaged: " + what);
   }
 }

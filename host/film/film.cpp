@@ -13,7 +13,7 @@ Film make_film(int width, int height, const PixelRect& window, const ExtraChanne
   film.height = height;
   film.window = window;
   film.keeps_sums = extra.sums;
-  const std::size_t pixels = std::size_t(window.width()) * std::size_t(window.height());
+  const std::size_t pixels = window.pixels();
   film.color.assign(pixels, glm::vec4(0.0f));
   film.depth.assign(pixels, std::numeric_limits<float>::infinity());
   film.normal.assign(pixels, glm::vec3(0.0f));
@@ -63,15 +63,10 @@ std::vector<Channel> channels_of(const Film& film) {
 }
 
 double value_at(const Channel& channel, std::size_t index) {
+  std::uint32_t word = 0;
   const char* const at = static_cast<const char*>(channel.first) + index * channel.stride;
-  if (channel.type == Channel::Type::kUint) {
-    std::uint32_t number = 0;
-    std::memcpy(&number, at, sizeof number);
-    return number;
-  }
-  float number = 0.0f;
-  std::memcpy(&number, at, sizeof number);
-  return number;
+  std::memcpy(&word, at, sizeof word);
+  return channel.type == Channel::Type::kUint ? word : double{std::bit_cast<float>(word)};
 }
 
 void copy_region(const Film& from, const PixelRect& rect, Film& to) {

@@ -98,6 +98,11 @@ struct PixelRect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   [[nodiscard]] int width() const { return x1 - x0; }
   [[nodiscard]] int height() const { return y1 - y0; }
+  [[nodiscard]] std::size_t pixels() const { return std::size_t(width()) * std::size_t(height()); }
+  /// Returns the index of a pixel in an array of all pixels, row by row from the top.
+  [[nodiscard]] std::size_t index_of(int x, int y) const {
+    return std::size_t(y - y0) * std::size_t(width()) + std::size_t(x - x0);
+  }
   friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
@@ -132,7 +137,7 @@ struct ExtraChannels {
 ///
 /// Arrays have window.width() * window.height() elements, row-major from the top; optional ones may
 /// be empty. With several samples per pixel, `color` and `albedo` are the filtered mean, `tests`
-/// and `doubts` the sum, and the others those of the first sample.
+/// and `doubts` the sum, and the others are values of the first sample.
 struct Film {
   int width = 0, height = 0;
   PixelRect window;
@@ -153,9 +158,7 @@ struct Film {
   bool keeps_sums = false;
 
   /// Returns the array index of a pixel of the window.
-  [[nodiscard]] std::size_t index_of(int x, int y) const {
-    return std::size_t(y - window.y0) * std::size_t(window.width()) + std::size_t(x - window.x0);
-  }
+  [[nodiscard]] std::size_t index_of(int x, int y) const { return window.index_of(x, y); }
 };
 
 /// An array of a film and its name in files: "N" with the parts "XYZ" has channels N.X, N.Y, N.Z.

@@ -124,8 +124,7 @@ FilmFile merge(std::vector<NamedFilm> parts) {
               std::max(window.y1, w.y1)};
     all.end = std::max(all.end, samples_of(file.metadata).end);
   }
-  std::vector<int> ends(std::size_t(window.width()) * std::size_t(window.height()),
-                        all.first);  // of each pixel's samples so far
+  std::vector<int> ends(window.pixels(), all.first);  // of each pixel's samples so far
   FilmFile whole{{}, parts.front().second.metadata};
   Film& film = whole.film;
   if (like.color.size() == ends.size()) {  // the first part has all pixels: the others add to it

@@ -82,7 +82,7 @@ struct Tracer::Tree {
     return hits;
   }
 
-  Scene scene;  // what the BVH refers to
+  Scene scene;  // referenced by the BVH
   Bvh bvh;
 };
 

@@ -121,6 +121,21 @@ Bytes bytes_of(const std::shared_ptr<const void>& owner, const void* data, std::
   return Bytes(array_of<std::uint8_t>(owner, data, {size}));
 }
 
+/// Returns compute(0), compute(1) and so on, `count` rows, computed without Python's lock. Between
+/// two checkpoints are `interval` rows.
+template <class Row, class Compute>
+Bytes computed_rows(std::size_t count, std::size_t interval, const Compute& compute) {
+  const auto rows = std::make_shared<std::vector<Row>>(count);
+  {
+    const nb::gil_scoped_release release;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i % interval == 0) checkpoint();
+      (*rows)[i] = compute(i);
+    }
+  }
+  return bytes_of(rows, rows->data(), count * sizeof(Row));
+}
+
 /// Returns the result of `encode`, which runs without Python's lock.
 template <class Encode>
 nb::bytes python_bytes(const Encode& encode) {
@@ -235,34 +250,22 @@ class PythonScene {
       std::int64_t triangle;
       double distance, x, y, z;
     };
-    const auto rows = std::make_shared<std::vector<Row>>(points.shape(0));
-    {
-      const nb::gil_scoped_release release;
-      for (std::size_t i = 0; i < rows->size(); ++i) {
-        checkpoint();
-        const ClosestPoint found = closest_point(*bvh_, vector_at(points, i) - scene_.origin);
-        const glm::dvec3 at = found.point + scene_.origin;
-        (*rows)[i] = {bvh_->triangle_of(found.primitive), found.distance, at.x, at.y, at.z};
-      }
-    }
-    return bytes_of(rows, rows->data(), rows->size() * sizeof(Row));
+    return computed_rows<Row>(points.shape(0), 1, [&](std::size_t i) -> Row {
+      const ClosestPoint found = closest_point(*bvh_, vector_at(points, i) - scene_.origin);
+      const glm::dvec3 at = found.point + scene_.origin;
+      return {bvh_->triangle_of(found.primitive), found.distance, at.x, at.y, at.z};
+    });
   }
 
-  /// Returns a WindingNumbers::Number for each point, as bytes. `crossings` are those of rays in
-  /// this direction.
+  /// Returns a WindingNumbers::Number for each point, as bytes. `crossings`: how often a ray from
+  /// the point in this direction leaves triangles, less how often it enters them.
   [[nodiscard]] Bytes winding_numbers(const Vectors3& points, const Numbers& crossings,
                                       const Three& direction) const {
-    const auto rows = std::make_shared<std::vector<WindingNumbers::Number>>(points.shape(0));
-    {
-      const nb::gil_scoped_release release;
+    const glm::dvec3 away = -glm::normalize(vector_of(direction));
+    return computed_rows<WindingNumbers::Number>(points.shape(0), 1, [&](std::size_t i) {
       std::call_once(has_winding_, [&] { winding_.emplace(scene_, *bvh_); });
-      const glm::dvec3 away = -glm::normalize(vector_of(direction));
-      for (std::size_t i = 0; i < rows->size(); ++i) {
-        checkpoint();
-        (*rows)[i] = winding_->at(vector_at(points, i), crossings(i), away);
-      }
-    }
-    return bytes_of(rows, rows->data(), rows->size() * sizeof(WindingNumbers::Number));
+      return winding_->at(vector_at(points, i), crossings(i), away);
+    });
   }
 
   /// Returns the film's channels by name, and the film.
@@ -336,46 +339,22 @@ class PythonScene {
 
 // Arithmetic of raygate.float by the reference model of the simulated float cores.
 
-template <class T>
-using FloatColumn = nb::ndarray<const T, nb::ndim<1>, nb::device::cpu, nb::c_contig>;
+using FloatWords = nb::ndarray<const std::uint32_t, nb::shape<-1>, nb::device::cpu, nb::c_contig>;
 
-template <class T>
-using Owned = nb::ndarray<nb::numpy, T, nb::ndim<1>>;
-using Columns = std::pair<Owned<std::uint32_t>, Owned<std::uint8_t>>;
+constexpr std::size_t kOperations = 1 << 12;  // between two checkpoints
 
-/// Returns the bits and the flags of compute(0), compute(1) and so on.
-template <class Compute>
-Columns float_columns(std::size_t count, const Compute& compute) {
-  constexpr std::size_t kCheckpointOperations = 1 << 12;
-  const auto bits = std::make_shared<std::vector<std::uint32_t>>(count);
-  const auto flags = std::make_shared<std::vector<std::uint8_t>>(count);
-  {
-    const nb::gil_scoped_release release;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i % kCheckpointOperations == 0) checkpoint();
-      const FloatResult result = compute(i);
-      (*bits)[i] = result.bits;
-      (*flags)[i] = result.flags;
-    }
-  }
-  return {Owned<std::uint32_t>(array_of<std::uint32_t>(bits, bits->data(), {count})),
-          Owned<std::uint8_t>(array_of<std::uint8_t>(flags, flags->data(), {count}))};
-}
-
-Tininess tininess(bool before) {
-  return before ? Tininess::kBeforeRounding : Tininess::kAfterRounding;
-}
-
-/// Both columns have the same length, and all words fit the format; float.py checks that.
-Columns float_run(int op, const FloatColumn<std::uint32_t>& a, const FloatColumn<std::uint32_t>& b,
-                  int exp_bits, int frac_bits, int rounding, bool before) {
+/// Returns a FloatResult for each pair of words, as bytes. Both columns have the same length, and
+/// all words fit the format; float.py checks that. `is_after`: Tininess::kAfterRounding.
+Bytes float_run(int op, const FloatWords& a, const FloatWords& b, int exp_bits, int frac_bits,
+                int rounding, bool is_after) {
   const FloatFormat format{exp_bits, frac_bits};
   const auto operation = static_cast<FloatOp>(op);
-  return float_columns(a.shape(0), [&](std::size_t i) {
+  return computed_rows<FloatResult>(a.shape(0), kOperations, [&](std::size_t i) {
     const std::uint32_t x = a.data()[i], y = b.data()[i];
-    return is_comparison(operation) ? oracle_compare(format, operation, x, y)
-                                    : round_exact(format, exact_result(format, operation, x, y),
-                                                  rounding_of(rounding), tininess(before));
+    return is_comparison(operation)
+               ? oracle_compare(format, operation, x, y)
+               : round_exact(format, exact_result(format, operation, x, y), rounding_of(rounding),
+                             static_cast<Tininess>(is_after));
   });
 }
 
@@ -397,11 +376,12 @@ ExactValue exact_value(double x) {
   return value;
 }
 
-Columns float_encode(const FloatColumn<double>& values, int exp_bits, int frac_bits, int rounding,
-                     bool before) {
-  return float_columns(values.shape(0), [&](std::size_t i) {
+/// Returns a FloatResult for each value, as bytes.
+Bytes float_encode(const Numbers& values, int exp_bits, int frac_bits, int rounding,
+                   bool is_after) {
+  return computed_rows<FloatResult>(values.shape(0), kOperations, [&](std::size_t i) {
     return round_exact({exp_bits, frac_bits}, exact_value(values.data()[i]), rounding_of(rounding),
-                       tininess(before));
+                       static_cast<Tininess>(is_after));
   });
 }
 

@@ -21,7 +21,7 @@ class WindingNumbers {
     double value, error;  ///< `error` bounds that of `value`
   };
 
-  /// The references must outlive this object. Vertices with the same coordinates are one.
+  /// The references must outlive this object. Merges vertices with equal coordinates.
   WindingNumbers(const Scene& scene, const Bvh& bvh) : bvh_(bvh), origin_(scene.origin) {
     for_each_face(scene, [&](const Corners& t, const Triangle&) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -80,7 +80,7 @@ class WindingNumbers {
 
   const Bvh& bvh_;
   glm::dvec3 origin_;
-  std::map<Ends, int> open_edges_;  // how much more often triangles pass them than back
+  std::map<Ends, int> open_edges_;  // by ends: triangles along the edge, less those against it
 };
 
 }  // namespace raygate

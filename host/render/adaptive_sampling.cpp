@@ -87,8 +87,7 @@ std::vector<PixelSamples> samples_to_trace(const RenderSettings& settings, const
         if (first >= end) return;
         const int last =
             std::max(end, std::min({first + ahead, next_error_check(first), settings.samples}));
-        const std::size_t row = std::size_t(pixel.y0 - tile.y0) * std::size_t(tile.width());
-        const std::size_t place = row + std::size_t(pixel.x0 - tile.x0);
+        const std::size_t place = tile.index_of(pixel.x0, pixel.y0);
         pixels.push_back({pixel.x0, pixel.y0, index, place, first, last});
       });
     });

@@ -101,48 +101,44 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile,
     }
     return;
   }
-  const int columns = tile.width() + 1 + 2 * beyond, rows = tile.height() + 1 + 2 * beyond;
+  const PixelRect corners{tile.x0 - beyond, tile.y0 - beyond, tile.x1 + 1 + beyond,
+                          tile.y1 + 1 + beyond};
   batch_.clear();
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
-      add(context_.camera.ray(double(tile.x0 - beyond + x) / film.width,
-                              double(tile.y0 - beyond + y) / film.height, {}),
-          all_);
+  for (int y = corners.y0; y < corners.y1; ++y) {
+    for (int x = corners.x0; x < corners.x1; ++x) {
+      add(context_.camera.ray(double(x) / film.width, double(y) / film.height, {}), all_);
     }
   }
   trace();
   for (std::size_t i = 0; i < ray_work_.size(); ++i) {  // assigns work to the nearest pixel
-    const int x = static_cast<int>(i % std::size_t(columns)) - beyond;
-    const int y = static_cast<int>(i / std::size_t(columns)) - beyond;
-    const int column = std::clamp(x, 0, tile.width() - 1);
-    const int row = std::clamp(y, 0, tile.height() - 1);
-    work[std::size_t(row) * std::size_t(tile.width()) + std::size_t(column)] += ray_work_[i];
+    const int x = corners.x0 + static_cast<int>(i % std::size_t(corners.width()));
+    const int y = corners.y0 + static_cast<int>(i / std::size_t(corners.width()));
+    work[tile.index_of(std::clamp(x, tile.x0, tile.x1 - 1), std::clamp(y, tile.y0, tile.y1 - 1))] +=
+        ray_work_[i];
   }
-  std::vector<HistoryMask> seen(std::size_t(columns) * std::size_t(rows));  // by corner
+  std::vector<HistoryMask> seen(corners.pixels());  // by corner
   for (std::size_t i = 0; i < seen.size(); ++i) {
     for_each(all_, [&](std::uint32_t history) {
       if (largest(radiance(i, history)) >= least_) seen[i] |= 1u << history;
     });
   }
-  for (int y = 0; y < tile.height(); ++y) {
-    for (int x = 0; x < tile.width(); ++x) {
-      const auto corner = [&](int dx, int dy) {
-        return std::size_t(y + dy) * std::size_t(columns) + std::size_t(x + dx);
-      };
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
       const auto for_corners = [&](const auto& visit) {
-        for (int dy = 0; dy <= 1 + 2 * beyond; ++dy) {
-          for (int dx = 0; dx <= 1 + 2 * beyond; ++dx) visit(corner(dx, dy));
+        for (int row = y - beyond; row <= y + 1 + beyond; ++row) {
+          const std::size_t first = corners.index_of(x - beyond, row);
+          for (int i = 0; i < 2 + 2 * beyond; ++i) visit(first + std::size_t(i));
         }
       };
       HistoryMask near = 0, different = 0;
       for_corners([&](std::size_t at) { near |= seen[at]; });
       for_each(near, [&](std::uint32_t history) {
-        const glm::vec3& first = radiance(corner(0, 0), history);
+        const glm::vec3& first = radiance(corners.index_of(x - beyond, y - beyond), history);
         for_corners([&](std::size_t at) {
           if (radiance(at, history) != first) different |= 1u << history;
         });
       });
-      histories[film.index_of(tile.x0 + x, tile.y0 + y)] = different;
+      histories[film.index_of(x, y)] = different;
     }
   }
 }

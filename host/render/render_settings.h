@@ -27,15 +27,6 @@ struct RenderSettings : IntegratorSettings {
   ReconstructionFilter filter = ReconstructionFilter::kBlackmanHarris;  ///< with several samples
   std::uint64_t seed = 0;    ///< seed of all random numbers
   ExtraChannels channels{};  ///< in addition to colour, depth, normal and primitive
-
-  /// Chooses defaults: scenes with an environment map use the path tracer, because Whitted neither
-  /// shadows nor samples the environment, with kPathSamples samples.
-  void choose_integrator(bool has_environment, bool integrator_is_given, bool samples_are_given) {
-    if (!has_environment || integrator_is_given) return;
-    integrator = IntegratorKind::kPath;
-    if (!samples_are_given) samples = kPathSamples;
-  }
-  static constexpr int kPathSamples = 16;
 };
 
 /// Callbacks of a render, called on the thread that called render(). Empty ones are skipped.

@@ -30,12 +30,10 @@ namespace {
 class RenderThreads {
  public:
   RenderThreads(const RenderContext& context, const Tiles& tiles,
-                std::unique_ptr<Intersector> first_intersector,
                 const IntersectorFactory& make_intersector, const RenderMonitor& monitor,
                 Film& film, std::span<HistoryMask> emitter_histories, RenderStats& stats)
       : context_(context),
         tiles_(tiles),
-        first_intersector_(std::move(first_intersector)),
         make_intersector_(make_intersector),
         monitor_(monitor),
         emitter_histories_(emitter_histories),
@@ -49,19 +47,22 @@ class RenderThreads {
     threads_.clear();
   }
 
-  /// Returns when the image is complete or the monitor has stopped the render.
-  void run() {
+  /// Returns when the image is complete or the monitor has stopped the render. The first thread
+  /// uses `intersector`, the others make their own.
+  void run(std::unique_ptr<Intersector> intersector) {
     report();
     const int wanted = std::min(context_.settings.threads, tiles_.count);
     try {
-      for (int i = 0; i < wanted; ++i) threads_.emplace_back([this] { work(); });
+      for (int i = 0; i < wanted; ++i) {
+        threads_.emplace_back(&RenderThreads::work, this, std::exchange(intersector, nullptr));
+      }
     } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): fewer threads will do
     }
     const auto threads = static_cast<int>(threads_.size());
     stats_.missing_threads = wanted - std::max(1, threads);
     if (threads == 0) {
       is_alone_ = true;
-      work();
+      work(nullptr);
     }
     for (std::unique_lock lock(mutex_); gone_ < threads;) {
       changed_.wait_for(lock, kReport);
@@ -82,9 +83,9 @@ class RenderThreads {
   static constexpr std::chrono::milliseconds kGrace{500};  // for threads to stop
 
   /// Renders tiles until there are no more. Runs on each thread.
-  void work() {
+  void work(std::unique_ptr<Intersector> intersector) {
     try {
-      const auto intersector = take_intersector();
+      if (!intersector) intersector = make_intersector_();
       TileRenderer renderer(context_, *intersector, film_, emitter_histories_);
       while (const auto step = next()) {
         if (!render(renderer, *step)) break;
@@ -97,14 +98,6 @@ class RenderThreads {
     const std::scoped_lock lock(mutex_);
     ++gone_;
     changed_.notify_all();
-  }
-
-  [[nodiscard]] std::unique_ptr<Intersector> take_intersector() {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (first_intersector_) return std::move(first_intersector_);
-    }
-    return make_intersector_();
   }
 
   /// Returns the next step, or nullopt if there is none left or the threads must stop.
@@ -205,7 +198,6 @@ class RenderThreads {
 
   const RenderContext& context_;
   const Tiles& tiles_;
-  std::unique_ptr<Intersector> first_intersector_;  // for the first thread
   const IntersectorFactory& make_intersector_;
   const RenderMonitor& monitor_;
   std::span<HistoryMask> emitter_histories_;
@@ -283,9 +275,8 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   }
   const RenderContext context{prepared, camera, settings, lights,
                               light_paths ? &*light_paths : nullptr};
-  RenderThreads(context, tiles, std::move(first_intersector), make_intersector, monitor, film,
-                emitter_histories, stats)
-      .run();
+  RenderThreads(context, tiles, make_intersector, monitor, film, emitter_histories, stats)
+      .run(std::move(first_intersector));
   if (!stats.cancelled) film.keeps_sums = settings.channels.sums;
   if (settings.error > 0.0) {
     for (const std::uint32_t samples : film.sums.samples) {

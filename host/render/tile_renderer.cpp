@@ -10,9 +10,7 @@
 namespace raygate {
 
 SplatLayer::SplatLayer(const PixelRect& window, ReconstructionFilter filter)
-    : window_(window),
-      filter_(filter),
-      sums_(std::size_t(window.width()) * std::size_t(window.height())) {}
+    : window_(window), filter_(filter), sums_(window.pixels()) {}
 
 void SplatLayer::add(std::span<const Splat> splats) {
   const double radius = filter_radius(filter_);
@@ -29,8 +27,7 @@ void SplatLayer::add(std::span<const Splat> splats) {
     for (int y = y0; y < y1; ++y) {
       for (int x = x0; x < x1; ++x) {
         const double weight = filter_density(filter_, splat.place - glm::dvec2(x + 0.5, y + 0.5));
-        const std::size_t row = std::size_t(y - window_.y0) * std::size_t(window_.width());
-        auto& sum = sums_[row + std::size_t(x - window_.x0)];
+        auto& sum = sums_[window_.index_of(x, y)];
         for (int k = 0; k < 3; ++k) sum[k].add(weight * splat.light[k]);
       }
     }
@@ -89,7 +86,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   pixels_ = samples_to_trace(context_.settings, film_, tile, end);
   if (pixels_.empty()) return true;
   tile_ = tile;
-  pixel_work_.assign(is_counting_ ? std::size_t(tile.width()) * std::size_t(tile.height()) : 0, {});
+  pixel_work_.assign(is_counting_ ? tile.pixels() : 0, {});
   const RenderSettings& settings = context_.settings;
   const double margin = 1.0 + (settings.samples > 1 ? filter_radius(settings.filter) : 0.0);
   // Whether camera rays can only meet the background.
@@ -250,22 +247,23 @@ void TileRenderer::write() {
   stats_.shade_seconds += watch.lap();
 }
 
-/// Writes the channels that are those of the first sample.
+/// Writes the channels that hold values of the first sample only.
 void TileRenderer::write_channels(std::size_t pixel, std::size_t sample) {
   const FirstSurface& first = output_.first_surface[sample];
   if (first.primitive == NearestHit::kNone) return;
   const std::uint32_t triangle = context_.prepared.bvh.triangle_of(first.primitive);
   const glm::dvec3 origin(first.origin), point(first.point);
   const glm::dvec3 from_eye = origin - glm::dvec3(context_.camera.eye()) + point;
-  film_.depth[pixel] = static_cast<float>(context_.camera.depth(from_eye));
+  film_.depth[pixel] = static_cast<float>(glm::dot(from_eye, context_.camera.forward()));
   film_.normal[pixel] = first.normal;
   film_.primitive[pixel] = triangle;
   if (!film_.position.empty()) {
     film_.position[pixel] = glm::vec3(context_.prepared.scene.origin + origin + point);
   }
-  if (!film_.object.empty())
+  if (!film_.object.empty()) {
     film_.object[pixel] =
         object_at(context_.prepared.scene, context_.prepared.bvh.face_of(first.primitive));
+  }
 }
 
 void TileRenderer::add_to(RenderStats& stats) const {

@@ -45,7 +45,7 @@ struct CameraRequest {
   std::optional<CameraSetting> camera;  ///< none: the scene's camera, or a view of the whole scene
   /// Azimuth and elevation in degrees: a view of the whole scene, even if the scene has a camera.
   std::optional<std::pair<double, double>> angles;
-  std::optional<glm::dvec3> eye, target;  ///< in place of those of the camera or view
+  std::optional<glm::dvec3> eye, target;  ///< replace those of the camera or view
   std::optional<glm::dvec3> up;           ///< of the camera, or of the view
   std::optional<double> fov;              ///< vertical, in degrees
   LensSetting lens;
@@ -97,8 +97,6 @@ class Camera {
                                                    const glm::dvec3& lens_point) const;
   /// Returns the area of the image plane at distance 1 along forward().
   [[nodiscard]] double picture_area() const { return 4.0 * half_width_ * half_height_; }
-  /// Returns the depth along the axis of a point relative to the eye.
-  [[nodiscard]] double depth(const glm::dvec3& point) const { return glm::dot(point, forward_); }
 
   /// Returns the direction of the pinhole ray through a point of the image: x from 0 (left edge) to
   /// 1 (right), y from 0 (upper edge) to 1 (lower). The length is that of scaled_direction().

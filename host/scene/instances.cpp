@@ -232,12 +232,6 @@ void flatten_emitters(Scene& scene) {
 
 }  // namespace
 
-void flatten_instances(Scene& scene) {
-  const std::vector<Instance> instances = std::exchange(scene.instances, {});
-  flatten(scene, instances);
-  scene.meshes.clear();
-}
-
 void require_numbers(const Scene& scene, const std::filesystem::path& file) {
   const std::uint64_t triangles = triangle_count(scene);
   if (triangles + scene.instances.size() >= (std::uint64_t{1} << 31) - 1) {
@@ -252,7 +246,8 @@ void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::p
   flatten_emitters(scene);
   const bool is_many = triangle_count(scene) - scene.triangles.size() > kFlattenLimit;
   if (mode == InstanceMode::kFlatten || (mode == InstanceMode::kAutomatic && !is_many)) {
-    flatten_instances(scene);
+    flatten(scene, std::exchange(scene.instances, {}));
+    scene.meshes.clear();
   }
 }
 

@@ -120,9 +120,6 @@ class MeshInstancer {
   glm::dvec3 size_{0.0};               // largest magnitudes of the mesh's coordinates
 };
 
-/// Replaces all instances by triangles with the same indices, corners and normals.
-void flatten_instances(Scene& scene);
-
 /// Policy for instances in a loaded scene.
 enum class InstanceMode {
   kFlatten,
@@ -136,7 +133,8 @@ inline constexpr std::uint64_t kFlattenLimit = 4'000'000;
 void require_numbers(const Scene& scene, const std::filesystem::path& file);
 
 /// Flattens instances as `mode` requires, and always those that emit, as area lights are lists of
-/// triangles. Indices do not depend on `mode`. Throws InputError as require_numbers() does.
+/// triangles. Indices, corners and normals do not depend on `mode`. Throws InputError as
+/// require_numbers() does.
 void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::path& file);
 
 }  // namespace raygate

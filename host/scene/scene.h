@@ -111,13 +111,13 @@ struct Triangle {
   std::uint32_t object = 0;    ///< always a valid index into Scene::objects
 };
 
-/// Returns whether a triangle is a placeholder for (part of) a face without area: its vertices
-/// coincide. It keeps its index but is in no BVH.
+/// Returns whether a triangle is a placeholder for (part of) a face without area, with coinciding
+/// vertices. Placeholders keep their indices but are in no BVH.
 [[nodiscard]] inline bool is_left_out(const Triangle& triangle) {
   return triangle.vertices[0] == triangle.vertices[1];
 }
 
-/// Triangles that instances share, in coordinates of their own. No material of them emits.
+/// Triangles that instances share, in coordinates of their own. Their materials do not emit light.
 struct Mesh {
   std::vector<glm::vec3> positions;  ///< each belongs to some triangle
   std::vector<Triangle> triangles;   ///< `vertices` index `positions`; other indices refer to Scene
@@ -142,18 +142,15 @@ struct SpotCone {
 };
 
 /// A point light. The irradiance at distance r is intensity / r^2.
-struct PointLight {
-  glm::vec3 position{0.0f};           ///< relative to Scene::origin
+template <class Position>
+struct PointLightAt {
+  Position position{0.0f};
   glm::dvec3 intensity{0.0};          ///< radiant, scene-linear RGB; of a spot light along its axis
   std::optional<SpotCone> spot = {};  ///< none: isotropic
 };
-
-/// A point light in world coordinates, for scenes whose origin is not known yet.
-struct WorldPointLight {
-  glm::dvec3 position{0.0};
-  glm::dvec3 intensity{0.0};  ///< as PointLight::intensity
-  std::optional<SpotCone> spot = {};
-};
+using PointLight = PointLightAt<glm::vec3>;  ///< position relative to Scene::origin
+/// Position in world coordinates, for scenes whose origin is not known yet.
+using WorldPointLight = PointLightAt<glm::dvec3>;
 
 /// A directional light, infinitely far away.
 struct DirectionalLight {
@@ -162,8 +159,8 @@ struct DirectionalLight {
 };
 
 /// A latitude-longitude image of the radiance from outside the scene, in place of a background. The
-/// upper edge is `up`, the centre `ahead`; to its right is what an observer who looks ahead sees on
-/// the right. Lookup is bilinear between texel centres and wraps horizontally.
+/// upper edge is `up`, the centre `ahead`; right in the image is right of an observer who looks
+/// ahead. Lookup is bilinear between texel centres and wraps horizontally.
 struct EnvironmentMap {
   int width = 0, height = 0;      ///< at least 1
   std::vector<glm::vec3> texels;  ///< row by row from the top; finite, not negative

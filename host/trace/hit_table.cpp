@@ -93,8 +93,6 @@ constexpr Column kColumns[] = {{"ray", true, {"ray"}},
                                {"side", true, {"side"}},
                                {"doubts", true, {"doubts"}}};
 
-const Column& known(HitColumn column) { return kColumns[static_cast<std::size_t>(column)]; }
-
 }  // namespace
 
 std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
@@ -135,8 +133,9 @@ HitPoint hit_point_of(const ExactRay& ray, const Corners& corners) {
 std::vector<std::pair<std::string, std::string>> HitTable::fields() const {
   std::vector<std::pair<std::string, std::string>> fields;
   for (const HitColumn column : columns_) {
-    for (const std::string_view field : known(column).fields) {
-      if (!field.empty()) fields.emplace_back(field, known(column).is_integer ? "<i8" : "<f8");
+    const auto& [name, is_integer, names] = kColumns[static_cast<std::size_t>(column)];
+    for (const std::string_view field : names) {
+      if (!field.empty()) fields.emplace_back(field, is_integer ? "<i8" : "<f8");
     }
   }
   return fields;

@@ -21,7 +21,7 @@ struct RayTable {
   std::vector<ExactRay> exact_rays;  ///< the same in binary64; empty: `rays` are exact
   std::vector<float> limits;         ///< of the scaled rays; +infinity: none
   std::vector<int> exponents;        ///< t of the given ray is 2^exponent times t of the scaled ray
-  std::uint64_t rounded = 0;         ///< number of rays that are not as given
+  std::uint64_t rounded = 0;         ///< number of rays that were rounded
 
   void clear(std::uint64_t its_first);
 
@@ -73,7 +73,7 @@ class RayTableReader {
   glm::dvec3 scene_origin_;
   std::ifstream file_;
   std::istream& stream_;    // the file, or standard input
-  std::vector<char> text_;  // room for a line
+  std::vector<char> text_;  // buffer of a line
   std::size_t line_ = 0;
   bool past_header_ = false;
   std::uint64_t number_ = 0;  // of rays that were read

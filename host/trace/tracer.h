@@ -16,10 +16,10 @@ namespace raygate {
 /// Statistics of a run.
 struct TraceCounts {
   std::uint64_t rays = 0, hits = 0;
-  std::uint64_t rounded = 0;  ///< number of rays that are not as given
+  std::uint64_t rounded = 0;  ///< number of rays that were rounded
 };
 
-/// Replaces a block by at most the given number of next rays; returns false at the end.
+/// Replaces a block by the next rays, at most this number; returns false at the end.
 using ReadRays = std::function<bool(std::size_t, RayTable&)>;
 
 /// Finds the nearest hit of each ray of a block, or the first one found if `any`. `work` is empty

@@ -20,8 +20,9 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+import functools
 import warnings
-from typing import Any, Literal, NamedTuple, Sequence
+from typing import Any, Callable, Literal, NamedTuple, Sequence, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -35,9 +36,8 @@ Rounding = Literal["nearest-even", "toward-zero", "down", "up", "nearest-away"]
 Tininess = Literal["after", "before"]
 Relation = Literal["==", "<", "<="]
 
-ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")
-RELATIONS = ("==", "<", "<=")
-_TININESS = ("after", "before")
+ROUNDINGS: tuple[Rounding, ...] = get_args(Rounding)
+RELATIONS: tuple[Relation, ...] = get_args(Relation)
 _OPERATIONS = ("+", "-", "*", "/", *RELATIONS)
 
 
@@ -151,12 +151,7 @@ def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "ne
     x = _numbers(x)
     if x.dtype.kind != "f" or x.dtype.itemsize > 8:
         raise InputError(f"found an array of {x.dtype}, expected one of float16, float32 or float64")
-    _one_of("rounding", rounding, ROUNDINGS)
-    _one_of("tininess", tininess, _TININESS)
-    flat = np.ascontiguousarray(x, np.float64).ravel()
-    bits, flags = _raygate.float_encode(flat, format.exponent_bits, format.fraction_bits,
-                                        ROUNDINGS.index(rounding), tininess == "before")
-    return Result(bits.reshape(x.shape)[()], _flags(flags.reshape(x.shape)))
+    return _results(_raygate.float_encode, [np.asarray(x, np.float64)], format, rounding, tininess)
 
 
 @in_context
@@ -176,8 +171,6 @@ def decode(bits: npt.ArrayLike, format: Format) -> Any:
 
 def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rounding: Rounding,
          tininess: Tininess) -> Result:
-    _one_of("rounding", rounding, ROUNDINGS)
-    _one_of("tininess", tininess, _TININESS)
     operands = a, b
     a, b = _numbers(a), _numbers(b)
     kinds = {a.dtype.kind, b.dtype.kind}
@@ -194,18 +187,26 @@ def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rou
     except ValueError:
         raise InputError(f"found arrays of shape {a.shape} and {b.shape}, expected shapes that can "
                          "be broadcast together") from None
-    x_words, y_words = np.ascontiguousarray(x).ravel(), np.ascontiguousarray(y).ravel()
-    value, flags = _raygate.float_run(_OPERATIONS.index(operation), x_words, y_words, format.exponent_bits,
-                                      format.fraction_bits, ROUNDINGS.index(rounding), tininess == "before")
+    compute = functools.partial(_raygate.float_run, _OPERATIONS.index(operation))
+    value, flags = _results(compute, [x, y], format, rounding, tininess)
     if operation in RELATIONS:
         value = value != 0
     elif kinds == {"f"}:
         value = _held(decode(value, format), np.result_type(a, b), format)
-    return Result(value.reshape(x.shape)[()], _flags(flags.reshape(x.shape)))
+    return Result(value, flags)
 
 
-def _flags(flags: Array) -> Any:
-    return Flags(int(flags)) if flags.ndim == 0 else flags
+def _results(compute: Callable[..., Array], operands: Sequence[Array], format: Format, rounding: Rounding,
+             tininess: Tininess) -> Result:
+    """Returns the words and flags that `compute`, of the C++ half, returns for operands of one shape."""
+    _one_of("rounding", rounding, ROUNDINGS)
+    _one_of("tininess", tininess, get_args(Tininess))
+    columns = [np.ascontiguousarray(operand).ravel() for operand in operands]
+    rows = compute(*columns, format.exponent_bits, format.fraction_bits, ROUNDINGS.index(rounding), tininess == "after")
+    fields = np.dtype([("bits", np.uint32), ("flags", np.uint8)], align=True)
+    results = rows.view(fields).reshape(operands[0].shape)
+    flags = results["flags"].copy()
+    return Result(results["bits"].copy()[()], flags if flags.ndim else Flags(int(flags)))
 
 
 def _numbers(x: npt.ArrayLike) -> Array:

@@ -65,24 +65,12 @@ class EarClipper {
   };
   using Ear = std::array<glm::dvec2, 3>;
 
-  /// Returns whether a point is in a counter-clockwise triangle or on its border, but at no corner.
-  static bool contains(const Ear& triangle, const glm::dvec2& point) {
-    for (int i = 0; i < 3; ++i) {
-      if (point == triangle[i] || orient2d(triangle[i], triangle[(i + 1) % 3], point) < 0) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  /// Returns whether a box and a triangle are separated by one of the box's axes or by an edge, on
-  /// whose outer side even the box's innermost corner is.
+  /// Returns whether a box and a counter-clockwise triangle are separated by one of the box's axes
+  /// or by an edge, on whose outer side even the box's innermost corner is.
   static bool are_separate(const Ear& triangle, const glm::dvec2& low, const glm::dvec2& high) {
-    for (int axis = 0; axis < 2; ++axis) {
-      const auto [least, most] =
-          std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
-      if (high[axis] < least || low[axis] > most) return true;
-    }
+    const auto& [a, b, c] = triangle;
+    const glm::dvec2 least = glm::min(glm::min(a, b), c), most = glm::max(glm::max(a, b), c);
+    if (high.x < least.x || high.y < least.y || low.x > most.x || low.y > most.y) return true;
     for (int i = 0; i < 3; ++i) {
       const glm::dvec2 &from = triangle[i], &to = triangle[(i + 1) % 3];
       const glm::dvec2 innermost(to.y > from.y ? low.x : high.x, to.x > from.x ? high.y : low.y);
@@ -115,7 +103,10 @@ class EarClipper {
     const std::size_t middle = first + (last - first) / 2;
     const Node& root = tree_[middle];
     if (are_separate(ear, root.low, root.high)) return false;
-    if (ring_[root.corner].reflex && contains(ear, root.position)) return true;
+    const bool is_in_ear = ring_[root.corner].reflex &&
+                           !are_separate(ear, root.position, root.position) &&
+                           std::ranges::find(ear, root.position) == ear.end();
+    if (is_in_ear) return true;
     return has_obstacle(ear, first, middle) || has_obstacle(ear, middle + 1, last);
   }
 

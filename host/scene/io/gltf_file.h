@@ -26,8 +26,8 @@
 
 namespace raygate {
 
-// Members of JSON objects. For files of other programs, which often have small errors: a member of
-// a wrong type counts as missing, and so do all members of a value that is not an object.
+// Access to members of JSON objects. Files of other programs often have small errors, so a member
+// of a wrong type counts as missing, and so do all members of a value that is not an object.
 
 /// Returns the member at a key; null if it is missing.
 inline const Json& member(const Json& object, const char* key) {

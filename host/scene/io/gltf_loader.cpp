@@ -451,9 +451,8 @@ class GltfReader {
     };
     std::vector<double> texcoords = read_set(sets[0]);
     const std::vector<double> seconds = read_set(sets[1]);
-    const bool is_clear = has_alpha && !colors.empty() && materials_.has_opacity(number);
+    const bool is_clear = has_alpha && !colors.empty() && materials_.use_vertex_opacity(number);
     if (is_clear && sets[0] < 0) texcoords.resize(2 * vertices);  // opacities need them
-    if (is_clear) materials_.use_vertex_opacity(number);
     if (!colors.empty()) to.colors_are_linear();
     if (number < 0 && !colors.empty()) scene_.materials[material].diffuse = glm::vec3(1.0f);
 

@@ -27,7 +27,7 @@ class GltfMaterials {
 
   struct Converted {
     std::uint32_t number;  ///< index into Scene::materials
-    /// The sets that its textures use, the base colour's first; -1: none.
+    /// Sets of coordinates of its textures, the base colour's first; -1: none.
     std::array<int, 2> texcoord_sets;
   };
 
@@ -44,24 +44,14 @@ class GltfMaterials {
     return converted_.emplace(material, converted).first->second;
   }
 
-  /// Returns whether a material has a mask or blends.
-  [[nodiscard]] bool has_opacity(int material) const {
-    const std::string mode = text_in(this->material(material), "alphaMode");
-    return mode == "MASK" || mode == "BLEND";
-  }
-
-  /// Lets the opacities of vertices multiply a material's.
-  void use_vertex_opacity(int material) {
-    const Json &from = this->material(material), &pbr = member(from, "pbrMetallicRoughness");
+  /// Lets the opacities of vertices multiply a material's. Returns whether it has a mask or blends;
+  /// otherwise it is opaque and remains unchanged.
+  [[nodiscard]] bool use_vertex_opacity(int material) {
     const Converted converted = convert(material);
     Material& to = scene_.materials[converted.number];
     sets_ = converted.texcoord_sets;
-    to.has_vertex_opacity = true;
-    to.opacity_blends = text_in(from, "alphaMode") == "BLEND";
-    to.opacity_map = map_of(pbr, "baseColorTexture", Texture::Content::kAlpha);
-    if (to.opacity_blends) return;
-    to.opacity_cutoff =
-        static_cast<float>(cutoff_of(from) / base_opacity(numbers(pbr, "baseColorFactor", 4)));
+    set_opacity(this->material(material), true, to);
+    return to.has_vertex_opacity;
   }
 
  private:
@@ -92,16 +82,6 @@ class GltfMaterials {
     const double set =
         number_in(extension(info, kTransform), "texCoord", number_in(info, "texCoord", 0.0));
     return static_cast<int>(std::clamp(set, -1.0, 1e6));
-  }
-
-  /// Returns the opacity of a base colour.
-  static double base_opacity(const std::vector<double>& base_color) {
-    return base_color.size() == 4 ? in_unit(base_color[3]) : 1.0;
-  }
-
-  /// Returns the cutoff of a mask; above 1 nothing is visible.
-  static double cutoff_of(const Json& material) {
-    return std::max(number_in(material, "alphaCutoff", 0.5), 0.0);
   }
 
   /// Returns the material with this index, or null for index -1.
@@ -203,20 +183,26 @@ class GltfMaterials {
     return map;
   }
 
-  /// Sets the opacity from the base colour's factor and texture, which blend or are a mask.
-  void set_opacity(const Json& from, Material& material) {
+  /// Sets the opacity from the base colour's factor and texture, which blend or are a mask, and
+  /// from the opacities of vertices if `has_vertex_opacity`.
+  void set_opacity(const Json& from, bool has_vertex_opacity, Material& material) {
     const std::string mode = text_in(from, "alphaMode");
     if (mode != "MASK" && mode != "BLEND") return;
     const Json& pbr = member(from, "pbrMetallicRoughness");
     const bool is_mask = mode == "MASK";
-    const double factor = base_opacity(numbers(pbr, "baseColorFactor", 4)),
-                 cutoff = cutoff_of(from);
+    const std::vector<double> base_color = numbers(pbr, "baseColorFactor", 4);
+    const double factor = base_color.empty() ? 1.0 : in_unit(base_color[3]);
+    // The cutoff of a mask: above 1 nothing is visible.
+    const double cutoff = std::max(number_in(from, "alphaCutoff", 0.5), 0.0);
     if (!is_mask) material.opacity = static_cast<float>(factor);
     if (is_mask && factor < cutoff) material.opacity = 0.0f;
-    if (material.opacity == 0.0f) return;
+    if (material.opacity == 0.0f && !has_vertex_opacity) return;
     MaterialMap map = map_of(pbr, "baseColorTexture", Texture::Content::kAlpha);
     const double least = is_mask ? cutoff / factor : 1.0;
-    if (map.texture == kNoIndex || scene_.textures[map.texture].min_code() >= least) return;
+    const bool hides_nothing =
+        map.texture == kNoIndex || scene_.textures[map.texture].min_code() >= least;
+    if (hides_nothing && !has_vertex_opacity) return;
+    material.has_vertex_opacity = has_vertex_opacity;
     material.opacity_map = std::move(map);
     material.opacity_blends = !is_mask;
     if (is_mask) material.opacity_cutoff = static_cast<float>(least);
@@ -243,7 +229,7 @@ class GltfMaterials {
     material.normal_map = map_of(from, "normalTexture");
     const double normal_scale = number_in(normal, "scale", 1.0);
     if (std::isfinite(normal_scale)) material.normal_scale = static_cast<float>(normal_scale);
-    set_opacity(from, material);
+    set_opacity(from, false, material);
     if (!member(from, "occlusionTexture").is_null()) {
       file_.warn_once("occlusionTexture is not read: the rays of the scene find what is in shade");
     }

@@ -32,7 +32,7 @@ using Json = nlohmann::json;
 class LineBuffer : public std::streambuf {
  public:
   explicit LineBuffer(std::string_view text) : counted_(text.data()) {
-    char* const first = const_cast<char*>(text.data());  // which nobody writes
+    char* const first = const_cast<char*>(text.data());  // never written
     setg(first, first, first + text.size());
   }
   /// Returns the line of the last character that was read. The parser reads one beyond a number.

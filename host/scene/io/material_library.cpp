@@ -36,7 +36,7 @@ constexpr std::string_view kOtherOptions[] = {"-blendu", "-blendv", "-boost",   
                                               "-bm",     "-cc",     "-type",      "-imfchan",
                                               "-mm",     "-t",      "-colorspace"};
 
-/// A material that is being read, and what its statements leave open.
+/// A material that is being read, with values of statements that finish_material() combines.
 struct Draft {
   Material material;
   bool has_diffuse = false, has_emission = false;

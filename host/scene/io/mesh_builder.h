@@ -15,7 +15,7 @@
 namespace raygate {
 
 /// One corner of a polygon: indices into the builder's positions, texture coordinates and normals,
-/// which may be added later. kNoIndex stands for none.
+/// whose elements may be added later. kNoIndex stands for none.
 struct FaceCorner {
   std::uint32_t position = 0, texcoord = kNoIndex, normal = kNoIndex;
 };
@@ -43,7 +43,7 @@ class MeshBuilder {
   void add_color(const glm::vec3& color);
   void colors_are_linear() { has_linear_colors_ = true; }
   void add_texcoord(const glm::vec2& texcoord) { texcoords_.push_back(texcoord); }
-  /// Add attributes of the last texture coordinates; the second ones, and the opacity, in [0, 1].
+  /// Set the second coordinates and the opacity, in [0, 1], of the last texture coordinates.
   void add_second_texcoord(const glm::vec2& texcoord) {
     set_last(second_texcoords_, texcoords_.size(), texcoord, glm::vec2(0.0f));
   }
@@ -56,7 +56,7 @@ class MeshBuilder {
 
   /// Adds a polygon. build() leaves out polygons of fewer than three corners, and the normals or
   /// texture coordinates of a face if one of its corners has none, with a warning. `line` is for
-  /// messages: 0 in a file without lines; of an array the row, counted from 1.
+  /// messages: 0 in a file without lines; for an array, the row counted from 1.
   void add_face(std::span<const FaceCorner> corners, std::size_t line,
                 const FaceAttributes& attributes = {});
   [[nodiscard]] std::size_t face_count() const { return faces_.size(); }

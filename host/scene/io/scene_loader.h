@@ -108,8 +108,8 @@ struct SceneFile {
 /// Loads a Wavefront OBJ file, with its MTL files (relative to its folder) and their textures.
 [[nodiscard]] Scene load_obj(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Reads the materials of an MTL file, in its order; of several with one name the first. Textures
-/// are named, relative to its folder, but not loaded. Appends to `warnings`.
+/// Returns the materials of an MTL file, in its order; if several have one name, only the first.
+/// Names textures relative to the file's folder, but loads none. Appends to `warnings`.
 [[nodiscard]] std::vector<Material> read_mtl(const std::filesystem::path& file,
                                              std::vector<std::string>& warnings);
 

@@ -38,7 +38,7 @@ inline std::string in_lower_case(std::string text) {
 class Words {
  public:
   /// `file` and the characters of `text` must outlive this object. `line` is the number of the
-  /// text's first line, or 0 if messages shall not name a line.
+  /// text's first line, or 0 if messages should not name a line.
   Words(const std::string& file, std::string_view text, std::size_t line = 0)
       : file_(&file), text_(text), line_(line) {
     find_word(0);
@@ -66,7 +66,7 @@ class Words {
     fail((at_end() ? "the file ends too soon" : "found " + in_quotes(word_)) + ", expected " +
          in_quotes(word));
   }
-  /// Takes a number within the range of float. Throws InputError, which calls it `what`, else.
+  /// Takes a number within the range of float. Throws InputError for other words, named `what`.
   double number(std::string_view what) {
     const auto number = to_number(word_);
     if (!number || !(std::abs(*number) <= std::numeric_limits<float>::max())) {

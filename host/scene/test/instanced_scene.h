@@ -55,7 +55,7 @@ inline Scene instanced_scene(Random& random, int count) {
 
 /// The same without instances.
 inline Scene written_out(Scene scene) {
-  flatten_instances(scene);
+  resolve_instances(scene, InstanceMode::kFlatten, "written out");
   return scene;
 }
 

@@ -212,7 +212,7 @@ TEST_F(ReadSceneFile, InstancesOfModels) {
       [1, 2, 3], [2, 0, 0, -200000, 0, 0, -1, 1, 0, 1, 0, 2], [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]]}]})");
   const Scene kept = load_scene(file);
   Scene written = kept;
-  flatten_instances(written);
+  resolve_instances(written, InstanceMode::kFlatten, "room.json");
   EXPECT_EQ(kept.instances.size(), 3u);
   EXPECT_EQ(kept.meshes.size(), 2u);
   EXPECT_EQ(kept.triangles.size(), 1u);
