@@ -62,7 +62,7 @@ class BvhWriter {
     tree_.get_box(tree_.root(), whole);
     unit_ = unit_of(whole);
     plan_all();
-    if (tree_.is_leaf(tree_.root()) || plans_[tree_.root()].is_leaf) {
+    if (is_leaf(tree_.root())) {
       put_child(bvh_.nodes_[0], 0, tree_.root());
     } else {
       write_all();
@@ -170,7 +170,7 @@ class BvhWriter {
     for (const Ref child : tree_.nodes[ref].child) collect_tasks(child, large, tasks);
   }
 
-  /// Collects the children of a wide node if `ref` becomes `most` of them.
+  /// Collects the children of a wide node if `ref` becomes at most `most` of them.
   void collect_children(Ref ref, int most, Ref (&children)[Bvh::kWidth], int& count) const {
     if (most > 1 && !tree_.is_leaf(ref)) {
       const Plan& plan = plans_[ref];
@@ -230,9 +230,7 @@ class BvhWriter {
                    std::vector<Task>* tasks) {
     Ref children[Bvh::kWidth];
     int count = 0;
-    collect_children(tree_.nodes[ref].child[0], plans_[ref].left[Bvh::kWidth - 1], children, count);
-    collect_children(tree_.nodes[ref].child[1], Bvh::kWidth - plans_[ref].left[Bvh::kWidth - 1],
-                     children, count);
+    collect_children(ref, Bvh::kWidth, children, count);
     clear(nodes[index]);
     for (int i = 0; i < count; ++i) {
       put_child(nodes[index], i, children[i]);

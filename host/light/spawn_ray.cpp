@@ -1,7 +1,6 @@
 #include "host/light/spawn_ray.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -76,8 +75,7 @@ class NeighborClearanceSearch {
     }
     double apart[kQuad];
     store(apart, clearances<kCode>(corners, bvh.is_binary32() ? nullptr : exact, leaf.count, rest));
-    for (; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
+    for (const int i : SetBits(rest)) {
       if (apart[i] >= length_) continue;
       const std::uint32_t other = leaf.first + static_cast<std::uint32_t>(i);
       const Corners others = bvh.corners_of(other);
@@ -444,11 +442,11 @@ RAYGATE_INLINE void find_candidates(const SpawnHits& hits, const FloatQuad& way,
 
 }  // namespace
 
-std::optional<glm::vec3> RaySpawner::find(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
+SpawnOrigin RaySpawner::find(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
   const SpawnQuery query{&ray, primitive, side};
   SpawnOrigin origin;
   find({&query, 1}, {&origin, 1});
-  return origin ? std::optional(*origin) : std::nullopt;
+  return origin;
 }
 
 template <Vectors kCode>
@@ -485,8 +483,7 @@ RAYGATE_INLINE void RaySpawner::find_four(const SpawnQuery* queries, SpawnOrigin
   const LaneMask good = sign_mask(is_clear);
   const LaneMask has_overlaps = sign_mask(bits_in(hits.length));
   constexpr LaneMask kAll = (LaneMask{1} << kQuad) - 1;
-  for (LaneMask rest = (~good & kAll) | has_overlaps; rest != 0; rest &= rest - 1) {
-    const int i = std::countr_zero(rest);
+  for (const int i : SetBits((~good & kAll) | has_overlaps)) {
     const SpawnQuery& query = queries[i];
     if ((good >> i & 1) != 0) {
       const glm::vec3 low = *origins[i] - reach[i], high = *origins[i] + reach[i];
@@ -501,8 +498,7 @@ RAYGATE_INLINE void RaySpawner::find_four(const SpawnQuery* queries, SpawnOrigin
         continue;
       }
     }
-    const auto origin = search(*query.ray, query.primitive, query.side);
-    origins[i] = origin ? SpawnOrigin{*origin, 1} : SpawnOrigin{};
+    origins[i] = search(*query.ray, query.primitive, query.side);
   }
 }
 
@@ -529,8 +525,7 @@ void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin
   });
 }
 
-std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive,
-                                            SpawnSide side) {
+SpawnOrigin RaySpawner::search(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
   constexpr int kLastStep = 24;  // 2^24 steps: the magnitude of X's coordinate
   const Corners hit = bvh_.corners_of(primitive);
   const Interval t = hit_distance(ray, hit);
@@ -571,12 +566,12 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
   for (int k = 0; k <= kLastStep; ++k) {
     for (const glm::dvec3& offset : offsets) {
       const glm::vec3 candidate(x + std::ldexp(step, k) * offset);
-      if (good(candidate)) return candidate;
+      if (good(candidate)) return {candidate, 1};
     }
   }
   // In a sharp corner close to the ray's origin, that origin may be the only valid point.
-  if (side == SpawnSide::kIncident && good(ray.origin)) return ray.origin;
-  return std::nullopt;
+  if (side == SpawnSide::kIncident && good(ray.origin)) return {ray.origin, 1};
+  return {};
 }
 
 bool RaySpawner::leaves(const Ray& ray, std::uint32_t primitive, SpawnSide side,

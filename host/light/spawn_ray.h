@@ -8,7 +8,6 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -153,8 +152,7 @@ class RaySpawner {
 
   /// Returns O' for `ray`, whose nearest hit is the triangle `primitive`, or none. Triangles whose
   /// plane contains the ray are ignored.
-  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t primitive,
-                                              SpawnSide side);
+  [[nodiscard]] SpawnOrigin find(const Ray& ray, std::uint32_t primitive, SpawnSide side);
 
   /// Prefetches the clearance of a primitive of a later query.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const { clearances_.prefetch(primitive); }
@@ -172,8 +170,7 @@ class RaySpawner {
   RAYGATE_INLINE void find_four(const SpawnQuery* queries, SpawnOrigin* origins);
 
   /// Does the work of find() by a search of nearby triangles.
-  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t primitive,
-                                                SpawnSide side);
+  [[nodiscard]] SpawnOrigin search(const Ray& ray, std::uint32_t primitive, SpawnSide side);
 
   const NeighborClearances& clearances_;
   const Bvh& bvh_;

@@ -21,9 +21,6 @@ using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 /// (the ray in the format is I rounded to nearest).
 [[nodiscard]] PolygonRecord variant_record(const Variant& variant, const PolygonRecord& record);
 
-/// Returns the bound in units of 2^-digits |E|_1, for rounding to nearest.
-[[nodiscard]] double variant_edge_bound(const Arithmetic& math);
-
 /// Returns t as the variant's unit computes it for a record of make_record(). The host of the
 /// serial unit computes t in binary32.
 [[nodiscard]] float variant_t(const Variant& variant, const PolygonRecord& record,

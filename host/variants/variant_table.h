@@ -54,7 +54,4 @@ struct Variant {
 /// end ignores doubts. Returns nullopt for other texts. Throws InputError for unsupported ones.
 [[nodiscard]] std::optional<Variant> variant_of_format(std::string_view text);
 
-/// Returns the variant with this name. Throws InputError, which lists the names, if there is none.
-[[nodiscard]] const Variant& variant_named(std::string_view name);
-
 }  // namespace raygate

@@ -287,8 +287,8 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const BvhView& tree, co
   LaneMask met[kFewRays] = {}, any = 0;
   std::uint64_t ray[kFewRays] = {};
   int count = 0;
-  for (; rays != 0; rays &= rays - 1) {
-    const int number = std::countr_zero(rays), g = number / kLanes, lane = number % kLanes;
+  for (const int number : SetBits(rays)) {
+    const int g = number / kLanes, lane = number % kLanes;
     if ((walk.split >> g & 1) == 0) split_group(walk, g);
     const PacketBounds8& bounds8 = walk.ray_bounds8[g];
     FloatLanes its_entry;
@@ -297,11 +297,10 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const BvhView& tree, co
     const IntLanes meets = lanes_of(met[count]);
     entry = (meets & (its_entry < entry)) ? its_entry : entry;
     any |= met[count];
-    ray[count++] = rays & -rays;
+    ray[count++] = std::uint64_t{1} << number;
   }
   const int bottom = walk.depth;
-  for (; any != 0; any &= any - 1) {
-    const int i = std::countr_zero(any);
+  for (const int i : SetBits(any)) {
     std::uint64_t its_rays = 0;
     for (int r = 0; r < kFewRays; ++r) its_rays |= (met[r] >> i & 1) != 0 ? ray[r] : 0;
     push(walk, tree, bottom, {node.child[i], entry[i], its_rays});
@@ -327,8 +326,7 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
   LaneMask in[Bvh::kWidth];
   const bool ask = several(groups) && std::popcount(met) > kFew;
   std::uint64_t counts = 0;  // byte g: number of children that group g meets
-  for (LaneMask left = met; left != 0; left &= left - 1) {
-    const int i = std::countr_zero(left);
+  for (const int i : SetBits(met)) {
     in[i] = groups;
     if (ask || (several(groups) && node.child[i].count != 0)) {
       in[i] &= intersect_child<kCode>(cones.bounds8, whole.origin, whole.octant, node, i, unused);
@@ -336,8 +334,7 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
     counts += ones_of(in[i]);
   }
   LaneMask divided = groups_of((counts + (0x7F - kFew) * ones_of(0xFF)) & 0x80 * ones_of(0xFF));
-  for (LaneMask left = divided; left != 0; left &= left - 1) {
-    const int g = std::countr_zero(left);
+  for (const int g : SetBits(divided)) {
     if (!several(rays_of(rays, g))) {
       divided &= ~(1u << g);
     } else if ((walk.split >> g & 1) == 0) {
@@ -345,11 +342,9 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
     }
   }
   const int bottom = walk.depth;
-  for (; met != 0; met &= met - 1) {
-    const int i = std::countr_zero(met);
+  for (const int i : SetBits(met)) {
     ConeTraversal::StackEntry next = {node.child[i], entry[i], rays & 0xFF * ones_of(in[i])};
-    for (LaneMask left = divided & in[i]; left != 0; left &= left - 1) {
-      const int g = std::countr_zero(left);
+    for (const int g : SetBits(divided & in[i])) {
       const std::uint64_t missed = 0xFF & ~intersect_child<kCode>(walk.ray_bounds8[g], whole.origin,
                                                                   whole.octant, node, i, unused);
       next.rays &= ~(missed << (8 * g));
@@ -502,8 +497,7 @@ class PacketIntersector {
       const std::uint64_t unscaled = load_packet(rays_.subspan(first, count), block);
       if (unscaled != 0) throw_unscaled(rays_[first + std::countr_zero(unscaled)]);
       walk.first = static_cast<std::uint32_t>(first);
-      for (std::uint32_t octants = block.octants; octants != 0; octants &= octants - 1) {
-        const int octant = std::countr_zero(octants);
+      for (const int octant : SetBits(block.octants)) {
         for (int g = 0; g < ConeTraversal::kGroups; ++g) {
           walk.cones.active[g] = block.into_octant(octant, g);
         }
@@ -528,8 +522,7 @@ class PacketIntersector {
       walk.split = 0;
       walk.going = 0;
       walk.cones.bounds8.cutoff = FloatLanes{} - 1.0f;
-      for (LaneMask left = walk.cones.groups; left != 0; left &= left - 1) {
-        const int g = std::countr_zero(left);
+      for (const int g : SetBits(walk.cones.groups)) {
         walk.primitive[g] = IntLanes{} - 1;
         IntLanes end = IntLanes{} + kFarthest;
         const std::uint32_t first = walk.number(g, 0);
@@ -555,18 +548,15 @@ class PacketIntersector {
   RAYGATE_INLINE void test_groups(ConeTraversal& walk, const QuadRecord& record,
                                   const Bvh::Child& leaf, LaneMask there, std::uint64_t rays,
                                   LaneMask& changed) {
-    for (; there != 0; there &= there - 1) {
-      const int i = std::countr_zero(there);
+    for (const int i : SetBits(there)) {
       const auto primitive = static_cast<std::int32_t>(leaf.first) + i;
-      for (LaneMask left = groups_of(rays); left != 0; left &= left - 1) {
-        const int g = std::countr_zero(left);
+      for (const int g : SetBits(groups_of(rays))) {
         const LaneMask tested = rays_of(rays, g);
         Verdict<IntLanes> verdict;
         test_group<kCode>(walk, record, i, g, tested, verdict);
         count(static_cast<std::uint64_t>(std::popcount(tested)), verdict.hit, verdict.open);
         if (!query_.work.empty()) {
-          for (LaneMask lanes = tested; lanes != 0; lanes &= lanes - 1) {
-            const int lane = std::countr_zero(lanes);
+          for (const int lane : SetBits(tested)) {
             count_work(walk, g, lane, 1, (verdict.open & ~verdict.hit) >> lane & 1);
           }
         }
@@ -585,8 +575,7 @@ class PacketIntersector {
         }
         LaneMask open =
             verdict.open & ~nearer & ~(sure & sign_mask<kCode>(verdict.low > walk.high[g]));
-        for (; open != 0; open &= open - 1) {
-          const int lane = std::countr_zero(open);
+        for (const int lane : SetBits(open)) {
           const Interval t = {std::bit_cast<float>(verdict.low[lane]),
                               std::bit_cast<float>(verdict.high[lane])};
           if (resolve(walk, g, lane, primitive, (sure >> lane & 1) != 0, t)) changed |= 1u << g;
@@ -600,16 +589,15 @@ class PacketIntersector {
                                 const Bvh::Child& leaf, LaneMask there, std::uint64_t rays,
                                 LaneMask& changed) {
     const auto triangles = static_cast<std::uint32_t>(std::popcount(there));
-    for (; rays != 0; rays &= rays - 1) {
-      const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
+    for (const int ray : SetBits(rays)) {
+      const int g = ray / kLanes, lane = ray % kLanes;
       Verdict<FloatQuad> verdict;
       test_ray(walk, record, g, lane, there, verdict);
       count(triangles, verdict.hit, verdict.open);
       if (!query_.work.empty()) {
         count_work(walk, g, lane, triangles, std::popcount(verdict.open & ~verdict.hit));
       }
-      for (LaneMask open = verdict.open; open != 0; open &= open - 1) {
-        const int i = std::countr_zero(open);
+      for (const int i : SetBits(verdict.open)) {
         const auto primitive = static_cast<std::int32_t>(leaf.first) + i;
         if (!query_.skip_ids.empty() && walk.skip_id[g][lane] == primitive) continue;
         const bool sure = (verdict.hit >> i & 1) != 0;
@@ -665,8 +653,7 @@ class PacketIntersector {
           test_groups<code()>(walk, leaf.record, item.child, leaf.there, rays, changed);
         }
         if (changed == 0) continue;
-        for (; changed != 0; changed &= changed - 1) {
-          const int g = std::countr_zero(changed);
+        for (const int g : SetBits(changed)) {
           if (ending) {
             const LaneMask ended = cones.active[g] & ~sign_mask<code()>(walk.primitive[g]) &
                                    sign_mask<code()>(walk.high[g] < walk.enough[g]);
@@ -687,9 +674,8 @@ class PacketIntersector {
     cached.first = leaf.first;
     Bvh::LeafRoom room;
     const float* const corners = tree.corners_of(leaf, room);
-    const float origin[3] = {origin_.x, origin_.y, origin_.z};
-    bvh_.is_binary32() ? make_quad_record<false>(origin, corners, leaf.count, cached.record)
-                       : make_quad_record<true>(origin, corners, leaf.count, cached.record);
+    bvh_.is_binary32() ? make_quad_record<false>(origin_, corners, leaf.count, cached.record)
+                       : make_quad_record<true>(origin_, corners, leaf.count, cached.record);
     cached.there = (1u << leaf.count) - 1;
     if (cached.record.unsure != 0) resolve_sides(leaf, cached);
     return cached;
@@ -698,8 +684,7 @@ class PacketIntersector {
   /// Decides exactly on which side of each triangle the origin lies where float32 is not sure. No
   /// ray hits a triangle whose plane contains the origin: such triangles are removed.
   void resolve_sides(const Bvh::Child& leaf, CachedLeaf& cached) const {
-    for (LaneMask unsure = cached.record.unsure; unsure != 0; unsure &= unsure - 1) {
-      const int i = std::countr_zero(unsure);
+    for (const int i : SetBits(cached.record.unsure)) {
       const int side =
           orient3d(origin_, bvh_.corners_of(leaf.first + static_cast<std::uint32_t>(i)));
       if (side == 0) {
@@ -737,8 +722,7 @@ class PacketIntersector {
     in_vectors([&](auto code) RAYGATE_BODY {
       const auto& block = walk.block->direction;
       const bool with_points = query_.with_points;
-      for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
-        const int g = std::countr_zero(groups);
+      for (const int g : SetBits(walk.cones.groups)) {
         double bounds[kLanes][2];
         for (std::size_t half = 0; half < 2; ++half) {
           const auto quad = [&](const IntLanes& bits) RAYGATE_BODY {
@@ -765,8 +749,8 @@ class PacketIntersector {
             continue;
           }
         }
-        for (; met != 0; met &= met - 1) {
-          const auto lane = static_cast<std::uint32_t>(std::countr_zero(met));
+        for (const int i : SetBits(met)) {
+          const auto lane = static_cast<std::uint32_t>(i);
           write_hit(lane);
           if (with_points) points_.add(number + lane, primitives[lane]);
         }

@@ -172,20 +172,22 @@ class BasicReferenceBurstUnit : public BurstUnit {
   void finish(BurstResults& results) override {
     const std::span<const RayBundle> batch = this->pop_started();
     for (std::uint32_t i = 0; i < batch.size(); ++i) {
-      for (LaneMask lanes = batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
-        run_burst(batch[i], i, static_cast<std::uint32_t>(std::countr_zero(lanes)), results);
+      for (const int lane : SetBits(batch[i].lanes)) {
+        run_burst(batch[i], i, static_cast<std::uint32_t>(lane), results);
       }
     }
   }
 
   [[nodiscard]] HitCounters counters() const override { return counters_; }
 
-  /// Returns the verdict on one test, as in a batch.
-  [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction) const {
-    const float v = math_.dot(record.normal, direction);
-    const UnitVerdict decided = decide(record, direction, v);
-    if (decided != UnitVerdict::kHit) return decided;
-    return math_.is_normal(math_.divide(record.d, v)) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+  /// Returns the verdict on one test, as in a batch. Sets `distance` if the verdict is kHit.
+  [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction,
+                                    HitDistance& distance) const {
+    const UnitVerdict inside = edges_verdict(record, direction);
+    if (inside != UnitVerdict::kHit) return inside;
+    if (!is_divisor(record, math_.dot(record.normal, direction))) return UnitVerdict::kDoubt;
+    distance = this->distance(record, direction);
+    return math_.is_normal(distance.t) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
   /// Returns the verdict of the edges alone; kHit if the triangle is hit provided that it is in
@@ -218,7 +220,9 @@ class BasicReferenceBurstUnit : public BurstUnit {
   /// Returns BurstUnit's t and its error for a record that the ray surely hits.
   [[nodiscard]] HitDistance distance(const PolygonRecord& record,
                                      const glm::vec3& direction) const {
-    return distance(record, math_.dot(record.normal, direction));
+    const float v = math_.dot(record.normal, direction);
+    return {math_.divide(record.d, v),
+            static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
   }
 
   /// Returns BurstUnit's P (equation 10); any NaN is 0x7FC00000.
@@ -240,19 +244,6 @@ class BasicReferenceBurstUnit : public BurstUnit {
            math_.exponent_field(v);
   }
 
-  [[nodiscard]] HitDistance distance(const PolygonRecord& record, float v) const {
-    return {math_.divide(record.d, v),
-            static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
-  }
-
-  /// Returns the verdict before the division: from the edges and the range of V.
-  [[nodiscard]] UnitVerdict decide(const PolygonRecord& record, const glm::vec3& direction,
-                                   float v) const {
-    const UnitVerdict inside = edges_verdict(record, direction);
-    if (inside != UnitVerdict::kHit) return inside;
-    return is_divisor(record, v) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
-  }
-
   /// Returns whether two positive distances differ by at most the sum of their errors.
   [[nodiscard]] bool near_tie(const HitDistance& a, const BurstResult& b) const {
     const std::int64_t margin = (std::int64_t{1} << (kTErrorUnit + a.error)) +
@@ -269,13 +260,8 @@ class BasicReferenceBurstUnit : public BurstUnit {
     bool found = false;
     for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
       const PolygonRecord& record = bundle.records[i];
-      const float v = math_.dot(record.normal, direction);
-      UnitVerdict verdict = decide(record, direction, v);
       HitDistance hit;
-      if (verdict == UnitVerdict::kHit) {
-        hit = distance(record, v);
-        if (!math_.is_normal(hit.t)) verdict = UnitVerdict::kDoubt;
-      }
+      const UnitVerdict verdict = this->verdict(record, direction, hit);
       ++counters_.tests;
       counters_.misses += verdict == UnitVerdict::kMiss;
       counters_.hits += verdict == UnitVerdict::kHit;

@@ -63,8 +63,8 @@ TEST(BoardCore, HitsAreTheCpuIntersectors) {
   std::vector<NearestHit> hits(rays.size());
   check.nearest(rays, {}, hits);
   check.occluded(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = limits}, hits);
-  EXPECT_GT(unit.counters().doubts, 0u);
-  EXPECT_GT(unit.counters().clocks, 11 * unit.counters().triangles);
+  EXPECT_GT(unit.counters().edge_doubts, 0u);
+  EXPECT_GT(unit.counters().clocks, 11 * unit.counters().tests);
 }
 
 /// Scenes of other images, one after the other: a board keeps no line of an earlier one.
