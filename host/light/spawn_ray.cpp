@@ -129,9 +129,6 @@ class NeighborClearanceSearch {
   static constexpr double kNormalError = 10.0 * 0x1p-53;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  static RAYGATE_INLINE Vectors3 vectors(const glm::dvec3& v) {
-    return {spread<DoubleQuad>(v.x), spread<DoubleQuad>(v.y), spread<DoubleQuad>(v.z)};
-  }
   /// Returns unit vectors, or 0 for 0.
   static RAYGATE_INLINE Vectors3 unit(const Vectors3& v) {
     const DoubleQuad size = root(dot(v, v));
@@ -168,14 +165,15 @@ class NeighborClearanceSearch {
       return sign_mask(whole(best >= length_)) == (LaneMask{1} << kQuad) - 1;
     };
     for (const glm::dvec3& axis : axes_) {
-      if (try_axis(vectors(axis))) return best;
+      if (try_axis(spread<DoubleQuad>(axis))) return best;
     }
     const Vectors3 normal = unit(cross(y[1] - y[0], y[2] - y[0]));
     if (try_axis(normal) || try_axis(-normal)) return best;
     for (int j = 0; j < 3; ++j) {
       const Vectors3 edge = y[(j + 1) % 3] - y[j];
       for (int k = -1; k < 3; ++k) {
-        const Vectors3 axis = unit(k < 0 ? cross(normal, edge) : cross(edge, vectors(edge_[k])));
+        const Vectors3 axis =
+            unit(k < 0 ? cross(normal, edge) : cross(edge, spread<DoubleQuad>(edge_[k])));
         if (try_axis(axis) || try_axis(-axis)) return best;
       }
     }
@@ -189,7 +187,7 @@ class NeighborClearanceSearch {
     DoubleQuad sum = {}, least = spread<DoubleQuad>(kInfinity);
     LongQuad is_apart = LongQuad{} - 1;
     for (const glm::dvec3& v : vertex_) {
-      const DoubleQuad gap = dot(axis, vectors(v)) - highest;
+      const DoubleQuad gap = dot(axis, spread<DoubleQuad>(v)) - highest;
       is_apart &= gap >= -slack_;
       sum += maximum(gap, DoubleQuad{});
       least = minimum(least, gap);

@@ -98,19 +98,18 @@ struct ConeTraversal {
   }
 };
 
-/// Computes distances beyond which boxes can be skipped for rays with maximum distances `high` (see
+/// Returns distances beyond which boxes can be skipped for rays with maximum distances `high` (see
 /// cutoff_beyond).
-RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, LaneMask active, FloatLanes& cutoffs) {
+RAYGATE_INLINE FloatLanes cutoffs_beyond(const IntLanes& high, LaneMask active) {
   constexpr float kGrow = 1.0f + 0x1p-20f;
   const IntLanes going = lanes_of(active);
-  cutoffs = going ? reinterpret_cast<FloatLanes>(high) * kGrow : FloatLanes{} - 1.0f;
+  return going ? reinterpret_cast<FloatLanes>(high) * kGrow : FloatLanes{} - 1.0f;
 }
 
 /// Updates the cutoffs of a group after changes of `high` and `cones.active`.
 RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
   Cones& cones = walk.cones;
-  FloatLanes cutoffs;
-  cutoffs_beyond(walk.high[group], cones.active[group], cutoffs);
+  const FloatLanes cutoffs = cutoffs_beyond(walk.high[group], cones.active[group]);
   cones.bounds8.cutoff[group] = largest_of(cutoffs);
   if ((walk.split >> group & 1) != 0) walk.ray_bounds8[group].cutoff = cutoffs;
   walk.going &= ~(std::uint64_t{0xFF & ~cones.active[group]} << (8 * group));
@@ -243,7 +242,7 @@ RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
     const FloatLanes size = absolute(walk.block->direction[k][group]);
     bounds8.set(k, walk.cones.whole.octant, size * kDown, size * kUp);
   }
-  cutoffs_beyond(walk.high[group], walk.cones.active[group], bounds8.cutoff);
+  bounds8.cutoff = cutoffs_beyond(walk.high[group], walk.cones.active[group]);
   walk.split |= 1u << group;
 }
 
@@ -354,23 +353,12 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
   }
 }
 
-/// Computes I . E, or I . N, for eight directions.
-RAYGATE_INLINE void side_of(const FloatLanes (&direction)[3], const QuadRecord& record, int plane,
-                            int triangle, FloatLanes& side) {
-  side = (direction[0] * record.word(plane, 0, triangle) +
+/// Returns I . E, or I . N, for eight directions.
+RAYGATE_INLINE FloatLanes side_of(const FloatLanes (&direction)[3], const QuadRecord& record,
+                                  int plane, int triangle) {
+  return (direction[0] * record.word(plane, 0, triangle) +
           direction[1] * record.word(plane, 1, triangle)) +
          direction[2] * record.word(plane, 2, triangle);
-}
-
-/// Computes the least value of the three edges.
-RAYGATE_INLINE void worst_side_of(const FloatLanes (&direction)[3], const QuadRecord& record,
-                                  int triangle, FloatLanes& worst) {
-  side_of(direction, record, 0, triangle, worst);
-  for (int plane = 1; plane < 3; ++plane) {
-    FloatLanes side;
-    side_of(direction, record, plane, triangle, side);
-    worst = minimum(side, worst);
-  }
 }
 
 /// Computes bounds of t from those of |d| and of I . N, t being their quotient. Both are positive,
@@ -402,16 +390,17 @@ RAYGATE_INLINE void test_group(const ConeTraversal& walk, const QuadRecord& reco
                                int group, LaneMask tested, Verdict<IntLanes>& verdict) {
   const auto& from = walk.block->direction;
   const FloatLanes direction[3] = {from[0][group], from[1][group], from[2][group]};
-  FloatLanes worst;
-  worst_side_of(direction, record, triangle, worst);
+  FloatLanes worst = side_of(direction, record, 0, triangle);  // the least value of the edges
+  for (int plane = 1; plane < 3; ++plane) {
+    worst = minimum(side_of(direction, record, plane, triangle), worst);
+  }
   const float bound = record.bounds[triangle];
   verdict.open = tested & ~sign_mask<kCode>(worst < -bound);
   verdict.hit = 0;
   if (verdict.open == 0) return;
   verdict.hit = verdict.open & sign_mask<kCode>(worst > bound);
-  FloatLanes v, low = FloatLanes{} + record.low[triangle],
-                high = FloatLanes{} + record.high[triangle];
-  side_of(direction, record, QuadRecord::kNormal, triangle, v);
+  const FloatLanes v = side_of(direction, record, QuadRecord::kNormal, triangle);
+  FloatLanes low = FloatLanes{} + record.low[triangle], high = FloatLanes{} + record.high[triangle];
   const float v_bound = record.normal_bound[triangle];
   bound_distance(low, high, v - v_bound, v + v_bound);
   verdict.low = bits_in(low);
