@@ -171,7 +171,7 @@ class Bvh {
     if (!is_binary32() && !is_instanced(primitive)) add_rests(triangles_[primitive], corners);
     return corners;
   }
-  /// Prefetches what corners_of(primitive) needs beside the corners in binary32, in steps 0, 1, 2.
+  /// Prefetches the memory that corners_of() reads beside binary32 corners, in steps 0, 1, 2.
   RAYGATE_INLINE void prefetch_rests(std::uint32_t primitive, int step) const {
     if (is_binary32() || is_instanced(primitive)) return;
     const std::uint32_t& triangle = triangles_[primitive];

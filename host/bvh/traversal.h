@@ -180,7 +180,7 @@ RAYGATE_INLINE LaneMask intersect_box(const PacketBounds8& bounds8, const Origin
   return sign_mask<kCode>(enter <= leave);
 }
 
-/// Does the same for the box of a node's child.
+/// Calls intersect_box for the box of a node's child.
 template <Vectors kCode = Vectors::kBaseline, class Origin>
 RAYGATE_INLINE LaneMask intersect_child(const PacketBounds8& bounds8, const Origin (&origin)[3],
                                         int octant, const Bvh::Node& node, int child,

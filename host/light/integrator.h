@@ -13,12 +13,12 @@
 
 namespace raygate {
 
-/// Shades the hits of batches; those of one kind together. Not thread-safe. The order of results
+/// Shades the hits of batches; hits of one kind together. Not thread-safe. The order of results
 /// depends only on the order of the batch, so the radiance of a sample depends only on its rays.
 class Integrator {
  public:
-  /// The references must outlive this object. `kind` may differ from that of `settings` (kLight,
-  /// kEmitters). `light_paths` are combined with kPath and kLight; may be null.
+  /// The references must outlive this object. `kind` may differ from `settings.integrator`
+  /// (kLight, kEmitters). `light_paths` are combined with kPath and kLight; may be null.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
              const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;

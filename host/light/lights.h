@@ -127,7 +127,7 @@ class Lights {
     glm::vec3 spot_axis{0.0f};  ///< for is_spot, as the arguments of spot_falloff()
     float spot_scale = 0.0f, spot_offset = 1.0f;
     float area = 0.0f;         ///< in square units
-    bool is_textured = false;  ///< `emission` is the mean; radiance_at() returns that of a point
+    bool is_textured = false;  ///< `emission` is the mean radiance; see radiance_at()
     std::uint32_t first_patch = 0, patches = 0;
   };
   [[nodiscard]] const Light& light(std::size_t index) const { return lights_[index]; }

@@ -169,7 +169,7 @@ class RaySpawner {
   template <Vectors kCode>
   RAYGATE_INLINE void find_four(const SpawnQuery* queries, SpawnOrigin* origins);
 
-  /// Does the work of find() by a search of nearby triangles.
+  /// Returns O' for a ray by a search of nearby triangles.
   [[nodiscard]] SpawnOrigin search(const Ray& ray, std::uint32_t primitive, SpawnSide side);
 
   const NeighborClearances& clearances_;

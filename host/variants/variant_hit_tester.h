@@ -8,11 +8,11 @@
 
 namespace raygate {
 
-/// In binary32, equals ReferenceBurstUnit but is slower.
+/// Reference model of the pipelined unit. In binary32 it equals ReferenceBurstUnit but is slower.
 using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
 
-/// Rounds inputs to the format first, as the host would; then bit-exact to hit_test_unit with these
-/// parameters.
+/// Reference model of the paper's unit, bit-exact to hit_test_unit with these parameters. Rounds
+/// its inputs to the format first, as the host does.
 using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 
 /// Converts a record to a variant's format: N with d, and each edge, are scaled by powers of two if

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 ///   exponent_bits, digits, rounding ("nearest-even", "toward-zero", "down", "up", "nearest-away"),
 ///   flush, quotient_digits (serial only), fused (no hardware)      see Arithmetic
 ///   doubts           whether the host resolves doubts exactly; otherwise there are no bounds
-///   brought          a folder of modules that replace those of hw/ (synth/brought.py); "": none
+///   brought          a folder of modules that replace modules of hw/ (synth/brought.py); "": none
 ///
 /// CMake verilates the design of each object that hw/ supports.
 struct Variant {

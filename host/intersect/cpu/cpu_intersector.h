@@ -32,16 +32,16 @@ class CpuIntersector : public Intersector {
 /// Computes P and its error with the bits of set_point, and writes them to the hits of a query.
 class PointWriter {
  public:
-  static constexpr std::size_t kMost = 256;  ///< hits that wait
+  static constexpr std::size_t kMost = 256;  ///< maximum of count()
 
   /// `is_common`: all rays start at one point, so that hits of one primitive share its plane, which
   /// is kept for later hits.
   PointWriter(const Bvh& bvh, std::span<const Ray> rays, bool is_common, std::span<NearestHit> hits)
       : bvh_(bvh), rays_(rays), is_common_(is_common), hits_(hits) {}
 
-  /// Number of hits that were added and not written.
+  /// Returns the number of hits that were added but not written yet.
   [[nodiscard]] std::size_t count() const { return count_; }
-  /// Number of all hits that were written.
+  /// Returns the number of all hits that were written.
   [[nodiscard]] std::uint64_t written() const { return written_; }
 
   /// Adds the hit of a ray with a primitive. At most kMost are added before they are written.

@@ -162,8 +162,8 @@ Interval around(const HitDistance& distance, const Math& math) {
 }
 
 /// Implements BurstUnit in the format and rounding of `Math` (Binary32, or Arithmetic of
-/// host/variants): all floats of records, rays and results are numbers of that format. Has the bits
-/// of hit_test_pipeline with these parameters.
+/// host/variants): all floats of records, rays and results are numbers of that format. Results have
+/// the bits of hit_test_pipeline with these parameters.
 template <typename Math>
 class BasicReferenceBurstUnit : public BurstUnit {
  public:
@@ -292,7 +292,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
 /// The reference model in the host's float arithmetic.
 using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
 
-/// Sets P of a hit, as BasicReferenceBurstUnit::point in binary32, and its error.
+/// Sets P of a hit, with the bits of BasicReferenceBurstUnit::point in binary32, and its error.
 inline void set_point(const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit) {
   const auto d = std::bit_cast<std::int32_t>(record.d),
              v = std::bit_cast<std::int32_t>(Binary32::dot(record.normal, direction));

@@ -29,17 +29,14 @@ using test::some_rays;
 class RayCoreTest : public testing::Test {
  protected:
   /// Throws where the core, with the host's help, and CpuIntersector differ.
-  void check(const std::vector<Ray>& rays, const RayQuery& query, std::unique_ptr<CoreUnit> core) {
+  void check(const std::vector<Ray>& rays, RayQuery query, std::unique_ptr<CoreUnit> core) {
     const CoreUnit& unit = *core;
     CheckIntersector intersector(bvh_,
                                  std::make_unique<CoreIntersector>(bvh_, image_, std::move(core)),
                                  std::make_unique<CpuIntersector>(bvh_));
     std::vector<NearestHit> hits(rays.size());
-    if (query.any_hit_before.empty() && query.skip_ids.empty()) {
-      intersector.nearest(rays, query, hits);
-    } else {
-      intersector.occluded(rays, query, hits);
-    }
+    query.with_points = query.any_hit_before.empty() && query.skip_ids.empty();
+    intersector.nearest(rays, query, hits);
     counters_ = unit.counters();
   }
 
