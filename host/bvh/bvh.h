@@ -54,7 +54,7 @@ class RangeMap {
   int shift_ = 0;
 };
 
-/// An instance of a mesh. Its nodes and primitives are those of the mesh's BVH, renumbered from
+/// An instance of a mesh. It has the nodes and primitives of the mesh's BVH, renumbered from
 /// `first` on.
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance

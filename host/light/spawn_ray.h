@@ -50,8 +50,8 @@ struct alignas(64) NeighborClearance {
 /// of `hit`. Lines from that plane to that side then miss `other`.
 [[nodiscard]] bool lies_beyond(const Corners& other, const Corners& hit, int side);
 
-/// The clearances and overlaps of all triangles of a BVH, computed on first use. Those of instances
-/// are not stored. Thread-safe.
+/// The clearances and overlaps of all triangles of a BVH, computed on first use and stored, except
+/// for instances' triangles. Thread-safe.
 class NeighborClearances {
  public:
   /// `bvh` must outlive this object.

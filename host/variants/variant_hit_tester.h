@@ -36,7 +36,7 @@ using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                              std::unique_ptr<BurstUnit> unit);
 
-/// Returns a tester for a serial variant, whose unit (that of the paper) computes P alone.
+/// Returns a tester for a serial variant, whose unit (the paper's) computes P alone.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                              std::unique_ptr<PlaneUnit> unit);
 

@@ -76,7 +76,7 @@ class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
 
-  /// Traces the rays and appends their results to `results`. `lines` are those of a MemoryImage.
+  /// Traces the rays and appends their results to `results`. `lines` are a MemoryImage's.
   virtual void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
                      std::vector<CoreResult>& results) = 0;
 

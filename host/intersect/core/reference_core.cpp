@@ -223,7 +223,6 @@ struct RayTrace {
     traverse();
     if (exact && !ended && is_candidate_nearest()) test(TriangleLine(lines[candidate]), true);
     ++counters.rays;
-    counters.tests += result.tests;
     counters.lines = counters.nodes + counters.tests;
     results.push_back(result);
   }
@@ -297,15 +296,12 @@ struct RayTrace {
     const glm::vec3& direction = ray.ray.direction;
     ++result.tests;
     if (triangle.index == ray.skip_id || triangle.index == ray.source_id) {
-      ++counters.misses;
-      return;
+      return count(UnitVerdict::kMiss, counters);
     }
     const SetUpRecord set = set_up(ray.ray.origin, triangle.corners);
     HitDistance distance;
     const UnitVerdict verdict = unit.verdict(set.record, direction, distance);
-    counters.misses += verdict == UnitVerdict::kMiss;
-    counters.hits += verdict == UnitVerdict::kHit;
-    counters.edge_doubts += verdict == UnitVerdict::kDoubt;
+    count(verdict, counters);
     if (verdict == UnitVerdict::kMiss) return;
     const bool is_sure = verdict == UnitVerdict::kHit && is_good_hit(set, distance.error);
     CoreResult hit = result;

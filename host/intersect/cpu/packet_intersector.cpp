@@ -154,8 +154,7 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
       load_directions(words + kRayWords * kQuad, half[1]);
       IntLanes largest = {};  // largest magnitude of each ray, as bits of a float
       for (int k = 0; k < 3; ++k) {
-        const FloatLanes d =
-            __builtin_shufflevector(half[0][k], half[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
+        const FloatLanes d = join(half[0][k], half[1][k]);
         block.direction[k][group] = d;
         block.negative[k][group] = sign_mask(d < 0.0f);
         const IntLanes size = reinterpret_cast<IntLanes>(d) & 0x7FFFFFFF;

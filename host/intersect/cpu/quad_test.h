@@ -280,7 +280,7 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
 // 3. A . N has one of r |N|_1 and m times that of N, for exact N: 1.1 r L + 26 (m + r) r (s + r)
 //    are added.
 
-/// Four planes of four triangles: those of three edges, and N.
+/// Four planes of each of four triangles: the planes of the edges, and N.
 struct alignas(sizeof(FloatLanes)) QuadRecord {
   static constexpr int kNormal = 3;
 

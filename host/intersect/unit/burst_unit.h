@@ -94,8 +94,8 @@ struct BurstResult {
   }
 };
 
-/// The results of a batch, in the order of bundles and lanes; those of a burst are in the order of
-/// its tests, except that its kHit comes last.
+/// The results of a batch, in the order of bundles and lanes. Results of a burst are in the order
+/// of its tests, except that its kHit comes last.
 using BurstResults = std::vector<BurstResult>;
 
 /// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest
@@ -145,6 +145,14 @@ class PlaneUnit {
 
 /// The unit's verdict on a single test.
 enum class UnitVerdict : std::uint8_t { kMiss, kHit, kDoubt };
+
+/// Counts a test with this verdict.
+inline void count(UnitVerdict verdict, HitCounters& counters) {
+  ++counters.tests;
+  counters.misses += verdict == UnitVerdict::kMiss;
+  counters.hits += verdict == UnitVerdict::kHit;
+  counters.edge_doubts += verdict == UnitVerdict::kDoubt;
+}
 
 /// The distance of a hit. At most 2^(6 + error) numbers of the format separate it from the exact t.
 struct HitDistance {
@@ -262,10 +270,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
       const PolygonRecord& record = bundle.records[i];
       HitDistance hit;
       const UnitVerdict verdict = this->verdict(record, direction, hit);
-      ++counters_.tests;
-      counters_.misses += verdict == UnitVerdict::kMiss;
-      counters_.hits += verdict == UnitVerdict::kHit;
-      counters_.edge_doubts += verdict == UnitVerdict::kDoubt;
+      count(verdict, counters_);
       if (verdict == UnitVerdict::kDoubt) results.push_back({index, lane, i, Kind::kDoubt});
       if (verdict != UnitVerdict::kHit) continue;
       const bool nearer = hit.t < best.t;

@@ -114,10 +114,7 @@ void SerialHitTester::collect(std::uint32_t index, const RayBundle& bundle) {
     for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
       const PolygonRecord& record = bundle.records[i];
       const UnitVerdict verdict = software.edges_verdict(record, direction);
-      ++counters_.tests;
-      counters_.misses += verdict == UnitVerdict::kMiss;
-      counters_.hits += verdict == UnitVerdict::kHit;
-      counters_.edge_doubts += verdict == UnitVerdict::kDoubt;
+      count(verdict, counters_);
       if (verdict == UnitVerdict::kMiss) continue;
       pairs_.push_back({index, static_cast<std::uint32_t>(lane), i, verdict});
       plane_tests_.push_back({direction, record.normal, record.d});
