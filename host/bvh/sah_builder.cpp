@@ -87,7 +87,9 @@ RAYGATE_INLINE void cut_between_slices(std::span<const Primitive> run, const Sli
                                        float unit, Cut& best) {
   Box boxes[3][kBins];
   std::uint32_t counts[3][kBins] = {};
-  for (auto& axis : boxes) std::fill_n(axis, slices.count, empty_box());
+  for (auto& axis : boxes) {
+    for (int i = 0; i < slices.count; ++i) axis[i] = empty_box();
+  }
   const auto put = [&](const Primitive& primitive) __attribute__((always_inline)) {
     const Box box = primitive.box();
     const IntLanes slice = slices.of(box);

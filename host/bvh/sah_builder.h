@@ -94,7 +94,8 @@ struct BinaryBvh {
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(primitives.size()); }
   [[nodiscard]] bool is_leaf(Ref ref) const { return ref >= size(); }
   [[nodiscard]] RAYGATE_INLINE Box box(Ref ref) const {
-    return is_leaf(ref) ? primitives[ref - size()].box() : nodes[ref].box;
+    return load<Box>(is_leaf(ref) ? static_cast<const void*>(&primitives[ref - size()])
+                                  : &nodes[ref].box);
   }
   [[nodiscard]] std::uint32_t first(Ref ref) const {
     return is_leaf(ref) ? ref - size() : nodes[ref].first;
