@@ -119,7 +119,7 @@ class CoreModel : public CoreUnit {
   }
   [[nodiscard]] std::uint64_t visits() const {
     std::uint64_t sum = 0;
-    for (const Core& core : cores_) sum += core.counters().nodes + core.counters().triangles;
+    for (const Core& core : cores_) sum += core.counters().nodes + core.counters().tests;
     return sum;
   }
 

@@ -139,11 +139,11 @@ class CorePort {
     const unsigned events = model_->events_o;
     counters_.rays += events & 1;
     counters_.nodes += events >> 1 & 1;
-    counters_.triangles += events >> 2 & 1;
+    counters_.tests += events >> 2 & 1;
     counters_.hits += events >> 3 & 1;
     counters_.misses += events >> 4 & 1;
-    counters_.doubts += events >> 5 & 1;
-    counters_.near_ties += events >> 6 & 1;
+    counters_.edge_doubts += events >> 5 & 1;
+    counters_.depth_doubts += events >> 6 & 1;
     counters_.overflows += events >> 7 & 1;
     counters_.lines += events >> 8 & 1;
     counters_.waits += events >> 9 & 1;

@@ -96,10 +96,9 @@ std::string trace_pixel(const CoreFileOptions& files, const Bvh& bvh,
               : "triangle " + std::to_string(bvh.triangle_of(hit.primitive)) + " at t " +
                     std::to_string(hit.t.low);
   return text + ": " + format_count(counters.clocks, "clock") + ", " +
-         format_count(counters.nodes, "node") + ", " +
-         format_count(counters.triangles, "triangle") + ", " +
-         format_count(counters.lines, "line") + " read; wrote " + printable(files.wave.string()) +
-         "\n";
+         format_count(counters.nodes, "node") + ", " + format_count(counters.tests, "triangle") +
+         ", " + format_count(counters.lines, "line") + " read; wrote " +
+         printable(files.wave.string()) + "\n";
 }
 
 }  // namespace raygate

@@ -15,7 +15,7 @@ class InputError : public std::runtime_error {
   InputError(const std::string& file, std::size_t line, const std::string& what)
       : std::runtime_error(location(file, line) + what) {}
 
-  /// Returns "file:line: ", or "file: " for line 0, which is that of a file without lines.
+  /// Returns "file:line: ", or "file: " if `line` is 0, as for a file without lines.
   [[nodiscard]] static std::string location(const std::string& file, std::size_t line) {
     std::string place = file;
     if (line != 0) place.append(":").append(std::to_string(line));

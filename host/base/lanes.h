@@ -2,9 +2,11 @@
 // compiled for each instruction set by in_vectors (host/base/vectors.h).
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -26,6 +28,21 @@ inline constexpr int kQuad = 4;
 
 /// A set of lanes; bit k belongs to lane k.
 using LaneMask = std::uint32_t;
+
+/// The indices of the set bits of a word, lowest first, for range-based loops.
+template <class Word>
+class SetBits {
+ public:
+  RAYGATE_INLINE explicit SetBits(Word word) : left_(word) {}
+  RAYGATE_INLINE SetBits begin() const { return *this; }
+  RAYGATE_INLINE std::default_sentinel_t end() const { return {}; }
+  RAYGATE_INLINE bool operator==(std::default_sentinel_t) const { return left_ == 0; }
+  RAYGATE_INLINE int operator*() const { return std::countr_zero(left_); }
+  RAYGATE_INLINE void operator++() { left_ &= left_ - 1; }
+
+ private:
+  Word left_;
+};
 
 /// GCC's and Clang's vector types: element-wise arithmetic, comparisons giving 0 or -1, and
 /// `mask ? a : b`. Functions that are not inlined must not take or return them, because the calling
@@ -257,8 +274,6 @@ RAYGATE_INLINE DoubleQuad widen(const FloatQuad& from) {
 /// Vector of floats that fills a register; GCC compares wider vectors word by word.
 template <Vectors kCode>
 using NativeFloats = Vec<float, kCode == Vectors::kBaseline ? kQuad : kLanes>;
-template <Vectors kCode>
-using NativeInts = Vec<std::int32_t, kCode == Vectors::kBaseline ? kQuad : kLanes>;
 /// Joins quad(0) and, if T has twice as many lanes, quad(1).
 template <class T, class Quad>
 RAYGATE_INLINE T joined(const Quad& quad) {
@@ -332,17 +347,6 @@ RAYGATE_INLINE void store_records(const T (&words)[kWords], Record* const (&reco
         store(reinterpret_cast<char*>(records[k]) + 4 * first, rows[k]);
       }
     }
-  }
-}
-
-/// Computes u x v, and for each component the sum of the magnitudes of its two products.
-template <class T>
-RAYGATE_INLINE void cross(const T (&u)[3], const T (&v)[3], T (&value)[3], T (&size)[3]) {
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const T plus = u[i] * v[j], minus = u[j] * v[i];
-    value[k] = plus - minus;
-    size[k] = absolute(plus) + absolute(minus);
   }
 }
 

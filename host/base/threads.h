@@ -61,7 +61,7 @@ void for_each_on_threads(int threads, std::size_t count, const Work& work) {
       for (int i = 1; i < threads && static_cast<std::size_t>(i) < count; ++i) {
         others.emplace_back(run);
       }
-    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): these will do
+    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): fewer suffice
     }
     run();
   }

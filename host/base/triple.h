@@ -51,8 +51,8 @@ template <class T>
 RAYGATE_INLINE Triple<T> zero() {
   return {T{}, T{}, T{}};
 }
-template <class T>
-RAYGATE_INLINE Triple<T> spread(const glm::vec3& v) {
+template <class T, class Element>
+RAYGATE_INLINE Triple<T> spread(const glm::vec<3, Element>& v) {
   return {spread<T>(v.x), spread<T>(v.y), spread<T>(v.z)};
 }
 template <class T>

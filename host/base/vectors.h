@@ -108,7 +108,7 @@ template <class Body>
 /// not take or return vectors by value.
 template <class Body>
 auto in_vectors(const Body& body) {
-  // Asked in baseline builds, too: it refuses a wrong RAYGATE_VECTORS.
+  // Called in baseline builds, too, to reject an invalid RAYGATE_VECTORS.
   [[maybe_unused]] const Vectors vectors = vectors_in_use();
 #ifdef RAYGATE_AVX2
   if (vectors == Vectors::kAvx512) return detail::in_avx512(body);

@@ -58,11 +58,9 @@ class BvhWriter {
     bvh_.corners_.resize(9 * primitives + Bvh::kMaxLeafSize);
     if (tree_.size() == 0) return;
     number_primitives();
-    Box whole;
-    tree_.get_box(tree_.root(), whole);
-    unit_ = unit_of(whole);
+    unit_ = unit_of(tree_.box(tree_.root()));
     plan_all();
-    if (tree_.is_leaf(tree_.root()) || plans_[tree_.root()].is_leaf) {
+    if (is_leaf(tree_.root())) {
       put_child(bvh_.nodes_[0], 0, tree_.root());
     } else {
       write_all();
@@ -106,11 +104,7 @@ class BvhWriter {
     std::ranges::fill(node.child, Bvh::Child{});
   }
 
-  [[nodiscard]] float area(Ref ref) const {
-    Box box;
-    tree_.get_box(ref, box);
-    return half_area(box, unit_);
-  }
+  [[nodiscard]] float area(Ref ref) const { return half_area(tree_.box(ref), unit_); }
   [[nodiscard]] float cost(Ref ref, int children) const {
     return tree_.is_leaf(ref) ? kLeafCost[1] * area(ref) : plans_[ref].cost[children - 1];
   }
@@ -170,7 +164,7 @@ class BvhWriter {
     for (const Ref child : tree_.nodes[ref].child) collect_tasks(child, large, tasks);
   }
 
-  /// Collects the children of a wide node if `ref` becomes `most` of them.
+  /// Collects the children of a wide node if `ref` becomes at most `most` of them.
   void collect_children(Ref ref, int most, Ref (&children)[Bvh::kWidth], int& count) const {
     if (most > 1 && !tree_.is_leaf(ref)) {
       const Plan& plan = plans_[ref];
@@ -188,8 +182,7 @@ class BvhWriter {
 
   /// Stores a leaf or an inner node, whose index the caller sets, in a node.
   RAYGATE_INLINE void put_child(Bvh::Node& node, int i, Ref ref) {
-    Box box;
-    tree_.get_box(ref, box);
+    const Box box = tree_.box(ref);
     for (int k = 0; k < 3; ++k) {
       node.bounds[0][k][i] = box[k];
       node.bounds[1][k][i] = -box[k + 4];
@@ -230,9 +223,7 @@ class BvhWriter {
                    std::vector<Task>* tasks) {
     Ref children[Bvh::kWidth];
     int count = 0;
-    collect_children(tree_.nodes[ref].child[0], plans_[ref].left[Bvh::kWidth - 1], children, count);
-    collect_children(tree_.nodes[ref].child[1], Bvh::kWidth - plans_[ref].left[Bvh::kWidth - 1],
-                     children, count);
+    collect_children(ref, Bvh::kWidth, children, count);
     clear(nodes[index]);
     for (int i = 0; i < count; ++i) {
       put_child(nodes[index], i, children[i]);
@@ -293,8 +284,7 @@ void Bvh::build(std::span<const glm::vec3> positions, std::span<const Triangle> 
     const std::size_t end = std::min((task + 1) * kTreeTask, primitives.size());
     for (std::size_t i = task * kTreeTask; i < end; ++i) {
       const auto& [a, b, c] = triangles[i].vertices;
-      Box box;
-      box_around(positions[a], positions[b], positions[c], box);
+      const Box box = box_around(positions[a], positions[b], positions[c]);
       primitives[i] =
           Primitive(box, is_left_out(triangles[i]) ? kLeftOut : static_cast<std::uint32_t>(i));
     }

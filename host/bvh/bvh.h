@@ -54,7 +54,7 @@ class RangeMap {
   int shift_ = 0;
 };
 
-/// An instance of a mesh. Its nodes and primitives are those of the mesh's BVH, renumbered from
+/// An instance of a mesh. It has the nodes and primitives of the mesh's BVH, renumbered from
 /// `first` on.
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance
@@ -171,7 +171,7 @@ class Bvh {
     if (!is_binary32() && !is_instanced(primitive)) add_rests(triangles_[primitive], corners);
     return corners;
   }
-  /// Prefetches what corners_of(primitive) needs beside the corners in binary32, in steps 0, 1, 2.
+  /// Prefetches the memory that corners_of() reads beside binary32 corners, in steps 0, 1, 2.
   RAYGATE_INLINE void prefetch_rests(std::uint32_t primitive, int step) const {
     if (is_binary32() || is_instanced(primitive)) return;
     const std::uint32_t& triangle = triangles_[primitive];

@@ -62,8 +62,7 @@ void PacketTraversal::set_cutoff(int lane, double t) { rays_.cutoff[lane] = cuto
 
 /// Returns the rays that meet the box of one triangle of a leaf.
 RAYGATE_INLINE LaneMask PacketTraversal::meet(const FloatCorners& corners) const {
-  Box box;
-  box_around(corners[0], corners[1], corners[2], box);
+  const Box box = box_around(corners[0], corners[1], corners[2]);
   float near[3], far[3];
   for (int k = 0; k < 3; ++k) {
     const bool negative = (octant_ >> k & 1) != 0;

@@ -46,12 +46,11 @@ struct Slices {
       scale[k] = extent > 0.0f ? std::min(static_cast<float>(count) / extent, kMost) : 0.0f;
     }
   }
-  /// Computes the bins of a box's centre; lanes 0 to 2.
-  RAYGATE_INLINE void of(const Box& box, IntLanes& slice) const {
+  /// Returns the bins of a box's centre; lanes 0 to 2.
+  [[nodiscard]] RAYGATE_INLINE IntLanes of(const Box& box) const {
     Box middle = (middle_of(box) - low) * scale;
     middle[3] = 0.0f;
-    slice = __builtin_convertvector(middle, IntLanes);
-    slice = slice < count - 1 ? slice : IntLanes{} + (count - 1);
+    return minimum(whole(middle), IntLanes{} + (count - 1));
   }
 };
 
@@ -62,31 +61,18 @@ struct Cut {
   int part = 0;
 };
 
-/// Computes the bounds of a range's primitives, and of their centres.
-RAYGATE_INLINE void find_bounds(std::span<const Primitive> run, Box& bounds, Box& middles) {
-  clear(bounds);
-  clear(middles);
-  for (const Primitive& primitive : run) {
-    Box box;
-    primitive.get(box);
-    grow(bounds, box);
-    grow(middles, middle_of(box));
-  }
-}
-
 /// Finds the cheapest split between parts with these boxes and counts.
 RAYGATE_INLINE void find_cut(const Box* boxes, const std::uint32_t* counts, int parts, int axis,
                              float unit, Cut& best) {
   float right_cost[kBins];
-  Box box;
-  clear(box);
+  Box box = empty_box();
   std::uint32_t count = 0;
   for (int part = parts - 1; part > 0; --part) {
     grow(box, boxes[part]);
     count += counts[part];
     right_cost[part] = count == 0 ? kNever : half_area(box, unit) * static_cast<float>(count);
   }
-  clear(box);
+  box = empty_box();
   count = 0;
   for (int part = 1; part < parts; ++part) {
     grow(box, boxes[part - 1]);
@@ -102,13 +88,11 @@ RAYGATE_INLINE void cut_between_slices(std::span<const Primitive> run, const Sli
   Box boxes[3][kBins];
   std::uint32_t counts[3][kBins] = {};
   for (auto& axis : boxes) {
-    for (int i = 0; i < slices.count; ++i) clear(axis[i]);
+    for (int i = 0; i < slices.count; ++i) axis[i] = empty_box();
   }
   const auto put = [&](const Primitive& primitive) __attribute__((always_inline)) {
-    Box box;
-    IntLanes slice;
-    primitive.get(box);
-    slices.of(box, slice);
+    const Box box = primitive.box();
+    const IntLanes slice = slices.of(box);
     for (int axis = 0; axis < 3; ++axis) {
       grow(boxes[axis][slice[axis]], box);
       ++counts[axis][slice[axis]];
@@ -163,7 +147,7 @@ RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
   for (int axis = 0; axis < 3; ++axis) {
     sort_along(run, axis);
     Box boxes[kFew];
-    for (std::size_t i = 0; i < run.size(); ++i) run[i].get(boxes[i]);
+    for (std::size_t i = 0; i < run.size(); ++i) boxes[i] = run[i].box();
     find_cut(boxes, kOnes, static_cast<int>(run.size()), axis, unit, best);
   }
   if (best.axis != 2) sort_along(run, best.axis);
@@ -174,8 +158,11 @@ RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
 std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left, Box& box) {
   return in_vectors([&](auto) RAYGATE_BODY -> std::uint32_t {
     const auto size = static_cast<std::uint32_t>(run.size());
-    Box bounds, middles;
-    find_bounds(run, bounds, middles);
+    Box bounds = empty_box(), middles = empty_box();  // of the primitives, and of their centres
+    for (const Primitive& primitive : run) {
+      grow(bounds, primitive.box());
+      grow(middles, middle_of(primitive.box()));
+    }
     box = bounds;
     if (size == 2) return 1;
     Cut cut;

@@ -17,8 +17,7 @@ namespace raygate {
 /// is the minimum of each lane. Lanes 3 and 7 are not used.
 using Box = FloatLanes;
 
-/// Makes the box empty.
-RAYGATE_INLINE void clear(Box& box) { box = FloatLanes{} + std::numeric_limits<float>::infinity(); }
+RAYGATE_INLINE Box empty_box() { return Box{} + std::numeric_limits<float>::infinity(); }
 
 RAYGATE_INLINE void grow(Box& box, const Box& other) { box = other < box ? other : box; }
 
@@ -35,14 +34,13 @@ RAYGATE_INLINE float half_area(const Box& box, float unit) {
   return sizes[0] * sizes[1] + sizes[1] * sizes[2] + sizes[2] * sizes[0];
 }
 
-/// Sets `box` to the bounds of three corners, widened by one float on every side. Finite for
-/// coordinates below the largest float.
-RAYGATE_INLINE void box_around(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
-                               Box& box) {
+/// Returns the bounds of three corners, widened by one float on every side. Finite for coordinates
+/// below the largest float.
+RAYGATE_INLINE Box box_around(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const Box corners[3] = {{a.x, a.y, a.z, 0.0f, -a.x, -a.y, -a.z, 0.0f},
                           {b.x, b.y, b.z, 0.0f, -b.x, -b.y, -b.z, 0.0f},
                           {c.x, c.y, c.z, 0.0f, -c.x, -c.y, -c.z, 0.0f}};
-  box = corners[0];
+  Box box = corners[0];
   grow(box, corners[1]);
   grow(box, corners[2]);
   // The next float below: smaller bits for a positive float, larger bits for a negative one, and
@@ -50,8 +48,7 @@ RAYGATE_INLINE void box_around(const glm::vec3& a, const glm::vec3& b, const glm
   const IntLanes bits = reinterpret_cast<IntLanes>(box);
   const IntLanes zero = (bits & 0x7FFFFFFF) == 0;
   const IntLanes below = bits + ((bits > 0) | 1);  // -1 where positive: no lane overflows
-  box = reinterpret_cast<FloatLanes>(zero ? IntLanes{} + static_cast<std::int32_t>(0x80000001u)
-                                          : below);
+  return reinterpret_cast<Box>(zero ? IntLanes{} + static_cast<std::int32_t>(0x80000001u) : below);
 }
 
 /// A primitive of a BinaryBvh: its box, and a number of the user's.
@@ -67,7 +64,7 @@ struct Primitive {
     number = own_number;
   }
 
-  RAYGATE_INLINE void get(Box& box) const { std::memcpy(&box, this, sizeof box); }
+  [[nodiscard]] RAYGATE_INLINE Box box() const { return load<Box>(this); }
   /// Returns the box's centre along an axis. Sides are halved first, so that the sum is finite.
   [[nodiscard]] RAYGATE_INLINE float middle(int axis) const {
     return 0.5f * low[axis] - 0.5f * turned_high[axis];
@@ -96,12 +93,9 @@ struct BinaryBvh {
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(primitives.size()); }
   [[nodiscard]] bool is_leaf(Ref ref) const { return ref >= size(); }
-  RAYGATE_INLINE void get_box(Ref ref, Box& box) const {
-    if (is_leaf(ref)) {
-      primitives[ref - size()].get(box);
-    } else {
-      box = nodes[ref].box;
-    }
+  [[nodiscard]] RAYGATE_INLINE Box box(Ref ref) const {
+    return load<Box>(is_leaf(ref) ? static_cast<const void*>(&primitives[ref - size()])
+                                  : &nodes[ref].box);
   }
   [[nodiscard]] std::uint32_t first(Ref ref) const {
     return is_leaf(ref) ? ref - size() : nodes[ref].first;

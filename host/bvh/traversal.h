@@ -23,8 +23,8 @@ RAYGATE_INLINE bool any_leaf(const Bvh& bvh, const Boxes& boxes, const Visit& vi
   for (int depth = 1; depth > 0;) {
     Bvh::Node room;
     const Bvh::Node& node = tree.node(waiting[--depth], room);
-    for (LaneMask met = boxes(node); met != 0; met &= met - 1) {
-      const Bvh::Child child = node.child[std::countr_zero(met)];
+    for (const int i : SetBits(boxes(node))) {
+      const Bvh::Child child = node.child[i];
       tree.prefetch(child);
       if (child.count == 0) {
         waiting[depth++] = child.first;
@@ -180,7 +180,7 @@ RAYGATE_INLINE LaneMask intersect_box(const PacketBounds8& bounds8, const Origin
   return sign_mask<kCode>(enter <= leave);
 }
 
-/// Does the same for the box of a node's child.
+/// Calls intersect_box for the box of a node's child.
 template <Vectors kCode = Vectors::kBaseline, class Origin>
 RAYGATE_INLINE LaneMask intersect_child(const PacketBounds8& bounds8, const Origin (&origin)[3],
                                         int octant, const Bvh::Node& node, int child,

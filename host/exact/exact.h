@@ -191,7 +191,7 @@ struct Barycentric {
 [[nodiscard]] glm::dvec3 triangle_normal(const Corners& triangle);
 
 /// Returns 1 if a, b, c are in counter-clockwise order, -1 if clockwise, 0 if they are exactly
-/// collinear. Coordinates are as those of Corners, of any finite magnitude that a float can have.
+/// collinear. Coordinates are multiples of 2^-149, of any finite magnitude that a float can have.
 [[nodiscard]] int orient2d(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c);
 
 /// Returns 1 if the closed polygon's signed area is positive (counter-clockwise), -1 if negative, 0

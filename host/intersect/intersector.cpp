@@ -21,11 +21,6 @@ void Intersector::nearest(std::span<const Ray> rays, const RayQuery& query,
   trace(rays, query, hits);
 }
 
-void Intersector::occluded(std::span<const Ray> rays, RayQuery query, std::span<NearestHit> hits) {
-  query.with_points = false;
-  nearest(rays, query, hits);
-}
-
 void throw_unscaled(const Ray& ray) {
   const glm::vec3& d = ray.direction;
   char text[160];

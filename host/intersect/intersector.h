@@ -54,7 +54,7 @@ struct IntersectCounters {
   std::uint64_t exact_depth = 0;   ///< exact comparisons of two hits, or of a hit and t_max
   std::uint64_t ended_early = 0;   ///< rays ended early by RayQuery::any_hit_before
   std::uint64_t records = 0;       ///< polygon records made
-  double seconds = 0.0;            ///< spent in nearest() and occluded()
+  double seconds = 0.0;            ///< spent in nearest()
 
   IntersectCounters& operator+=(const IntersectCounters& other) {
     hit += other.hit;
@@ -91,9 +91,9 @@ struct RayWork {
 };
 
 /// Options of a search for many rays. Spans must outlive it, and are empty or have one element per
-/// ray. Those from `skip_ids` on are for Intersector::occluded.
+/// ray.
 struct RayQuery {
-  /// All rays start at one point (the camera, a light), which some engines make use of. Does not
+  /// All rays start at one point (the camera, a light). Some engines are faster then. Does not
   /// change results.
   bool common_origin = false;
   /// Positive. Only hits with exact t < t_max[i] count; +infinity: no limit.
@@ -111,8 +111,7 @@ struct RayQuery {
   std::span<const std::uint32_t> skip_ids{};
   /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
   std::span<const float> any_hit_before{};
-  /// nearest() computes NearestHit::point.
-  bool with_points = true;
+  bool with_points = true;  ///< NearestHit::point is computed
 
   /// Returns t_max[i], or +infinity if t_max is empty.
   [[nodiscard]] float t_max_of(std::size_t i) const {
@@ -120,7 +119,7 @@ struct RayQuery {
   }
 };
 
-/// What an engine makes use of.
+/// Properties of an engine, for callers that prepare its queries.
 struct EngineTraits {
   /// Best number of rays per query: about 16,384 for each test done at the same time.
   std::size_t batch = std::size_t{1} << 14;
@@ -142,14 +141,10 @@ class Intersector {
   /// std::invalid_argument is thrown.
   void nearest(std::span<const Ray> rays, const RayQuery& query, std::span<NearestHit> hits);
 
-  /// Sets hits[i] to a hit of rays[i] with t < any_hit_before[i] if there is one, otherwise to the
-  /// nearest hit. Points are not computed. Directions are as in nearest().
-  void occluded(std::span<const Ray> rays, RayQuery query, std::span<NearestHit> hits);
-
   [[nodiscard]] virtual IntersectCounters counters() const = 0;
 
  protected:
-  /// Does the work of nearest() and occluded(); `hits` are initialised to misses, and `work` to 0.
+  /// Does the work of nearest(); `hits` are initialised to misses, and `work` to 0.
   virtual void trace(std::span<const Ray> rays, const RayQuery& query,
                      std::span<NearestHit> hits) = 0;
 

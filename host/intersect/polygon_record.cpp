@@ -205,8 +205,7 @@ void make_planes(const PlaneViews& views, float (&words)[4][kQuad]) {
     store(words[3], narrow(d));
     return sign_mask(whole(good));
   });
-  for (LaneMask left = ~good_lanes & ((1u << kQuad) - 1); left != 0; left &= left - 1) {
-    const int i = std::countr_zero(left);
+  for (const int i : SetBits(~good_lanes & ((1u << kQuad) - 1))) {
     const PolygonRecord plane = make_plane(views.origins[i], views.triangles[i]);
     for (int k = 0; k < 3; ++k) words[k][i] = plane.normal[k];
     words[3][i] = plane.d;

@@ -107,17 +107,4 @@ RAYGATE_INLINE Bits point_error_of(const Bits& d, const Bits& v, const Bits& gra
   return in_range ? (grazing + (kBias - 18)) << 23 : Bits{} + 0x7F800000;
 }
 
-/// Computes P of a plane (N, d) and a direction in each lane, and the bits of its error, as
-/// set_point does. `largest`: the largest exponent field of N.
-template <class Floats, class Ints>
-RAYGATE_INLINE void plane_points(const Floats (&n)[3], const Floats& d, const Ints& largest,
-                                 const Floats (&direction)[3], Floats (&point)[3], Ints& error) {
-  const Floats v = 0.0f + ((n[0] * direction[0] + n[1] * direction[1]) + n[2] * direction[2]);
-  error = point_error_of(bits_in(d), bits_in(v), grazing_of(largest, bits_in(v)));
-  for (int k = 0; k < 3; ++k) {
-    const Floats p = d * direction[k] / v;
-    point[k] = p == p ? p : float_of(Ints{} + 0x7FC00000);
-  }
-}
-
 }  // namespace raygate

@@ -32,8 +32,8 @@ namespace raygate {
 /// instead, unless Ns is at most 1 (1 is the default).
 ///
 /// A metallic-roughness material has the lobes of MetallicRoughnessLobes instead: `diffuse` is the
-/// base below the facets, `glossy` the reflection of rough facets, `mirror` that of smooth ones;
-/// glass has `mirror` and `transmission`. For rough glass these two are its albedos at normal
+/// base below the facets, `glossy` the reflection of rough facets, `mirror` of smooth ones; glass
+/// has `mirror` and `transmission`. For rough glass these two are its albedos at normal
 /// incidence, and eval(), sample() and pdf() scatter to both sides.
 ///
 /// T is float or FloatLanes: hits of one kind, each with its own material.

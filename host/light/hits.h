@@ -40,7 +40,7 @@ struct alignas(16) ScatteredRay {
   }
 };
 
-/// Packs masks into the flags of such records: bit k is mask k.
+/// Packs masks into the flags of a ScatteredRay or LightSample: bit k is mask k.
 template <class T, class... Masks>
 RAYGATE_INLINE T flag_words(const Masks&... masks) {
   WordOf<T> flags{};
@@ -78,7 +78,7 @@ struct PathLanes {
                                                     const WordOf<T>& history) {
     return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
   }
-  /// Stores the words of the records.
+  /// Stores the words of the path states.
   RAYGATE_INLINE void put(T* word) const {
     for_each_word(*this, [&](const auto& member) RAYGATE_BODY { *word++ = float_of(member); });
   }
@@ -104,7 +104,7 @@ struct PathLanes {
 struct HitBlock {
   const RayBatch* batch = nullptr;
   std::size_t begin = 0;                             ///< in the batch
-  std::vector<SurfaceHit> places;                    ///< face is null: no hit
+  std::vector<SurfaceHit> places;                    ///< of the hits
   std::vector<const MaterialParameters*> materials;  ///< of the hits
   std::vector<glm::vec3> radiance;                   ///< along the ray, times the path's throughput
   std::vector<LightSample> light_samples;            ///< `light_samples_per_hit` for each hit

@@ -1,6 +1,7 @@
 #include "host/light/integrator.h"
 
 #include <algorithm>
+#include <numeric>
 #include <type_traits>
 
 #include "host/base/vectors.h"
@@ -18,8 +19,7 @@ constexpr std::size_t kMostLightSamples = 1 << 16;  // per block: 3 MB
 /// Rays continue through holes.
 void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
                    std::span<const std::uint32_t> at) {
-  shade_in_lanes(shading, block, kind, at, [](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
+  shade_in_lanes(shading, block, kind, at, []<class T>(Hits<T>& hits) RAYGATE_BODY {
     const T facing = at_least(dot(hits.surface.normal, hits.surface.view), 0.0f);
     const bool is_seen = (hits.kind & kShadowCatcher) == 0;
     const Triple<T> colour = is_seen ? hits.surface.colour : zero<T>();
@@ -70,6 +70,7 @@ Integrator::Integrator(IntegratorKind kind, const PreparedScene& prepared, const
   block_.light_samples.resize(block_size_ * block_.light_samples_per_hit);
   block_.scattered.resize(block_size_ * block_.scattered_per_hit);
   kinds_.resize(block_size_);
+  query_at_.resize(block_size_);
 }
 
 void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, std::size_t begin,
@@ -98,9 +99,8 @@ void Integrator::shade(const RayBatch& batch, std::span<const NearestHit> hits, 
   }
   origins_.resize(spawn_queries_.size());
   spawner_.find(spawn_queries_, origins_);
-  const SpawnOrigin* origins = origins_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    if (kinds_[i] != kHitKinds) output_hit(i, origins, output);
+    if (kinds_[i] != kHitKinds) output_hit(i, output);
   }
 }
 
@@ -145,18 +145,14 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     block_.materials[i] = is_there ? &material : &hole_;
     if (is_there && may_be_first) note_first_surface(i, hit, output);
     kinds_[i] = block_.materials[i]->kind | weights_needed(scene, block_.places[i]);
-    ++first_[kinds_[i] + 1];
+    ++first_[kinds_[i]];
   }
   add_infinite_light(output);
-  for (HitKind kind = 0; kind < kHitKinds; ++kind) first_[kind + 1] += first_[kind];
-  order_.resize(first_[kHitKinds]);
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());  // the end of each kind
+  order_.resize(first_.back());
   for (std::size_t i = count; i-- > 0;) {
-    if (kinds_[i] != kHitKinds) {
-      order_[--first_[kinds_[i] + 1]] = static_cast<std::uint32_t>(i);
-    }
+    if (kinds_[i] != kHitKinds) order_[--first_[kinds_[i]]] = static_cast<std::uint32_t>(i);
   }
-  first_.erase(first_.begin());
-  first_.push_back(static_cast<std::uint32_t>(order_.size()));
 }
 
 /// Records the hit at position i if it is the first surface of its path.
@@ -221,8 +217,8 @@ void Integrator::add_infinite_light(ShadingOutput& output) {
   });
 }
 
-/// Drops scattered rays that contribute nothing, and lists spawn queries for the light samples and
-/// rays left of the hit at position i.
+/// Drops scattered rays that contribute nothing, and lists spawn queries for the remaining light
+/// samples and rays of the hit at position i.
 void Integrator::list_spawn_queries(std::size_t i) {
   const SurfaceHit& place = block_.places[i];
   bool any_at[2] = {};  // by side
@@ -239,8 +235,9 @@ void Integrator::list_spawn_queries(std::size_t i) {
   }
   if (any_at[0] || any_at[1]) spawner_.prefetch(place.primitive);
   for (const SpawnSide side : {SpawnSide::kIncident, SpawnSide::kTransmitted}) {
-    if (any_at[static_cast<int>(side)])
-      spawn_queries_.push_back({place.ray, place.primitive, side});
+    if (!any_at[static_cast<int>(side)]) continue;
+    query_at_[i][static_cast<int>(side)] = static_cast<std::uint32_t>(spawn_queries_.size());
+    spawn_queries_.push_back({place.ray, place.primitive, side});
   }
 }
 
@@ -255,29 +252,26 @@ bool Integrator::leaves(const SurfaceHit& place, ScatteredRay& scattered) const 
   return scattered.has_flat != 0 && leaves(scattered.flat);
 }
 
-/// Outputs the results of the hit at position i. `origins` are those of its spawn queries and of
-/// the hits after it. Rays to a side without an origin are dropped.
-void Integrator::output_hit(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output) {
+/// Outputs the results of the hit at position i. Rays to a side without an origin are dropped.
+void Integrator::output_hit(std::size_t i, ShadingOutput& output) {
   const std::uint32_t sample = block_.state(i).sample;
   const SurfaceHit& place = block_.places[i];
   output.radiance[sample] += block_.radiance[i];
-  const SpawnOrigin* points[2] = {};  // by side
-  const auto* const end = spawn_queries_.data() + spawn_queries_.size();
-  for (const auto* asked = spawn_queries_.data() + (origins - origins_.data());
-       asked != end && asked->ray == place.ray; ++asked) {
-    points[static_cast<int>(asked->side)] = origins++;
-  }
   for (const LightSample& light : block_.light_samples_of(i)) {
-    if (light.is_asked == 0 || !*points[light.is_transmitted]) continue;
+    if (light.is_asked == 0) continue;
+    const SpawnOrigin& origin = origins_[query_at_[i][light.is_transmitted]];
+    if (!origin) continue;
     ShadowRay& shadow = output.shadows.emplace_back();
     static_cast<LightSample&>(shadow) = light;
     shadow.sample = sample;
-    shadow.surface = **points[light.is_transmitted];
+    shadow.surface = *origin;
     shadow.surface_primitive = place.primitive;
   }
   for (const ScatteredRay& scattered : block_.scattered_of(i)) {
-    if (scattered.is_wanted == 0 || !*points[scattered.is_transmitted]) continue;
-    output.next.rays.push_back({**points[scattered.is_transmitted], scattered.direction});
+    if (scattered.is_wanted == 0) continue;
+    const SpawnOrigin& origin = origins_[query_at_[i][scattered.is_transmitted]];
+    if (!origin) continue;
+    output.next.rays.push_back({*origin, scattered.direction});
     output.next.sources.push_back(place.primitive);
     output.next.states.push_back(scattered.state);
   }

@@ -1,6 +1,7 @@
 // Integrator: shades the hits of a batch of rays and spawns shadow rays and scattered rays.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -12,12 +13,12 @@
 
 namespace raygate {
 
-/// Shades the hits of batches; those of one kind together. Not thread-safe. The order of results
+/// Shades the hits of batches; hits of one kind together. Not thread-safe. The order of results
 /// depends only on the order of the batch, so the radiance of a sample depends only on its rays.
 class Integrator {
  public:
-  /// The references must outlive this object. `kind` may differ from that of `settings` (kLight,
-  /// kEmitters). `light_paths` are combined with kPath and kLight; may be null.
+  /// The references must outlive this object. `kind` may differ from `settings.integrator`
+  /// (kLight, kEmitters). `light_paths` are combined with kPath and kLight; may be null.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
              const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;
@@ -51,7 +52,7 @@ class Integrator {
   void add_infinite_light(ShadingOutput& output);
   void list_spawn_queries(std::size_t i);
   [[nodiscard]] bool leaves(const SurfaceHit& place, ScatteredRay& scattered) const;
-  void output_hit(std::size_t i, const SpawnOrigin*& origins, ShadingOutput& output);
+  void output_hit(std::size_t i, ShadingOutput& output);
 
   IntegratorKind kind_;
   ShadingScene shading_;
@@ -61,7 +62,8 @@ class Integrator {
   bool has_masks_;
   const MaterialParameters hole_ = MaterialParameters::hole();
   HitBlock block_;
-  std::vector<SpawnQuery> spawn_queries_;  // of the block's hits, in order
+  std::vector<SpawnQuery> spawn_queries_;               // of the block's hits
+  std::vector<std::array<std::uint32_t, 2>> query_at_;  // by position and side: index of the query
   std::vector<SpawnOrigin> origins_;
   std::vector<HitKind> kinds_;          // by position in the block; kHitKinds: no hit
   std::vector<std::uint32_t> order_;    // positions, sorted by kind

@@ -14,7 +14,7 @@ enum class IntegratorKind {
   kEmitters,  ///< emitters that the camera sees: directly, in mirrors and through glass
 };
 
-/// User options of the integrators. The defaults are those of ./render and of the Python module.
+/// User options of the integrators. ./render and the Python module have the same defaults.
 struct IntegratorSettings {
   IntegratorKind integrator = IntegratorKind::kWhitted;
   int samples = 4;  ///< per pixel, at least 1; a single sample is taken without random choices

@@ -276,7 +276,6 @@ void Lights::add_patches(const AreaLight& light, Light& record) {
     patch.area = end - before;
     before = end;
     patches_.push_back(patch);
-    patch_ends_.push_back(patch.end);
     ++record.patches;
   }
 }

@@ -127,7 +127,7 @@ class Lights {
     glm::vec3 spot_axis{0.0f};  ///< for is_spot, as the arguments of spot_falloff()
     float spot_scale = 0.0f, spot_offset = 1.0f;
     float area = 0.0f;         ///< in square units
-    bool is_textured = false;  ///< `emission` is the mean; radiance_at() returns that of a point
+    bool is_textured = false;  ///< `emission` is the mean radiance; see radiance_at()
     std::uint32_t first_patch = 0, patches = 0;
   };
   [[nodiscard]] const Light& light(std::size_t index) const { return lights_[index]; }
@@ -140,10 +140,10 @@ class Lights {
     const auto wanted = unpack(u.x);
     std::uint32_t numbers[kCount];
     const Patch* patches[kCount];
-    const auto first = patch_ends_.begin() + light.first_patch;
+    const std::span all = std::span(patches_).subspan(light.first_patch, light.patches - 1);
     for (int k = 0; k < kCount; ++k) {
-      const auto found = std::upper_bound(first, first + light.patches - 1, wanted[k]);
-      numbers[k] = static_cast<std::uint32_t>(found - patch_ends_.begin());
+      const auto found = std::ranges::upper_bound(all, wanted[k], {}, &Patch::end);
+      numbers[k] = light.first_patch + static_cast<std::uint32_t>(found - all.begin());
       patches[k] = &patches_[numbers[k]];
     }
     const T begin = gather<T>(patches, &Patch::begin),
@@ -251,7 +251,6 @@ class Lights {
   std::vector<AreaLight> areas_;
   std::vector<Light> lights_;
   std::vector<Patch> patches_;
-  std::vector<float> patch_ends_;                   // `end` of each patch, for searching
   std::vector<Source> sources_;                     // by light and patch
   std::vector<std::uint32_t> source_of_primitive_;  // or kNoIndex; instances never emit
   LightTree tree_;

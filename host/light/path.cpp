@@ -376,8 +376,7 @@ RAYGATE_INLINE void connect_to_camera(const ShadingScene& shading, Hits<T>& hits
 
 void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
                 std::span<const std::uint32_t> at) {
-  shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
+  shade_in_lanes(shading, block, kind, at, [&]<class T>(Hits<T>& hits) RAYGATE_BODY {
     Triple<T> radiance = zero<T>();
     if ((kind & kEmits) != 0) radiance = emitted_radiance(shading, hits);
     if (block.batch->depth <= shading.max_depth) {
@@ -391,8 +390,7 @@ void shade_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
 
 void shade_light_path(const ShadingScene& shading, HitBlock& block, HitKind kind,
                       std::span<const std::uint32_t> at) {
-  shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
+  shade_in_lanes(shading, block, kind, at, [&]<class T>(Hits<T>& hits) RAYGATE_BODY {
     connect_to_camera(shading, hits);
     hits.set_radiance(zero<T>());
     if (block.batch->depth > shading.max_depth) return;

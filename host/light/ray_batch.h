@@ -24,8 +24,8 @@ struct alignas(16) PathState {
   /// A code of the mirrors and smooth glass that the path has met: 1 for the first ray; a mirror
   /// turns code h into 2 h, glass into 2 h + 1. 0: more than four of them, or another surface.
   std::uint32_t specular_history = 1;
-  /// Density of light paths over that of camera paths for the path so far, or on light paths the
-  /// inverse (see LightPaths); 0: only one kind of path exists here.
+  /// Density of light paths over the density of camera paths, for the path so far; on light paths
+  /// the inverse (see LightPaths). 0: only one kind of path exists here.
   float light_over_camera_pdf = 0.0f;
   /// Bit mask of specular histories at which emission is omitted because EmitterSupersampler adds
   /// it. For that class's own rays: the histories to follow.

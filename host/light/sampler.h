@@ -47,7 +47,7 @@ RAYGATE_INLINE W owen_scramble(W x, const W& key) {
 
 /// Returns the second Sobol dimension with reversed bits: digit j is the sum modulo 2 of the
 /// index's digits i times binomial(i, j), which is odd if the bits of j are a subset of those of i.
-/// That takes five steps, one per bit of j.
+/// This takes five steps, one per bit of j.
 template <class W>
 RAYGATE_INLINE W second_sobol(W index) {
   index ^= index >> 1 & 0x55555555u;

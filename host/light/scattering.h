@@ -9,8 +9,8 @@ namespace raygate {
 inline constexpr float kPerPi = 0.318309886183790671537767526745f;  ///< 1 / pi
 
 /// Returns the squared cosine of the angle of refraction; negative for total reflection. `cosine`
-/// is that of the angle of incidence, in [0, 1]; `eta` is the index of refraction beyond the
-/// interface over that before it.
+/// belongs to the angle of incidence and is in [0, 1]; `eta` is the index of refraction beyond the
+/// interface over the index before it.
 template <class T>
 RAYGATE_INLINE T transmitted_cosine_squared(const T& cosine, const T& eta) {
   return 1.0f - (1.0f - cosine * cosine) / (eta * eta);

@@ -132,13 +132,16 @@ void ShadowRays::trace(std::span<const ShadowRay> rays, bool from_light, float e
       sources_[i] = leaves ? segment.source : NearestHit::kNone;
     }
   }
-  RayQuery search{
-      .common_origin = from_light, .t_max = limits_, .source_ids = sources_, .skip_ids = ignored_};
+  RayQuery search{.common_origin = from_light,
+                  .t_max = limits_,
+                  .source_ids = sources_,
+                  .skip_ids = ignored_,
+                  .with_points = false};
   if (!any_clear_) search.any_hit_before = enough_;  // any occluder ends the search
   work_.resize(work_of_samples_.empty() ? 0 : batch_.size());
   search.work = work_;
   hits_.resize(batch_.size());
-  intersector_.occluded(batch_, search, hits_);
+  intersector_.nearest(batch_, search, hits_);
   rays_ += batch_.size();
   for (std::size_t i = 0; i < work_.size(); ++i) {
     work_of_samples_[rays[segments_[i].index].sample] += work_[i];

@@ -1,7 +1,6 @@
 #include "host/light/spawn_ray.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -76,8 +75,7 @@ class NeighborClearanceSearch {
     }
     double apart[kQuad];
     store(apart, clearances<kCode>(corners, bvh.is_binary32() ? nullptr : exact, leaf.count, rest));
-    for (; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
+    for (const int i : SetBits(rest)) {
       if (apart[i] >= length_) continue;
       const std::uint32_t other = leaf.first + static_cast<std::uint32_t>(i);
       const Corners others = bvh.corners_of(other);
@@ -131,9 +129,6 @@ class NeighborClearanceSearch {
   static constexpr double kNormalError = 10.0 * 0x1p-53;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  static RAYGATE_INLINE Vectors3 vectors(const glm::dvec3& v) {
-    return {spread<DoubleQuad>(v.x), spread<DoubleQuad>(v.y), spread<DoubleQuad>(v.z)};
-  }
   /// Returns unit vectors, or 0 for 0.
   static RAYGATE_INLINE Vectors3 unit(const Vectors3& v) {
     const DoubleQuad size = root(dot(v, v));
@@ -170,14 +165,15 @@ class NeighborClearanceSearch {
       return sign_mask(whole(best >= length_)) == (LaneMask{1} << kQuad) - 1;
     };
     for (const glm::dvec3& axis : axes_) {
-      if (try_axis(vectors(axis))) return best;
+      if (try_axis(spread<DoubleQuad>(axis))) return best;
     }
     const Vectors3 normal = unit(cross(y[1] - y[0], y[2] - y[0]));
     if (try_axis(normal) || try_axis(-normal)) return best;
     for (int j = 0; j < 3; ++j) {
       const Vectors3 edge = y[(j + 1) % 3] - y[j];
       for (int k = -1; k < 3; ++k) {
-        const Vectors3 axis = unit(k < 0 ? cross(normal, edge) : cross(edge, vectors(edge_[k])));
+        const Vectors3 axis =
+            unit(k < 0 ? cross(normal, edge) : cross(edge, spread<DoubleQuad>(edge_[k])));
         if (try_axis(axis) || try_axis(-axis)) return best;
       }
     }
@@ -191,7 +187,7 @@ class NeighborClearanceSearch {
     DoubleQuad sum = {}, least = spread<DoubleQuad>(kInfinity);
     LongQuad is_apart = LongQuad{} - 1;
     for (const glm::dvec3& v : vertex_) {
-      const DoubleQuad gap = dot(axis, vectors(v)) - highest;
+      const DoubleQuad gap = dot(axis, spread<DoubleQuad>(v)) - highest;
       is_apart &= gap >= -slack_;
       sum += maximum(gap, DoubleQuad{});
       least = minimum(least, gap);
@@ -444,11 +440,11 @@ RAYGATE_INLINE void find_candidates(const SpawnHits& hits, const FloatQuad& way,
 
 }  // namespace
 
-std::optional<glm::vec3> RaySpawner::find(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
+SpawnOrigin RaySpawner::find(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
   const SpawnQuery query{&ray, primitive, side};
   SpawnOrigin origin;
   find({&query, 1}, {&origin, 1});
-  return origin ? std::optional(*origin) : std::nullopt;
+  return origin;
 }
 
 template <Vectors kCode>
@@ -485,8 +481,7 @@ RAYGATE_INLINE void RaySpawner::find_four(const SpawnQuery* queries, SpawnOrigin
   const LaneMask good = sign_mask(is_clear);
   const LaneMask has_overlaps = sign_mask(bits_in(hits.length));
   constexpr LaneMask kAll = (LaneMask{1} << kQuad) - 1;
-  for (LaneMask rest = (~good & kAll) | has_overlaps; rest != 0; rest &= rest - 1) {
-    const int i = std::countr_zero(rest);
+  for (const int i : SetBits((~good & kAll) | has_overlaps)) {
     const SpawnQuery& query = queries[i];
     if ((good >> i & 1) != 0) {
       const glm::vec3 low = *origins[i] - reach[i], high = *origins[i] + reach[i];
@@ -501,8 +496,7 @@ RAYGATE_INLINE void RaySpawner::find_four(const SpawnQuery* queries, SpawnOrigin
         continue;
       }
     }
-    const auto origin = search(*query.ray, query.primitive, query.side);
-    origins[i] = origin ? SpawnOrigin{*origin, 1} : SpawnOrigin{};
+    origins[i] = search(*query.ray, query.primitive, query.side);
   }
 }
 
@@ -529,8 +523,7 @@ void RaySpawner::find(std::span<const SpawnQuery> queries, std::span<SpawnOrigin
   });
 }
 
-std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primitive,
-                                            SpawnSide side) {
+SpawnOrigin RaySpawner::search(const Ray& ray, std::uint32_t primitive, SpawnSide side) {
   constexpr int kLastStep = 24;  // 2^24 steps: the magnitude of X's coordinate
   const Corners hit = bvh_.corners_of(primitive);
   const Interval t = hit_distance(ray, hit);
@@ -571,12 +564,12 @@ std::optional<glm::vec3> RaySpawner::search(const Ray& ray, std::uint32_t primit
   for (int k = 0; k <= kLastStep; ++k) {
     for (const glm::dvec3& offset : offsets) {
       const glm::vec3 candidate(x + std::ldexp(step, k) * offset);
-      if (good(candidate)) return candidate;
+      if (good(candidate)) return {candidate, 1};
     }
   }
   // In a sharp corner close to the ray's origin, that origin may be the only valid point.
-  if (side == SpawnSide::kIncident && good(ray.origin)) return ray.origin;
-  return std::nullopt;
+  if (side == SpawnSide::kIncident && good(ray.origin)) return {ray.origin, 1};
+  return {};
 }
 
 bool RaySpawner::leaves(const Ray& ray, std::uint32_t primitive, SpawnSide side,

@@ -8,7 +8,6 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,8 +50,8 @@ struct alignas(64) NeighborClearance {
 /// of `hit`. Lines from that plane to that side then miss `other`.
 [[nodiscard]] bool lies_beyond(const Corners& other, const Corners& hit, int side);
 
-/// The clearances and overlaps of all triangles of a BVH, computed on first use. Those of instances
-/// are not stored. Thread-safe.
+/// The clearances and overlaps of all triangles of a BVH, computed on first use and stored, except
+/// for instances' triangles. Thread-safe.
 class NeighborClearances {
  public:
   /// `bvh` must outlive this object.
@@ -153,8 +152,7 @@ class RaySpawner {
 
   /// Returns O' for `ray`, whose nearest hit is the triangle `primitive`, or none. Triangles whose
   /// plane contains the ray are ignored.
-  [[nodiscard]] std::optional<glm::vec3> find(const Ray& ray, std::uint32_t primitive,
-                                              SpawnSide side);
+  [[nodiscard]] SpawnOrigin find(const Ray& ray, std::uint32_t primitive, SpawnSide side);
 
   /// Prefetches the clearance of a primitive of a later query.
   RAYGATE_INLINE void prefetch(std::uint32_t primitive) const { clearances_.prefetch(primitive); }
@@ -171,9 +169,8 @@ class RaySpawner {
   template <Vectors kCode>
   RAYGATE_INLINE void find_four(const SpawnQuery* queries, SpawnOrigin* origins);
 
-  /// Does the work of find() by a search of nearby triangles.
-  [[nodiscard]] std::optional<glm::vec3> search(const Ray& ray, std::uint32_t primitive,
-                                                SpawnSide side);
+  /// Returns O' for a ray by a search of nearby triangles.
+  [[nodiscard]] SpawnOrigin search(const Ray& ray, std::uint32_t primitive, SpawnSide side);
 
   const NeighborClearances& clearances_;
   const Bvh& bvh_;

@@ -159,8 +159,7 @@ RAYGATE_INLINE void spawn_specular_rays(Hits<T>& hits) {
 
 void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
                    std::span<const std::uint32_t> at) {
-  shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
+  shade_in_lanes(shading, block, kind, at, [&]<class T>(Hits<T>& hits) RAYGATE_BODY {
     const Bsdf<T>& bsdf = hits.bsdf;
     const bool goes_on = block.batch->depth < shading.max_depth;
     Triple<T> emission = hits.emission(), glossy = bsdf.glossy;
@@ -180,8 +179,7 @@ void shade_whitted(const ShadingScene& shading, HitBlock& block, HitKind kind,
 
 void shade_emitters(const ShadingScene& shading, HitBlock& block, HitKind kind,
                     std::span<const std::uint32_t> at) {
-  shade_in_lanes(shading, block, kind, at, [&](auto& hits) RAYGATE_BODY {
-    using T = std::remove_cvref_t<decltype(hits.path.pdf)>;
+  shade_in_lanes(shading, block, kind, at, [&]<class T>(Hits<T>& hits) RAYGATE_BODY {
     Triple<T> emitted = zero<T>();
     if ((kind & kEmits) != 0) {
       emitted = choose(hits.are_supersampled(), hits.path.throughput * hits.bsdf.emission, emitted);

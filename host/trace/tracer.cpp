@@ -66,12 +66,8 @@ void find_hits(Intersector& intersector, const RayTable& block, bool any,
                std::span<NearestHit> hits, std::span<RayWork> work) {
   RayQuery query{
       .t_max = block.limits, .exact_rays = block.exact_rays, .work = work, .with_points = false};
-  if (any) {
-    query.any_hit_before = block.limits;
-    intersector.occluded(block.rays, query, hits);
-  } else {
-    intersector.nearest(block.rays, query, hits);
-  }
+  if (any) query.any_hit_before = block.limits;
+  intersector.nearest(block.rays, query, hits);
 }
 
 TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const HitTable& answers,

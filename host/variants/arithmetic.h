@@ -40,11 +40,11 @@ struct Arithmetic {
   /// Returns (ax bx + ay by) + az bz, rounded at each step or, if `fused`, once.
   [[nodiscard]] float dot(const glm::vec3& a, const glm::vec3& b) const;
 
-  /// Returns the relative error bound of rounding to nearest, half an ulp; half of other
-  /// directions'.
+  /// Returns the relative error bound of rounding to nearest: half an ulp. The bound of the other
+  /// directions is twice as large.
   [[nodiscard]] double unit_roundoff() const { return std::ldexp(1.0, -digits); }
   [[nodiscard]] int fraction_bits() const { return digits - 1; }
-  /// Exponents of the smallest and the largest normal number.
+  /// Return the exponents of the smallest and the largest normal number.
   [[nodiscard]] int min_exponent() const { return 2 - (1 << (exponent_bits - 1)); }
   [[nodiscard]] int max_exponent() const { return (1 << (exponent_bits - 1)) - 1; }
 

@@ -55,9 +55,8 @@ float format_error(const Arithmetic& math, float d, const glm::vec3& direction,
   return static_cast<float>(std::ldexp(math.unit_roundoff(), 6 + static_cast<int>(t_error)));
 }
 
-}  // namespace
-
-double variant_edge_bound(const Arithmetic& math) {
+/// Returns the bound of an edge test in units of 2^-digits |E|_1, for rounding to nearest.
+double edge_bound(const Arithmetic& math) {
   const double u = math.unit_roundoff();
   const bool narrow = math.digits < 24;
   const double record = 2.0 + 0x1p-6, direction = narrow ? 2.0 * (1.0 + u) : 0.0;
@@ -66,6 +65,8 @@ double variant_edge_bound(const Arithmetic& math) {
   const double quantum = std::ldexp(1.0, math.min_exponent() - math.fraction_bits());
   return record + direction + dot + twice_rounded + 11.0 * quantum / u;
 }
+
+}  // namespace
 
 PolygonRecord variant_record(const Variant& variant, const PolygonRecord& wide) {
   const Arithmetic math = to_nearest(variant.math);
@@ -93,7 +94,7 @@ PolygonRecord variant_record(const Variant& variant, const PolygonRecord& wide) 
     } else if (math != Arithmetic{}) {
       const glm::dvec3 e = glm::abs(glm::dvec3(record.edges[k]));
       record.bounds[k] =
-          rounded_up(math, variant_edge_bound(math) * math.unit_roundoff() * (e.x + e.y + e.z));
+          rounded_up(math, edge_bound(math) * math.unit_roundoff() * (e.x + e.y + e.z));
     }
   }
   return record;

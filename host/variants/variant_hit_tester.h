@@ -8,11 +8,11 @@
 
 namespace raygate {
 
-/// In binary32, equals ReferenceBurstUnit but is slower.
+/// Reference model of the pipelined unit. In binary32 it equals ReferenceBurstUnit but is slower.
 using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
 
-/// Rounds inputs to the format first, as the host would; then bit-exact to hit_test_unit with these
-/// parameters.
+/// Reference model of the paper's unit, bit-exact to hit_test_unit with these parameters. Rounds
+/// its inputs to the format first, as the host does.
 using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 
 /// Converts a record to a variant's format: N with d, and each edge, are scaled by powers of two if
@@ -20,9 +20,6 @@ using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 /// `doubts`. Otherwise |unit's U - exact I . E| < bound for any float32 I with components below 2
 /// (the ray in the format is I rounded to nearest).
 [[nodiscard]] PolygonRecord variant_record(const Variant& variant, const PolygonRecord& record);
-
-/// Returns the bound in units of 2^-digits |E|_1, for rounding to nearest.
-[[nodiscard]] double variant_edge_bound(const Arithmetic& math);
 
 /// Returns t as the variant's unit computes it for a record of make_record(). The host of the
 /// serial unit computes t in binary32.
@@ -39,7 +36,7 @@ using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                              std::unique_ptr<BurstUnit> unit);
 
-/// Returns a tester for a serial variant, whose unit (that of the paper) computes P alone.
+/// Returns a tester for a serial variant, whose unit (the paper's) computes P alone.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                              std::unique_ptr<PlaneUnit> unit);
 

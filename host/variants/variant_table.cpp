@@ -136,13 +136,4 @@ std::optional<Variant> variant_of_format(std::string_view text) {
   return variant;
 }
 
-const Variant& variant_named(std::string_view name) {
-  const auto& variants = all_variants_of_arithmetic();
-  const auto place = std::ranges::find(variants, name, &Variant::name);
-  if (place != variants.end()) return *place;
-  std::string expected;
-  for (const Variant& variant : variants) expected += (expected.empty() ? "" : ", ") + variant.name;
-  throw InputError("no variant " + std::string(name) + ", expected one of " + expected);
-}
-
 }  // namespace raygate

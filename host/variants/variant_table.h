@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 ///   exponent_bits, digits, rounding ("nearest-even", "toward-zero", "down", "up", "nearest-away"),
 ///   flush, quotient_digits (serial only), fused (no hardware)      see Arithmetic
 ///   doubts           whether the host resolves doubts exactly; otherwise there are no bounds
-///   brought          a folder of modules that replace those of hw/ (synth/brought.py); "": none
+///   brought          a folder of modules that replace modules of hw/ (synth/brought.py); "": none
 ///
 /// CMake verilates the design of each object that hw/ supports.
 struct Variant {
@@ -53,8 +53,5 @@ struct Variant {
 /// Returns the pipelined variant of a format such as e8p15: 8 exponent bits, 15 digits; -raw at the
 /// end ignores doubts. Returns nullopt for other texts. Throws InputError for unsupported ones.
 [[nodiscard]] std::optional<Variant> variant_of_format(std::string_view text);
-
-/// Returns the variant with this name. Throws InputError, which lists the names, if there is none.
-[[nodiscard]] const Variant& variant_named(std::string_view name);
 
 }  // namespace raygate

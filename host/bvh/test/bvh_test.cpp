@@ -168,8 +168,7 @@ TEST(Bvh, DepthIsBounded) {
   expect_sound(mesh);
   std::vector<Primitive> primitives;
   for (const auto& [a, b, c] : mesh) {
-    Box box;
-    box_around(a, b, c, box);
+    const Box box = box_around(a, b, c);
     primitives.push_back(Primitive(box, static_cast<std::uint32_t>(primitives.size())));
   }
   const BinaryBvh tree(primitives, Bvh::kMaxDepth, 1);

@@ -11,14 +11,8 @@ namespace raygate {
 
 IntersectCounters CoreIntersector::counters() const {
   IntersectCounters counters = counters_;
-  const CoreCounters core = core_->counters();
-  counters.hit.tests = counters.hit.unit_tests = core.triangles;
-  counters.hit.misses = core.misses;
-  counters.hit.hits = core.hits;
-  counters.hit.edge_doubts = core.doubts;
-  counters.hit.depth_doubts = core.near_ties;
-  counters.hit.clocks = core.clocks;
-  counters.hit.exact_clocks = core.exact_clocks;
+  counters.hit += core_->counters();
+  counters.hit.unit_tests = counters.hit.tests;
   return counters;
 }
 

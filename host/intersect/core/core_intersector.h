@@ -58,18 +58,14 @@ struct CoreResult {
   std::uint32_t line = 0;      ///< kEnd with kMemory: the line
 };
 
-/// Statistics of a core since its construction. Clocks are 0 without simulation.
-struct CoreCounters {
+/// Statistics of a core since its construction. A test is a triangle line processed by the triangle
+/// test, a depth doubt a sure hit reported as a doubt. Clocks are 0 without simulation.
+struct CoreCounters : HitCounters {
   std::uint64_t rays = 0;
   std::uint64_t nodes = 0;      ///< node lines processed by the box unit
-  std::uint64_t triangles = 0;  ///< triangle lines processed by the triangle test
-  std::uint64_t hits = 0, misses = 0, doubts = 0;  ///< verdicts of tests
-  std::uint64_t near_ties = 0;                     ///< sure hits reported as doubts
-  std::uint64_t overflows = 0;                     ///< rays that used the shared stack
-  std::uint64_t lines = 0;                         ///< lines read from memory
-  std::uint64_t waits = 0;         ///< clocks in which memory did not accept a request
-  std::uint64_t exact_clocks = 0;  ///< busy clocks of the exact unit
-  std::uint64_t clocks = 0;
+  std::uint64_t overflows = 0;  ///< rays that used the shared stack
+  std::uint64_t lines = 0;      ///< lines read from memory
+  std::uint64_t waits = 0;      ///< clocks in which memory did not accept a request
 };
 
 /// Traces rays through a memory image. The nearest hit of a ray in exact arithmetic is the sure hit
@@ -80,7 +76,7 @@ class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
 
-  /// Traces the rays and appends their results to `results`. `lines` are those of a MemoryImage.
+  /// Traces the rays and appends their results to `results`. `lines` are a MemoryImage's.
   virtual void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
                      std::vector<CoreResult>& results) = 0;
 

@@ -154,8 +154,8 @@ std::size_t LinkedCore::take_results(std::vector<CoreResult>& results) {
     words_.clear();
     const bool is_end = result.kind == CoreResult::Kind::kEnd;
     ended += is_end ? 1 : 0;
-    counters_.doubts += is_end ? 0 : 1;
-    counters_.triangles += is_end ? result.tests : 0;
+    counters_.edge_doubts += is_end ? 0 : 1;
+    counters_.tests += is_end ? result.tests : 0;
   }
   counters_.rays += ended;
   return ended;

@@ -109,8 +109,7 @@ class ImageWriter {
 
   /// Returns the exact bounds of a node's triangles. The binary tree's are one float wider.
   [[nodiscard]] Bounds bounds(Ref ref) const {
-    Box box;
-    tree_.get_box(ref, box);
+    const Box box = tree_.box(ref);
     Bounds bounds;
     for (int k = 0; k < 3; ++k) {
       bounds.low[k] = up(box[k]) + 0.0f;  // -0 becomes 0
@@ -210,9 +209,7 @@ MemoryImage::MemoryImage(const Bvh& bvh, int threads) {
   std::vector<Primitive> primitives(bvh.primitive_count());
   for (std::uint32_t i = 0; i < primitives.size(); ++i) {
     const auto [a, b, c] = bvh.float_corners_of(i);
-    Box box;
-    box_around(a, b, c, box);
-    primitives[i] = Primitive(box, i);
+    primitives[i] = Primitive(box_around(a, b, c), i);
   }
   const BinaryBvh tree(std::move(primitives), Bvh::kMaxDepth, threads);
   ImageWriter(*this, bvh, tree).write();

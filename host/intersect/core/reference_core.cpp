@@ -74,10 +74,10 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
   const int amount = exponent + 1 - field(ray.t_max);
   const std::int64_t limit = amount <= 1 ? kWhole : shift_right(significand(ray.t_max), amount) + 1;
 
-  std::array<std::int64_t, NodeLine::kChildren> keys;  // {skipped, enter, number}
+  std::array<std::int64_t, NodeLine::kChildren> keys;  // of the entered children: {enter, number}
   std::array<std::uint32_t, NodeLine::kChildren> offset;
   std::uint32_t next = 0;
-  int size = 0;
+  std::size_t size = 0;
   for (std::size_t i = 0; i < NodeLine::kChildren; ++i) {
     const NodeLine::Child& child = node.child[i];
     offset[i] = next;
@@ -92,18 +92,18 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
       enter = std::max(enter, at(axis.near, axis.back ? child.high[k] : child.low[k]));
       leave = std::min(leave, at(axis.far, axis.back ? child.low[k] : child.high[k]));
     }
-    const bool met = child.kind != NodeLine::kAbsent && enter <= leave;
-    size += met ? 1 : 0;
-    keys[i] = (std::int64_t{!met} << 26) | (met ? enter << 3 : 0) | static_cast<std::int64_t>(i);
+    if (child.kind == NodeLine::kAbsent || enter > leave) continue;
+    keys[size++] = enter << 3 | static_cast<std::int64_t>(i);
   }
-  std::ranges::sort(keys);
+  const std::span entered = std::span(keys).first(size);
+  std::ranges::sort(entered);
 
-  BoxGroup group{.base = node.base, .exponent = static_cast<std::uint32_t>(exponent), .size = size};
-  for (int n = 0; n < size; ++n) {
-    const auto i = static_cast<std::size_t>(keys[static_cast<std::size_t>(n)] & 7);
-    const auto enter = static_cast<std::uint32_t>(keys[static_cast<std::size_t>(n)] >> 3);
+  BoxGroup group{.base = node.base, .exponent = static_cast<std::uint32_t>(exponent)};
+  for (const std::int64_t key : entered) {
+    const auto i = static_cast<std::size_t>(key & 7);
+    const auto enter = static_cast<std::uint32_t>(key >> 3);
     const std::uint32_t kind = node.child[i].kind;
-    group.entry[static_cast<std::size_t>(n)] = {
+    group.entry[static_cast<std::size_t>(group.size++)] = {
         std::min(enter >> (kFracBits - kEnterBits), (1u << kEnterBits) - 1), offset[i],
         kind == NodeLine::kInner ? 0 : kind};
   }
@@ -223,8 +223,7 @@ struct RayTrace {
     traverse();
     if (exact && !ended && is_candidate_nearest()) test(TriangleLine(lines[candidate]), true);
     ++counters.rays;
-    counters.triangles += result.tests;
-    counters.lines = counters.nodes + counters.triangles;
+    counters.lines = counters.nodes + counters.tests;
     results.push_back(result);
   }
 
@@ -297,16 +296,13 @@ struct RayTrace {
     const glm::vec3& direction = ray.ray.direction;
     ++result.tests;
     if (triangle.index == ray.skip_id || triangle.index == ray.source_id) {
-      ++counters.misses;
-      return;
+      return count(UnitVerdict::kMiss, counters);
     }
     const SetUpRecord set = set_up(ray.ray.origin, triangle.corners);
-    const UnitVerdict verdict = unit.verdict(set.record, direction);
-    counters.misses += verdict == UnitVerdict::kMiss;
-    counters.hits += verdict == UnitVerdict::kHit;
-    counters.doubts += verdict == UnitVerdict::kDoubt;
+    HitDistance distance;
+    const UnitVerdict verdict = unit.verdict(set.record, direction, distance);
+    count(verdict, counters);
     if (verdict == UnitVerdict::kMiss) return;
-    const HitDistance distance = unit.distance(set.record, direction);
     const bool is_sure = verdict == UnitVerdict::kHit && is_good_hit(set, distance.error);
     CoreResult hit = result;
     hit.found = true;
@@ -322,7 +318,7 @@ struct RayTrace {
       const std::uint32_t open = take(hit, result, limit);
       ended = ray.any_hit && result.found;
       if (open == CoreRay::kNoTriangle) return;
-      ++counters.near_ties;
+      ++counters.depth_doubts;
       report(open, true);
     }
   }

@@ -39,7 +39,7 @@ struct BoxGroup {
 /// Returns whether the entry is surely beyond `limit`, at least 0; +infinity: no limit.
 [[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
 
-/// A record computed in binary32, with larger bounds than those of make_record. d is NaN if its
+/// A record computed in binary32, with larger bounds than make_record's. d is NaN if its
 /// sign is not sure, or if N or d are too inaccurate for a hit.
 struct SetUpRecord {
   PolygonRecord record;

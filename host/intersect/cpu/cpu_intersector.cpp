@@ -63,8 +63,8 @@ void PointWriter::write() {
         n[k] = joined<Floats>([&](int i) RAYGATE_BODY { return planes[i][k]; });
       }
       const Floats d = joined<Floats>([&](int i) RAYGATE_BODY { return planes[i][3]; });
-      NativeInts<code()> largest = {};
-      for (int k = 0; k < 3; ++k) largest = maximum(largest, bits_in(n[k]) >> 23 & 0xFF);
+      auto largest = bits_in(n[0]) >> 23 & 0xFF;
+      for (int k = 1; k < 3; ++k) largest = maximum(largest, bits_in(n[k]) >> 23 & 0xFF);
       const auto hit = [&](std::size_t i) RAYGATE_BODY { return &hits_[number[i]]; };
       write_lanes(n, d, largest, directions, hit);
     }
@@ -97,9 +97,7 @@ void all_hits(const Bvh& bvh, const ExactRay& ray, float t_max, std::vector<Near
       test_quad<true>(sheared, tree.corners_of(leaf, room), leaf.count, verdict, rounding);
       work.tests += leaf.count;
       work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
-      for (LaneMask open = verdict.hit | verdict.level | verdict.doubt; open != 0;
-           open &= open - 1) {
-        const int i = std::countr_zero(open);
+      for (const int i : SetBits(verdict.hit | verdict.level | verdict.doubt)) {
         const std::uint32_t primitive = leaf.first + static_cast<std::uint32_t>(i);
         const Corners corners = bvh.corners_of(primitive);
         const bool is_hit = (verdict.doubt >> i & 1) != 0   ? hits_triangle(ray, corners)

@@ -32,16 +32,16 @@ class CpuIntersector : public Intersector {
 /// Computes P and its error with the bits of set_point, and writes them to the hits of a query.
 class PointWriter {
  public:
-  static constexpr std::size_t kMost = 256;  ///< hits that wait
+  static constexpr std::size_t kMost = 256;  ///< maximum of count()
 
   /// `is_common`: all rays start at one point, so that hits of one primitive share its plane, which
   /// is kept for later hits.
   PointWriter(const Bvh& bvh, std::span<const Ray> rays, bool is_common, std::span<NearestHit> hits)
       : bvh_(bvh), rays_(rays), is_common_(is_common), hits_(hits) {}
 
-  /// Number of hits that were added and not written.
+  /// Returns the number of hits that were added but not written yet.
   [[nodiscard]] std::size_t count() const { return count_; }
-  /// Number of all hits that were written.
+  /// Returns the number of all hits that were written.
   [[nodiscard]] std::uint64_t written() const { return written_; }
 
   /// Adds the hit of a ray with a primitive. At most kMost are added before they are written.
@@ -81,17 +81,21 @@ class PointWriter {
   }
 
  private:
-  /// Computes P for a plane and a direction in each lane, and writes it to hit(lane).
+  /// Computes P for a plane and a direction in each lane, and writes it to hit(lane). `largest`:
+  /// the largest exponent field of N.
   template <class Floats, class Hit>
   static RAYGATE_INLINE void write_lanes(const Floats (&n)[3], const Floats& d,
-                                         const IntOf<Floats>& largest,
-                                         const Floats (&directions)[3], const Hit& hit) {
-    Floats point[3];
-    IntOf<Floats> error;
-    plane_points(n, d, largest, directions, point, error);
+                                         const IntOf<Floats>& largest, const Floats (&direction)[3],
+                                         const Hit& hit) {
+    const Floats v = 0.0f + ((n[0] * direction[0] + n[1] * direction[1]) + n[2] * direction[2]);
+    Floats columns[4];
+    for (int k = 0; k < 3; ++k) {
+      const Floats p = d * direction[k] / v;
+      columns[k] = p == p ? p : float_of(IntOf<Floats>{} + 0x7FC00000);
+    }
+    columns[3] = float_of(point_error_of(bits_in(d), bits_in(v), grazing_of(largest, bits_in(v))));
     static_assert(offsetof(NearestHit, point_error) ==
                   offsetof(NearestHit, point) + 3 * sizeof(float));
-    const Floats columns[4] = {point[0], point[1], point[2], float_of(error)};
     for (std::size_t first = 0; first < kLanesOf<Floats>; first += kQuad) {
       FloatQuad rows[kQuad];
       for (int k = 0; k < 4; ++k) {

@@ -98,19 +98,18 @@ struct ConeTraversal {
   }
 };
 
-/// Computes distances beyond which boxes can be skipped for rays with maximum distances `high` (see
+/// Returns distances beyond which boxes can be skipped for rays with maximum distances `high` (see
 /// cutoff_beyond).
-RAYGATE_INLINE void cutoffs_beyond(const IntLanes& high, LaneMask active, FloatLanes& cutoffs) {
+RAYGATE_INLINE FloatLanes cutoffs_beyond(const IntLanes& high, LaneMask active) {
   constexpr float kGrow = 1.0f + 0x1p-20f;
   const IntLanes going = lanes_of(active);
-  cutoffs = going ? reinterpret_cast<FloatLanes>(high) * kGrow : FloatLanes{} - 1.0f;
+  return going ? reinterpret_cast<FloatLanes>(high) * kGrow : FloatLanes{} - 1.0f;
 }
 
 /// Updates the cutoffs of a group after changes of `high` and `cones.active`.
 RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
   Cones& cones = walk.cones;
-  FloatLanes cutoffs;
-  cutoffs_beyond(walk.high[group], cones.active[group], cutoffs);
+  const FloatLanes cutoffs = cutoffs_beyond(walk.high[group], cones.active[group]);
   cones.bounds8.cutoff[group] = largest_of(cutoffs);
   if ((walk.split >> group & 1) != 0) walk.ray_bounds8[group].cutoff = cutoffs;
   walk.going &= ~(std::uint64_t{0xFF & ~cones.active[group]} << (8 * group));
@@ -155,8 +154,7 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
       load_directions(words + kRayWords * kQuad, half[1]);
       IntLanes largest = {};  // largest magnitude of each ray, as bits of a float
       for (int k = 0; k < 3; ++k) {
-        const FloatLanes d =
-            __builtin_shufflevector(half[0][k], half[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
+        const FloatLanes d = join(half[0][k], half[1][k]);
         block.direction[k][group] = d;
         block.negative[k][group] = sign_mask(d < 0.0f);
         const IntLanes size = reinterpret_cast<IntLanes>(d) & 0x7FFFFFFF;
@@ -243,7 +241,7 @@ RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
     const FloatLanes size = absolute(walk.block->direction[k][group]);
     bounds8.set(k, walk.cones.whole.octant, size * kDown, size * kUp);
   }
-  cutoffs_beyond(walk.high[group], walk.cones.active[group], bounds8.cutoff);
+  bounds8.cutoff = cutoffs_beyond(walk.high[group], walk.cones.active[group]);
   walk.split |= 1u << group;
 }
 
@@ -287,8 +285,8 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const BvhView& tree, co
   LaneMask met[kFewRays] = {}, any = 0;
   std::uint64_t ray[kFewRays] = {};
   int count = 0;
-  for (; rays != 0; rays &= rays - 1) {
-    const int number = std::countr_zero(rays), g = number / kLanes, lane = number % kLanes;
+  for (const int number : SetBits(rays)) {
+    const int g = number / kLanes, lane = number % kLanes;
     if ((walk.split >> g & 1) == 0) split_group(walk, g);
     const PacketBounds8& bounds8 = walk.ray_bounds8[g];
     FloatLanes its_entry;
@@ -297,11 +295,10 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const BvhView& tree, co
     const IntLanes meets = lanes_of(met[count]);
     entry = (meets & (its_entry < entry)) ? its_entry : entry;
     any |= met[count];
-    ray[count++] = rays & -rays;
+    ray[count++] = std::uint64_t{1} << number;
   }
   const int bottom = walk.depth;
-  for (; any != 0; any &= any - 1) {
-    const int i = std::countr_zero(any);
+  for (const int i : SetBits(any)) {
     std::uint64_t its_rays = 0;
     for (int r = 0; r < kFewRays; ++r) its_rays |= (met[r] >> i & 1) != 0 ? ray[r] : 0;
     push(walk, tree, bottom, {node.child[i], entry[i], its_rays});
@@ -327,8 +324,7 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
   LaneMask in[Bvh::kWidth];
   const bool ask = several(groups) && std::popcount(met) > kFew;
   std::uint64_t counts = 0;  // byte g: number of children that group g meets
-  for (LaneMask left = met; left != 0; left &= left - 1) {
-    const int i = std::countr_zero(left);
+  for (const int i : SetBits(met)) {
     in[i] = groups;
     if (ask || (several(groups) && node.child[i].count != 0)) {
       in[i] &= intersect_child<kCode>(cones.bounds8, whole.origin, whole.octant, node, i, unused);
@@ -336,8 +332,7 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
     counts += ones_of(in[i]);
   }
   LaneMask divided = groups_of((counts + (0x7F - kFew) * ones_of(0xFF)) & 0x80 * ones_of(0xFF));
-  for (LaneMask left = divided; left != 0; left &= left - 1) {
-    const int g = std::countr_zero(left);
+  for (const int g : SetBits(divided)) {
     if (!several(rays_of(rays, g))) {
       divided &= ~(1u << g);
     } else if ((walk.split >> g & 1) == 0) {
@@ -345,11 +340,9 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
     }
   }
   const int bottom = walk.depth;
-  for (; met != 0; met &= met - 1) {
-    const int i = std::countr_zero(met);
+  for (const int i : SetBits(met)) {
     ConeTraversal::StackEntry next = {node.child[i], entry[i], rays & 0xFF * ones_of(in[i])};
-    for (LaneMask left = divided & in[i]; left != 0; left &= left - 1) {
-      const int g = std::countr_zero(left);
+    for (const int g : SetBits(divided & in[i])) {
       const std::uint64_t missed = 0xFF & ~intersect_child<kCode>(walk.ray_bounds8[g], whole.origin,
                                                                   whole.octant, node, i, unused);
       next.rays &= ~(missed << (8 * g));
@@ -359,23 +352,12 @@ RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::
   }
 }
 
-/// Computes I . E, or I . N, for eight directions.
-RAYGATE_INLINE void side_of(const FloatLanes (&direction)[3], const QuadRecord& record, int plane,
-                            int triangle, FloatLanes& side) {
-  side = (direction[0] * record.word(plane, 0, triangle) +
+/// Returns I . E, or I . N, for eight directions.
+RAYGATE_INLINE FloatLanes side_of(const FloatLanes (&direction)[3], const QuadRecord& record,
+                                  int plane, int triangle) {
+  return (direction[0] * record.word(plane, 0, triangle) +
           direction[1] * record.word(plane, 1, triangle)) +
          direction[2] * record.word(plane, 2, triangle);
-}
-
-/// Computes the least value of the three edges.
-RAYGATE_INLINE void worst_side_of(const FloatLanes (&direction)[3], const QuadRecord& record,
-                                  int triangle, FloatLanes& worst) {
-  side_of(direction, record, 0, triangle, worst);
-  for (int plane = 1; plane < 3; ++plane) {
-    FloatLanes side;
-    side_of(direction, record, plane, triangle, side);
-    worst = minimum(side, worst);
-  }
 }
 
 /// Computes bounds of t from those of |d| and of I . N, t being their quotient. Both are positive,
@@ -407,16 +389,17 @@ RAYGATE_INLINE void test_group(const ConeTraversal& walk, const QuadRecord& reco
                                int group, LaneMask tested, Verdict<IntLanes>& verdict) {
   const auto& from = walk.block->direction;
   const FloatLanes direction[3] = {from[0][group], from[1][group], from[2][group]};
-  FloatLanes worst;
-  worst_side_of(direction, record, triangle, worst);
+  FloatLanes worst = side_of(direction, record, 0, triangle);  // the least value of the edges
+  for (int plane = 1; plane < 3; ++plane) {
+    worst = minimum(side_of(direction, record, plane, triangle), worst);
+  }
   const float bound = record.bounds[triangle];
   verdict.open = tested & ~sign_mask<kCode>(worst < -bound);
   verdict.hit = 0;
   if (verdict.open == 0) return;
   verdict.hit = verdict.open & sign_mask<kCode>(worst > bound);
-  FloatLanes v, low = FloatLanes{} + record.low[triangle],
-                high = FloatLanes{} + record.high[triangle];
-  side_of(direction, record, QuadRecord::kNormal, triangle, v);
+  const FloatLanes v = side_of(direction, record, QuadRecord::kNormal, triangle);
+  FloatLanes low = FloatLanes{} + record.low[triangle], high = FloatLanes{} + record.high[triangle];
   const float v_bound = record.normal_bound[triangle];
   bound_distance(low, high, v - v_bound, v + v_bound);
   verdict.low = bits_in(low);
@@ -502,8 +485,7 @@ class PacketIntersector {
       const std::uint64_t unscaled = load_packet(rays_.subspan(first, count), block);
       if (unscaled != 0) throw_unscaled(rays_[first + std::countr_zero(unscaled)]);
       walk.first = static_cast<std::uint32_t>(first);
-      for (std::uint32_t octants = block.octants; octants != 0; octants &= octants - 1) {
-        const int octant = std::countr_zero(octants);
+      for (const int octant : SetBits(block.octants)) {
         for (int g = 0; g < ConeTraversal::kGroups; ++g) {
           walk.cones.active[g] = block.into_octant(octant, g);
         }
@@ -528,8 +510,7 @@ class PacketIntersector {
       walk.split = 0;
       walk.going = 0;
       walk.cones.bounds8.cutoff = FloatLanes{} - 1.0f;
-      for (LaneMask left = walk.cones.groups; left != 0; left &= left - 1) {
-        const int g = std::countr_zero(left);
+      for (const int g : SetBits(walk.cones.groups)) {
         walk.primitive[g] = IntLanes{} - 1;
         IntLanes end = IntLanes{} + kFarthest;
         const std::uint32_t first = walk.number(g, 0);
@@ -555,18 +536,15 @@ class PacketIntersector {
   RAYGATE_INLINE void test_groups(ConeTraversal& walk, const QuadRecord& record,
                                   const Bvh::Child& leaf, LaneMask there, std::uint64_t rays,
                                   LaneMask& changed) {
-    for (; there != 0; there &= there - 1) {
-      const int i = std::countr_zero(there);
+    for (const int i : SetBits(there)) {
       const auto primitive = static_cast<std::int32_t>(leaf.first) + i;
-      for (LaneMask left = groups_of(rays); left != 0; left &= left - 1) {
-        const int g = std::countr_zero(left);
+      for (const int g : SetBits(groups_of(rays))) {
         const LaneMask tested = rays_of(rays, g);
         Verdict<IntLanes> verdict;
         test_group<kCode>(walk, record, i, g, tested, verdict);
         count(static_cast<std::uint64_t>(std::popcount(tested)), verdict.hit, verdict.open);
         if (!query_.work.empty()) {
-          for (LaneMask lanes = tested; lanes != 0; lanes &= lanes - 1) {
-            const int lane = std::countr_zero(lanes);
+          for (const int lane : SetBits(tested)) {
             count_work(walk, g, lane, 1, (verdict.open & ~verdict.hit) >> lane & 1);
           }
         }
@@ -585,8 +563,7 @@ class PacketIntersector {
         }
         LaneMask open =
             verdict.open & ~nearer & ~(sure & sign_mask<kCode>(verdict.low > walk.high[g]));
-        for (; open != 0; open &= open - 1) {
-          const int lane = std::countr_zero(open);
+        for (const int lane : SetBits(open)) {
           const Interval t = {std::bit_cast<float>(verdict.low[lane]),
                               std::bit_cast<float>(verdict.high[lane])};
           if (resolve(walk, g, lane, primitive, (sure >> lane & 1) != 0, t)) changed |= 1u << g;
@@ -600,16 +577,15 @@ class PacketIntersector {
                                 const Bvh::Child& leaf, LaneMask there, std::uint64_t rays,
                                 LaneMask& changed) {
     const auto triangles = static_cast<std::uint32_t>(std::popcount(there));
-    for (; rays != 0; rays &= rays - 1) {
-      const int ray = std::countr_zero(rays), g = ray / kLanes, lane = ray % kLanes;
+    for (const int ray : SetBits(rays)) {
+      const int g = ray / kLanes, lane = ray % kLanes;
       Verdict<FloatQuad> verdict;
       test_ray(walk, record, g, lane, there, verdict);
       count(triangles, verdict.hit, verdict.open);
       if (!query_.work.empty()) {
         count_work(walk, g, lane, triangles, std::popcount(verdict.open & ~verdict.hit));
       }
-      for (LaneMask open = verdict.open; open != 0; open &= open - 1) {
-        const int i = std::countr_zero(open);
+      for (const int i : SetBits(verdict.open)) {
         const auto primitive = static_cast<std::int32_t>(leaf.first) + i;
         if (!query_.skip_ids.empty() && walk.skip_id[g][lane] == primitive) continue;
         const bool sure = (verdict.hit >> i & 1) != 0;
@@ -665,8 +641,7 @@ class PacketIntersector {
           test_groups<code()>(walk, leaf.record, item.child, leaf.there, rays, changed);
         }
         if (changed == 0) continue;
-        for (; changed != 0; changed &= changed - 1) {
-          const int g = std::countr_zero(changed);
+        for (const int g : SetBits(changed)) {
           if (ending) {
             const LaneMask ended = cones.active[g] & ~sign_mask<code()>(walk.primitive[g]) &
                                    sign_mask<code()>(walk.high[g] < walk.enough[g]);
@@ -687,9 +662,8 @@ class PacketIntersector {
     cached.first = leaf.first;
     Bvh::LeafRoom room;
     const float* const corners = tree.corners_of(leaf, room);
-    const float origin[3] = {origin_.x, origin_.y, origin_.z};
-    bvh_.is_binary32() ? make_quad_record<false>(origin, corners, leaf.count, cached.record)
-                       : make_quad_record<true>(origin, corners, leaf.count, cached.record);
+    bvh_.is_binary32() ? make_quad_record<false>(origin_, corners, leaf.count, cached.record)
+                       : make_quad_record<true>(origin_, corners, leaf.count, cached.record);
     cached.there = (1u << leaf.count) - 1;
     if (cached.record.unsure != 0) resolve_sides(leaf, cached);
     return cached;
@@ -698,8 +672,7 @@ class PacketIntersector {
   /// Decides exactly on which side of each triangle the origin lies where float32 is not sure. No
   /// ray hits a triangle whose plane contains the origin: such triangles are removed.
   void resolve_sides(const Bvh::Child& leaf, CachedLeaf& cached) const {
-    for (LaneMask unsure = cached.record.unsure; unsure != 0; unsure &= unsure - 1) {
-      const int i = std::countr_zero(unsure);
+    for (const int i : SetBits(cached.record.unsure)) {
       const int side =
           orient3d(origin_, bvh_.corners_of(leaf.first + static_cast<std::uint32_t>(i)));
       if (side == 0) {
@@ -737,8 +710,7 @@ class PacketIntersector {
     in_vectors([&](auto code) RAYGATE_BODY {
       const auto& block = walk.block->direction;
       const bool with_points = query_.with_points;
-      for (LaneMask groups = walk.cones.groups; groups != 0; groups &= groups - 1) {
-        const int g = std::countr_zero(groups);
+      for (const int g : SetBits(walk.cones.groups)) {
         double bounds[kLanes][2];
         for (std::size_t half = 0; half < 2; ++half) {
           const auto quad = [&](const IntLanes& bits) RAYGATE_BODY {
@@ -765,8 +737,8 @@ class PacketIntersector {
             continue;
           }
         }
-        for (; met != 0; met &= met - 1) {
-          const auto lane = static_cast<std::uint32_t>(std::countr_zero(met));
+        for (const int i : SetBits(met)) {
+          const auto lane = static_cast<std::uint32_t>(i);
           write_hit(lane);
           if (with_points) points_.add(number + lane, primitives[lane]);
         }

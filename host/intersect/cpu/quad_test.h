@@ -9,7 +9,7 @@
 #include <iterator>
 #include <limits>
 
-#include "host/base/lanes.h"
+#include "host/base/triple.h"
 #include "host/exact/exact.h"
 
 namespace raygate {
@@ -280,7 +280,7 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
 // 3. A . N has one of r |N|_1 and m times that of N, for exact N: 1.1 r L + 26 (m + r) r (s + r)
 //    are added.
 
-/// Four planes of four triangles: those of three edges, and N.
+/// Four planes of each of four triangles: the planes of the edges, and N.
 struct alignas(sizeof(FloatLanes)) QuadRecord {
   static constexpr int kNormal = 3;
 
@@ -302,74 +302,60 @@ inline constexpr float kQuadBound = 14.5f;
 
 /// Computes the record of 1 to 4 triangles, with corners in the format of test_quad.
 template <bool kIsRounded>
-RAYGATE_INLINE void make_quad_record(const float (&origin)[3], const float* corners,
+RAYGATE_INLINE void make_quad_record(const glm::vec3& origin, const float* corners,
                                      std::uint32_t count, QuadRecord& record) {
   constexpr float kU = 0x1p-24f, kTiny = 0x1p-100f, kLargest = 0x1p40f;
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const std::ptrdiff_t stride = count;
-  FloatQuad p[3][3], sides[3][3], farthest = {};
+  Triple<FloatQuad> p[3];
+  FloatQuad coordinate = {}, side = {}, farthest = {};  // largest magnitudes
   for (int v = 0; v < 3; ++v) {
-    for (int k = 0; k < 3; ++k) p[v][k] = load<FloatQuad>(corners + stride * (3 * v + k));
+    const float* const corner = corners + stride * (3 * v);
+    p[v] = {load<FloatQuad>(corner), load<FloatQuad>(corner + stride),
+            load<FloatQuad>(corner + 2 * stride)};
+    if constexpr (kIsRounded) coordinate = maximum(largest_size(p[v]), coordinate);
   }
+  const Triple<FloatQuad> sides[3] = {p[1] - p[0], p[2] - p[1], p[0] - p[2]};
   for (int v = 0; v < 3; ++v) {
-    for (int k = 0; k < 3; ++k) sides[v][k] = p[(v + 1) % 3][k] - p[v][k];
+    p[v] = p[v] - spread<FloatQuad>(origin);
+    farthest = maximum(largest_size(p[v]), farthest);
+    if constexpr (kIsRounded) side = maximum(largest_size(sides[v]), side);
   }
-  for (int v = 0; v < 3; ++v) {
-    for (int k = 0; k < 3; ++k) {
-      p[v][k] = p[v][k] - origin[k];
-      farthest = maximum(absolute(p[v][k]), farthest);
-    }
-  }
-  // Side by side: A x (B-A) and B x (C-B); then C x (A-C) and N = (B-A) x (C-B).
-  FloatLanes u[3], v[3], planes[2][3], sizes[2];
-  for (int k = 0; k < 3; ++k) {
-    u[k] = join(p[0][k], p[1][k]);
-    v[k] = join(sides[0][k], sides[1][k]);
-  }
-  const auto cross_of = [&](FloatLanes(&plane)[3], FloatLanes & sum)
-      __attribute__((always_inline)) {
-    FloatLanes size[3];
-    cross(u, v, plane, size);
-    sum = size[0] + size[1] + size[2];
+  const auto pair = [](const Triple<FloatQuad>& low, const Triple<FloatQuad>& high) RAYGATE_BODY {
+    return Triple<FloatLanes>{join(low.x, high.x), join(low.y, high.y), join(low.z, high.z)};
   };
-  cross_of(planes[0], sizes[0]);
-  for (int k = 0; k < 3; ++k) {
-    u[k] = join(p[2][k], sides[0][k]);
-    v[k] = join(sides[2][k], sides[1][k]);
-  }
-  cross_of(planes[1], sizes[1]);
-  FloatQuad largest = low_half(sizes[0]);
-  largest = maximum(high_half(sizes[0]), largest);
-  largest = maximum(low_half(sizes[1]), largest);
+  // Side by side: A x (B-A) and B x (C-B); then C x (A-C) and N = (B-A) x (C-B).
+  Triple<FloatLanes> terms[2];
+  const Triple<FloatLanes> planes[2] = {
+      cross(pair(p[0], p[1]), pair(sides[0], sides[1]), terms[0]),
+      cross(pair(p[2], sides[0]), pair(sides[2], sides[1]), terms[1])};
+  const FloatLanes sizes[2] = {terms[0].x + terms[0].y + terms[0].z,
+                               terms[1].x + terms[1].y + terms[1].z};
+  const FloatQuad largest =
+      maximum(low_half(sizes[1]), maximum(high_half(sizes[0]), low_half(sizes[0])));
   const FloatQuad size = high_half(sizes[1]);
   FloatQuad edge_bound = (kQuadBound * kU) * largest + kTiny,
             normal_bound = (kQuadBound * kU) * size + kTiny,
             distance_bound = (8.5f * kU) * farthest * size + kTiny;
   if constexpr (kIsRounded) {
-    FloatQuad r = {}, side = {};
-    for (int v = 0; v < 3; ++v) {
-      for (int k = 0; k < 3; ++k) {
-        r = maximum(absolute(load<FloatQuad>(corners + stride * (3 * v + k))), r);
-        side = maximum(absolute(sides[v][k]), side);
-      }
-    }
-    r *= 0x1.01p-24f;
+    const FloatQuad r = 0x1.01p-24f * coordinate;
     edge_bound += 26.0f * r * (farthest + 0.5f * side + r);
     normal_bound += 50.0f * r * (side + r);
     distance_bound += 1.1f * r * size + 26.0f * (farthest + r) * r * (side + r);
   }
   const IntQuad small = farthest <= kLargest;
-  const FloatQuad d = (p[0][0] * high_half(planes[1][0]) + p[0][1] * high_half(planes[1][1])) +
-                      p[0][2] * high_half(planes[1][2]);
+  const Triple<FloatQuad> normal = {high_half(planes[1].x), high_half(planes[1].y),
+                                    high_half(planes[1].z)};
+  const FloatQuad d = dot(p[0], normal);
   const FloatQuad d_bound = small ? distance_bound : FloatQuad{} + kInfinity;
   const FloatQuad distance = absolute(d);
   const IntQuad sure = distance > d_bound;
   const IntQuad flip = bits_in(d) & std::numeric_limits<std::int32_t>::min();
   const IntLanes flips = join(flip, flip);
-  for (int pair = 0; pair < 2; ++pair) {
-    for (int k = 0; k < 3; ++k) {
-      store(record.planes[pair][k], bits_in(planes[pair][k]) ^ flips);
-    }
+  for (int i = 0; i < 2; ++i) {
+    store(record.planes[i][0], bits_in(planes[i].x) ^ flips);
+    store(record.planes[i][1], bits_in(planes[i].y) ^ flips);
+    store(record.planes[i][2], bits_in(planes[i].z) ^ flips);
   }
   store(record.bounds, small ? edge_bound : FloatQuad{} + kInfinity);
   store(record.normal_bound, normal_bound);

@@ -323,8 +323,7 @@ class SingleRayIntersector {
     HitCounters& counters = counters_.hit;
     counters.hits += static_cast<std::uint64_t>(std::popcount(verdict.hit));
     walk.work.doubts += static_cast<std::uint32_t>(std::popcount(verdict.doubt));
-    for (; open != 0; open &= open - 1) {
-      const int i = std::countr_zero(open);
+    for (const int i : SetBits(open)) {
       const std::uint32_t primitive = leaf.first + static_cast<std::uint32_t>(i);
       const float low = verdict.low[i], high = verdict.high[i];
       if (primitive == walk.skip_id || primitive == walk.source_id) continue;
@@ -389,9 +388,8 @@ class SingleRayIntersector {
     for (std::size_t i = 0; i < kQuad; ++i) rays[i] = &rays_[next_ + std::min(i, count - 1)];
     next_ += count;
     const LaneMask all = (1u << count) - 1, scaled = raygate::begin(rays, walks) & all;
-    for (LaneMask left = all & ~scaled; left != 0; left &= left - 1) {
-      const Ray& ray = *rays[std::countr_zero(left)];
-      if (is_usable(ray.direction)) throw_unscaled(ray);
+    for (const int i : SetBits(all & ~scaled)) {
+      if (is_usable(rays[i]->direction)) throw_unscaled(*rays[i]);
     }
     for (std::uint32_t i = 0; i < count; ++i) {
       RayTraversal& walk = *walks[i];

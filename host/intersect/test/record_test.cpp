@@ -121,7 +121,8 @@ TYPED_TEST(Record, SureAnswersAreRightAtEveryScale) {
     for (int k = 0; k < 4; ++k) {
       const Ray ray = aimed(this->random_, view);
       if (!is_usable(ray.direction)) continue;
-      const UnitVerdict verdict = unit.verdict(made, ray.direction);
+      HitDistance distance;
+      const UnitVerdict verdict = unit.verdict(made, ray.direction, distance);
       ++counts[static_cast<int>(verdict)];
       if (verdict == UnitVerdict::kDoubt) continue;
       ASSERT_EQ(hits_triangle(ray, view.triangle), verdict == UnitVerdict::kHit) << i;
@@ -140,7 +141,8 @@ TYPED_TEST(Record, WhatIsNotFiniteIsNeverSure) {
       points[word / 3][word % 3] = bad;
       const PolygonRecord made = this->make(points[0], {points[1], points[2], points[3]});
       for (const glm::vec3& way : {glm::vec3(0, 0, 1), glm::vec3(0.2f, -0.1f, 1)}) {
-        const UnitVerdict verdict = ReferenceBurstUnit().verdict(made, way);
+        HitDistance distance;
+        const UnitVerdict verdict = ReferenceBurstUnit().verdict(made, way, distance);
         EXPECT_TRUE(verdict == UnitVerdict::kDoubt ||
                     (!TypeParam::kHasSignOfD && verdict == UnitVerdict::kMiss))
             << word;
@@ -186,8 +188,8 @@ TEST(SetUp, DistancesAreAsNearAsTheySay) {
     const SetUpRecord made = set_up(view.origin, rounded(view.triangle));
     for (int k = 0; k < 4; ++k) {
       const Ray ray = aimed(random, view);
-      if (unit.verdict(made.record, ray.direction) != UnitVerdict::kHit) continue;
-      const HitDistance hit = unit.distance(made.record, ray.direction);
+      HitDistance hit;
+      if (unit.verdict(made.record, ray.direction, hit) != UnitVerdict::kHit) continue;
       if (!is_good_hit(made, hit.error)) continue;
       const double off = floats_between(hit.t, hit_distance(ray, view.triangle));
       const double most = std::ldexp(1.0, static_cast<int>(t_error_exponent(made, hit.error)));

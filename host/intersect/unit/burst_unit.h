@@ -94,8 +94,8 @@ struct BurstResult {
   }
 };
 
-/// The results of a batch, in the order of bundles and lanes; those of a burst are in the order of
-/// its tests, except that its kHit comes last.
+/// The results of a batch, in the order of bundles and lanes. Results of a burst are in the order
+/// of its tests, except that its kHit comes last.
 using BurstResults = std::vector<BurstResult>;
 
 /// Tests every ray of every bundle against the bundle's records, in binary32, rounded to nearest
@@ -146,6 +146,14 @@ class PlaneUnit {
 /// The unit's verdict on a single test.
 enum class UnitVerdict : std::uint8_t { kMiss, kHit, kDoubt };
 
+/// Counts a test with this verdict.
+inline void count(UnitVerdict verdict, HitCounters& counters) {
+  ++counters.tests;
+  counters.misses += verdict == UnitVerdict::kMiss;
+  counters.hits += verdict == UnitVerdict::kHit;
+  counters.edge_doubts += verdict == UnitVerdict::kDoubt;
+}
+
 /// The distance of a hit. At most 2^(6 + error) numbers of the format separate it from the exact t.
 struct HitDistance {
   float t = 0.0f;
@@ -162,8 +170,8 @@ Interval around(const HitDistance& distance, const Math& math) {
 }
 
 /// Implements BurstUnit in the format and rounding of `Math` (Binary32, or Arithmetic of
-/// host/variants): all floats of records, rays and results are numbers of that format. Has the bits
-/// of hit_test_pipeline with these parameters.
+/// host/variants): all floats of records, rays and results are numbers of that format. Results have
+/// the bits of hit_test_pipeline with these parameters.
 template <typename Math>
 class BasicReferenceBurstUnit : public BurstUnit {
  public:
@@ -172,20 +180,22 @@ class BasicReferenceBurstUnit : public BurstUnit {
   void finish(BurstResults& results) override {
     const std::span<const RayBundle> batch = this->pop_started();
     for (std::uint32_t i = 0; i < batch.size(); ++i) {
-      for (LaneMask lanes = batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
-        run_burst(batch[i], i, static_cast<std::uint32_t>(std::countr_zero(lanes)), results);
+      for (const int lane : SetBits(batch[i].lanes)) {
+        run_burst(batch[i], i, static_cast<std::uint32_t>(lane), results);
       }
     }
   }
 
   [[nodiscard]] HitCounters counters() const override { return counters_; }
 
-  /// Returns the verdict on one test, as in a batch.
-  [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction) const {
-    const float v = math_.dot(record.normal, direction);
-    const UnitVerdict decided = decide(record, direction, v);
-    if (decided != UnitVerdict::kHit) return decided;
-    return math_.is_normal(math_.divide(record.d, v)) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
+  /// Returns the verdict on one test, as in a batch. Sets `distance` if the verdict is kHit.
+  [[nodiscard]] UnitVerdict verdict(const PolygonRecord& record, const glm::vec3& direction,
+                                    HitDistance& distance) const {
+    const UnitVerdict inside = edges_verdict(record, direction);
+    if (inside != UnitVerdict::kHit) return inside;
+    if (!is_divisor(record, math_.dot(record.normal, direction))) return UnitVerdict::kDoubt;
+    distance = this->distance(record, direction);
+    return math_.is_normal(distance.t) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
   /// Returns the verdict of the edges alone; kHit if the triangle is hit provided that it is in
@@ -218,7 +228,9 @@ class BasicReferenceBurstUnit : public BurstUnit {
   /// Returns BurstUnit's t and its error for a record that the ray surely hits.
   [[nodiscard]] HitDistance distance(const PolygonRecord& record,
                                      const glm::vec3& direction) const {
-    return distance(record, math_.dot(record.normal, direction));
+    const float v = math_.dot(record.normal, direction);
+    return {math_.divide(record.d, v),
+            static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
   }
 
   /// Returns BurstUnit's P (equation 10); any NaN is 0x7FC00000.
@@ -240,19 +252,6 @@ class BasicReferenceBurstUnit : public BurstUnit {
            math_.exponent_field(v);
   }
 
-  [[nodiscard]] HitDistance distance(const PolygonRecord& record, float v) const {
-    return {math_.divide(record.d, v),
-            static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
-  }
-
-  /// Returns the verdict before the division: from the edges and the range of V.
-  [[nodiscard]] UnitVerdict decide(const PolygonRecord& record, const glm::vec3& direction,
-                                   float v) const {
-    const UnitVerdict inside = edges_verdict(record, direction);
-    if (inside != UnitVerdict::kHit) return inside;
-    return is_divisor(record, v) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
-  }
-
   /// Returns whether two positive distances differ by at most the sum of their errors.
   [[nodiscard]] bool near_tie(const HitDistance& a, const BurstResult& b) const {
     const std::int64_t margin = (std::int64_t{1} << (kTErrorUnit + a.error)) +
@@ -269,17 +268,9 @@ class BasicReferenceBurstUnit : public BurstUnit {
     bool found = false;
     for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
       const PolygonRecord& record = bundle.records[i];
-      const float v = math_.dot(record.normal, direction);
-      UnitVerdict verdict = decide(record, direction, v);
       HitDistance hit;
-      if (verdict == UnitVerdict::kHit) {
-        hit = distance(record, v);
-        if (!math_.is_normal(hit.t)) verdict = UnitVerdict::kDoubt;
-      }
-      ++counters_.tests;
-      counters_.misses += verdict == UnitVerdict::kMiss;
-      counters_.hits += verdict == UnitVerdict::kHit;
-      counters_.edge_doubts += verdict == UnitVerdict::kDoubt;
+      const UnitVerdict verdict = this->verdict(record, direction, hit);
+      count(verdict, counters_);
       if (verdict == UnitVerdict::kDoubt) results.push_back({index, lane, i, Kind::kDoubt});
       if (verdict != UnitVerdict::kHit) continue;
       const bool nearer = hit.t < best.t;
@@ -306,7 +297,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
 /// The reference model in the host's float arithmetic.
 using ReferenceBurstUnit = BasicReferenceBurstUnit<Binary32>;
 
-/// Sets P of a hit, as BasicReferenceBurstUnit::point in binary32, and its error.
+/// Sets P of a hit, with the bits of BasicReferenceBurstUnit::point in binary32, and its error.
 inline void set_point(const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit) {
   const auto d = std::bit_cast<std::int32_t>(record.d),
              v = std::bit_cast<std::int32_t>(Binary32::dot(record.normal, direction));

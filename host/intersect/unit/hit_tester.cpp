@@ -1,7 +1,6 @@
 #include "host/intersect/unit/hit_tester.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -110,16 +109,12 @@ void SerialHitTester::finish(HitReports& reports) {
 
 void SerialHitTester::collect(std::uint32_t index, const RayBundle& bundle) {
   const ReferenceBurstUnit software;
-  for (LaneMask lanes = bundle.lanes; lanes != 0; lanes &= lanes - 1) {
-    const int lane = std::countr_zero(lanes);
+  for (const int lane : SetBits(bundle.lanes)) {
     const glm::vec3 direction = bundle.lane_direction(lane);
     for (std::uint32_t i = 0; i < bundle.record_count; ++i) {
       const PolygonRecord& record = bundle.records[i];
       const UnitVerdict verdict = software.edges_verdict(record, direction);
-      ++counters_.tests;
-      counters_.misses += verdict == UnitVerdict::kMiss;
-      counters_.hits += verdict == UnitVerdict::kHit;
-      counters_.edge_doubts += verdict == UnitVerdict::kDoubt;
+      count(verdict, counters_);
       if (verdict == UnitVerdict::kMiss) continue;
       pairs_.push_back({index, static_cast<std::uint32_t>(lane), i, verdict});
       plane_tests_.push_back({direction, record.normal, record.d});

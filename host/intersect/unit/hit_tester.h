@@ -57,7 +57,7 @@ class PipelineHitTester : public HitTester {
 /// exclude are not sent to the unit.
 class SerialHitTester : public HitTester {
  public:
-  /// Changes hit.point_error, which is that of binary32, to that of the unit's format.
+  /// Converts hit.point_error from binary32 to the unit's format.
   using Adapt =
       std::function<void(const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit)>;
 

@@ -219,8 +219,8 @@ class UnitIntersector : public Intersector {
 
   void count_work(const Half& half) {
     for (std::size_t i = 0; i < half.batch.size(); ++i) {
-      for (LaneMask lanes = half.batch[i].lanes; lanes != 0; lanes &= lanes - 1) {
-        const std::uint32_t ray = packets_[half.owner[i]].rays[std::countr_zero(lanes)];
+      for (const int lane : SetBits(half.batch[i].lanes)) {
+        const std::uint32_t ray = packets_[half.owner[i]].rays[lane];
         query_.work[ray].tests += half.batch[i].record_count;
       }
     }

@@ -61,10 +61,10 @@ void measure(const Options& options, const std::string& scene, const std::string
            {"lines_per_ray", a_ray(counters.lines)},
            {"bytes_per_ray", 64.0 * a_ray(counters.lines)},
            {"nodes_percent", percent(counters.nodes)},
-           {"triangles_percent", percent(counters.triangles)},
+           {"triangles_percent", percent(counters.tests)},
            {"exact_percent", percent(counters.exact_clocks)},
-           {"doubts_per_1000", 1e3 * a_ray(counters.doubts)},
-           {"near_ties_per_1000", 1e3 * a_ray(counters.near_ties)}});
+           {"doubts_per_1000", 1e3 * a_ray(counters.edge_doubts)},
+           {"near_ties_per_1000", 1e3 * a_ray(counters.depth_doubts)}});
   }
 }
 

@@ -29,12 +29,9 @@ struct RaySet {
     const std::span found = std::span(rays).subspan(first, hits.size());
     RayQuery query{.common_origin = common_origin};
     if (!t_max.empty()) query.t_max = std::span(t_max).subspan(first, hits.size());
-    if (any_hit) {
-      query.any_hit_before = query.t_max;
-      intersector.occluded(found, query, hits);
-    } else {
-      intersector.nearest(found, query, hits);
-    }
+    if (any_hit) query.any_hit_before = query.t_max;
+    query.with_points = !any_hit;
+    intersector.nearest(found, query, hits);
   }
 };
 

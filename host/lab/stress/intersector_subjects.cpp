@@ -185,7 +185,7 @@ SubjectKind unit(const char* name, const char* what, double share, Lanes... lane
                .binary64 = true,
                .share = share},
               [=] { return by_unit(std::make_shared<Tester>(std::make_unique<Unit>(lanes...))); },
-              {.delivers = true, .unit = &variant_named("binary32")});
+              {.delivers = true, .unit = &all_variants_of_arithmetic().front()});
 }
 
 /// Returns a subject for the ray core of `make_core`. A core that resolves doubts does not report

@@ -424,8 +424,8 @@ class Bounces {
     const auto primitive = first_hit(*bvh_, ray);
     const NeighborClearances clearances(*bvh_);
     RaySpawner spawner(clearances);
-    const auto point =
-        primitive ? spawner.find(ray, *primitive, SpawnSide::kIncident) : std::nullopt;
+    const SpawnOrigin point =
+        primitive ? spawner.find(ray, *primitive, SpawnSide::kIncident) : SpawnOrigin{};
     if (!point) return start_anew(random);
     mirrored_ = mirrored(ray.direction, bvh_->corners_of(*primitive));
     if (!spawner.leaves(ray, *primitive, SpawnSide::kIncident, mirrored_))

@@ -94,7 +94,7 @@ TEST(VariantHitTester, IsNeverWrongWhereDoubtsAreResolved) {
 
 TEST(VariantHitTester, IsOftenWrongWhereTheyAreIgnored) {
   Random random(8);
-  const auto tester = make_variant_tester(variant_named("e8p12-raw"));
+  const auto tester = make_variant_tester(*variant_of_format("e8p12-raw"));
   int wrong = 0;
   for (int i = 0; i < 10000; ++i) {
     const Case c = hard_case(random);
@@ -119,14 +119,14 @@ TEST(VariantHitTester, IgnoringDoubtsKeepsTheNearestOfABurst) {
   bundle.first_tag = 10;
   bundle.lanes = 1;
   HitReports reports;
-  make_variant_tester(variant_named("e8p12-raw"))->run({&bundle, 1}, reports);
+  make_variant_tester(*variant_of_format("e8p12-raw"))->run({&bundle, 1}, reports);
   ASSERT_EQ(reports.size(), 1u);
   EXPECT_EQ(reports[0].hit.primitive, 11u);
   EXPECT_EQ(reports[0].hit.point, glm::vec3(0, 0, 2));
 }
 
 TEST(VariantRecord, OfFewExponentsIsScaledIntoThem) {
-  const Variant& half = variant_named("binary16");
+  const Variant half = *variant_of_format("e5p11");
   const glm::vec3 far_away(3000.0f, 0.0f, 0.0f);
   const Corners triangle = {far_away, far_away + glm::vec3(0, 50, 0),
                             far_away + glm::vec3(0, 0, 50)};

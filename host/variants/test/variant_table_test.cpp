@@ -61,9 +61,8 @@ TEST(VariantTable, TakesANameOnce) {
 }
 
 TEST(VariantTable, OfThisBuildIsSound) {
-  EXPECT_FALSE(all_variants_of_arithmetic().empty());
-  EXPECT_EQ(variant_named("binary32").math, Arithmetic{});
-  EXPECT_THROW((void)variant_named("binary33"), InputError);
+  ASSERT_FALSE(all_variants_of_arithmetic().empty());
+  EXPECT_EQ(all_variants_of_arithmetic().front().math, Arithmetic{});
 }
 
 TEST(VariantTable, AnyFormatIsAVariant) {

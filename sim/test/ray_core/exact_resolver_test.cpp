@@ -85,7 +85,7 @@ TEST_F(ExactResolverTest, WordsAreTheReferences) {
         MemoryTiming{.latency = 50, .disorder = 100, .not_taken = 64}}) {
     Core core(timing, {.no_ray = 32, .not_taken = timing.not_taken, .seed = 3}, kExact);
     compare(core, rays);
-    EXPECT_GT(core.counters().near_ties, 1'000u);
+    EXPECT_GT(core.counters().depth_doubts, 1'000u);
     EXPECT_GT(core.counters().exact_clocks, 56'000u);
   }
   EXPECT_GT(found_, 1'500);
@@ -165,7 +165,7 @@ TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
     CpuIntersector(bvh).nearest({&rays[result.tag].ray, 1}, {}, {&expected, 1});
     found += result.found && result.triangle == image.line_of(expected.primitive);
   }
-  EXPECT_GT(core.counters().doubts, 150u * rays.size());
+  EXPECT_GT(core.counters().edge_doubts, 150u * rays.size());
   EXPECT_GT(found, 0);
 }
 

@@ -29,17 +29,14 @@ using test::some_rays;
 class RayCoreTest : public testing::Test {
  protected:
   /// Throws where the core, with the host's help, and CpuIntersector differ.
-  void check(const std::vector<Ray>& rays, const RayQuery& query, std::unique_ptr<CoreUnit> core) {
+  void check(const std::vector<Ray>& rays, RayQuery query, std::unique_ptr<CoreUnit> core) {
     const CoreUnit& unit = *core;
     CheckIntersector intersector(bvh_,
                                  std::make_unique<CoreIntersector>(bvh_, image_, std::move(core)),
                                  std::make_unique<CpuIntersector>(bvh_));
     std::vector<NearestHit> hits(rays.size());
-    if (query.any_hit_before.empty() && query.skip_ids.empty()) {
-      intersector.nearest(rays, query, hits);
-    } else {
-      intersector.occluded(rays, query, hits);
-    }
+    query.with_points = query.any_hit_before.empty() && query.skip_ids.empty();
+    intersector.nearest(rays, query, hits);
     counters_ = unit.counters();
   }
 
@@ -64,10 +61,9 @@ INSTANTIATE_TEST_SUITE_P(Arithmetic, EachRayCoreTest, testing::Values(false, tru
 TEST_F(RayCoreTest, NearestHitsAreTheCpuIntersectors) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 10'000);
   check(rays, {}, make_rtl_core());
-  EXPECT_GT(counters_.doubts, 50u);
-  EXPECT_GT(counters_.near_ties, 50u);
-  EXPECT_LT(counters_.lines, (counters_.nodes + counters_.triangles) / 8)
-      << "caches hold the scene";
+  EXPECT_GT(counters_.edge_doubts, 50u);
+  EXPECT_GT(counters_.depth_doubts, 50u);
+  EXPECT_LT(counters_.lines, (counters_.nodes + counters_.tests) / 8) << "caches hold the scene";
   EXPECT_LT(counters_.clocks, counters_.nodes * 5 / 4) << "a node in nearly every clock";
 }
 
@@ -75,7 +71,7 @@ TEST_F(RayCoreTest, ANodeAndATriangleAreTakenInEachOfTheirTurns) {
   constexpr std::uint64_t kClocks = 11;  // as the model has it
   check(some_rays(bodies(), random_, 3'000), {},
         std::make_unique<CoreModel<Vray_core_shared>>(MemoryTiming{}));
-  const std::uint64_t turns = std::max(counters_.nodes, counters_.triangles);
+  const std::uint64_t turns = std::max(counters_.nodes, counters_.tests);
   EXPECT_GE(counters_.clocks, kClocks * turns);
   EXPECT_LT(counters_.clocks, kClocks * turns * 5 / 4);
 }
@@ -152,7 +148,7 @@ TEST_F(RayCoreTest, ArithmeticsGiveTheSame) {
   const CoreCounters behavioural = counters_;
   check(rays, {}, make_rtl_core({}, {}, {.exact = true, .arith = Arith::kStructural}));
   EXPECT_EQ(counters_.clocks, behavioural.clocks);
-  EXPECT_EQ(counters_.triangles, behavioural.triangles);
+  EXPECT_EQ(counters_.tests, behavioural.tests);
 }
 
 TEST_P(EachRayCoreTest, WaitsChangeNothing) {
@@ -179,9 +175,9 @@ TEST_P(EachRayCoreTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
   }
   check(rays, {.t_max = limits}, core());
   check(rays, {.t_max = limits, .skip_ids = ignored}, core());
-  const std::uint64_t triangles = counters_.triangles;
+  const std::uint64_t triangles = counters_.tests;
   check(rays, {.t_max = limits, .skip_ids = ignored, .any_hit_before = enough}, core());
-  EXPECT_LT(counters_.triangles, triangles);
+  EXPECT_LT(counters_.tests, triangles);
 }
 
 /// A line that was read ahead may come when the last ray has ended; the core tells, or CoreModel
@@ -261,7 +257,7 @@ TEST_P(EachRayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
   const std::unique_ptr<CoreUnit> simulated = core();
   EXPECT_EQ(tests(*simulated), tests(reference));
   EXPECT_EQ(simulated->counters().nodes, reference.counters().nodes);
-  EXPECT_EQ(simulated->counters().triangles, reference.counters().triangles);
+  EXPECT_EQ(simulated->counters().tests, reference.counters().tests);
 }
 
 /// Counters agree with each other, and with the words that came.
@@ -285,11 +281,11 @@ TEST_F(RayCoreTest, EventsAreCounted) {
     }
     EXPECT_EQ(counters.rays, sent.size());
     EXPECT_EQ(counters.rays, number(CoreResult::Kind::kEnd));
-    EXPECT_EQ(counters.triangles, tests);
-    EXPECT_EQ(counters.triangles, counters.hits + counters.misses + counters.doubts);
+    EXPECT_EQ(counters.tests, tests);
+    EXPECT_EQ(counters.tests, counters.hits + counters.misses + counters.edge_doubts);
     EXPECT_EQ(counters.overflows != 0, unit == &small);
-    EXPECT_GE(number(CoreResult::Kind::kDoubt), counters.near_ties);
-    EXPECT_GE(counters.doubts + counters.near_ties, number(CoreResult::Kind::kDoubt));
+    EXPECT_GE(number(CoreResult::Kind::kDoubt), counters.depth_doubts);
+    EXPECT_GE(counters.edge_doubts + counters.depth_doubts, number(CoreResult::Kind::kDoubt));
     EXPECT_GT(counters.nodes, counters.rays);
     EXPECT_GT(counters.misses, counters.hits);
     EXPECT_GT(counters.waits, counters.lines / 4);

@@ -128,12 +128,12 @@ class TriangleTest : public testing::Test {
     ASSERT_EQ(fields.take(1), triangle.is_error || triangle.is_ignored);
     const SetUpRecord expected = set_up(triangle.origin, triangle.corners);
     const ReferenceBurstUnit reference;
-    const UnitVerdict verdict = reference.verdict(expected.record, triangle.direction);
+    HitDistance distance;
+    const UnitVerdict verdict = reference.verdict(expected.record, triangle.direction, distance);
     ASSERT_EQ(found, verdict == UnitVerdict::kHit);
     ASSERT_EQ(doubt, verdict == UnitVerdict::kDoubt);
     ++verdicts_[static_cast<int>(verdict)];
     if (!found) return;
-    const HitDistance distance = reference.distance(expected.record, triangle.direction);
     ASSERT_EQ(t, bits(distance.t));
     ASSERT_EQ(t_error, distance.error);
     ASSERT_EQ(normal_error, expected.normal_error);

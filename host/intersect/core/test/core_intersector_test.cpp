@@ -72,10 +72,10 @@ TEST_F(CoreIntersectorTest, NearestHitsAreTheCpuIntersectors) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 20'000);
   check(rays, {}, 8);
   EXPECT_GT(found_, 19'000);
-  EXPECT_GT(counters_.doubts, 100u);
-  EXPECT_GT(counters_.near_ties, 100u);
+  EXPECT_GT(counters_.edge_doubts, 100u);
+  EXPECT_GT(counters_.depth_doubts, 100u);
   EXPECT_EQ(counters_.overflows, 0u);
-  EXPECT_LT(counters_.triangles, rays.size() * mesh_.size() / 16) << "boxes cull";
+  EXPECT_LT(counters_.tests, rays.size() * mesh_.size() / 16) << "boxes cull";
 }
 
 TEST_F(CoreIntersectorTest, AShortStackCostsNoHits) {
@@ -117,9 +117,9 @@ TEST_F(CoreIntersectorTest, TheTriangleThatARayLeavesIsNoDoubt) {
     sources.push_back(primitive_of(triangle));
   }
   check(rays, {}, 8);
-  EXPECT_GT(counters_.doubts, 9'000u);
+  EXPECT_GT(counters_.edge_doubts, 9'000u);
   check(rays, {.source_ids = sources}, 8);
-  EXPECT_LT(counters_.doubts, 100u);
+  EXPECT_LT(counters_.edge_doubts, 100u);
 }
 
 TEST_F(CoreIntersectorTest, TheWorkOfEachRayIsCounted) {
@@ -129,7 +129,7 @@ TEST_F(CoreIntersectorTest, TheWorkOfEachRayIsCounted) {
   std::uint64_t tests = 0;
   for (const RayWork& ray : work) tests += ray.tests;
   EXPECT_GT(tests, 0u);
-  EXPECT_EQ(tests, counters_.triangles);
+  EXPECT_EQ(tests, counters_.tests);
 }
 
 /// Every hit is a tie.
@@ -149,8 +149,8 @@ class ExactCoreTest : public CoreIntersectorTest {
 TEST_F(ExactCoreTest, NearestHitsAreTheCpuIntersectors) {
   check(some_rays(mesh_, random_, 10'000), {}, 8, true);
   EXPECT_GT(found_, 9'500);
-  EXPECT_GT(counters_.doubts, 1'000u);
-  EXPECT_GT(counters_.near_ties, 5'000u);
+  EXPECT_GT(counters_.edge_doubts, 1'000u);
+  EXPECT_GT(counters_.depth_doubts, 5'000u);
 }
 
 TEST_F(ExactCoreTest, LimitsSkippedTrianglesFirstHitsAndSourcesCount) {

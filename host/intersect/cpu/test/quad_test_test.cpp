@@ -172,9 +172,8 @@ class QuadRecordTest : public Quads {
     const auto count = static_cast<std::uint32_t>(triangles.size());
     QuadRecord record;
     const std::vector<float> words = words_of(triangles);
-    GetParam() != kNone
-        ? make_quad_record<true>({origin.x, origin.y, origin.z}, words.data(), count, record)
-        : make_quad_record<false>({origin.x, origin.y, origin.z}, words.data(), count, record);
+    GetParam() != kNone ? make_quad_record<true>(origin, words.data(), count, record)
+                        : make_quad_record<false>(origin, words.data(), count, record);
     ASSERT_EQ(record.unsure >> count, 0u);
     for (std::uint32_t i = 0; i < count; ++i) {
       const int side = orient3d(origin, triangles[i]);

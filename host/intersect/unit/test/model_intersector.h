@@ -13,19 +13,16 @@ inline std::unique_ptr<Intersector> model_intersector(const Bvh& bvh) {
       bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
 }
 
-/// Returns whether a query is one for nearest().
+/// Returns whether points are wanted: not by queries for shadow rays.
 inline bool with_points(const RayQuery& query) {
   return query.any_hit_before.empty() && query.skip_ids.empty();
 }
 
-/// Calls nearest(), or occluded() if the query has options that only it allows.
-inline void find(Intersector& intersector, std::span<const Ray> rays, const RayQuery& query,
+/// Finds the nearest hits, with_points() or without.
+inline void find(Intersector& intersector, std::span<const Ray> rays, RayQuery query,
                  std::span<NearestHit> hits) {
-  if (with_points(query)) {
-    intersector.nearest(rays, query, hits);
-  } else {
-    intersector.occluded(rays, query, hits);
-  }
+  query.with_points = with_points(query);
+  intersector.nearest(rays, query, hits);
 }
 
 }  // namespace raygate::test
