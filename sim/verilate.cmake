@@ -82,7 +82,7 @@ function(raygate_model NAME)
   set(options ${RAYGATE_VERILATED_OPTIONS})
   if(MODEL_NETLIST)  # lint is for what people write
     set(top_file ${MODEL_NETLIST})
-    set(patches -Wno-lint -Wno-style -Wno-UNOPTFLAT)
+    set(patches -Wno-lint -Wno-style -Wno-UNOPTFLAT +define+RAYGATE_NETLIST)
   elseif(NOT EXISTS ${CMAKE_SOURCE_DIR}/${top_file})
     message(FATAL_ERROR "raygate_model(${NAME}): no ${MODEL_TOP}.sv in hw/*/*.core or this folder")
   endif()

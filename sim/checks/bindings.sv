@@ -182,6 +182,7 @@ bind ray_core stream_checks #(
   .ready(result_ready_i),
   .data (result_o)
 );
+`ifndef RAYGATE_NETLIST  // netlists lack these registers
 bind exact_unit exact_checks #(
   .AddressWidth($bits(x_address))
 ) u_program_checks (
@@ -196,3 +197,4 @@ bind exact_unit exact_checks #(
                      stage_q[1].step.closes & ~stage_q[1].step.down}),
   .addresses({stage_q[4].result, stage_q[3].result, stage_q[2].result, stage_q[1].result})
 );
+`endif
