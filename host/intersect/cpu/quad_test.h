@@ -310,7 +310,7 @@ RAYGATE_INLINE void make_quad_record(const glm::vec3& origin, const float* corne
   Triple<FloatQuad> p[3];
   FloatQuad coordinate = {}, side = {}, farthest = {};  // largest magnitudes
   for (int v = 0; v < 3; ++v) {
-    const float* const corner = corners + stride * (3 * v);
+    const float* const corner = corners + 3 * v * stride;
     p[v] = {load<FloatQuad>(corner), load<FloatQuad>(corner + stride),
             load<FloatQuad>(corner + 2 * stride)};
     if constexpr (kIsRounded) coordinate = maximum(largest_size(p[v]), coordinate);
