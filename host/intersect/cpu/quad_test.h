@@ -309,7 +309,7 @@ RAYGATE_INLINE void make_quad_record(const glm::vec3& origin, const float* corne
   const std::ptrdiff_t stride = count;
   Triple<FloatQuad> p[3];
   FloatQuad coordinate = {}, side = {}, farthest = {};  // largest magnitudes
-  for (int v = 0; v < 3; ++v) {
+  for (std::ptrdiff_t v = 0; v < 3; ++v) {
     const float* const corner = corners + 3 * v * stride;
     p[v] = {load<FloatQuad>(corner), load<FloatQuad>(corner + stride),
             load<FloatQuad>(corner + 2 * stride)};
