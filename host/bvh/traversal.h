@@ -23,14 +23,13 @@ RAYGATE_INLINE bool any_leaf(const Bvh& bvh, const Boxes& boxes, const Visit& vi
   for (int depth = 1; depth > 0;) {
     Bvh::Node room;
     const Bvh::Node& node = tree.node(waiting[--depth], room);
-    for (const int i : SetBits(boxes(node))) {
-      const Bvh::Child child = node.child[i];
-      tree.prefetch(child);
-      if (child.count == 0) {
-        waiting[depth++] = child.first;
-      } else if (visit(child)) {
-        return true;
-      }
+    const LaneMask met = boxes(node);
+    for (const int i : SetBits(met)) {
+      tree.prefetch(node.child[i]);
+      if (node.child[i].count == 0) waiting[depth++] = node.child[i].first;
+    }
+    for (const int i : SetBits(met)) {
+      if (node.child[i].count != 0 && visit(node.child[i])) return true;
     }
   }
   return false;

@@ -1,6 +1,7 @@
 #include "host/light/shadow_rays.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "host/light/bsdf.h"
@@ -120,10 +121,15 @@ void ShadowRays::trace(std::span<const ShadowRay> rays, bool from_light, float e
                   : is_point_light ? NearestHit::kNone
                                    : ray.index;
     const glm::vec3 way = is_endless ? to : to - segment.from;
-    const bool is_point = way == glm::vec3(0.0f);  // hits nothing
-    batch_[i].direction = is_point ? way : scaled_direction(glm::dvec3(way));
-    // t of the end, a power of two.
-    const float end = is_point ? 1.0f : largest(way) / largest(batch_[i].direction);
+    const float size = largest(way);
+    // t of the end: the power of two by which the direction is scaled.
+    auto end = std::bit_cast<float>(std::bit_cast<std::uint32_t>(size) & 0x7F800000u);
+    glm::vec3 direction = way * (1.0f / end);
+    if (end == 0.0f) [[unlikely]] {  // a point, which hits nothing, or subnormal
+      direction = size == 0.0f ? way : scaled_direction(glm::dvec3(way));
+      end = size == 0.0f ? 1.0f : size / largest(direction);
+    }
+    batch_[i].direction = direction;
     limits_[i] = is_endless ? kNoEnd : end * share;
     enough_[i] = is_endless ? kNoEnd : end * std::min(enough, share);
     // Rounding may turn a grazing ray back towards its own triangle.

@@ -140,21 +140,26 @@ class NeighborClearanceSearch {
   template <Vectors kCode>
   [[nodiscard]] RAYGATE_INLINE DoubleQuad clearances(const float* corners, const Corners* exact,
                                                      std::uint32_t count, LaneMask mask) const {
-    DoubleQuad coordinates[3][3];  // relative to from_
+    FloatQuad corner[3][3];
     constexpr IntQuad kBit = {1, 2, 4, 8};
     IntQuad near = ((IntQuad{} + static_cast<std::int32_t>(mask)) & kBit) != 0;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      FloatQuad corner[3];
-      for (std::uint32_t v = 0; v < 3; ++v) {
-        corner[v] = load<FloatQuad>(corners + std::size_t{3 * v + k} * count);
-        DoubleQuad coordinate = widen<kCode>(corner[v]);
-        if (exact != nullptr) [[unlikely]] {
-          for (int i = 0; i < kQuad; ++i) coordinate[i] = exact[i][v][static_cast<int>(k)];
-        }
-        coordinates[v][k] = coordinate - from_[static_cast<int>(k)];
+    for (int k = 0; k < 3; ++k) {
+      for (int v = 0; v < 3; ++v) {
+        corner[v][k] = load<FloatQuad>(corners + std::size_t(3 * v + k) * count);
       }
-      near &= (minimum(minimum(corner[0], corner[1]), corner[2]) <= high[static_cast<int>(k)]) &
-              (maximum(maximum(corner[0], corner[1]), corner[2]) >= low[static_cast<int>(k)]);
+      near &= (minimum(minimum(corner[0][k], corner[1][k]), corner[2][k]) <= high[k]) &
+              (maximum(maximum(corner[0][k], corner[1][k]), corner[2][k]) >= low[k]);
+    }
+    if (sign_mask(near) == 0) return spread<DoubleQuad>(kInfinity);
+    DoubleQuad coordinates[3][3];  // relative to from_
+    for (int k = 0; k < 3; ++k) {
+      for (int v = 0; v < 3; ++v) {
+        DoubleQuad coordinate = widen<kCode>(corner[v][k]);
+        if (exact != nullptr) [[unlikely]] {
+          for (int i = 0; i < kQuad; ++i) coordinate[i] = exact[i][v][k];
+        }
+        coordinates[v][k] = coordinate - from_[k];
+      }
     }
     Vectors3 y[3];
     for (int v = 0; v < 3; ++v) y[v] = {coordinates[v][0], coordinates[v][1], coordinates[v][2]};

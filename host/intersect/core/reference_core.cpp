@@ -74,10 +74,11 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
   const int amount = exponent + 1 - field(ray.t_max);
   const std::int64_t limit = amount <= 1 ? kWhole : shift_right(significand(ray.t_max), amount) + 1;
 
-  std::array<std::int64_t, NodeLine::kChildren> keys;  // of the entered children: {enter, number}
+  constexpr auto kNone = std::numeric_limits<std::int64_t>::max();
+  std::array<std::int64_t, NodeLine::kChildren> keys;  // {enter, number}; kNone: not entered
+  keys.fill(kNone);
   std::array<std::uint32_t, NodeLine::kChildren> offset;
   std::uint32_t next = 0;
-  std::size_t size = 0;
   for (std::size_t i = 0; i < NodeLine::kChildren; ++i) {
     const NodeLine::Child& child = node.child[i];
     offset[i] = next;
@@ -93,13 +94,13 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
       leave = std::min(leave, at(axis.far, axis.back ? child.low[k] : child.high[k]));
     }
     if (child.kind == NodeLine::kAbsent || enter > leave) continue;
-    keys[size++] = enter << 3 | static_cast<std::int64_t>(i);
+    keys[i] = enter << 3 | static_cast<std::int64_t>(i);
   }
-  const std::span entered = std::span(keys).first(size);
-  std::ranges::sort(entered);
+  std::ranges::sort(keys);
 
   BoxGroup group{.base = node.base, .exponent = static_cast<std::uint32_t>(exponent)};
-  for (const std::int64_t key : entered) {
+  for (const std::int64_t key : keys) {
+    if (key == kNone) break;
     const auto i = static_cast<std::size_t>(key & 7);
     const auto enter = static_cast<std::uint32_t>(key >> 3);
     const std::uint32_t kind = node.child[i].kind;

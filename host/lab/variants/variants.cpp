@@ -198,7 +198,7 @@ class VariantBursts {
 /// Result of a comparison.
 struct VariantCheck {
   std::uint64_t tests = 0;  // hit tests through unit and model
-  HitCounters events;       // of the pipelined unit, which show what the sample covers
+  HitCounters events{};     // of the pipelined unit, which show what the sample covers
   std::uint64_t clocks = 0;
   std::string difference = "none";  // the first one, with its inputs
 };
