@@ -126,16 +126,16 @@ def main() -> int:
         if not (netlists / f"{core}.list").exists():
             print(f"sim.mutate: {netlists}: no netlist of {core}, expected {core}.list", file=sys.stderr)
             return 2
+    outcomes = []
+    print("| core | faults | caught | equivalent | survive |\n|---|---:|---:|---:|---:|", flush=True)
     try:
         with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-            outcomes = list(pool.map(
-                lambda core: judge(core, given.build / "sim", netlists, given.at_most), cores))
+            for one in pool.map(lambda core: judge(core, given.build / "sim", netlists, given.at_most), cores):
+                outcomes.append(one)
+                print(f"| {one.core} | {one.faults} | {one.caught} | {one.equivalent} | {len(one.survivors)} |", flush=True)
     except (subprocess.CalledProcessError, FileNotFoundError, ValueError) as error:
         print(f"sim.mutate: {error}", file=sys.stderr)
         return 1
-    print("| core | faults | caught | equivalent | survive |\n|---|---:|---:|---:|---:|")
-    for one in outcomes:
-        print(f"| {one.core} | {one.faults} | {one.caught} | {one.equivalent} | {len(one.survivors)} |")
     faults = sum(one.faults for one in outcomes)
     survivors = [(one.core, fault) for one in outcomes for fault in one.survivors]
     if survivors and not given.at_most:
