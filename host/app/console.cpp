@@ -226,7 +226,7 @@ int run_main(int argc, char** argv,
     return program({argv + 1, argv + argc});
   };
   // Freed arrays return to the system, which lowers the peak memory.
-  ::mallopt(M_MMAP_THRESHOLD, 8 << 20);
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   return run_guarded(std::ref(body));  // a copy would need memory, outside of what is guarded
 }
 
