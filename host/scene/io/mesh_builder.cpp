@@ -13,6 +13,7 @@
 namespace raygate {
 namespace {
 
+constexpr std::size_t kSpare = 64;  // room for area lights and the ground
 constexpr glm::vec3 kNoColor(-1.0f);
 constexpr std::size_t kCheckpointFaces = 4096;
 
@@ -120,6 +121,8 @@ void MeshBuilder::place(const glm::dvec3& origin, bool keeps_rests, Scene& scene
   scene.origin = origin;
   scene.rounding = {};
   scene.positions.clear();
+  scene.positions.reserve(positions_.size() + kSpare);
+  scene.rests.reserve(positions_.size() + kSpare);
   for (std::uint32_t i = 0; i < positions_.size(); ++i) {
     double error = scene.add_vertex(positions_[i]);
     if (!keeps_rests) error += largest(glm::dvec3(scene.positions[i]) - scene.vertex(i));
@@ -163,7 +166,8 @@ std::optional<std::vector<std::uint32_t>> MeshBuilder::triangulate(Scene& scene,
   std::vector<std::uint32_t> groups;
   EarClipper clipper;
   std::vector<glm::dvec3> polygon;
-  scene.triangles.reserve(std::max(corners_.size(), 2 * faces_.size()) - 2 * faces_.size());
+  scene.triangles.reserve(std::max(corners_.size(), 2 * faces_.size()) - 2 * faces_.size() +
+                          kSpare);
   std::size_t begin = 0;
   for (const Face& face : faces_) {
     const std::span<const FaceCorner> corners(corners_.data() + begin, face.end - begin);
