@@ -105,8 +105,8 @@ void note_interruptions();
 class Interrupted : public std::runtime_error {
  public:
   /// `outcome`: what happened to the output files, for the message.
-  Interrupted(int from, const std::string& outcome)
-      : std::runtime_error("interrupted; " + outcome), signal(from) {}
+  Interrupted(int number, const std::string& outcome)
+      : std::runtime_error("interrupted; " + outcome), signal(number) {}
 
   const int signal;
 };

@@ -35,14 +35,16 @@ constexpr int kMostServedSamples = 1 << 16;
 
 /// A request with the decoded parameters of its query.
 struct Request {
+  static constexpr int kMostParameters = 64;
+
   mg_connection* connection;
   const mg_request_info* info = mg_get_request_info(connection);
-  std::vector<OptionValue> parameters{};
+  std::vector<OptionValue> parameters{};  ///< at most one more than kMostParameters
 
   explicit Request(mg_connection* from) : connection(from) {
     std::string query = info->query_string == nullptr ? "" : info->query_string;
-    mg_header fields[MG_MAX_HEADERS];
-    const int count = mg_split_form_urlencoded(query.data(), fields, MG_MAX_HEADERS);
+    mg_header fields[kMostParameters + 1];
+    const int count = mg_split_form_urlencoded(query.data(), fields, kMostParameters + 1);
     for (int i = 0; i < count; ++i) {
       parameters.push_back({fields[i].name, fields[i].value == nullptr ? "" : fields[i].value});
     }
@@ -165,6 +167,10 @@ class PictureServer {
               .body =
                   "expected a GET of this server's page, to the host 127.0.0.1 or localhost, and "
                   "this port\n"};
+    }
+    if (request.parameters.size() > Request::kMostParameters) {
+      throw InputError("found more than " + std::to_string(Request::kMostParameters) +
+                       " parameters, expected fewer");
     }
     if (path == "/") return {.type = "text/html; charset=utf-8", .body = kPicturePage};
     if (path == "/picture") return picture(request);

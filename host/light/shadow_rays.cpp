@@ -122,14 +122,18 @@ void ShadowRays::trace(std::span<const ShadowRay> rays, bool from_light, float e
                                    : ray.index;
     const glm::vec3 way = is_endless ? to : to - segment.from;
     const float size = largest(way);
-    // t of the end: the power of two by which the direction is scaled.
+    // t of the end: the power of two by which the direction is scaled, as by scaled_direction(),
+    // which is slower.
     auto end = std::bit_cast<float>(std::bit_cast<std::uint32_t>(size) & 0x7F800000u);
-    glm::vec3 direction = way * (1.0f / end);
-    if (end == 0.0f) [[unlikely]] {  // a point, which hits nothing, or subnormal
-      direction = size == 0.0f ? way : scaled_direction(glm::dvec3(way));
-      end = size == 0.0f ? 1.0f : size / largest(direction);
+    if (end != 0.0f) [[likely]] {
+      batch_[i].direction = way * (1.0f / end);
+    } else if (size != 0.0f) {  // subnormal
+      batch_[i].direction = scaled_direction(glm::dvec3(way));
+      end = size / largest(batch_[i].direction);
+    } else {  // a point, which hits nothing
+      batch_[i].direction = way;
+      end = 1.0f;
     }
-    batch_[i].direction = direction;
     limits_[i] = is_endless ? kNoEnd : end * share;
     enough_[i] = is_endless ? kNoEnd : end * std::min(enough, share);
     // Rounding may turn a grazing ray back towards its own triangle.

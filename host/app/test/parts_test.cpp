@@ -214,6 +214,9 @@ TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
   make({"-o", "b.exr", "--samples", "0:5"});
   expect_refused(merge({"b.exr", "-o", "merged", "--false-colour", "error=b.png"}),
                  "--false-colour: found no channel error in the picture");
+  expect_refused(
+      merge({"b.exr", "-o", "merged", "--false-colour", "Z=c.png", "--false-colour", "R=c.png"}),
+      "c.png: would overwrite c.png");
 }
 
 /// The same options of a scene that somebody has edited make another picture.

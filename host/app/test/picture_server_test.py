@@ -96,6 +96,7 @@ class Http(unittest.TestCase):
         with Served() as served:
             for path, options, said in (
                     ("/picture", {"width": 3}, "unknown option"),
+                    ("/picture", {f"option{n}": n for n in range(65)}, "more than 64 parameters"),
                     ("/picture", {"output": "a.png"}, "unknown option"),
                     ("/picture", {"size": "3"}, "--size: expected WIDTHxHEIGHT"),
                     ("/picture", {"size": "5000x5000"}, "--size: expected at most 16777216 pixels"),

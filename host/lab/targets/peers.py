@@ -24,7 +24,7 @@ PARTS = {"pictures": pictures_steps}
 def name(row: dict) -> str:
     """Returns the name of a renderer and its sampler."""
     if row["renderer"] == "raygate":
-        return f"raygate, {row['sampler'].split(' ')[0]}" if row["sampler"].startswith("--") else "raygate"
+        return f"raygate, {row['sampler']}" if row["sampler"].startswith("--") else "raygate"
     return f"{row['renderer']}, {row['sampler']}"
 
 

@@ -104,8 +104,8 @@ class EarClipper {
     const Node& root = tree_[middle];
     if (are_separate(ear, root.low, root.high)) return false;
     const bool is_in_ear = ring_[root.corner].reflex &&
-                           !are_separate(ear, root.position, root.position) &&
-                           std::ranges::find(ear, root.position) == ear.end();
+                           std::ranges::find(ear, root.position) == ear.end() &&
+                           !are_separate(ear, root.position, root.position);
     if (is_in_ear) return true;
     return has_obstacle(ear, first, middle) || has_obstacle(ear, middle + 1, last);
   }
