@@ -70,10 +70,7 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
         rows = [row for row in catalogue.report_rows() if row.design.top == "adder"]
     records, failures, measured = report.measured_tables(rows, targets)
     print(report.legend(records))
-    sections = [("Clock rates", report.clock_table(records))]
-    if given.top == "adders" or given.all:
-        sections.append(("The paper's delay model", grading.model_table()))
-    sections = [section for section in sections if section[1]]
+    sections = [("The paper's delay model", grading.model_table())] if given.top == "adders" or given.all else []
     for title, text in sections:
         print(f"{title}\n\n{text}")
     report.write(records, measured, sections, bool(given.publish))

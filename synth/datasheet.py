@@ -1,26 +1,28 @@
-"""Writes the table of modules, from the sources and from what was measured.
+"""Writes hw/modules.md, the table of modules, and the tables of pages that show published CSV files.
 
-`python3 -m synth.datasheet` writes it; with `--check` it changes nothing, and its exit status is 1 where the table or what is made
+`python3 -m synth.datasheet` writes them; with `--check` it changes nothing, and its exit status is 1 where a page or what is made
 of the registers' page is out of date, or where the example of hw/README.md does not pass Verilator.
 
-hw/modules.csv has all modules: what each is, its latency, and where `make synth` measures it area and time, measured
-again where they have changed. The registers' package and header are made of their page, see `synth.registers`.
+A module's row: what its header says first, latency, throughput, area and delay. For the registers' files see `synth.registers`.
 """
 
-import csv
-import dataclasses
 import difflib
+import pathlib
 import re
 import sys
 
-from synth import catalogue, cores, measure, registers, tables, tools
+from synth import catalogue, cores, measure, registers, store, tables, tools
 
-MODULES = cores.HW / "modules.csv"
-FIGURES = ["mm2", "ns", "MHz"]
-# Design of the catalogue -> the flow that is shown. Adders have look-ahead groups, as in the units.
-SHOWN = {"adder-graded-look-ahead": "fast", "booth-graded": "fast", "fp-multiplier": "fast",
-         "fp-adder": "fast", "fp-divider": "area", "hit_test_unit": "parts", "general_hit_test_unit": "parts",
-         "hit_test_pipeline": "parts", "iterative_hit_test_unit": "parts", "exact_unit": "blocks"}
+PAGE = cores.HW / "modules.md"
+FLOWS = {"arith": "fast", "fp": "fast", "hit_test": "parts"}  # of a folder's modules; else `blocks`
+WORDS = 12  # of a module's description, at most
+INTRO = """\
+# Modules
+
+Made by `make synth DATASHEET=1` from the headers and from measurements: OSU 0.35 um, cells alone, default parameters, flow
+`fast` (arith, fp), `parts` (hit_test) or `blocks`; memories count in bits. Latency 0: combinational. Empty: it depends on
+memory, on the host or on other rays.
+"""
 
 
 def header(text: str) -> str:
@@ -35,62 +37,74 @@ def sentences(text: str) -> list[str]:
     return [part.strip() for part in re.split(r"(?<=[^\s.])\.(?=\s|$)|\n", text) if part.strip()]
 
 
-def modules(figures: dict[str, list[str]]) -> str:
-    """MODULES: what each module is and what its header says of its latency; `figures`: of the last columns."""
-    rows = []
-    for core in cores.names():
-        for file in cores.files(core):
-            if file.parent.name != core or file.stem.endswith("_pkg"):
-                continue
-            said = sentences(header(file.read_text()))
-            latency = next((part for part in said[1:] if re.match(r"(Combinational|Latency|As many clocks)\b", part)), "")
-            rows.append({"folder": core, "module": file.stem, "what it is": said[0], "latency": latency.removeprefix("Latency: "),
-                         **dict(zip(FIGURES, figures.get(file.stem, ["", "", ""]), strict=True))})
-    return tables.comma_separated(rows, ["folder", "module", "what it is", "latency", *FIGURES])
+def stated(said: list[str]) -> list[str]:
+    """What a module is, its latency in clocks and its throughput, as its header's sentences have them."""
+    def after(word: str) -> str:
+        return next((re.split(r"[:;(]", part.removeprefix(f"{word}: "))[0].strip() for part in said if part.startswith(f"{word}: ")), "")
+    what = said[0] if len(said[0].split()) <= WORDS else said[0].partition(": ")[0]
+    latency = "0" if any(part.startswith("Combinational") for part in said) else re.sub(r" clocks?\b", "", after("Latency"))
+    return [what, latency, after("Throughput")]
+
+
+def modules() -> dict[str, dict[str, pathlib.Path]]:
+    """The file of each module, by folder and name."""
+    return {core: {file.stem: file for file in cores.files(core) if file.parent.name == core and not file.stem.endswith("_pkg")}
+            for core in cores.names()}
+
+
+def page(figures: dict[str, list[str]]) -> str:
+    """PAGE; `figures`: the last columns of a module's row."""
+    parts = [INTRO]
+    for core, files in modules().items():
+        parts += [f"## {core}\n", tables.page(["module", "what it is", "latency, clocks", "throughput", "um2", "ns", "bits"],
+                  [[name, *stated(sentences(header(file.read_text()))), *figures.get(name, [""] * 3)] for name, file in files.items()])]
+    return "\n".join(parts)
 
 
 def published(text: str) -> dict[str, list[str]]:
-    """The figures in a table that `modules` wrote."""
-    return {row["module"]: [row[name] for name in FIGURES] for row in csv.DictReader(text.splitlines())}
+    """The figures in a page that `page` wrote."""
+    return {row[1]: row[-4:-1] for row in (line.split("|") for line in text.splitlines() if line.startswith("|"))}
 
 
-def measured_figures() -> dict[str, list[str]]:
-    """Area, slowest path and clock rate of some modules; what was measured before is not measured again."""
+def figures() -> dict[str, list[str]]:
+    """Area, slowest path and bits of memory of each module; what was measured before is not measured again."""
     library = catalogue.LIBRARIES[0]
-    rows = [dataclasses.replace(row, flows={library.name: (SHOWN[row.design.name],)})
-            for row in catalogue.report_rows() if row.design.name in SHOWN]
-    top = {row.design.name: row.design.top for row in rows}
-    records, failures = measure.records(rows, measure.Targets((library.name,)))
+    rows = [catalogue.Row(core, catalogue.design(name), {library.name: (FLOWS.get(core, "blocks"),)})
+            for core, files in modules().items() for name in files]
+    failures: list[str] = []
+    records = [record for _, found in measure.measure(rows, measure.Targets((library.name,)), failures) for record in found]
     if failures:
         raise tools.ToolFailed("\n".join(failures))
-    return {top[record["design"]]: [f"{record['area'] / 1e6:.3f}", f"{record['delay_ns']:.2f}",
-                                    f"{1000 / record['delay_ns']:.1f}" if "from" in record else ""]
-            for record in records}
+    return {record["design"]: [f"{record['area']:,}", f"{record['delay_ns']:.2f}",
+                               f"{sum(block['bits'] for block in record.get('blocks', {}).values()) or '':,}"] for record in records}
 
 
 def lint(text: str) -> None:
     """The module of the text's first block of SystemVerilog passes Verilator; raises ToolFailed where it doesn't."""
     module, top = re.search(r"```systemverilog\n(module (\w+).*?)```", text, re.S).groups()
     file = tools.ROOT / "build" / "datasheet" / "example.sv"
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(module)
+    store.replace(file, module)
     tools.run(["verilator", "--lint-only", "-Wall", "-Wno-DECLFILENAME", "-Wno-PINCONNECTEMPTY", "--top-module", top,
                *cores.files("hit_test"), file], file.with_suffix(".log"))
 
 
+def made(figures: dict[str, list[str]]) -> dict[pathlib.Path, str]:
+    """All that is made of other files, by file."""
+    results = tables.RESULTS / "README.md"
+    return registers.made(registers.PAGE.read_text()) | {PAGE: page(figures), results: tables.with_results(results.read_text())}
+
+
 def write() -> None:
-    """Writes the table of modules and the registers' files."""
-    for file, text in registers.made(registers.PAGE.read_text()).items():
+    """Writes the files that `made` has."""
+    print(f"datasheet: measuring {sum(map(len, modules().values()))} modules: some twenty minutes of a processor the first time", file=sys.stderr, flush=True)
+    for file, text in made(figures()).items():
         file.write_text(text)
-    print(f"datasheet: measuring {len(SHOWN)} designs for {MODULES.relative_to(tools.ROOT)}: several minutes the first time",
-          file=sys.stderr, flush=True)
-    MODULES.write_text(modules(measured_figures()))
 
 
 def check() -> list[str]:
     """What is out of date."""
     lines = []
-    for file, new in (registers.made(registers.PAGE.read_text()) | {MODULES: modules(published(MODULES.read_text()))}).items():
+    for file, new in made(published(PAGE.read_text())).items():
         lines += difflib.unified_diff(file.read_text().splitlines(), new.splitlines(),
                                       str(file.relative_to(tools.ROOT)), "the sources", n=0, lineterm="")
     lint((cores.HW / "README.md").read_text())

@@ -69,9 +69,3 @@ def measure(rows: list[Row], targets: Targets, failures: list[str], quiet: bool 
         yield row, [{"section": row.section, "design": row.design.name, "top": row.design.top, "parameters": dict(row.design.parameters),
                      "target": target, "flow": flow, **result}
                     for (target, flow), result in zip(mine, results) if result is not None]
-
-
-def records(rows: list[Row], targets: Targets) -> tuple[list[dict], list[str]]:
-    """All records of `measure`, and the failures."""
-    failures: list[str] = []
-    return [record for _, found in measure(rows, targets, failures) for record in found], failures

@@ -8,15 +8,6 @@ from synth import catalogue, measure, store, tables, tools, yosys
 from synth.catalogue import FLOWS, FPGAS, Row
 
 
-CAVEATS = """\
-Areas are square micrometres of the cells alone (the smallest NAND of two inputs: 96 in the 0.35 um library, 24 in the
-0.18 um one). Delays are those of the slowest path at the typical corner, before layout and without wires. Inputs come from an
-inverter of four times the least drive, outputs drive 0.1 pF (eight inputs of the least inverter in a user's library).
-Silicon is slower, and the order of two designs that are close may change. iCE40 and ECP5 figures are placed and routed,
-between registers, the median of several placements.
-"""
-
-
 def title(target: str) -> str:
     """What a target is called."""
     return catalogue.targets()[target].title
@@ -61,18 +52,10 @@ def measured_tables(rows: list[Row], targets: measure.Targets) -> tuple[list[dic
 def legend(records: list[dict]) -> str:
     """What the numbers and the flows of the tables are, a line each."""
     flows = [flow for flow in FLOWS if any(record["flow"] == flow for record in records)]
-    parts = ["um2 / ns: of the cells alone; the slowest path at the typical corner, without wires"] if flows else []
+    parts = ["um2 / ns: of the cells alone (NAND2X1: 96 in 0.35 um); the slowest path at the typical corner, before layout"] if flows else []
     if any("mhz" in record for record in records):
         parts.append("LUTs / MHz: placed and routed between registers; the median of the seeds")
     return "\n".join([*parts, *(f"{flow}: {FLOWS[flow]}" for flow in flows)]) + "\n"
-
-
-def clock_table(records: list[dict]) -> str:
-    """The clock rates of the designs that have a clock, and where their slowest paths run; without what FPGAs say."""
-    return tables.markdown(["unit", "library", "flow", "MHz", "slowest path from", "to"], [
-        [record["design"], title(record["target"]), record["flow"],
-         f"{1000 / record['delay_ns']:.1f}", record["from"], record["to"]]
-        for record in records if "from" in record and "delay_ns" in record])
 
 
 def path_table(record: dict) -> str:
@@ -105,14 +88,11 @@ def write(records: list[dict], measured: str, sections: list[tuple[str, str]], p
     """Writes the three files; with `publish` the CSV into results/, too. `measured`: of measured_tables; `sections`:
     (title, Markdown) that follow."""
     store.OUT.mkdir(parents=True, exist_ok=True)
-    parts = ["# What the arithmetic costs\n", f"Made by `make synth` with {versions()}.\n", CAVEATS,
-             "Flows: " + "; ".join(f"**{name}**: {text}" for name, text in FLOWS.items()) + ".\n", measured]
-    for heading, text in sections:
-        parts += [f"## {heading}\n", text]
+    parts = ["# What the arithmetic costs\n", f"Made by `make synth` with {versions()}.\n", legend(records).replace("\n", "\n\n"), measured,
+             *(f"## {heading}\n\n{text}" for heading, text in sections)]
     (store.OUT / "report.md").write_text("\n".join([*parts, tables.measured("make synth ALL=1")]))
-    (store.OUT / "results.json").write_text(
-        json.dumps({"tools": versions(), "results": records}, indent=1) + "\n")
+    (store.OUT / "results.json").write_text(json.dumps({"tools": versions(), "results": records}, indent=1) + "\n")
     text = tables.comma_separated(records, ["section", "design", "target", "flow", "area", "delay_ns", "luts", "mhz"])
     (store.OUT / "results.csv").write_text(text)
     if publish:
-        (tables.RESULTS / "synth.csv").write_text(text)
+        tables.publish("synth.csv", text, "make synth ALL=1 PUBLISH=1")

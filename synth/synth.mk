@@ -17,7 +17,7 @@ $(foreach name,$(filter ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT
 endif
 endif
 
-synth: ## hardware: area and time: make synth [ALL=1 PUBLISH=1 | TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ... | TOP=fp_adder VERILOG=1: one file of plain Verilog | DATASHEET=1: hw/modules.csv]
+synth: ## hardware: area and time: make synth [ALL=1 PUBLISH=1 | TOP=adder ADDER=graded GROUPS=4,5,7 WIDTH=48 TARGETS=osu035 LIBERTY=cells.lib ... | TOP=fp_adder VERILOG=1: one file of plain Verilog | DATASHEET=1: hw/modules.md]
 	@$(SETUP) synth
 	@$(if $(filter float_peers,$(TOP)),$(SETUP) lab)
 ifdef DATASHEET

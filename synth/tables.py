@@ -4,6 +4,7 @@ import csv
 import datetime
 import io
 import pathlib
+import re
 import subprocess
 
 RESULTS = pathlib.Path(__file__).resolve().parent / "results"  # what PUBLISH=1 writes
@@ -25,6 +26,11 @@ def markdown(header: list[str], rows: list[list[object]]) -> str:
     return "\n".join([lines[0], rule, *lines[1:]]) + "\n"
 
 
+def page(header: list[str], rows: list[list[object]]) -> str:
+    """The same without padding, as pages have it."""
+    return re.sub(r"(?m)^\|-.*", lambda rule: re.sub("-+", "---", rule[0]), re.sub(r" *\| *", "|", markdown(header, rows)))
+
+
 def comma_separated(rows: list[dict], columns: list[str]) -> str:
     """CSV of the scalar `columns` of `rows`; what a row has not is left empty."""
     out = io.StringIO()
@@ -38,3 +44,28 @@ def measured(command: str) -> str:
     """The last line of a page: the command, the commit and the date."""
     commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=RESULTS, capture_output=True, text=True, check=False).stdout.strip()
     return f"`{command}` at {commit}, {datetime.date.today().isoformat()}.\n"
+
+
+def with_results(text: str, measured_by: dict[str, str] = {}) -> str:
+    """A page with its tables of published CSV files made again, each with the line that says what measured it.
+
+    A table stands between `<!-- FILE: COLUMNS -->` and `<!-- end -->`; `<!-- synth.csv, SECTION: FLOWS -->` has area / ns of
+    the section's designs in OSU 0.35 um. `measured_by`: the line of files that are new."""
+    def table(mark: re.Match) -> str:
+        (file, _, section), heads = mark[2].partition(", "), mark[3].split(", ")
+        rows = list(csv.DictReader((RESULTS / file).read_text().splitlines()))
+        if section:
+            designs: dict[str, dict] = {}
+            for row in rows:
+                if (row["section"], row["target"]) == (section, "osu035"):
+                    designs.setdefault(row["design"], {"design": row["design"]})[row["flow"]] = f"{int(row['area']):,} / {float(row['delay_ns']):.2f}"
+            rows, heads = list(designs.values()), ["design", *heads]
+        return f"{mark[1]}{page(heads, [[row.get(head, '') for head in heads] for row in rows])}\n{measured_by.get(file, mark[4] or '')}"
+    return re.sub(r"(<!-- (\S+\.csv[^:>]*): ([^>]*) -->\n).*?(`make [^\n]*\n)?(?=<!-- end -->)", table, text, flags=re.S)
+
+
+def publish(file: str, text: str, command: str) -> None:
+    """Writes a CSV file of results/ and the tables of the page there that show it."""
+    (RESULTS / file).write_text(text)
+    results = RESULTS / "README.md"
+    results.write_text(with_results(results.read_text(), {file: measured(command)}))

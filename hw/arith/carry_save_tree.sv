@@ -1,4 +1,4 @@
-// Carry-save tree: the rows of rows_i add up to sum_o + carry_o modulo 2**Width.
+// Carry-save tree: rows_i add up to sum_o + carry_o modulo 2**Width.
 //
 // A queue: each carry-save adder takes the three oldest rows and appends its sum and its carry, until two are left
 // after Rows - 2 adders. So every level makes two rows of three and passes on what is left: of 14 rows 10, 7, 5, 4, 3

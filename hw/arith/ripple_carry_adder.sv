@@ -1,5 +1,5 @@
-// Ripple-carry adder: {carry_o, sum_o} = a_i + b_i + carry_i by a chain of full adders.
-// Combinational; Width full-adder delays. Any Width from 1.
+// Ripple-carry adder, a chain of full adders: {carry_o, sum_o} = a_i + b_i + carry_i. Combinational; Width full-adder
+// delays. Any Width from 1.
 module ripple_carry_adder #(
   parameter int unsigned Width = 48
 ) (

@@ -1,5 +1,5 @@
 // Sorts seven unsigned words, the smallest lowest: 16 comparators in six steps.
-// Latency: 2 clocks, a register behind every two steps but the last.
+// Latency: 2 clocks: a register behind every two steps but the last.
 // Source: Batcher's network for eight, less one input.
 module sort7 #(
   parameter int unsigned Width = 27

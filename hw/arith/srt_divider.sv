@@ -1,4 +1,4 @@
-// Divides significands: floor(2 * x / d * 4**Rows), and whether anything is left.
+// Divides significands by radix-4 SRT: floor(2 * x / d * 4**Rows), and whether anything is left.
 //
 // Radix-4 SRT, a row for each digit: digits -2 .. 2, residual in carry-save form, so that no row waits for a carry but
 // that of its seven-bit estimate. A first digit of 1 .. 4, taken from the operands themselves, brings the quotient's 2
@@ -7,9 +7,9 @@
 // dividend_i and divisor_i: normalised, one integer bit which must be 1 (else the outputs are invalid). quotient_o: two
 // integer bits and 2 * Rows fraction bits, exact and cut off. side_i comes out as side_o with its quotient.
 //
-// Pipelined: registers behind the first digit, each row, the remainder and the quotient. Latency: Rows + 3 clocks, a
-// division a clock; else combinational. Registers load only what is valid: valid_o is valid_i, as much later, and while
-// it is low the outputs of a pipelined divider are invalid. Nothing is reset, so valid_o is undefined at first.
+// Pipelined: registers behind the first digit, each row, the remainder and the quotient. Latency: 0 or, Pipelined, Rows
+// + 3 clocks. Throughput: a division a clock. Registers load only what is valid: valid_o is valid_i, as much later, and
+// while it is low the outputs of a pipelined divider are invalid. Nothing is reset, so valid_o is undefined at first.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection constants: srt_pkg.
 module srt_divider #(
   parameter int unsigned Width = 24,  // of both operands

@@ -1,4 +1,4 @@
-// The first row of the radix-4 SRT divider: chooses a digit of 1 .. 4, w = 2 x - digit * d. Combinational.
+// First row of the radix-4 SRT divider: a digit of 1 .. 4. w = 2 x - digit * d. Combinational.
 //
 // Residuals and divisor as in srt_row; 2 x and d are in [2, 4) and [1, 2), and nothing is estimated. digit_o is the
 // digit modulo 4.

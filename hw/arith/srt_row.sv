@@ -1,4 +1,4 @@
-// One row of the radix-4 SRT divider: chooses a quotient digit, w' = 4 w - digit * d. Combinational.
+// One row of the radix-4 SRT divider: chooses a quotient digit. w' = 4 w - digit * d. Combinational.
 //
 // Residuals are in carry-save form: w = sum + carry, modulo 4, two integer bits (the upper one is the sign) and Width -
 // 2 fraction bits. d is in [1, 2) in the same places. |w| <= 2/3 d goes in and comes out. The digit is positive_o -

@@ -1,4 +1,4 @@
-// Ray core for a board: rays and lines come from a host as words, lines are kept in an SDRAM, results leave as words.
+// Ray core for a board, with an SDRAM and a host link. Rays, lines and results are words on the link.
 //
 // core_link's header has the words; sdram_controller's says what the SDRAM is and what clk_i may be. Memory has no errors: a
 // host sends no tree that names lines which it has not sent.

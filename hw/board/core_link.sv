@@ -1,4 +1,4 @@
-// Link to a host: messages of 32-bit words to lines of memory and to rays of a core, and its results to words.
+// Link to a host: words to lines and rays, results to words.
 //
 // A message's first word says what it is in bits 31:28, and in bits 27:0 a number:
 //   1     a line of that number; its 16 words follow

@@ -7,7 +7,7 @@
 // over reads, refreshes over both. A line comes with its request's id and stays until it is taken. A line to be written
 // stays at the port until its last word leaves.
 //
-// Latency: 36 clocks at 40 MHz, from the clock that takes a read to line_valid_o. Throughput: a line in 37 clocks.
+// Latency: 36 clocks (at 40 MHz, from the clock that takes a read to line_valid_o). Throughput: a line in 37 clocks.
 // Source: data sheets of MT48LC16M16A2 (Micron) and AS4C16M16 (Alliance): 4 banks, 8,192 rows, 512 columns, 256 Mbit.
 module sdram_controller
   import ray_core_pkg::*;

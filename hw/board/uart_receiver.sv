@@ -1,7 +1,7 @@
 // Serial line to words of 32 bits: 8N1, four bytes a word, lowest byte and bit first.
 //
-// A bit takes ClocksPerBit clocks and is sampled in its middle. A low stop bit is a break: break_o is high for a clock, and the
-// next byte is the first of a word. A word is at word_o in the clock of valid_o only.
+// Throughput: a word in 40 ClocksPerBit clocks; a bit is sampled in its middle. A low stop bit is a break: break_o is
+// high for a clock, and the next byte is the first of a word. A word is at word_o in the clock of valid_o only.
 module uart_receiver #(
   parameter int unsigned ClocksPerBit = 20
 ) (

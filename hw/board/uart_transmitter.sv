@@ -1,5 +1,5 @@
 // Words of 32 bits to a serial line: 8N1, four bytes a word, lowest byte and bit first; valid/ready.
-// A bit takes ClocksPerBit clocks, a word 40 bits.
+// Throughput: a word in 40 ClocksPerBit clocks.
 module uart_transmitter #(
   parameter int unsigned ClocksPerBit = 20
 ) (

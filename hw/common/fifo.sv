@@ -1,10 +1,9 @@
-// First-in first-out queue of Depth words, in registers or, with Memory, in a memory with a clock (ram).
+// Queue of Depth words, in registers or, with Memory, in a ram.
 //
-// A word pushed at one clock edge is at data_o after it; with Memory, where the queue was empty, a clock later: the first word
-// waits at the memory's output, the others in it. Throughput one word a clock. push_i is the writer's promise that a word is
-// free, pop_i the reader's that valid_o is high. space_o says that more than Reserve words are free: with a Reserve of as many
-// words as a writer may still push after it has seen space_o fall, it is the writer's leave to begin. No combinational path
-// from pop_i to space_o and valid_o, which are registers.
+// Latency: 1 clock, 2 with Memory; the first word waits at the memory's output, the others in it. Throughput: one word
+// a clock. push_i is the writer's promise that a word is free, pop_i the reader's that valid_o is high. space_o says
+// that more than Reserve words are free: with a Reserve of as many words as a writer may still push after it has seen
+// space_o fall, it is the writer's leave to begin. space_o and valid_o are registers.
 module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 2,

@@ -1,8 +1,8 @@
 // Memory with a clock, one port to write and one to read: what block RAM and SRAM macros are.
 //
-// The word that is read at a clock edge is at data_o after it and stays there until the next is read. Where one is read
-// and written at the same edge, it is the one before. Its contents have no reset. A word has Parts of equal width, each
-// with its own write_i.
+// Latency: 1 clock; the word stays at data_o until the next is read. Throughput: a read and a write a clock. Where one
+// is read and written at the same edge, it is the one before. Its contents have no reset. A word has Parts of equal
+// width, each with its own write_i.
 module ram #(
   parameter int unsigned Width = 32,  // a multiple of Parts
   parameter int unsigned Depth = 64,

@@ -1,4 +1,4 @@
-// Accumulator of the exact unit: sums of digit products, column by column, without rounding.
+// Accumulator of the exact unit: sums of digit products, without rounding.
 //
 // Product scanning (Comba, "Exponentiation cryptosystems on the IBM PC", IBM Systems Journal 29, 1990): column k has all
 // products of a digit i and a digit k - i. What Kulisch's long accumulator (Computer Arithmetic and Validity, 2013)
@@ -11,7 +11,7 @@
 //              Products 2**(DigitWidth - 2) (1 + 2**(1 - DigitWidth)) together. A sum beyond is sure of its sign, and one that
 //              is not has room for another column: |sum| < 2**(2 DigitWidth + log2 Products).
 //
-// A term comes in two words, sum_i + carry_i modulo 2**Width, at one clock edge; with the next, all outputs have it.
+// Latency: 2 clocks. Throughput: a term a clock, in two words, sum_i + carry_i modulo 2**Width.
 module exact_accumulator
   import exact_pkg::*;
 #(

@@ -1,11 +1,11 @@
-// Units and digits of a request's numbers, from the exponents of its floats: as few digits as they ask for.
+// Units and digits of a request's numbers, from its floats' exponents: as few digits as they ask for.
 //
 // Coordinates are in units of the smallest exponent of those that are not 0, and so are differences of them; a direction has
 // a unit of its own. A hit's t = D / S, with D in units of b**3 and S of b**2 c, so t < limit compares D times b with
 // S times (limit c): these two factors, `one` and `limit`, are in units of the smaller exponent. D, S and the others keep
 // theirs below exact_pkg's bound: see digits_of.
 //
-// The exponents come 2 clocks after the request, their digits 3, what is left 4 clocks after.
+// Latency: 2 to 4 clocks: 2 for the exponents, 3 for their digits, 4 for the rest.
 module exact_exponents
   import exact_pkg::*;
 #(

@@ -1,4 +1,4 @@
-// Sequencer of the exact unit: a program's instructions, and of each its steps, a product of two digits in each clock.
+// Sequencer of the exact unit: steps of programs, a product a clock.
 //
 // Columns go upwards where a number is wanted, from column 0 to its last digit; downwards from the highest where a sign
 // is. In a column all pairs of digits, of each pair every term. An instruction with a fence begins when written_i is high.

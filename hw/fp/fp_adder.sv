@@ -5,9 +5,9 @@
 //   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least the leading bit:
 //         exact, so only a leading-zero count and a left shift
 //
-// Pipelined: registers between ordering and adding, between adding and rounding, and behind the result. Latency: 3
-// clocks, one operation a clock; else combinational. The rounding mode is used in several stages and should stay the
-// same.
+// Pipelined: registers between ordering and adding, between adding and rounding, and behind the result. Latency: 0 or,
+// Pipelined, 3 clocks. Throughput: one operation a clock. The rounding mode is used in several stages and should stay
+// the same.
 //
 // Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when rounding down, unless both
 // addends are zeros of one sign. Infinity minus infinity is invalid. A subnormal sum is exact, so underflow is never

@@ -8,9 +8,9 @@
 // no flag.
 //
 // Pipelined: registers behind normalising, each stage of the significands' division (Rows + 3, see srt_divider; Rows:
-// two bits of the quotient each, 12 in binary32) and the result. Latency: Rows + 5 clocks, a division a clock; else
-// combinational. Registers load only what came with valid_i; in other clocks the outputs of a pipelined divider are
-// invalid. The rounding mode is the last stage's.
+// two bits of the quotient each, 12 in binary32) and the result. Latency: 0 or, Pipelined, Rows + 5 clocks. Throughput:
+// a division a clock. Registers load only what came with valid_i; in other clocks the outputs of a pipelined divider
+// are invalid. The rounding mode is the last stage's.
 //
 // A finite number by zero is infinity and raises divide_by_zero; 0/0 and inf/inf are invalid.
 // Source: IEEE 754-2019, clauses 5.4.1 and 7; Choi and Chung, Trans. KIEE 48A-5-21, section 4.2.

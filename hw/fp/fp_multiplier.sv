@@ -5,8 +5,8 @@
 // smallest exponent, or to the right for a subnormal result. One shift and the shared rounder follow the product.
 //
 // Arith: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
-// Pipelined: registers before the product, behind it, and behind the result. Latency: 3 clocks, one operation a clock;
-// else combinational. The rounding mode is the last stage's.
+// Pipelined: registers before the product, behind it, and behind the result. Latency: 0 or, Pipelined, 3 clocks.
+// Throughput: one operation a clock. The rounding mode is the last stage's.
 //
 // Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the operands' signs, also that of zeros
 // and infinities. Zero times infinity is invalid.

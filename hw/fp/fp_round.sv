@@ -1,4 +1,4 @@
-// The one rounder: an exact value in, an IEEE number and its flags out.
+// Rounder: an exact value in, an IEEE number and its flags out.
 //
 // The value is (-1)**sign_i * significand_i / 2**(FracWidth+3) * 2**(exponent_i + 1 - bias), with
 //   significand_i  two integer bits, FracWidth fraction bits, guard, round, sticky (the OR of all bits further down).

@@ -1,9 +1,9 @@
 // Adds, subtracts or multiplies vectors word by word: result[n] = a[n] op b[n].
 //
-// Clocks = 1: a core for each word, a vector a clock; latency 3 clocks, and step_i is not looked at. Else few cores that take
-// turns: step_i is high in one of Clocks clocks; with it words come in, and the results of those that came in with the step
-// before go out. A core has Clocks - 3 words in a step.
-// Multiply: a product, else a sum, or a difference where Subtract has the word's bit. Takes every bit pattern; no flags.
+// Latency: 3 clocks, or a step. Clocks = 1: a core for each word, a vector a clock; step_i is not looked at. Else few
+// cores that take turns: step_i is high in one of Clocks clocks; with it words come in, and the results of those that
+// came in with the step before go out. A core has Clocks - 3 words in a step. Multiply: a product, else a sum, or a
+// difference where Subtract has the word's bit. Takes every bit pattern; no flags.
 module fp_vector #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,

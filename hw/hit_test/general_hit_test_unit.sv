@@ -16,8 +16,8 @@
 //
 // valid_i comes with the first word while ready_o; the other nine words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in the clock after each of edges 13, 14 and 15.
-// Throughput: a test every 10 clocks, for ten words on one bus; the multiplier works in 9 of them.
-// Latency: 15 clocks, the least where a clock holds a multiplication and an addition or a division.
+// Throughput: a test every 10 clocks: ten words on one bus; the multiplier works in 9 of them.
+// Latency: 15 clocks; the least where a clock holds a multiplication and an addition or a division.
 //
 // Operations: 9 multiplications, 8 additions, 1 division, rounded as in hit_test_unit.
 // Source: the paper's equations 4 and 5; the timetable is this project's.

@@ -1,4 +1,4 @@
-// Verdict of a test, hit, miss or doubt, from its four dot products and their error bounds.
+// Verdict of a test, hit, miss or doubt, from its dot products.
 //
 // U_k = I . E_k is sure where bound_k < |U_k| < infinity; then its sign is the exact one. d's sign is exact, and that
 // of the exact I . N for every ray that hits ahead of its origin. A NaN for d says that its sign is unknown: then two

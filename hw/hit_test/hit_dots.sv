@@ -1,7 +1,7 @@
 // Dot products of a hit test: V = N . I and U_k = E_k . I of a polygon record, and d I_k, the dividends of its P.
 //
-// A dot product is (x + y) + z, rounded after each operation. Clocks: see fp_vector. Latency: DotLatency
-// clocks, or three steps; throughput a test a clock, or a step. Takes every bit pattern.
+// A dot product is (x + y) + z, rounded after each operation. Clocks: see fp_vector. Latency: DotLatency clocks, or
+// three steps. Throughput: a test a clock, or a step. Takes every bit pattern.
 //
 // Of the 15 products a coordinate of I is a factor of five, and the word that the multipliers recode: tools keep one recoder
 // for those.

@@ -1,10 +1,10 @@
-// Control of a hit-test unit: a counter of the words that come in, and one of the steps that follow.
+// Control of a hit-test unit: counts words, then steps.
 //
 // word_o is the index of the word that the next clock edge takes from the bus. At 0 the unit waits for valid_i; the
 // other words follow in consecutive clocks. step_o counts 1 to NumSteps in the clocks after the last word, while the
 // next test's first words may already come in, and is 0 otherwise.
 //
-// Throughput: a test every NumWords clocks. Latency: first word to last step, NumWords + NumSteps.
+// Throughput: a test every NumWords clocks. Latency: NumWords + NumSteps clocks (first word to last step).
 // Source: the paper's figures 4 and 9, where a counter drives enables and selects.
 module hit_test_control #(
   parameter int unsigned NumWords = 7,

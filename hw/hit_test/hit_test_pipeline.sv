@@ -1,5 +1,5 @@
-// The pipelined hit-test unit: a ray direction and a polygon record in each clock; hit, miss or doubt of each test, and
-// the nearest hit of each burst of tests with its t and P.
+// Pipelined hit-test unit: verdict of each test, nearest hit of each burst. It takes a ray direction and a polygon
+// record in each clock; a burst's nearest hit comes with its t and P.
 //
 //   scale    each coordinate of I times five  15 multipliers, see hit_dots; their first registers take the test
 //   add      V = N . I, U_k = E_k . I         8 adders
@@ -8,7 +8,7 @@
 //   nearest  the nearest hit of the burst     see nearest_hit
 //   point    P_k = (d I_k) / V, equation 10   3 dividers: nearly every other test may be a nearest hit
 //
-// Throughput one test a clock. Latency DotLatency + divide_latency + 3 clocks (see hit_test_pkg): from the clock edge
+// Throughput: one test a clock. Latency: DotLatency + divide_latency + 3 clocks (see hit_test_pkg): from the clock edge
 // that takes a test to the one after which its report, or its burst's end, is there. All tests of a burst must have the
 // same I.
 //

@@ -1,4 +1,4 @@
-// The paper's hit-test unit: where a ray meets a polygon's plane, P = d I / (I . N), seen from the ray's origin, with
+// The paper's hit-test unit: where a ray meets a polygon's plane. P = d I / (I . N), seen from the ray's origin, with
 // one multiplier, one adder, one divider, eight registers and two multiplexers.
 //
 // I = (Ix, Iy, Iz) is the ray's direction, N = (a, b, c) the plane's normal (the paper's H), and d = N . V for a vertex
@@ -18,7 +18,7 @@
 //
 // valid_i comes with the first word while ready_o; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in the clock after each of edges 8, 9 and 10.
-// Throughput: a test every 7 clocks. Latency: 10 clocks from first word to last component.
+// Throughput: a test every 7 clocks. Latency: 10 clocks (from first word to last component).
 //
 // Each operation is rounded once, in RoundingMode, in the order of the table; the accumulator starts from +0. All of
 // IEEE 754 holds. A ray parallel to the plane gives infinities, or NaN where d I is zero too. QuotientBits = 21 cuts

@@ -14,7 +14,7 @@
 //
 // valid_i comes with the first word while ready_o; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in three consecutive clocks.
-// Throughput: a test every 7 clocks. Latency: M + 2A + D + 8 clocks from first word to last component, 34 in binary32.
+// Throughput: a test every 7 clocks. Latency: M + 2A + D + 8 clocks, 34 in binary32 (first word to last component).
 // Source: the paper's equation 10; the timetable is this project's.
 module iterative_hit_test_unit
   import hit_test_pkg::*;

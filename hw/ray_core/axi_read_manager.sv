@@ -1,9 +1,9 @@
-// AXI4 read manager: the core's memory port, a burst for each 64-byte line.
+// AXI4 read manager: the core's memory port, a burst for each line.
 //
 // A line's burst begins at a multiple of 64 bytes: none crosses 4 KiB. Each burst in flight has an AXI ID of its own,
 // so bursts may be answered in any order, and their beats come mixed. base_i is the address of line 0.
 //
-// At most 2**IdWidth lines are outstanding; more wait. A line is offered in the clock after that of its last beat.
+// At most 2**IdWidth lines are outstanding; more wait. Latency: 1 clock (from a line's last beat until it is offered).
 // bus_error_o: a beat of line error_number_o has come with an error, or with a wrong RLAST; the line is then offered
 // with line_error_o. No output of AXI depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.

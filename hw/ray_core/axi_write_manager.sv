@@ -1,10 +1,10 @@
-// AXI4 write manager: records of 32 bytes to memory, one after the other, a burst each.
+// AXI4 write manager: records of 32 bytes to memory, a burst each.
 //
 // Record n goes to base_i + 32 n, n from 0 on, while n is below length_i; those that come then wait until rewind_i,
 // after which n is 0 again. written_o: records whose writes have been answered, in order, as all have the same AXI ID.
 //
-// Throughput: a record in as many clocks as its burst has beats, 256 / DataWidth, or one. Of a wider port a beat uses
-// the half that its address says. No output of AXI depends on an input in the same clock.
+// Throughput: a record in 256 / DataWidth clocks, or one (the beats of its burst). Of a wider port a beat uses the half
+// that its address says. No output of AXI depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.
 module axi_write_manager #(
   parameter int unsigned DataWidth = 128,  // 32 to 512, a power of two

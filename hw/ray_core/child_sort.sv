@@ -1,4 +1,4 @@
-// Sort of a node's children: the group of those that the ray enters, near first.
+// Sort of a node's children: those that the ray enters, near first.
 // Latency: 4 clocks: two registers in the sort, one behind it and one behind the group. keys_i are slab_test's.
 module child_sort
   import ray_core_pkg::*;

@@ -1,4 +1,4 @@
-// Closest hit of each ray: its nearest certain hit and t_max, its doubts, and how many of its tests are in flight.
+// Closest hit of each ray: its nearest certain hit, t_max, its doubts.
 //
 // A hit's t may be off by 2**t_error units (set_up_pkg), so it has an upper and a lower bound. Of a ray's certain hits
 // the one with the smallest upper bound is kept, and that bound becomes the ray's t_max; a hit whose lower bound is
@@ -13,7 +13,7 @@
 // ray's nearest hit, it is tested again with settle_i and kept whatever that test says, with t and P if it is a certain
 // hit, else with NoT. It is the ray's last test.
 //
-// A result is taken in each clock and compared in the next one. A ray's tests are over when as many results have been
+// Throughput: a result a clock; it is compared in the next one. A ray's tests are over when as many results have been
 // compared as there were clocks with test_i.
 module closest_hit
   import ray_core_pkg::*;

@@ -1,4 +1,4 @@
-// Resolver of doubts: asks exact_unit what closest_hit leaves open, so that no doubt leaves the core.
+// Resolver of doubts: asks exact_unit what closest_hit leaves open. So no doubt leaves the core.
 //
 // Of a ray's doubts it keeps the nearest that is hit, the candidate:
 //
@@ -7,9 +7,9 @@
 //   settling  When nothing else of the ray is left to do: is the candidate nearer than closest_hit's certain hit or, if
 //             there is none, than the user's t_max? Then its triangle is tested once more, for t and P.
 //
-// Of hits at the same t the one of lower rank is nearer. Corners are read by line, as for tests. A question takes the
-// clocks of exact_unit, eight more, and up to two reads through the triangle cache. A ray's questions follow each
-// other; those of different rays are spread over Units exact_units. Doubts of a ray that has ended are dropped.
+// Of hits at the same t the one of lower rank is nearer. Corners are read by line, as for tests. Latency: exact_unit's
+// and 8 clocks (for a question), and up to two reads through the triangle cache. A ray's questions follow each other;
+// those of different rays are spread over Units exact_units. Doubts of a ray that has ended are dropped.
 //
 // closest_hit's credits give every doubt room here, so that tests never wait for the resolver, which waits for lines
 // that come behind them.

@@ -13,9 +13,9 @@
 // if its set has no way for it or memory takes no request. outstanding_o: a prefetch is being looked up.
 //
 // A line from memory is taken when the one before has left or leaves: it is written, and its latest target looked up.
-// From the next clock on it goes to its targets, one a clock, the latest first. Lines leave in any order, one a clock,
-// each with the ray that asked; meanwhile hits wait in their queue, and requests are looked up as before. A line with
-// an error goes to its targets with error_o, and is not kept.
+// From the next clock on it goes to its targets, one a clock, the latest first. Throughput: a line a clock; lines leave
+// in any order, each with the ray that asked; meanwhile hits wait in their queue, and requests are looked up as before.
+// A line with an error goes to its targets with error_o, and is not kept.
 //
 // invalidate_i empties the cache; no request and no line may be in flight then.
 module line_cache

@@ -1,4 +1,4 @@
-// Memory port of the ray core: a cache of nodes, a cache of triangles, and the reads that they send to memory.
+// Memory port of the ray core: two caches and their reads.
 //
 // A read has an id, {is a triangle's, cache entry}; its line may come back at any time and in any order. Both caches
 // can give a line in the same clock. A line with an error goes to the rays that wait for it and is not kept.

@@ -1,4 +1,4 @@
-// Fetch of primitives: asks for the triangles of the leaves that a ray enters, one a clock, near leaves first.
+// Fetch of primitives: asks for leaves' triangles, near leaves first. Throughput: a triangle a clock.
 //
 // Groups of leaves are served one at a time, in the order in which they came; a ray has at most one. If a leaf lies
 // beyond its ray's t_max when its turn comes, it and the leaves behind it are dropped, as they are no nearer.

@@ -1,8 +1,8 @@
-// Entry of rays: computes the reciprocals of a ray's direction and gives the ray a context.
+// Entry of rays: reciprocals of a ray's direction, and a context.
 //
 // A ray waits in a queue until its reciprocals have come, a division's latency later, and a context is free: the
 // lowest free one is start_ctx_o. So no context is held by a division. Reciprocals are rounded to nearest.
-// Clocks = 1: three dividers, a ray a clock. Else (7 or more) a ray in Clocks clocks, and one divider.
+// Throughput: a ray in Clocks clocks; with Clocks = 1 by three dividers, else (7 or more) by one.
 module ray_alloc #(
   parameter int unsigned Rays  = 64,  // contexts
   parameter int unsigned Width = 32,  // of what else there is of a ray

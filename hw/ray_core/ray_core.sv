@@ -17,7 +17,7 @@
 // so outstanding_o may be high when the last ray has ended. Memory may change, and invalidate_i be high, only while no
 // ray is in the core and outstanding_o is low.
 //
-// Throughput: a node and a triangle in Clocks clocks if they are in the caches, a line a clock if not.
+// Throughput: a node and a triangle in Clocks clocks; if they are not in the caches, a line a clock.
 module ray_core
   import ray_core_pkg::*;
 #(

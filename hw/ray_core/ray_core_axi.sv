@@ -1,4 +1,4 @@
-// Ray core on AXI: registers by AXI4-Lite, the scene by AXI4, rays by valid/ready, results by AXI4 or AXI4-Stream.
+// Ray core on AXI4, with registers on AXI4-Lite. Rays come by valid/ready, results leave by AXI4 or AXI4-Stream.
 //
 //   csr                what to draw, counters, flags
 //   ray_generator      the rays of a rectangle; the tag of each is its pixel, {y, x}

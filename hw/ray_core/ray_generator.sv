@@ -1,4 +1,4 @@
-// Generator of camera rays: the rays of a rectangle of pixels, row by row; the paper's equation 1.
+// Generator of camera rays: a rectangle of pixels, row by row. The paper's equation 1.
 //
 // The direction through pixel (x, y) is (first + y down) + x right, binary32, each operation rounded to nearest: first
 // goes through the pixel (0, 0), right and down lead from a pixel to the next. It is then scaled by a power of two, so
@@ -6,7 +6,7 @@
 // scaled, zero or not finite, stays so: the core refuses it. Vectors are three words, x lowest.
 //
 // start_i, while not busy_o, takes the rectangle; a width or height of zero gives nothing. stop_i: no further pixel is
-// begun. Throughput a ray a clock.
+// begun. Throughput: a ray a clock.
 module ray_generator #(
   parameter int unsigned Arith = arith_pkg::Graded
 ) (

@@ -2,7 +2,7 @@
 //
 // A ray has ended when it has no node, no leaf, no test and no doubt left. Its context is free at once; its nearest hit
 // waits in a queue. A ray's doubts leave before its end. Unused fields are zero: a doubt has only its tag and triangle,
-// an end without a hit no triangle, t, t_error or P. Throughput: one ray ends and one result leaves in a clock.
+// an end without a hit no triangle, t, t_error or P. Throughput: a ray and a result a clock.
 module ray_retire
   import ray_core_pkg::*;
 #(

@@ -1,5 +1,5 @@
 // Scale of a ray in a node: how far it may go there, 2**E, and a cap of 1 / I_k where planes are too far apart.
-// Latency: 2 clocks, a register behind the reach along each axis and one behind E; inverse_i and cells_i come with the
+// Latency: 2 clocks: a register behind the reach along each axis and one behind E; inverse_i and cells_i come with the
 // rest. Steps 1 and 3 of box_unit's header say why. An exponent is binary32's, with its bias.
 //
 // In:  distances_i  exponents of D_k = origin_k - O_k, eight bits an axis, x lowest

@@ -1,5 +1,5 @@
-// Slab set-up: the first planes of a node's grid along one axis as the ray meets them, and the distance between planes.
-// Latency: 1 clock, a register behind |a| and s. All in units of 2**(E - 22); steps 2 to 4 of box_unit's header say why.
+// Slab set-up: a grid's first planes along an axis, and their distance.
+// Latency: 1 clock: a register behind |a| and s. All in units of 2**(E - 22); why: steps 2 to 4 of box_unit's header.
 //
 // In:  product_i    a = D / I, binary32; any
 //      inverse_i    1 / |I|, capped; exponent_i, cap_i: E and the cap, with binary32's bias

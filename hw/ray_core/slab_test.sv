@@ -1,5 +1,5 @@
-// Slab test: whether and where the ray enters the box of one child, from the planes of its three axes, x lowest.
-// Latency: 4 clocks, a register behind products, planes, the largest and smallest of them, and the key.
+// Slab test: whether and where the ray enters one child's box. From the planes of its three axes, x lowest.
+// Latency: 4 clocks: a register behind products, planes, the largest and smallest of them, and the key.
 //
 // In:  box_i         low x, y, z, high x, y, z: a byte each; step_i: s; back_i: along which axes the ray goes towards
 //                    smaller q

@@ -1,4 +1,4 @@
-// Traversal of the tree: a short stack of nodes for each ray, and the choice of the ray that visits its next node.
+// Traversal of the tree: short stacks, and which ray goes next.
 //
 // A stack entry is a group: the children of a node that a ray enters and has not visited yet, the nearest on top. In
 // each clock one ray is picked, of those that neither wait for a node nor have leaves to be fetched. Its groups whose

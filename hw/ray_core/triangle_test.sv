@@ -1,7 +1,7 @@
-// Triangle test: the polygon record of a triangle, seen from a ray's origin, and the ray's hit, miss or doubt; in binary32.
+// Triangle test: polygon record of a triangle, and a ray's verdict. The record is seen from the origin; binary32.
 //
-// Clocks = 1: a triangle a clock, in pipelined cores. Else (7 or more) a triangle in Clocks clocks, in few cores that take
-// turns: a step is from one step_i to the next, and all registers go on with it. The words are the same. Nothing is stalled.
+// Throughput: a triangle in Clocks clocks. Clocks = 1: pipelined cores. Else (7 or more) few cores that take turns: a
+// step is from one step_i to the next, and all registers go on with it. The words are the same. Nothing is stalled.
 //
 //   operation   cores                                                     sums and products
 //   1           vertices A, B, C less O; the edges B-A, C-B, A-C          18

@@ -39,7 +39,6 @@ def section_rows(section: str, library: Library, seeds: int = 3) -> list[list[fl
                 *((designs[top.replace("_", "-")], "modules", how) for top, how in sparse.items())]
     else:
         rows = [(designs["hit_test_unit"], how, flow.SPARSE) for how in ("parts", "small")]
-    # Whether qrouter routes the unit's 18,000 nets has not been tried.
     return [[flow.Job(design, library, how, *sparse, routed=section != "unit")] for design, how, sparse in rows]
 
 
@@ -141,13 +140,12 @@ def main() -> int:
         for name, are_adders in (("adders", True), ("cores", False)):
             mine = [dict(zip(HEADS, (str(cell).replace(",", "") for cell in row))) for got, row in zip(records, rows)
                     if (got["job"].design.top == "adder") == are_adders]
-            (tables.RESULTS / f"layout-{name}.csv").write_text(tables.comma_separated(mine, HEADS))
+            tables.publish(f"layout-{name}.csv", tables.comma_separated(mine, HEADS), "make layout PUBLISH=1")
         for name in pictures:
             published = tables.RESULTS / f"layout-{name.replace('-osu035', '')}.png"
             if published.exists():  # of the others none is shown
                 shutil.copy(OUT / f"{name}.png", published)
-    print(text)
-    print(f"Report: {report.relative_to(tools.ROOT)}")
+    print(f"{text}\nReport: {report.relative_to(tools.ROOT)}")
     return runner.status(failures) or any(any(got["failed"]) for got in records)
 
 

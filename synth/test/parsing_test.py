@@ -128,17 +128,11 @@ class Wrappers(unittest.TestCase):
         """All inputs and outputs between registers, as many as there are."""
         ports = fpga.port_widths("d", {"modules": {"d": {"ports": self.PORTS}}})
         self.assertEqual(ports, [("input", "a_i", 2), ("output", "b_o", 1)])
-        text = fpga.registered(Design("d", "d", "arith"), ports)
+        text = fpga.registered(Design("d", "d", "fp", clock="clk_i"), [("input", "clk_i", 1), *ports])  # the design's clock is the registers'
+        self.assertIn(".clk_i(clk_i)", text)
         self.assertIn("reg [1:0] in;", text)
         self.assertIn(".a_i(in[0 +: 2])", text)
         self.assertIn(".b_o(result[0 +: 1])", text)
-
-    def test_registered_with_a_clock(self):
-        """The design's clock is the registers'."""
-        text = fpga.registered(Design("d", "d", "fp", clock="clk_i"),
-                               [("input", "clk_i", 1), ("input", "a_i", 2), ("output", "b_o", 1)])
-        self.assertIn(".clk_i(clk_i)", text)
-        self.assertIn("reg [1:0] in;", text)
 
     def test_twins(self):
         """One vector for both."""

@@ -9,17 +9,6 @@ from unittest import mock
 from synth import __main__ as main, catalogue, mapping, measure, prove, report, structure, tables, tools
 
 
-class ClockTable(unittest.TestCase):
-    """Of cells and of an FPGA."""
-
-    def test_has_what_is_timed_in_ns_alone(self) -> None:
-        cells = {"design": "hit_test_unit", "target": "osu035", "flow": "parts", "delay_ns": 50.0, "from": "N", "to": "output_q"}
-        placed = {"design": "adder", "target": "ecp5", "flow": "placed", "mhz": 98.0, "from": "a", "to": "sum"}
-        lines = report.clock_table([cells, placed]).splitlines()
-        self.assertEqual(len(lines), 3)
-        self.assertIn("20.0", lines[2])
-
-
 class Legend(unittest.TestCase):
     def test_explains_the_columns_that_are_there(self) -> None:
         cells = [{"flow": flow, "delay_ns": 1.0} for flow in ("fast", "cells")]
