@@ -19,9 +19,9 @@ WORDS = 12  # of a module's description, at most
 INTRO = """\
 # Modules
 
-Made by `make synth DATASHEET=1` from the headers and from measurements: OSU 0.35 um, cells alone, default parameters, flow
-`fast` (arith, fp), `parts` (hit_test) or `blocks`; memories count in bits. Latency 0: combinational. Empty: it depends on
-memory, on the host or on other rays.
+Made by `make synth DATASHEET=1` from headers and measurements: OSU 0.35 um, cells alone, default parameters, flow `fast`
+(arith, fp), `parts` (hit_test) or `blocks`. Memories count in bits. Latency 0 means combinational. Where a cell is empty,
+the clocks depend on memory, the host or other rays.
 """
 
 
