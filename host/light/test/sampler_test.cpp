@@ -1,4 +1,4 @@
-// The points are even, independent and reproducible; the filters are what they are called.
+// Sample points are even, independent and reproducible; filters have their formulas' variance.
 #include "host/light/sampler.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(Sampler, EveryElementaryIntervalHoldsOnePoint) {
   }
 }
 
-// Pairs of streams, and a pixel with its neighbours: no correlation beyond what chance gives.
+// Two streams, and a pixel and its neighbour, are uncorrelated up to chance.
 TEST(Sampler, StreamsAndPixelsAreIndependent) {
   constexpr int kPixels = 64;
   double streams = 0.0, neighbours = 0.0, mean = 0.0;
