@@ -55,7 +55,7 @@ struct RenderStats {
   double processor_seconds = 0.0;
   std::uint64_t spare_samples = 0;  ///< samples saved by RenderSettings::error
   int missing_threads = 0;          ///< threads that could not be started
-  bool cancelled = false;           ///< stopped by the monitor; the film is incomplete
+  bool cancelled = false;           ///< the monitor stopped the render; the film is incomplete
 };
 
 }  // namespace raygate

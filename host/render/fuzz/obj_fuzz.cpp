@@ -1,4 +1,4 @@
-// libFuzzer target: renders arbitrary bytes as an OBJ file; bytes after a byte 0x1E are its s.mtl.
+// libFuzzer target: renders arbitrary bytes as an OBJ file; bytes after the first 0x1E are s.mtl.
 #include <unistd.h>
 
 #include <cstdint>
