@@ -9,7 +9,7 @@ from PIL import Image
 
 
 def write_png(drawn: bytes, file: pathlib.Path) -> None:
-    """Writes a PNG with at most 256 colours, 1/5 of the original size."""
+    """Writes a PNG with at most 256 colours, a fifth of the bytes of the original."""
     picture = Image.open(io.BytesIO(drawn)).convert("RGB")
     picture.quantize(256, dither=Image.Dither.NONE).save(file, optimize=True)
 
