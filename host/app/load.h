@@ -13,9 +13,9 @@
 
 namespace raygate {
 
-/// Loads the model, instances and lights of a scene file, and an environment map. Its up direction
-/// is `up` or, by default, the scene file's or the format's usual one. Throws InputError as
-/// load_scene() and load_environment() do, and for too many triangles.
+/// Loads the model, instances and lights of a scene file, and an environment map. The map's up
+/// direction is `up` or, by default, the scene file's or the format's usual one. Throws InputError
+/// as load_scene() and load_environment() do, and for too many triangles.
 [[nodiscard]] Scene load(const SceneFile& file, const LoadOptions& options,
                          const EnvironmentSetting& environment = {},
                          const std::optional<glm::dvec3>& up = {});

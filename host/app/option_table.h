@@ -97,7 +97,7 @@ struct Range {
   }
 };
 
-/// Where an option appears besides the command line.
+/// Places where an option appears, besides the command line.
 enum OptionPlaces : unsigned {
   kNowhere = 0,
   kInExr = 1,        ///< EXR attribute: --point-error as "pointError"
@@ -216,7 +216,7 @@ class OptionTable {
   /// Throws InputError "unknown option 'colour', ..." unless the option appears at `place`.
   void require(const OptionValue& value, OptionPlaces place) const;
 
-  /// Name/value pairs of the options shown at `place`; options without a value are omitted.
+  /// Returns name/value pairs of the options shown at `place`. Omits options without a value.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> values(OptionPlaces place) const;
 
  private:

@@ -71,7 +71,7 @@ bool read_size(const std::string& text, RenderSettings& settings) {
   return kSideRange.contains(settings.width) && kSideRange.contains(settings.height);
 }
 
-/// Parses a name of variants.json or a format such as "e8p15".
+/// Returns the variant with a name in variants.json or a format such as "e8p15".
 std::optional<Variant> parse_variant(const std::string& text) {
   for (const Variant& variant : all_variants_of_arithmetic()) {
     if (variant.name == text) return variant;
@@ -98,7 +98,7 @@ std::optional<CameraSetting> parse_camera(const std::string& text) {
 
 std::string vector_text(const glm::dvec3& v) { return list_text({v.x, v.y, v.z}); }
 
-/// Names of all channels that a film can have.
+/// Returns the names of all channels that a film can have.
 std::vector<std::string> channel_names() {
   Film film = make_film(1, 1, {0, 0, 1, 1}, {true, true, true, true, true});
   add_sums(film, true);
@@ -317,7 +317,7 @@ void check_serve(const OptionTable& table, const Options& options) {
 
 /// Throws InputError if an output would overwrite the scene or another output.
 void require_distinct_outputs(const Options& options) {
-  // The next run would read a scene file beside the model.
+  // Includes the .json beside the model, which the next run would read as its scene file.
   const fs::path inputs[] = {options.scene, options.scene_file.obj, options.scene_file.file,
                              fs::path(options.scene_file.obj).replace_extension(".json")};
   std::vector<fs::path> outputs = options.output.paths();

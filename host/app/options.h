@@ -39,9 +39,9 @@ struct EngineOptions {
   int cores = 1;             ///< ray cores behind one memory, per thread; 1 for other units
   int threads = 1;
   InstanceMode instances = InstanceMode::kAutomatic;
-  bool rounds_vertices = false;  ///< to binary32
+  bool rounds_vertices = false;  ///< rounds vertices to binary32
 
-  /// Whether rays go to ray cores, simulated or modelled.
+  /// Returns whether rays go to ray cores, simulated or modelled.
   [[nodiscard]] bool has_core() const {
     return (unit == "core" || unit == "board") && engine != Engine::kCpu;
   }
@@ -67,9 +67,9 @@ struct OutputOptions {
   double save_seconds = 0.0;                   ///< between saves of the unfinished picture; 0: none
 
   [[nodiscard]] std::vector<std::filesystem::path> pictures() const;
-  /// The pictures and the statistics.
+  /// Returns the files of the pictures and the statistics.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
-  /// The channels that a film needs for these files.
+  /// Returns the channels that a film needs for these files.
   [[nodiscard]] ExtraChannels needed_channels() const;
 };
 
@@ -79,7 +79,7 @@ struct CoreFileOptions {
   std::filesystem::path wave;   ///< waveform of `pixel`'s ray; "": none
   glm::ivec2 pixel{0};
 
-  /// The files that will be written.
+  /// Returns the files that will be written.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
 };
 
@@ -107,9 +107,9 @@ inline constexpr Range<double> kFovRange{0x1p-1022, 180.0 - 0x1p-45,
                                          "degrees above 0 and below 180"},
     kSmoothRange{0.0, 180.0, "degrees from 0 to 180"};
 
-/// "rtl", "model", "cpu" or "check".
+/// Returns "rtl", "model", "cpu" or "check".
 [[nodiscard]] std::string to_string(Engine engine);
-/// "structural" or "behavioural".
+/// Returns "structural" or "behavioural".
 [[nodiscard]] std::string to_string(Arith arith);
 
 /// Adds the options of the engine, of ./render and ./trace.
@@ -138,7 +138,7 @@ void check_light_options(const OptionTable& table, bool has_environment, RenderS
 [[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given,
                                   const std::vector<OptionValue>& requested = {});
 
-/// Name/value pairs of the options shown at `place`.
+/// Returns name/value pairs of the options shown at `place`.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> option_values(Options options,
                                                                              OptionPlaces place);
 

@@ -111,11 +111,12 @@ Row summary_of(const std::vector<double>& errors) {
 /// Compares the hits of rays through all pixel centres, found by `tester`, which uses the
 /// arithmetic of `variant`, with exact arithmetic on the same triangles. Columns:
 ///
-///   tests (ray, polygon) pairs tested by the traversal doubts tests resolved by exact arithmetic:
-///   never wrong wrong_hits, wrong_misses decisions that differ from exact arithmetic rays,
-///   wrong_rays all rays, and those whose nearest polygon is wrong hits hits of rays whose nearest
-///   polygon is right; errors are over these t_ulp, point_ulp errors of t and of P's worst
-///   coordinate in float32 ulps: median
+///   tests                     (ray, polygon) pairs tested by the traversal
+///   doubts                    tests resolved by exact arithmetic: never wrong
+///   wrong_hits, wrong_misses  decisions that differ from exact arithmetic
+///   rays, wrong_rays          all rays, and those whose nearest polygon is wrong
+///   hits                      hits of the other rays; errors are computed over these
+///   t_ulp, point_ulp          errors of t and of P's worst coordinate in float32 ulps: median
 ///                             (p50), 99th percentile, largest; 0 without hits. No t_ulp for
 ///                             user-supplied modules, whose t is the reference model's
 Row audit_decisions(const Bvh& bvh, const Camera& camera, int width, int height,

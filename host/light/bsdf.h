@@ -90,7 +90,7 @@ class Bsdf {
                             ? diffuse * spread<T>(kPerPi) + glossy * phong_lobe(light)
                             : diffuse * spread<T>(kPerPi));
   }
-  /// Returns eval(), with the highlight of mirrors in lanes whose light is a point.
+  /// Returns eval(), plus the highlight of mirrors in lanes whose light is a point.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light,
                                               const MaskOf<T>& is_from_point) const {
     if (!has_highlight() || !any(is_from_point)) return eval(light);

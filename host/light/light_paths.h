@@ -27,7 +27,7 @@ inline constexpr float kLeastCosine = 0x1p-20f;
 
 /// The part of the frame that light paths target, in camera coordinates from 0 to 1.
 struct FrameView {
-  const Camera& camera;  ///< perspective
+  const Camera& camera;  ///< a perspective camera
   int width = 1, height = 1;
   glm::dvec2 low{0.0}, high{1.0};  ///< contributions outside of this range are discarded
 };
@@ -36,10 +36,10 @@ struct FrameView {
 /// to the camera.
 ///
 /// Mirrors and glass here are smooth ones; at rough surfaces lights are sampled. A light path
-/// counts only if its first surface is a mirror or glass. So starts are chosen by the flux that a
-/// light sends to the bounding spheres of the scene's mirrors and glass: from lights at finite
-/// distance uniformly in the solid angles of the spheres, from distant lights uniformly over their
-/// discs. Lengths are in scene units, densities per square unit of Lights.
+/// counts only if its first surface is a mirror or glass. So lights are chosen by the flux that
+/// they send to the bounding spheres of the scene's mirrors and glass. Rays from lights at finite
+/// distance are uniform in the solid angles of the spheres, those from distant lights over the
+/// spheres' discs. Lengths are in scene units, densities per square unit of Lights.
 ///
 /// A path that both camera paths and light paths can find is weighted by multiple importance
 /// sampling with the power heuristic (Veach, "Robust Monte Carlo methods for light transport

@@ -14,9 +14,9 @@
 // Let T have the vertices v_i, and let S be another triangle. For any vector a let g_i = a.v_i -
 // max a.y over the points y of S; the maximum is at a vertex. A point X = sum w_i v_i of T has a.X
 // - a.y >= sum w_i g_i for every y of S. If no g_i is negative, the plane between T and S keeps X
-//   at least sum w_i g_i / |a| >= w sum g_i / |a| away from S, where w is the least weight. g_i may
-//   be negative by up to `slack`, for rounding, which margin() compensates. The bound holds for
-//   every a; the vectors that are tried separate triangles that touch in an edge or a corner.
+// at least sum w_i g_i / |a| >= w sum g_i / |a| away from S, where w is the least weight. g_i may
+// be negative by up to `slack`, for rounding, which margin() compensates. The bound holds for every
+// a; the vectors that are tried separate triangles that touch in an edge or a corner.
 
 namespace raygate {
 namespace {

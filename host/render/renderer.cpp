@@ -210,7 +210,7 @@ class RenderThreads {
   int gone_ = 0;  // number of threads that have ended
   bool stopped_ = false;
   std::exception_ptr error_;
-  // Members of the watching thread only.
+  // Members that only the calling thread uses.
   std::optional<Clock::time_point> stopped_at_;
   bool is_alone_ = false;
   Stopwatch watch_;

@@ -89,7 +89,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   pixel_work_.assign(is_counting_ ? tile.pixels() : 0, {});
   const RenderSettings& settings = context_.settings;
   const double margin = 1.0 + (settings.samples > 1 ? filter_radius(settings.filter) : 0.0);
-  // Whether camera rays can only meet the background.
+  // If true, camera rays can only meet the background.
   const bool is_empty =
       !integrator_.sees_environment() &&
       !may_see_anything(context_.prepared.bvh, context_.camera, film_, tile_, margin);

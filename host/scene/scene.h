@@ -210,7 +210,7 @@ void set_last(std::vector<T>& attributes, std::size_t count, const T& value, con
 /// Faces without area have indices, too (see is_left_out).
 struct Scene {
   std::vector<glm::vec3> positions;
-  /// Rests (see rest_of) of the first positions, up to binary64; 0 for all others.
+  /// Rests (see rest_of) of the first positions, relative to binary64; 0 for all others.
   std::vector<glm::ivec3> rests;
   /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour.
   std::vector<glm::vec3> colors;

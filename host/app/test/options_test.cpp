@@ -160,7 +160,7 @@ TEST(Options, ValuesThatAreImpossible) {
   EXPECT_EQ(parse({"a.obj", "--size", "65536x1"}).render.width, 65536);
   for (const char* option : {"--size", "--stats", "--seed", "--engine", "-o"}) {
     expect_error({"a.obj", option}, "expected ");      // no value
-    expect_error({"a.obj", option, ""}, "expected ");  // an empty one
+    expect_error({"a.obj", option, ""}, "expected ");  // an empty value
   }
 }
 

@@ -18,16 +18,16 @@ struct Invocation {
   std::vector<std::string> arguments;
   std::filesystem::path folder;  ///< the current folder, to which file names are relative
   bool terminal = false;         ///< standard error is a terminal of 80 columns, not a pipe
-  int signal_when_busy = 0;      ///< with a terminal: sent when 1 % is done
+  int signal_when_busy = 0;      ///< signal to send when 1 % is done; needs `terminal`
   /// Functions, called one after the other with the program's process id, each when standard error
   /// has received its text since the previous call.
   std::vector<std::pair<std::string, std::function<void(int)>>> when_said{};
   std::string out_file{};                  ///< file for standard output
-  long file_size_limit = 0;                ///< bytes that a file may grow to; 0: no limit
-  unsigned most_seconds = 0;               ///< then SIGALRM; 0: no limit
+  long file_size_limit = 0;                ///< largest file, in bytes; 0: no limit
+  unsigned most_seconds = 0;               ///< seconds until SIGALRM; 0: no limit
   long memory_limit = 0;                   ///< bytes of address space; 0: no limit
-  bool without_rights = false;             ///< as a user who is not root
-  int most_threads = 0;                    ///< of its user, including its main thread; 0: no limit
+  bool without_rights = false;             ///< run as a user who is not root
+  int most_threads = 0;                    ///< threads of its user, including main's; 0: no limit
   std::string program{};                   ///< "": the program under test
   std::vector<std::string> environment{};  ///< "NAME=value", added to ours
 };

@@ -1,6 +1,7 @@
 // Parallel-prefix adder after Kogge and Stone: {carry_o, sum_o} = a_i + b_i + carry_i. Combinational; any Width from 1;
-// ceil(log2(Width)) levels. Every fan-out is small, at the cost of wires. Source: P. M. Kogge and H. S. Stone, "A
-// parallel algorithm for the efficient solution of a general class of recurrence equations", IEEE Trans. C-22, 1973.
+// ceil(log2(Width)) levels. Every fan-out is small, at the cost of wires.
+// Source: P. M. Kogge and H. S. Stone, "A parallel algorithm for the efficient solution of a general class of recurrence
+// equations", IEEE Trans. C-22, 1973.
 module kogge_stone_adder #(
   parameter int unsigned Width = 48
 ) (

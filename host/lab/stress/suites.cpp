@@ -185,7 +185,7 @@ Shot lattice_shot(Random& random) {
   return shot;
 }
 
-/// Makes shots at distances of 1e3 to 1e7 sizes from the world's origin.
+/// Makes triangles at 1e3 to 1e7 times their size from the world's origin.
 Shot far_shot(Random& random) {
   const glm::dvec3 shift = random.unit() * random.log_uniform(1e3, 1e7);
   const Corners t = random_triangle(random, glm::dvec3(1), shift);
@@ -392,7 +392,7 @@ class Bounces {
     directions_.clear();
     if (mirrored_ != glm::vec3(0.0f)) directions_.push_back(mirrored_);
     while (directions_.size() < kRays) {
-      // Towards edges and points near them, such as the edge between the first two side faces.
+      // Aims at edges and points near them, such as the edge between the first two side faces.
       const Corners& t = (*mesh_)[random.below(static_cast<int>(mesh_->size()))];
       const glm::dvec3 aim = glm::mix(t[0], t[random.below(3)], random.uniform(0, 1)) +
                              random.point() * random.log_uniform(1e-9, 1e-1);

@@ -107,7 +107,7 @@ Watertight from_inside(const char* name, Placement placement, int count, Targets
   return test;
 }
 
-/// Numbers of hits of rays.
+/// Numbers of hits, by ray.
 using Counts = std::vector<std::uint32_t>;
 
 /// A hit test, such as an engine, and the counts of its hits.

@@ -10,11 +10,11 @@ import sys
 from host.lab.rows import ROOT
 from synth import brought, catalogue, measure as synth, tools
 
-LIBRARY = "osu035"  # of the time of the paper
+LIBRARY = "osu035"  # as old as the paper
 FLOWS = ("parts", "small")  # the first available one is used
 UNITS = {"pipeline": "hit_test_pipeline", "serial": "hit_test_unit"}
 USUAL = {"ExpWidth": 8, "FracWidth": 23, "QuotientBits": 0, "RoundingMode": 0, "Arith": 0}
-ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")  # as in fp_pkg
+ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")  # in the order of fp_pkg
 
 
 def _parameters(variant: dict) -> dict[str, int]:

@@ -118,7 +118,7 @@ TEST_P(EveryIntegrator, VectorsChangeNoByte) {
   }
 }
 
-// With the unit's P instead of the host's, positions differ, but not visibly.
+// With the unit's P instead of the host's, positions differ, but hardly.
 TEST_P(EveryIntegrator, TheUnitsPointsAreGoodEnough) {
   RenderSettings host = options(80, 60), unit = host;
   host.channels.position = unit.channels.position = true;
@@ -292,7 +292,7 @@ TEST(Snapshots, WithoutMemoryForACopyTheRenderGoesOn) {
 }  // namespace
 }  // namespace raygate
 
-// Fails for large allocations while refuse_large is set.
+// An allocation function that fails for large sizes while refuse_large is set.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   void* const memory = refuse_large && size > 4000 ? nullptr : std::malloc(size);
   if (memory == nullptr) throw std::bad_alloc();

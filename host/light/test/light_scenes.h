@@ -1,4 +1,4 @@
-// Small scenes with materials and lights, and films of them; one surface and its BSDF.
+// Small scenes with materials and lights, and their films; a single surface and its BSDF.
 #pragma once
 
 #include <cmath>

@@ -241,7 +241,7 @@ TEST(DefaultLights, AreOneLightAboveTheCamera) {
   EXPECT_NE(lights->background, glm::vec3(0.0f));
 }
 
-// Sixteen times the size of such a scene is beyond the range of float.
+// Sixteen times the size of this scene is beyond the range of float.
 TEST(DefaultLights, StayInTheRangeOfTreesAndPredicates) {
   Scene scene;
   add(scene, rectangle({-8e37f, -8e37f, 0}, {1.6e38f, 0, 0}, {0, 1.6e38f, 0}),

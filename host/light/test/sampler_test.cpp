@@ -45,7 +45,7 @@ TEST(Sampler, StreamsAndPixelsAreIndependent) {
       neighbours += a * (random_point<float>(0, beside, 3).x - 0.5);
     }
   }
-  constexpr double kCount = kPixels * kPixels, kDeviation = 1.0 / 12.0 / 64.0;  // of a product
+  constexpr double kCount = kPixels * kPixels, kDeviation = 1.0 / 12.0 / 64.0;  // of mean products
   EXPECT_LT(std::abs(mean / kCount), 4.0 * std::sqrt(1.0 / 12.0) / 64.0);
   EXPECT_LT(std::abs(streams / kCount), 4.0 * kDeviation);
   EXPECT_LT(std::abs(neighbours / kCount), 4.0 * kDeviation);

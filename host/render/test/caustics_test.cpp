@@ -1,4 +1,4 @@
-// Caustics by light paths: closed forms, long runs without light paths, and the same bytes always.
+// Caustics by light paths: closed forms, long runs without light paths, equal bytes.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -314,7 +314,7 @@ TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
 TEST(DirectLight, PathAndWhittedAgreeAboutDirectLight) {
   Scene scene = everything();
   scene.background = glm::vec3(0.0f);
-  // Shadows of glass differ between them, so make it matte.
+  // The integrators treat shadows of glass differently, so make glass matte.
   scene.materials[4] = scene.materials[7] = matte(glm::vec3(0.5f));
   const Camera camera = camera_at({0.6, 0.2, 5}, {0, -0.3, 0}, 40.0);
   RenderSettings options = light(kWhitted, 24, 24, 256);

@@ -159,7 +159,7 @@ TEST(EmitterSupersampler, GoThroughTwoPanes) {
   EXPECT_NE(all >> 0b11111 & 1, 0u) << "in and out twice";
 }
 
-// A lens disables supersampling; a tiny lens gives the camera's picture without it.
+// A lens disables supersampling. A tiny lens gives the same camera without supersampling.
 TEST(EmitterSupersampler, HaveTheSameMean) {
   const Scene scene = ball();
   const Bvh bvh(scene);
@@ -223,7 +223,7 @@ double error(const Panel& panel, float left, float upper, float right, float low
 }
 
 // At an axis-parallel edge, the error of n samples alone is 0.4 / n on average. Eight times as many
-// have an eighth of it, slightly more at corners and for numbers that are no power of two.
+// samples have an eighth of it, or slightly more at corners and without a power of two.
 TEST(EmitterSupersampler, AreSharperThanTheSamplesAlone) {
   const struct {
     Projection projection;

@@ -56,7 +56,7 @@ Material shown(const glm::vec3& colour) {
 }
 
 // A slab of glass displaces every ray by Snell's law, and each side reflects Fresnel's fraction.
-// Behind it are a red and a green half-plane, unlit.
+// Behind the slab are a red and a green half-plane, unlit.
 TEST(MirrorGlass, ASlabOfGlassShiftsWhatIsBehindIt) {
   const double index = 1.5, thickness = 1.0;
   Scene scene;
@@ -140,7 +140,7 @@ TEST(MirrorGlass, PanesWeakenLightAndShadowsAlike) {
 }
 
 // A lamp covers all that a pond reflects. Few samples suffice for its reflection, although most
-// light is refracted into the dark: EmitterSupersampler follows both.
+// light is refracted into the dark: EmitterSupersampler follows both directions.
 TEST(MirrorGlass, ALampInAPondIsAsBrightAsFresnelSays) {
   Scene scene;
   add(scene, rectangle({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}), glass(1.5f));

@@ -27,7 +27,7 @@ class GltfMaterials {
 
   struct Converted {
     std::uint32_t number;  ///< index into Scene::materials
-    /// Texture coordinate sets that it uses, the base colour's first; -1: none.
+    /// Texture coordinate sets of the material, the base colour's first; -1: none.
     std::array<int, 2> texcoord_sets;
   };
 

@@ -35,7 +35,7 @@ class LineBuffer : public std::streambuf {
     char* const first = const_cast<char*>(text.data());  // never written
     setg(first, first, first + text.size());
   }
-  /// Returns the line of the last character that was read: after a number, of the one behind it.
+  /// Returns the line of the last character read, which is one beyond the end of a number.
   std::size_t line() {
     for (; counted_ + 1 < gptr(); ++counted_) line_ += *counted_ == '\n' ? 1 : 0;
     return line_;

@@ -86,7 +86,7 @@ void MeshBuilder::fail(std::vector<FaceCorner>::const_iterator corner,
   throw InputError(location(std::ranges::upper_bound(faces_, number, {}, &Face::end)->line) + what);
 }
 
-// Keeps the positions that a face uses, relative to the origin, and renumbers the corners.
+// Keeps the positions that faces use, relative to the origin, and renumbers the corners.
 void MeshBuilder::recentre(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const FaceCorner& corner : corners_) new_index[corner.position] = 0;

@@ -53,7 +53,7 @@ class Words {
     find_word(next_);
     return word;
   }
-  /// Takes the next word if it is `word`, given in lower case, in any letter case. Returns whether.
+  /// Takes the next word, and returns true, if it equals `word` (lower case) in any letter case.
   bool take_if(std::string_view word) {
     const auto is_same = [](char small, char letter) { return small == in_lower_case(letter); };
     const bool is_equal = word == word_ || std::ranges::equal(word, word_, is_same);

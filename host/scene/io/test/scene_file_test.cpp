@@ -1,4 +1,4 @@
-// scene.json: every key; everything else gets a one-line error that names its place.
+// scene.json: every key; any other contents give a one-line error that names the place.
 #include <gtest/gtest.h>
 
 #include "host/base/input_error.h"
