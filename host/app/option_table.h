@@ -83,7 +83,7 @@ template <typename T>
   return names;
 }
 
-/// The closed range of a number. `expected` describes it in messages; null: "a number from 0 to 1".
+/// The closed range of a number. `expected`: text for messages; null: "a number from LOW to HIGH".
 template <typename T>
 struct Range {
   T low, high;

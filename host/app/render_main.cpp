@@ -103,8 +103,8 @@ Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
   return film;
 }
 
-/// Renders with a progress line. Saves the unfinished picture periodically. After a signal, also
-/// saves it, unless nothing was rendered, and throws Interrupted.
+/// Renders with a progress line. Saves the unfinished picture periodically, and after a signal
+/// unless no pixel shows anything; a signal ends in Interrupted.
 Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata metadata,
                       const IntersectorFactory& make_intersector, RenderStats& stats) {
   ProgressLine line(!options.quiet);

@@ -29,7 +29,7 @@ namespace raygate {
 /// clear material. Radiance is divided by the squared index of refraction throughout, so that it
 /// does not change at an interface. "The rest" is the fraction that the mirror does not reflect. A
 /// mirror cannot show a point light, which has no size; it shows a highlight with exponent Ns
-/// instead, unless Ns is at most 1 (1 is the default).
+/// instead, unless Ns is at most 1 (0 is the default).
 ///
 /// A metallic-roughness material has the lobes of MetallicRoughnessLobes instead: `diffuse` is the
 /// base below the facets, `glossy` the reflection of rough facets, `mirror` of smooth ones; glass

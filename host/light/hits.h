@@ -182,8 +182,8 @@ struct Hits {
     if (!hits.first_surfaces.empty()) show_first_surfaces();
   }
 
-  /// Returns the cosine of a unit direction with the shading normal; 0 where the surface scatters
-  /// no light from there: behind the triangle or, for rough glass, where both normals disagree.
+  /// Returns the cosine of a unit direction with the shading normal. 0 where no light from there is
+  /// scattered: behind the triangle or, for rough glass, on different sides by both normals.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});

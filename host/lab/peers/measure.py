@@ -33,7 +33,7 @@ def scene_file(name: str) -> pathlib.Path:
 
 def light_of(picture: pathlib.Path) -> numpy.ndarray:
     """Returns the red, green and blue channels of an EXR file."""
-    import mitsuba  # not needed by the tests
+    import mitsuba  # imported here, as the tests do not need it
 
     mitsuba.set_variant("scalar_rgb")
     bitmap = mitsuba.Bitmap(str(picture))

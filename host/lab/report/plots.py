@@ -25,7 +25,7 @@ def save(figure: plt.Figure, file: pathlib.Path) -> pathlib.Path:
 
 def flip(reference: pathlib.Path, picture: pathlib.Path) -> tuple[numpy.ndarray, float]:
     """Returns the FLIP difference map of two PNGs, and its mean."""
-    import flip_evaluator  # not needed by the tests of tables
+    import flip_evaluator  # imported here, as the tests of tables do not need it
 
     shown = [numpy.asarray(plt.imread(file), dtype=numpy.float32)[..., :3] for file in (reference, picture)]
     error_map, mean, _ = flip_evaluator.evaluate(*shown, "LDR")

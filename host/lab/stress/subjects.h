@@ -62,7 +62,7 @@ struct SubjectKind {
   bool binary64 = false;   ///< takes suites of binary64 vertices, too
   double share = 0.1;      ///< fraction of the requested number of tests
   std::function<std::unique_ptr<Subject>()> make{};
-  std::function<IntersectorOf()> engine{};  ///< of an engine or a variant
+  std::function<IntersectorOf()> engine{};  ///< makes the engine or variant
 };
 
 /// Returns all subjects of this build, in the order of the report.

@@ -244,7 +244,7 @@ class ObjReader {
   MeshBuilder mesh_;
   std::set<std::filesystem::path> libraries_;  // MTL files that were read
   Scene& scene_;
-  NameNumbers objects_, materials_;               // materials_: of usemtl; kNoIndex: no usemtl
+  NameNumbers objects_, materials_;               // materials_: names in usemtl
   std::vector<std::string> first_uses_;           // "file:line: " of the first use of each material
   std::string object_, group_;                    // the current ones; empty: none
   bool object_is_known_ = false;                  // whether face_.object is the index of both
