@@ -34,8 +34,8 @@ class NeighborClearanceSearch {
     normal_ = cross(vertex_[1], vertex_[2], normal_sizes_);
     const double area = glm::length(normal_);
     const glm::dvec3 unit_normal = area > 0.0 ? normal_ / area : glm::dvec3(0.0);
-    // Axes 0 to 5 belong to the planes through an edge and parallel to the coordinate axis closest
-    // to the normal, or to the normal itself. Most neighbours are behind one of the first three.
+    // Axes of planes through the edges. Planes 0 to 2 are parallel to the coordinate axis closest
+    // to the normal, planes 3 to 5 to the normal. Most neighbours are behind one of planes 0 to 2.
     const glm::dvec3 sizes = glm::abs(normal_);
     const int wider = sizes.x < sizes.y ? 1 : 0, along = sizes[wider] < sizes.z ? 2 : wider;
     glm::dvec3 parallel(0.0);

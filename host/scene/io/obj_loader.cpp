@@ -248,7 +248,7 @@ class ObjReader {
   std::vector<std::string> first_uses_;           // "file:line: " of the first use of each material
   std::string object_, group_;                    // the current ones; empty: none
   bool object_is_known_ = false;                  // whether face_.object is the index of both
-  FaceAttributes face_{.material = kNoIndex};     // of the next face
+  FaceAttributes face_{.material = kNoIndex};     // of the next face; kNoIndex: no usemtl
   std::set<std::string, std::less<>> warned_of_;  // keywords
   std::array<double, 7> numbers_{};               // of one statement
   std::vector<FaceCorner> corners_;               // of one face
