@@ -28,8 +28,8 @@ int why_output_failed = 0;  // errno of a failed print; 0: none failed
 std::atomic<int> noted_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may use nothing else");
 
-/// Memory that is released when allocation fails for the first time, for the error message and for
-/// destructors that allocate, as those of JSON values do.
+/// Memory that is released at the first failed allocation: for the error message, and for
+/// destructors that allocate, such as those of JSON values.
 constexpr std::size_t kReserve = std::size_t{1} << 20;
 std::atomic<void*> reserve = nullptr;
 
@@ -45,7 +45,7 @@ std::size_t shown_length(std::string_view text) {
   for (std::size_t i = 1; i < length; ++i) {
     if (byte(i) < 0x80 || byte(i) > 0xbf) return 0;
   }
-  return first == 0xc2 && byte(1) < 0xa0 ? 0 : length;  // U+0080 to U+009F are controls
+  return first == 0xc2 && byte(1) < 0xa0 ? 0 : length;  // U+0080 to U+009F are control characters
 }
 
 int report_error(int status, const char* what) {
@@ -168,7 +168,7 @@ void flush_standard_output() {
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
   if (!failed) return;
   const int why = why_output_failed != 0 ? why_output_failed : errno;
-  if (why == EPIPE) {  // `| head` ends it without a word
+  if (why == EPIPE) {  // as after `| head`: end without a message
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);
   }
@@ -203,12 +203,12 @@ int run_guarded(const std::function<int()>& program) {
       return report_error(kSignalBase + interrupted.signal, interrupted.what());
     } catch (const std::bad_alloc&) {
       return report_error(kUserError, kOutOfMemory);
-    } catch (const std::length_error&) {  // more than any memory has
+    } catch (const std::length_error&) {  // a length beyond any memory
       return report_error(kUserError, kOutOfMemory);
     } catch (const std::exception& fault) {
       return report_error(1, fault.what());
     }
-  } catch (const std::bad_alloc&) {  // no memory for the line itself
+  } catch (const std::bad_alloc&) {  // no memory for the error message
     std::fprintf(stderr, "error: %s\n", kOutOfMemory);
     return kUserError;
   }
@@ -227,13 +227,13 @@ int run_main(int argc, char** argv,
   };
   // Freed arrays return to the system, which lowers the peak memory.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  return run_guarded(std::ref(body));  // a copy would need memory, outside of what is guarded
+  return run_guarded(std::ref(body));  // a copy would allocate memory outside run_guarded
 }
 
 void handle_interruptions(void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second one kills
+  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);  // a second signal kills
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction old {};
     if (::sigaction(signal, nullptr, &old) == 0 && old.sa_handler != SIG_IGN) {

@@ -1,4 +1,4 @@
-// Console: what a program prints, and how it ends.
+// Console: formatting and printing of messages, exit status, and signals.
 #pragma once
 
 #include <chrono>
@@ -28,11 +28,11 @@ namespace raygate {
 /// Returns `value` with at most seven significant digits: "35", "-0.125".
 [[nodiscard]] std::string format_number(double value);
 
-/// Returns "rendering: 45 %, 12.3 s left". `fraction`: completed, in [0, 1]; `elapsed`: in seconds.
+/// Returns "rendering: 45 %, 12.3 s left". `fraction`: done, in [0, 1]; `elapsed`: in seconds.
 [[nodiscard]] std::string progress_text(double fraction, double elapsed);
 
-/// A line about progress on standard error, redrawn in place and erased at the end. Silent if
-/// standard error is not a terminal.
+/// A progress line on standard error, redrawn in place and erased at the end. Silent if standard
+/// error is not a terminal.
 class ProgressLine {
  public:
   /// Starts the clock. Prints nothing unless `enabled`.
@@ -41,7 +41,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine() { erase(); }
 
-  /// Erases the line so that another can be printed.
+  /// Erases the line so that another line can be printed.
   void erase();
 
   /// Redraws the line, at most ten times a second. Not thread-safe.
@@ -66,39 +66,39 @@ void print(std::string_view text, std::FILE* stream = stdout);
 /// Prints "warning: WHAT", one printable line, on standard error.
 void print_warning(std::string_view what);
 
-/// Prints the first warnings, each once, and the number of the others, or `all`.
+/// Prints distinct warnings: the first ten and the number of the others, or, if `all`, all of them.
 void print_warnings(const std::vector<std::string>& warnings, bool all);
 
 /// Flushes standard output. Throws InputError if a write has failed, for example on a full disk. If
 /// standard output is a pipe without a reader, raises SIGPIPE.
 void flush_standard_output();
 
-/// Thrown to end a program whose command line asks for --help or --version; what() is that text.
+/// Thrown to end a program after --help or --version; what() is the text to print.
 class Information : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Runs `program` and returns its exit status. Prints Information. Other exceptions are a line on
-/// standard error and the status 2 (InputError, no memory), 128 + signal (Interrupted) or 1.
+/// Runs `program` and returns its exit status. Prints Information. Other exceptions print a line on
+/// standard error and give status 2 (InputError, no memory), 128 + signal (Interrupted) or 1.
 int run_guarded(const std::function<int()>& program);
 
 /// Body of main(): checks the machine's arithmetic, chooses the vector code that RAYGATE_VECTORS
-/// names (host/base/vectors.h), and runs `program`, guarded, with the words of the command line.
+/// names (host/base/vectors.h), and runs `program` with the command line's words by run_guarded().
 int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program);
 
-/// The exit status after a signal is this plus the signal, as shells report it.
+/// The exit status after a signal is this plus the signal's number, as in shells.
 inline constexpr int kSignalBase = 128;
 
 /// Installs a handler of SIGINT, SIGTERM and SIGHUP; a second signal ends the program at once.
 /// Signals that were ignored at the start stay ignored.
 void handle_interruptions(void (*handler)(int));
 
-/// Installs a handler that notes these signals.
+/// Installs a handler, for the same signals, that records the signal for interruption().
 void note_interruptions();
 
-/// Returns the noted signal of note_interruptions(), or 0.
+/// Returns the recorded signal, or 0.
 [[nodiscard]] int interruption();
 
 /// Thrown to end a run after a signal.

@@ -13,9 +13,9 @@
 
 namespace raygate {
 
-/// Loads the model, instances and lights of a scene file, and an environment map whose up direction
-/// is `up`, else the file's, else the format's usual one. Throws InputError as load_scene() and
-/// load_environment() do, and if the scene has too many triangles to number.
+/// Loads the model, instances and lights of a scene file, and an environment map. The map's up
+/// direction is `up` or, by default, the scene file's or the format's usual one. Throws InputError
+/// as load_scene() and load_environment() do, and for too many triangles.
 [[nodiscard]] Scene load(const SceneFile& file, const LoadOptions& options,
                          const EnvironmentSetting& environment = {},
                          const std::optional<glm::dvec3>& up = {});
@@ -23,15 +23,15 @@ namespace raygate {
 /// A camera with its lights and ground.
 struct Framing {
   Camera camera;
-  std::optional<CameraLights> lights;  ///< in place of the scene's, which has none
+  std::optional<CameraLights> lights;  ///< default lights for a scene without lights
   bool has_ground;   ///< whether the picture has a ground that catches shadows, see add_ground()
   glm::dvec3 up;     ///< up direction of the view, for the ground
   std::string text;  ///< command-line options for the chosen view; "" if a camera was given
-  CameraRequest request;  ///< gives the same framing; members without effect are unset
+  CameraRequest request;  ///< request for the same framing; members without effect are unset
 };
 
 /// Chooses the camera: the requested one, else the scene's, else a view of the whole scene. Scenes
-/// without lights get default lights, previews also a ground if seen from above. `aspect`: width /
+/// without lights get default lights and, in a default view from above, a ground. `aspect`: width /
 /// height of the picture. Throws InputError as Camera::look_at and frame_scene do.
 [[nodiscard]] Framing frame_picture(const CameraRequest& request, const Scene& scene,
                                     double aspect);

@@ -1,4 +1,4 @@
-// The program `merge`: joins parts of a picture that were rendered apart.
+// The program `merge`: joins parts of a picture that were rendered separately.
 #include <string>
 #include <vector>
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kColumn = 28, kWidth = 80;  // of the help text, in characters
 
-/// "point-error": "pointError".
+/// Returns "pointError" for "point-error".
 std::string camel_case(const std::string& name) {
   std::string text;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -31,7 +31,7 @@ void OptionTable::add(const std::string& names, const char* value, const std::st
   rows_.push_back(std::move(row));
 }
 
-/// Two columns, the second one wrapped; a wide name continues in the second column.
+/// Returns two columns, the second one wrapped. Wide names extend into the second column.
 std::string OptionTable::help() const {
   std::string text = about_ + "\n";
   const char* group = nullptr;

@@ -1,5 +1,5 @@
-// Option table: the options of a program, each declared once with its names, range, default, help
-// text, and the places besides the command line where it appears.
+// Option table: the options of a program. Each is declared once, with its names, range, default,
+// help text, and the places besides the command line where it appears.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 
 namespace raygate {
 
-/// Parses all of `text` as a number of type T ("12", "-1.5e3"). Returns none if it is not a number
-/// or out of T's range; floating-point numbers are infinite or NaN only if the text says so.
+/// Parses all of `text` as a number of type T ("12", "-1.5e3"). Returns nullopt if the text is no
+/// number or out of T's range; floating-point numbers are infinite or NaN only if the text says so.
 template <typename T>
 [[nodiscard]] std::optional<T> parse_number(std::string_view text) {
   T value{};
@@ -39,7 +39,7 @@ template <typename T>
 /// Splits "a,b" into words, which may be empty; returns at least one.
 [[nodiscard]] std::vector<std::string> split_at(char separator, const std::string& text);
 
-/// Parses "0,0,10,20"; returns no numbers if a word is not a number.
+/// Parses "0,0,10,20"; returns an empty list if a word is not a number.
 template <typename T>
 [[nodiscard]] std::vector<T> parse_list(const std::string& text, char separator = ',') {
   std::vector<T> values;
@@ -83,7 +83,7 @@ template <typename T>
   return names;
 }
 
-/// The closed range of a number. `expected` describes it in messages; null: "a number from 0 to 1".
+/// The closed range of a number. `expected`: text for messages; null: "a number from LOW to HIGH".
 template <typename T>
 struct Range {
   T low, high;
@@ -97,7 +97,7 @@ struct Range {
   }
 };
 
-/// Where an option appears besides the command line.
+/// Places where an option appears, besides the command line.
 enum OptionPlaces : unsigned {
   kNowhere = 0,
   kInExr = 1,        ///< EXR attribute: --point-error as "pointError"
@@ -117,7 +117,7 @@ struct CommandLine {
 /// which must outlive the table. "{}" in a help text is the target's value when the row is added.
 class OptionTable {
  public:
-  /// Stores a value; returns false if it is not as the row's `expected` says.
+  /// Stores a value; returns false if the text does not match the row's `expected`.
   using Read = std::function<bool(const std::string& text)>;
   /// Returns the current value as text, "" for none.
   using Show = std::function<std::string()>;
@@ -131,14 +131,14 @@ class OptionTable {
   /// Sets the heading in --help of the rows that are added next.
   void group(const char* title) { group_ = title; }
 
-  /// Adds an option. `names`: "-o,--output"; the first long name is the option's name. `value`: its
-  /// placeholder in --help; null for a flag. `expected`: describes its values in messages.
+  /// Adds an option. `names`: "-o,--output"; the first long name is the option's name. `value`:
+  /// placeholder of its value in --help; null for a flag. `expected` describes values in messages.
   void add(const std::string& names, const char* value, const std::string& help,
            const std::string& expected, const Read& read, const Show& show = {},
            unsigned places = kNowhere);
 
-  /// Adds an option whose text `parse` turns into a value, or none if it is not as expected.
-  /// `target`: a T or an optional one. `show` returns the text of a value.
+  /// Adds an option whose text `parse` turns into a value, or nullopt if the text is not as
+  /// expected. `target`: a T or an optional T. `show` returns the text of a value.
   template <typename T, typename Target>
   void value(const std::string& names, const char* value, const std::string& help,
              const std::string& expected, Target& target,
@@ -192,8 +192,8 @@ class OptionTable {
   }
 
   /// Splits a command line without the program's name: "--name VALUE", "--name=VALUE", "-n VALUE",
-  /// flags, and other words; all words after "--" are plain. Reads no value. Throws InputError for
-  /// an unknown option or a missing value, and Information for --help and --version.
+  /// flags, and other words; all words after "--" are plain. Does not interpret values. Throws
+  /// InputError for an unknown option or a missing value, and Information for --help and --version.
   [[nodiscard]] CommandLine split(const std::vector<std::string>& words);
 
   /// Reads values of known options: row by row, each row's values in their order, so that the last
@@ -203,10 +203,10 @@ class OptionTable {
   /// Splits a command line and reads its values.
   [[nodiscard]] CommandLine parse(const std::vector<std::string>& words);
 
-  /// Returns the last value that was read of an option, named without dashes; "" if there was none.
+  /// Returns the last value read for an option, which is named without dashes; "" if there is none.
   [[nodiscard]] std::string given(const std::string& name) const;
 
-  /// Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'" about the last value given.
+  /// Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'" about the option's last value.
   [[noreturn]] void fail_value(const std::string& name, const std::string& expected) const;
   /// Throws InputError with this message and, if values of these options are in a scene file, their
   /// place there.
@@ -216,13 +216,13 @@ class OptionTable {
   /// Throws InputError "unknown option 'colour', ..." unless the option appears at `place`.
   void require(const OptionValue& value, OptionPlaces place) const;
 
-  /// Name/value pairs of the options shown at `place`; options without a value are omitted.
+  /// Returns name/value pairs of the options shown at `place`. Omits options without a value.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> values(OptionPlaces place) const;
 
  private:
   struct Row {
     std::vector<std::string> names;  // with dashes, as in --help
-    std::string name;                // the first long one, without dashes
+    std::string name;                // first long name, without dashes
     const char* value;               // null: a flag
     std::string help;
     const char* group;
@@ -230,7 +230,7 @@ class OptionTable {
     Read read;
     Show show;
     unsigned places;
-    std::optional<OptionValue> given;  // the last one
+    std::optional<OptionValue> given;  // last value read
   };
 
   [[nodiscard]] std::string help() const;

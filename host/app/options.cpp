@@ -37,7 +37,7 @@ constexpr const char* kFooter =
     R"(Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene or an output cannot be used; 130 interrupted (partial pictures).)";
 
-// Values of options. Only a lack of memory at the start could make them throw.
+// Values of options. Their initialisation throws only if memory is lacking at the start.
 // NOLINTBEGIN(bugprone-throwing-static-initialization)
 
 const Choices<Engine> kEngines{{"rtl", Engine::kRtl},
@@ -56,7 +56,7 @@ using Angles = std::pair<double, double>;
 const Choices<Angles> kViews{{"front", {0, 0}},   {"back", {180, 0}},
                              {"left", {-90, 0}},  {"right", {90, 0}},
                              {"top", {0, 90}},    {"iso", {45, 35.264389682754654}},
-                             {"bottom", {0, -90}}};  // iso: all three axes appear equally long
+                             {"bottom", {0, -90}}};  // "iso": all axes appear equally long
 // NOLINTEND(bugprone-throwing-static-initialization)
 
 std::string size_text(int width, int height) {
@@ -71,7 +71,7 @@ bool read_size(const std::string& text, RenderSettings& settings) {
   return kSideRange.contains(settings.width) && kSideRange.contains(settings.height);
 }
 
-/// Parses a name of variants.json or a format such as "e8p15".
+/// Returns the variant with a name in variants.json or a format such as "e8p15".
 std::optional<Variant> parse_variant(const std::string& text) {
   for (const Variant& variant : all_variants_of_arithmetic()) {
     if (variant.name == text) return variant;
@@ -98,7 +98,7 @@ std::optional<CameraSetting> parse_camera(const std::string& text) {
 
 std::string vector_text(const glm::dvec3& v) { return list_text({v.x, v.y, v.z}); }
 
-/// Names of all channels that a film can have.
+/// Returns the names of all channels that a film can have.
 std::vector<std::string> channel_names() {
   Film film = make_film(1, 1, {0, 0, 1, 1}, {true, true, true, true, true});
   add_sums(film, true);
@@ -229,7 +229,7 @@ void add_render_options(OptionTable& table, Options& options) {
             [&](const std::string& text) {
               const std::vector<int> n = parse_list<int>(text);
               render.window = n.size() == 4 ? PixelRect{n[0], n[1], n[2], n[3]}
-                                            : PixelRect{0, 0, -1, -1};  // which check_crop refuses
+                                            : PixelRect{0, 0, -1, -1};  // check_crop rejects this
               return true;
             });
   add_camera_options(table, options.camera);
@@ -283,7 +283,7 @@ void check_core_files(const OptionTable& table, const Options& options) {
   }
 }
 
-/// Checks the samples of a part, and the channels that need adaptive sampling.
+/// Checks --samples, and channels that exist with adaptive sampling only.
 void check_samples(const OptionTable& table, Options& options) {
   const RenderSettings& render = options.render;
   if (render.end_sample > 0) {
@@ -317,7 +317,7 @@ void check_serve(const OptionTable& table, const Options& options) {
 
 /// Throws InputError if an output would overwrite the scene or another output.
 void require_distinct_outputs(const Options& options) {
-  // The next run would read a scene file beside the model.
+  // Includes the .json beside the model, which the next run would read as its scene file.
   const fs::path inputs[] = {options.scene, options.scene_file.obj, options.scene_file.file,
                              fs::path(options.scene_file.obj).replace_extension(".json")};
   std::vector<fs::path> outputs = options.output.paths();
@@ -325,14 +325,14 @@ void require_distinct_outputs(const Options& options) {
   require_distinct(outputs, inputs);
 }
 
-/// Reads the scene file that was named, or the one beside a model. Without one: the model alone.
+/// Reads the scene file that was named or is beside a model; else returns the model alone.
 SceneFile scene_file_of(const fs::path& scene) {
   const fs::path beside = fs::path(scene).replace_extension(".json");
   std::error_code ignored;
   if (scene != beside && !fs::is_regular_file(beside, ignored))
     return {.file = scene, .obj = scene};
   SceneFile file = read_scene_file(beside);
-  // The model may be elsewhere, made by a script.
+  // The scene file's model may be elsewhere, if a script makes it.
   if (scene != beside && fs::exists(scene, ignored) &&
       file.obj.lexically_normal() != scene.lexically_normal()) {
     throw InputError(beside.string() + ": is about " + file.obj.string() + ", expected " +
@@ -533,11 +533,11 @@ void check_engine_options(const OptionTable& table, EngineOptions& options) {
   if (options.instances == InstanceMode::kKeep) {
     table.fail_value("instances", "auto or write with --unit " + options.unit);
   }
-  options.instances = InstanceMode::kFlatten;  // its memory holds one tree
+  options.instances = InstanceMode::kFlatten;  // a core's memory holds one tree
 }
 
-/// "a.exr" or "a.png" names that file alone, "a" both, a folder both named after the scene in it,
-/// and "" both in the current folder.
+/// --output: "a.exr" or "a.png" names this file alone; "a", both; a folder, both in it, named after
+/// the scene; "", both in the current folder.
 void name_outputs(const OptionTable& table, const fs::path& scene, OutputOptions& options) {
   fs::path name = table.given("output");
   std::error_code ignored;  // a name that cannot be looked up is no folder
@@ -619,7 +619,7 @@ Options with_values(const Options& scene, std::vector<OptionValue> given,
     if (!table.given("camera").empty()) {
       throw InputError("--view and --camera exclude each other");
     }
-    options.camera.camera.reset();  // the scene file's
+    options.camera.camera.reset();  // overrides the scene file's camera
   }
   check_engine_options(table, options);
   check_core_files(table, options);
@@ -638,7 +638,7 @@ std::vector<std::pair<std::string, std::string>> option_values(Options options,
   add_render_options(table, options);
   auto all = table.values(place);
   if (place != kInExr) return all;
-  // Options that do not matter are not written.
+  // Options without effect are omitted.
   std::erase(all, std::pair<std::string, std::string>("error", "0"));
   std::erase(all, std::pair<std::string, std::string>("caustics", "auto"));
   if (options.environment.file.empty()) {

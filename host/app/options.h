@@ -1,5 +1,5 @@
-// The options of the programs and of the Python module's pictures: their values, table rows, and
-// the checks of several options against each other.
+// The options of the programs and of the Python module's pictures: values, table rows, and checks
+// that options are compatible.
 #pragma once
 
 #include <filesystem>
@@ -39,9 +39,9 @@ struct EngineOptions {
   int cores = 1;             ///< ray cores behind one memory, per thread; 1 for other units
   int threads = 1;
   InstanceMode instances = InstanceMode::kAutomatic;
-  bool rounds_vertices = false;  ///< to binary32
+  bool rounds_vertices = false;  ///< rounds vertices to binary32
 
-  /// Whether rays go to ray cores, simulated or modelled.
+  /// Returns whether rays go to ray cores, simulated or modelled.
   [[nodiscard]] bool has_core() const {
     return (unit == "core" || unit == "board") && engine != Engine::kCpu;
   }
@@ -67,9 +67,9 @@ struct OutputOptions {
   double save_seconds = 0.0;                   ///< between saves of the unfinished picture; 0: none
 
   [[nodiscard]] std::vector<std::filesystem::path> pictures() const;
-  /// The pictures and the statistics.
+  /// Returns the files of the pictures and the statistics.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
-  /// The channels that a film needs for these files.
+  /// Returns the channels that a film needs for these files.
   [[nodiscard]] ExtraChannels needed_channels() const;
 };
 
@@ -79,15 +79,15 @@ struct CoreFileOptions {
   std::filesystem::path wave;   ///< waveform of `pixel`'s ray; "": none
   glm::ivec2 pixel{0};
 
-  /// The files that will be written.
+  /// Returns the files that will be written.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
 };
 
 /// The options of ./render. Every value is in its range; files are not checked.
 struct Options : EngineOptions {
   std::filesystem::path scene;  ///< the file that was named: a model or a scene file
-  SceneFile scene_file;         ///< that scene file or the one beside the model; else the model
-  /// Values given in the scene file and then on the command line, which overrides them.
+  SceneFile scene_file;         ///< the scene file named or beside the model; else the model
+  /// Values in the scene file, followed by those on the command line, which override them.
   std::vector<OptionValue> given;
   RenderSettings render;
   CameraRequest camera;
@@ -107,9 +107,9 @@ inline constexpr Range<double> kFovRange{0x1p-1022, 180.0 - 0x1p-45,
                                          "degrees above 0 and below 180"},
     kSmoothRange{0.0, 180.0, "degrees from 0 to 180"};
 
-/// "rtl", "model", "cpu" or "check".
+/// Returns "rtl", "model", "cpu" or "check".
 [[nodiscard]] std::string to_string(Engine engine);
-/// "structural" or "behavioural".
+/// Returns "structural" or "behavioural".
 [[nodiscard]] std::string to_string(Arith arith);
 
 /// Adds the options of the engine, of ./render and ./trace.
@@ -119,26 +119,26 @@ void add_picture_options(OptionTable& table, OutputOptions& options);
 /// Adds the options of the integrator and of sampling, of ./render and the Python module.
 void add_light_options(OptionTable& table, RenderSettings& settings);
 
-/// Throws InputError for options that exclude each other, and sets defaults that depend on others.
+/// Throws InputError for incompatible options, and sets defaults that depend on other options.
 void check_engine_options(const OptionTable& table, EngineOptions& options);
 /// Sets the names of the pictures, by default `scene`'s name in the current folder. Throws
 /// InputError, also for --channels without an EXR.
 void name_outputs(const OptionTable& table, const std::filesystem::path& scene,
                   OutputOptions& options);
-/// Chooses the integrator for a scene with or without an environment map, and the samples of
-/// adaptive sampling. Throws InputError for options of light and samples that exclude each other.
+/// Chooses the integrator for a scene with or without an environment map, and the maximum samples
+/// of adaptive sampling. Throws InputError if these are too few.
 void check_light_options(const OptionTable& table, bool has_environment, RenderSettings& settings);
 
-/// Parses a command line, without the program's name, after the options of the scene file, which it
-/// overrides. Throws InputError, and Information for --help and --version.
+/// Parses the options of the scene file, then a command line without the program's name, which
+/// overrides them. Throws InputError, and Information for --help and --version.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
-/// Returns the options of a scene, whose file was read, with other values: `given` and then those
-/// of a request to --serve, which must be options at kInPage. Throws InputError.
+/// Returns the options of a scene whose file was read, with new values: `given`, then `requested`
+/// by a request to --serve, which must be options at kInPage. Throws InputError.
 [[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given,
                                   const std::vector<OptionValue>& requested = {});
 
-/// Name/value pairs of the options shown at `place`.
+/// Returns name/value pairs of the options shown at `place`.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> option_values(Options options,
                                                                              OptionPlaces place);
 

@@ -46,7 +46,7 @@ struct Statistic {
   const char* meaning = nullptr;  ///< null: not printed by --verbose
 };
 
-/// Returns all statistics but the options at kInStats, which follow "variant".
+/// Returns all statistics except options with kInStats, which to_json() inserts after "variant".
 std::vector<Statistic> statistics(const Report& report, const Options& options) {
   const RenderStats& render = report.render;
   const IntersectCounters& work = render.intersect;
@@ -130,7 +130,7 @@ std::string headline(const Report& report, const Options& options) {
   return line + ", " + format_count(options.threads, "thread") + "\n";
 }
 
-/// Returns all numbers, a line each: key, value, meaning.
+/// Returns all numbers, one per line: key, value, meaning.
 std::string details(const Report& report, const Options& options) {
   std::string text;
   for (const auto& [key, value, meaning] : statistics(report, options)) {
@@ -200,7 +200,7 @@ std::string to_json(const Report& report, const Options& options) {
       json[name] = ordered_json::accept(text) ? ordered_json::parse(text) : ordered_json(text);
     }
   }
-  // File names need not be UTF-8, JSON must be.
+  // File names need not be UTF-8, but JSON must be.
   return json.dump(2, ' ', true, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -15,18 +15,18 @@
 
 namespace raygate {
 
-/// Pictures of a film under temporary names.
+/// Pictures of a film, written under temporary names.
 struct StagedFiles {
   std::vector<AtomicFile> files;
   std::vector<std::string> legends;  ///< of the false-colour pictures
 };
 
-/// Encodes and writes all pictures. PNGs of partial ones say so. Throws InputError as AtomicFile
-/// does; then no file is left.
+/// Encodes and writes all pictures. PNGs of unfinished pictures have a comment that says so. Throws
+/// InputError as AtomicFile does; then no file remains.
 [[nodiscard]] StagedFiles stage_files(const OutputOptions& options, const Film& film,
                                       const ExrMetadata& metadata, int threads = 1);
 
-/// "a.exr, a.png".
+/// Returns "a.exr, a.png".
 [[nodiscard]] std::string listed(const std::vector<std::filesystem::path>& paths);
 
 /// Statistics of a finished run. Times are elapsed seconds.

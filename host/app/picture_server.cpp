@@ -198,7 +198,7 @@ class PictureServer {
       if (value.name == "camera" || value.name == "view") replaced.insert({"camera", "view"});
     }
     erase(given, replaced);
-    // The default depends on the camera, but the scene is built.
+    // By default the camera decides on the ground, but the served scene is fixed.
     given.push_back({"ground", scene_.has_ground ? "on" : "off"});
     Options options = with_values(options_, std::move(given), request.parameters);
     if (options.has_core() && scene_.prepared.bvh.has_instances()) {

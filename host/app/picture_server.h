@@ -14,7 +14,7 @@ struct ServedScene {
   bool has_ground;  ///< whether `prepared` has the ground
 };
 
-/// Serves the page at 127.0.0.1 until a signal comes. Requests:
+/// Serves the page at 127.0.0.1 until a signal arrives. Requests:
 ///
 ///   GET /                    the page
 ///   GET /picture?OPTIONS     the PNG of ./render with these options; the header X-Command has the
@@ -23,8 +23,8 @@ struct ServedScene {
 ///                            options frame the whole scene
 ///
 /// OPTIONS are options of ./render at kInPage, without dashes: engine=cpu&size=80x60. They override
-/// `options`. A closed connection cancels its picture. A bad option gets one line of text,
-/// status 400. Throws InputError if the port is not available.
+/// `options`. A closed connection cancels its picture. The reply to a bad option is one line of
+/// text with status 400. Throws InputError if the port is not available.
 void serve_pictures(const Options& options, const ServedScene& scene);
 
 }  // namespace raygate

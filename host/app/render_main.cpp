@@ -1,4 +1,4 @@
-// The program `render`: a scene in, pictures and statistics out.
+// The program `render`: reads a scene, writes pictures and statistics.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -66,7 +66,7 @@ ExrMetadata make_metadata(const Options& options, const Framing& framing, const 
 }
 
 /// Reads a film to resume, with the channels that this run's outputs need. `metadata`: of this
-/// run's picture. Throws InputError if the file cannot be read, has no sums, or is of another
+/// run's picture. Throws InputError if the file cannot be read, has no sums, or shows another
 /// picture; only --spp may be larger.
 Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
   const std::string name = options.resume.string();
@@ -77,7 +77,7 @@ Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
     throw InputError(name + ": found samples " + to_string(there) + ", expected the first of " +
                      to_string(wanted));
   }
-  // A single sample is its pixel's middle, the first of several is not.
+  // A single sample is at its pixel's centre; the first of several samples is not.
   const auto samples = file.metadata.attributes.find("spp");
   if (samples != file.metadata.attributes.end() && samples->second != "1") {
     samples->second = std::to_string(options.render.samples);
@@ -89,7 +89,7 @@ Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
   if (film.window != render.window) {
     throw InputError(name + ": found another crop, expected that of this run");
   }
-  // One pixel with all fields that this run needs.
+  // A film of one pixel with all fields that this run needs.
   Film needed = make_film(1, 1, {0, 0, 1, 1}, options.output.needed_channels());
   add_sums(needed, render.error > 0.0);
   for_each_field(
@@ -103,8 +103,8 @@ Film read_unfinished(const Options& options, const ExrMetadata& metadata) {
   return film;
 }
 
-/// Renders with a line of progress. Saves the unfinished picture periodically, and when a signal
-/// comes, which ends in Interrupted, unless nothing was rendered.
+/// Renders with a progress line. Saves the unfinished picture periodically, and after a signal
+/// unless no pixel shows anything; a signal ends in Interrupted.
 Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata metadata,
                       const IntersectorFactory& make_intersector, RenderStats& stats) {
   ProgressLine line(!options.quiet);
@@ -137,7 +137,7 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
     return interruption() == 0;
   };
   if (outputs.save_seconds > 0.0) {
-    monitor.snapshot = [&](const Film* film) {  // null: there was no memory for a copy
+    monitor.snapshot = [&](const Film* film) {  // null: no memory for a copy
       std::string trouble;
       try {
         if (film == nullptr) throw std::bad_alloc();
@@ -155,7 +155,7 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
     };
     monitor.snapshot_seconds = outputs.save_seconds;
   }
-  // The threads may be deep in a search: end without them.
+  // The threads may be stuck in a long search: end without them.
   monitor.abandon = [&](const Film& film) {
     line.erase();
     std::_Exit(run_guarded([&]() -> int {
@@ -174,8 +174,8 @@ Film render_monitored(const Options& options, const RenderJob& job, ExrMetadata 
 }
 
 /// Renders a picture, or serves the page of --serve. Prints the summary on standard output, or on
-/// standard error if an output goes there. No output file has changed if it throws, except for
-/// Interrupted, before which it writes the unfinished pictures.
+/// standard error if an output goes there. If it throws, no output file has changed, except that it
+/// writes the unfinished pictures before it throws Interrupted.
 void run(const Options& options) {
   Stopwatch total, lap;
   Report report;

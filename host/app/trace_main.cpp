@@ -1,4 +1,4 @@
-// The program `trace`: a table of rays in, a table of their exact hits out.
+// The program `trace`: reads a table of rays, writes a table of their exact hits.
 #include <unistd.h>
 
 #include <atomic>
@@ -55,7 +55,7 @@ struct TraceOptions {
   bool quiet = false;
 };
 
-std::atomic<const char*> unfinished_file = nullptr;  // to remove when a signal comes
+std::atomic<const char*> unfinished_file = nullptr;  // to be removed after a signal
 static_assert(std::atomic<const char*>::is_always_lock_free,
               "signal handlers may use nothing else");
 
@@ -115,7 +115,7 @@ void trace_rays(const TraceOptions& options) {
     static const std::string name = file->unnamed().string();  // outlives the file
     if (!file->is_stream()) unfinished_file = name.c_str();
   } else {
-    std::signal(SIGPIPE, SIG_DFL);  // `| head` ends it without a word
+    std::signal(SIGPIPE, SIG_DFL);  // `| head` ends it without a message
   }
   handle_interruptions(end);
   const auto write = [&](std::string_view bytes) {

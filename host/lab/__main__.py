@@ -1,8 +1,8 @@
 """`python3 -m host.lab TARGET`: measures what `make TARGET` reports and writes build/reports/TARGET/report.md.
 
-A target is a module of host/lab/targets. `PARTS` gives the steps of each part, `PAGE` the Jinja2 template of its report,
-`values` the values that the template needs besides the rows, `failures` the errors in the rows (exit status 1), and
-`own_folder` the folder of the report if a target has several.
+A target is a module of host/lab/targets. `PARTS` gives the steps of each part, `PAGE` the Jinja2 template of its report, `values` the
+values that the template needs besides the rows, `failures` the errors in the rows (exit status 1), and `own_folder` the report's folder,
+for a target with several reports.
 """
 
 import argparse
@@ -52,7 +52,7 @@ def publish(name: str, folder: pathlib.Path, text: str) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Measures, writes the report, and returns the exit status."""
+    """Measures, writes the report, and returns the exit status: 1 if the rows have errors."""
     target = importlib.import_module(f"host.lab.targets.{given.target}")
     parts = given.only.split(",") if given.only else list(getattr(target, "USUAL", target.PARTS))
     unknown = set(parts) - set(target.PARTS)
@@ -85,7 +85,7 @@ def main() -> int:
     """Runs the command line. Returns exit status 2 for user errors."""
     try:
         return run(arguments())
-    except subprocess.CalledProcessError as error:  # it has printed the error, or its standard error was captured
+    except subprocess.CalledProcessError as error:  # the command has printed the error, or its standard error was captured
         print(error.stderr or "", end="", file=sys.stderr)
         raise ValueError(f"{shlex.join(map(str, error.cmd))}: ended with status {error.returncode}") from error
 

@@ -16,7 +16,7 @@ class App;
 
 namespace raygate::lab {
 
-/// A row; its column `table` names its table. Infinity and NaN are null, as JSON has neither.
+/// A row; column `table` names its table. Infinity and NaN are null, as JSON has neither.
 using Row = Json;
 
 /// Prints a row: a JSON object, alone on its line.
@@ -39,18 +39,18 @@ inline double quantile(std::vector<double> values, double part) {
   return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
 }
 
-/// Returns a tester with the Verilated unit that has the variant's parameters, or null if there is
-/// none. Not thread-safe.
+/// Returns a tester with the Verilated unit of the variant's parameters, or null if no such unit
+/// was built. Not thread-safe.
 [[nodiscard]] std::unique_ptr<HitTester> make_rtl_variant_tester(const Variant& variant);
 
-/// Declares a command with its options; parsing its name runs it, which prints its rows.
+/// Declares a command and its options. Parsing the command's name runs it; it prints its rows.
 using AddCommand = void(CLI::App& lab);
 
 AddCommand add_stress;      ///< correctness of engines and variants in hard cases
 AddCommand add_watertight;  ///< public tests of watertightness
 AddCommand add_rays;        ///< rays per second, compared with Embree
 AddCommand add_core;        ///< clocks per ray of the ray core
-AddCommand add_variants;    ///< the table of variants
+AddCommand add_variants;    ///< prints the table of variants
 AddCommand add_check;       ///< reference models against hardware
 AddCommand add_pictures;    ///< images by any variant, timed and audited
 

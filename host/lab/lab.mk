@@ -1,8 +1,8 @@
-# Measurements of the lab: see host/lab/README.md. Rows are in build/results/, reports in build/reports/. An interrupted
-# run continues when it is started again.
+# Measurements of the lab (see host/lab/README.md). Rows are in build/results/, reports in build/reports/. Starting an
+# interrupted run again continues it.
 .PHONY: stress bench variant card peers speed
 
-# The command of a report: as it was typed, but for what changes no row.
+# The command in a report: as typed, without variables that change no row.
 typed = make $(MAKECMDGOALS:card=variant) $(foreach name,$(filter-out PUBLISH JOBS SETUP,$(given)),$(name)=$($(name)))
 define measure
 @$(PYTHON) -B -m host.lab $(or $(lab_target),$(@:card=variant) $(if $(ONLY),--only '$(ONLY)')) $(if $(QUICK),--quick) $(if $(PUBLISH),--publish) \
@@ -19,9 +19,9 @@ bench: ## measure: run time against error, by arithmetic, engine, lanes: make be
 	$(call build,$(if $(filter core,$(ONLY)),lab,bench),lab scenes render)
 	$(measure)
 
-# Quoted, as file names may contain spaces.
+# Words are quoted, as file names may contain spaces.
 variant_words = $(foreach word,EXP_WIDTH FRAC_WIDTH QUOTIENT_BITS ROUNDING UNIT ADDER MULTIPLIER DIVIDER_ROW ROUNDER,$(if $($(word)),'$(word)=$(subst ','\'',$($(word)))'))
-# With this name, `make -n` does not run it and wait for the lock.
+# Not $(MAKE), which `make -n` would run, and then wait for the lock.
 again := $(MAKE)
 variant: ## measure: gates to pixels of one arithmetic: make variant FRAC_WIDTH=15 [ADDER=prefix | ADDER=my.sv KEEP_GOING=1 ROUNDING=up UNIT=serial]
 ifneq ($(filter %.sv' %.v',$(variant_words)),)

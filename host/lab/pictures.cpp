@@ -1,5 +1,5 @@
-// Pictures in every variant of arithmetic, and wrong decisions of its hit tests on their camera
-// rays.
+// Pictures in every variant of arithmetic, and the wrong decisions of the variant's hit tests on
+// camera rays.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <bit>
@@ -29,7 +29,7 @@ struct Counts {
 };
 
 /// Forwards batches to a tester, and audits each of their tests. A burst reports only its nearest
-/// hit, so each record is also sent in a burst of its own.
+/// hit, so each record is also sent in a separate burst.
 class AuditTester : public HitTester {
  public:
   AuditTester(const Bvh& bvh, const glm::vec3& origin, HitTester& tester, Counts& counts)
@@ -79,7 +79,7 @@ class AuditTester : public HitTester {
   Counts& counts_;
 };
 
-/// Returns the error of `value` in ulps of the float next to `exact`.
+/// Returns the error of `value` in ulps of binary32 at `exact`.
 double ulps(double value, double exact) {
   const int exponent = exact == 0.0 ? -126 : std::max(std::ilogb(exact), -126);
   const double error = std::abs(value - exact);
@@ -115,7 +115,7 @@ Row summary_of(const std::vector<double>& errors) {
 ///   doubts                    tests resolved by exact arithmetic: never wrong
 ///   wrong_hits, wrong_misses  decisions that differ from exact arithmetic
 ///   rays, wrong_rays          all rays, and those whose nearest polygon is wrong
-///   hits                      hits of the other rays, over which errors are computed
+///   hits                      hits of the other rays; errors are computed over these
 ///   t_ulp, point_ulp          errors of t and of P's worst coordinate in float32 ulps: median
 ///                             (p50), 99th percentile, largest; 0 without hits. No t_ulp for
 ///                             user-supplied modules, whose t is the reference model's
@@ -205,7 +205,7 @@ class Pictures {
     return row;
   }
 
-  /// Renders a quarter of the width and the height by the variant's hardware, for its clocks.
+  /// Renders at a quarter of the width and height by the variant's hardware, to count its clocks.
   Row clocks(const Variant& variant) {
     PictureOptions small{.scene = asked_.scene, .stem = ""};
     small.width = asked_.width / 4;
@@ -254,7 +254,7 @@ class Pictures {
   Bvh bvh_;
   std::optional<CameraLights> lights_;
   std::optional<Film> first_;  // the first variant's picture
-  std::string against_;        // and its name
+  std::string against_;        // name of that picture
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ from host.lab import rows as kept
 from host.lab.rows import KEPT, ROOT
 from synth import runner, store
 
-LAB = ROOT / "build" / os.environ.get("RAYGATE_LAB", "lab")  # `make variant` has its own program
+LAB = ROOT / "build" / os.environ.get("RAYGATE_LAB", "lab")  # `make variant` builds its own program
 
 
 @dataclasses.dataclass(frozen=True)

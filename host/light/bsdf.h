@@ -29,12 +29,12 @@ namespace raygate {
 /// clear material. Radiance is divided by the squared index of refraction throughout, so that it
 /// does not change at an interface. "The rest" is the fraction that the mirror does not reflect. A
 /// mirror cannot show a point light, which has no size; it shows a highlight with exponent Ns
-/// instead, unless Ns is at most 1 (1 is the default).
+/// instead, unless Ns is at most 1 (0 is the default).
 ///
 /// A metallic-roughness material has the lobes of MetallicRoughnessLobes instead: `diffuse` is the
 /// base below the facets, `glossy` the reflection of rough facets, `mirror` of smooth ones; glass
-/// has `mirror` and `transmission`. For rough glass these two are its albedos at normal
-/// incidence, and eval(), sample() and pdf() scatter to both sides.
+/// has `mirror` and `transmission`. For rough glass these two are the albedos that smooth glass
+/// would have, and eval(), sample() and pdf() scatter to both sides.
 ///
 /// T is float or FloatLanes: hits of one kind, each with its own material.
 template <class T>
@@ -50,7 +50,7 @@ class Bsdf {
     if ((kind_ & (kMirrors | kTransmits | kMetallicRoughness)) != 0) {
       return Bsdf(seen, kind_, materials);
     }
-    Bsdf other = *this;  // no lobe depends on the view
+    Bsdf other = *this;  // no lobe's colour depends on the view
     other.view_ = seen.view;
     other.normal_ = seen.normal;
     return other;
@@ -90,7 +90,7 @@ class Bsdf {
                             ? diffuse * spread<T>(kPerPi) + glossy * phong_lobe(light)
                             : diffuse * spread<T>(kPerPi));
   }
-  /// Returns eval(), with the highlight of mirrors in lanes whose light is a point.
+  /// Returns eval(), plus the highlight of mirrors in lanes whose light is a point.
   [[nodiscard]] RAYGATE_INLINE Triple<T> eval(const Triple<T>& light,
                                               const MaskOf<T>& is_from_point) const {
     if (!has_highlight() || !any(is_from_point)) return eval(light);
@@ -150,7 +150,7 @@ class Bsdf {
   [[nodiscard]] RAYGATE_INLINE bool has_highlight() const {
     return (kind_ & kMirrors) != 0 && (kind_ & kMetallicRoughness) == 0;
   }
-  /// Returns the albedo of the highlight that a mirror has of point lights.
+  /// Returns the albedo of a mirror's highlight, which shows point lights.
   [[nodiscard]] RAYGATE_INLINE Triple<T> highlight() const {
     return choose(exponent_ > 1.0f, mirror, zero<T>());
   }
@@ -164,8 +164,8 @@ class Bsdf {
   }
 
   /// Returns Phong's lobe around the reflected view, normalised to conserve energy (Lafortune and
-  /// Willems 1994). The cosine is computed from the distance of the two directions and its power in
-  /// double: near 1, where lobes of large exponents are, float cosines are too coarse.
+  /// Willems 1994). The cosine is computed from the distance of the two directions, and its power
+  /// in double: for large exponents, float cosines near 1 are too coarse.
   [[nodiscard]] RAYGATE_INLINE T phong_lobe(const Triple<T>& light) const {
     const Triple<T> apart = reflect(view_, normal_) - light;
     const T squared = dot(apart, apart);

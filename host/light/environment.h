@@ -19,8 +19,8 @@ namespace raygate {
 /// float or FloatLanes.
 ///
 /// Sampling is by cell. A cell lies between the centres of four texels (two at the poles), where
-/// the map is bilinear. Its probability is the mean brightness of its corners times its solid
-/// angle; within a cell directions are uniform. So the pdf is positive wherever the map is, and at
+/// the map is bilinear. A cell's probability is the mean brightness of its corners times its solid
+/// angle; within it directions are uniform. So the pdf is positive wherever the map is, and at
 /// least a quarter of the ideal pdf. ("Physically Based Rendering", Pharr, Jakob and Humphreys,
 /// uses whole texels.)
 class Environment {
@@ -138,7 +138,7 @@ class Environment {
   glm::dvec3 mean_{0.0};
   std::vector<float> row_cdf_;     // cumulative probability of the rows
   std::vector<float> column_cdf_;  // cumulative probability of the cells within each row
-  std::vector<float> cosines_;  // cosines of the rows' edges with straight up; one more than rows
+  std::vector<float> cosines_;     // cosines between the rows' edges and up_; one more than rows
   std::vector<float> per_solid_angle_;  // by row: 1 / the solid angle of a cell
 };
 

@@ -28,10 +28,10 @@ class LightPaths;
 struct alignas(16) ScatteredRay {
   PathState state;
   glm::vec3 direction{0.0f};  ///< scaled
-  /// Direction made with the geometric normal, used if the other one leads to the wrong side.
+  /// Direction made with the geometric normal, used if `direction` leads to the wrong side.
   glm::vec3 flat{0.0f};
   std::uint32_t is_wanted : 1 = 0;
-  /// The ray leaves the triangle on the right side; otherwise exact arithmetic decides.
+  /// It is certain that the ray leaves to the right side; if unset, exact arithmetic decides.
   std::uint32_t surely_leaves : 1 = 0;
   std::uint32_t has_flat : 1 = 0, is_transmitted : 1 = 0;
 
@@ -68,12 +68,12 @@ struct PathLanes {
       member = __builtin_bit_cast(std::remove_reference_t<decltype(member)>, *word++);
     });
   }
-  /// Returns where the ray is its path's first.
+  /// Returns whether each ray is the first of its path.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return specular_history == 1u; }
   /// Return the histories after reflection in a mirror and after refraction by glass.
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
-  /// Returns whether `mask` contains the history. Its histories are below kSpecularHistories.
+  /// Returns whether `mask` contains the history. Histories in masks are below kSpecularHistories.
   [[nodiscard]] RAYGATE_INLINE static MaskOf<T> has(const WordOf<T>& mask,
                                                     const WordOf<T>& history) {
     return ((mask >> (history & (kSpecularHistories - 1))) & 1u) != 0u;
@@ -100,7 +100,7 @@ struct PathLanes {
   }
 };
 
-/// A part of a batch with its hits and their results, indexed by the ray's position in the part.
+/// A part of a batch with its hits and results. Lists are indexed by a ray's position in the part.
 struct HitBlock {
   const RayBatch* batch = nullptr;
   std::size_t begin = 0;                             ///< in the batch
@@ -182,8 +182,8 @@ struct Hits {
     if (!hits.first_surfaces.empty()) show_first_surfaces();
   }
 
-  /// Returns the cosine of a unit direction with the shading normal; 0 where the surface scatters
-  /// no light from there: behind the triangle or, for rough glass, where the normals disagree.
+  /// Returns the cosine of a unit direction with the shading normal. 0 where no light from there is
+  /// scattered: behind the triangle or, for rough glass, on different sides by both normals.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
@@ -200,7 +200,7 @@ struct Hits {
     const auto are_wanted = PathLanes<T>::has(path.supersampled, path.specular_history);
     return are_even & are_wanted;
   }
-  /// Returns the emission, without that added by EmitterSupersampler.
+  /// Returns the emission, or 0 where EmitterSupersampler adds it.
   [[nodiscard]] RAYGATE_INLINE Triple<T> emission() const {
     if ((kind & kEmits) == 0) return bsdf.emission;
     return choose(are_supersampled(), zero<T>(), bsdf.emission);
@@ -247,7 +247,7 @@ struct Hits {
   }
 };
 
-/// Rays spawned at hits, where `is_wanted`.
+/// Rays spawned at hits, in the lanes in which `is_wanted` is set.
 template <class T>
 struct ScatteredRays {
   PathLanes<T> path;
@@ -256,7 +256,7 @@ struct ScatteredRays {
 
   RAYGATE_INLINE explicit ScatteredRays(const Hits<T>& hits) : path(hits.path) {}
 
-  /// Sets the directions to those reflected about `normal`.
+  /// Reflects the view about `normal` into `direction`, about the geometric normal into `flat`.
   RAYGATE_INLINE void reflect_off(const Hits<T>& hits, const Triple<T>& normal) {
     direction = reflect(hits.surface.view, normal);
     flat = reflect(hits.surface.view, hits.surface.flat_normal);
@@ -298,7 +298,7 @@ struct ScatteredRays {
 };
 
 /// Calls shade(hits) for the hits at positions `at` of the block, as many at a time as there are
-/// lanes. The baseline has one lane; all give the same bits.
+/// lanes. The baseline has one lane; any number of lanes gives the same bits.
 template <class Shade>
 void shade_in_lanes(const ShadingScene& shading, HitBlock& block, HitKind kind,
                     std::span<const std::uint32_t> at, const Shade& shade) {
@@ -324,9 +324,9 @@ using ShadeFunction = void(const ShadingScene& shading, HitBlock& block, HitKind
 ShadeFunction shade_whitted;
 
 /// Path tracing (Kajiya, "The rendering equation", 1986). At each hit one light is sampled and one
-/// ray is spawned. Light that both can find is weighted by multiple importance sampling (the power
-/// heuristic of Veach and Guibas, 1995). Russian roulette begins after three surfaces. The last
-/// rays, one deeper than the maximum depth, add emission only.
+/// ray is spawned. Light that both techniques can find is weighted by multiple importance sampling
+/// (the power heuristic of Veach and Guibas, 1995). Russian roulette begins after three surfaces.
+/// The last rays, one deeper than the maximum depth, add emission only.
 ShadeFunction shade_path;
 
 /// Light tracing (Dutre, Lafortune and Willems, "Monte Carlo light tracing with direct computation
@@ -367,7 +367,7 @@ struct IncidentLight {
   WordOf<T> index = WordOf<T>{} + NearestHit::kNone;
 
   IncidentLight() = default;
-  /// Computes the fields of light from a point that depend on its position only.
+  /// Computes the fields of light from a point that depend only on the point's position.
   RAYGATE_INLINE IncidentLight(const Lights& lights, const Hits<T>& hits, const Triple<T>& position)
       : target(position) {
     constexpr float kNear = 1e-30f;  // the inverse is within the range of float
@@ -376,7 +376,7 @@ struct IncidentLight {
     direction = way * (1.0f / root(distance_squared));
     cosine = choose(distance_squared > kNear, hits.cosine(direction), T{});
   }
-  /// Computes the fields of a distant light that depend on its direction only, a unit vector.
+  /// Computes the fields of a distant light that depend only on `towards`, a unit vector.
   RAYGATE_INLINE IncidentLight(const Hits<T>& hits, const Triple<T>& towards)
       : direction(towards), cosine(hits.cosine(towards)), target(towards) {}
 
@@ -398,8 +398,8 @@ struct IncidentLight {
   }
 };
 
-/// Returns the light that leaves point lights, one per lane, with these indices: from a random
-/// point of a sphere, or from its middle if it is `in_middle`.
+/// Returns the light from the point lights `own` with these indices, one per lane: from a random
+/// point of a sphere, or from its middle if `in_middle`.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> point_light(const Lights& lights, const Hits<T>& hits,
                                             const Lights::Light* const (&own)[kLanesOf<T>],
@@ -438,7 +438,7 @@ RAYGATE_INLINE IncidentLight<T> area_light(const Lights& lights, const Hits<T>& 
   return light;
 }
 
-/// Returns the radiance that hits scatter back along their rays; `scattered` is the BSDF.
+/// Returns throughput times the radiance scattered back along the ray; `scattered`: the BSDF.
 template <class T>
 RAYGATE_INLINE Triple<T> scattered_light(const Hits<T>& hits, const IncidentLight<T>& light,
                                          const Triple<T>& scattered, const T& mis_weight) {
@@ -455,8 +455,7 @@ RAYGATE_INLINE Triple<T> scattered_light(const Hits<T>& hits, const IncidentLigh
   return choose(light.cosine > 0.0f, bounded(sent), zero<T>());
 }
 
-/// Stores a light sample of each hit that contributes `sent` if it is not occluded, as sample
-/// `number` of the hit.
+/// Stores light sample `number` of each hit. The sample contributes `sent` if it is not occluded.
 template <class T>
 RAYGATE_INLINE void add_light_sample(Hits<T>& hits, std::size_t number,
                                      const IncidentLight<T>& light, const Triple<T>& sent,

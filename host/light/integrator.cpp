@@ -32,8 +32,8 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
   });
 }
 
-/// Returns the depth of the last rays. Rays of kEmitters go one deeper than the limit, as paths do,
-/// those of Whitted do not, and those of kPrimary end at the first surface.
+/// Returns ShadingScene::max_depth. kEmitters shades hits one deeper than that, as kPath does; for
+/// other integrators, which do not, its limit is one lower.
 int last_depth(IntegratorKind kind, const IntegratorSettings& settings) {
   if (kind == IntegratorKind::kPrimary) return 0;
   const int depth = settings.integrator == IntegratorKind::kPrimary ? 0 : settings.depth();
@@ -148,7 +148,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
     ++first_[kinds_[i]];
   }
   add_infinite_light(output);
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());  // the end of each kind
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());  // ends of the kinds
   order_.resize(first_.back());
   for (std::size_t i = count; i-- > 0;) {
     if (kinds_[i] != kHitKinds) order_[--first_[kinds_[i]]] = static_cast<std::uint32_t>(i);

@@ -17,8 +17,8 @@ namespace raygate {
 /// depends only on the order of the batch, so the radiance of a sample depends only on its rays.
 class Integrator {
  public:
-  /// The references must outlive this object. `kind` may differ from `settings.integrator`
-  /// (kLight, kEmitters). `light_paths` are combined with kPath and kLight; may be null.
+  /// The references must outlive this object. `kind` may differ from `settings.integrator` (kLight,
+  /// kEmitters). `light_paths`, which kPath and kLight combine with camera paths, may be null.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
              const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;

@@ -18,7 +18,7 @@ enum class IntegratorKind {
 struct IntegratorSettings {
   IntegratorKind integrator = IntegratorKind::kWhitted;
   int samples = 4;  ///< per pixel, at least 1; a single sample is taken without random choices
-  /// Consecutive reflections and refractions; default: see depth().
+  /// Maximum number of consecutive reflections and refractions; default: see depth().
   std::optional<int> max_depth{};
   double threshold = 1.0 / 256.0;   ///< Whitted: rays with a throughput below this are not traced
   std::optional<double> ambient{};  ///< Whitted: ambient radiance; default: Lights::ambient()

@@ -32,7 +32,7 @@ Triple<float> narrow(const glm::dvec3& v) {
 }
 
 /// Returns a unit vector at this angle from the unit vector `axis`, or with cosine 0 a vector
-/// perpendicular to it with length `sine`.
+/// perpendicular to `axis` with length `sine`.
 glm::dvec3 around(const glm::dvec3& axis, double cosine, double sine, double turns) {
   const Frame<float> frame(narrow(axis));
   const SineCosine<double> turn = sine_cosine(turns);
@@ -73,7 +73,7 @@ LightPaths::LightPaths(const PreparedScene& prepared, const Lights& lights, cons
 }
 
 void LightPaths::find_balls(const PreparedScene& prepared) {
-  constexpr std::size_t kMostBalls = 16;  // one sphere for all mirrors and glass beyond that
+  constexpr std::size_t kMostBalls = 16;  // beyond this, one sphere holds all mirrors and glass
   const auto visit = [&](const auto& each) {
     for (std::uint32_t primitive = 0; primitive < prepared.bvh.primitive_count(); ++primitive) {
       const FaceRef face = prepared.bvh.face_of(primitive);
@@ -92,7 +92,7 @@ void LightPaths::find_balls(const PreparedScene& prepared) {
     all.expand(box.low);
     all.expand(box.high);
   }
-  std::map<std::uint32_t, Ball> balls;  // by object, or one
+  std::map<std::uint32_t, Ball> balls;  // by object, or one for all
   visit([&](std::uint32_t object, const glm::dvec3& corner) {
     const auto [at, is_new] = balls.try_emplace(are_many ? 0 : object);
     Ball& ball = at->second;

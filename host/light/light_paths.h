@@ -13,7 +13,7 @@
 namespace raygate {
 
 /// Returns the MIS weight of emission that a camera path meets after a mirror or glass. `density()`
-/// returns the density of light paths that start there and go against the path's ray.
+/// returns the density of light paths that start at the emitter and go back along the path's ray.
 template <class Density>
 RAYGATE_INLINE float caustic_weight(const PathState& state, const Density& density) {
   if (!(state.light_over_camera_pdf > 0.0f) || state.pdf > 0.0f || state.specular_history == 1)
@@ -22,12 +22,12 @@ RAYGATE_INLINE float caustic_weight(const PathState& state, const Density& densi
   return 1.0f / (1.0f + ratio * ratio);
 }
 
-/// Lower bound of edge cosines in densities.
+/// Lower bound that densities apply to the cosines of edges.
 inline constexpr float kLeastCosine = 0x1p-20f;
 
 /// The part of the frame that light paths target, in camera coordinates from 0 to 1.
 struct FrameView {
-  const Camera& camera;  ///< perspective
+  const Camera& camera;  ///< a perspective camera
   int width = 1, height = 1;
   glm::dvec2 low{0.0}, high{1.0};  ///< contributions outside of this range are discarded
 };
@@ -35,19 +35,19 @@ struct FrameView {
 /// Samples where light paths start, returns the densities of these starts, and connects path ends
 /// to the camera.
 ///
-/// Mirrors and glass here are smooth; rough ones sample lights directly. A light path counts only
-/// if its first surface is a mirror or glass. So starts are chosen by the flux that a light sends
-/// to the bounding spheres of the scene's mirrors and glass: from lights at finite distance
-/// uniformly in the solid angles of the spheres, from distant lights uniformly over their discs.
-/// Lengths are in scene units, densities per square unit of Lights.
+/// Mirrors and glass here are smooth ones; at rough surfaces lights are sampled. A light path
+/// counts only if its first surface is a mirror or glass. So lights are chosen by the flux that
+/// they send to the bounding spheres of the scene's mirrors and glass. Rays from lights at finite
+/// distance are uniform in the solid angles of the spheres, those from distant lights over the
+/// spheres' discs. Lengths are in scene units, densities per square unit of Lights.
 ///
 /// A path that both camera paths and light paths can find is weighted by multiple importance
 /// sampling with the power heuristic (Veach, "Robust Monte Carlo methods for light transport
-/// simulation", 1997, chapters 9 and 10). PathState::light_over_camera_pdf is the ratio of both
-/// densities of the path so far (as in "Implementing vertex connection and merging", Georgiev
-/// 2012). A vertex with edge cosines `in` and `out` and forward and reverse densities `pdf` and
-/// `back` per solid angle multiplies it by back / pdf * out / in; mirrors and smooth glass have
-/// neither density.
+/// simulation", 1997, chapters 9 and 10). PathState::light_over_camera_pdf is the density of light
+/// paths over that of camera paths for the path so far, on light paths the inverse (as in
+/// "Implementing vertex connection and merging", Georgiev 2012). A vertex with edge cosines `in`
+/// and `out` and forward and reverse densities `pdf` and `back` per solid angle multiplies it by
+/// back / pdf * out / in; mirrors and smooth glass, by out / in.
 class LightPaths {
  public:
   /// The references must outlive this object.
@@ -62,7 +62,7 @@ class LightPaths {
     Ray ray;
     PathState state;  ///< its throughput is flux
   };
-  /// Returns the start of path `number` of an image, or nullopt if the light does not emit there.
+  /// Returns the start of path `number` of an image, or nullopt if it carries no light.
   [[nodiscard]] std::optional<Start> start(std::uint64_t number, std::uint64_t seed) const;
 
   /// Returns the density of a sample's light paths that start at `point` of a light in the unit
@@ -70,11 +70,11 @@ class LightPaths {
   [[nodiscard]] float density(std::uint32_t source, const glm::vec3& point,
                               const glm::vec3& direction) const;
   /// Returns the density of a sample's light paths from the environment that go through `point`
-  /// against the unit vector `towards`, per area perpendicular to it.
+  /// against the unit vector `towards`, per area perpendicular to `towards`.
   [[nodiscard]] float environment_density(const glm::vec3& point, const glm::vec3& towards) const;
 
-  /// Returns PathState::light_over_camera_pdf of camera rays with these unit directions, up to the
-  /// squared distance of their hits.
+  /// Returns PathState::light_over_camera_pdf of camera rays with these unit directions, without
+  /// the factor of their hits' squared distance.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE T camera_ratio(const Triple<T>& direction) const {
     const T cosine = dot(direction, spread<T>(glm::vec3(frame_.camera.forward())));

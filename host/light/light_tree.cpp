@@ -18,7 +18,7 @@ glm::dvec3 on_one_side(const LightBounds& source) {
   return source.axis[k] < 0.0 ? -source.axis : source.axis;
 }
 
-/// Sums over a group of sources, from which its cost is computed.
+/// Sums over a group of sources, from which the group's cost is computed.
 struct Sum {
   Bounds3 box;
   glm::dvec3 axes{0.0};
@@ -89,7 +89,7 @@ class LightTree::Builder {
     return sum;
   }
 
-  /// Splits a group into up to eight, always splitting the one with the highest cost.
+  /// Splits a group into up to eight groups, always splitting the one with the highest cost.
   [[nodiscard]] std::vector<CostedGroup> split_into_eight(Group group) const {
     std::vector<CostedGroup> groups = {{group, 0.0}};
     while (groups.size() < std::min<std::size_t>(kLanes, group.size())) {
@@ -112,7 +112,7 @@ class LightTree::Builder {
                                     group.begin());
   }
 
-  /// Splits a group of two or more in two, and returns the size of the first.
+  /// Splits a group of two or more in two, and returns the size of the first part.
   [[nodiscard]] std::size_t split(Group group) const {
     const std::size_t far_size =
         partitioned(group, [&](std::uint32_t number) { return sources_[number].is_far; });

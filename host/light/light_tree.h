@@ -11,7 +11,7 @@
 
 namespace raygate {
 
-/// Bounds of the position and emission of a light, or of a planar part of one.
+/// Bounds of the position and emission of a light, or of a planar part of a light.
 struct LightBounds {
   glm::dvec3 middle{0.0};  ///< of the bounding sphere
   double radius = 0.0;
@@ -92,8 +92,8 @@ class LightTree {
  private:
   /// Up to eight sources and clusters, field by field. An empty entry has power 0.
   struct alignas(32) Node {
-    float x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {};  // as in LightBounds
-    float nearness[kLanes] = {};                           // 0: distant
+    float x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {};  // `middle` of LightBounds
+    float nearness[kLanes] = {};                           // 1, or 0 for a distant light
     float squared_radius[kLanes] = {};
     float axis_x[kLanes] = {}, axis_y[kLanes] = {}, axis_z[kLanes] = {};
     float spread[kLanes] = {}, spread_sine[kLanes] = {}, reach[kLanes] = {};

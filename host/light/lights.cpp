@@ -17,8 +17,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the ambient radiance: the reflected part F r / (1 - r) of the lights' flux from one
-/// side, over pi times the total area. r is the mean reflectance.
+/// Returns the ambient radiance: the reflected flux F r / (1 - r) over pi times the total area,
+/// where F is the lights' flux from one side and r the mean reflectance.
 glm::dvec3 guessed_ambient(const Scene& scene, const std::vector<AreaLight>& lights) {
   glm::dvec3 flux(0.0), reflecting(0.0);
   double area = 0.0;
@@ -46,8 +46,8 @@ double unit_of(const Scene& scene, const std::vector<PointLight>& lights) {
                      : 1.0;
 }
 
-/// The corner of a parallelogram and its two sides. The diagonal from that corner separates two
-/// triangles, of which the first has more of u than of v.
+/// A corner of a parallelogram and the two sides that start there. The diagonal from this corner
+/// separates two triangles; the first is on the side of u.
 struct Parallelogram {
   glm::vec3 corner, u, v;
 };
@@ -82,9 +82,9 @@ LightBounds light_bounds(const PointLight& light, double unit) {
   return source;
 }
 
-/// Returns whether emissive triangles light the scene. Without `is_preview` one that emits without
-/// a texture suffices, as it is meant as a light. In previews glowing labels do not count, and
-/// screens never do. `size` is the scene's diagonal.
+/// Returns whether emissive triangles light the scene. Without `is_preview` an untextured one
+/// suffices, as it is meant as a light. Otherwise radiance and area must be large, unlike those of
+/// glowing labels and screens. `size` is the scene's diagonal.
 bool is_lit_by_emitters(const Scene& scene, double size, bool is_preview) {
   // Thresholds of radiance * area / size^2: about 1/100 of the main light, or 1/6 for emission with
   // a texture, which is meant to be looked at.
@@ -218,7 +218,7 @@ void Lights::find_areas() {
     const Triangle& face = scene_.triangles[bvh_.triangle_of(primitive)];
     if (emits(scene_.materials[face.material])) emitting.push_back(primitive);
   }
-  // In the scene's order, so that lights do not depend on how the BVH is built.
+  // Sort into the scene's order, so that lights do not depend on how the BVH is built.
   std::ranges::sort(emitting, {}, [&](std::uint32_t each) { return bvh_.triangle_of(each); });
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
   for (const std::uint32_t primitive : emitting) {

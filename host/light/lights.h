@@ -21,19 +21,19 @@ class Camera;
 struct CameraLights {
   std::vector<PointLight> points;
   glm::vec3 background{0.0f};
-  /// Radius of spheres that replace the points, for soft shadows; they are outside the scene.
+  /// Radius of spheres that replace the points, for soft shadows. They are outside the scene.
   double radius = 0.0;
 };
 
 /// Returns lights for a scene without any (no lights, no background, and no emission except
 /// textures that hardly light anything): a light to the upper left of the camera with soft shadows,
-/// or at the camera if that is inside the scene, and a dim sky. Returns nullopt for other scenes.
-/// With `is_preview`, for a camera that the user did not choose, there is a second, weaker light
-/// from the right, and scenes with only a background or dim emitters get lights, too.
+/// or at the camera if the camera is inside the scene, and a dim sky. Returns nullopt for other
+/// scenes. With `is_preview`, for a camera that the user did not choose, there is a second, weaker
+/// light from the right, and scenes with only a background or dim emitters get lights, too.
 [[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
                                                          bool is_preview = false);
 
-/// Returns a float, with the largest float instead of infinity.
+/// Returns x as a float; the largest float instead of infinity.
 [[nodiscard]] inline float finite_float(double x) {
   return static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
 }
@@ -41,9 +41,9 @@ struct CameraLights {
   return {finite_float(x.x), finite_float(x.y), finite_float(x.z)};
 }
 
-/// Returns the fraction of a spot light's intensity by the cosine of the angle to its axis: 1
-/// within the inner angle, 0 beyond the outer one (the ramp of KHR_lights_punctual). See
-/// Lights::Light.
+/// Returns the fraction of a spot light's intensity at a cosine to its axis: 1 within the inner
+/// angle, 0 beyond the outer one (the ramp of KHR_lights_punctual). Lights::Light has `scale` and
+/// `offset`.
 template <class T>
 RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) {
   const T ramp = at_most(at_least(cosine * scale + offset, 0.0f), 1.0f);
@@ -88,7 +88,7 @@ class Lights {
     kOne,  ///< one light at each hit, chosen by LightTree (paths); there is no ambient light
   };
 
-  /// The references must outlive this object. `camera_lights` replace the scene's.
+  /// The references must outlive this object. `camera_lights` replace the scene's own lights.
   Lights(const Scene& scene, const Bvh& bvh, Sampling sampling = Sampling::kOne,
          const std::optional<CameraLights>& camera_lights = {});
 
@@ -181,7 +181,7 @@ class Lights {
     });
   }
 
-  /// Samples the point from which a spherical point light lights `from`: a point of its disc.
+  /// Samples a point of the disc that a spherical point light presents to the point `from`.
   template <class T>
   [[nodiscard]] RAYGATE_INLINE static Triple<T> point_on(const Triple<T>& position, const T& radius,
                                                          const Triple<T>& from,
@@ -229,7 +229,7 @@ class Lights {
   /// A part of an area light: a triangle, or two that form a parallelogram.
   struct Patch {
     glm::vec3 corner{0.0f}, u{0.0f}, v{0.0f}, normal{0.0f};
-    /// Triangles with more of u than of v, and with more of v than of u.
+    /// The triangles on the u side and on the v side of a parallelogram's diagonal.
     std::uint32_t primitive = 0, primitive_beyond = 0;
     float begin = 0.0f, end = 0.0f;  ///< its interval of the light's cumulative area, in [0, 1]
     double area = 0.0;

@@ -25,9 +25,9 @@ RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
 /// * The diffuse base of a dielectric is (1 - m)(1 - t) c times
 ///   (1 - h(view))(1 - h(light)) / (1 - mean h), where h is the albedo of both lobes above in their
 ///   brightest channel. So a white material conserves energy, and the BRDF is reciprocal.
-/// * The fraction (1 - m) t is glass with such facets: Fresnel's formula, and c times the
-///   transmitted light. Both are divided by the albedo of single scattering ("Practical multiple
-///   scattering compensation for microfacet models", Turquin 2019), which is not reciprocal.
+/// * The fraction (1 - m) t is glass: facets reflect by Fresnel's formula and transmit c times the
+///   rest. Both parts are divided by the albedo of single scattering ("Practical multiple
+///   scattering compensation for microfacet models", Turquin 2019), so they are not reciprocal.
 ///
 /// All lobes but glass are multiplied by the opacity. T is float or FloatLanes.
 template <class T>
@@ -182,7 +182,7 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
 
  private:
-  /// Returns the albedos at a cosine of facets with reflectance 1 and with Schlick's weight.
+  /// Returns the albedos, at a cosine, of facets that reflect 1 and Schlick's weight.
   [[nodiscard]] RAYGATE_INLINE Shares shares_at(const T& cosine) const {
     if (!is_rough()) return {spread<T>(1.0f), schlick_weight(cosine)};
     return albedo->at(cosine, alpha);

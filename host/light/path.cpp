@@ -11,13 +11,13 @@ namespace {
 // Streams of random numbers used at a surface of a path.
 constexpr std::uint32_t kNextRay = 1, kChooseLight = 2, kLightPoint = 3, kChooseLobe = 4,
                         kDirection = 5, kFacet = 6, kLens = 9;
-// Russian roulette begins after this many surfaces, for paths with less throughput.
+// Russian roulette begins after this many surfaces, for paths below this throughput.
 constexpr int kRouletteDepth = 3;
 constexpr float kRouletteThroughput = 0.25f;
-// Of a direction; the inverse is within the range of float.
+// Least pdf of a direction. Its inverse is within the range of float.
 constexpr float kMinPdf = 1e-20f;
 
-/// Probability of sampling each lobe, in proportion to its albedo. Rough glass is in `scatter`.
+/// Relative probabilities of sampling each lobe: its albedo. Rough glass counts in `scatter`.
 template <class T>
 struct LobeProbabilities {
   T mirror, transmission, scatter, sum;
@@ -46,9 +46,9 @@ RAYGATE_INLINE T edge_cosine(const Hits<T>& hits, const Triple<T>& direction) {
   return at_least(absolute(dot(hits.surface.flat_normal, direction)), kLeastCosine);
 }
 
-/// Reverse densities of a hit: the ratio of the densities of light paths and camera paths (see
-/// LightPaths). Light paths carry flux; their throughput has the cosines of the opposite ends of
-/// edges and the adjoint BSDF ("Robust Monte Carlo methods", 5.3).
+/// Computes PathState::light_over_camera_pdf (see LightPaths) of the rays spawned at a hit. Light
+/// paths carry flux: their throughput has the adjoint BSDF, and the cosine at the opposite end of
+/// each edge ("Robust Monte Carlo methods", 5.3).
 template <bool kFromLight, class T>
 struct ReversePdf {
   T arrived;  ///< PathState::light_over_camera_pdf at the hit
@@ -83,8 +83,8 @@ struct ReversePdf {
     next.path.throughput = choose(largest(next.path.throughput) > 0.0f, bounded(flux), zero<T>());
   }
 
-  /// Updates the ray after a mirror or refraction, where `is_specular`; `eta` is 1 for mirrors. A
-  /// tilted normal has no reverse path.
+  /// Updates the ray after a mirror or refraction, where `is_specular`; `eta` is 1 for mirrors.
+  /// Where the normal is tilted there is no reverse path.
   RAYGATE_INLINE void mirror(const Hits<T>& hits, const MaskOf<T>& is_specular, const T& eta,
                              ScatteredRays<T>& next) const {
     const T out = edge_cosine(hits, next.direction);
@@ -147,7 +147,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.throughput = choose(
         contributes, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
         zero<T>());
-    // Light paths do not pass: PathState::light_over_camera_pdf is 0 from here on.
+    // Light paths end at rough glass, so PathState::light_over_camera_pdf is 0 from here on.
     if (has_rough_glass) {
       if (kFromLight) return;
       next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;
@@ -212,7 +212,7 @@ RAYGATE_INLINE T caustic_weights(const ShadingScene& shading, const Hits<T>& hit
   });
 }
 
-/// Returns the emission of the surfaces, times the MIS weight of the ray that found it.
+/// Returns the emission of the surfaces, times the throughput and MIS weight of the ray.
 template <class T>
 RAYGATE_INLINE Triple<T> emitted_radiance(const ShadingScene& shading, const Hits<T>& hits) {
   const Lights& lights = shading.lights;
@@ -298,7 +298,7 @@ struct ChosenLights {
                                                       const Hits<T>& hits) const {
     std::uint32_t patches[kCount];
     for (int k = 0; k < kCount; ++k) {
-      // Lanes without an area light also sample one; the result is unused.
+      // Lanes without an area light also sample a patch; the result is unused.
       patches[k] = sources[k]->patch == kNoIndex ? 0 : sources[k]->patch;
     }
     const LightPoint<T> point = all.sample_patches<T>(patches, hits.random(kLightPoint));
@@ -330,7 +330,7 @@ RAYGATE_INLINE void sample_one_light(const ShadingScene& shading, Hits<T>& hits,
   light.is_asked = light.is_asked & is_lit;
 
   T mis_weight = spread<T>(1.0f);
-  if (any(light.is_asked & !is_delta)) {  // scattered rays may find it, too
+  if (any(light.is_asked & !is_delta)) {  // scattered rays may find the light, too
     const T light_pdf =
         choose(light.is_area, light.pdf * light.distance_squared / light.light_cosine, light.pdf);
     const T bsdf_pdf = hits.bsdf.pdf(light.direction) * lobes.scatter_probability();

@@ -20,7 +20,7 @@ struct alignas(16) PathState {
   glm::vec3 normal{0.0f};        ///< shading normal there
   std::uint32_t sample = 0;      ///< index of the radiance, in ShadingOutput, that the path adds to
   std::uint32_t stream = 0;      ///< stream of random numbers, different for each path
-  std::uint32_t index = 0;       ///< index of the path's points in such streams
+  std::uint32_t index = 0;       ///< index of the path's points in all streams
   /// A code of the mirrors and smooth glass that the path has met: 1 for the first ray; a mirror
   /// turns code h into 2 h, glass into 2 h + 1. 0: more than four of them, or another surface.
   std::uint32_t specular_history = 1;
@@ -28,7 +28,7 @@ struct alignas(16) PathState {
   /// the inverse (see LightPaths). 0: only one kind of path exists here.
   float light_over_camera_pdf = 0.0f;
   /// Bit mask of specular histories at which emission is omitted because EmitterSupersampler adds
-  /// it. For that class's own rays: the histories to follow.
+  /// it. In that class's own rays: the histories to follow.
   std::uint32_t supersampled = 0;
 };
 
@@ -52,7 +52,7 @@ struct RayBatch {
 /// The first surface on a camera ray; masked-out holes do not count.
 struct FirstSurface {
   std::uint32_t primitive = NearestHit::kNone;
-  glm::vec3 origin{0.0f};  ///< of the ray that meets it; only of a pixel's first sample
+  glm::vec3 origin{0.0f};  ///< of the ray that meets it; only in a pixel's first sample
   glm::vec3 point{0.0f};   ///< relative to `origin`
   glm::vec3 normal{0.0f}, albedo{0.0f};
 };

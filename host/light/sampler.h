@@ -7,8 +7,8 @@
 
 namespace raygate {
 
-/// Returns a bijective hash of a word: every bit of the result depends on every bit. The constants
-/// are Wellons' ("Prospecting for hash functions", 2018).
+/// Returns a bijective hash of a word: every bit of the result depends on every bit of x. The
+/// constants are Wellons' ("Prospecting for hash functions", 2018).
 template <class W>
 RAYGATE_INLINE W hash(W x) {
   x ^= x >> 16;
@@ -38,7 +38,7 @@ RAYGATE_INLINE W reversed_bits(W x) {
 template <class W>
 RAYGATE_INLINE W owen_scramble(W x, const W& key) {
   x += key;
-  x ^= x * 0x6C50B47Cu;  // even factors: a bit depends only on lower ones
+  x ^= x * 0x6C50B47Cu;  // even factors: each bit depends only on lower bits
   x *= key | 1u;
   x ^= x * 0xB82F1E52u;
   x ^= x * 0xC7AFE638u;
@@ -63,9 +63,9 @@ struct SquarePoint {
   T x, y;  ///< in [0, 1)
 };
 
-/// Returns point `index` of the stream `key`: the first two Sobol dimensions, a (0,2)-sequence. Of
-/// 2^k successive points from a multiple of 2^k on, each elementary interval of area 2^-k has one.
-/// Every stream has its own Owen scrambling of both coordinates and of the order ("Practical
+/// Returns point `index` of the stream `key`: the first two Sobol dimensions, a (0,2)-sequence.
+/// Each elementary interval of area 2^-k has one of 2^k successive points from a multiple of 2^k
+/// on. Every stream has its own Owen scrambling of both coordinates and of the order ("Practical
 /// Hash-based Owen Scrambling", Burley 2020, with the permutation of Laine and Karras 2011).
 template <class T>
 RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T>& key) {

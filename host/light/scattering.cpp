@@ -9,8 +9,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the fraction of light along a direction that leaves facets around +z: for mirrors if
-/// `index` is 0, otherwise for glass from both sides.
+/// Returns the single-scattering albedos of facets around +z for a direction: of mirrors if `index`
+/// is 0, otherwise of glass from both sides.
 template <class T>
 RAYGATE_INLINE FacetAlbedo::Shares<T> leaving(const T& cosine, float alpha, float index) {
   const Ggx<T> ggx({T{}, T{}, spread<T>(1.0f)}, spread<T>(alpha));

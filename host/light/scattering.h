@@ -43,8 +43,8 @@ RAYGATE_INLINE Triple<T> reflect(const Triple<T>& view, const Triple<T>& normal)
 }
 
 /// The direction of light that travels along -view and is refracted by Snell's law at an interface
-/// with the unit normal `normal`, which is on the side of `view`; eta as above. Where `exists` is
-/// not set there is none: total reflection.
+/// with the unit normal `normal`, which is on the side of `view`; eta as above. For total
+/// reflection, `exists` is not set.
 template <class T>
 struct Refraction {
   Triple<T> direction;
@@ -65,7 +65,7 @@ struct Refraction {
 /// roughness, in [kLeast, 1]. Directions are unit vectors away from the surface.
 template <class T>
 struct Ggx {
-  static constexpr float kLeast = 0x1p-10f;  // resolved by float cosines
+  static constexpr float kLeast = 0x1p-10f;  // lower bound of alpha, which float cosines resolve
 
   Triple<T> normal;
   T squared;  ///< alpha^2
@@ -82,7 +82,7 @@ struct Ggx {
   [[nodiscard]] RAYGATE_INLINE Pair pair(const Triple<T>& a, const Triple<T>& b) const {
     const Triple<T> sum = a + b;
     const T size = dot(sum, sum), along = dot(normal, sum);
-    // The perpendicular part, separately: cosines close to 1 are too coarse for narrow lobes.
+    // Computed separately, as cosines close to 1 are too coarse for narrow lobes.
     const Triple<T> across = sum - normal * along;
     const T ratio = size / (dot(across, across) + squared * along * along);
     return {kPerPi * squared * ratio * ratio, 0.5f * root(size)};
@@ -93,7 +93,7 @@ struct Ggx {
     return root(squared + (1.0f - squared) * cosine * cosine);
   }
 
-  /// Returns G2 / (4 cos cos), which times D and the Fresnel reflectance is the BRDF.
+  /// Returns G2 / (4 cos cos). The BRDF is this times D times the Fresnel reflectance.
   [[nodiscard]] RAYGATE_INLINE T visibility(const T& a, const T& b) const {
     return 0.5f / (a * stretched(b) + b * stretched(a));
   }
@@ -104,7 +104,7 @@ struct Ggx {
     return d * 0.5f / (view + stretched(view));
   }
 
-  /// Returns G2 / G1: the fraction of light reflected by a sampled facet that is not masked.
+  /// Returns G2 / G1: the unmasked fraction of the light that a sampled facet reflects.
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const T& view, const T& light) const {
     return light * (view + stretched(view)) / (light * stretched(view) + view * stretched(light));
   }
@@ -134,17 +134,17 @@ struct Ggx {
 };
 
 /// Two single-scattering albedos of GGX facets, by the cosine of a direction and alpha: integrals
-/// over the visible facets, interpolated bilinearly over square roots. The error is below 0.01 for
-/// cosines of at least 0.05.
+/// over the visible facets, interpolated bilinearly over the square roots of both. The error is
+/// below 0.01 for cosines of at least 0.05.
 class FacetAlbedo {
  public:
-  /// One value per lane.
+  /// Two albedos, each with one value per lane.
   template <class T>
   struct Shares {
     T first, second;
   };
 
-  /// Returns the table of mirrors. `first` has reflectance 1, `second` Schlick's weight.
+  /// Returns the table of mirrors. `first`: facets with reflectance 1; `second`: Schlick's weight.
   [[nodiscard]] static const FacetAlbedo& of_mirrors();
   /// Returns the table of glass with this index of refraction, reflection plus transmission:
   /// `first` for light from outside, `second` from inside.

@@ -11,7 +11,7 @@ namespace raygate {
 namespace {
 
 constexpr float kWholeWay = 1.0f;
-constexpr std::size_t kManyPoints = 64;  // too few rays per light
+constexpr std::size_t kManyPoints = 64;  // beyond this, lights have too few rays each
 // Hits of rays from a light below this fraction of the distance are conclusive.
 constexpr float kSureOfLight = 1.0f - 0x1p-10f;
 constexpr float kBeforeAreaLight = 1.0f - 0x1p-16f;
@@ -130,7 +130,7 @@ void ShadowRays::trace(std::span<const ShadowRay> rays, bool from_light, float e
     } else if (size != 0.0f) {  // subnormal
       batch_[i].direction = scaled_direction(glm::dvec3(way));
       end = size / largest(batch_[i].direction);
-    } else {  // a point, which hits nothing
+    } else {  // zero length, which hits nothing
       batch_[i].direction = way;
       end = 1.0f;
     }

@@ -27,7 +27,7 @@ struct alignas(16) LightSample {
 
 /// A light sample with the origin of its shadow ray.
 struct ShadowRay : LightSample {
-  std::uint32_t sample = 0;  ///< for the caller: the sample that it belongs to
+  std::uint32_t sample = 0;  ///< set by the caller: the sample to which it belongs
   std::uint32_t surface_primitive = 0;
   glm::vec3 surface{0.0f};  ///< origin of the ray, from RaySpawner
 };
@@ -37,18 +37,18 @@ struct ShadowRay : LightSample {
 /// Rays of a point light start at the light, so that they share its polygon records, and end at the
 /// surface, whose own triangle is ignored. Rounding the direction moves the end by about one float;
 /// so a hit in the last 2^-10 of the distance is not conclusive, and the ray is traced again from
-/// the surface. With so many point lights that few have several rays, and for other lights, rays
-/// start at the surface. Rays to area lights end at 1 - 2^-16 of the distance, and the light's own
-/// triangle is ignored. Surfaces that transmit light without refraction attenuate it.
+/// the surface. Rays start at the surface for other lights, and for all if so many point lights
+/// exist that few have several rays. Rays to area lights end at 1 - 2^-16 of the distance, and the
+/// light's own triangle is ignored. Surfaces that transmit light without refraction attenuate it.
 class ShadowRays {
  public:
-  /// `through_refraction`: glass attenuates shadow rays as if it did not refract, so that caustics
-  /// replace its shadow.
+  /// `through_refraction`: refracting glass attenuates shadow rays as if it did not refract.
+  /// Otherwise it blocks them: caustics light its shadow.
   ShadowRays(const PreparedScene& prepared, const Lights& lights, Intersector& intersector,
              bool through_refraction);
 
-  /// Multiplies each ray's `radiance` by the transmittance along the ray. Adds the work to `work`,
-  /// by ShadowRay::sample, unless that is empty.
+  /// Multiplies each ray's `radiance` by the transmittance along the ray. Adds its work to
+  /// work[ShadowRay::sample], unless `work` is empty.
   void resolve(std::span<ShadowRay> rays, std::span<RayWork> work = {});
 
   [[nodiscard]] std::uint64_t rays() const { return rays_; }  ///< number of rays traced so far

@@ -16,7 +16,7 @@
 // - a.y >= sum w_i g_i for every y of S. If no g_i is negative, the plane between T and S keeps X
 // at least sum w_i g_i / |a| >= w sum g_i / |a| away from S, where w is the least weight. g_i may
 // be negative by up to `slack`, for rounding, which margin() compensates. The bound holds for every
-// a; those tried separate triangles that touch in an edge or a corner.
+// a; the vectors that are tried separate triangles that touch in an edge or a corner.
 
 namespace raygate {
 namespace {
@@ -34,8 +34,8 @@ class NeighborClearanceSearch {
     normal_ = cross(vertex_[1], vertex_[2], normal_sizes_);
     const double area = glm::length(normal_);
     const glm::dvec3 unit_normal = area > 0.0 ? normal_ / area : glm::dvec3(0.0);
-    // The planes through the edges, perpendicular to the triangle or parallel to the coordinate
-    // axis that is closest to the normal. Most neighbours are behind one of the latter.
+    // Axes of planes through the edges. Planes 0 to 2 are parallel to the coordinate axis closest
+    // to the normal, planes 3 to 5 to the normal. Most neighbours are behind one of planes 0 to 2.
     const glm::dvec3 sizes = glm::abs(normal_);
     const int wider = sizes.x < sizes.y ? 1 : 0, along = sizes[wider] < sizes.z ? 2 : wider;
     glm::dvec3 parallel(0.0);
@@ -119,13 +119,13 @@ class NeighborClearanceSearch {
   using Vectors3 = Triple<DoubleQuad>;
 
   static constexpr std::size_t kMaxOverlaps = 128;
-  // A triangle of a fan of 100,000 would have as many neighbours. RaySpawner::search() does
-  // without.
+  // A triangle of a fan of 100,000 has as many neighbours. With more leaves c is 0, and
+  // RaySpawner::search() finds origins.
   static constexpr int kMostLeaves = 1024;
   static constexpr double kShareOfHeight = 0.125;  // largest c, as a fraction of the height
   // Triangles nearer than this fraction of the largest c are overlaps.
   static constexpr double kShareOfOverlaps = 0x1p-4;
-  // Of the dot product of a normal and a point.
+  // Relative error bound of the dot product of a normal and a point.
   static constexpr double kNormalError = 10.0 * 0x1p-53;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -135,7 +135,7 @@ class NeighborClearanceSearch {
     return choose(size > 0.0, Vectors3{v.x / size, v.y / size, v.z / size}, zero<DoubleQuad>());
   }
 
-  /// Returns c for each of the triangles in the mask alone, or any value of at least length_.
+  /// Returns c with respect to each single triangle in the mask, or any value of at least length_.
   /// `exact`: their corners, if `corners` are rounded; otherwise null.
   template <Vectors kCode>
   [[nodiscard]] RAYGATE_INLINE DoubleQuad clearances(const float* corners, const Corners* exact,
@@ -164,7 +164,7 @@ class NeighborClearanceSearch {
     Vectors3 y[3];
     for (int v = 0; v < 3; ++v) y[v] = {coordinates[v][0], coordinates[v][1], coordinates[v][2]};
     DoubleQuad best = choose(near, DoubleQuad{}, spread<DoubleQuad>(kInfinity));
-    // Returns whether all values are sufficient.
+    // Tries an axis and returns whether all values are sufficient.
     const auto try_axis = [&](const Vectors3& axis) RAYGATE_BODY {
       best = maximum(best, apart(axis, y));
       return sign_mask(whole(best >= length_)) == (LaneMask{1} << kQuad) - 1;
@@ -232,8 +232,8 @@ double spawn_reach(const Corners& corners) {
   return std::max(0x1p-18 * size, 0x1p-144);
 }
 
-// The error of a coordinate along a unit vector, of a difference of two points, is less than 2^-49
-// times their largest coordinate.
+// For a difference of two points, the error of its coordinate along a unit vector is less than
+// 2^-49 times their largest coordinate.
 NeighborClearances::NeighborClearances(const Bvh& bvh)
     : bvh_(bvh),
       margin_(0x1p-45f * largest_coordinate(bvh)),
@@ -271,9 +271,9 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 // How far O' is from X
 //
 // Candidate k is the float nearest to X + 2^k u m, where m is the triangle's normal on the wanted
-// side, scaled to a largest component of 1 (later, along the ray). Rounding to float moves each
-// coordinate by at most u / 2, as long as no coordinate is rounded at a step larger than u: so by
-// (u / 2) |n|_1 along the unit normal n, while the offset moves it by 2^k u / |n|_max. For unit
+// side, scaled to a largest component of 1 (alternately, along the ray). Rounding to float moves
+// each coordinate by at most u / 2, as long as no coordinate is rounded at a step larger than u: so
+// by (u / 2) |n|_1 along the unit normal n, while the offset moves it by 2^k u / |n|_max. For unit
 // vectors |n|_1 |n|_max <= (1 + sqrt(3)) / 2 < 1.37, so already k = 0, with u against 0.69 u, is on
 // the right side; the difference, 0.3 u, far exceeds the error of X in double. If X + u m crosses
 // into the next binade its step doubles, and k = 1 suffices.
@@ -295,7 +295,7 @@ const NeighborClearance& NeighborClearances::find(std::uint32_t primitive) const
 // triangles are at least c w - margin away, or farther than spawn_reach, or an overlap of the
 // triangle (see NeighborClearances), or in the triangle's plane. Triangles that could invalidate
 // candidate 0 are within 8 u of the exact X, and within 5 u of the candidate on each axis: in the
-// box around it and X in double, enlarged by 2 u on every side. 16 u are within spawn_reach.
+// box of the candidate and X in double, enlarged by 2 u on every side. 16 u are within spawn_reach.
 //
 // c times a weight is computed from the candidate p, in float, as G . (p - A). G is c times the
 // weight's gradient: a vector in the triangle's plane, no longer than 1/8, as c is at most an
@@ -340,7 +340,7 @@ bool surely_apart(const glm::vec3& low, const glm::vec3& high, const Corners& tr
 
 /// Four hits at which rays are spawned.
 struct SpawnHits {
-  Triple<DoubleQuad> normal;  ///< up to `gradient`: in the format of NeighborClearance
+  Triple<DoubleQuad> normal;  ///< `normal` to `gradient` are as in NeighborClearance
   FloatQuad length;
   Triple<FloatQuad> corner, gradient[2];
   Triple<FloatQuad> origin, direction;  ///< of the rays
@@ -394,7 +394,7 @@ RAYGATE_INLINE Triple<DoubleQuad> widened(const Triple<FloatQuad>& x) {
 RAYGATE_INLINE FloatQuad step_of(const FloatQuad& x) { return float_of(bits_in(x) + 1) - x; }
 
 /// Sets `point` to candidate 0 of each hit, on the incident side if `way` is -1 and on the
-/// transmitted side if it is 1. Valid if `is_clear` is -1 and no overlap is within `reach`.
+/// transmitted side if it is 1. It is valid if `is_clear` is -1 and no overlap is within `reach`.
 template <Vectors kCode>
 RAYGATE_INLINE void find_candidates(const SpawnHits& hits, const FloatQuad& way, float margin,
                                     Triple<FloatQuad>& point, FloatQuad& reach, IntQuad& is_clear) {

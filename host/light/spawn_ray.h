@@ -16,7 +16,7 @@
 
 namespace raygate {
 
-/// A triangle that touches another one in its interior or intersects it, with its bounds.
+/// A triangle that intersects or (nearly) touches the interior of another one, with its bounds.
 struct Overlap {
   std::uint32_t primitive;
   glm::vec3 low, high;
@@ -35,11 +35,11 @@ using Overlaps = std::vector<Overlap>;
 /// overlaps, or in the same plane. Triangles that touch others only at edges and vertices have no
 /// overlaps, and c is a fraction of their smallest height.
 struct alignas(64) NeighborClearance {
-  double normal[3] = {};  ///< (B-A) x (C-A) times a power of two: off by less than 1
+  double normal[3] = {};  ///< (B-A) x (C-A) times a power of two, with errors below 1
   /// c, at most 1/8 of the smallest height. 0: unknown. Negative if there are overlaps.
   float length = 0.0f;
   float corner[3] = {};       ///< A
-  float gradient[2][3] = {};  ///< gradients of c times the coordinates of B and C, in the plane
+  float gradient[2][3] = {};  ///< in-plane gradients of c times the weights of B and C
 };
 
 /// Returns the distance beyond which other triangles are irrelevant to rays that start on a

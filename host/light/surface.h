@@ -53,18 +53,18 @@ struct Surface {
   Triple<T> point;        ///< in scene coordinates
   Triple<T> view;         ///< unit vector back along the ray
   Triple<T> flat_normal;  ///< unit geometric normal, on the side of the ray
-  /// Unit shading normal on the side of the ray, interpolated if the face has normals. One that
-  /// faces away from the ray is tilted until it is perpendicular to the ray.
+  /// Unit shading normal on the side of the ray, interpolated if the face has normals. A normal
+  /// that faces away from the ray is tilted until perpendicular to the ray.
   Triple<T> normal;
   Triple<T> untilted;  ///< the shading normal before tilting
   Triple<T> colour;    ///< Kd times the texture
-  T opacity;           ///< factor of the texture; only of kinds that interpolate and transmit
+  T opacity;           ///< texture's factor; 1 unless the kind interpolates and transmits
   /// Factors of the textures of a metallic-roughness material; unused for other kinds.
   T roughness, metallic, transmission, specular;
   Triple<T> specular_color;
-  Triple<T> glow;  ///< factor of the emission texture; only of kinds that interpolate and emit
+  Triple<T> glow;  ///< emission texture's factor; unset unless the kind interpolates and emits
   /// Whether the ray arrives from outside: from the side to which the file's normals point or,
-  /// without normals, from which the vertices are counter-clockwise.
+  /// without normals, on which the vertices are counter-clockwise.
   MaskOf<T> outside;
 
   /// Dot product of a direction and the triangle's normal, in double, and whether its sign is sure.
@@ -108,12 +108,12 @@ struct Surface {
     return seen;
   }
   Triple<WideOf<T>> own_normal;  ///< (B - A) x (C - A), of any length
-  Triple<WideOf<T>> own_size;    ///< sum of the magnitudes of each component's terms
-  T side;                        ///< exact sign of I . N for the ray
+  Triple<WideOf<T>> own_size;    ///< per component of own_normal: sum of its terms' magnitudes
+  T side;                        ///< I . N of the ray, with exact sign
 };
 
 /// Returns the barycentric coordinates up to a common factor: I . (B x C), I . (C x A), I . (A x
-/// B). All have the same sign, except for rounding.
+/// B), corners relative to the origin. All have the same sign, except for rounding.
 template <class D>
 RAYGATE_INLINE Triple<D> unscaled_weights(const Triple<D>& origin, const Triple<D>& direction,
                                           const Triple<D> (&corners)[3]) {
@@ -163,7 +163,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
   surface.own_normal = normal;
   surface.flat_normal = narrow(normal * (1.0 / root(dot(normal, normal))));
 
-  // Decide the side in double, or exactly where that is not sure.
+  // Decide the side in double, or exactly where double is not sure.
   const typename Surface<T>::Slope slope(surface, direction);
   const auto values = unpack(slope.value);
   const auto is_sure = unpack(slope.is_sure);
@@ -181,7 +181,7 @@ RAYGATE_INLINE Surface<T> surface_at(const Scene& scene, const Bvh& bvh, HitKind
     Triple<T> weights = narrow(unscaled * inverse);
     const T third = spread<T>(1.0f / 3.0f), sum_of_weights = weights.x + weights.y + weights.z;
     weights = {at_least(weights.x, 0.0f), at_least(weights.y, 0.0f), at_least(weights.z, 0.0f)};
-    // Triangles without area.
+    // Triangles without area have equal weights.
     weights = choose(sum_of_weights == sum_of_weights, weights, {third, third, third});
     const auto weight = unpack(weights);
     surface.colour = gather<T>([&](int k) RAYGATE_BODY {

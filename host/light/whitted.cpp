@@ -8,7 +8,7 @@ namespace {
 // Streams of random numbers.
 constexpr std::uint32_t kMirror = 1, kTransmission = 2, kRoughFacet = 3, kFirstAreaLight = 16,
                         kFirstPointLight = 1u << 16;
-constexpr float kNarrow = 0.25f;  // alpha: reflections of wider facets count as ambient light
+constexpr float kNarrow = 0.25f;  // alpha above which reflections show ambient light only
 
 /// Returns whether rays are spawned for reflections of rough facets.
 template <class T>
@@ -21,7 +21,7 @@ RAYGATE_INLINE Triple<T> if_narrow(const Ggx<T>& ggx, const Triple<T>& reflected
   return choose(ggx.squared > kNarrow * kNarrow, zero<T>(), reflected);
 }
 
-/// Returns the light of light `i` at each hit.
+/// Returns the light that arrives at each hit from light `i`.
 template <class T>
 RAYGATE_INLINE IncidentLight<T> light_of(const ShadingScene& shading, const Hits<T>& hits,
                                          std::uint32_t i) {
@@ -103,7 +103,7 @@ RAYGATE_INLINE void spawn_specular_rays(const ShadingScene& shading, Hits<T>& hi
     }
     reflected = reflected * facets.g2_over_g1(reflect(surface.view, facet));
     next.path.throughput = hits.path.throughput * reflected;
-    // Lights are sampled for reflections of these facets.
+    // Marks the ray: lights are sampled for these facets, so its hit adds no emission.
     next.path.pdf = spread<T>(1.0f);
   }
   next.is_wanted = T{} > 0.0f;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRaysPerSample = 8;
 constexpr std::size_t kManyRays = 1 << 11;   // per batch
-constexpr float kLeastShare = 1.0f / 64.0f;  // relative to the brightest emitter
+constexpr float kLeastShare = 1.0f / 64.0f;  // of the brightest emitter's radiance
 
 constexpr HistoryMask kDirect = 1u << 1, kAllHistories = ~1u;
 
@@ -42,7 +42,7 @@ EmitterSupersampler::EmitterSupersampler(const RenderContext& context, Intersect
       counts_work_(counts_work),
       all_(kDirect),
       stats_(stats) {
-  // Whitted images have few samples: finding more histories would take longer than it saves.
+  // Whitted images have few samples: finding more histories takes longer than they save.
   if (context.settings.integrator == IntegratorKind::kPath &&
       std::ranges::any_of(context.prepared.materials, &MaterialParameters::is_mirror_or_glass)) {
     all_ = kAllHistories;
@@ -89,7 +89,7 @@ void EmitterSupersampler::trace() {
 
 void EmitterSupersampler::find(const Film& film, const PixelRect& tile,
                                std::span<HistoryMask> histories, std::span<RayWork> work) {
-  // Pixel corners, up to this number of pixels beyond the tile.
+  // Corners are used up to this number of pixels beyond the tile.
   const int beyond = static_cast<int>(std::ceil(filter_radius(context_.settings.filter) - 0.5));
   const auto may_see = [&](const AreaLight& light) {
     return may_see_box(light.low, light.high, context_.camera, film, tile, beyond + 1.0);
@@ -110,7 +110,7 @@ void EmitterSupersampler::find(const Film& film, const PixelRect& tile,
     }
   }
   trace();
-  for (std::size_t i = 0; i < ray_work_.size(); ++i) {  // assigns work to the nearest pixel
+  for (std::size_t i = 0; i < ray_work_.size(); ++i) {  // count a ray's work at the nearest pixel
     const int x = corners.x0 + static_cast<int>(i % std::size_t(corners.width()));
     const int y = corners.y0 + static_cast<int>(i / std::size_t(corners.width()));
     work[tile.index_of(std::clamp(x, tile.x0, tile.x1 - 1), std::clamp(y, tile.y0, tile.y1 - 1))] +=

@@ -17,23 +17,23 @@ namespace raygate {
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 
-/// Emitters are much brighter than their surroundings, so pixels on their outlines are the noisiest
-/// of an image, whether the camera sees them directly or through up to four mirrors and glass
-/// interfaces. These pixels get additional rays that collect emission only, which is cheap: no
-/// lights, shadows or choice of a lobe. The pixel's samples omit it.
+/// Supersamples the outlines of emitters. These are much brighter than their surroundings, so the
+/// pixels there are the noisiest of an image, whether the camera sees them directly or through up
+/// to four mirrors and glass interfaces. Additional rays collect only emission there, which is
+/// cheap: no lights, shadows or choice of a lobe. The pixels' samples omit that emission.
 ///
-/// A pixel has a history if rays through pixel corners, within the radius of the pixel's filter,
-/// find different emission with it. The choice does not depend on any sample, so it adds no bias.
-/// Emitters smaller than a pixel and between all corners are not found.
+/// A pixel has a history if rays with this history through pixel corners, within the radius of the
+/// pixel's filter, find different emission. The choice does not depend on any sample, so it adds no
+/// bias. Emitters that no ray through a corner meets are not found.
 class EmitterSupersampler {
  public:
-  /// The references must outlive this object. `counts_work`: counts tests and doubts of rays. Adds
-  /// the numbers of rays and point doubts, and the shading time, to `stats`.
+  /// The references must outlive this object. `counts_work`: whether tests and doubts are counted.
+  /// Adds the numbers of rays and point doubts, and the shading time, to `stats`.
   EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work,
                       RenderStats& stats);
 
   /// Finds the histories of a tile's pixels. `histories` is indexed by pixel of the film's window.
-  /// Adds the work to `work`, by pixel of the tile, unless that is empty.
+  /// Adds the work to `work`, by pixel of the tile, unless `work` is empty.
   void find(const Film& film, const PixelRect& tile, std::span<HistoryMask> histories,
             std::span<RayWork> work);
 

@@ -13,7 +13,7 @@ namespace raygate {
 /// User settings of an image; constant during a render. The caller ensures that values are in
 /// range. The defaults are those of ./render and of the Python module.
 struct RenderSettings : IntegratorSettings {
-  int width = 640, height = 480;  ///< of the whole frame, at least 1
+  int width = 640, height = 480;  ///< size of the whole frame, at least 1
   PixelRect window;               ///< pixels to render, within the frame; empty: the whole frame
   int threads = 1;                ///< at least 1; does not affect the film
   int first_sample = 0;           ///< samples [first, end) are rendered
@@ -55,7 +55,7 @@ struct RenderStats {
   double processor_seconds = 0.0;
   std::uint64_t spare_samples = 0;  ///< samples saved by RenderSettings::error
   int missing_threads = 0;          ///< threads that could not be started
-  bool cancelled = false;           ///< stopped by the monitor; the film is incomplete
+  bool cancelled = false;           ///< the monitor stopped the render; the film is incomplete
 };
 
 }  // namespace raygate

@@ -26,7 +26,7 @@ namespace raygate {
 namespace {
 
 /// The threads of a render, which take tiles from one queue. The calling thread reports progress
-/// and saves, so that no worker waits for a terminal or a disk.
+/// and makes snapshots, so that no worker waits for a terminal or a disk.
 class RenderThreads {
  public:
   RenderThreads(const RenderContext& context, const Tiles& tiles,
@@ -108,8 +108,8 @@ class RenderThreads {
     return step;
   }
 
-  /// Renders a pass over a tile. Returns false if it was stopped. No other thread accesses the
-  /// tile's pixels meanwhile.
+  /// Renders a pass over a tile. Returns false if the render was stopped. No other thread accesses
+  /// the tile's pixels meanwhile.
   [[nodiscard]] bool render(TileRenderer& renderer, const TileQueue::Step& step) {
     const auto keep_going = [this] {
       if (is_alone_) report();
@@ -134,7 +134,7 @@ class RenderThreads {
     changed_.notify_all();
   }
 
-  /// Reports progress, and saves when it is time.
+  /// Reports progress, and makes a snapshot when it is due.
   void report() {
     try {
       std::unique_lock lock(mutex_);
@@ -170,13 +170,13 @@ class RenderThreads {
     std::optional<Film> film;
     try {
       film = copy_of_film();
-    } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): the render needs none
+    } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): snapshots are optional
     }
     monitor_.snapshot(film ? &*film : nullptr);
   }
 
   /// Returns a copy of the film, made tile by tile, so that a thread waits for at most one tile.
-  /// With light paths, copies all at once, as splats belong to the film's current samples.
+  /// With light paths, copies all tiles at once, as splats belong to the film's current samples.
   Film copy_of_film() {
     Film copy;
     copy.width = film_.width;
@@ -210,7 +210,7 @@ class RenderThreads {
   int gone_ = 0;  // number of threads that have ended
   bool stopped_ = false;
   std::exception_ptr error_;
-  // Members of the watching thread only.
+  // Members that only the calling thread uses.
   std::optional<Clock::time_point> stopped_at_;
   bool is_alone_ = false;
   Stopwatch watch_;
@@ -251,7 +251,7 @@ Film render(const RenderJob& job, const IntersectorFactory& make_intersector, Re
   const Lights& lights = own_lights ? *own_lights : prepared.lights(sampling);
   std::optional<LightPaths> light_paths;
   if (wants_light_paths(job)) {
-    // The part of the frame that they must hit to reach the film's window.
+    // The part of the frame in which splats affect pixels of the film's window.
     const glm::dvec2 size(film.width, film.height);
     const double margin = filter_radius(settings.filter) + 1.0;
     const glm::dvec2 low(film.window.x0, film.window.y0), high(film.window.x1, film.window.y1);

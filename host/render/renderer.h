@@ -15,7 +15,7 @@ struct RenderJob {
   const Camera& camera;
   const RenderSettings& settings;
   std::optional<CameraLights> lights{};  ///< replace the scene's lights
-  /// An unfinished film to resume, or null. Has sums, and the job's window, settings and first
+  /// An unfinished film to resume, or null. It has sums, and the job's window, settings and first
   /// sample.
   const Film* unfinished = nullptr;
 };

@@ -89,7 +89,7 @@ bool TileRenderer::trace(const PixelRect& tile, int end, const std::function<boo
   pixel_work_.assign(is_counting_ ? tile.pixels() : 0, {});
   const RenderSettings& settings = context_.settings;
   const double margin = 1.0 + (settings.samples > 1 ? filter_radius(settings.filter) : 0.0);
-  // Whether camera rays can only meet the background.
+  // If true, camera rays can only meet the background.
   const bool is_empty =
       !integrator_.sees_environment() &&
       !may_see_anything(context_.prepared.bvh, context_.camera, film_, tile_, margin);
@@ -120,7 +120,7 @@ bool TileRenderer::trace_camera_rays(const std::function<bool()>& keep_going) {
   return true;
 }
 
-/// Traces the batch and all rays that result from it. Returns false if it was stopped.
+/// Traces the batch and all rays that its hits spawn. Returns false if tracing was stopped.
 bool TileRenderer::trace_batch(Integrator& integrator, const std::function<bool()>& keep_going) {
   while (!batch_.rays.empty()) {
     if (!keep_going()) return false;
@@ -131,7 +131,7 @@ bool TileRenderer::trace_batch(Integrator& integrator, const std::function<bool(
 
 /// Traces the light paths of the current samples. Each sample of a pixel has an equal fraction of
 /// the frame's light paths, so the result does not depend on how work is distributed. The pixels of
-/// a window have all of them.
+/// a window trace all light paths of the frame.
 bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   if (!light_integrator_) return true;
   constexpr std::size_t kManyPaths = 1 << 16;  // per batch
@@ -159,9 +159,9 @@ bool TileRenderer::trace_light_paths(const std::function<bool()>& keep_going) {
   return trace_batch(*light_integrator_, keep_going);
 }
 
-/// Traces the rays of one depth, and the shadow rays from their hits: in several batches if there
-/// are many lights. Direct light is summed separately from other light, so that the order of a
-/// sample's sums does not depend on the batches.
+/// Traces the rays of one depth and the shadow rays from their hits, the latter in several batches
+/// if there are many lights. Direct light is summed separately from other light, so that the order
+/// of a sample's sums does not depend on the batches.
 void TileRenderer::trace_wave(Integrator& integrator) {
   constexpr std::size_t kManyShadowRays = 1 << 17;  // per batch: 14 MB of queries
   const std::size_t rays = batch_.rays.size();

@@ -1,5 +1,5 @@
-// Tile renderer: renders the samples of a tile, batch by batch, on one thread. Its light paths end
-// anywhere in the film, in the splat layer.
+// Tile renderer: renders the samples of a tile, batch by batch, on one thread. Splats of its light
+// paths fall anywhere in the film.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct Splat {
 };
 
 /// Exact sums of splats by pixel of a film's window, each weighted by the density of the pixel's
-/// filter. The order of splats does not matter.
+/// filter. Sums do not depend on the order of the splats.
 class SplatLayer {
  public:
   SplatLayer() = default;  ///< a layer without pixels
@@ -45,8 +45,8 @@ class SplatLayer {
 };
 
 /// Renders tiles into a film. All rays of one depth form a batch, and all shadow rays of that depth
-/// another. A pixel does not depend on its tile: the light of each path is summed separately, depth
-/// by depth.
+/// another. A pixel does not depend on the tile it is in: the light of each path is summed
+/// separately, depth by depth.
 class TileRenderer {
  public:
   /// `emitter_histories`: by pixel of the film, shared by all tiles; empty: no supersampling.
@@ -84,15 +84,15 @@ class TileRenderer {
   ShadowRays shadow_rays_;
   // The samples that were traced last, by pixel.
   std::vector<PixelSamples> pixels_;
-  std::size_t paths_ = 0;           // number of all their paths
+  std::size_t paths_ = 0;           // number of paths of all pixels
   std::vector<RayWork> path_work_;  // by path, for all its rays; if counted
   bool is_counting_;
   ShadingOutput output_;
   std::vector<glm::vec3> direct_light_;  // by path: from shadow rays
-  // By pixel, from emitter_supersampler_.
+  // Emission added by emitter_supersampler_, by pixel.
   std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;
   PixelRect tile_;
-  std::vector<RayWork> pixel_work_;  // by pixel of the tile: of rays without a path
+  std::vector<RayWork> pixel_work_;  // by pixel of the tile, for rays without a path
   RayBatch batch_;
   std::vector<NearestHit> hits_;  // of the batch
   std::vector<RayWork> work_;     // of the batch, if counted

@@ -1,4 +1,4 @@
-// Tiles: splits an image into tiles of pixels and passes of samples; and the queue of this work.
+// Tiles: splits an image into tiles of pixels and passes of samples; and queues this work.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 
 namespace raygate {
 
-/// The window split into tiles, numbered row by row, and each pixel's samples into passes, such
-/// that a pass over a tile has about the number of samples that an intersector prefers in a batch.
-/// Tiles are smaller if otherwise some threads would have none.
+/// A window split into tiles, numbered row by row, and each pixel's samples split into passes. A
+/// pass over a tile has about the number of samples that an intersector prefers in a batch. Tiles
+/// are smaller if otherwise some threads would have none.
 struct Tiles {
   PixelRect window;
   int samples, samples_per_pass;
@@ -34,7 +34,7 @@ struct Tiles {
     const int pixels = static_cast<int>(
         std::clamp(share, std::int64_t{square}, std::max<std::int64_t>(square, many)));
     width = pixels / edge;
-    // Whole squares of 8 x 8 pixels, which are traced together.
+    // Tiles consist of squares of 8 x 8 pixels, which are traced together.
     width = (width + 7) / 8 * 8;
     if (2 * width > window.width()) width = window.width();
     height = (pixels / width + 7) / 8 * 8;
@@ -67,7 +67,7 @@ class TileQueue {
     for (int tile = 0; tile < tiles; ++tile) waiting_.push_back({tile, 0});
   }
 
-  /// Begins the step that has waited longest. Returns nullopt if there is none.
+  /// Begins the step that has waited longest. Returns nullopt if no step waits.
   [[nodiscard]] std::optional<Step> begin() {
     if (waiting_.empty()) return std::nullopt;
     const Step step = waiting_.front();
@@ -100,7 +100,7 @@ class TileQueue {
 [[nodiscard]] bool may_see_anything(const Bvh& bvh, const Camera& camera, const Film& film,
                                     const PixelRect& tile, double margin);
 
-/// Returns whether such a camera ray may enter the box from `low` to `high`.
+/// Returns likewise whether a camera ray may enter the box from `low` to `high`.
 [[nodiscard]] bool may_see_box(const glm::vec3& low, const glm::vec3& high, const Camera& camera,
                                const Film& film, const PixelRect& tile, double margin);
 

@@ -3,7 +3,7 @@
 namespace raygate {
 namespace {
 
-/// Expands the box by the positions of all instances. Skips meshes whose bounds are inside it.
+/// Expands the box by the positions of all instances. Skips instances whose bounds are inside it.
 void expand_by_instances(const Scene& scene, Bounds3& box) {
   std::vector<Bounds3> mesh_bounds;
   mesh_bounds.reserve(scene.meshes.size());

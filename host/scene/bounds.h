@@ -29,7 +29,7 @@ struct Bounds3 {
 
 [[nodiscard]] Bounds3 bounds_of(std::span<const glm::vec3> positions);
 
-/// Returns a box around the image of `box` under an instance transform. It is as tight as possible.
+/// Returns the tightest box around the image of `box` under an instance transform.
 [[nodiscard]] Bounds3 transform_bounds(const double (&rows)[3][4], const Bounds3& box);
 
 /// Returns the bounds of the corners of all triangles, including those of instances.

@@ -74,7 +74,7 @@ glm::dvec3 Camera::lens_point(const glm::dvec2& lens) const {
   return aperture_ > 0.0 ? glm::dvec3(eye_) + lens_offset(lens) : glm::dvec3(eye_);
 }
 
-/// Finds the image point whose ray through the lens's centre meets the same focus point.
+/// Finds the image point whose ray through the lens's centre meets this ray in the plane of focus.
 std::optional<glm::dvec2> Camera::place_of(const glm::dvec3& point,
                                            const glm::dvec3& lens_point) const {
   const glm::dvec3 offset = point - lens_point;

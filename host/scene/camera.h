@@ -12,7 +12,7 @@ namespace raygate {
 /// Mapping from image positions to ray directions.
 enum class Projection {
   kPerspective,
-  kOrthographic,  ///< parallel rays; objects at the target have their perspective size
+  kOrthographic,  ///< parallel rays; objects at the target look as large as in perspective
 };
 
 /// Projection and lens of a camera. Unset members have the defaults given here.
@@ -49,14 +49,14 @@ struct CameraRequest {
   std::optional<glm::dvec3> up;           ///< of the camera, or of the view
   std::optional<double> fov;              ///< vertical, in degrees
   LensSetting lens;
-  std::optional<bool> ground;  ///< none: with default views that need one
+  std::optional<bool> ground;  ///< whether to add one; none: if a default view needs it
 };
 
 /// The names of projections in scene files and on the command line.
 inline constexpr std::pair<const char*, Projection> kProjections[] = {
     {"perspective", Projection::kPerspective}, {"orthographic", Projection::kOrthographic}};
 
-/// Coordinates are relative to Scene::origin. The camera's frame is right-handed: in the image,
+/// A camera, in coordinates relative to Scene::origin. Its frame is right-handed: in the image,
 /// `right` is +x and `up` is +y, and the camera looks along `forward`.
 class Camera {
  public:
@@ -65,7 +65,7 @@ class Camera {
 
   /// Returns the camera of `setting`, whose angle and lens must be in range. `aspect`: the image's
   /// width over its height. The default of `up` is +y, or -z if the view is parallel to y. Throws
-  /// InputError if eye and target coincide, `up` is parallel to the view, or one is not finite.
+  /// InputError if eye and target coincide, `up` is parallel to the view, or any is not finite.
   [[nodiscard]] static Camera look_at(const CameraSetting& setting, double aspect);
 
   /// Returns the common origin of all rays, or the centre of the image for an orthographic camera.
@@ -91,8 +91,8 @@ class Camera {
   [[nodiscard]] Ray ray(double x, double y, const glm::dvec2& lens) const;
   /// Returns the point of a perspective camera's lens for a point of the unit square.
   [[nodiscard]] glm::dvec3 lens_point(const glm::dvec2& lens) const;
-  /// Returns the image coordinates of the ray of a perspective camera through `lens_point` and
-  /// `point`, the inverse of ray(), or nullopt if `point` is not in front of the camera.
+  /// Returns the image coordinates of a perspective camera's ray through `lens_point` and `point`:
+  /// the inverse of ray(). Returns nullopt if `point` is not in front of the camera.
   [[nodiscard]] std::optional<glm::dvec2> place_of(const glm::dvec3& point,
                                                    const glm::dvec3& lens_point) const;
   /// Returns the area of the image plane at distance 1 along forward().

@@ -19,7 +19,7 @@ std::uint32_t append(std::vector<T>& all, std::vector<T>&& more) {
   return first;
 }
 
-/// Appends attributes that are parallel to another list, which has `count` elements so far.
+/// Appends `more` to attributes of the elements of another list, of which there are `count` so far.
 template <class T>
 void append_parallel(std::vector<T>& all, std::size_t count, std::vector<T>&& more,
                      const T& missing = T(0.0f)) {
@@ -119,7 +119,7 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part) {
 
 std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh) {
   Mesh mirrored = scene.meshes[mesh];
-  // Normals point to the front, which is reversed here.
+  // Normals point to the front side, which reversed winding exchanges with the back.
   const NormalRange normals(mirrored);
   const auto first = static_cast<std::uint32_t>(scene.normals.size());
   for (std::uint32_t i = normals.begin; i < normals.end; ++i) {
@@ -208,7 +208,7 @@ void flatten(Scene& scene, std::span<const Instance> instances) {
   }
 }
 
-/// Flattens the emissive instances, before all others.
+/// Flattens the emissive instances, so that their triangles precede all others.
 void flatten_emitters(Scene& scene) {
   std::vector<bool> emits;
   emits.reserve(scene.meshes.size());

@@ -32,8 +32,8 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   return result;
 }
 
-/// Returns the unit normal of an instance for a normal of its mesh, or 0 if it collapses. Uses
-/// cofactors, the inverse transpose up to a factor, which also exist for singular matrices.
+/// Returns the unit normal of an instance for a normal of its mesh, or 0 if the transform collapses
+/// it. Uses cofactors: the inverse transpose up to a factor, which exists for singular matrices.
 [[nodiscard]] inline glm::vec3 transform_normal(const Instance& instance, const glm::vec3& normal) {
   glm::dvec3 row[3];
   for (int k = 0; k < 3; ++k) {
@@ -89,7 +89,7 @@ struct FaceRef {
 /// Returns the number of triangles of the scene, including those of all instances.
 [[nodiscard]] std::uint64_t triangle_count(const Scene& scene);
 
-/// Sets rows from a world transform. Mesh coordinates are relative to `from`, the scene's to `to`.
+/// Sets instance.rows from a world transform. The mesh's origin is `from`, the scene's is `to`.
 void set_rows(const glm::dmat4& world, const glm::dvec3& from, const glm::dvec3& to,
               Instance& instance);
 
@@ -102,14 +102,14 @@ std::uint32_t add_mesh(Scene& scene, Scene&& part);
 /// instances use it to keep their front sides.
 std::uint32_t add_mirrored(Scene& scene, std::uint32_t mesh);
 
-/// Adds a part as a mesh of a scene, and instances of this mesh.
+/// Adds a part to a scene as a mesh, and instances of this mesh.
 class MeshInstancer {
  public:
   /// `scene` must outlive this object.
   MeshInstancer(Scene& scene, Scene&& part);
 
   /// Adds an instance with this transform to the world. The scene's origin must be set. Mirrored
-  /// instances share a mirrored mesh. Returns false, adding none, beyond the range of float.
+  /// instances share a mirrored mesh. Returns false and adds none if a coordinate may overflow.
   [[nodiscard]] bool add(const glm::dmat4& world, std::uint32_t object);
 
  private:
@@ -128,12 +128,12 @@ enum class InstanceMode {
 };
 inline constexpr std::uint64_t kFlattenLimit = 4'000'000;
 
-/// Throws InputError, which names `file`, for about 2^31 triangles and more, which exceed the index
-/// types. Call this before any loop over all of them.
+/// Throws InputError, naming `file`, if there are about 2^31 triangles or more: too many for the
+/// index types. Call this before any loop over the triangles of all instances.
 void require_numbers(const Scene& scene, const std::filesystem::path& file);
 
-/// Flattens instances as `mode` requires, and always those that emit, as area lights are lists of
-/// triangles. Indices, corners and normals do not depend on `mode`. Throws InputError as
+/// Flattens instances as `mode` requires. Always flattens emissive instances, as area lights are
+/// lists of triangles. Indices, corners and normals do not depend on `mode`. Throws InputError as
 /// require_numbers() does.
 void resolve_instances(Scene& scene, InstanceMode mode, const std::filesystem::path& file);
 

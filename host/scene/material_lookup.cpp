@@ -50,7 +50,7 @@ struct Point {
     return mapped * static_cast<float>(between);
   }
 
-  /// Returns the tangent: a direction, and the sign of y; 0 if the file has none.
+  /// Returns the tangent: xyz is the x axis, w the sign of the y axis; 0 if the file has none.
   [[nodiscard]] glm::dvec4 tangent(const Instance* instance) const {
     glm::dvec3 sum(0.0);
     double side = 0.0;

@@ -24,9 +24,9 @@ namespace raygate {
                                  const glm::dvec3& weights);
 
 /// Returns the normal map's shading normal at a point. `normal` is the unit normal on the side from
-/// which `corners` are counter-clockwise. The map's x and y axes are the directions in which u and
-/// v increase, projected onto the tangent plane, or the file's tangents, transformed by `instance`
-/// (nullptr: none). Returns `normal` if there is no map or the texture coordinates are degenerate.
+/// which `corners` are counter-clockwise. The map's axes are the file's tangents, transformed by
+/// `instance` (nullptr: none), or else the directions in which u and v increase, both projected
+/// onto the tangent plane. Returns `normal` if there is no map or the axes are degenerate.
 [[nodiscard]] glm::vec3 mapped_normal(const Scene& scene, const Triangle& triangle,
                                       const std::array<glm::dvec3, 3>& corners,
                                       const Instance* instance, const glm::dvec3& weights,
@@ -39,7 +39,7 @@ namespace raygate {
 /// Returns the radiance that a material emits, averaged over its texture.
 [[nodiscard]] glm::dvec3 mean_emission(const Scene& scene, const Material& material);
 
-/// Returns the blended opacity map at a point, without the material's own opacity.
+/// Returns the factor of a blending opacity map at a point, without Material::opacity; 1 if none.
 [[nodiscard]] float opacity_factor_at(const Scene& scene, const Triangle& triangle,
                                       const glm::dvec3& weights);
 

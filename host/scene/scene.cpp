@@ -65,8 +65,8 @@ class Digest {
   template <class... Values>
   requires(sizeof...(Values) > 1) void add(const Values&... values) { (add(values), ...); }
 
-  // Structured bindings name all members: a new one does not compile until it is handled. Rarely
-  // used members are skipped at their defaults, which keeps older digests valid.
+  // Structured bindings name all members, so a new member does not compile until it is handled.
+  // Rarely used members are skipped at their defaults, which keeps older digests valid.
   void add(const TextureMapping& m) {
     const auto& [scale, offset, sampling, turn, is_second] = m;
     const bool clamps = sampling == Sampling(Wrap::kClamp);
@@ -142,7 +142,7 @@ class Digest {
     if (!tangents.empty()) add(tangents);
     if (!second_texcoords.empty()) add(second_texcoords);
     if (!opacities.empty()) add(opacities);
-    // Indices of materials that ignore vertex colours, if there are vertex colours.
+    // If there are vertex colours, add the indices of materials that ignore them.
     const auto has_colors = [](const Mesh& mesh) { return !mesh.colors.empty(); };
     if (colors.empty() && std::ranges::none_of(meshes, has_colors)) return;
     for (std::size_t i = 0; i < materials.size(); ++i) {

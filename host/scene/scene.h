@@ -33,22 +33,22 @@ struct TextureMapping {
 
 /// A texture of a material, and its mapping.
 struct MaterialMap {
-  std::string file;  ///< path, joined to the naming file's folder; empty: none, or embedded
+  std::string file;  ///< path, with the folder of the file that names it; empty: none, or embedded
   TextureMapping mapping;
   std::uint32_t texture = kNoIndex;  ///< index into Scene::textures
 };
 
 /// The metallic-roughness model of glTF 2.0 (appendix B), which replaces the lobes of `illum`. The
-/// base colour is Material::diffuse and its texture. The dielectric part reflects by
-/// Material::refraction_index, where 1 counts as 1.5.
+/// base colour is Material::diffuse times its texture. Material::refraction_index, where 1 counts
+/// as 1.5, gives the reflectance of the dielectric part.
 struct MetallicRoughness {
   float metallic = 1.0f;      ///< in [0, 1]
-  float roughness = 1.0f;     ///< in [0, 1]; alpha of GGX is its square
+  float roughness = 1.0f;     ///< in [0, 1]; its square is the alpha of GGX
   float transmission = 0.0f;  ///< in [0, 1]: fraction of the dielectric part that is (rough) glass
   float specular = 1.0f;  ///< in [0, 1]: strength of dielectric reflection (KHR_materials_specular)
   /// Colour of dielectric reflection at normal incidence (same extension).
   glm::vec3 specular_color{1.0f};
-  // Maps that multiply these values, each in one channel.
+  // Maps that multiply these values, and the channels that they use.
   MaterialMap roughness_map{};       ///< green
   MaterialMap metallic_map{};        ///< blue
   MaterialMap transmission_map{};    ///< red
@@ -72,7 +72,7 @@ struct Material {
   MaterialMap normal_map;       ///< codes 0 to 1 are -1 to 1 along tangent, bitangent and normal
   float normal_scale = 1.0f;    ///< multiplies the map's x and y
   MaterialMap emission_map;     ///< multiplies emission
-  MaterialMap opacity_map;      ///< hides points where it is below opacity_cutoff
+  MaterialMap opacity_map;      ///< hides points where the map is below opacity_cutoff
   float opacity_cutoff = 0.5f;  ///< in [0, 1]
   bool opacity_blends = false;  ///< the map multiplies the opacity; no cutoff
   bool has_vertex_opacity = false;  ///< Scene::opacities multiply the map
@@ -117,7 +117,7 @@ struct Triangle {
   return triangle.vertices[0] == triangle.vertices[1];
 }
 
-/// Triangles that instances share, in coordinates of their own. Their materials do not emit light.
+/// Triangles that instances share, in the mesh's own coordinates. Their materials emit no light.
 struct Mesh {
   std::vector<glm::vec3> positions;  ///< each belongs to some triangle
   std::vector<Triangle> triangles;   ///< `vertices` index `positions`; other indices refer to Scene
@@ -145,7 +145,7 @@ struct SpotCone {
 template <class Position>
 struct PointLightAt {
   Position position{0.0f};
-  glm::dvec3 intensity{0.0};          ///< radiant, scene-linear RGB; of a spot light along its axis
+  glm::dvec3 intensity{0.0};          ///< scene-linear RGB, radiant; of a spot light, on its axis
   std::optional<SpotCone> spot = {};  ///< none: isotropic
 };
 using PointLight = PointLightAt<glm::vec3>;  ///< position relative to Scene::origin
@@ -158,15 +158,15 @@ struct DirectionalLight {
   glm::vec3 irradiance{0.0f};  ///< on a surface perpendicular to `direction`, scene-linear RGB
 };
 
-/// A latitude-longitude image of the radiance from outside the scene, in place of a background. The
-/// upper edge is `up`, the centre `ahead`; right in the image is right of an observer who looks
-/// ahead. Lookup is bilinear between texel centres and wraps horizontally.
+/// A latitude-longitude image of the radiance from outside the scene, in place of a background. Its
+/// upper edge is in direction `up`, its centre in direction `ahead`, its right half to the right of
+/// an observer who looks ahead. Lookup is bilinear between texel centres and wraps horizontally.
 struct EnvironmentMap {
   int width = 0, height = 0;      ///< at least 1
   std::vector<glm::vec3> texels;  ///< row by row from the top; finite, not negative
   float strength = 1.0f;          ///< factor from texels to radiance, scene-linear RGB
   glm::dvec3 up{0.0, 1.0, 0.0};   ///< direction of the image's upper edge; unit length
-  /// Direction of its centre; unit length, perpendicular to `up`.
+  /// Direction of the image's centre; unit length, perpendicular to `up`.
   glm::dvec3 ahead{0.0, 0.0, -1.0};
 
   [[nodiscard]] const glm::vec3& texel(int x, int y) const {
@@ -178,7 +178,7 @@ struct EnvironmentMap {
 struct EnvironmentSetting {
   std::filesystem::path file;  ///< OpenEXR or Radiance HDR, latitude-longitude
   double rotation = 0.0;  ///< around the up axis, in degrees, counter-clockwise seen from above
-  double strength = 1.0;  ///< factor of the file's values; at least 0
+  double strength = 1.0;  ///< multiplies the file's values; at least 0
 };
 
 /// Statistics of rounding: the number of corners that are not stored as they are in the file, and
@@ -194,8 +194,8 @@ struct CornerRounding {
   }
 };
 
-/// Sets the last element of a list of optional attributes, of `count` vertices. Attributes that are
-/// missing before it become `missing`.
+/// Resizes a list of optional vertex attributes to `count` elements and sets the last one to
+/// `value`. New elements before it are `missing`.
 template <class T>
 void set_last(std::vector<T>& attributes, std::size_t count, const T& value, const T& missing) {
   attributes.resize(count, missing);
@@ -203,23 +203,23 @@ void set_last(std::vector<T>& attributes, std::size_t count, const T& value, con
 }
 
 /// All geometry, materials and lights. Emissive triangles are lights, too. Positions are relative
-/// to `origin`. A position and its rest are exact, in binary64; a position without one is rounded
-/// to binary32.
+/// to `origin`. A position and its rest give a binary64 position; a position without a rest is
+/// rounded to binary32.
 ///
 /// Triangles are indexed in the order of `triangles`, followed by those of each instance in turn.
 /// Faces without area have indices, too (see is_left_out).
 struct Scene {
   std::vector<glm::vec3> positions;
-  /// Differences of the first positions from binary64 (see rest_of); 0 for all others.
+  /// Rests (see rest_of) of the first positions, relative to binary64; 0 for all others.
   std::vector<glm::ivec3> rests;
   /// Colours of the first positions, scene-linear RGB, which multiply the diffuse colour.
   std::vector<glm::vec3> colors;
   std::vector<glm::vec3> normals;  ///< unit length if a triangle uses them
-  /// Tangents of the first normals: the normal map's x direction, and the sign of its y axis (1 or
-  /// -1) along cross(normal, x). If missing or 0, texture coordinates define the directions.
+  /// Tangents of the first normals: xyz is the normal map's x axis, w (1 or -1) the sign of its y
+  /// axis along cross(normal, x). If missing or 0, texture coordinates define the axes.
   std::vector<glm::vec4> tangents;
   std::vector<glm::vec2> texcoords;
-  /// Second texture coordinates of the first `texcoords`.
+  /// Second set, for the first elements of `texcoords`; the others have no second coordinates.
   std::vector<glm::vec2> second_texcoords;
   /// Vertex opacities of the first `texcoords`; 1 if missing.
   std::vector<float> opacities;
@@ -236,10 +236,10 @@ struct Scene {
   glm::dvec3 origin{0.0};                     ///< world position = origin + position
   CornerRounding rounding;
   std::optional<CameraSetting> camera;  ///< the file's first camera, in world coordinates
-  /// +y or +z: the up direction of the format, or the usual one in it.
+  /// Up direction that the format defines, or else the usual one: +y or +z.
   glm::dvec3 up{0.0, 1.0, 0.0};
   std::vector<std::filesystem::path> files;  ///< all files read: OBJ, MTL and textures
-  std::vector<std::string> warnings;  ///< "file:line: ...": first of statements, then of faces
+  std::vector<std::string> warnings;  ///< "file:line: ..."; about statements first, then faces
 
   /// Returns a position in binary64.
   [[nodiscard]] glm::dvec3 vertex(std::uint32_t index) const {
@@ -248,8 +248,8 @@ struct Scene {
     for (int k = 0; k < 3; ++k) exact[k] = with_rest(positions[index][k], rests[index][k]);
     return exact;
   }
-  /// Adds a position and its rest, given in world coordinates. All positions so far have rests.
-  /// Returns the largest error of a coordinate: 0 if and only if all are exact.
+  /// Adds a position, given in world coordinates, and its rest. All earlier positions must have
+  /// rests. Returns the largest error of a coordinate: 0 if and only if all are exact.
   double add_vertex(const glm::dvec3& world);
   /// Removes the rests if all are 0.
   void drop_zero_rests() {
@@ -257,10 +257,10 @@ struct Scene {
   }
 };
 
-/// Adds a light to a scene whose origin is set. Throws InputError beyond the range of float.
+/// Adds a light to a scene whose origin is set. Throws InputError if its position overflows float.
 void add_light(Scene& scene, const WorldPointLight& light, const std::string& file);
 
-/// Adds triangles (0, 1, 2) and (0, 2, 3) of `corners`, with an object of the material's name.
+/// Adds triangles (0, 1, 2) and (0, 2, 3) of `corners`, the material, and an object of its name.
 void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, const Material& material);
 
 /// Returns a 64-bit digest, as 16 hexadecimal digits, of a scene's geometry, materials, textures,

@@ -47,7 +47,7 @@ Neighbours neighbours(double coordinate, int size, Wrap wrap, bool is_nearest) {
     coordinate -= 2.0 * std::floor(0.5 * coordinate);
     if (coordinate > 1.0) coordinate = 2.0 - coordinate;
   }
-  // In texels, relative to the centre of the first: in [-0.5, size - 0.5].
+  // Position in texels from the centre of texel 0, in [-0.5, size - 0.5].
   const double place = coordinate * size - 0.5, below = std::floor(place), weight = place - below;
   const int first = static_cast<int>(below) + (is_nearest && weight >= 0.5 ? 1 : 0);
   const auto wrapped = [&](int i) {  // i is in [-size, 2 size)
@@ -110,7 +110,7 @@ Texture Texture::decode(std::string_view bytes, const std::string& file, Content
   if (!pixels) fail(file, unreadable + "its pixels are damaged or end too soon");
   std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   if (is_opacity) {
-    // Pixels are grey and opacity (1 if there is none).
+    // Each pixel is a grey code and an opacity code, which is 255 if the image has no opacity.
     const bool has_opacity = channels == 2 || channels == 4 || content == Content::kAlpha;
     const stbi_uc* code = pixels.get() + (has_opacity ? 1 : 0);
     for (Texel& texel : texels) {

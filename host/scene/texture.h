@@ -41,7 +41,7 @@ class Texture {
   [[nodiscard]] static Texture load(const std::filesystem::path& file,
                                     Content content = Content::kColour);
 
-  /// Decodes the bytes of such a file; `name` is for messages.
+  /// Decodes the bytes of a file as load() does; `name` is for messages.
   [[nodiscard]] static Texture decode(std::string_view bytes, const std::string& name,
                                       Content content = Content::kColour);
 
@@ -55,7 +55,7 @@ class Texture {
   /// Coordinates that are not finite count as 0.
   [[nodiscard]] glm::vec3 at(const glm::dvec2& uv, const Sampling& sampling) const;
 
-  /// Returns the codes at a point, from 0 to 1, interpolated likewise.
+  /// Returns the codes at a point, from 0 to 1, interpolated as in at().
   [[nodiscard]] glm::vec3 codes_at(const glm::dvec2& uv, const Sampling& sampling) const;
 
   [[nodiscard]] int width() const { return width_; }

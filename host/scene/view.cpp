@@ -17,7 +17,7 @@ Bounds3 bounding_box(const Scene& scene) {
   return triangle_bounds(scene);
 }
 
-/// The axes of a scene with this up direction: right-handed, of unit length.
+/// The right-handed unit axes of a scene with up direction `upwards`.
 struct Axes {
   glm::dvec3 up, front, right;
 
@@ -36,8 +36,8 @@ struct Axes {
   }
 };
 
-/// Returns the camera of `view` for which the points that for_each_point(visit) visits, relative to
-/// the middle of `box`, fill the image.
+/// Returns the camera of `view` whose image the points just fill. for_each_point(visit) visits the
+/// points, relative to the middle of `box`.
 template <class ForEachPoint>
 CameraSetting frame(const Bounds3& box, double aspect, double fov, const View& view,
                     const ForEachPoint& for_each_point) {
@@ -101,7 +101,7 @@ void add_ground(Scene& scene, const glm::dvec3& up) {
       show(transform_point(instance.rows, position));
     }
   }
-  // Slightly below the lowest point, so that a floor of the scene hides this one.
+  // The ground is slightly below the lowest point, so that a floor of the scene hides it.
   constexpr double kBelow = 0x1p-11, kHalfSide = 16.0;
   const double size = glm::length(box.high - box.low);
   const glm::dvec3 middle = box.middle();

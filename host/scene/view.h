@@ -25,12 +25,12 @@ inline constexpr double kDefaultAzimuth = 33.0, kDefaultElevation = 24.0;
                                         const View& view);
 
 /// Returns a camera that shows the scene's bounding box from the front: level for tall scenes, from
-/// higher for flatter ones. +y is up.
+/// higher up for flatter scenes. +y is up.
 [[nodiscard]] Camera front_camera(const Scene& scene, double aspect);
 
 /// Adds a square of two triangles slightly below the scene's lowest point, 32 times the scene's
 /// size, with an object and a shadow-catcher material (illum 10) named "ground". `up` is not zero.
-/// Leaves scenes that are too large for this unchanged.
+/// If the scene is too large for this, leaves it unchanged.
 void add_ground(Scene& scene, const glm::dvec3& up);
 
 }  // namespace raygate

@@ -1,5 +1,5 @@
-// What cannot be rendered: one clear line, exit status 2, and every old file as it was. Run with
-// the sanitizers too, where a crash or a leak fails the test by its exit status.
+// Bad input gives one clear line and exit status 2, and leaves old files unchanged. These tests
+// also run with sanitizers, where a crash or a leak changes the exit status.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -18,7 +18,7 @@ constexpr const char* kGoodScene = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\
 
 class BadInput : public testing::Test {
  protected:
-  /// Pictures of an earlier run, and statistics: not to be touched.
+  /// Writes pictures and statistics of an earlier run, which must not change.
   void SetUp() override {
     for (const char* name : {"scene.exr", "scene.png", "stats.json"}) {
       folder_.write(name, std::string("old ") + name);
@@ -41,7 +41,7 @@ class BadInput : public testing::Test {
     }
   }
 
-  /// Status 2; the one line on standard error, after "error: ", matches `pattern`.
+  /// Expects status 2, and one line on standard error that matches `pattern` after "error: ".
   void expect_refused(const Outcome& outcome, const std::string& pattern) const {
     EXPECT_EQ(outcome.status, 2) << "signal " << outcome.signal << "\n" << outcome.err;
     EXPECT_TRUE(std::regex_match(outcome.err, std::regex("error: " + pattern + "\n")))
@@ -80,7 +80,7 @@ TEST_F(BadInput, UnreadableFile) {
   expect_refused(outcome, "scene\\.obj: [^\n]+");
 }
 
-/// What stands beside the scene, in a folder that may not be entered, is not missing.
+/// Files beside the scene, in a folder without access, are reported as unreadable, not missing.
 TEST_F(BadInput, UnreadableFolder) {
   ::chmod(folder_.path().c_str(), 0777);
   for (const char* name : {"scene.obj", "alone.obj"}) {
@@ -106,7 +106,7 @@ TEST_F(BadInput, UnreadableFolder) {
   EXPECT_TRUE(contains(outcome.err, "'locked/m.mtl' cannot be read: Permission denied"));
 }
 
-/// An unwritable output is found before time is spent on the scene.
+/// Unwritable outputs are reported before the scene is loaded.
 TEST_F(BadInput, OutputIsCheckedFirst) {
   expect_refused(render({"missing.obj", "-o", "missing/new"}),
                  "missing/new\\.exr: cannot write: No such file or directory");
@@ -120,7 +120,7 @@ TEST_F(BadInput, FullDisk) {
                                          .file_size_limit = limit});
     expect_refused(outcome, "scene\\.exr: cannot write: File too large");
   }
-  // The pictures are ready when this one fails; they may not take their names.
+  // The pictures are staged when this file fails, and must not replace the old ones.
   expect_refused(render({"scene.obj", "--stats", "/dev/full"}),
                  "/dev/full: cannot write: No space left on device");
 }
@@ -137,7 +137,7 @@ TEST_F(BadInput, SceneFiles) {
   expect_refused(render({"scene.json"}), "scene\\.json: found no none\\.obj, expected [^\n]+");
 }
 
-/// More triangles than there are numbers: told before anybody looks at them all.
+/// More triangles than indices: reported before any loop over all of them.
 TEST_F(BadInput, TooManyInstances) {
   constexpr int kSide = 300, kPlaces = 12100;
   std::string model, places;
@@ -145,7 +145,7 @@ TEST_F(BadInput, TooManyInstances) {
     for (int x = 0; x < kSide; ++x) {
       model += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
       if (x == 0 || y == 0) continue;
-      const int a = y * kSide + x + 1;  // its number; of its neighbours, those before it
+      const int a = y * kSide + x + 1;  // vertex number; b: earlier neighbours
       for (const int b : {a - kSide - 1, a - 1}) {
         model += "f " + std::to_string(a) + " " + std::to_string(b) + " " +
                  std::to_string(b == a - 1 ? a - kSide - 1 : a - kSide) + "\n";
@@ -162,7 +162,6 @@ TEST_F(BadInput, TooManyInstances) {
                  "2\\^31");
 }
 
-/// Numbers so large that differences, products or the camera's distance leave float's range.
 TEST_F(BadInput, VectorsThatNoMachineHas) {
   folder_.write("scene.obj", kGoodScene);
   setenv("RAYGATE_VECTORS", "sse9", 1);
@@ -171,6 +170,7 @@ TEST_F(BadInput, VectorsThatNoMachineHas) {
   expect_old_files();
 }
 
+/// With numbers so large that differences, products or the camera's distance overflow float.
 TEST_F(BadInput, ExtremeCoordinatesNeverCrash) {
   for (const char* size : {"1e-40", "1e-30", "1e15", "1e30", "3e38", "1e300"}) {
     SCOPED_TRACE(size);

@@ -9,7 +9,7 @@
 namespace raygate {
 namespace {
 
-// A file may ask for a list longer than any memory.
+// A file may request a list longer than any memory.
 TEST(RunGuarded, AListThatIsTooLong) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(run_guarded([]() -> int { throw std::length_error("vector"); }), 2);

@@ -1,4 +1,4 @@
-// What ./render writes of a ray core.
+// Files about a ray core that ./render writes.
 #include "host/app/test/render_run.h"
 
 namespace raygate {
@@ -28,7 +28,7 @@ TEST_F(CoreFiles, NoImageThatCannotBeWrittenIsBegun) {
 
 TEST_F(CoreFiles, CoresBehindOneMemoryDrawTheSamePicture) {
   const std::string scene =
-      RAYGATE_SCENES "/paper.obj";  // in this size it has doubts and near ties
+      RAYGATE_SCENES "/paper.obj";  // at this size it has doubts and near ties
   render({scene, "--size", "32x24", "--engine", "cpu", "--spp", "1", "-o", "cpu"});
   std::vector<double> clocks;
   for (const char* cores : {"1", "3"}) {

@@ -1,13 +1,13 @@
-// A library to be preloaded (LD_PRELOAD) into a program: the system then fails where it is told to.
+// A library to preload into a program (LD_PRELOAD). It makes chosen calls to the C library fail.
 //
-//   RAYGATE_FAULT=KIND:N    call number N of that kind, counted from main() on, fails. KIND is
-//   memory
-//                           (malloc and the like: ENOMEM), large (those of 4 KiB and more, and all
-//                           of them from there on), write (ENOSPC), sync (fsync: EIO) or rename
-//                           (EIO).
-//   RAYGATE_FAULT_COUNT=FILE    at the end, how many calls of each kind there were, in that order
+//   RAYGATE_FAULT=KIND:N        call number N of this kind since the start of main() fails. KIND is
+//                               memory (malloc and the like: ENOMEM), large (allocations of 4 KiB
+//                               and more; all from call N on), write (ENOSPC), sync (fsync: EIO)
+//                               or rename (EIO).
+//   RAYGATE_FAULT_COUNT=FILE    at the end, FILE gets the number of calls of each kind, in this
+//   order
 //
-// As SQLite's tests do it ("How SQLite Is Tested", section 3).
+// The method is that of SQLite's tests ("How SQLite Is Tested", section 3).
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
@@ -21,7 +21,7 @@
 #include <cstring>
 
 extern "C" {
-// glibc's own, whoever stands before them.
+// glibc's own functions, which the library does not replace.
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* old, std::size_t size);
@@ -39,7 +39,7 @@ std::atomic<bool> counts = false;
 int failing_kind = -1;
 long first_failing = 0;
 
-/// Whether this call of that kind fails; sets errno.
+/// Returns whether this call, of this kind, must fail; if so, sets errno.
 bool fails(Kind kind, int error) {
   if (!counts) return false;
   const long call = ++calls[kind];
@@ -89,7 +89,7 @@ int counted_main(int argc, char** argv, char** environment) {
 
 }  // namespace
 
-// What stands before the functions of the C library has their names and no others.
+// Replacements of C library functions must have the same names.
 extern "C" {
 
 int __libc_start_main(Main main, int argc, char** argv, void (*init)(), void (*fini)(),

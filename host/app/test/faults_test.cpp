@@ -1,6 +1,6 @@
-// Each allocation, write, sync and rename of a run fails, one run for each: what a file held it
-// holds, or what it was to hold; one line says what went wrong, and the exit status too. A dozen of
-// each kind; RAYGATE_FAULTS=N takes N, and 0 all of them (`make test LONG=faults`).
+// One allocation, write, sync or rename fails per run. Each file then has its old or its new
+// contents, and one line and the exit status report the error. A dozen runs for each kind;
+// RAYGATE_FAULTS=N makes N runs, 0 one for each call (`make test LONG=faults`).
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -13,7 +13,7 @@
 namespace raygate {
 namespace {
 
-/// Which calls of so many are to fail: all, or some in all parts of the run.
+/// Returns the calls that are to fail: all, or some that are spread over the run.
 std::vector<long> chosen(long calls, std::mt19937& random) {
   const char* const text = std::getenv("RAYGATE_FAULTS");
   const long wanted = text == nullptr ? 12 : std::atol(text);
@@ -31,14 +31,14 @@ std::vector<long> chosen(long calls, std::mt19937& random) {
 
 class Faults : public Render {
  protected:
-  /// A run that should replace these files, from a folder with `inputs`.
+  /// A run that replaces the files `outputs`.
   struct Job {
     std::vector<std::string> arguments;
     std::vector<std::string> outputs;
     std::string program{};
   };
 
-  /// The inputs of all runs.
+  /// Makes the inputs of all runs.
   void SetUp() override {
     const auto make = [&](const char* samples, const char* name) {
       ASSERT_EQ(run(joined(small_picture(), {"--samples", samples, "-o", name})).status, 0);
@@ -105,7 +105,7 @@ class Faults : public Render {
       const std::string& name = job.outputs[i];
       const std::string bytes = folder_.read(name);
       if (!is_done && bytes == "old " + name) continue;
-      // No two runs have the same times.
+      // Statistics are not compared, as times differ between runs.
       const bool is_whole = name == "stats.json" ? json::accept(bytes) : bytes == made[i];
       EXPECT_TRUE(is_whole) << name << ", " << bytes.size() << " bytes";
     }
@@ -117,7 +117,7 @@ TEST_F(Faults, OfARender) {
            {"c.exr", "c.png", "stats.json"}});
 }
 
-/// Whose tree two threads build.
+/// A scene whose tree two threads build.
 TEST_F(Faults, OfALargerScene) {
   survive({{RAYGATE_SCENES "/teapot.obj", "--engine", "cpu", "--size", "8x6", "--threads", "2",
             "--quiet", "--integrator", "primary", "-o", "c"},
@@ -129,7 +129,7 @@ TEST_F(Faults, OfAResume) {
            {"c.exr", "c.png"}});
 }
 
-/// Less and less address space than a picture takes, down to what the program starts with.
+/// Limits the address space to between the program's start-up need and that of a picture.
 TEST_F(Faults, OfLittleMemory) {
   const Job job{{kCornell, "--engine", "cpu", "--size", "256x256", "--spp", "1", "--integrator",
                  "primary", "--threads", "2", "--quiet", "-o", "c"},
@@ -137,7 +137,7 @@ TEST_F(Faults, OfLittleMemory) {
   const auto with_memory = [&](const std::vector<std::string>& arguments, long limit) {
     return run_program({.arguments = arguments, .folder = folder_.path(), .memory_limit = limit});
   };
-  // Each where more memory lets the run succeed.
+  // Returns the least limit with which a run succeeds.
   const auto least = [&](const std::vector<std::string>& arguments) {
     long little = 0, enough = 1L << 32;
     while (enough - little > 1 << 14) {

@@ -1,4 +1,4 @@
-// Runs that are interrupted, and runs that go on in spite of what happens.
+// Interrupted runs, and runs that continue after a failure.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace raygate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kSoon = 10.0;  // seconds, on a busy machine; what is interrupted takes minutes
+constexpr double kSoon = 10.0;  // seconds, on a busy machine; without the signal: minutes
 
 TEST_F(Render, InterruptedRunsWriteWhatThereIs) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -41,7 +41,7 @@ TEST_F(Render, InterruptedRunsWriteWhatThereIs) {
   }
 }
 
-/// Seconds from the signal, sent half a second after the bar appeared, to the end of the program.
+/// Returns the seconds from a signal, half a second after the progress line appears, to the exit.
 double seconds_to_answer(const fs::path& folder, std::vector<std::string> arguments) {
   Clock::time_point sent;
   const Outcome outcome =
@@ -57,7 +57,7 @@ double seconds_to_answer(const fs::path& folder, std::vector<std::string> argume
   return std::chrono::duration<double>(Clock::now() - sent).count();
 }
 
-/// All of them on every ray's way, and no tree tells them apart: a wave takes minutes.
+/// Every ray meets all triangles, which no tree can separate: one batch takes minutes.
 TEST_F(Render, InterruptionIsAnsweredAmongCoincidentTriangles) {
   std::string obj = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\n";
   for (int i = 0; i < 300000; ++i) obj += "f 1 2 3\n";
@@ -87,7 +87,7 @@ TEST_F(Render, AFailedSaveIsTriedAgain) {
     fs::rename(folder_.path() / from, folder_.path() / to);
   };
   std::atomic<bool> saved = false;
-  std::jthread onlooker;  // the program's words must be read meanwhile
+  std::jthread onlooker;  // this thread must read the program's output
   const Outcome outcome = run_program(
       {.arguments = {kCornell, "--engine", "cpu", "--threads", "2", "--spp", "65536",
                      "--save-every", "0.1", "-o", "out/a.png"},
@@ -111,8 +111,8 @@ TEST_F(Render, AFailedSaveIsTriedAgain) {
   EXPECT_EQ(outcome.status, 128 + SIGINT) << outcome.err;
 }
 
-/// With as many threads as there are to be had, the same picture. The program is in a folder that
-/// its user may not enter, as where all of this is below root's home.
+/// If threads cannot start, fewer threads make the same picture. The program is in a folder that
+/// its user may not enter, as if the repository were in root's home.
 TEST_F(Render, ThreadsThatCannotStartAreDoneWithout) {
   const fs::path home = folder_.path() / "home";
   fs::create_directory(home);

@@ -26,7 +26,7 @@ std::string error_of(std::initializer_list<const char*> arguments) {
   return input_error_of([&] { (void)parse(arguments); });
 }
 
-/// The error is one line and says `part`.
+/// Expects an error of one line that contains `part`.
 void expect_error(std::initializer_list<const char*> arguments, const std::string& part) {
   const std::string error = error_of(arguments);
   EXPECT_NE(error.find(part), std::string::npos) << error;
@@ -160,7 +160,7 @@ TEST(Options, ValuesThatAreImpossible) {
   EXPECT_EQ(parse({"a.obj", "--size", "65536x1"}).render.width, 65536);
   for (const char* option : {"--size", "--stats", "--seed", "--engine", "-o"}) {
     expect_error({"a.obj", option}, "expected ");      // no value
-    expect_error({"a.obj", option, ""}, "expected ");  // an empty one
+    expect_error({"a.obj", option, ""}, "expected ");  // an empty value
   }
 }
 
@@ -198,7 +198,7 @@ TEST(Options, LensesAndEnvironments) {
   EXPECT_EQ(all.environment.strength, 2.0);
 }
 
-/// A scene file in a folder of its own.
+/// Writes a scene file to a temporary folder.
 class OptionsOfASceneFile : public testing::Test {
  protected:
   [[nodiscard]] std::string write(const char* name, std::string_view text) const {

@@ -1,4 +1,4 @@
-// Pictures that are rendered in parts, merged, broken off and gone on with: the bytes of one run.
+// Pictures rendered in parts, merged, or interrupted and resumed have the bytes of a single run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 class Parts : public Render {
  protected:
-  /// 12 samples a pixel of a small Cornell box, and more arguments.
+  /// Renders a small Cornell box with 12 samples per pixel and further arguments.
   Outcome part(const std::vector<std::string>& more) const {
     return run(joined({kCornell, "--size", "60x44", "--spp", "12", "--integrator", "path",
                        "--threads", "1", "--engine", "cpu"},
@@ -34,11 +34,11 @@ class Parts : public Render {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     expect_same_pictures("merged", "whole");
   }
-  /// Returns the arguments of a run that goes on from what was saved last, if anything was.
+  /// Returns the arguments of a run that resumes the last saved film, if there is one.
   std::vector<std::string> resuming(const std::vector<std::string>& arguments) const {
     return folder_.read("a.exr").empty() ? arguments : joined(arguments, {"--resume", "a.exr"});
   }
-  /// Renders, is killed at any time, goes on from what was saved last, and so on.
+  /// Renders, kills the run at a random time, resumes the last saved film, and so on.
   void expect_to_survive(const std::vector<std::string>& long_run) {
     make(joined(long_run, {"-o", "whole"}));
     std::mt19937 random(20261122);
@@ -107,12 +107,12 @@ TEST_F(Parts, OfItsPixelsMakeThePicture) {
   expect_merged(names);
 }
 
-/// Light paths bring light to the pixels of other parts.
+/// Light paths also light pixels of other parts.
 TEST_F(Parts, WithLightPathsMakeThePicture) {
   const auto render = [&](const std::vector<std::string>& more) {
     const Outcome outcome = run(joined({kPaper, "--size", "60x44", "--spp", "6", "--integrator",
                                         "path", "--engine", "cpu", "--exposure", "0"},
-                                       more));  // the exposure of merge
+                                       more));  // exposure 0, as merge uses
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   };
   render({"-o", "whole", "--threads", "1"});
@@ -148,14 +148,14 @@ TEST_F(Parts, GoOnWhereTheyWere) {
   make({"-o", "b.exr", "--resume", "a.exr", "--samples", "0:8"});
   make({"-o", "resumed", "--resume", "b.exr", "--engine", "model", "--threads", "2"});
   expect_same_pictures("resumed", "whole");
-  // With fewer samples, all of which were taken, and with more.
+  // Resumes a complete picture of fewer samples.
   make({"-o", "few.exr", "--spp", "4", "--channels", "sums"});
   make({"-o", "more", "--resume", "few.exr"});
   expect_same_pictures("more", "whole");
 }
 
-/// A picture that goes on and is interrupted again keeps what it went on from, whether or not the
-/// one that is asked for has sums.
+/// A resumed picture that is interrupted again keeps its samples so far, whether or not sums are
+/// requested for the finished picture.
 TEST_F(Parts, KeepTheirSumsWhenInterruptedAgain) {
   const std::vector<std::string> picture = {"--size", "200x150", "--spp", "4000", "--threads", "2"};
   make(joined(picture, {"--samples", "0:4", "-o", "a.exr"}));
@@ -192,7 +192,7 @@ TEST_F(Parts, WithSamplesByErrorMakeThePicture) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   expect_same_pictures("merged", "whole");
   EXPECT_NE(folder_.read("samples.png"), "");
-  // With fewer samples at most, which some pixels all have and some have not, and with more.
+  // Resumes a picture with a lower maximum, which some pixels have reached and some have not.
   make(with({"-o", "few.exr", "--spp", "37"}));
   make(with({"-o", "more", "--spp", "70", "--resume", "few.exr"}));
   expect_same_pictures("more", "whole");
@@ -219,7 +219,7 @@ TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
       "c.png: would overwrite c.png");
 }
 
-/// The same options of a scene that somebody has edited make another picture.
+/// The same options with an edited scene make another picture.
 TEST_F(Parts, OfAnEditedSceneAreRefused) {
   const auto write_scene = [&](const char* height, const char* colour) {
     folder_.write("s.obj",

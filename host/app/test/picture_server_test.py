@@ -1,4 +1,4 @@
-"""--serve, by HTTP and in a browser without a window (Debian's Chromium).
+"""Tests --serve by HTTP and in a headless browser (Debian's Chromium).
 
 usage: RAYGATE_PROGRAM=build/render python3 -m unittest host/app/test/picture_server_test.py
 """
@@ -50,7 +50,7 @@ class Served:
         self.status = self.process.returncode
 
     def get(self, path, headers=None, **options):
-        """Status, headers and bytes of an answer."""
+        """Returns the status, headers and bytes of a reply."""
         query = "?" + urllib.parse.urlencode(options) if options else ""
         request = urllib.request.Request(self.address + path + query, headers=headers or {})
         try:
@@ -116,7 +116,7 @@ class Http(unittest.TestCase):
         with Served("--threads=1") as served:
             pid = served.process.pid
             pages = int(pathlib.Path(f"/proc/{pid}/statm").read_text().split()[0])
-            # No more memory than a new thread's stack takes.
+            # Leave less memory than a new thread's stack needs.
             resource.prlimit(pid, resource.RLIMIT_AS, (pages * resource.getpagesize() + 2**20, resource.RLIM_INFINITY))
             self.assertEqual(served.get("/camera")[0], 500)
             resource.prlimit(pid, resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
@@ -203,7 +203,7 @@ class Browser(unittest.TestCase):
         WebDriverWait(self.browser, 60).until(what)
 
     def wait_drawn(self):
-        """Until the last, full pass is drawn."""
+        """Waits until the last, full-size pass is drawn."""
         self.wait(lambda b: b.find_element(By.ID, "said").text.startswith("64x48"))
 
     def command(self):
@@ -222,8 +222,8 @@ class Browser(unittest.TestCase):
             self.assertGreater(max(self.pixels()[:-1:4]), 100)
             frame = browser.find_element(By.ID, "frame")
 
-            # Turned, approached, moved: the command has a camera, and the picture is another one.
-            # A fast wheel ends the pictures before the last.
+            # After turning, zooming and moving, the command has a camera, and the picture differs. Fast wheel events cancel all pictures
+            # except the last.
             before = self.pixels()
             ActionChains(browser).drag_and_drop_by_offset(frame, 60, 10).perform()
             self.wait(lambda _: "--camera=" in self.command())
@@ -245,12 +245,12 @@ class Browser(unittest.TestCase):
             self.wait_drawn()
             self.assertEqual(before, self.pixels())
 
-            # No request leaves the page.
+            # The page sends requests to its server only.
             names = browser.execute_script("return performance.getEntriesByType('resource').map(e => e.name)")
             self.assertTrue(names)
             self.assertTrue(all(name.startswith(served.address) for name in names), names)
 
-            # What the program says of a bad value.
+            # The page shows the program's message about a bad value.
             browser.find_element(By.NAME, "exposure").send_keys("e9\t")
             self.assertFalse([entry for entry in browser.get_log("browser")
                               if entry["level"] == "SEVERE" and "400" not in entry["message"]])

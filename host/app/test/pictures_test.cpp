@@ -1,4 +1,4 @@
-// What is in the pictures: their channels, colours, cameras and names.
+// Contents of the pictures: channels, colours, cameras and names.
 #include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 
@@ -105,7 +105,7 @@ TEST_F(Render, AFirstLookFromAboveStandsOnAGround) {
 }
 
 TEST_F(Render, IdsAreTheNumbersOfFacesInTheFile) {
-  // The first face has no area; the second and third are a square, there and in another place.
+  // The first face has no area; the second is a square, which also has an instance elsewhere.
   folder_.write("flat.obj",
                 "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 3 -1 0\nf 1 2 5\nf 1 2 3 4\n");
   folder_.write("flat.json", R"({"instances": [{"model": "flat.obj", "places": [[4, 0, 0]]}]})");
@@ -138,7 +138,7 @@ TEST_F(Render, AnExrSaysHowItIsMadeAgain) {
 }
 
 TEST_F(Render, CameraIsTakenInTheFilesCoordinates) {
-  // A square at z = -5, far from the world's origin, seen from 10 in front of it.
+  // A square at z = -5, far from the world's origin; the camera is 10 in front of the square.
   folder_.write("square.obj",
                 "v 99999 -1 -5\nv 100001 -1 -5\nv 100001 1 -5\nv 99999 1 -5\nf 1 2 3 4\n");
   render({"square.obj", "--size", "9x9", "--engine", "cpu", "--spp", "1", "--camera",

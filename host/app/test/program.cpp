@@ -18,7 +18,7 @@ void require(bool success, const char* what) {
   if (!success) throw std::runtime_error(std::string(what) + " failed");
 }
 
-/// Both ends of a pipe, or of a terminal.
+/// Both ends of a pipe or of a terminal.
 struct Stream {
   int read_end = -1, write_end = -1;
 };
@@ -37,7 +37,7 @@ Stream make_terminal() {
   return terminal;
 }
 
-/// In the child: never returns.
+/// Executes the program in the child process. Never returns.
 [[noreturn]] void become_program(const Invocation& invocation, int out, int err) {
   const std::string program = invocation.program.empty() ? RAYGATE_PROGRAM : invocation.program;
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
@@ -46,7 +46,7 @@ Stream make_terminal() {
   }
   argv.push_back(nullptr);
   const int in = ::open("/dev/null", O_RDONLY);
-  // Opened while we may: who is not root need not reach the folder.
+  // Opened before setuid, as another user may have no access to the folder.
   const int code = ::open(program.c_str(), O_RDONLY | O_CLOEXEC);
   bool ready = ::chdir(invocation.folder.c_str()) == 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
                ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(err, STDERR_FILENO) >= 0;
@@ -78,12 +78,12 @@ Stream make_terminal() {
   ::_exit(127);
 }
 
-/// Appends what there is to read; false at the end.
+/// Appends the available text. Returns false at the end.
 bool read_some(int fd, std::string& text) {
   char buffer[4096];
   const ssize_t count = ::read(fd, buffer, sizeof buffer);
   if (count < 0 && errno == EINTR) return true;
-  if (count <= 0) return false;  // a terminal without its program gives EIO
+  if (count <= 0) return false;  // EIO: the terminal's program has ended
   text.append(buffer, static_cast<std::size_t>(count));
   return true;
 }
@@ -101,7 +101,7 @@ Outcome run_program(const Invocation& invocation) {
 
   Outcome outcome;
   bool signalled = invocation.signal_when_busy == 0;
-  std::size_t said = 0, heard = 0;  // of when_said; of standard error
+  std::size_t said = 0, heard = 0;  // when_said functions called; bytes of standard error checked
   pollfd waits[] = {{out.read_end, POLLIN, 0}, {err.read_end, POLLIN, 0}};
   std::string* texts[] = {&outcome.out, &outcome.err};
   while (waits[0].fd >= 0 || waits[1].fd >= 0) {
@@ -110,7 +110,7 @@ Outcome run_program(const Invocation& invocation) {
       if (waits[i].revents == 0) continue;
       if (!read_some(waits[i].fd, *texts[i])) {
         ::close(waits[i].fd);
-        waits[i].fd = -1;  // poll leaves it out
+        waits[i].fd = -1;  // poll ignores it
       }
     }
     while (said < invocation.when_said.size()) {

@@ -1,4 +1,4 @@
-// The program `render`, run as its users run it.
+// Runs a program as its users do, with limits and signals.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,29 +13,29 @@
 
 namespace raygate {
 
-/// How to run it.
+/// Arguments and environment of a run.
 struct Invocation {
   std::vector<std::string> arguments;
-  std::filesystem::path folder;  ///< the current folder; also what file names are relative to
+  std::filesystem::path folder;  ///< the current folder, to which file names are relative
   bool terminal = false;         ///< standard error is a terminal of 80 columns, not a pipe
-  int signal_when_busy = 0;      ///< with a terminal: sent when 1 % is done
-  /// Called with the program's process id, one after the other, each when standard error has its
-  /// text in what came since the last one's.
+  int signal_when_busy = 0;      ///< signal to send when 1 % is done; needs `terminal`
+  /// Functions, called one after the other with the program's process id, each when standard error
+  /// has received its text since the previous call.
   std::vector<std::pair<std::string, std::function<void(int)>>> when_said{};
-  std::string out_file{};       ///< standard output goes there instead
-  long file_size_limit = 0;     ///< bytes that a file may grow to; 0: no limit
-  unsigned most_seconds = 0;    ///< then SIGALRM; 0: no limit
-  long memory_limit = 0;        ///< bytes of address space; 0: no limit
-  bool without_rights = false;  ///< as a user who is not root
-  int most_threads = 0;         ///< that its user may have, its first one counted; 0: no limit
-  std::string program{};        ///< another one than that under test
-  std::vector<std::string> environment{};  ///< "NAME=value", besides ours
+  std::string out_file{};                  ///< file for standard output
+  long file_size_limit = 0;                ///< largest file, in bytes; 0: no limit
+  unsigned most_seconds = 0;               ///< seconds until SIGALRM; 0: no limit
+  long memory_limit = 0;                   ///< bytes of address space; 0: no limit
+  bool without_rights = false;             ///< run as a user who is not root
+  int most_threads = 0;                    ///< threads of its user, including main's; 0: no limit
+  std::string program{};                   ///< "": the program under test
+  std::vector<std::string> environment{};  ///< "NAME=value", added to ours
 };
 
-/// What came of it.
+/// The result of a run.
 struct Outcome {
   int status = -1;  ///< exit status; -1 if a signal ended it
-  int signal = 0;   ///< that signal
+  int signal = 0;   ///< the signal that ended it
   std::string out, err;
 };
 

@@ -1,4 +1,4 @@
-// What the tests of whole runs share.
+// Shared by the tests of whole runs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,13 +20,13 @@ using namespace std::string_literals;
 inline const std::string kCornell = RAYGATE_SCENES "/cornell.obj";
 inline const std::string kPaper = RAYGATE_SCENES "/paper_room.json";
 
-/// Runs of ./render, each test in a folder of its own.
+/// Runs ./render; each test has its own folder.
 class Render : public testing::Test {
  protected:
   [[nodiscard]] Outcome run(const std::vector<std::string>& arguments) const {
     return run_program({.arguments = arguments, .folder = folder_.path()});
   }
-  /// Runs, expects success, and keeps the statistics in `stats_`.
+  /// Runs ./render, expects success, and stores the statistics in `stats_`.
   Outcome render(const std::vector<std::string>& arguments) {
     const Outcome outcome = run(joined(arguments, {"--stats", "stats.json"}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -35,7 +35,7 @@ class Render : public testing::Test {
     return outcome;
   }
 
-  /// Both pictures of two runs are the same bytes.
+  /// Expects that both pictures of two runs have the same bytes.
   void expect_same_pictures(const std::string& a, const std::string& b) const {
     EXPECT_NE(folder_.read(a + ".exr"), "");
     EXPECT_NE(folder_.read(a + ".png"), "");
@@ -47,7 +47,7 @@ class Render : public testing::Test {
   json stats_;
 };
 
-/// Pixels of a PNG file as 24-bit RGB; compressed bytes are a matter of zlib's version.
+/// Returns a PNG file's pixels as 24-bit RGB; its compressed bytes depend on zlib's version.
 inline std::vector<std::uint8_t> decode_png(const std::string& bytes, png_image* size = nullptr) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

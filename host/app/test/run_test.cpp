@@ -1,4 +1,4 @@
-// What a run says on its way, and at its end.
+// Output of a run: progress, warnings, summary and statistics.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ TEST_F(Render, ProgressOnTerminalsOnly) {
   EXPECT_EQ(silent.out, "");
 }
 
-/// "seconds.load" for a key within a key.
+/// Returns all keys, as "seconds.load" for a nested key.
 std::set<std::string> keys_of(const json& object) {
   std::set<std::string> keys;
   for (const auto& [key, value] : object.items()) {
@@ -65,7 +65,7 @@ TEST_F(Render, StatisticsAgree) {
     parts += seconds.at(part).get<double>();
   }
   EXPECT_LE(parts, seconds.at("total").get<double>() + 1e-3);
-  // The text says the same.
+  // The summary agrees.
   EXPECT_TRUE(contains(outcome.out, "cornell.obj: "));
   EXPECT_TRUE(contains(outcome.out, "60x50, engine rtl (pipeline, structural), 2 threads\n"));
   for (const char* row : {"\nrays ", "\ntests ", "\nrounded ", "\nwrote "}) {
@@ -96,7 +96,7 @@ TEST_F(Render, TheSummaryNamesNoUnitWhereNoneIsAtWork) {
   }
 }
 
-// `make cpu`.
+// The program that `make cpu` builds.
 TEST_F(Render, WithoutVerilatorTheSimulatedUnitsAreNamed) {
   const auto render_without = [&](const std::vector<std::string>& arguments) {
     return run_program({.arguments = joined({kCornell, "--size", "16x16"}, arguments),

@@ -1,4 +1,4 @@
-// The same picture, byte for byte, whatever the engine, the threads and the crop.
+// A picture has the same bytes for every engine, number of threads and crop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace raygate {
 namespace {
 
-/// The scene files of the repository, the OBJ files without one, and a sphere of the build's.
+/// Returns the scene files of the repository, the OBJ files without one, and a generated sphere.
 std::vector<std::string> all_scenes() {
   std::vector<std::string> scenes{RAYGATE_MADE_SCENES "/sphere.obj"};
   for (const auto& entry : fs::directory_iterator(RAYGATE_SCENES)) {
@@ -72,8 +72,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(all_scenes()), []
   return name;
 });
 
-/// A room with instances of a teapot, one of them mirrored, two in one place and two that cut each
-/// other, of a glass ball and of a light.
+/// A room with instances of a glass ball, a light and a teapot. Of the teapots one is mirrored, two
+/// coincide and two intersect.
 class InstancedScene : public Render {
  protected:
   InstancedScene() {
@@ -131,7 +131,7 @@ TEST_F(InstancedScene, IsTheSameForEveryEngine) {
   }
 }
 
-/// The gallery in scenes/README.md: commands that write a picture of scenes/gallery.
+/// Returns the commands in scenes/README.md that write a picture of scenes/gallery.
 std::vector<std::string> gallery_commands() {
   const std::string text = read_file(RAYGATE_SCENES "/README.md");
   const std::regex command("`\\./render ([^`]*-o scenes/gallery/[^`]*)`");
@@ -144,7 +144,7 @@ std::vector<std::string> gallery_commands() {
 
 class Gallery : public Render, public testing::WithParamInterface<std::string> {};
 
-/// A crop of it is enough to tell, as a crop is that part of the whole.
+/// Compares a crop only, as crops equal their part of the whole picture.
 TEST_P(Gallery, PictureIsWhatItsCommandMakes) {
   std::istringstream words(GetParam());
   std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
@@ -189,7 +189,7 @@ TEST_F(Variants, DrawTheirOwnPictures) {
   EXPECT_FALSE(picture("raw", {"--variant", "e8p9-raw"}) == plain);
   EXPECT_EQ(stats_["variant"], "e8p9-raw");
   EXPECT_EQ(stats_["engine"], "model");
-  // Who decides matters, not digits: the same triangles, but for P and what is behind it.
+  // With few digits, exact arithmetic decides more tests.
   (void)picture("few", {"--variant", "e8p12"});
   EXPECT_GT(stats_["exact_inside"], 0);
 }
@@ -203,7 +203,7 @@ TEST_F(Render, ThreadsChangeNoByte) {
   expect_same_pictures("1", "8");
 }
 
-// Rays that scatter at random, through glass too.
+// Paths with random scattering, also through glass.
 TEST_F(Render, EnginesGiveTheSameBytesOfPaths) {
   for (const std::string scene : {"cornell", "paper"}) {
     const auto render_by = [&](const std::vector<std::string>& engine) {

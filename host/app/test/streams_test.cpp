@@ -1,4 +1,4 @@
-// Standard output, pipes and terminals: where a run's words go.
+// Standard output, pipes and terminals as targets of a run's output.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -43,7 +43,7 @@ TEST_F(Render, StatisticsGoToStandardOutputAlone) {
   }
 }
 
-/// A second look at its bytes would wait for ever.
+/// Reading the pipe a second time would block for ever.
 TEST_F(Render, AnEnvironmentFromAPipeIsReadOnce) {
   const std::filesystem::path pipe = folder_.path() / "sky.hdr";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -89,13 +89,13 @@ TEST_F(Render, ControlCharactersDoNotReachTheTerminal) {
   outcome = run({lines, "--size", "4x4", "--engine", "cpu"});
   EXPECT_EQ(outcome.out.substr(0, 12), "a\\x0Ab.obj: ");
   EXPECT_FALSE(contains(outcome.out, "a\nb"));
-  // What is no control character stays: letters of all languages.
+  // Other characters are kept: letters of all languages.
   folder_.write("Grüße 光.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   outcome = run({"Grüße 光.obj", "--size", "4x4", "--engine", "cpu"});
   EXPECT_TRUE(contains(outcome.out, "Grüße 光.obj"));
 }
 
-/// No output takes the place of what the scene was read from, under whatever name.
+/// No output replaces a file that the scene was read from, under any of its names.
 TEST_F(Render, InputsAreKept) {
   const std::string obj =
       "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 class TraceRays : public testing::Test {
  protected:
   void SetUp() override {
-    // Two unit squares across the z axis, at z = 0 and z = -2, in objects of their own.
+    // Two squares across the z axis, at z = 0 and z = -2, each its own object.
     folder_.write("sheets.obj",
                   "o front\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
                   "o back\nv -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2\nf 5 6 7 8\n");
@@ -52,7 +52,7 @@ TEST_F(TraceRays, SaysWhatIsNearest) {
   EXPECT_EQ(outcome.err.substr(0, 15), "3 rays, 1 hit, ");
 }
 
-// As `echo "0.5 0.25 1 0 0 -2" | ./trace sheets.obj -` does.
+// As in `echo "0.5 0.25 1 0 0 -2" | ./trace sheets.obj -`.
 TEST_F(TraceRays, ReadsRowsBetweenSpaces) {
   folder_.write("spaced.txt", "0.5 0.25 1 0 0 -2\n");
   EXPECT_EQ(trace({"sheets.obj", "spaced.txt", "--columns", "triangle,t"}).out,
@@ -77,7 +77,7 @@ TEST_F(TraceRays, SaysTheSameByEveryEngine) {
 }
 
 TEST_F(TraceRays, KeepsTheNumbersOfFaces) {
-  // The first face has no area; the model stands in two places.
+  // The first face has no area; the model has two instances.
   folder_.write("flat.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv 3 -1 0\nf 1 2 4\nf 1 2 3\n");
   folder_.write("flat.json",
                 R"({"instances": [{"model": "flat.obj", "places": [[0, 0, -2], [0, 0, -4]]}]})");
@@ -103,7 +103,7 @@ TEST_F(TraceRays, SaysAllAndWhetherAny) {
   EXPECT_EQ(trace({"sheets.obj", "rays.csv", "--hits", "any"}).out, "ray,hit\n0,1\n1,0\n2,0\n");
 }
 
-/// Nobody asks it for colours.
+/// ./trace does not need textures.
 TEST_F(TraceRays, LeavesTexturesAlone) {
   folder_.write("a.mtl", "newmtl a\nmap_Kd damaged.png\nnewmtl b\nmap_Kd missing.png\n");
   folder_.write("damaged.png", "no picture");
@@ -117,14 +117,14 @@ TEST_F(TraceRays, LeavesTexturesAlone) {
   EXPECT_EQ(outcome.err, "");
 }
 
-/// More than a pipe holds, and more than is read at a time.
+/// Returns more rays than a pipe holds and than are read at a time.
 std::string many_rays() {
   std::string rays;
   for (int i = 0; i < 20000; ++i) rays += "0.5,0.25,1,0,0,-2\n";
   return rays;
 }
 
-/// As one that waits for rays, or is deep in a search: nothing that it asks between blocks.
+/// Signals arrive while the program waits for rays, not between blocks of rays.
 TEST_F(TraceRays, EndsSoonAfterASignal) {
   folder_.write("warned.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n");
   ASSERT_EQ(::mkfifo((folder_.path() / "rays").c_str(), 0600), 0);
@@ -156,7 +156,7 @@ TEST_F(TraceRays, EndsSoonAfterASignal) {
   }
 }
 
-/// A pipe that is full, and whose reader does not go on.
+/// The output pipe is full, and its reader has stopped.
 TEST_F(TraceRays, EndsSoonThoughItsReaderIsStuck) {
   folder_.write("warned.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n");
   folder_.write("many.csv", many_rays());

@@ -1,5 +1,5 @@
 // Parallel-prefix adder after Kogge and Stone: {carry_o, sum_o} = a_i + b_i + carry_i. Combinational; any Width from 1;
-// ceil(log2(Width)) levels, every fan-out small, paid for with wires.
+// ceil(log2(Width)) levels. Every fan-out is small, at the cost of wires.
 // Source: P. M. Kogge and H. S. Stone, "A parallel algorithm for the efficient solution of a general class of recurrence
 // equations", IEEE Trans. C-22, 1973.
 module kogge_stone_adder #(
@@ -17,7 +17,7 @@ module kogge_stone_adder #(
   assign half_sum = a_i ^ b_i;
 
   always_comb begin : scan
-    logic [Width-1:0] generated, propagated;  // over `reach` bits up to this one
+    logic [Width-1:0] generated, propagated;  // over the `reach` bits that end at this bit
     generated    = a_i & b_i;
     generated[0] = generated[0] | (half_sum[0] & carry_i);
     propagated   = half_sum;

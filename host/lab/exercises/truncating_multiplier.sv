@@ -1,5 +1,5 @@
-// Multiplier that leaves the lowest Dropped columns of partial products out: product_o is at most a_i * b_i, and less by
-// Width * 2**Dropped at most. Combinational.
+// Multiplier without the lowest Dropped columns of partial products: product_o is at most a_i * b_i, and at
+// least a_i * b_i - Width * 2**Dropped. Combinational.
 module truncating_multiplier #(
   parameter int unsigned Width = 24,
   parameter int unsigned Dropped = Width + Width / 2 - 2

@@ -1,8 +1,8 @@
 """Reads a scene (JSON, OBJ, MTL) and writes it for Mitsuba: PLY files and `mitsuba.json`.
 
-Materials are those that both renderers have: matte, perfect mirrors, and clear refractive glass. Others, and textures,
-raise ValueError. `mitsuba.json` is the dictionary for mitsuba.load_dict, except for camera transforms ("look_at"),
-which JSON cannot represent and `mitsuba_worker` fills in.
+Supports the materials that both renderers have: matte, perfect mirrors, and clear refractive glass. Others, and textures, raise ValueError.
+`mitsuba.json` is the dictionary for mitsuba.load_dict, except for camera transforms ("look_at"), which JSON cannot represent and
+`mitsuba_worker` fills in.
 """
 
 import dataclasses
@@ -14,7 +14,7 @@ import numpy
 Colour = tuple[float, float, float]
 # Mitsuba's samplers; the first is its default.
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
-# Russian roulette begins after this number of surfaces; DEPTH limits paths. Both are those of raygate.
+# Russian roulette begins after this number of surfaces; DEPTH limits paths. Raygate has the same values.
 SURE_SURFACES = 3
 DEPTH = 64
 
@@ -53,7 +53,7 @@ class Scene:
 
 
 def colour(value: object) -> Colour:
-    """Returns a colour; one number stands for three."""
+    """Returns a colour; a single number stands for three equal ones."""
     values = [float(word) for word in (value if isinstance(value, list) else [value])]
     return tuple(values * 3 if len(values) == 1 else values)
 
@@ -176,9 +176,8 @@ def is_closed(mesh: Mesh) -> bool:
 
 
 def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
-    """Returns meshes that emit like a light of raygate, which emits from both sides, while Mitsuba's emit from the
-    front: the light facing the lit side, or two copies for both sides, 1e-5 of the scene's size apart. Closed
-    lights stay unchanged."""
+    """Returns meshes that emit like a light of raygate. Raygate's lights emit from both sides, Mitsuba's from the front. So the mesh faces
+    the lit side or, if both sides are lit, is doubled, at 1e-5 of the scene's size to each side. Closed lights stay unchanged."""
     if is_closed(mesh):
         return [mesh]
     a, b, c = mesh.positions[mesh.faces[0]]

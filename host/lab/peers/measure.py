@@ -13,15 +13,15 @@ from host.lab.peers import convert
 from host.lab.rows import ROOT, processors
 from host.lab.steps import render
 
-# Scenes of materials that both renderers have.
+# Scenes that use only materials that both renderers have.
 SCENES = ("cornell", "cornell_spheres", "columns", "landscape", "lanterns")
 SIDE = 128  # pixels
-VARIANT = "llvm_ad_rgb"  # the fastest for every scene
-# The best of Mitsuba's samplers, which are also timed with other numbers of samples.
+VARIANT = "llvm_ad_rgb"  # Mitsuba's fastest variant for every scene
+# Mitsuba's best samplers. Only these are also timed with other numbers of samples.
 BEST = ("multijitter", "orthogonal")
 NO_LIGHT_PATHS = "--caustics off"  # Mitsuba's `path` has no light paths
 SEEDS = 10  # per image
-COUNT = 32  # samples per pixel in the tables, or the next number that a sampler supports
+COUNT = 32  # samples per pixel in the tables; samplers may use the next number that they support
 REFERENCE_SEED = 1000
 
 
@@ -32,8 +32,8 @@ def scene_file(name: str) -> pathlib.Path:
 
 
 def light_of(picture: pathlib.Path) -> numpy.ndarray:
-    """Returns red, green and blue of an EXR file."""
-    import mitsuba  # not needed by the tests
+    """Returns the red, green and blue channels of an EXR file."""
+    import mitsuba  # imported here, as the tests do not need it
 
     mitsuba.set_variant("scalar_rgb")
     bitmap = mitsuba.Bitmap(str(picture))
@@ -51,7 +51,7 @@ class Raygate:
                          "--size", f"{side}x{side}", "--threads", str(threads)]
 
     def render(self, sampler: str, samples: int, seed: int) -> tuple[dict, numpy.ndarray]:
-        """Returns the timing and the image. `sampler` may hold options of ./render, which has only one sampler."""
+        """Returns the timing and the image. ./render has only one sampler, so `sampler` may hold options instead."""
         options = sampler.split() if sampler.startswith("--") else []
         with tempfile.TemporaryDirectory() as name:
             picture = pathlib.Path(name) / "picture.exr"
@@ -87,7 +87,7 @@ class Mitsuba:
     def render(self, sampler: str, samples: int, seed: int) -> tuple[dict, numpy.ndarray]:
         """Returns the timing and the image."""
         asked = {"sampler": sampler, "samples": samples}
-        if (sampler, samples) not in self._warm:  # each kind needs its own kernel
+        if (sampler, samples) not in self._warm:  # each kind of image needs its own kernel
             self._ask(**asked, seed=seed + 1)
             self._warm.add((sampler, samples))
         with tempfile.NamedTemporaryFile(suffix=".npy") as picture:
@@ -122,7 +122,7 @@ def standard_error(values: list[float]) -> float:
 
 
 def reference(renderer: object, sampler: str, samples: int) -> tuple[numpy.ndarray, float]:
-    """Returns the mean of two long runs, and its remaining MSE, estimated from their difference."""
+    """Returns the mean of two long runs, and the mean's remaining MSE, estimated from the difference of both runs."""
     first, second = (renderer.render(sampler, samples, REFERENCE_SEED + i)[1] for i in range(2))
     return (first.astype(float) + second) / 2.0, mse(first, second) / 4.0
 

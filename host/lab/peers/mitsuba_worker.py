@@ -1,8 +1,8 @@
 """Renders with Mitsuba on request: `python3 -m host.lab.peers.mitsuba_worker FOLDER VARIANT THREADS`.
 
-Reads a line for each image from standard input, a JSON object of `sampler`, `samples`, `seed` and optionally `picture`
-(a file for its pixels, in numpy's format). Answers with one: the seconds of mitsuba.render alone,
-its processor seconds, and the number of samples that the sampler used for `samples`.
+Reads a line for each image from standard input, a JSON object of `sampler`, `samples`, `seed` and optionally `picture` (a file for its
+pixels, in numpy's format). Prints one object for each: the seconds of mitsuba.render alone, its processor seconds, and the number of
+samples that the sampler used instead of `samples`.
 """
 
 import json
@@ -15,7 +15,7 @@ import drjit
 import mitsuba
 import numpy
 
-# This version of Debian 12's libLLVM works; 14 is too old for Dr.Jit, and 15 fails on some kernels.
+# Of Debian 12's versions of libLLVM, this one works; 14 is too old for Dr.Jit, and 15 fails on some kernels.
 LLVM = "libLLVM.so.19*"
 
 
@@ -27,7 +27,7 @@ def find_llvm() -> None:
 
 
 def realised(value: object, folder: pathlib.Path) -> object:
-    """Converts JSON values to those of mitsuba.load_dict."""
+    """Converts JSON values to values for mitsuba.load_dict."""
     if not isinstance(value, dict):
         return value
     made = {key: realised(part, folder) for key, part in value.items()}

@@ -1,6 +1,6 @@
 // Clocks, lines and bytes per ray of the simulated ray core, by kind of ray or for all rays of an
-// image, and by memory. Each ray's result is compared with that of the cpu engine; a difference
-// ends the run.
+// image, and by memory. Each ray's result is compared with the cpu engine's; a difference ends the
+// run.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>

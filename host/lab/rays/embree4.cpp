@@ -1,4 +1,4 @@
-// Embree 4, which Debian 12 does not have: loaded from a file, such as that of a Python wheel.
+// Embree 4, loaded from a file, such as the library in a Python wheel. Debian 12 has no package.
 #include <dlfcn.h>
 
 #include <filesystem>

@@ -32,7 +32,7 @@ namespace raygate::lab {
   X(rtcCommitGeometry)              \
   X(rtcAttachGeometry)
 
-/// These functions, of Embree 3, which the lab is linked with, or of Embree 4.
+/// Pointers to these functions: of Embree 3, with which the lab is linked, or of Embree 4.
 struct EmbreeFunctions {
 // NOLINTNEXTLINE(bugprone-macro-parentheses): the member's name cannot be in parentheses
 #define RAYGATE_MEMBER(function) decltype(&::function) function = ::function;
@@ -71,7 +71,7 @@ inline std::shared_ptr<RTCSceneTy> embree_scene(const EmbreeFunctions& embree,
   return loaded;
 }
 
-/// The rays and hits of a packet; of one ray, they are scalars.
+/// The types of a packet's rays and hits; for one ray, fields are scalars.
 template <std::size_t kWidth>
 struct Packet;
 template <>
@@ -90,13 +90,13 @@ struct Packet<16> {
   using Hits = RTCRayHit16;
 };
 
-/// A query with room for the additional word per ray of Embree 4's hits.
+/// A query with space for the additional word per ray in Embree 4's hits.
 template <class RayHit, std::size_t kWords>
 struct RoomForHit : RayHit {
   std::uint32_t more[kWords];
 };
 
-/// Return a lane of a field.
+/// Return one lane of a field.
 template <class Word>
 Word& in_lane(Word& field, std::size_t) {
   return field;
@@ -178,7 +178,7 @@ class RayPackets : public Peer {
   std::size_t count_ = 0;
 };
 
-/// Traces streams of rays with Embree 3 (rtcIntersect1M), with the same flag.
+/// Traces streams of rays with Embree 3 (rtcIntersect1M), with the coherent flag as in RayPackets.
 template <class Queries>
 class RayStreams : public RayPackets<1, Queries> {
  public:
@@ -211,7 +211,7 @@ class RayStreams : public RayPackets<1, Queries> {
   }
 
  private:
-  // Rays per stream, which fit into the first-level cache.
+  // Rays per stream. Such a stream fits into the first-level cache.
   static constexpr std::size_t kStream = 1024;
 };
 

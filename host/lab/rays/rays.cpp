@@ -17,8 +17,8 @@
 namespace raygate::lab {
 namespace {
 
-/// This project as a peer, used like in the renderer: the rays of a tile at a time, exact
-/// arithmetic for doubts of float32, and P for every nearest hit.
+/// This project as a peer, used as by the renderer: traces the rays of one tile at a time, resolves
+/// doubts of float32 by exact arithmetic, and computes P for every nearest hit.
 class RaygatePeer : public Peer {
  public:
   explicit RaygatePeer(const Scene& scene) : Peer("raygate"), bvh_(scene) {}
@@ -55,7 +55,7 @@ class RaygatePeer : public Peer {
 struct RaysOptions {
   std::vector<std::string> scenes;
   int size = 1024, repeats = 15;
-  std::string embree4;  // path of its library; empty: none
+  std::string embree4;  // path of Embree 4's library; empty: none
 };
 
 /// Returns the fraction of rays with equal results: the triangle, or whether any is hit.

@@ -22,7 +22,7 @@ struct RaySet {
   std::vector<Ray> rays;
   bool common_origin = false;  ///< all rays begin at rays[0].origin
   std::vector<float> t_max;    ///< empty, or one per ray: only hits with t < t_max[i] count
-  bool any_hit = false;        ///< the query is only whether there is a hit
+  bool any_hit = false;        ///< the query asks only whether there is a hit
 
   /// Finds the hits of the rays from `first` on.
   void find(Intersector& intersector, std::size_t first, std::span<NearestHit> hits) const {
@@ -66,13 +66,13 @@ class Peer {
   const std::string name;
 };
 
-/// Returns this project's `cpu` engine.
+/// Returns this project's `cpu` engine as a peer.
 [[nodiscard]] std::unique_ptr<Peer> make_raygate(const Scene& scene);
 
 /// Returns peers of Embree 3: single rays, packets of 8 and 16, and streams, each in default and
 /// robust mode, with high-quality BVHs.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees(const Scene& scene);
-/// Returns the same peers of Embree 4, a shared library. Throws InputError if `file` is not one.
+/// Returns the same peers of Embree 4. Throws InputError if `file` is not Embree 4's library.
 [[nodiscard]] std::vector<std::unique_ptr<Peer>> make_embrees4(const Scene& scene,
                                                                const std::string& file);
 

@@ -10,8 +10,7 @@ import jinja2
 from host.lab.rows import of, scene_name
 from synth import tables
 
-# A table column, "HEAD = EXPRESSION :FORMAT". The default expression is the row's value named by HEAD; without a
-# format, cells are text.
+# A table column, "HEAD = EXPRESSION :FORMAT". By default, EXPRESSION is the row's value named HEAD. Without FORMAT, cells are text.
 COLUMN = re.compile(r"(?P<head>.*?)(?: = (?P<expression>.*?))?(?: :(?P<form>\S*))?$")
 ENVIRONMENT = jinja2.Environment(undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 
@@ -59,12 +58,12 @@ def save(file: pathlib.Path, rows: list[dict], *columns: str | list[str]) -> str
 
 
 def each(values: list, *columns: str) -> list[str]:
-    """Returns the columns for each value, which replaces {}."""
+    """Returns the columns once for each value, with {} replaced by the value."""
     return [column.replace("{}", str(value)) for column in columns for value in values]
 
 
 def rate(count: int, of_all: int) -> str:
-    """Returns the rate per million; "0" only if there were no occurrences."""
+    """Returns `count` per million of `of_all`; "0" only if `count` is 0."""
     value = 1e6 * count / of_all if of_all else 0.0
     return "-" if not of_all else "0" if not count else f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
 
@@ -80,7 +79,7 @@ def wrap(page: str) -> str:
         return textwrap.fill(" ".join(text.split()), 120, subsequent_indent="  " if text.startswith("* ") else "",
                              break_long_words=False, break_on_hyphens=False)
 
-    # A paragraph or an item: lines that begin neither a table, a heading, an image, nor the next item.
+    # A paragraph or an item: lines up to one that begins a table, a heading, an image or an item.
     page = re.sub(r"^(?:\* |[^|#!*\s]|\*\*).*(?:\n(?!\* |[|#!])[^\n]+)*", filled, page, flags=re.MULTILINE)
     return re.sub(r"\n{3,}", "\n\n", page)
 

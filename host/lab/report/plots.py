@@ -9,7 +9,7 @@ from PIL import Image
 
 
 def write_png(drawn: bytes, file: pathlib.Path) -> None:
-    """Writes a PNG with at most 256 colours, 1/5 of the original size."""
+    """Writes a PNG with at most 256 colours, a fifth of the bytes of the original."""
     picture = Image.open(io.BytesIO(drawn)).convert("RGB")
     picture.quantize(256, dither=Image.Dither.NONE).save(file, optimize=True)
 
@@ -25,7 +25,7 @@ def save(figure: plt.Figure, file: pathlib.Path) -> pathlib.Path:
 
 def flip(reference: pathlib.Path, picture: pathlib.Path) -> tuple[numpy.ndarray, float]:
     """Returns the FLIP difference map of two PNGs, and its mean."""
-    import flip_evaluator  # not needed by the tests of tables
+    import flip_evaluator  # imported here, as the tests of tables do not need it
 
     shown = [numpy.asarray(plt.imread(file), dtype=numpy.float32)[..., :3] for file in (reference, picture)]
     error_map, mean, _ = flip_evaluator.evaluate(*shown, "LDR")

@@ -61,12 +61,12 @@ using MeshPointer = std::shared_ptr<const Mesh>;
 
 /// A test of each ray against each triangle of a mesh.
 struct Shot {
-  MeshPointer mesh;  ///< shots may share it
+  MeshPointer mesh;  ///< several shots may share a mesh
   glm::dvec3 origin{0.0};
   std::vector<glm::dvec3> directions{};  ///< 1 to 8, scaled as the renderer scales them
   bool inside = false;                   ///< the mesh is closed and contains the origin
 
-  /// Returns the number of results of each kind, ordered by ray, then by triangle.
+  /// Returns the number of tests. Results are ordered by ray, then by triangle.
   [[nodiscard]] std::size_t tests() const { return directions.size() * mesh->size(); }
 };
 
@@ -75,14 +75,14 @@ struct Verdict {
   bool hit = false;
   bool tie = false;   ///< the ray meets the line of an edge exactly: the tie-break decides
   double t = 0.0;     ///< of a hit; relative error at most 2^-50
-  double sine = 0.0;  ///< of a hit: sine of the angle between ray and plane, as accurate
+  double sine = 0.0;  ///< of a hit: sine of the angle between ray and plane; same error
 };
 
 struct Truth {
   std::vector<Verdict> verdicts;  ///< by ray, then by triangle
-  /// For each ray the triangles that it hits, nearest first, exactly; then by index.
+  /// For each ray, the triangles that it hits, in exact order: nearest first, ties by index.
   std::vector<std::vector<std::uint32_t>> orders;
-  /// There is another hit at equal distance, or the tie-break was used.
+  /// By ray: two of its hits have equal distance, or the tie-break was used.
   std::vector<bool> nearest_tied;
 
   /// Returns the triangle that a ray hits first.
@@ -93,9 +93,9 @@ struct Truth {
 
 /// Computes the results by definition: all coordinates are integer multiples of a power of two, so
 /// the determinants are integers. With A, B, C the vertices minus the origin, a ray hits if D = A .
-/// (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have its sign. If one of the three
-/// is 0, its sign is that of the first non-zero component of the cross product, as for a direction
-/// tilted by (e, e^2, e^3). A direction that is zero or not finite hits nothing.
+/// (B x C) is not 0, and I . (A x B), I . (B x C), I . (C x A) have D's sign. If one of these is 0,
+/// its sign is that of the first non-zero component of the cross product, as for a direction tilted
+/// by (e, e^2, e^3). A direction that is zero or not finite hits nothing.
 [[nodiscard]] Truth find_truth(const Shot& shot);
 
 /// Position of a mesh made around the origin at size 1: p becomes p * scale + shift, rounded.
@@ -123,7 +123,7 @@ struct Suite {
   std::string what;  ///< one line for the report
   /// Makes a generator with its own state.
   std::function<Generator()> make;
-  bool binary64 = false;  ///< vertices are binary64, and in half of the shots rays are
+  bool binary64 = false;  ///< vertices are binary64; rays, in half of the shots
 };
 
 /// Returns all suites, in the order of the report.

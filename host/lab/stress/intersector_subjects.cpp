@@ -18,17 +18,17 @@
 namespace raygate::lab {
 namespace {
 
-/// Properties of a subject.
+/// Properties of an IntersectorSubject.
 struct Way {
   bool one_origin =
       false;          ///< shot by shot, as rays of a common origin; otherwise several shots at once
   bool exact = true;  ///< its intervals contain t
-  bool delivers = false;          ///< the hits that the host delivers are checked, too
+  bool delivers = false;          ///< hits that the host delivers are checked, too
   const Variant* unit = nullptr;  ///< the variant whose t is checked; null: none
 };
 
-/// Finds only nearest hits, so each triangle is tested alone in a BVH of its own, and all triangles
-/// in one BVH for the nearest hit.
+/// Tests an Intersector, which finds only nearest hits: each triangle alone, in a separate BVH,
+/// and, for the nearest hit, all triangles in one BVH.
 class IntersectorSubject : public Subject {
  public:
   IntersectorSubject(IntersectorOf make, const Way& way) : make_(std::move(make)), way_(way) {}
@@ -96,9 +96,8 @@ class IntersectorSubject : public Subject {
     for (const Corners& triangle : *mesh) trees_.emplace_back(Mesh{triangle}, make_);
   }
 
-  /// Finds the hits of all rays. Rays with one origin are traced again as a full cone, each in
-  /// several groups and lanes, and alone if there was a doubt: results must not depend on other
-  /// rays.
+  /// Finds the hits of all rays. Rays with one origin are traced again: as a full cone, each ray in
+  /// several groups and lanes, and alone if it had a doubt. Results must not depend on other rays.
   void search(Tree& tree) {
     hits_.assign(rays_.size(), {});
     work_.assign(rays_.size(), {});
@@ -154,8 +153,7 @@ class IntersectorSubject : public Subject {
   std::vector<bool> torn_;
 };
 
-/// Completes a subject: each of its objects has an engine of its own, of which all BVHs share the
-/// unit.
+/// Completes a subject: each object of it has a separate engine, whose BVHs share one unit.
 SubjectKind with(SubjectKind kind, const std::function<IntersectorOf()>& engine, const Way& way) {
   kind.make = [=] { return std::make_unique<IntersectorSubject>(engine(), way); };
   kind.engine = engine;

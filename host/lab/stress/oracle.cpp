@@ -7,7 +7,7 @@
 namespace raygate::lab {
 namespace {
 
-/// A vector in units of 2^-149, of which every coordinate is a multiple.
+/// A vector of integers, in units of 2^-149: every coordinate is a multiple of that.
 struct Vector {
   mpz_class x, y, z;
 };
@@ -25,7 +25,7 @@ Vector cross(const Vector& a, const Vector& b) {
 
 mpz_class dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Returns a / b, also of numbers beyond the range of double.
+/// Returns a / b, also for numbers beyond the range of double.
 double quotient(const mpf_class& a, const mpf_class& b) { return mpf_class(a / b).get_d(); }
 
 mpf_class length(const Vector& v) { return sqrt(mpf_class(dot(v, v), 128)); }
@@ -35,7 +35,7 @@ bool usable(const glm::dvec3& direction) {
          std::isfinite(direction.z);
 }
 
-/// Values that do not depend on the ray.
+/// A triangle, with the values that do not depend on the ray.
 struct Target {
   Vector normal, edges[3];
   mpz_class distance;

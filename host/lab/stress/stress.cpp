@@ -18,9 +18,9 @@ std::uint64_t digest(std::string_view bytes) {
   return result;
 }
 
-/// Returns the number of rays that cross the mesh an even number of times, by the oracle, though
-/// they start inside it: either the generator's claim is wrong, or the rule for origins of
-/// reflected rays.
+/// Returns the number of rays that, by the oracle, cross the mesh an even number of times though
+/// they start inside it. Then the generator's claim or the rule for origins of reflected rays is
+/// wrong.
 std::uint64_t broken_claims(const Shot& shot, const Truth& truth) {
   return !shot.inside ? 0
                       : static_cast<std::uint64_t>(std::ranges::count_if(
@@ -106,8 +106,8 @@ void add_stress(CLI::App& lab) {
       ->check(CLI::IsMember(asked->subjects));
   app->add_flag("--list", asked->listed, "the suites' names, and no more");
   app->callback([asked] {
-    // The heap keeps freed memory: some suites repeatedly allocate 2 MB for exact comparisons of
-    // distances, whose pages would otherwise be returned to the system each time.
+    // Makes the heap keep freed memory: some suites repeatedly allocate 2 MB to compare distances
+    // exactly, and its pages would be returned to the system each time.
     mallopt(M_MMAP_THRESHOLD, 1 << 24);
     mallopt(M_TRIM_THRESHOLD, 1 << 25);
     std::vector<SubjectKind> subjects = all_subjects();

@@ -27,7 +27,7 @@ struct Answer {
   glm::vec3 point{std::numeric_limits<float>::quiet_NaN()};
   float point_error = std::numeric_limits<float>::infinity();  ///< bound of the relative error of P
   Interval bounds{0.0, std::numeric_limits<double>::infinity()};  ///< bounds of a hit's exact t
-  /// The hit that the renderer uses, if that is another.
+  /// The hit that the renderer uses, if it differs from `t` and `point`.
   PreciseHit delivered{std::numeric_limits<float>::quiet_NaN(),
                        glm::vec3(std::numeric_limits<float>::quiet_NaN())};
 };
@@ -46,7 +46,7 @@ class Subject {
  public:
   virtual ~Subject() = default;
 
-  /// Replaces `answers` by those for `shots`.
+  /// Replaces `answers` by the answers for `shots`.
   virtual void run(std::span<const Shot> shots, Answers& answers) = 0;
 };
 
@@ -59,16 +59,16 @@ struct SubjectKind {
   bool exact = false;      ///< any wrong decision fails the run
   bool simulated = false;  ///< Verilated hardware
   bool binary32 = false;   ///< the bounds of tally.cpp for t and P apply
-  bool binary64 = false;   ///< asked in suites of binary64 vertices, too
+  bool binary64 = false;   ///< takes suites of binary64 vertices, too
   double share = 0.1;      ///< fraction of the requested number of tests
   std::function<std::unique_ptr<Subject>()> make{};
-  std::function<IntersectorOf()> engine{};  ///< of an engine or a variant
+  std::function<IntersectorOf()> engine{};  ///< makes the engine or variant
 };
 
 /// Returns all subjects of this build, in the order of the report.
 [[nodiscard]] std::vector<SubjectKind> all_subjects();
 
-/// Return parts of that list.
+/// Return parts of all_subjects().
 [[nodiscard]] std::vector<SubjectKind> engine_subjects();
 [[nodiscard]] std::vector<SubjectKind> trace_subjects();
 [[nodiscard]] std::vector<SubjectKind> variant_subjects();  ///< of variants.json
@@ -89,7 +89,7 @@ void for_each_mesh(std::span<const Shot> shots, bool alone, const Ask& ask) {
   }
 }
 
-/// Sets `nearest` to the hit of each ray with the smallest t, the first of equals.
+/// Sets `nearest` to each ray's hit with the smallest t; of equal ones, the first.
 void nearest_by_t(std::span<const Shot> shots, Answers& answers);
 
 }  // namespace raygate::lab

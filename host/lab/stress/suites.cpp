@@ -92,7 +92,7 @@ glm::dvec3 inside_of(const Corners& t, Random& random) {
   return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
 }
 
-/// Returns a point of an edge, or a vertex with probability 1/4.
+/// Returns a point on an edge or, with probability 1/4, a vertex.
 glm::dvec3 on_edge(const Corners& t, Random& random) {
   const int k = random.below(3);
   const double along = random.one_in(4) ? 0.0 : random.uniform(0, 1);
@@ -185,7 +185,7 @@ Shot lattice_shot(Random& random) {
   return shot;
 }
 
-/// Makes shots at distances of 1e3 to 1e7 sizes from the world's origin.
+/// Makes triangles at 1e3 to 1e7 times their size from the world's origin.
 Shot far_shot(Random& random) {
   const glm::dvec3 shift = random.unit() * random.log_uniform(1e3, 1e7);
   const Corners t = random_triangle(random, glm::dvec3(1), shift);
@@ -255,7 +255,7 @@ Shot axis_shot(Random& random, const MeshPointer& mesh) {
   const glm::dvec3 low = box[0][0], high = box[2][2];
   const int axis = random.below(3);
   const Corners& t = box[random.below(static_cast<int>(box.size()))];
-  // In the planes of a vertex's coordinates, or in none.
+  // Each coordinate of the origin is that of a vertex, or any.
   for (int k = 0; k < 3; ++k) {
     const double between = std::lerp(low[k], high[k], random.uniform(0.05, 0.95));
     shot.origin[k] = random.one_in(2) ? t[0][k] : between;
@@ -310,7 +310,7 @@ Shot degenerate_shot(Random& random) {
     case 3:
       origin = t[random.below(3)];
       break;
-    default:  // exactly in its plane
+    default:  // origin exactly in the triangle's plane
       t[0].z = t[1].z = t[2].z;
       origin.z = t[0].z;
       break;
@@ -380,7 +380,7 @@ std::optional<std::uint32_t> first_hit(const Bvh& bvh, const Ray& ray) {
 
 /// A generator whose shots are successive reflections: eight rays from a point in a wedge or a box.
 /// The next shot starts where one of them is reflected, at the renderer's spawn origin. All shots
-/// claim to start inside; the oracle finds out where the rule for origins fails.
+/// claim to start inside; the oracle reports where the rule for origins fails.
 class Bounces {
  public:
   Shot operator()(Random& random) {
@@ -392,7 +392,7 @@ class Bounces {
     directions_.clear();
     if (mirrored_ != glm::vec3(0.0f)) directions_.push_back(mirrored_);
     while (directions_.size() < kRays) {
-      // Towards edges and points near them, such as the edge between the first two side faces.
+      // Aims at edges and points near them, such as the edge between the first two side faces.
       const Corners& t = (*mesh_)[random.below(static_cast<int>(mesh_->size()))];
       const glm::dvec3 aim = glm::mix(t[0], t[random.below(3)], random.uniform(0, 1)) +
                              random.point() * random.log_uniform(1e-9, 1e-1);
@@ -437,7 +437,7 @@ class Bounces {
   std::shared_ptr<const Bvh> bvh_;
   glm::vec3 origin_{0.0f};
   std::vector<glm::vec3> directions_;  // directions of the last shot
-  glm::vec3 mirrored_{0.0f};           // of the ray that was followed; 0: none
+  glm::vec3 mirrored_{0.0f};           // reflected direction of the ray followed; 0: none
   int bounces_left_ = 0;
 };
 
@@ -499,7 +499,7 @@ std::vector<Suite> make_suites() {
        [] { return Generator(Bounces()); }}};
   suites.insert(suites.end(), rest.begin(), rest.end());
   for (std::size_t i = 0, count = suites.size(); i < count; ++i) {
-    // Renderers' rays, in the last one, and unusable ones are binary32.
+    // Unusable rays, and the renderer's rays of "corners", are binary32.
     if (suites[i].name == "useless" || suites[i].name == "corners") continue;
     suites.push_back({suites[i].name + " 64", suites[i].what, in_binary64(suites[i].make), true});
   }

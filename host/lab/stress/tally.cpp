@@ -12,13 +12,13 @@
 // float result of I . n. |.| of a vector is its length, |.|_1 the sum of its magnitudes.
 //
 // 1. Words. triangle_normal guarantees a double within 2^-34 |N|_1 of each component, to first
-//    order, and |N|_1 <= sqrt(3) |N|; then each is rounded to float, by u times itself. (A word
-//    that becomes subnormal adds 2^-150, which is negligible next to a largest one of at least
+//    order, and |N|_1 <= sqrt(3) |N|; then each is rounded to float, with a relative error u. (A
+//    word that becomes subnormal adds 2^-150, which is negligible next to a largest one of at least
 //    2^-60.)
 //      |I . n - I . N| <= u sum |I_k N_k| (1 + 2^-9) + 2^-34 sqrt(3) |N| |I|_1
 //    By Cauchy and Schwarz, sum |I_k N_k| <= |I| |N|, and |I|_1 <= sqrt(3) |I|:
 //      <= (1 + 2^-9 + 3 * 2^-10) u |I| |N|.
-//    plane_distance is within 2^-32 of D, and is rounded once: |d - D| <= (1 + 2^-7) u |D|.
+//    plane_distance is within 2^-32 |D| of D, and is rounded once: |d - D| <= (1 + 2^-7) u |D|.
 // 2. The dot product. Each product takes part in at most three roundings:
 //      |V - I . n| <= 3.00001 u sum |I_k n_k| <= (3 + 2^-9) u |I| |N|.
 // 3. |I . N| = sine |I| |N|. So the relative error of V is at most r = (4 + 2^-6) u / sine.
@@ -30,8 +30,8 @@ namespace {
 
 constexpr std::size_t kFailures = 5;
 
-/// Largest error in ulps of the hits that the host delivers, which are computed from the corners
-/// (precise_hit in host/exact/exact.h), at any angle.
+/// Largest error, in ulps and at any angle, of hits that the host delivers. These are computed from
+/// the corners (precise_hit in host/exact/exact.h).
 constexpr double kDeliveredUlp = 0.5 + 0x1p-10;
 
 constexpr double kU = 0x1p-24;
@@ -62,7 +62,7 @@ bool holds(const Interval& interval, double t) {
   return interval.low <= t * (1.0 + kError) && t * (1.0 - kError) <= interval.high;
 }
 
-/// Error of `value` in ulps of `exact`, and relative to it; none if it exceeds the range of float.
+/// Error of `value` in ulps of `exact`, and relative to it; none if `exact` is beyond float.
 struct Off {
   double ulps, relative;
 };

@@ -1,8 +1,8 @@
 // Public acceptance tests of watertightness, for engines and other ray tracers' hit tests.
 //
 // nomiss: from the Vulkan conformance tests (ray_tracing_pipeline.watertightness.nomiss). A square
-//   of two triangles is refined to N by points in random triangles, at random heights. Every ray of
-//   a grid along -z (256 x 256 for 65,536 triangles) must hit.
+//   of two triangles is refined to N triangles by points at random heights in random triangles.
+//   Every ray of a grid along -z (256 x 256 for 65,536 triangles) must hit.
 // singlehit: from the same tests. A closed fan of up to 1,024 triangles, and rays from its axis to
 //   its centre and to the middle of every inner edge. The original counts repeated hits of one
 //   triangle as duplicates; here, more than one hit is a duplicate.
@@ -107,10 +107,10 @@ Watertight from_inside(const char* name, Placement placement, int count, Targets
   return test;
 }
 
-/// Numbers of hits of rays.
+/// Numbers of hits, by ray.
 using Counts = std::vector<std::uint32_t>;
 
-/// A hit test, such as an engine, and what it found.
+/// A hit test, such as an engine, and the counts of its hits.
 struct Contestant {
   std::string name;
   bool is_exact, finds_all;
@@ -137,8 +137,8 @@ Counts count_all(const Bvh& bvh, std::span<const Ray> rays) {
   return counts;
 }
 
-/// Adds the counts of all hit tests for one mesh: of the cpu engine, of those that find the nearest
-/// hit only, and of Embree. Simulated hardware takes only the first rays.
+/// Adds the counts of all hit tests for one mesh: the cpu engine, hit tests that find the nearest
+/// hit only, and Embree. Simulated hardware takes only the first rays.
 void add_counts(const Watertight& test, std::vector<Contestant>& all) {
   constexpr std::size_t kSimulated = 8192;
   const Scene scene = test::scene_of(test.mesh);

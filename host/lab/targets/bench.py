@@ -28,7 +28,7 @@ def variants() -> list[dict]:
 
 
 def variants_steps(given: argparse.Namespace) -> list[Step]:
-    """Returns steps that render each scene in all variants; the first one also by the hardware, for its clocks."""
+    """Returns steps that render each scene in all variants; cornell also by the hardware, to count clocks."""
     size = ("--width", 160, "--height", 120) if given.quick else ()
     return [Step("variants", scene, ("pictures", f"scenes/{scene}.obj", f"{PICTURES}/{scene}", *size, "--integrator", integrator,
                                      "--samples", 1 if given.quick else samples, *(("--clocks",) if scene == "cornell" else ())))
@@ -36,7 +36,7 @@ def variants_steps(given: argparse.Namespace) -> list[Step]:
 
 
 def timed(table: str, scene: str, ways: list[dict], repeats: int, *words: str) -> list[dict]:
-    """Returns a row for each way of rendering, options by name: medians of the processor seconds of interleaved repeats."""
+    """Returns a row for each of `ways`, which are options by name: the median processor seconds of interleaved repeats."""
     runs = [[render([ROOT / "render", scene], "--threads", "1", *words, *(word for name, value in way.items() for word in (f"--{name}", str(value))))
              for way in ways] for _ in range(repeats)]
     found = []
@@ -57,7 +57,7 @@ def engines_steps(given: argparse.Namespace) -> list[Step]:
 
 
 def lanes_steps(given: argparse.Namespace) -> list[Step]:
-    """Returns the step that renders the paper's scene, with shadows and reflections, on 1 to 8 lanes and on its unit."""
+    """Returns the step that renders the paper's scene, with shadows and reflections, on 1 to 8 lanes and on the paper's unit."""
     ways = [*({"engine": "rtl", "unit": "pipeline", "lanes": count} for count in (1, 2, 4, 8)), {"engine": "rtl", "unit": "serial"}]
     return [Step("lanes", "the paper's scene", measure=lambda: timed(
         "lanes", "scenes/paper.obj", ways, 1 if given.quick else 3, "--integrator", "whitted", "--spp", "1", "--size", "320x200"))]
@@ -69,9 +69,8 @@ PARTS = {"variants": variants_steps, "engines": engines_steps, "lanes": lanes_st
 
 
 def judge_pictures(rows: list[dict]) -> list[dict]:
-    """Adds FLIP to each image that is compared with another: Andersson et al., "FLIP: a difference evaluator for
-    alternating images", 2020, in the authors' implementation (PyPI flip-evaluator), at its default of 67 pixels per
-    degree."""
+    """Adds FLIP to the row of each image that is compared with another: Andersson et al., "FLIP: a difference evaluator for alternating
+    images", 2020, in the authors' implementation (PyPI flip-evaluator), at its default of 67 pixels per degree."""
     for row in of(rows, "pictures"):
         if row.get("against"):
             error_map, row["flip"] = plots.flip(*(ROOT / f"{row[key]}.png" for key in ("against", "picture")))
@@ -81,15 +80,15 @@ def judge_pictures(rows: list[dict]) -> list[dict]:
 
 
 def finish(rows: list[dict]) -> list[dict]:
-    """Adds the variants and the FLIP of images."""
+    """Adds the rows of `lab variants` and the FLIP of images."""
     return [rows[0], *variants(), *judge_pictures(rows)[1:]]
 
 
 def frames(rows: list[dict]) -> list[dict]:
-    """Returns a copy of each picture's row, with its variant's columns, and
+    """Returns a copy of each picture's row, with columns of its variant and
 
-      clocks      per frame: the tests through the unit times the clocks per test of the variant's
-                  simulation (of binary32's if it has no hardware: then `clocks_modelled`)
+      clocks      per frame: tests through the unit times clocks per test in the variant's simulation or,
+                  with `clocks_modelled`, for a variant without hardware, in that of its usual unit
       wrong, doubtful          tests per million
       area, period_ns, frame_ms, area_time    if synthesis has measured the unit
     """
@@ -100,7 +99,7 @@ def frames(rows: list[dict]) -> list[dict]:
     synthesis = of(rows, "synthesis")
     found = []
     for row in pictures:
-        if "decisions" not in row:  # by the unit, for its clocks
+        if "decisions" not in row:  # rendered by the hardware, to count clocks
             continue
         variant, judged = known[row["variant"]], row["decisions"]
         usual = "serial" if variant["unit"] == "serial" else "binary32"

@@ -10,11 +10,11 @@ import sys
 from host.lab.rows import ROOT
 from synth import brought, catalogue, measure as synth, tools
 
-LIBRARY = "osu035"  # of the paper's time
+LIBRARY = "osu035"  # as old as the paper
 FLOWS = ("parts", "small")  # the first available one is used
 UNITS = {"pipeline": "hit_test_pipeline", "serial": "hit_test_unit"}
 USUAL = {"ExpWidth": 8, "FracWidth": 23, "QuotientBits": 0, "RoundingMode": 0, "Arith": 0}
-ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")  # as in fp_pkg
+ROUNDINGS = ("nearest-even", "toward-zero", "down", "up", "nearest-away")  # in the order of fp_pkg
 
 
 def _parameters(variant: dict) -> dict[str, int]:
@@ -39,8 +39,8 @@ def _measured(folder: str, rows: dict, workers: int) -> list[dict]:
 
 
 def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
-    """Returns rows of the results of `make synth` and, with `measure`, of each unit in each format of the variants.
-    Reports failures and missing tools on standard error."""
+    """Returns the results of `make synth` as rows and, with `measure`, also those of each variant's unit in its format. Reports failures
+    and missing tools on standard error."""
     file = ROOT / "build" / "synth" / "results.json"
     records = json.loads(file.read_text())["results"] if file.exists() else []
     if measure:
@@ -49,7 +49,7 @@ def synthesis(variants: list[dict], workers: int, measure: bool) -> list[dict]:
             if variant["hardware"]:
                 designs[variant["brought"]][design(variant).name] = catalogue.Row("variants", design(variant), {LIBRARY: FLOWS[:1]})
         try:
-            with concurrent.futures.ProcessPoolExecutor() as pool:  # the choice of files is per process
+            with concurrent.futures.ProcessPoolExecutor() as pool:  # the choice of user-supplied files is per process
                 for made in pool.map(functools.partial(_measured, workers=-(-workers // len(designs))), *zip(*designs.items())):
                     records = made + records
         except (tools.MissingTool, tools.ToolFailed) as error:

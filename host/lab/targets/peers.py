@@ -34,14 +34,14 @@ def at_count(rows: list[dict]) -> list[dict]:
 
 
 def beside_ours(rows: list[dict]) -> list[dict]:
-    """Returns rows by renderer, sampler and number of threads, with raygate's row for as many threads."""
+    """Returns the rows with about COUNT samples; each has `ours`, raygate's row for the same number of threads."""
     mine = at_count(rows)
     ours = {row["threads"]: row for row in mine if row["renderer"] == "raygate"}
     return [{**row, "by": name(row), "ours": ours[row["threads"]]} for row in mine]
 
 
 def ratio(ours: dict, theirs: dict, key: str, *, with_time: bool = True) -> str:
-    """Returns raygate's error relative to the other's, optionally times the ratio of times, and its standard error
+    """Returns raygate's error relative to the other renderer's, optionally times the ratio of times, and the standard error of this ratio
     over seeds."""
     value = ours[key] / theirs[key] * (ours["median_seconds"] / theirs["median_seconds"] if with_time else 1.0)
     relative = math.hypot(ours[f"{key}_error"] / ours[key], theirs[f"{key}_error"] / theirs[key])
@@ -49,8 +49,7 @@ def ratio(ours: dict, theirs: dict, key: str, *, with_time: bool = True) -> str:
 
 
 def summary(rows: list[dict]) -> list[dict]:
-    """Compares raygate with the best of Mitsuba's samplers by each error measure; one thread, equal numbers of
-    samples."""
+    """Compares raygate with Mitsuba's best sampler for each error measure, with one thread and equal numbers of samples."""
     found = []
     for reference in of(rows, "references"):
         mine = at_count(of(rows, "peers", scene=reference["scene"], threads=1))
@@ -67,8 +66,7 @@ def summary(rows: list[dict]) -> list[dict]:
 
 
 def error_against_time(rows: list[dict], scene: str, file: pathlib.Path) -> pathlib.Path:
-    """Plots error against time for one thread: a line for renderers and samplers with several sample counts, otherwise
-    a point."""
+    """Plots error against time for one thread: a line for each renderer and sampler with several sample counts, otherwise a point."""
     series: dict[str, list] = {}
     mine = of(rows, "peers", scene=scene, threads=1)
     for row in mine:

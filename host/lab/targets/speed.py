@@ -12,7 +12,7 @@ SCENES = ("scenes/cornell.obj", "scenes/teapot.obj", "scenes/paper.obj",
 
 
 def rays_steps(given: argparse.Namespace) -> list[Step]:
-    """Returns a step for each scene. Embree 4 is that of PyPI's embreex, if installed."""
+    """Returns a step for each scene. Embree 4 is the library in PyPI's embreex, if installed."""
     words = ("--size", 128, "--repeats", 1) if given.quick else ()
     for library in sorted(pathlib.Path(sysconfig.get_path("platlib")).glob("embreex.libs/libembree4*"))[:1]:
         words += ("--embree4", library)
@@ -23,7 +23,7 @@ PARTS = {"rays": rays_steps}
 
 
 def over_best(row: dict) -> dict:
-    """Returns raygate's rays per second relative to Embree's fastest mode and fastest robust mode, over all versions."""
+    """Returns a row with raygate's rays per second relative to Embree's fastest mode and fastest robust mode, of all versions."""
     ours = row["at"]["raygate"]
     found = {**row, "mrays": ours["mrays_per_second"]}
     for kind, is_robust in (("fast", False), ("robust", True)):
@@ -36,7 +36,7 @@ def over_best(row: dict) -> dict:
 
 
 def values(rows: list[dict], _: pathlib.Path) -> dict:
-    """Returns rays compared with Embree's best modes."""
+    """Returns raygate's rays per second relative to Embree's best modes."""
     return {"over_best": [over_best(row) for row in grouped(of(rows, "rays"), ("scene", "rays"), "by")]}
 
 

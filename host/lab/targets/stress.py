@@ -26,20 +26,20 @@ def watertight(given: argparse.Namespace) -> Step:
     return Step("all", "watertight", ("watertight", *(("--triangles", 4096, "--seeds", 1) if given.quick else ())))
 
 
-# Half a million tests per suite on the core's reference model, 50,000 on the simulated hardware.
+# In part "core", half a million tests per suite run on the core's reference model, 50,000 on the simulated hardware.
 PARTS = {"all": lambda given: [*steps("all", given, 10_000_000), watertight(given)],
          "core": lambda given: steps("core", given, 2_500_000, "--subject", "model core", "rtl core", "model exact core", "rtl exact core")}
 USUAL = ("all",)
 
 
 def total(rows: list[dict]) -> dict:
-    """Returns the sum of a subject's rows over all suites."""
+    """Returns a row with the sums, and the largest errors, of a subject's rows over all suites."""
     return {**rows[0], **{key: sum(row[key] for row in rows) for key in COUNTS},
             **{key: max(math.inf if row[key] is None else row[key] for row in rows) for key in LARGEST}}
 
 
 def cases(rows: list[dict], key: str) -> int:
-    """Returns the number of distinct cases of the subjects with this key. Each sees a prefix of its suite's sequence."""
+    """Returns the number of distinct cases of the subjects with this key. Each subject sees a prefix of a suite's sequence of cases."""
     most: dict[str, int] = {}
     for row in rows:
         most[row["suite"]] = max(most.get(row["suite"], 0), row["tests"] if row[key] else 0)
@@ -47,7 +47,7 @@ def cases(rows: list[dict], key: str) -> int:
 
 
 def values(rows: list[dict], _: pathlib.Path) -> dict:
-    """Returns the sums by subject and by suite, side by side."""
+    """Returns the sums by subject, the rows by suite with subjects side by side, and totals."""
     # Exact subjects must also decide ties correctly.
     mine = [row | {"wrong": row["wrong"] + row["exact"] * row["wrong_ties"]} for row in of(rows, "stress")]
     suites = grouped(mine, ("suite",), "subject")
@@ -62,8 +62,8 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
 
 
 def failures(rows: list[dict]) -> list[str]:
-    """Returns wrong decisions of exact subjects, as lines of stress/test/regressions.txt, and suites whose claims of
-    being inside a mesh are wrong."""
+    """Returns wrong decisions of exact subjects, as lines of stress/test/regressions.txt, and suites that wrongly claim that rays start
+    inside a mesh."""
     return [f"{row['subject']}, suite {row['suite']}: wrong, or beyond a proven bound" + "".join(f"\n{line}" for line in row["failures"])
             for row in of(rows, "stress") if row["exact"] and not (row["spotless"] and row["tests"])] + \
         [f"{row['by']}, {row['test']}: {row['escapes']} escapes, {row['double_hits'] or 0} double hits"

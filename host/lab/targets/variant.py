@@ -13,13 +13,13 @@ from host.lab.steps import Step
 from host.lab.targets import bench, costs
 from synth import brought, catalogue, report, store, tools
 
-# The variants that the program `lab` is built with: host/lab/variants/CMakeLists.txt.
+# The variants with which the program `lab` is built (host/lab/variants/CMakeLists.txt).
 TABLE = KEPT / "variant.json"
 # Options of make's command line: the column of variants.json, and its valid values.
 WORDS = {"EXP_WIDTH": ("exponent_bits", range(3, 9)), "FRAC_WIDTH": ("digits", range(2, 24)),
          "QUOTIENT_BITS": ("quotient_digits", range(1, 25)), "ROUNDING": ("rounding", costs.ROUNDINGS),
          "UNIT": ("unit", tuple(costs.UNITS)), "ADDER": ("adder", None), **dict.fromkeys(("MULTIPLIER", "DIVIDER_ROW", "ROUNDER"), ("", ()))}
-# Instead of a value, a file with a module that replaces that of hw/.
+# Endings of files that replace a value: the file has a module to use in place of hw/'s.
 FILES = (".sv", ".v")
 # Rows of a card: name, value of a frame (targets/bench.py), format.
 FIGURES = (("area, um2 in OSU 0.35 um", "area", ",.0f"), ("period, ns", "period_ns", ".2f"),
@@ -54,7 +54,7 @@ def brought_files(words: list[str]) -> dict[str, str]:
 
 
 def table(words: list[str]) -> list[dict]:
-    """Returns rows of variants.json: binary32, binary32 in the same unit, and the variant of the options, which may
+    """Returns rows as in variants.json: binary32, binary32 in the variant's unit if that differs, and the variant of the options, which may
     also have an `adder`."""
     files = brought_files(words)
     mine: dict = dict(read_word(word) for word in words if word.partition("=")[0] not in files)
@@ -78,7 +78,7 @@ def table(words: list[str]) -> list[dict]:
 
 
 def prepare(words: list[str]) -> None:
-    """Writes the table for the build, unless it is unchanged, which avoids rebuilding."""
+    """Writes the table for the build. Leaves an unchanged table as it is, which avoids rebuilding."""
     text = json.dumps([{key: value for key, value in line.items() if key != "adder"} for line in table(words)], indent=1)
     if not TABLE.exists() or TABLE.read_text() != text:
         TABLE.parent.mkdir(parents=True, exist_ok=True)
@@ -92,13 +92,13 @@ def judged(words: list[str]) -> list[dict]:
 
 
 def variants(given: argparse.Namespace) -> list[dict]:
-    """Returns the rows of `lab variants`, with the adder."""
+    """Returns the rows of `lab variants`, each with its adder."""
     return [{**row, "adder": line.get("adder", "")}
             for row, line in zip(bench.variants(), table(given.variant), strict=True)]
 
 
 def pictures(given: argparse.Namespace) -> list[Step]:
-    """Returns the step that renders the scene in each variant, audited, and small by the hardware for clocks."""
+    """Returns the step that renders and audits the scene in each variant, and renders it small by the hardware to count clocks."""
     scene = pathlib.Path(given.scenes or "scenes/cornell.obj")
     return [Step("pictures", str(scene), ("pictures", scene, f"{bench.PICTURES}/card-{scene.stem}", "--integrator", "whitted", "--clocks"))]
 
@@ -109,7 +109,7 @@ PARTS = {
     "checks": lambda given: [Step("checks", "models against hardware", ("check", "--tests", 100_000))],
     "pictures": pictures,
     "synthesis": lambda given: [Step("synthesis", "area and clock", measure=lambda: costs.synthesis(
-        variants(given)[-2:], processors(), measure=True))]}  # the two on the card
+        variants(given)[-2:], processors(), measure=True))]}  # the two variants on the card
 finish = bench.judge_pictures
 
 
@@ -120,7 +120,7 @@ def _value(frame: dict, path: str) -> float | None:
 
 
 def figures(usual: dict, mine: dict) -> list[dict]:
-    """Returns rows of a card: both values as text, or a dash, and their ratio."""
+    """Returns rows of a card: the values of both variants as text, or a dash, and their ratio."""
     found = []
     for name, path, form in FIGURES:
         numbers = [_value(usual, path), _value(mine, path)]
@@ -131,7 +131,7 @@ def figures(usual: dict, mine: dict) -> list[dict]:
 
 
 def values(rows: list[dict], folder: pathlib.Path) -> dict:
-    """Returns frames of binary32 and the variant, the critical path, the folder of its files, and images."""
+    """Returns frames of binary32 and the variant, the critical path, the folder of the synthesis run, and images."""
     frames = bench.frames(rows)
     usual, mine = frames[max(len(frames) - 2, 0)], frames[-1]
     record = costs.unit(of(rows, "synthesis"), of(rows, "variants")[-1])

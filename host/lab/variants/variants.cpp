@@ -23,7 +23,7 @@
 namespace raygate {
 namespace {
 
-/// Numbers of any format in a port of one lane, the first in the lowest bits.
+/// Packs numbers of any format into a port of one lane, the first number in the lowest bits.
 class PackedNumbers {
  public:
   explicit PackedNumbers(const Arithmetic& math) : math_(math) {}
@@ -87,7 +87,7 @@ std::unique_ptr<BurstUnit> make_rtl_burst_unit([[maybe_unused]] const Variant& v
   return nullptr;
 }
 
-/// Returns hit_test_unit likewise, with its QuotientBits. Words are rounded to the format first.
+/// Returns hit_test_unit likewise, with QuotientBits. Words are rounded to the format first.
 std::unique_ptr<PlaneUnit> make_rtl_plane_unit([[maybe_unused]] const Variant& variant) {
 #define RAYGATE_MODEL(top, ...)            \
   if (matches(variant, __VA_ARGS__))       \
@@ -98,7 +98,7 @@ std::unique_ptr<PlaneUnit> make_rtl_plane_unit([[maybe_unused]] const Variant& v
   return nullptr;
 }
 
-/// RandomBursts in a variant's format.
+/// Makes RandomBursts in a variant's format.
 class VariantBursts {
  public:
   VariantBursts(const Variant& variant, std::uint64_t seed)
@@ -124,7 +124,7 @@ class VariantBursts {
  private:
   std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(random_() >> 32) % n; }
 
-  /// Returns the number of the format that is `steps` above or below `x`.
+  /// Returns the number of the format that is `steps` (of either sign) from `x`.
   float stepped(float x, int steps) const {
     const std::uint32_t mask = (1u << (math_.word_bits() - 1) << 1) - 1;
     return math_.from_word((math_.to_word(x) + static_cast<std::uint32_t>(steps)) & mask);
@@ -163,13 +163,13 @@ class VariantBursts {
       case 0:
         for_each_word(record, [&](float& x) { x = random_number(); });
         break;
-      case 1:  // exactly at the bound, or one step off
+      case 1:  // bounds at |U|, or one step off
         for (int k = 0; k < 3; ++k) {
           const float u = variant_.math.dot(record.edges[k], direction);
           record.bounds[k] = stepped(std::abs(u), static_cast<int>(below(3)) - 1);
         }
         break;
-      case 2: {  // about the distance of the previous one: around the margin of 64 + 64 steps
+      case 2: {  // near the previous distance: around the margin of 64 + 64 steps
         record = before;
         const int reach = 1 << below(9);
         record.d = stepped(record.d,
@@ -198,9 +198,9 @@ class VariantBursts {
 /// Result of a comparison.
 struct VariantCheck {
   std::uint64_t tests = 0;  // hit tests through unit and model
-  HitCounters events{};     // of the pipelined unit, which show what the sample covers
+  HitCounters events{};     // of the pipelined unit: what the sample covers
   std::uint64_t clocks = 0;
-  std::string difference = "none";  // the first one, with its inputs
+  std::string difference = "none";  // the first difference, with its inputs
 };
 
 constexpr std::uint64_t kBatch = 5000;

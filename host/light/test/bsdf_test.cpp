@@ -1,5 +1,5 @@
-// Fresnel, Snell and the lobes of materials against their formulas; facets against quadratures and
-// the formulas of the papers.
+// Fresnel's formulas, Snell's law and the lobes of materials against closed formulas; microfacets
+// against quadratures and the formulas of papers.
 #include "host/light/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -50,11 +50,11 @@ Material facets(float metallic, float roughness, float transmission = 0.0f) {
   return material;
 }
 
-/// What comes back, or goes through, of white light from all sides: by sample() and pdf(), and in
-/// the mean over fixed directions, which do not know how samples are chosen.
+/// Reflected and transmitted fraction of white light from all sides, estimated with sample() and
+/// pdf() (`sampled`) and over fixed directions, which do not depend on them (`integral`).
 struct Balance {
   double sampled = 0.0, integral = 0.0, chosen = 0.0, density = 0.0;
-  float off_unit = 0.0f;  // of the squared length of a sample
+  float off_unit = 0.0f;  // largest error of a sample's squared length
 };
 
 Balance balance(const Bsdf<float>& bsdf, int count = 1 << 14) {
@@ -75,7 +75,7 @@ Balance balance(const Bsdf<float>& bsdf, int count = 1 << 14) {
   return sum;
 }
 
-// The formulas in angles (Born and Wolf 1.5.2): sines and tangents, not the cosines of the code.
+// Uses the formulas in angles (Born and Wolf 1.5.2): sines and tangents, not the code's cosines.
 TEST(Fresnel, IsTheFormulaInAngles) {
   for (const double eta : {1.5, 1.0 / 1.5, 1.33, 2.4, 1.0 / 2.4}) {
     for (double angle = 0.01; angle < pi / 2; angle += 0.01) {
@@ -91,7 +91,7 @@ TEST(Fresnel, IsTheFormulaInAngles) {
     EXPECT_NEAR(fresnel_reflectance(1.0f, float(eta)), std::pow((eta - 1) / (eta + 1), 2), 1e-7);
     EXPECT_NEAR(fresnel_reflectance(0.0f, float(eta)), 1.0, 1e-7);
   }
-  // At Brewster's angle nothing of one polarisation is reflected.
+  // At Brewster's angle one polarisation is not reflected.
   const double brewster = std::atan(1.5), beyond = std::asin(std::sin(brewster) / 1.5);
   EXPECT_NEAR(fresnel_reflectance(float(std::cos(brewster)), 1.5f),
               0.5 * std::pow(std::sin(brewster - beyond) / std::sin(brewster + beyond), 2), 1e-6);
@@ -116,8 +116,8 @@ TEST(Fresnel, RefractionIsSnellsLaw) {
   }
 }
 
-// Samples of all mixes have the density that pdf() says, which integrates to what is not thrown
-// away, and their mean is the integral of eval().
+// Samples of all mixes of lobes have the density pdf(), whose integral is the fraction of samples
+// that count, and their mean is the integral of eval().
 TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
   const auto check = [](const Balance& sum, double of_mean, double of_density,
                         const std::string& which) {
@@ -142,7 +142,7 @@ TEST(Bsdf, SamplesHaveTheDensityThatIsClaimed) {
   }
 }
 
-// A lobe as narrow as can be still has the height that it is to have, and is sampled within it.
+// Even the narrowest lobes have the right height, and their samples are within the lobe.
 TEST(Bsdf, NarrowLobesKeepTheirShape) {
   Material polished = material(2, 0.0f, 1.0f, 1.0f);
   for (const float exponent : {1e3f, 1e5f, 1e6f}) {
@@ -162,7 +162,7 @@ TEST(Bsdf, NarrowLobesKeepTheirShape) {
   }
 }
 
-// Whatever the material says, all shares together are at most what arrives.
+// For any material, the albedos of all lobes add up to at most 1.
 TEST(Bsdf, NoMaterialMakesEnergy) {
   for (int model = 1; model <= 10; ++model) {
     for (const float colour : {0.0f, 0.4f, 1.0f, 3.0f}) {
@@ -205,14 +205,14 @@ TEST(Bsdf, EachIllumDoesWhatItsTableSays) {
   EXPECT_NEAR(of(10, 1).diffuse.x, 0.4, 1e-7);
 }
 
-// Facets cover the surface once, seen from above.
+// The projected areas of all facets add up to the surface's area.
 TEST(Ggx, FacetsAddUpToTheSurface) {
   for (const float alpha : {0.01f, 0.1f, 0.5f, 1.0f}) {
     const Ggx<float> ggx(kUp, alpha);
     double sum = 0.0;
     constexpr int kSteps = 20000;
     for (int i = 0; i < kSteps; ++i) {
-      // By the tangent over alpha, t / (1 - t): lobes of all widths fill it.
+      // Steps in t, where tan(angle) / alpha = t / (1 - t): they suit lobes of all widths.
       const double t = (i + 0.5) / kSteps, tangent = alpha * t / (1 - t);
       const double angle = std::atan(tangent), slope = alpha / ((1 - t) * (1 - t));
       const Triple<float> normal = at_angles(angle, 1.0);
@@ -224,7 +224,7 @@ TEST(Ggx, FacetsAddUpToTheSurface) {
   }
 }
 
-// The mean over samples against an integral with the pdf that is claimed.
+// Compares means over samples with integrals that use the pdf.
 TEST(Ggx, SamplesHaveTheDensityThatIsClaimed) {
   for (const float alpha : {0.2f, 0.5f, 1.0f}) {
     for (const double angle : {0.0, 0.7, 1.4}) {
@@ -258,7 +258,7 @@ TEST(MetallicRoughnessLobes, AreTheSameThereAndBack) {
         const SquarePoint<float> u = point(i);
         const double a = 1.5 * u.x, b = 1.5 * u.y;
         const Material material = facets(metallic, roughness);
-        // Both have their view in the plane of x and z.
+        // Both views are in the plane of x and z.
         const Bsdf<float> there = seen(material, a), back = seen(material, b);
         const Triple<float> f = there.eval(at_angles(b, 2.0)), g = back.eval(at_angles(a, -2.0));
         ASSERT_NEAR(f.x, g.x, 1e-4f * f.x + 1e-6f) << roughness << " " << metallic;
@@ -268,8 +268,8 @@ TEST(MetallicRoughnessLobes, AreTheSameThereAndBack) {
   }
 }
 
-// KHR_materials_specular: without weight facets reflect nothing; its colour is that of what they
-// reflect straight on.
+// KHR_materials_specular: with weight 0 facets reflect nothing; its colour is the colour of
+// reflection at normal incidence.
 TEST(MetallicRoughnessLobes, ReflectBySpecularWeightAndColor) {
   Material material = facets(0.0f, 0.3f);
   const Triple<float> plain = seen(material, 0.0).facets.f0;
@@ -286,8 +286,8 @@ TEST(MetallicRoughnessLobes, ReflectBySpecularWeightAndColor) {
   }
 }
 
-// The white furnace: what absorbs nothing sends on all light from all sides, within 1 %: facets
-// over a base, metal, and rough glass from either side.
+// White furnace: surfaces that absorb nothing return all light, within 1 %: facets over a base,
+// metal, and rough glass from either side.
 TEST(MetallicRoughnessLobes, KeepAllLight) {
   const struct {
     float metallic, transmission;
@@ -340,8 +340,8 @@ TEST(MetallicRoughnessLobes, SmoothOnesLoseNothing) {
   }
 }
 
-/// Equation 21 of Walter and others times the cosine: of light along `in` that comes out along
-/// `out`, on the other side of a surface whose normal is +z. Separable masking, equation 34.
+/// Returns equation 21 of Walter and others times the cosine: for light along `in` that leaves
+/// along `out`, on the other side of a surface with normal +z. Masking is separable (equation 34).
 double walter(const glm::dvec3& in, const glm::dvec3& out, double alpha, double eta) {
   glm::dvec3 half = -glm::normalize(in + eta * out);
   if (half.z < 0.0) half = -half;
@@ -384,7 +384,7 @@ TEST(MetallicRoughnessLobes, RoughGlassIsThatOfWalterAndOthers) {
   }
 }
 
-// The table against integrals over directions of light, which the table's are not made of.
+// Compares the table with integrals over light directions; the table integrates over facets.
 TEST(FacetAlbedo, IsTheIntegralOfTheLobe) {
   double worst = 0.0;
   for (const float alpha : {0.05f, 0.2f, 0.5f, 0.9f}) {
@@ -396,7 +396,7 @@ TEST(FacetAlbedo, IsTheIntegralOfTheLobe) {
       double all = 0.0, fresnel = 0.0;
       for (int i = 0; i < kSteps; ++i) {
         for (int k = 0; k < kSteps; ++k) {
-          // Denser around what a mirror shows, at (angle, pi): by cubes.
+          // Cubes make the points denser around the mirror direction, (angle, pi).
           const double t = 2 * (i + 0.5) / kSteps - 1, u = (k + 0.5) / kSteps;
           const double reach = t < 0 ? angle : pi / 2 - angle;
           const double theta = angle + reach * t * t * t, turn = pi * (1 - u * u * u);

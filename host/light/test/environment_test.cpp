@@ -1,4 +1,4 @@
-// An environment's pdf, samples and radiance against quadratures, and pictures lit by it.
+// An environment's pdf, samples and radiance against quadratures; pictures that it lights.
 #include "host/light/environment.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using namespace test;  // NOLINT(google-build-using-namespace)
 
 using std::numbers::pi;
 
-/// Dim noise, a sun of one texel, a black part.
+/// Returns a map of dim noise with a sun of one texel and a black part.
 EnvironmentMap noisy(int width, int height) {
   std::mt19937 engine(5);
   EnvironmentMap map;
@@ -116,7 +116,7 @@ TEST(Environment, SamplesHaveTheDensityThatIsClaimed) {
   EXPECT_LE(ideal, 4.01 * 4 * pi * (mean.x + mean.y + mean.z) / 3);
 }
 
-/// A floor whose normal is +y under an environment, as a path tracer sees it.
+/// Returns a path-traced pixel of a floor with normal +y under an environment.
 double floor_under(const EnvironmentMap& map, const Material& material, int samples) {
   Scene scene;
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), material);
@@ -143,7 +143,7 @@ TEST(Environment, LightsAFloorAsItsIntegralSays) {
   }
 }
 
-// Mirrors, misses and what Whitted calls ambient.
+// Through mirrors, on misses and as Whitted's ambient light.
 TEST(Environment, IsSeenByAllThatSeesTheSky) {
   EnvironmentMap map;
   map.width = map.height = 1;
@@ -155,7 +155,7 @@ TEST(Environment, IsSeenByAllThatSeesTheSky) {
       scene.environment = map;
       const glm::dvec3 mean = mean_colour(
           film_of(scene, camera_at({0, 0, 4}, {0, 0, 0}, 45.0), light(integrator, 16, 16, 16)));
-      // Some light stays in the glass.
+      // Some light is trapped in the glass.
       EXPECT_NEAR(mean.r, 0.25, 0.01);
       EXPECT_NEAR(mean.g, 0.5, 0.02);
     }

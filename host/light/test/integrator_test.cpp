@@ -1,4 +1,4 @@
-// Pictures with shadows, mirrors and glass are the same bytes whatever is used to make them.
+// Pictures with shadows, mirrors and glass have the same bytes for all engines and threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "host/base/test/using_vectors.h"
 #include "host/light/test/light_scenes.h"
 
-static thread_local bool refuse_large = false;  // memory, to this thread
+static thread_local bool refuse_large = false;  // makes large allocations of this thread fail
 
 namespace raygate {
 namespace {
@@ -65,7 +65,7 @@ TEST_P(EveryIntegrator, ThreadsAndUnitsChangeNoByte) {
   }
 }
 
-/// Counts the rays that name their source; none may hit it.
+/// Counts rays with and without a source primitive, and checks that none hits its source.
 class SourceGuard : public CpuIntersector {
  public:
   SourceGuard(const Bvh& bvh, std::size_t& named, std::size_t& unnamed)
@@ -97,14 +97,14 @@ TEST_P(EveryIntegrator, RaysNameTheTriangleThatTheyLeave) {
   RenderStats stats;
   RenderSettings one_thread = options(150, 100);
   one_thread.threads = 1;
-  one_thread.caustics = false;  // paths from lights begin off them, and have no source
+  one_thread.caustics = false;  // light paths start off the lights, without a source
   EXPECT_TRUE(same(film(one_thread), render(scene_, bvh_, camera_, one_thread, guard, stats)));
   if (GetParam() == IntegratorKind::kPrimary) return;
   EXPECT_GT(named, 10'000u);
   EXPECT_LT(1'000 * unnamed, named);
 }
 
-// The baseline shades one hit at a time, the others as many as they have lanes.
+// The baseline shades one hit at a time, other instruction sets one per lane.
 TEST_P(EveryIntegrator, VectorsChangeNoByte) {
   RenderSettings all = options(80, 60);
   all.channels.albedo = true;
@@ -118,7 +118,7 @@ TEST_P(EveryIntegrator, VectorsChangeNoByte) {
   }
 }
 
-// The unit's P in place of the host's: another picture, but not one that can be told from it.
+// With the unit's P instead of the host's, positions differ, but hardly.
 TEST_P(EveryIntegrator, TheUnitsPointsAreGoodEnough) {
   RenderSettings host = options(80, 60), unit = host;
   host.channels.position = unit.channels.position = true;
@@ -139,7 +139,7 @@ TEST_P(EveryIntegrator, TheUnitsPointsAreGoodEnough) {
   }
 }
 
-// More shadow rays than are traced at once.
+// Traces more shadow rays than fit into one batch.
 TEST(ManyLights, WindowsArePartsOfTheWhole) {
   Scene scene = everything();
   for (int i = 0; i < 40; ++i) {
@@ -160,7 +160,7 @@ TEST(ManyLights, WindowsArePartsOfTheWhole) {
   }
 }
 
-// With many lights shadow rays begin at the surface, with few at the light: it is the same shadow.
+// With many lights shadow rays start at surfaces, with few at lights: the shadows are the same.
 TEST(ManyLights, ShadowsAreTheSameFromEitherEnd) {
   Scene few = everything();
   Scene many = few;
@@ -181,7 +181,7 @@ TEST_P(EveryIntegrator, SeedsChangeTheNoiseAlone) {
   EXPECT_NEAR(mean_colour(b).r, mean_colour(a).r, 0.05 * mean_colour(a).r);
 }
 
-// Whatever a file may say, and lights in the oddest places: no infinity, nothing that is no number.
+// No values in a file, and no places of lights, make a pixel infinite or NaN.
 TEST_P(EveryIntegrator, EveryPixelIsFinite) {
   for (const float extreme : {0.0f, 1e-30f, 0.001f, 1e30f}) {
     for (int model = 0; model <= 10; ++model) {
@@ -207,14 +207,14 @@ TEST_P(EveryIntegrator, EveryPixelIsFinite) {
   }
 }
 
-// A scene in a corner of the picture leaves tiles empty.
+// Tiles are empty if the scene fills only a corner of the picture.
 TEST(EmptyTiles, HaveNoCameraRays) {
   Scene scene = everything();
   const Bvh bvh(scene);
   const Camera camera = camera_at({0.6, 0.4, 60}, {12, 12, 0}, 40.0);
   RenderSettings options = light(IntegratorKind::kWhitted, 400, 400, 1);
   RenderStats stats;
-  // Only those who see an environment have something to see there.
+  // Only integrators that see an environment need camera rays there.
   EnvironmentMap sky;
   sky.width = sky.height = 1;
   sky.texels = {glm::vec3(1.0f)};
@@ -226,7 +226,7 @@ TEST(EmptyTiles, HaveNoCameraRays) {
   }
 }
 
-// The threshold saves rays, and changes the picture by no more than it says a ray may count for.
+// The threshold saves rays, and changes the picture by at most the contribution of these rays.
 TEST(Threshold, SavesRaysThatHardlyCount) {
   Scene scene = everything();
   const Bvh bvh(scene);
@@ -244,7 +244,7 @@ TEST(Threshold, SavesRaysThatHardlyCount) {
   }
 }
 
-// Snapshots show what is there, while the threads go on.
+// Snapshots show the samples so far while rendering goes on.
 TEST(Snapshots, AreTakenOnTheWay) {
   const Scene scene = everything();
   const RenderSettings options = light(IntegratorKind::kPath, 40, 30, 400);
@@ -265,7 +265,7 @@ TEST(Snapshots, AreTakenOnTheWay) {
   EXPECT_GT(seen, 0.0f);
 }
 
-// A copy that there is no memory for is told of, and the render goes on.
+// If memory for a copy is lacking, the snapshot is null and rendering goes on.
 TEST(Snapshots, WithoutMemoryForACopyTheRenderGoesOn) {
   const Scene scene = everything();
   const RenderSettings options = light(IntegratorKind::kPath, 40, 30, 100);
@@ -292,7 +292,7 @@ TEST(Snapshots, WithoutMemoryForACopyTheRenderGoesOn) {
 }  // namespace
 }  // namespace raygate
 
-// Without memory for a film, where a test says so.
+// An allocation function that fails for large sizes while refuse_large is set.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   void* const memory = refuse_large && size > 4000 ? nullptr : std::malloc(size);
   if (memory == nullptr) throw std::bad_alloc();

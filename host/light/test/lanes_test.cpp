@@ -1,4 +1,4 @@
-// What lanes compute against the same text at one lane: bit by bit, special numbers among others.
+// Functions of several lanes give the same bits as with one lane, also for special numbers.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -16,14 +16,14 @@ namespace {
 
 constexpr int kInputs = 6, kOutputs = 4, kRounds = 20000;
 
-/// kLanes inputs each for functions of up to six numbers, and what they give.
+/// kLanes inputs each for functions of up to six numbers, and their outputs.
 struct Case {
   alignas(64) float in[kInputs][kLanes];
   alignas(64) float out[kOutputs][kLanes];
 };
 
-/// Numbers of every size, in [-1, 1] and [0, 1], and the odd ones: zeros, subnormals, infinities,
-/// what is no number.
+/// Generates numbers of every size, in [-1, 1] and [0, 1], and special ones: zeros, subnormals,
+/// infinities and NaN.
 class Inputs {
  public:
   void fill(Case& c) {
@@ -46,8 +46,8 @@ class Inputs {
   std::mt19937 engine_{3};
 };
 
-/// f(in, out) over all lanes at once, and lane by lane; for each kind of vectors that is there.
-/// The bits are the same, but for which of the many that are no number it is.
+/// Compares f(in, out) over all lanes at once with f lane by lane, for each instruction set of this
+/// machine. The bits must be equal, except those of NaNs.
 template <class Function>
 void compare(const Function& f) {
   for (const Vectors vectors : machine_vectors()) {

@@ -1,4 +1,4 @@
-// Small scenes with materials and lights, and films of them; one surface and its BSDF.
+// Small scenes with materials and lights, and their films; a single surface and its BSDF.
 #pragma once
 
 #include <cmath>
@@ -43,14 +43,14 @@ inline Material emitter(const glm::vec3& emission) {
   return material;
 }
 
-/// glTF's shares of a white material.
+/// Returns a white material with these metallic-roughness parameters.
 inline Material facets(float metallic, float roughness, float transmission) {
   Material material = matte(glm::vec3(1.0f));
   material.metallic_roughness = {metallic, roughness, transmission};
   return material;
 }
 
-/// Two triangles: the corner `a`, and those at `u` and `v` from it.
+/// Returns two triangles that form the parallelogram with corner `a` and sides `u` and `v`.
 inline std::vector<Corners> rectangle(const glm::vec3& a, const glm::vec3& u, const glm::vec3& v) {
   return {{a, a + u, a + u + v}, {a, a + u + v, a + v}};
 }
@@ -109,7 +109,7 @@ inline Film film_of(const Scene& scene, const Camera& camera, const RenderSettin
   return raygate::render({prepared, camera, options, lights}, pipeline_model(bvh), stats);
 }
 
-/// Of all pixels.
+/// Returns the mean colour of all pixels.
 inline glm::dvec3 mean_colour(const Film& film) {
   glm::dvec3 sum(0.0);
   for (const glm::vec4& colour : film.color) sum += glm::dvec3(colour);
@@ -126,8 +126,8 @@ inline bool same(const Film& a, const Film& b) {
          same_bytes(a.normal, b.normal) && same_bytes(a.primitive, b.primitive);
 }
 
-/// A room with everything in it: a light, a point light, mirror, glass, a window that is half
-/// clear, a glossy sphere, one of rough metal and rough glass; the sky through a door.
+/// Returns a room with an area light, a point light, a mirror, a glass sphere, a glossy sphere, a
+/// sphere of rough metal and glass, and a half-transparent window; the sky is seen through a door.
 inline Scene everything() {
   Scene scene;
   add(scene, rectangle({-2, -2, -2}, {4, 0, 0}, {0, 0, 4}), matte({0.7f, 0.6f, 0.5f}));
@@ -154,7 +154,7 @@ inline Camera camera_at(const glm::dvec3& eye, const glm::dvec3& target, double 
   return Camera::look_at({.eye = eye, .target = target, .fov = fov}, aspect);
 }
 
-/// One pixel that looks straight down at the origin of a white floor.
+/// Returns a pixel that looks straight down at the origin of a white floor.
 inline float floor_radiance(Scene scene, IntegratorKind integrator, int samples) {
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
   const Camera camera = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
@@ -166,7 +166,7 @@ inline float floor_radiance(Scene scene, IntegratorKind integrator, int samples)
 
 inline Triple<float> triple(const glm::dvec3& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
-/// A triangle of this material seen at an angle to +z, where its outside is, or its inside.
+/// Returns the BSDF of a triangle, seen from outside (or inside) at this angle to +z.
 inline Bsdf<float> seen(const Material& material, double angle, bool outside = true) {
   Scene scene = scene_of({{glm::vec3(-9, -9, 0), glm::vec3(9, -9, 0), glm::vec3(0, 9, 0)}});
   if (!outside) std::swap(scene.triangles[0].vertices[0], scene.triangles[0].vertices[1]);
@@ -177,7 +177,7 @@ inline Bsdf<float> seen(const Material& material, double angle, bool outside = t
   return bsdf_at(scene, bvh, {&ray, 0, scene.triangles.data()}, MaterialParameters(material));
 }
 
-/// Fresnel's formula for glass of this index, in angles: sines and tangents, not cosines.
+/// Returns Fresnel's reflectance of glass, by sines and tangents of angles instead of cosines.
 inline double reflectance(double angle, double index = 1.5) {
   const double bent = std::asin(std::sin(angle) / index);
   if (angle < 1e-6) return std::pow((index - 1) / (index + 1), 2);

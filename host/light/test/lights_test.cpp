@@ -1,5 +1,5 @@
 // Lights are chosen as often as their probabilities say; the outer sides of closed lights; the
-// lights of scenes without any.
+// default lights of scenes without lights.
 #include "host/light/lights.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ using test::add, test::emitter, test::matte, test::rectangle;
 
 constexpr std::uint32_t kSeed = 20;
 
-/// Lights of all kinds, strewn about: points, spots, triangles and parallelograms, from afar.
+/// Lights of all kinds at random places: points, spots, triangles, parallelograms, distant lights.
 class ManyLights : public testing::TestWithParam<int> {
  protected:
   ManyLights() {
@@ -57,7 +57,7 @@ class ManyLights : public testing::TestWithParam<int> {
     }
   }
 
-  /// Whether a source brings anything to a surface there, if nothing is between.
+  /// Returns whether a source contributes at a surface point if nothing occludes it.
   bool brings(const Lights& lights, const Lights::Source& source, const glm::vec3& point,
               const glm::vec3& normal) {
     const Lights::Light& light = lights.light(source.light);
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Numbers, ManyLights, testing::Values(0, 5, 40, 1000));
 
 std::uint32_t count_of(const Lights& lights) { return lights.environment_source() + 1; }
 
-// Who asks all lights has the same ones, and nothing to choose from.
+// With Sampling::kAll there are the same lights, but no sources to choose from.
 TEST_P(ManyLights, AreListedWithoutAChoice) {
   const Bvh bvh(scene_);
   const Lights chosen(scene_, bvh), all(scene_, bvh, Lights::Sampling::kAll);
@@ -98,7 +98,7 @@ TEST_P(ManyLights, AreListedWithoutAChoice) {
   EXPECT_EQ(all.ambient(), chosen.ambient());
 }
 
-// At places all over, among the lights too.
+// Checks surface points everywhere, also among the lights.
 TEST_P(ManyLights, ChancesAreOneInAllAndNoLightThatBringsLightHasNone) {
   const Bvh bvh(scene_);
   const Lights lights(scene_, bvh);
@@ -119,11 +119,11 @@ TEST_P(ManyLights, ChancesAreOneInAllAndNoLightThatBringsLightHasNone) {
     all += sum;
   }
   EXPECT_GT(bringing, 50);
-  // Less than 1 where a cluster may bring something and none of it does: spots, mostly.
+  // Below 1 where a cluster seems to contribute but none of its sources does, mostly spots.
   EXPECT_GT(all / 100, 0.7);
 }
 
-// What pmf() says is how often sample_source() gives it: for evenly spread u, off by the spread.
+// For evenly spaced u, the counts of sample_source() match pmf() within the spacing.
 TEST_P(ManyLights, ArePickedAsOftenAsTheirChance) {
   const Bvh bvh(scene_);
   const Lights lights(scene_, bvh);
@@ -148,7 +148,7 @@ TEST_P(ManyLights, ArePickedAsOftenAsTheirChance) {
   }
 }
 
-// The same bits, one child at a time and eight.
+// Weighting one child at a time or eight at once gives the same bits.
 TEST_P(ManyLights, LanesChangeNoBit) {
   const Bvh bvh(scene_);
   const Lights lights(scene_, bvh);
@@ -188,7 +188,7 @@ TEST(LightTree, PrefersWhatIsNearAndFacesTheSurface) {
   }
 }
 
-/// Of all triangles, in their order.
+/// Returns the outer sides of all triangles, in their order.
 std::vector<OuterSide> sides_of(const std::vector<Corners>& triangles) {
   const Scene scene = test::scene_of(triangles);
   const Bvh bvh(scene);
@@ -215,7 +215,7 @@ TEST(OuterSides, OfEachSphereAreOutside) {
 TEST(OuterSides, AreBothOfWhatIsOpen) {
   std::vector<Corners> hole = test::sphere(1, 1.0f, {0, 0, 0}), torn = hole;
   hole.pop_back();
-  std::swap(torn[3][0], torn[3][1]);  // one triangle the other way round
+  std::swap(torn[3][0], torn[3][1]);  // reverses one triangle
   for (const auto& sides :
        {sides_of(rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})), sides_of(hole), sides_of(torn)}) {
     for (const OuterSide side : sides) ASSERT_EQ(side, OuterSide::kBoth);
@@ -241,7 +241,7 @@ TEST(DefaultLights, AreOneLightAboveTheCamera) {
   EXPECT_NE(lights->background, glm::vec3(0.0f));
 }
 
-// Sixteen times the size of such a scene is beyond the range of float.
+// Sixteen times the size of this scene is beyond the range of float.
 TEST(DefaultLights, StayInTheRangeOfTreesAndPredicates) {
   Scene scene;
   add(scene, rectangle({-8e37f, -8e37f, 0}, {1.6e38f, 0, 0}, {0, 1.6e38f, 0}),
@@ -253,7 +253,7 @@ TEST(DefaultLights, StayInTheRangeOfTreesAndPredicates) {
   }
 }
 
-// Whatever faces the camera, and is white, is not clipped; by paths next to nothing is.
+// White surfaces that face the camera are not clipped; with paths, hardly any are.
 TEST(DefaultLights, LeaveWhiteBelowOne) {
   Scene scene;
   add(scene, test::sphere(4), matte(glm::vec3(1.0f)));
@@ -270,7 +270,7 @@ TEST(DefaultLights, LeaveWhiteBelowOne) {
       EXPECT_GT(most, 0.7f);
       if (!is_first_look) continue;
       options.integrator = IntegratorKind::kPath;
-      options.samples = 512;  // what is left is the mean
+      options.samples = 512;  // many samples, so that noise does not matter
       const Film film = test::film_of(scene, camera, options, lights);
       EXPECT_LT(std::ranges::count_if(film.color, [](const auto& color) { return color.b > 1.0f; }),
                 10);
@@ -284,14 +284,14 @@ TEST(PreviewLights, AreTwoLightsAndTheBackground) {
   const auto lights = default_lights(scene, camera_from({0, 0, -5}), true);
   ASSERT_TRUE(lights && lights->points.size() == 2);
   EXPECT_EQ(lights->background, kBlue);
-  // Seen from behind, left is +x; the lights are on the camera's side.
+  // From behind, the camera's left is +x; the lights are on the camera's side.
   EXPECT_GT(lights->points[0].position.x, 0.0f);
   EXPECT_LT(lights->points[1].position.x, 0.0f);
   for (const PointLight& light : lights->points) EXPECT_LT(light.position.z, 0.0f);
   EXPECT_GT(lights->points[0].intensity.x, lights->points[1].intensity.x);
 }
 
-// Under the edge of a roof, a floor gets as much light as it sees of a ball's disc: a segment.
+// Under a roof's edge, a floor is lit by the visible part of a sphere's disc: a circular segment.
 TEST(DefaultLights, CastSoftShadows) {
   const Scene wall = square(matte(glm::vec3(0.5f)));
   EXPECT_GT(default_lights(wall, camera_from({0, 0, 5}))->radius, 0.0);
@@ -310,7 +310,7 @@ TEST(DefaultLights, CastSoftShadows) {
   };
   for (const IntegratorKind integrator : {IntegratorKind::kWhitted, IntegratorKind::kPath}) {
     for (const double part : {-0.8, -0.5, 0.0, 0.5}) {
-      // A line from there by the edge, at (0, 1), meets the disc that far from its middle.
+      // The line from x past the edge, at (0, 1), meets the disc at `part` radii from its centre.
       const double x = -part * 10.0 / 100.0;
       const double seen =
           1.0 - (std::acos(part) - part * std::sqrt(1.0 - part * part)) / std::numbers::pi;
@@ -320,8 +320,8 @@ TEST(DefaultLights, CastSoftShadows) {
   }
 }
 
-// Who gives a camera gives the light of what glows; a picture that glows faintly is no light, one
-// that is bright is.
+// Default lights replace small emitters in previews only; a faint emissive picture does not count
+// as a light, a bright one does.
 TEST(DefaultLights, AreThoseOfScenesThatNothingLights) {
   const auto expect = [](const Scene& scene, bool by_default, bool in_preview, const char* what) {
     EXPECT_EQ(default_lights(scene, camera_from({0, 0, 5})).has_value(), by_default) << what;

@@ -1,4 +1,4 @@
-// The points are even, independent and reproducible; the filters are what they are called.
+// Sample points are even, independent and reproducible; filters have their formulas' variance.
 #include "host/light/sampler.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(Sampler, EveryElementaryIntervalHoldsOnePoint) {
   }
 }
 
-// Pairs of streams, and a pixel with its neighbours: no correlation beyond what chance gives.
+// Two streams, and a pixel and its neighbour, are uncorrelated up to chance.
 TEST(Sampler, StreamsAndPixelsAreIndependent) {
   constexpr int kPixels = 64;
   double streams = 0.0, neighbours = 0.0, mean = 0.0;
@@ -45,7 +45,7 @@ TEST(Sampler, StreamsAndPixelsAreIndependent) {
       neighbours += a * (random_point<float>(0, beside, 3).x - 0.5);
     }
   }
-  constexpr double kCount = kPixels * kPixels, kDeviation = 1.0 / 12.0 / 64.0;  // of a product
+  constexpr double kCount = kPixels * kPixels, kDeviation = 1.0 / 12.0 / 64.0;  // of mean products
   EXPECT_LT(std::abs(mean / kCount), 4.0 * std::sqrt(1.0 / 12.0) / 64.0);
   EXPECT_LT(std::abs(streams / kCount), 4.0 * kDeviation);
   EXPECT_LT(std::abs(neighbours / kCount), 4.0 * kDeviation);

@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-/// A sphere, an open box with an inner wall, two point lights, a light, light from one direction.
+/// Returns a sphere, an open box with an inner wall, and point, area and directional lights.
 Scene obstacles() {
   Scene scene;
   add(scene, sphere(2), matte(glm::vec3(0.5f)));
@@ -29,7 +29,7 @@ Scene obstacles() {
 
 class ShadowRaysTest : public testing::Test {
  protected:
-  /// Points on surfaces that are hit from `eye`, each with all lights in front of it.
+  /// Adds shadow rays from surface points seen from `eye` to all lights in front of the surface.
   void add_questions(const glm::vec3& eye, int count) {
     RaySpawner spawner(prepared_.clearances);
     std::vector<Ray> rays;
@@ -66,7 +66,7 @@ class ShadowRaysTest : public testing::Test {
     }
   }
 
-  /// Whether a triangle is between the departure point and the light, in exact arithmetic.
+  /// Returns whether, in exact arithmetic, a triangle is between the surface point and the light.
   bool is_blocked(const ShadowRay& question) const {
     const bool is_point = question.is_point_light != 0;
     if (!is_point && question.index == NearestHit::kNone) return is_blocked_from_afar(question);
@@ -115,13 +115,13 @@ TEST_F(ShadowRaysTest, DecideAsExactArithmeticDoes) {
   }
   EXPECT_GT(dark, 1000);
   EXPECT_GT(lit, 1000);
-  // A ray from the light and one from the surface are rounded differently: where an edge is in
-  // between by less than a float, either answer is right.
+  // Rays from the light and from the surface are rounded differently. Where an edge is less than a
+  // float step from them, either answer is right.
   EXPECT_LE(different, 2);
   std::cout << dark << " dark, " << lit << " lit, " << different << " different\n";
 }
 
-// Light through the holes of masks, veils and glass is the same by any intersector.
+// Light through holes of masks, transparent surfaces and glass is the same with all intersectors.
 TEST(ShadowRays, PassHolesOfMasks) {
   Random random;
   Scene scene;

@@ -1,5 +1,5 @@
-// Rays bounced about in closed meshes: they stay inside, in the sharpest corners. Clearances
-// against distances found by brute force.
+// Rays reflected inside closed meshes stay inside, even in the sharpest corners; clearances against
+// distances found by brute force.
 #include "host/light/spawn_ray.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ std::optional<std::uint32_t> nearest(const Bvh& bvh, const Ray& ray) {
   return best;
 }
 
-/// By the parity of what a ray in some direction hits.
+/// Returns whether a point is inside, by the parity of the hits of a ray.
 bool inside(const Bvh& bvh, const glm::vec3& point) {
   int hits = 0;
   for (std::uint32_t primitive = 0; primitive < bvh.primitive_count(); ++primitive) {
@@ -54,7 +54,7 @@ glm::vec3 mirrored(const glm::vec3& direction, const Corners& t) {
 
 struct Bounces {
   int rays = 0, bounces = 0, ended = 0;
-  double farthest = 0.0;  // |O' - X| on an axis, in floats of X's largest coordinate
+  double farthest = 0.0;  // largest |O' - X| on an axis, in float steps of X
 };
 
 double steps_between(const glm::vec3& point, const Ray& ray, const Corners& t) {
@@ -66,8 +66,8 @@ double steps_between(const glm::vec3& point, const Ray& ray, const Corners& t) {
   return std::max({off.x, off.y, off.z}) / (std::nextafter(largest, 3e38f) - largest);
 }
 
-/// From `start`, aimed near edges and vertices, mirrored at each hit: every ray must hit something
-/// and every origin be inside.
+/// Traces rays from `start` towards edges and vertices, mirrored at each hit. Every ray must hit
+/// something, and every origin must be inside.
 Bounces bounce(const std::vector<Corners>& mesh, const glm::vec3& start, Random& random, int rays) {
   const Bvh bvh(test::scene_of(mesh));
   const NeighborClearances clearances(bvh);
@@ -120,7 +120,7 @@ TEST(RaySpawner, NoBounceLeavesAClosedMesh) {
   expect(test::sphere(1), glm::vec3(0.1f, 0.2f, 0.3f));
 }
 
-// Into the edge where two planes meet at 1 to 1e-6 rad: the rule backs away, or ends the ray.
+// Rays into edges with angles from 1 to 1e-6 rad: origins move back, or the ray ends.
 TEST(RaySpawner, NoBounceLeavesASharpCorner) {
   Random random;
   for (const float angle : {1.0f, 0.1f, 1e-2f, 1e-4f, 1e-6f}) {
@@ -138,8 +138,8 @@ TEST(RaySpawner, NoBounceLeavesASharpCorner) {
   }
 }
 
-// Onto the edges of a ball from outside, so flat that one neighbour's plane is no float away from
-// the other: no ray ends there, and both points are on their sides of the surface.
+// Rays from outside onto a sphere's edges, so flat that the planes of both triangles are less than
+// a float step apart: no ray ends, and both origins are on their sides of the surface.
 TEST(RaySpawner, NoRayEndsOnARidge) {
   Random random;
   const std::vector<Corners> mesh = test::sphere(4);
@@ -166,7 +166,7 @@ TEST(RaySpawner, NoRayEndsOnARidge) {
   EXPECT_GT(hits, 500);
 }
 
-// Between two balls, one of which touches a floor: asked one by one or all at once.
+// Between two spheres, one of which touches a floor, single and batched queries agree.
 TEST(RaySpawner, ManyAtOnceAreTheSame) {
   Random random;
   std::vector<Corners> mesh = test::sphere(3);
@@ -230,7 +230,7 @@ TEST(RaySpawner, StaysWithinTheBoundOnBothSides) {
       const int side = orient3d(origin, t);
       ASSERT_EQ(orient3d(*point, t), way == SpawnSide::kIncident ? side : -side);
       farthest = std::max(farthest, steps_between(*point, ray, t));
-      // The rest of the ray, from beyond: it never hits again.
+      // The continued ray, from the transmitted side, never hits the triangle again.
       ASSERT_TRUE(spawner.leaves(ray, 0, SpawnSide::kTransmitted, ray.direction));
       ASSERT_FALSE(spawner.leaves(ray, 0, SpawnSide::kIncident, ray.direction));
       ASSERT_EQ(hits_triangle({*point, ray.direction}, t) && way == SpawnSide::kTransmitted, false);
@@ -268,7 +268,7 @@ bool is_near(const Overlaps& overlaps, const glm::vec3& point, float reach) {
   });
 }
 
-/// Returns a distance from x within which there is no overlap; 0 if there is none so small.
+/// Returns a distance from x within which there is no overlap; 0 if even tiny distances have one.
 double reach_beyond(const Overlaps& overlaps, const glm::dvec3& x) {
   float reach = 1.0f;
   while (reach > 0.0f && is_near(overlaps, glm::vec3(x), reach)) reach *= 0.5f;
@@ -296,11 +296,11 @@ void check_shape(const NeighborClearance& clearance, const Corners& t) {
 }
 
 struct Seen {
-  int points = 0;  // of all triangles
-  int free = 0;    // of triangles without overlaps
+  int points = 0;  // on all triangles
+  int free = 0;    // on triangles without overlaps
 };
 
-/// Points of each triangle, most of them near its border.
+/// Checks the clearance at points of each triangle, most of them near its border.
 Seen check(const std::vector<Corners>& mesh, Random& random) {
   const Bvh bvh(test::scene_of(mesh));
   const NeighborClearances clearances(bvh);
@@ -345,7 +345,7 @@ TEST(NeighborClearance, HoldsBetweenTrianglesOfAllKinds) {
   Random random;
   int free = 0, points = 0;
   for (int i = 0; i < 300; ++i) {
-    // Some free, some with an edge or a corner in common, some flat.
+    // Some triangles are separate, some share an edge or a vertex, some are flat.
     const float height = std::exp(random.uniform(-10, 0)), size = std::exp(random.uniform(-3, 0));
     std::vector<Corners> mesh;
     for (int k = 0; k < 8; ++k) {
@@ -364,7 +364,7 @@ TEST(NeighborClearance, HoldsBetweenTrianglesOfAllKinds) {
   EXPECT_LT(free, points);
 }
 
-// All triangles of a fan are near each other; the search for one of them ends early.
+// All triangles of a fan are near each other; the clearance search ends early.
 TEST(NeighborClearance, IsUnknownInALargeFan) {
   for (const int count : {100, 20'000}) {
     std::vector<Corners> mesh;
@@ -378,7 +378,7 @@ TEST(NeighborClearance, IsUnknownInALargeFan) {
   }
 }
 
-// A table's leg stands on the floor.
+// A triangle stands on another one, like a table's leg on the floor.
 TEST(NeighborClearance, WhatStandsOnATriangleIsItsOverlap) {
   const std::vector<Corners> mesh = {
       {glm::vec3(-1, -1, 0), glm::vec3(1, -1, 0), glm::vec3(0, 1, 0)},

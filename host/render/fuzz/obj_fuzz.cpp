@@ -1,4 +1,4 @@
-// libFuzzer target: renders arbitrary bytes as an OBJ file; bytes after a byte 0x1E are its s.mtl.
+// libFuzzer target: renders arbitrary bytes as an OBJ file; bytes after the first 0x1E are s.mtl.
 #include <unistd.h>
 
 #include <cstdint>
@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   write(folder / "s.obj", bytes.substr(0, split));
   write(folder / "s.mtl", split < size ? bytes.substr(split + 1) : std::string_view());
   try {
-    // In chunks of one or a few lines.
+    // Every scene that is read must also render.
     raygate::test::draw(raygate::load_obj(folder / "s.obj"));
   } catch (const raygate::InputError&) {
     // Expected for invalid files.

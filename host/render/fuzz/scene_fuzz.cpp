@@ -1,4 +1,4 @@
-// libFuzzer target: a picture of any bytes as a file of the kind that RAYGATE_FUZZED names, "ply".
+// libFuzzer target: renders arbitrary bytes as a file with the ending in RAYGATE_FUZZED, as "ply".
 #include <unistd.h>
 
 #include <cstdint>

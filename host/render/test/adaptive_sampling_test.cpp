@@ -1,4 +1,4 @@
-// Samples by error: the estimate holds, and the film does not depend on how it came about.
+// Adaptive sampling: error estimates hold, and the film does not depend on how work is distributed.
 #include "host/render/adaptive_sampling.h"
 
 #include <gtest/gtest.h>
@@ -19,10 +19,10 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-constexpr double kStudent = 2.12;  // of 95 % and 16 numbers
+constexpr double kStudent = 2.12;  // Student's t: 95 %, 16 values
 constexpr double kNever = 1e-9;    // an error that no pixel reaches
 
-/// How many seeds the estimate is tried with: RAYGATE_SEEDS, or 100.
+/// Returns the number of seeds to try: RAYGATE_SEEDS, or 100.
 int seeds() {
   const char* const given = std::getenv("RAYGATE_SEEDS");
   return given == nullptr ? 100 : std::max(1, std::atoi(given));
@@ -34,7 +34,7 @@ RenderSettings adaptive(int width, int height, int most, double error) {
   return options;
 }
 
-/// Of one scene, with each seed.
+/// Calls `each` with the film of a scene for each seed.
 void with_seeds(const Scene& scene, const Camera& camera, RenderSettings options,
                 const std::function<void(const Film&)>& each) {
   const Bvh bvh(scene);
@@ -46,7 +46,7 @@ void with_seeds(const Scene& scene, const Camera& camera, RenderSettings options
   }
 }
 
-/// A closed room of walls that send out 1 and reflect `albedo`: 1 / (1 - albedo) from everywhere.
+/// A closed room whose walls emit 1 and reflect `albedo`: the radiance is 1 / (1 - albedo).
 Scene furnace(float albedo) {
   Scene scene;
   Material wall = matte(glm::vec3(albedo));
@@ -57,8 +57,8 @@ Scene furnace(float albedo) {
 
 const Camera kInside = camera_at({0.2, 0.1, 0.3}, {-1, -0.4, -0.7}, 5.0);
 
-/// How often `known`, in percent, is within the interval of 95 % of a pixel, in a block that is all
-/// there is of the picture; and the least and the most of any pixel.
+/// How often, in percent, the 95 % interval of a pixel contains the known value, in a picture of
+/// one block: over all pixels, and for the pixels with the lowest and the highest rate.
 struct Coverage {
   double all, least, most;
 };
@@ -84,7 +84,7 @@ Coverage coverage_of(const Scene& scene, const Camera& camera, int samples, doub
   return coverage;
 }
 
-/// A white floor, seen from so near that all of the picture is its middle.
+/// Returns a white floor under `lights`. kAtFloor is so close to it that all pixels are alike.
 Scene floor_under(Scene lights) {
   add(lights, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
   return lights;
@@ -92,7 +92,7 @@ Scene floor_under(Scene lights) {
 
 const Camera kAtFloor = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
 
-/// Prints how often the interval held; that must be 93 to 97 %, or up to `most`.
+/// Prints how often the interval held, which must be 93 to 97 %, or up to `most`.
 void expect_coverage(const char* name, int samples, double most, const Coverage& coverage) {
   std::printf("%-22s %4d samples: %5.1f %% (pixels: %.1f to %.1f), %d seeds\n", name, samples,
               coverage.all, coverage.least, coverage.most, seeds());
@@ -109,7 +109,7 @@ TEST(ErrorEstimate, HoldsInAFurnace) {
   }
 }
 
-// Where few dimensions of evenly spread samples matter, the error falls faster than its estimate.
+// If evenly spread samples have few dimensions, the error falls faster than its estimate.
 TEST(ErrorEstimate, IsCarefulWhereSamplesAreEvenlySpread) {
   constexpr double kPi = std::numbers::pi;
   Scene lights;
@@ -120,7 +120,7 @@ TEST(ErrorEstimate, IsCarefulWhereSamplesAreEvenlySpread) {
     const double squared = side * side + height * height;
     sum += intensity * height / (squared * std::sqrt(squared)) / kPi;
   }
-  // A corner is straight above (Siegel and Howell's catalogue, B-4).
+  // A corner of the light is straight above (Siegel and Howell's catalogue, B-4).
   Scene panel;
   const double a = 1.5, b = 0.8, height = 1.2, x = a / height, y = b / height;
   add(panel, rectangle({0, float(height), 0}, {float(a), 0, 0}, {0, 0, float(b)}),
@@ -149,7 +149,7 @@ TEST(AdaptiveSampling, LooksAreAtPowersOfTwo) {
   EXPECT_FALSE(has_converged(0.0f, 24, 2.0)) << "no look";
 }
 
-/// Blocks that need many samples and such that need few.
+/// A scene with blocks that need many samples and blocks that need few.
 struct Uneven {
   Scene scene = everything();
   Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 45.0, 44.0 / 34.0);
@@ -203,7 +203,7 @@ TEST(AdaptiveSampling, FilmDoesNotDependOnThreadsTilesOrEngine) {
   const Uneven uneven;
   const RenderSettings options = adaptive(44, 34, 72, 1.0);
   const Film whole = uneven.film(options);
-  for (const int threads : {3, 8}) {  // which changes the tiles, too
+  for (const int threads : {3, 8}) {  // the number of threads changes the tiles, too
     RenderSettings other = options;
     other.threads = threads;
     EXPECT_TRUE(same_film(whole, uneven.film(other)));
@@ -240,7 +240,7 @@ TEST(AdaptiveSampling, GoesOnFromAnyFilm) {
   EXPECT_TRUE(same_film(whole, uneven.film(options, &broken_off)));
 }
 
-// Blocks stop where they happen to have a small error, which could favour values on one side.
+// Blocks stop when their error happens to be small, which could bias the mean.
 TEST(AdaptiveSampling, StoppingFavoursNoSideInTheLarge) {
   double sum = 0.0, squares = 0.0, samples = 0.0;
   int blocks = 0;

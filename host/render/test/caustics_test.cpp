@@ -1,4 +1,4 @@
-// Caustics by light paths: closed forms, long runs without them, and the same bytes whoever traces.
+// Caustics by light paths: closed forms, long runs without light paths, equal bytes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,9 +26,9 @@ RenderSettings options_of(int size, int samples, bool caustics = true) {
   return options;
 }
 
-constexpr float kHigh = 5.0f, kThick = 1.0f;  // of the slab: its upper side, and how thick
+constexpr float kHigh = 5.0f, kThick = 1.0f;  // height of the slab's upper side; thickness
 
-/// A dark floor below a slab of glass, seen from between them: the square of 1 around the origin.
+/// Returns a dark floor below a slab of glass. above_floor() sees the central square of side 1.
 Scene slab() {
   Scene scene;
   add(scene, rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), matte(glm::vec3(0.1f)));
@@ -37,7 +37,7 @@ Scene slab() {
 }
 Camera above_floor() { return camera_at({0, 2, 0}, {0, 0, 0}, 2.0 * 180.0 / pi * std::atan(0.25)); }
 
-// Every reflection inside the slab sends a little more through.
+// Every reflection inside the slab transmits a little more light.
 TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
   for (const double degrees : {0.0, 5.0}) {
     const double angle = degrees * pi / 180.0;
@@ -51,8 +51,8 @@ TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
   }
 }
 
-// A point light over the slab: each order of reflection inside is a ring of its own, by Snell's
-// law.
+// A point light above the slab: each order of reflection inside is a ring of its own, with a radius
+// by Snell's law.
 TEST(Caustics, ASlabBendsALampsLightAsSnellSays) {
   constexpr double kLamp = 7.0, kIndex = 1.5;
   Scene scene = slab();
@@ -86,7 +86,7 @@ TEST(Caustics, ASlabBendsALampsLightAsSnellSays) {
   EXPECT_NEAR(mean_colour(caustics_of(scene, above_floor(), options)).x, expected, 0.01 * expected);
 }
 
-// What a flat mirror sends to a floor comes from the mirrored lamp.
+// Light that a flat mirror reflects to a floor seems to come from the lamp's mirror image.
 TEST(Caustics, AMirrorIsAnotherLamp) {
   Scene floor;
   add(floor, rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), matte(glm::vec3(0.5f)));
@@ -103,8 +103,8 @@ TEST(Caustics, AMirrorIsAnotherLamp) {
   }
 }
 
-/// Means over quarters of pictures with and without light paths, of some seeds each: the largest of
-/// their differences is within 4.5 standard errors, which chance exceeds once in 10^4 scenes.
+/// Compares means over quarters of pictures with and without light paths, for several seeds. The
+/// largest difference must be within 4.5 standard errors: chance exceeds this in 1 of 10^4 scenes.
 void expect_same_means(const Scene& scene, const Camera& camera, int samples) {
   constexpr int kSize = 24, kSeeds = 12;
   struct Sums {
@@ -136,7 +136,7 @@ void expect_same_means(const Scene& scene, const Camera& camera, int samples) {
   }
 }
 
-/// The room with everything in it and a larger lamp, which chance finds, too; no point light.
+/// Returns everything() with a larger lamp, which camera paths also find, and no point light.
 Scene room() {
   Scene scene = everything();
   scene.lights.clear();
@@ -152,7 +152,7 @@ TEST(Caustics, AreSeenByALens) {
   expect_same_means(room(), Camera::look_at(setting, 1.0), 256);
 }
 
-/// A ball with the normals of a ball.
+/// Adds a ball with a sphere's normals.
 void add_smooth(Scene& scene, const glm::vec3& middle, float radius, const Material& material) {
   const std::size_t first = scene.triangles.size();
   add(scene, sphere(2, radius, middle), material);
@@ -165,7 +165,7 @@ void add_smooth(Scene& scene, const glm::vec3& middle, float radius, const Mater
   }
 }
 
-/// A dim sky with a bright part, which chance finds, too.
+/// Returns a dim sky with a bright part, which camera paths find, too.
 EnvironmentMap sky() {
   EnvironmentMap map;
   map.width = 8;
@@ -175,7 +175,7 @@ EnvironmentMap sky() {
   return map;
 }
 
-// Every kind of surface in a mirror, under a lamp and a sky with a bright part.
+// Surfaces of all kinds, seen in a mirror, under a lamp and a sky with a bright part.
 TEST(Caustics, InAMirrorHaveTheMeansOfChance) {
   Scene scene;
   add(scene, rectangle({-3, -1, -3}, {0, 0, 6}, {6, 0, 0}), matte({0.7f, 0.6f, 0.5f}));
@@ -226,14 +226,14 @@ TEST(Caustics, AreTheSameBytesWhoeverTraces) {
   }
   options.window = {};
 
-  // Broken off, and gone on with.
+  // Stops after some samples and resumes.
   options.channels.sums = true;
   options.end_sample = 3;
   const Film first = picture(options, cpu(bvh));
   options.end_sample = 0;
   options.threads = 1;
   EXPECT_TRUE(same(picture(options, cpu(bvh), &first), whole));
-  // Any part of it, whose tiles have not come to the same samples.
+  // Resumes a cancelled render, whose tiles have different numbers of samples.
   RenderStats stats;
   int asked = 0;
   const Film part = test::render(scene, bvh, into_room(), options, cpu(bvh), stats,

@@ -1,4 +1,4 @@
-// What lights give a surface, by closed forms.
+// Direct light on surfaces against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,7 +60,7 @@ TEST(DirectLight, ASpotLightFadesBetweenItsAngles) {
   }
 }
 
-// Which of several kinds of lights is asked, chance says; the mean is the sum of all.
+// The path tracer samples one of several kinds of lights at random; the mean is the sum of all.
 TEST(DirectLight, LightsOfAllKindsAddUp) {
   Scene scene;
   scene.lights.push_back({{1, 2, 0}, glm::dvec3(5.0)});
@@ -71,8 +71,8 @@ TEST(DirectLight, LightsOfAllKindsAddUp) {
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), sum, 0.005 * sum);
 }
 
-// Many lights, near and far, of which the path tracer chooses one: the mean is the sum over all, as
-// Whitted computes it. With a gloss, scattered rays find lights just as often.
+// The path tracer samples one of many near and far lights; the mean is the sum over all, as Whitted
+// computes it. With gloss, scattered rays find lights just as often.
 TEST(DirectLight, ManyLightsAddUp) {
   for (const float gloss : {0.0f, 0.6f}) {
     Scene scene;
@@ -103,8 +103,8 @@ TEST(DirectLight, ManyLightsAddUp) {
   }
 }
 
-// A light before a sky that is darker, as bright, brighter: what chance finds of it counts for as
-// much as the sky, and the mean stays.
+// A light before a sky that is darker, equal or brighter: scattered rays find both with the right
+// weight, so the mean is right.
 TEST(DirectLight, ALightBeforeASkyAddsUp) {
   for (const float radiance : {0.2f, 1.0f, 6.0f}) {
     Scene scene;
@@ -114,14 +114,14 @@ TEST(DirectLight, ALightBeforeASkyAddsUp) {
     const Camera camera = camera_at({0, 1e-3, 0}, {0, 0, 0}, 1e-3);
     RenderSettings options = light(kPath, 1, 1, 1 << 14);
     options.max_depth = 0;
-    // The form factor of a square of side 1 at distance 1, of four quarters.
+    // Form factor of a square of side 1 at distance 1, as four quarters.
     const double x = 0.5, r = std::sqrt(1 + x * x), form = 4 * x / r * std::atan(x / r) / pi;
     const double expected = radiance * form + (1.0 - form);
     EXPECT_NEAR(film_of(scene, camera, options).color[0].r, expected, 4e-3 * expected);
   }
 }
 
-// A parallel rectangle with one corner straight above (Siegel and Howell's catalogue, B-4).
+// A parallel rectangle, one corner of which is straight above (Siegel and Howell's catalogue, B-4).
 TEST(DirectLight, RectangularLightHasItsFormFactor) {
   const double a = 1.5, b = 0.8, height = 1.2;
   Scene scene;
@@ -134,7 +134,7 @@ TEST(DirectLight, RectangularLightHasItsFormFactor) {
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 3.0 * form, 3e-3 * form);
 }
 
-// A light whose texture is black beyond its half is as bright as that half.
+// A light with a half-black texture is as bright as its other half.
 TEST(DirectLight, ATexturedLightShinesByTexel) {
   constexpr int kTexels = 256;
   std::vector<Texture::Texel> texels(kTexels, {0, 0, 0});
@@ -152,7 +152,7 @@ TEST(DirectLight, ATexturedLightShinesByTexel) {
   const float wanted = floor_radiance(half, kWhitted, 4096);
   EXPECT_NEAR(floor_radiance(textured, kWhitted, 4096), wanted, 1e-3f * wanted);
   EXPECT_NEAR(floor_radiance(textured, kPath, 4096), wanted, 1e-2f * wanted);
-  // And so it is seen; from below +x is on the left.
+  // The camera sees the same; from below, +x is on the left.
   const Camera camera = camera_at({1.5, -3, 0.4}, {1.5, 1.2, 0.4}, 20.0);
   for (const IntegratorKind integrator : {kWhitted, kPath, IntegratorKind::kPrimary}) {
     const Film film = film_of(textured, camera, light(integrator, 8, 1, 1));
@@ -160,8 +160,8 @@ TEST(DirectLight, ATexturedLightShinesByTexel) {
   }
 }
 
-/// The expected radiance of the camera's middle pixel, which shows the origin: the BSDF there times
-/// the light of a lamp or of a point light of intensity 1.
+/// The expected radiance of the camera's middle pixel, which shows the origin: the BSDF times the
+/// light of a lamp or of a point light of intensity 1.
 class Expected {
  public:
   Expected(const Scene& scene, const Camera& camera) {
@@ -198,8 +198,8 @@ std::vector<Corners> lamp(float height) {
 }
 std::vector<Corners> wide_floor() { return rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}); }
 
-// A rough floor under a lamp, seen at an angle, with wide and narrow lobes: the integral over the
-// lamp, whether paths sample it or meet it by chance.
+// A rough floor seen at an angle, with wide and narrow lobes, against the integral over its lamp:
+// light samples and scattered rays find the lamp.
 TEST(DirectLight, FacetsReflectALight) {
   for (const float roughness : {0.25f, 0.6f, 1.0f}) {
     Material material = facets(0.5f, roughness, 0.0f);
@@ -219,8 +219,8 @@ TEST(DirectLight, FacetsReflectALight) {
   }
 }
 
-// Rough glass between the camera and a light: a point light is seen in it, and a wide one as bright
-// as an integral says.
+// A light seen through rough glass: a point light is visible, and an area light is as bright as an
+// integral says.
 TEST(DirectLight, RoughGlassShowsTheLightsBehindIt) {
   for (const float roughness : {0.3f, 0.7f, 1.0f}) {
     Scene scene;
@@ -253,7 +253,7 @@ TEST(DirectLight, RoughGlassShowsTheLightsBehindIt) {
   }
 }
 
-// A disc parallel to the floor, straight above: sin^2 of the angle under which its rim is seen.
+// A parallel disc, straight above: sin^2 of the angle between the axis and the disc's rim.
 TEST(DirectLight, DiscLightHasItsFormFactor) {
   std::vector<Corners> disc;
   constexpr int kParts = 512;
@@ -269,8 +269,8 @@ TEST(DirectLight, DiscLightHasItsFormFactor) {
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 2.0 * form, 4e-3 * form);
 }
 
-// A square between a point light and the floor: every pixel is lit just where the line to the
-// light passes beside the square.
+// A square between a light and the floor: a pixel is lit exactly if the line to the light passes
+// beside the square.
 TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
   Scene scene;
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
@@ -310,11 +310,11 @@ TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
   }
 }
 
-// Where no light goes from one scattering surface to another both integrators show the same.
+// Without light between scattering surfaces, both integrators give the same picture.
 TEST(DirectLight, PathAndWhittedAgreeAboutDirectLight) {
   Scene scene = everything();
   scene.background = glm::vec3(0.0f);
-  // Of what is of glass shadows differ.
+  // The integrators treat shadows of glass differently, so make glass matte.
   scene.materials[4] = scene.materials[7] = matte(glm::vec3(0.5f));
   const Camera camera = camera_at({0.6, 0.2, 5}, {0, -0.3, 0}, 40.0);
   RenderSettings options = light(kWhitted, 24, 24, 256);
@@ -323,8 +323,8 @@ TEST(DirectLight, PathAndWhittedAgreeAboutDirectLight) {
   const glm::dvec3 whitted = mean_colour(film_of(scene, camera, options));
   options.integrator = kPath;
   const glm::dvec3 path = mean_colour(film_of(scene, camera, options));
-  // The path's last rays see lights in the mirror and through the window, where Whitted stops:
-  // those are few here.
+  // The path's last rays see lights in the mirror and through the window, where Whitted stops.
+  // There are few such lights here.
   EXPECT_NEAR(path.r, whitted.r, 0.02 * whitted.r);
   EXPECT_NEAR(path.g, whitted.g, 0.02 * whitted.g);
 }

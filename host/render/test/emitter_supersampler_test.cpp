@@ -1,5 +1,5 @@
-// Emitters that the camera sees begin and end where they do, to a fraction of what a sample is:
-// directly, in mirrors and through glass.
+// Outlines of emitters that the camera sees directly, in mirrors or through glass are exact to a
+// fraction of a sample.
 #include "host/render/emitter_supersampler.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Camera camera_of(Projection projection = Projection::kPerspective, double apertu
 }
 
 /// An emitter that covers these pixels of 8 x 8, from left to right and from the upper edge down;
-/// or, `in_mirror`, whose image does.
+/// or, if `in_mirror`, an emitter whose mirror image covers them.
 struct Panel {
   Scene scene;
   Camera camera;
@@ -85,7 +85,7 @@ Found find(const Scene& scene, const Camera& camera, const RenderSettings& asked
 constexpr HistoryMask kDirect = 1u << 1;
 constexpr HistoryMask kInMirror = 1u << 2;
 
-/// The ways of a panel of whole pixels 3 .. 5, 2 .. 4, and a half of those around it.
+/// Expects the histories of a panel of pixels [3, 6) x [2, 5) and half of the pixels around these.
 void expect_around(const std::vector<HistoryMask>& ways, HistoryMask expected) {
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -121,7 +121,7 @@ TEST(EmitterSupersampler, GoStraightThroughWhatIsClear) {
   expect_around(find(panel.scene, panel.camera, options(4)).ways, kDirect);
 }
 
-// Whose rays end at the first surface, clear or not.
+// Primary rays end at the first surface, clear or not.
 TEST(EmitterSupersampler, SeesOfThePrimaryIntegratorWhatThatSees) {
   Panel panel(2.5f, 1.5f, 6.5f, 5.5f);
   const RenderSettings asked = options(4, ReconstructionFilter::kBox, IntegratorKind::kPrimary);
@@ -132,7 +132,7 @@ TEST(EmitterSupersampler, SeesOfThePrimaryIntegratorWhatThatSees) {
   expect_around(find(panel.scene, panel.camera, asked).ways, 0);
 }
 
-/// A glass ball, which shows an emitter behind the camera.
+/// Returns a glass ball, in which an emitter behind the camera is seen.
 Scene ball() {
   Scene scene;
   test::add(scene, test::sphere(3, 0.6f, {0.1f, 0, 0}), test::glass(1.5f));
@@ -159,7 +159,7 @@ TEST(EmitterSupersampler, GoThroughTwoPanes) {
   EXPECT_NE(all >> 0b11111 & 1, 0u) << "in and out twice";
 }
 
-// Behind a lens nothing is supersampled: a tiny one is the same camera without.
+// A lens disables supersampling. A tiny lens gives the same camera without supersampling.
 TEST(EmitterSupersampler, HaveTheSameMean) {
   const Scene scene = ball();
   const Bvh bvh(scene);
@@ -200,7 +200,7 @@ TEST(EmitterSupersampler, AreNotMadeWhereNoLightCanBe) {
   EXPECT_EQ(find(panel.scene, panel.camera, options(4)).rays, 0u);
 }
 
-/// The mean square of what pixels are off by, where coverage is known.
+/// Returns the mean squared error of the pixels, whose coverage is known.
 double error(const Panel& panel, float left, float upper, float right, float lower, int samples) {
   RenderStats stats;
   const Bvh bvh(panel.scene);
@@ -222,8 +222,8 @@ double error(const Panel& panel, float left, float upper, float right, float low
   return sum / (kSide * kSide);
 }
 
-// Of an edge along an axis, n samples alone are off by 0.4 / n in the mean. Eight times as many are
-// off by an eighth, and by a little more at corners, and where their number is no power of two.
+// At an axis-parallel edge, the error of n samples alone is 0.4 / n on average. Eight times as many
+// samples have an eighth of it, or slightly more at corners and without a power of two.
 TEST(EmitterSupersampler, AreSharperThanTheSamplesAlone) {
   const struct {
     Projection projection;

@@ -1,4 +1,4 @@
-// Light that must balance: nothing is made, and what absorbs nothing loses nothing.
+// Energy conservation: no light is created, and surfaces that absorb nothing lose none.
 #include <gtest/gtest.h>
 
 #include "host/light/test/light_scenes.h"
@@ -10,7 +10,7 @@ using namespace test;  // NOLINT(google-build-using-namespace)
 
 using enum IntegratorKind;
 
-// White things in a white world cannot be seen: what absorbs nothing sends on all that arrives.
+// White objects in a white world are invisible: surfaces that absorb nothing return all light.
 TEST(Furnace, WhiteThingsInAWhiteWorld) {
   Material clear = glass(1.5f), thin = glass(1.0f), coated = matte(glm::vec3(1.0f));
   thin.illumination_model = 4;
@@ -30,13 +30,13 @@ TEST(Furnace, WhiteThingsInAWhiteWorld) {
       dark += colour.g < 0.99999f;
     }
     EXPECT_GT(covered, 250);
-    // Total reflection between the flat faces of the glass keeps a few rays in it for ever.
+    // Total reflection between the flat faces of the glass traps a few rays.
     EXPECT_LE(dark, material.illumination_model == 7 ? covered / 20 : 0)
         << "illum " << material.illumination_model;
   }
 }
 
-// However rough, with glass or without: nothing is lost but to depth, and nothing is made.
+// For any roughness, with or without glass, light is only lost at the maximum depth; none is made.
 TEST(Furnace, WhiteFacetsInAWhiteWorld) {
   struct Case {
     float metallic, roughness, transmission, least;
@@ -58,7 +58,7 @@ TEST(Furnace, WhiteFacetsInAWhiteWorld) {
       const Film film = film_of(scene, camera, light(integrator, 24, 24, 16));
       const glm::dvec3 mean = mean_colour(film);
       EXPECT_LE(mean.g, 1.002) << c.metallic << " " << c.roughness << " " << c.transmission;
-      // Whitted's rays end after four surfaces, some of them within the glass.
+      // Whitted's rays end after four surfaces, some of them inside the glass.
       const bool ends = integrator == kWhitted && c.transmission > 0.0f;
       EXPECT_GE(mean.g, ends ? std::min(c.least, 0.93f) : c.least)
           << c.metallic << " " << c.roughness << " " << c.transmission;
@@ -66,7 +66,7 @@ TEST(Furnace, WhiteFacetsInAWhiteWorld) {
   }
 }
 
-// In a closed room whose walls all glow and reflect the share r, light adds up to 1 / (1 - r).
+// In a closed room whose walls emit 1 and reflect a fraction r, the radiance is 1 / (1 - r).
 TEST(Furnace, AClosedRoomAddsUpTheGeometricSeries) {
   Material wall = matte(glm::vec3(0.5f, 0.25f, 0.75f));
   wall.emission = glm::vec3(1.0f);
@@ -79,7 +79,7 @@ TEST(Furnace, AClosedRoomAddsUpTheGeometricSeries) {
   EXPECT_NEAR(mean.b, 4.0, 0.05);
 }
 
-// No mix of materials in a white world is brighter than the world.
+// In a white world, no mix of materials is brighter than the world.
 TEST(Furnace, EnergyIsNeverMade) {
   for (const float specular : {0.2f, 1.0f}) {
     for (int model = 1; model <= 9; ++model) {

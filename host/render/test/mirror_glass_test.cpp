@@ -1,4 +1,4 @@
-// What is seen in mirrors and through glass, by the laws of reflection and refraction.
+// Views in mirrors and through glass, by the laws of reflection and refraction.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,14 +14,14 @@ using namespace test;  // NOLINT(google-build-using-namespace)
 using std::numbers::pi;
 using enum IntegratorKind;
 
-// What a mirror shows is what a camera behind it sees, mirrored: the scene without the mirror.
+// A mirror shows what a camera behind it sees of the mirrored scene without the mirror.
 TEST(MirrorGlass, AMirrorShowsTheMirroredScene) {
   Scene things;
   add(things, sphere(2, 0.5f, {0.3f, 0.1f, 1.5f}), matte({0.8f, 0.4f, 0.2f}));
   add(things, rectangle({-4, -1, 0.01f}, {8, 0, 0}, {0, 0, 8}), matte(glm::vec3(0.6f)));
   things.lights.push_back({{1, 3, 4}, {20, 20, 20}});
   Scene mirrored = things;
-  // In front of all: it fills the view, and hides nothing from the light.
+  // The mirror is in front of everything, fills the view, and blocks no light.
   add(mirrored, rectangle({-50, -1, 0}, {100, 0, 0}, {0, 100, 0}), mirror(1.0f));
   constexpr int kSize = 64;
   const Camera front = camera_at({0.5, 0.6, 4}, {0.2, 0.3, 0}, 30.0);
@@ -55,8 +55,8 @@ Material shown(const glm::vec3& colour) {
   return material;
 }
 
-// Through a slab of glass every ray goes on beside itself, by what Snell's law says, and loses
-// Fresnel's share at both sides: a red and a green half-plane behind it, unlit.
+// A slab of glass displaces every ray by Snell's law, and each side reflects Fresnel's fraction.
+// Behind the slab are a red and a green half-plane, unlit.
 TEST(MirrorGlass, ASlabOfGlassShiftsWhatIsBehindIt) {
   const double index = 1.5, thickness = 1.0;
   Scene scene;
@@ -65,7 +65,7 @@ TEST(MirrorGlass, ASlabOfGlassShiftsWhatIsBehindIt) {
   add(scene, box({-20, -20, -float(thickness)}, {20, 20, 0}), glass(float(index)));
   const Camera camera = camera_at({4, 0.3, 3}, {1, 0, 0}, 50.0);
   RenderSettings options = light(kWhitted, 80, 80, 1);
-  options.max_depth = 2;  // no light that the glass has reflected inside
+  options.max_depth = 2;  // without light reflected inside the glass
   options.threshold = 0.0;
   const Film film = film_of(scene, camera, options);
   int red = 0, green = 0;
@@ -89,8 +89,8 @@ TEST(MirrorGlass, ASlabOfGlassShiftsWhatIsBehindIt) {
   EXPECT_GT(green, 500);
 }
 
-// From under water, beyond the critical angle, the surface is a perfect mirror of the ground;
-// before it the sky is seen, too.
+// Seen from under water, the surface is a perfect mirror of the ground beyond the critical angle;
+// below that angle the sky is visible, too.
 TEST(MirrorGlass, TotalReflectionShowsTheGround) {
   Scene scene;
   add(scene, rectangle({-90, -2, 90}, {180, 0, 0}, {0, 0, -180}), shown({0.5f, 0.25f, 0}));
@@ -116,7 +116,7 @@ TEST(MirrorGlass, TotalReflectionShowsTheGround) {
   }
 }
 
-// Light from a light through one or two panes that let half of it through.
+// Light passes through one or two panes that each transmit half of it.
 TEST(MirrorGlass, PanesWeakenLightAndShadowsAlike) {
   float unweakened = 0.0f;
   for (int panes = 0; panes <= 2; ++panes) {
@@ -139,8 +139,8 @@ TEST(MirrorGlass, PanesWeakenLightAndShadowsAlike) {
   }
 }
 
-// A lamp that covers all that a pond mirrors: few samples are enough to know what it reflects, for
-// they are not shared as the light is, most of which goes down into the dark.
+// A lamp covers all that a pond reflects. Few samples suffice for its reflection, although most
+// light is refracted into the dark: EmitterSupersampler follows both directions.
 TEST(MirrorGlass, ALampInAPondIsAsBrightAsFresnelSays) {
   Scene scene;
   add(scene, rectangle({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}), glass(1.5f));

@@ -1,4 +1,4 @@
-// The film: right in every pixel, and the same whatever the threads, the window and the engine.
+// Films: right in every pixel, and equal for all threads, windows and engines.
 #include "host/render/renderer.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ RenderSettings size(int width, int height, int threads = 1) {
   return options;
 }
 
-/// A sphere in a box, with the camera inside the box: edges everywhere.
+/// Returns a sphere in a box; the camera is inside the box and sees many edges.
 Scene sphere_in_box() {
   std::vector<Corners> mesh = sphere(3);
   const auto walls = box(glm::vec3(-3), glm::vec3(3));
@@ -35,7 +35,7 @@ Scene sphere_in_box() {
   return scene;
 }
 
-// The eye on a diagonal, the picture square: rays run exactly through edges and vertices.
+// An eye on a diagonal and a square picture: rays run exactly through edges and vertices.
 const Camera kCamera =
     Camera::look_at({glm::dvec3(2), glm::dvec3(0), glm::dvec3(0, 0, 1), 60.0}, 1.0);
 
@@ -90,7 +90,7 @@ TEST(Renderer, MissesLeaveNothing) {
   EXPECT_EQ(stats.intersect.hit.tests, 0u);
 }
 
-// Straight at a wall two units away: the colour is the material's, the depth two.
+// A wall straight ahead at distance 2 has its material's colour, and depth 2.
 TEST(Renderer, LambertLitFromTheCamera) {
   Scene scene = scene_of({{glm::vec3(-9, -9, -2), glm::vec3(9, -9, -2), glm::vec3(0, 9, -2)}});
   scene.materials[0].diffuse = glm::vec3(0.5f, 0.25f, 1.0f);
@@ -101,7 +101,7 @@ TEST(Renderer, LambertLitFromTheCamera) {
   EXPECT_EQ(film.color[0], glm::vec4(0.5f, 0.25f, 1.0f, 1.0f));
   EXPECT_EQ(film.normal[0], glm::vec3(0, 0, 1));
   EXPECT_EQ(film.depth[0], 2.0f);
-  // Normals of the file, seen at 60 degrees, from either side.
+  // With normals of the file, seen at 60 degrees from either side.
   const float c = 0.5f, s = std::sqrt(0.75f);
   scene.normals = {glm::vec3(s, 0, -c)};
   scene.triangles[0].normals = {0, 0, 0};
@@ -110,7 +110,7 @@ TEST(Renderer, LambertLitFromTheCamera) {
   EXPECT_NEAR(film.normal[0].z, 0.5f, 1e-6f);
 }
 
-// Each extra channel on its own: what it says, and that nothing else is made or changed.
+// Requests each extra channel alone: its contents; no other channel is made or changed.
 TEST(Renderer, ExtraChannelsOnDemand) {
   Scene scene = sphere_in_box();
   scene.origin = glm::dvec3(100.0, 0.0, 0.0);
@@ -137,7 +137,7 @@ TEST(Renderer, ExtraChannelsOnDemand) {
       ASSERT_EQ(film.object[i], film.primitive[i] < sphere_size ? 0u : 1u);
     }
     for (std::size_t i = 0; i < film.position.size(); ++i) {
-      // Along the axis of the camera, the point is as far as the depth says.
+      // Along the camera's axis, the point is as far away as the depth says.
       const glm::dvec3 from_eye =
           glm::dvec3(film.position[i]) - scene.origin - glm::dvec3(kCamera.eye());
       ASSERT_NEAR(glm::dot(from_eye, kCamera.forward()), film.depth[i], 2e-5);
@@ -164,7 +164,7 @@ TEST(Renderer, ProgressReachesOneAndCanCancel) {
   EXPECT_LT(stats.rays, 300u * 300u);
 }
 
-/// A thread deep in a long search is not waited for.
+/// render() does not wait for a thread that is stuck in a long search.
 TEST(Renderer, AThreadThatDoesNotStopIsAbandoned) {
   const Scene scene = sphere_in_box();
   const Bvh bvh(scene);
@@ -192,7 +192,7 @@ TEST(Renderer, AnIntersectorsExceptionReachesTheCaller) {
                std::runtime_error);
 }
 
-/// As if each ray had been tested against three billion polygons.
+/// Reports three billion tests for each ray.
 class Counting : public CpuIntersector {
  public:
   using CpuIntersector::CpuIntersector;

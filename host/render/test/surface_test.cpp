@@ -1,4 +1,4 @@
-// What materials do beside scattering: masks, normal maps, shadow catchers; and any size of scene.
+// Features besides scattering: masks, normal maps, shadow catchers; and scenes of any size.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ using namespace test;  // NOLINT(google-build-using-namespace)
 
 using enum IntegratorKind;
 
-// What catches shadows looks like the background, and is darker where something keeps light away.
+// A shadow catcher looks like the background, and darker where something blocks the light.
 TEST(Surface, AShadowCatcherIsSeenWhereItsShadowsAre) {
   Material catcher = matte(glm::vec3(0.0f));
   catcher.illumination_model = 10;
@@ -40,7 +40,7 @@ TEST(Surface, AShadowCatcherIsSeenWhereItsShadowsAre) {
   EXPECT_GT(dark, 10);
 }
 
-/// A square at z = 0 from -1 to 1, with texture coordinates from 0 to 1.
+/// Adds a square at z = 0 from -1 to 1, with texture coordinates from 0 to 1.
 void add_picture(Scene& scene, const Material& material) {
   add(scene, rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), material);
   const auto first = static_cast<std::uint32_t>(scene.texcoords.size());
@@ -52,7 +52,7 @@ void add_picture(Scene& scene, const Material& material) {
   scene.triangles[count - 1].texcoords = {first, first + 2, first + 3};
 }
 
-/// Grey behind the first texture as a mask.
+/// Returns a grey material with the first texture as its mask.
 Material masked() {
   Material material = matte(glm::vec3(0.5f));
   material.opacity_map.texture = 0;
@@ -72,7 +72,7 @@ void add_hidden(Scene& scene, int squares) {
   }
 }
 
-// What a mask hides is not there, for camera rays and for shadows.
+// What a mask hides is missing for camera rays and for shadow rays.
 TEST(Surface, AMaskHidesHalfOfASquare) {
   const auto scene_with = [&](bool has_square) {
     Scene scene;
@@ -110,7 +110,7 @@ TEST(Surface, AMaskHidesHalfOfASquare) {
   }
 }
 
-// However many surfaces are masked out one behind the other, what is behind them is seen.
+// Any number of masked-out surfaces one behind the other still shows what is behind them.
 TEST(Surface, ManyMasksHideNothing) {
   const auto center = [&](int squares, IntegratorKind integrator) {
     Scene scene;
@@ -128,7 +128,7 @@ TEST(Surface, ManyMasksHideNothing) {
   }
 }
 
-// Every channel shows what is seen through holes, or that nothing is.
+// Every channel shows the surface behind holes, or that there is none.
 TEST(Surface, ChannelsShowWhatIsBehindHoles) {
   const auto film_with = [&](int squares, IntegratorKind integrator) {
     Scene scene;
@@ -158,7 +158,7 @@ TEST(Surface, ChannelsShowWhatIsBehindHoles) {
   }
 }
 
-// What blends covers its share of what is behind it, for camera rays and for shadows.
+// A blending texture covers a fraction of the surfaces behind it, for camera and shadow rays.
 TEST(Surface, OpacityOfATextureBlends) {
   for (const bool is_unlit : {false, true}) {
     Material veil = is_unlit ? matte(glm::vec3(0.5f)) : facets(0.0f, 0.6f, 0.0f);
@@ -178,17 +178,17 @@ TEST(Surface, OpacityOfATextureBlends) {
       return film_of(scene, camera, options).color[0].r;
     };
     for (const IntegratorKind integrator : {kWhitted, kPath}) {
-      if (is_unlit && integrator == kPath) continue;  // the wall sees it, too
+      if (is_unlit && integrator == kPath) continue;  // the wall reflects that light, too
       const double veiled = center(255, integrator, 0.8), bare = center(0, integrator, 0.8);
       EXPECT_GT(std::abs(veiled - bare), 0.05);
       const double a = 51 / 255.0, half = center(51, integrator, 0.8);
-      // Of the wall, both what is seen of it and the light that it gets are fewer.
+      // The texture weakens both the view of the wall and the light on the wall.
       EXPECT_NEAR(half, a * veiled + (1 - a) * (1 - a) * bare, 0.02 * half) << is_unlit;
     }
   }
 }
 
-// Colours of vertices multiply that of the material, in triangles written out and in instances.
+// Interpolated vertex colours multiply the material's, with instances and flattened.
 TEST(Surface, ColoursOfVerticesAreBetweenThem) {
   Scene scene;
   add_picture(scene, matte({0.5f, 1.0f, 1.0f}));
@@ -208,7 +208,7 @@ TEST(Surface, ColoursOfVerticesAreBetweenThem) {
   EXPECT_EQ(film_of(scene, camera, options).albedo[12], glm::vec3(0.5f, 1.0f, 1.0f));
 }
 
-// A map that leans along u turns the normal to where u grows.
+// A map that tilts normals along u turns the normal to where u increases.
 TEST(Surface, ANormalMapTurnsTheNormal) {
   for (const bool is_mirrored : {false, true}) {
     Material bumpy = matte(glm::vec3(0.5f));
@@ -228,8 +228,8 @@ TEST(Surface, ANormalMapTurnsTheNormal) {
   }
 }
 
-// Lengths have no unit: a scene a trillion times as large, or as small, looks the same, to the bit,
-// with the light that a scene without one gets.
+// Lengths have no unit: a scene 10^12 times as large or as small gives the same picture, to the
+// bit, with default lights.
 TEST(Surface, SizeDoesNotMatter) {
   const auto picture = [](float scale, IntegratorKind integrator) {
     Scene scene;

@@ -46,7 +46,7 @@ class EarClipper {
     return clip_ears();
   }
 
-  /// Returns the triangles of the last cut(), as corner numbers: n - 2 if it was simple.
+  /// Returns the triangles of the last cut(), as corner numbers; n - 2 for a simple polygon.
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
 
  private:
@@ -60,13 +60,13 @@ class EarClipper {
   };
   /// The root of a subtree of the kd-tree of corners that were reflex in the whole polygon.
   struct Node {
-    glm::dvec2 position, low, high;  // of the corner, and the box of the subtree
+    glm::dvec2 position, low, high;  // the corner's position, the subtree's box
     std::uint32_t corner;
   };
   using Ear = std::array<glm::dvec2, 3>;
 
-  /// Returns whether a box and a counter-clockwise triangle are separated by one of the box's axes
-  /// or by an edge, on whose outer side even the box's innermost corner is.
+  /// Returns whether a box and a counter-clockwise triangle are separated along one of the box's
+  /// axes or by a triangle edge, outside of which even the box's innermost corner lies.
   static bool are_separate(const Ear& triangle, const glm::dvec2& low, const glm::dvec2& high) {
     const auto& [a, b, c] = triangle;
     const glm::dvec2 least = glm::min(glm::min(a, b), c), most = glm::max(glm::max(a, b), c);
@@ -221,7 +221,7 @@ class EarClipper {
       if (!candidates_.empty()) {
         listed_all = false;
       } else if (!listed_all) {
-        list_all_left();  // a corner may be an ear since an obstacle is gone
+        list_all_left();  // a corner may have become an ear, as an obstacle is gone
         listed_all = true;
       } else if (mind_obstacles_) {
         kind = PolygonKind::kSelfTouching;  // there is no ear, so the polygon is not simple
@@ -231,7 +231,7 @@ class EarClipper {
         break;  // there is no convex corner
       }
     }
-    // The last three corners or, for a polygon that is not simple, a fan of the remaining ones.
+    // Add the last three corners or, for a polygon that is not simple, a fan of the remaining ones.
     std::uint32_t first = 0;
     while (ring_[first].gone) ++first;
     const Corner& hub = ring_[first];

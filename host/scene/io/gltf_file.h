@@ -115,12 +115,12 @@ inline glm::dmat4 local_matrix(const Json& node) {
 class GltfFile {
  public:
   std::string name;
-  std::vector<std::filesystem::path> files;  ///< all that were read so far
+  std::vector<std::filesystem::path> files;  ///< all files read so far
   std::size_t bytes = 0;                     ///< their total size
   Json json;
 
-  /// Warnings are appended to `warnings`, which must outlive this object. Throws InputError if a
-  /// file cannot be read, is not glTF 2.0 or requires an extension that is not read.
+  /// Appends warnings to `warnings`, which must outlive this object. Throws InputError if a file
+  /// cannot be read, is not glTF 2.0 or requires an extension that is not supported.
   GltfFile(const std::filesystem::path& file, std::vector<std::string>& warnings)
       : name(file.string()), folder_(file.parent_path()), warnings_(warnings) {
     std::string_view text = read(file), binary;
@@ -163,7 +163,7 @@ class GltfFile {
   }
 
   [[noreturn]] void fail(const std::string& what) const { throw InputError(name + ": " + what); }
-  /// Adds the warning "file: what" unless there is one.
+  /// Adds the warning "file: what" unless it was added before.
   void warn_once(const std::string& what) { add_warning(name + ": " + what); }
   /// Calls `read`. An InputError becomes a warning that ends in `instead`.
   template <class Read>
@@ -177,7 +177,7 @@ class GltfFile {
 
   /// Returns a list of the file, such as "nodes"; null if it has none.
   [[nodiscard]] const Json& list(const char* key) const { return member(json, key); }
-  /// Returns element `index` of a list. Throws InputError, which calls it `what`, if there is none.
+  /// Returns element `index` of a list. Throws InputError, which names it `what`, if there is none.
   [[nodiscard]] const Json& at(const Json& list, int index, const char* what) const {
     const std::size_t size = list.is_array() ? list.size() : 0;
     if (index >= 0 && static_cast<std::size_t>(index) < size) {
@@ -193,8 +193,8 @@ class GltfFile {
     return size_in(this->accessor(accessor), "count");
   }
 
-  /// Returns the first `wanted` components of each element of an accessor, which may be infinite or
-  /// NaN. Throws InputError if they cannot be read.
+  /// Returns the first `wanted` components of each element of an accessor; they may be infinite or
+  /// NaN. Throws InputError if the accessor cannot be read.
   [[nodiscard]] std::vector<double> numbers(int accessor, std::size_t wanted, const char* what,
                                             bool are_indices = false) const {
     static const std::map<std::string, std::size_t> kTypes = {
@@ -217,7 +217,7 @@ class GltfFile {
     std::vector<double> all;
     if (!member(from, "bufferView").is_null()) {
       all = stored_numbers(from, component, width, count, place);
-    } else {  // they are 0, apart from sparse ones
+    } else {  // all are 0, apart from sparse elements
       constexpr std::size_t kMost = 1'000'000;
       if (count > kMost + bytes) fail(place + "too many elements without a buffer");
       all.assign(width * count, 0.0);
@@ -248,7 +248,7 @@ class GltfFile {
     }
     return numbers;
   }
-  /// Returns the numbers of an optional attribute of this number of vertices; an empty list for
+  /// Returns the components of an optional attribute of `vertices` vertices; an empty list for
   /// accessor -1 and, with a warning, for an accessor that cannot be read.
   [[nodiscard]] std::vector<double> optional_numbers(int accessor, std::size_t width,
                                                      const char* what, std::size_t vertices) {
@@ -263,7 +263,7 @@ class GltfFile {
     });
     return all;
   }
-  /// Returns the bytes of an image file. Throws InputError if it has none.
+  /// Returns the encoded bytes of image `number`. Throws InputError if the image is missing.
   [[nodiscard]] std::string_view picture_bytes(int number) {
     const Json& image = at(list("images"), number, "image");
     const std::string place = "image " + std::to_string(number);
@@ -317,7 +317,7 @@ class GltfFile {
     return text;
   }
 
-  /// Decodes base64 (RFC 4648) up to the first other character.
+  /// Decodes base64 (RFC 4648) up to the first character that is no digit.
   static std::string decode_base64(std::string_view text) {
     constexpr std::string_view kDigits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -381,8 +381,8 @@ class GltfFile {
     return *found;
   }
 
-  /// Returns the bytes of the buffer view of `part`. Throws InputError, which names `place`, if it
-  /// has none or is not within its buffer.
+  /// Returns the bytes of the buffer view of `part`. Throws InputError, which names `place`, if
+  /// `part` has no buffer view or the view exceeds its buffer.
   [[nodiscard]] std::string_view stored(const Json& part, const std::string& place) const {
     const int number = index_in(part, "bufferView");
     if (number < 0) fail(place + "found no buffer view, expected its number");
@@ -404,8 +404,8 @@ class GltfFile {
     return data.substr(offset, length);
   }
 
-  /// Returns `count` elements of `width` numbers, without gaps, at an accessor or a part of a
-  /// sparse one. Throws InputError if they exceed their buffer view.
+  /// Returns the `count` elements, of `width` numbers each, of `part`: an accessor, or the indices
+  /// or values of a sparse one. Throws InputError if they exceed their buffer view.
   [[nodiscard]] std::vector<double> stored_numbers(const Json& part, const Component& component,
                                                    std::size_t width, std::size_t count,
                                                    const std::string& place) const {

@@ -31,7 +31,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kLumensPerWatt = 683.0;
 constexpr double kMostFloat = std::numeric_limits<float>::max();
 constexpr int kTriangles = 4, kTriangleFan = 6;    // modes of primitives
-constexpr std::size_t kMostVertices = 12'000'000;  // plus the number of bytes of the file
+constexpr std::size_t kMostVertices = 12'000'000;  // limit, to which the file's bytes are added
 
 /// The index of a mesh, and the weights of its morph targets.
 using Shape = std::pair<int, std::vector<double>>;
@@ -194,7 +194,7 @@ class GltfReader {
     }
   }
 
-  /// Returns the mesh of an instance, in its own coordinates, which is read at the first call.
+  /// Returns the mesh of an instance, in the mesh's own coordinates. Reads it at the first call.
   SharedMesh& shared(const Shape& shape) {
     const auto [at, is_new] = shared_.try_emplace(shape);
     if (!is_new) return at->second;
@@ -237,10 +237,10 @@ class GltfReader {
     }
   }
 
-  /// Sets the scene's camera, with a target ahead of it, unless there is one.
+  /// Sets the scene's camera, with a target ahead of it, unless the scene already has a camera.
   void read_camera(const Json& camera, const glm::dmat4& world) {
     const bool is_orthographic = text_in(camera, "type") == "orthographic";
-    // An orthographic picture has the size of a perspective one at the target.
+    // With 90 degrees and a target at distance ymag, half the image's height is ymag.
     const double fov =
         is_orthographic ? 90.0 : number_in(member(camera, "perspective"), "yfov", 0.0) * kDegrees;
     const double distance =
@@ -386,7 +386,7 @@ class GltfReader {
     return all;
   }
 
-  /// Returns the transform of each vertex to the world: the weighted mean of its joints.
+  /// Returns each vertex's transform to the world: the weighted mean of its joints' transforms.
   std::vector<glm::dmat4> skinned(const Json& primitive, const Placement& placement,
                                   std::size_t vertices) {
     std::vector<glm::dmat4> all(vertices, glm::dmat4(0.0));
@@ -420,7 +420,7 @@ class GltfReader {
     if (!attributes.contains("POSITION")) {
       return file_.warn_once("a primitive without positions is left out");
     }
-    // Texture coordinates that no texture uses, and joints without a skin, change no picture.
+    // No warning for unused texture coordinates and joints without a skin: they change no picture.
     static const std::regex kRead(
         "^(POSITION$|NORMAL$|TANGENT$|COLOR_0$|(TEXCOORD|JOINTS|WEIGHTS)_)");
     for (const auto& [name, accessor] : attributes.items()) {

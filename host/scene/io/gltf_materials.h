@@ -27,11 +27,11 @@ class GltfMaterials {
 
   struct Converted {
     std::uint32_t number;  ///< index into Scene::materials
-    /// Sets of coordinates of its textures, the base colour's first; -1: none.
+    /// Texture coordinate sets of the material, the base colour's first; -1: none.
     std::array<int, 2> texcoord_sets;
   };
 
-  /// Returns a material of the file, which is converted at its first use; -1 is the default one.
+  /// Returns a material of the file, converted at the first call; -1 is the default material.
   Converted convert(int material) {
     const auto found = converted_.find(material);
     if (found != converted_.end()) return found->second;
@@ -44,8 +44,8 @@ class GltfMaterials {
     return converted_.emplace(material, converted).first->second;
   }
 
-  /// Lets the opacities of vertices multiply a material's. Returns whether it has a mask or blends;
-  /// otherwise it is opaque and remains unchanged.
+  /// Makes vertex opacities multiply the opacity of a material, if it is masked or blended, and
+  /// returns true. Otherwise the material is opaque and remains unchanged.
   [[nodiscard]] bool use_vertex_opacity(int material) {
     const Converted converted = convert(material);
     Material& to = scene_.materials[converted.number];
@@ -90,7 +90,7 @@ class GltfMaterials {
     return index == -1 ? kDefault : file_.at(file_.list("materials"), index, "material");
   }
 
-  /// Returns a list of a material; an empty list, with a warning, if it is not `size` numbers.
+  /// Returns a material's list at a key; an empty list, with a warning, unless of `size` numbers.
   std::vector<double> numbers(const Json& object, const char* key, std::size_t size) {
     std::vector<double> numbers = numbers_in(object, key);
     if (numbers.size() == size) return numbers;
@@ -100,8 +100,8 @@ class GltfMaterials {
     return {};
   }
 
-  /// Returns a decoded image; nullopt, with a warning, if the texture has none. Throws InputError
-  /// if it cannot be decoded or the images have too many pixels.
+  /// Returns a texture's decoded image; nullopt if images are not decoded or, with a warning, if it
+  /// has none. Throws InputError for a damaged image and for too many pixels in all images.
   std::optional<Texture> picture(const Json& texture, Texture::Content content) {
     if (!textures_) return std::nullopt;
     const int source = index_in(texture, "source");
@@ -118,7 +118,7 @@ class GltfMaterials {
     return result;
   }
 
-  /// Returns the texture at a key with its mapping; no texture, with a warning, if unreadable.
+  /// Returns the texture at a key, with its mapping; no texture, with a warning, if unreadable.
   MaterialMap map_of(const Json& parent, const char* key,
                      Texture::Content content = Texture::Content::kColour) {
     MaterialMap map;
@@ -174,7 +174,7 @@ class GltfMaterials {
     const Json& transform = extension(info, kTransform);
     if (transform.is_null()) return map;
     map.mapping.scale = pair_in(transform, "scale", glm::vec2(1.0f));
-    // The file's v points down: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o.
+    // v points down in files: 1 - (c s v + o) = c s (1 - v) + 1 - c s - o (cosine, scale, offset).
     const glm::vec2 offset = pair_in(transform, "offset", glm::vec2(0.0f));
     const double angle = number_in(transform, "rotation", 0.0);
     map.mapping.turn = {std::cos(angle), std::sin(angle)};
@@ -264,7 +264,7 @@ class GltfMaterials {
   const bool textures_;
   std::map<int, Converted> converted_;  // by the material's index in the file
   std::array<int, 2> sets_{-1, -1};     // texcoord_sets of the material that is being read
-  /// Textures of the scene by image of the file; kNoIndex: it could not be read.
+  /// Indices into Scene::textures by image of the file; kNoIndex: an image could not be read.
   std::map<std::pair<int, Texture::Content>, std::uint32_t> texture_of_image_;
   std::int64_t texels_ = 0;  // decoded so far
 };

@@ -28,14 +28,14 @@ namespace raygate {
 
 using Json = nlohmann::json;
 
-/// A text for the parser, which counts the lines that were read.
+/// Stream buffer of a text, which counts the lines that the parser has read.
 class LineBuffer : public std::streambuf {
  public:
   explicit LineBuffer(std::string_view text) : counted_(text.data()) {
     char* const first = const_cast<char*>(text.data());  // never written
     setg(first, first, first + text.size());
   }
-  /// Returns the line of the last character that was read. The parser reads one beyond a number.
+  /// Returns the line of the last character read, which is one beyond the end of a number.
   std::size_t line() {
     for (; counted_ + 1 < gptr(); ++counted_) line_ += *counted_ == '\n' ? 1 : 0;
     return line_;
@@ -69,13 +69,13 @@ class JsonFile {
   /// Parses `file`. Throws InputError, "file:line: what", if it cannot be read or is not JSON, and
   /// for an object with a key twice.
   explicit JsonFile(const std::filesystem::path& file) : name(file.string()) {
-    constexpr std::size_t kLevels = 3;  // of lines_
+    constexpr std::size_t kLevels = 3;  // maximum depth of paths in lines_
     struct Level {
       bool is_array;
       std::string path;
-      std::size_t count = 0;                      // of the array's elements so far
-      std::string key = {};                       // the object's last one
-      std::unordered_set<std::string> keys = {};  // all of them
+      std::size_t count = 0;                      // elements of the array so far
+      std::string key = {};                       // last key of the object
+      std::unordered_set<std::string> keys = {};  // all keys of the object
     };
     std::vector<Level> levels;
     const std::string bytes = read_file(file);
@@ -106,8 +106,8 @@ class JsonFile {
     });
   }
 
-  /// Returns the line on which an array or an object starts or another value ends, or, below three
-  /// levels, that of the value around it.
+  /// Returns the line on which an array or object starts or another value ends. For values more
+  /// than three levels deep, returns the line of an enclosing value.
   [[nodiscard]] std::size_t line_of(std::string path) const {
     for (auto found = lines_.find(path);; found = lines_.find(path)) {
       if (found != lines_.end()) return found->second;
@@ -145,7 +145,7 @@ class JsonValue {
   }
   [[nodiscard]] std::size_t line() const { return file_->line_of(path_); }
 
-  /// Requires an object without other keys than these.
+  /// Requires an object with no keys other than `known`.
   void require_keys(std::initializer_list<const char*> known) const {
     std::string names;
     for (const char* key : known) names.append(names.empty() ? "" : ", ").append(key);
@@ -194,8 +194,8 @@ class JsonValue {
     if (!(std::abs(number) <= kLargest)) fail("a number within the range of float");
     return number;
   }
-  /// Returns the number at a key, which is from `low` to `high`, or nullopt if there is no such
-  /// key. `expected` describes the range in messages.
+  /// Returns the number at a key, which must be in [low, high], or nullopt if the key is missing.
+  /// `expected` describes the range in messages.
   [[nodiscard]] std::optional<double> number_in(const std::string& key, double low, double high,
                                                 const std::string& expected) const {
     const auto value = find(key);

@@ -31,7 +31,7 @@ constexpr ValueRange kValues[kValueCount] = {
     {"Tr", 0.0, 1.0, 0.0},       {"illum", 0.0, 10.0, 2.0},     {"Pr", 0.0, 1.0, 0.0},
     {"Pm", 0.0, 1.0, 0.0}};
 
-/// Options of maps that are not supported, which numbers or one word follow.
+/// Unsupported options of maps. Each is followed by numbers or one word.
 constexpr std::string_view kOtherOptions[] = {"-blendu", "-blendv", "-boost",     "-texres",
                                               "-bm",     "-cc",     "-type",      "-imfchan",
                                               "-mm",     "-t",      "-colorspace"};
@@ -75,7 +75,7 @@ class MtlReader {
   MtlReader(const std::filesystem::path& file, std::vector<std::string>& warnings)
       : lines_(file), folder_(file.parent_path()), warnings_(warnings) {}
 
-  /// Returns the materials in the file's order. Of several with one name the first is kept.
+  /// Returns the materials in the file's order; of several with one name, only the first.
   std::vector<Material> read() {
     while (auto statement = lines_.next()) read_statement(*statement);
     finish_material();
@@ -235,7 +235,7 @@ class MtlReader {
                     .string();
     map = std::move(read);
     if (keyword == "norm") draft_.material.normal_scale = normal_scale;
-    // A map without its colour is not tinted. (A later Kd or Ke still counts.)
+    // A map without a Kd or Ke before it is not tinted. A later Kd or Ke still tints it.
     if (keyword == "map_Ke" && !draft_.has_emission) draft_.material.emission = glm::vec3(1.0f);
     if (keyword == "map_Kd" && !draft_.has_diffuse) draft_.material.diffuse = glm::vec3(1.0f);
   }

@@ -13,11 +13,11 @@
 namespace raygate {
 namespace {
 
-constexpr std::size_t kSpare = 64;  // room for area lights and the ground
+constexpr std::size_t kSpare = 64;  // capacity for area lights and the ground
 constexpr glm::vec3 kNoColor(-1.0f);
 constexpr std::size_t kCheckpointFaces = 4096;
 
-/// A flaw of faces, for one warning that counts them and names the first.
+/// A kind of flaw. Its one warning counts the faces that have it and names the first.
 struct Flaw {
   std::string text;
   std::size_t count = 0, first_line = 0;
@@ -86,7 +86,7 @@ void MeshBuilder::fail(std::vector<FaceCorner>::const_iterator corner,
   throw InputError(location(std::ranges::upper_bound(faces_, number, {}, &Face::end)->line) + what);
 }
 
-// Keeps the positions that a face uses, relative to the origin, and renumbers the corners.
+// Keeps the positions that faces use, relative to the origin, and renumbers the corners.
 void MeshBuilder::recentre(Scene& scene) {
   std::vector<std::uint32_t> new_index(positions_.size(), kNoIndex);
   for (const FaceCorner& corner : corners_) new_index[corner.position] = 0;
@@ -132,7 +132,7 @@ void MeshBuilder::place(const glm::dvec3& origin, bool keeps_rests, Scene& scene
   scene.drop_zero_rests();
 }
 
-// Returns whether a polygon has no area in its file, up to the rounding of decimals to double.
+// Returns whether a polygon has no area in the file, up to the rounding of decimals to double.
 bool MeshBuilder::was_flat(std::span<const FaceCorner> corners) const {
   const glm::dvec3& first = positions_[corners[0].position];
   glm::dvec3 area(0.0), size(0.0), reach = glm::abs(first);

@@ -85,24 +85,24 @@ class MeshBuilder {
 
  private:
   struct Face {
-    std::size_t end;  // end of its corners; they start at the previous face's end
+    std::size_t end;  // end of its corners_; they begin at the previous face's end
     std::size_t line;
     FaceAttributes attributes;
   };
 
   /// Returns the prefix of messages about the face on this line.
   [[nodiscard]] std::string location(std::size_t line) const;
-  /// Throws the InputError of the face with this corner.
+  /// Throws InputError with the location of the face that has this corner.
   [[noreturn]] void fail(std::vector<FaceCorner>::const_iterator corner,
                          const std::string& what) const;
   void recentre(Scene& scene);
-  /// Replaces the positions by those relative to this origin.
+  /// Sets the scene's positions to the builder's, relative to this origin.
   void place(const glm::dvec3& origin, bool keeps_rests, Scene& scene) const;
   [[nodiscard]] glm::vec3 linear_color(std::size_t position, float white) const;
   /// Returns whether a face has no area in the file's own numbers, before they are rounded.
   [[nodiscard]] bool was_flat(std::span<const FaceCorner> corners) const;
-  /// Returns the smoothing groups of the triangles; empty: all are flat. `gives_up`: returns
-  /// nothing if rounding to binary32 shows, see Vertices::kAsPictures.
+  /// Adds the triangles and returns their smoothing groups; empty: all are flat. With `gives_up`,
+  /// returns nullopt if rounding to binary32 moves a corner too far (Vertices::kAsPictures).
   [[nodiscard]] std::optional<std::vector<std::uint32_t>> triangulate(Scene& scene,
                                                                       bool gives_up) const;
 
@@ -123,17 +123,17 @@ class MeshBuilder {
   std::vector<Face> faces_;
 };
 
-/// Returns the origin of a scene with these bounds, which is subtracted from all positions: a point
-/// on a grid whose step is a power of two about the box's size. It is zero for a box near the
-/// world's origin. The subtraction is exact for coordinates that exceed three times the box's
-/// extent, and no difference exceeds three times the extent.
+/// Returns the origin to subtract from all positions of a scene with these bounds: a point on a
+/// grid whose step is a power of two about the box's size. It is zero for a box near the world's
+/// origin. The subtraction is exact for coordinates that exceed three times the box's extent, and
+/// no difference exceeds three times the extent.
 [[nodiscard]] glm::dvec3 origin_for_box(const glm::dvec3& low, const glm::dvec3& high);
 
-/// Sets the normals of triangles that have none and have a smooth edge. The normal at a corner is
+/// Sets the normals of triangles that have no normals but a smooth edge. The normal at a corner is
 /// the weighted mean over the triangles that are connected there by smooth edges (weights of N.
 /// Max, "Weights for computing vertex normals from facet normals", Journal of Graphics Tools 4 (2),
-/// 1999; exact on spheres). An edge is smooth if exactly two such triangles share it, with equal
-/// positions and in opposite directions, and
+/// 1999; exact on spheres). An edge is smooth if exactly two triangles without normals share it,
+/// with equal positions and in opposite directions, and
 /// * the angle between their normals is at most `angle`, in degrees up to 180, if that is given;
 /// * otherwise they have the same group in `groups`, other than 0.
 void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<double> angle,

@@ -113,7 +113,7 @@ class ObjReader {
     return {numbers_.data(), count};
   }
 
-  /// Takes v, v/vt, v//vn or v/vt/vn, perhaps with slashes after it.
+  /// Takes v, v/vt, v//vn or v/vt/vn, perhaps followed by slashes.
   FaceCorner take_corner(Words& words) const {
     const std::string_view corner = words.peek();
     const auto fail = [&](const std::string& what) {
@@ -244,11 +244,11 @@ class ObjReader {
   MeshBuilder mesh_;
   std::set<std::filesystem::path> libraries_;  // MTL files that were read
   Scene& scene_;
-  NameNumbers objects_, materials_;            // materials: of usemtl; a face has kNoIndex for none
-  std::vector<std::string> first_uses_;        // "file:line: " of the first use of each material
-  std::string object_, group_;                 // the current ones; empty: none
-  bool object_is_known_ = false;               // whether face_.object is their number
-  FaceAttributes face_{.material = kNoIndex};  // of the next face
+  NameNumbers objects_, materials_;               // materials_: names in usemtl
+  std::vector<std::string> first_uses_;           // "file:line: " of the first use of each material
+  std::string object_, group_;                    // the current ones; empty: none
+  bool object_is_known_ = false;                  // whether face_.object is the index of both
+  FaceAttributes face_{.material = kNoIndex};     // of the next face; kNoIndex: no usemtl
   std::set<std::string, std::less<>> warned_of_;  // keywords
   std::array<double, 7> numbers_{};               // of one statement
   std::vector<FaceCorner> corners_;               // of one face

@@ -26,9 +26,9 @@ constexpr std::string_view kTypeNames[][2] = {
 struct Property {
   std::string name;
   NumberType type = NumberType::kFloat;
-  std::optional<NumberType> count_type;  // of a list
+  std::optional<NumberType> count_type;  // type of a list's length; none: not a list
   bool is_used = false;
-  std::vector<double> values = {};  // of the element that was read last: one, or a list
+  std::vector<double> values = {};  // of the last element read: one value, or a list
 };
 
 struct Element {
@@ -36,7 +36,7 @@ struct Element {
   long long count = 0;
   std::vector<Property> properties = {};
 
-  /// Returns properties, and marks them as used; none if one of them is missing.
+  /// Returns the named properties, marked as used; an empty list if one of them is missing.
   std::vector<Property*> use(std::initializer_list<std::string_view> names, bool are_lists) {
     std::vector<Property*> used;
     for (const std::string_view name : names) {
@@ -95,7 +95,7 @@ class PlyReader {
  private:
   // Header
 
-  /// Sets words_ to those of the next line, and returns its first word.
+  /// Sets words_ to the words of the next line and returns the first of them.
   std::string_view next_line() {
     words_ = Words(name_, "", ++lines_);
     const std::size_t length = text_.find(line_end_);
@@ -222,7 +222,7 @@ class PlyReader {
     if (position.empty()) words_.fail("vertices without x, y and z");
     has_normals_ = !normal.empty();
     note_unread(element);
-    glm::dvec3 white(1.0);  // codes of 1
+    glm::dvec3 white(1.0);  // codes that stand for 1
     for (int k = 0; const Property* property : color) {
       if (property->type == NumberType::kUint8) white[k] = 255.0;
       if (property->type == NumberType::kUint16) white[k] = 65535.0;

@@ -24,10 +24,10 @@ enum class Vertices {
 
 struct LoadOptions {
   bool textures = true;  ///< whether textures are decoded
-  /// Largest angle between the normals of two faces without vertex normals that are smoothed over
-  /// their edge, in degrees from 0 to 180. By default the file's smoothing groups apply.
+  /// Largest angle, in degrees from 0 to 180, between two faces without vertex normals at which
+  /// their edge is smoothed. By default the file's smoothing groups apply.
   std::optional<double> smooth = {};
-  /// At most kAsPictures for glTF files, and kBinary32 for meshes with instances.
+  /// For glTF files kBinary64 acts as kAsPictures; meshes with instances use kBinary32.
   Vertices vertices = Vertices::kBinary64;
 };
 
@@ -43,16 +43,16 @@ struct LoadOptions {
 /// or damaged, a bad normal or texture coordinate, and all that is left out.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
-/// Returns the file that a model in `folder` refers to as `name`: the file of that name or, if
-/// there is none, of the name without quotes and with '/' for '\', or without the '\' before
-/// spaces; else the file whose name matches the last part of `name` in any letter case, in the
-/// folder of `name` or in `folder`, with a warning that begins with `place`.
+/// Returns the file that a model in `folder` names `name`, or nullopt. Tries `name` as it is, then
+/// without quotes and with '/' for '\', then without the '\' before spaces. At last, with a warning
+/// that begins with `place`, takes a file whose name equals the last part of `name` in any letter
+/// case, in the folder of `name` or in `folder`.
 [[nodiscard]] std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,
                                                              std::string_view name,
                                                              const std::string& place,
                                                              std::vector<std::string>& warnings);
 
-/// Returns the existing file with this stem and the first of these endings, or else "STEM.obj".
+/// Returns the first existing file of STEM.obj, .glb, .gltf, .ply and .stl, or else "STEM.obj".
 [[nodiscard]] std::filesystem::path find_scene_file(const std::filesystem::path& stem);
 
 // Scene files: a scene.json, with the camera, lights, instances and options of a scene. The format
@@ -78,7 +78,7 @@ struct OptionValue {
   std::string where{};  ///< place for messages, "scene.json:3"; "": the command line
 };
 
-/// The contents of a scene file, in world coordinates. Values of options were not checked.
+/// The contents of a scene file, in world coordinates. Option values are not checked yet.
 struct SceneFile {
   std::filesystem::path file = {};
   std::filesystem::path obj = {};

@@ -15,7 +15,7 @@ using Corner = std::uint32_t;
 
 Corner next(Corner corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 
-/// The edge from a corner to the next one, by the numbers of the positions of its ends.
+/// The edge from a corner to the next one. `low` and `high` number the positions of its ends.
 struct Edge {
   std::uint32_t low, high;
   Corner corner;
@@ -53,7 +53,7 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
     const glm::dvec3 a = position(first);
     return glm::normalize(glm::cross(position(first + 1) - a, position(first + 2) - a));
   };
-  // The face's normal at a corner, by the sine of its angle over the lengths of both sides.
+  // Face normal at a corner, times the sine of its angle over the product of both side lengths.
   const auto weighted_normal = [&](Corner corner) {
     const glm::dvec3 at = position(corner), u = position(next(corner)) - at,
                      v = position(next(next(corner))) - at;
@@ -121,7 +121,7 @@ void add_smooth_normals(std::span<const std::uint32_t> groups, std::optional<dou
       const Corner kept = root(corner);
       if (normals[kept] == kNoIndex) {
         normals[kept] = static_cast<std::uint32_t>(scene.normals.size());
-        // If the normals of the faces cancel out, use that of one of them.
+        // If the normals of the faces cancel out, use the normal of one of the faces.
         const double length = glm::length(sums[kept]);
         scene.normals.emplace_back(length > 0.0 && std::isfinite(length) ? sums[kept] / length
                                                                          : face_normal(kept / 3));

@@ -46,7 +46,7 @@ void read_binary(const std::string& name, std::string_view bytes, std::size_t fa
   }
 }
 
-/// Takes the words of a line, if there are some.
+/// Takes the remaining words of a line.
 void skip_line(std::size_t line, Words& words) {
   while (!words.at_end() && words.line() == line) words.take();
 }
@@ -56,8 +56,8 @@ void expect_end(const std::string& word, Words& words) {
   words.take_if("end") ? words.expect(word) : words.expect("end" + word);
 }
 
-/// Reads solids (solid NAME, facets, endsolid NAME), which become one; names may have several
-/// words. Returns whether the last endsolid is there.
+/// Reads all solids (solid NAME, facets, endsolid NAME) into one mesh. Names may have several
+/// words. Returns whether the last solid has its endsolid.
 bool read_ascii(Words words, MeshBuilder& mesh) {
   while (!words.at_end()) {
     std::size_t line = words.line();
@@ -99,7 +99,7 @@ Scene load_stl(const std::filesystem::path& file, const LoadOptions& options) {
   // A binary file may also begin with "solid". Unlike text, it has a zero byte near its beginning.
   const bool has_zero = bytes.find('\0') < 1024;
   if (facets > 0 && (bytes.size() == length || (has_zero && bytes.size() > length))) {
-    read_binary(name, bytes, facets, mesh);  // may be followed by other data
+    read_binary(name, bytes, facets, mesh);  // other data may follow
     if (const std::size_t more = (bytes.size() - length) / kFacet; more > 0) {
       scene.warnings.push_back(name + ": room for " + std::to_string(more) + " facets after the " +
                                std::to_string(facets) + " that its header counts, ignored");

@@ -53,7 +53,7 @@ class Words {
     find_word(next_);
     return word;
   }
-  /// Takes the next word if it equals `word`, which is in lower case, in any case of letters.
+  /// Takes the next word, and returns true, if it equals `word` (lower case) in any letter case.
   bool take_if(std::string_view word) {
     const auto is_same = [](char small, char letter) { return small == in_lower_case(letter); };
     const bool is_equal = word == word_ || std::ranges::equal(word, word_, is_same);
@@ -76,7 +76,7 @@ class Words {
     (void)take();
     return *number;
   }
-  /// Takes any word. Returns NaN for one that is not a number.
+  /// Takes any word. Returns its number, or NaN if the word is not a number.
   double any_number() {
     return to_number(take()).value_or(std::numeric_limits<double>::quiet_NaN());
   }
@@ -111,8 +111,8 @@ class Words {
   const std::string* file_;
   std::string_view text_;
   std::string_view word_;  // the next word
-  std::size_t next_ = 0;   // its end
-  std::size_t line_ = 0;   // its line
+  std::size_t next_ = 0;   // end of word_
+  std::size_t line_ = 0;   // line of word_
 };
 
 /// A text file as a sequence of OBJ or MTL statements:

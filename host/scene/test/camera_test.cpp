@@ -44,7 +44,7 @@ TEST(LookAt, ShowsTheTargetInTheMiddle) {
   EXPECT_EQ(camera.forward(), glm::dvec3(0, 0, -1));
   EXPECT_EQ(camera.right(), glm::dvec3(1, 0, 0));
   EXPECT_EQ(camera.up(), glm::dvec3(0, 1, 0));
-  // 90 degrees upright, twice as much (as a tangent) across; row 0 is at the top.
+  // Half heights are tan(45 degrees) = 1, half widths twice that; y = 0 is the upper edge.
   const auto expect_near = [](const glm::vec3& a, const glm::vec3& b) {
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(a[axis], b[axis], 1e-6);
   };
@@ -102,14 +102,14 @@ TEST(Frame, RefusesNothingToSeeAndTooMuch) {
   EXPECT_THROW((void)front_camera(scene, 1), InputError);
 }
 
-/// Looks along -z from (1, 2, 3) at what is 4 away; the picture is twice as wide as high.
+/// A camera at (1, 2, 3) that looks along -z; target at distance 4; images twice as wide as high.
 Camera through(const LensSetting& lens) {
   CameraSetting setting{{1, 2, 3}, {1, 2, -1}, std::nullopt, 90.0};
   setting.lens = lens;
   return Camera::look_at(setting, 2.0);
 }
 
-/// Where a ray is at this z.
+/// Returns the point of a ray at this z.
 glm::dvec3 at_depth(const Ray& ray, double z) {
   const glm::dvec3 origin(ray.origin), way(ray.direction);
   return origin + (z - origin.z) / way.z * way;
@@ -152,7 +152,7 @@ TEST(Lens, RaysOfAPointMeetWhereItIsInFocus) {
   EXPECT_EQ(through({{}, 0.1, {}}).focus(), 4.0) << "the target's distance";
 }
 
-/// GCC 12's vectoriser of neighbouring statements left out the rounding of the origin
+/// GCC 12's vectoriser of neighbouring statements dropped the rounding of the origin to float
 /// (host/CMakeLists.txt).
 TEST(Lens, RaysGoFromTheirRoundedOriginToWhereItIsInFocus) {
   const double aperture = 0.37, focus = 7.0;
@@ -163,7 +163,7 @@ TEST(Lens, RaysGoFromTheirRoundedOriginToWhereItIsInFocus) {
     const double x = unit(random), y = unit(random);
     const glm::dvec2 lens(unit(random), 0.0);
     const glm::dvec3 eye(1, 2, 3), way(2.0 * (2.0 * x - 1.0), 1.0 - 2.0 * y, -1.0);
-    // volatile: what is stored there is rounded, whatever the compiler makes of it.
+    // volatile: the stored value is rounded to float, whatever the compiler does.
     const volatile float start = static_cast<float>(eye.x + aperture * std::sqrt(lens.x));
     const glm::dvec3 origin(start, eye.y, eye.z);
     const Ray ray = camera.ray(x, y, lens);

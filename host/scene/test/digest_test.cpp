@@ -1,4 +1,4 @@
-// Each thing that a picture may depend on changes a scene's digest.
+// Everything that a picture may depend on changes a scene's digest.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -30,7 +30,7 @@ TEST(Digest, IsTheSameOfEqualScenes) {
   EXPECT_EQ(digest_of(scene), digest_of(sample()));
   EXPECT_EQ(digest_of(scene).find_first_not_of("0123456789abcdef"), std::string::npos);
   EXPECT_EQ(digest_of(scene).size(), 16u);
-  // What no pixel depends on.
+  // No pixel depends on these members.
   scene.warnings.emplace_back("a.obj:1: said");
   scene.files.emplace_back("a.obj");
   scene.materials[0].name = "another";

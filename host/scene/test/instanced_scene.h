@@ -1,4 +1,4 @@
-// A scene of instances, for the tests of all that meets them.
+// A scene with instances, for the tests of all code that handles instances.
 #pragma once
 
 #include <utility>
@@ -8,8 +8,8 @@
 
 namespace raygate::test {
 
-/// Rows of a matrix that turns, stretches and shears as chance will, of about this size, and moves
-/// to `at`.
+/// Returns an instance with a random linear transform, whose coefficients are at most about `size`,
+/// and translation `at`.
 inline Instance placed_at_random(Random& random, const glm::vec3& at, float size) {
   Instance instance;
   do {
@@ -25,9 +25,9 @@ inline Instance placed_at_random(Random& random, const glm::vec3& at, float size
   } while (true);
 }
 
-/// Spheres (with normals) and boxes in `count` places, which overlap, within 3 of the origin; and
-/// a box around them, of triangles like others. Two instances are boxes that share a side, and two
-/// are in one place.
+/// Returns a scene of `count` overlapping instances within 3 of the origin, alternately spheres
+/// (with normals) and boxes, inside a box of plain triangles. Three further instances are boxes:
+/// the first shares a side with the other two, which coincide.
 inline Scene instanced_scene(Random& random, int count) {
   Scene scene = scene_of(box(glm::vec3(-4), glm::vec3(4)));
   Scene ball = scene_of(sphere(2));
@@ -53,7 +53,7 @@ inline Scene instanced_scene(Random& random, int count) {
   return scene;
 }
 
-/// The same without instances.
+/// Returns the scene with its instances flattened.
 inline Scene written_out(Scene scene) {
   resolve_instances(scene, InstanceMode::kFlatten, "written out");
   return scene;

@@ -103,7 +103,7 @@ TEST(Instances, MeshesBringWhatTheyName) {
   Scene part = test::scene_of(test::sphere(0));
   part.normals.resize(2);
   part.texcoords.resize(2);
-  part.positions.emplace_back(9.0f);  // of no triangle
+  part.positions.emplace_back(9.0f);  // used by no triangle
   part.textures.push_back(Texture(1, 1, {{}}));
   part.materials[0].diffuse_map.texture = 0;
   part.triangles[3].normals = {0, 1, kNoIndex};

@@ -1,4 +1,4 @@
-// Textures: where they are looked up, how files become texels, how they get onto triangles.
+// Textures: lookup, decoding of files, and mapping onto triangles.
 #include "host/scene/texture.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using test::tga;
 
 constexpr Texture::Texel kRed{255, 0, 0}, kGreen{0, 255, 0}, kBlue{0, 0, 255}, kGrey{128, 128, 128};
 
-/// Red and green above blue and grey.
+/// Returns a texture with red and green above blue and grey.
 Texture four() { return {2, 2, {kRed, kGreen, kBlue, kGrey}}; }
 
 const auto kGreyLight = static_cast<float>(srgb_to_linear(128));
@@ -86,7 +86,7 @@ class TextureFile : public testing::Test {
   [[nodiscard]] std::string error_of(const std::string& bytes) const {
     return folder_.error_of([&] { (void)Texture::load(folder_.write("t.png", bytes)); });
   }
-  /// A triangle with corners (0, 0), (1, 0), (0, 1) of the texture, of material `a`.
+  /// Loads a triangle of material `a`, textured from (0, 0), (1, 0), (0, 1), and a plain one.
   [[nodiscard]] Scene load(const std::string& mtl) const {
     folder_.write("m.mtl", "newmtl a\n" + mtl);
     return load_obj(
@@ -116,7 +116,7 @@ TEST_F(TextureFile, WhatIsNoPictureIsRefused) {
   EXPECT_TRUE(error_of("\x89PNG\r\n\x1a\n").starts_with("t.png: not a PNG, JPEG, TGA or BMP"));
 }
 
-/// The library would read some of them, and the Radiance header for ever.
+/// stb_image would read some of these formats and would never finish with the Radiance header.
 TEST_F(TextureFile, OtherFormatsAreRefused) {
   using namespace std::string_literals;
   const std::string radiance = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000 +X 99999\n";
@@ -151,7 +151,7 @@ TEST_F(TextureFile, ATriangleIsPainted) {
   EXPECT_TRUE(scene.warnings.empty());
   ASSERT_EQ(scene.textures.size(), 1u);
   const Triangle& painted = scene.triangles[0];
-  // (u, v) = (0.25, 0.5): half blue below, half red above, each with Kd.
+  // (u, v) = (0.25, 0.5): the mean of blue below and red above, times Kd.
   EXPECT_EQ(diffuse_at(scene, painted, {0.25, 0.25, 0.5}), glm::vec3(0.25f, 0, 0.5f));
   EXPECT_EQ(diffuse_at(scene, scene.triangles[1], {0.25, 0.25, 0.5}), glm::vec3(0.5f, 1, 1))
       << "no texture coordinates";
@@ -162,7 +162,7 @@ TEST_F(TextureFile, ScaleOffsetAndClamp) {
   const auto color = [&](const std::string& options) {
     const Scene scene = load("map_Kd " + options + " t.tga\n");
     EXPECT_TRUE(scene.warnings.empty()) << options;
-    return diffuse_at(scene, scene.triangles[0], {0.25, 0.5, 0.25});  // (0.5, 0.25)
+    return diffuse_at(scene, scene.triangles[0], {0.25, 0.5, 0.25});  // (u, v) = (0.5, 0.25)
   };
   EXPECT_EQ(color("-s 0.5 1"), glm::vec3(0, 0, 1));
   EXPECT_EQ(color("-s 0.5"), glm::vec3(0, 0, 1));

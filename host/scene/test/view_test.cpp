@@ -53,12 +53,12 @@ TEST(View, StandsWhereItsAnglesSay) {
   expect_near(towards_eye(scene, {90, 0, kZ}), kX);
   expect_near(towards_eye(scene, {0, 90, kZ}), kZ);
   expect_near(towards_eye(scene, {0, 30, 1e-200 * kZ}), {0, -std::sqrt(0.75), 0.5});
-  // Straight from above the front is below in the picture.
+  // Seen straight from above, the scene's front is at the bottom of the picture.
   expect_near(*frame_scene(scene, 1, 35, {0, 90, kY}).up, -kZ);
   expect_near(*frame_scene(scene, 1, 35, {0, 90, kZ}).up, kY);
 }
 
-/// How far from the middle of the picture the points of a box are seen: 1 at its edges.
+/// Returns how far from the picture's centre the corners of a box are seen; 1: at an edge.
 double reach(const Camera& camera, double aspect, const glm::dvec3& low, const glm::dvec3& high) {
   double result = 0.0;
   for (int corner = 0; corner < 8; ++corner) {

@@ -1,4 +1,4 @@
-"""A small room: what becomes of its faces, materials and lamps for either renderer."""
+"""Conversion of a small room's faces, materials and lamps for Mitsuba, and rows that compare both renderers."""
 
 import json
 import pathlib
@@ -42,7 +42,7 @@ JSON = {"obj": "room.obj", "camera": {"eye": [0.5, 0.5, 3], "target": [0.5, 0.5,
 
 
 def made(folder: pathlib.Path, mtl: str = MTL, **more: object) -> convert.Scene:
-    """The room, read back from its files."""
+    """Writes the room's files and returns the scene read from them."""
     (folder / "room.obj").write_text(OBJ)
     (folder / "room.mtl").write_text(mtl)
     (folder / "room.json").write_text(json.dumps(JSON | more))
@@ -93,7 +93,7 @@ class Peers(unittest.TestCase):
     def test_lamps_face_what_they_light(self):
         found = self.converted()
         lamps = [part for part in found.values() if isinstance(part, dict) and "emitter" in part]
-        # The lamp of the file has everything below it; that of the scene file has something on both sides.
+        # The OBJ file's lamp has everything below it; the scene file's lamp has surfaces on both sides, so it becomes two.
         self.assertEqual([lamp["emitter"]["radiance"]["value"] for lamp in lamps], [[3, 2, 1], [4, 5, 6], [4, 5, 6]])
         heights = []
         for lamp in lamps:

@@ -1,4 +1,4 @@
-"""Documents, costs from synthesis, quantiles, and what is derived from rows."""
+"""Tests documents, costs from synthesis, and values derived from rows."""
 
 import pathlib
 import tempfile
@@ -13,13 +13,13 @@ VARIANT = {"table": "variants", "variant": "binary32", "unit": "serial", "expone
 
 
 def unit(top, area, delay, flow="small", **parameters):
-    """A row of synthesis."""
+    """Returns a row of synthesis results."""
     return {"table": "synthesis", "top": top, "design": top, "target": "osu035", "flow": flow,
             "area": area, "delay_ns": delay, "parameters": parameters}
 
 
 def core_row(run, rays, latency, **values):
-    """A row of `lab core`."""
+    """Returns a row of `lab core`."""
     return {"table": "core", "part": run, "scene": "a", "rays": rays, "latency": latency,
             "clocks_per_ray": latency / 10, "lines_per_ray": 0.5, "bytes_per_ray": 32.0, "nodes_percent": 70.0,
             "triangles_percent": 80.0, "doubts_per_1000": 0.25, **values}

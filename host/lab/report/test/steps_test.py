@@ -1,4 +1,4 @@
-"""Steps that are done are not done again; rows say what found them."""
+"""Completed steps are not repeated; rows name the command, commit and machine that produced them."""
 
 import pathlib
 import tempfile
@@ -17,7 +17,7 @@ class Steps(unittest.TestCase):
         self.fails = ""
 
     def run_steps(self, asked: str = "") -> list[dict]:
-        """Two steps, of which one may fail."""
+        """Runs two steps, one of which may fail, and returns their rows."""
         def step(name: str) -> steps.Step:
             def measure() -> list[dict]:
                 if name == self.fails:
@@ -43,7 +43,7 @@ class Steps(unittest.TestCase):
         self.fails = ""
         self.assertEqual(len(self.run_steps()), 3)
         self.assertEqual(self.measured, ["a", "b, c"])
-        self.run_steps()  # which was whole: anew
+        self.run_steps()  # after a complete run: measures again
         self.assertEqual(self.measured, ["a", "b, c"] * 2)
 
     def test_another_run_does_not(self) -> None:

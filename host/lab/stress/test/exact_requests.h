@@ -1,5 +1,5 @@
-// Requests for the exact unit, and what host/exact and integers say of them: of the stress suites,
-// and of any bits.
+// Requests for the exact unit, from the stress suites and from random bits, with their results by
+// host/exact, checked against integers.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@ struct ExactCase {
   int order = 0;
 };
 
-/// What host/exact says of a request.
+/// Returns a request with its results by host/exact.
 inline ExactCase case_of(const ExactRequest& request) {
   using Against = ExactRequest::Against;
   const bool hit = !request.asks_hit || hits_triangle(request.ray, widened(request.triangle));
@@ -29,15 +29,15 @@ inline ExactCase case_of(const ExactRequest& request) {
   return {request, hit, order};
 }
 
-/// Makes cases shot by shot, of a suite in binary32. Each triangle that a ray hits is compared with
-/// a limit near it and with the next that the ray hits (or itself, turned round), and asked for
-/// alone; some that it misses are asked for, too. Each shot also adds a case of random numbers,
-/// whose exponents have the whole range of float or a range of 12.
+/// Makes cases from the shots of a suite in binary32. Up to three hits of a ray are compared with a
+/// limit near the hit's t and with the next hit (or the same triangle, rotated). Random triangles
+/// are tested for a hit. Each ray also adds a case of random numbers, whose exponents have the
+/// whole range of float or a range of 12.
 class ExactCases {
  public:
   ExactCases(const Suite& suite, std::uint64_t seed) : generate_(suite.make()), random_(seed) {}
 
-  /// Throws std::logic_error where host/exact and the integers of find_truth differ.
+  /// Returns the next shot's cases. Throws std::logic_error if host/exact and find_truth differ.
   std::vector<ExactCase> next() {
     using Against = ExactRequest::Against;
     std::vector<ExactCase> cases;

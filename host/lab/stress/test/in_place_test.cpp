@@ -1,4 +1,4 @@
-// The searches in place: what the stress test would see of wrong ones.
+// The stress test detects wrong searches.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace raygate::lab {
 namespace {
 
-/// The cpu engine, both ways.
+/// Returns the two subjects of the cpu engine.
 std::vector<SubjectKind> cpu_subjects() {
   auto kinds = engine_subjects();
   kinds.resize(2);
@@ -40,7 +40,7 @@ class InPlace : public testing::Test {
   std::vector<Truth> truths_;
 };
 
-// As by a search that takes one component of a direction for the next float.
+// Imitates a search in which one component of the direction is one float off.
 TEST_F(InPlace, ASearchThatIsOneFloatOffIsSeen) {
   auto moved = shots_;
   for (Shot& shot : moved) {
@@ -73,7 +73,7 @@ TEST_F(InPlace, BoundsThatDoNotHoldTAreSeen) {
   }
 }
 
-// As by a table that has two hits of a ray in the wrong order, or leaves the last one out.
+// Imitates a table with two hits in the wrong order, or without a ray's last hit.
 TEST_F(InPlace, OrdersThatAreWrongAreSeen) {
   Answers answers;
   trace_subjects()[0].make()->run(shots_, answers);

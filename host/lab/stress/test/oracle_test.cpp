@@ -1,4 +1,4 @@
-// The oracle's integers against rationals, and what it says about cases anyone can decide.
+// The oracle's integers against rationals, and its results in simple cases.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -17,13 +17,13 @@ Rational3 minus(const glm::dvec3& a, const glm::dvec3& b) {
   return test::minus(test::rational(a), test::rational(b));
 }
 
-/// The t of a hit: of triangles that the ray meets.
+/// Returns the t of a hit.
 mpq_class distance(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& t) {
   const Rational3 a = minus(t[0], origin), normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
   return dot(a, normal) / dot(test::rational(direction), normal);
 }
 
-/// Whether the ray, its direction tilted by (e, e^2, e^3) for a very small e, meets the triangle.
+/// Returns whether the ray, tilted by (e, e^2, e^3) for a very small e, meets the triangle.
 bool hits(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& t) {
   const Rational3 a = minus(t[0], origin), b = minus(t[1], origin), c = minus(t[2], origin);
   Rational3 tilted = test::rational(direction);
@@ -41,7 +41,7 @@ bool hits(const glm::dvec3& origin, const glm::dvec3& direction, const Corners& 
 
 TEST(Oracle, AgreesWithRationalsInEverySuite) {
   for (const Suite& suite : all_suites()) {
-    if (suite.name == "useless") continue;  // has no rationals
+    if (suite.name == "useless") continue;  // NaN and infinity are not rational
     Random random(7);
     const Generator generate = suite.make();
     int decided = 0, met = 0;

@@ -8,7 +8,7 @@
 namespace raygate::lab {
 namespace {
 
-/// Of each suite; RAYGATE_STRESS asks for another number in all.
+/// Returns the number of cases per suite; RAYGATE_STRESS gives another number for all suites.
 std::size_t cases_of_a_suite() {
   const char* wanted = std::getenv("RAYGATE_STRESS");
   return wanted == nullptr ? 2000 : std::strtoul(wanted, nullptr, 10) / all_suites().size() + 1;
@@ -41,7 +41,7 @@ TEST(ReferenceExact, SaysWhatExactArithmeticSays) {
   RecordProperty("most_clocks", most);
 }
 
-/// What exact_unit's header says of exponents that are close together.
+/// Checks the clocks that exact_unit's header states for exponents that are close together.
 TEST(ReferenceExact, TakesTheClocksItSays) {
   using Against = ExactRequest::Against;
   ExactRequest request{.ray = {{0.1f, 0.2f, -3.0f}, {0.01f, 0.02f, 1.0f}},

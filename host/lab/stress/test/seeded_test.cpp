@@ -1,4 +1,4 @@
-// A short run of what `make stress` does: every suite, the regressions and the public tests.
+// A short `make stress`: every suite, the regressions and the public tests.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -38,7 +38,7 @@ Shot shot_of(const std::string& line) {
   return {std::make_shared<const Mesh>(mesh), vectors.at(0), {vectors.at(1)}};
 }
 
-// Cases that something once got wrong, minimised: one line each in regressions.txt.
+// Minimised cases of former errors, one per line of regressions.txt.
 TEST(Regressions, VerdictsOfExactSubjectsAreTheTruth) {
   std::ifstream file(RAYGATE_REGRESSIONS);
   std::vector<Shot> shots;
@@ -60,7 +60,7 @@ TEST(Regressions, VerdictsOfExactSubjectsAreTheTruth) {
   }
 }
 
-// A subject's failures are lines of regressions.txt.
+// A subject's reported failures have the format of regressions.txt.
 TEST(Regressions, FailuresAreSuchLines) {
   auto subjects = all_subjects();
   std::erase_if(subjects, [](const SubjectKind& kind) { return kind.name != "Woop 2013"; });
@@ -79,7 +79,7 @@ TEST(Regressions, FailuresAreSuchLines) {
   }
 }
 
-// The engines pass the public tests; float32 tests of each triangle alone do not.
+// The engines pass the public tests; some other hit tests do not.
 TEST(Watertight, EnginesAre) {
   bool others_are = true;
   for (const Row& row : watertight_rows(128, 1)) {

@@ -7,7 +7,7 @@
 
 namespace raygate::test {
 
-/// The bytes of numbers, the lowest first.
+/// Returns the bytes of numbers, least significant first.
 template <class... Number>
 std::string bytes_of(Number... numbers) {
   std::string bytes;
@@ -15,7 +15,7 @@ std::string bytes_of(Number... numbers) {
   return bytes;
 }
 
-/// A GLB file of some JSON and a buffer.
+/// Returns a GLB file of this JSON and buffer.
 inline std::string glb(std::string json, std::string buffer) {
   json.resize((json.size() + 3) / 4 * 4, ' ');
   buffer.resize((buffer.size() + 3) / 4 * 4, '\0');
@@ -24,8 +24,8 @@ inline std::string glb(std::string json, std::string buffer) {
          json + bytes_of(size(buffer)) + std::string("BIN\0", 4) + buffer;
 }
 
-/// A square of two triangles in the plane z = 0, its corners from 0 to 1, with normals and texture
-/// coordinates, as a glTF buffer: 128 bytes, and 6 indices of 2 bytes.
+/// Returns the glTF buffer of a unit square in the plane z = 0: two triangles with normals and
+/// texture coordinates, 128 bytes, then 6 indices of 2 bytes.
 inline std::string square_buffer() {
   constexpr float kCorners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   std::string positions, normals, texcoords;
@@ -39,7 +39,7 @@ inline std::string square_buffer() {
   return positions + normals + texcoords + indices;
 }
 
-/// The JSON about it: `nodes`, and `more` members of the file.
+/// Returns the JSON for square_buffer(), with these nodes and `more` members of the file.
 inline std::string square_json(const std::string& nodes, const std::string& more = "",
                                const std::string& material = "") {
   return R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": )" + nodes +

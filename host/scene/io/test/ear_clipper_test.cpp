@@ -22,9 +22,9 @@ Polygon in_plane(const std::vector<glm::dvec2>& points) {
   return polygon;
 }
 
-// A right triangulation: n - 2 triangles, all with an area and the polygon's winding (here:
-// counter-clockwise from +z); each side of the polygon belongs to one of them, in its direction,
-// and each other side to two, in opposite directions. Then they cover the polygon exactly once.
+// Expects a correct triangulation: n - 2 triangles, all with an area and the polygon's winding (1:
+// counter-clockwise from +z); each side of the polygon belongs to one triangle, in its direction,
+// each other side to two, in opposite directions. So they cover the polygon exactly once.
 void expect_triangulation(const Polygon& polygon, const EarClipper& clipper, int winding = 1) {
   ASSERT_EQ(clipper.triangles().size(), polygon.size() - 2);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
@@ -79,7 +79,7 @@ TEST(EarClipper, KeepsCornersOnStraightSides) {
 }
 
 TEST(EarClipper, CutsAHoleReachedByABridge) {
-  // An outer square, and from its corner 0 a bridge to an inner one and back.
+  // An outer square; from its corner 0 a bridge leads to an inner square and back.
   const Polygon polygon =
       in_plane({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}});
   EarClipper clipper;
@@ -124,7 +124,7 @@ TEST(EarClipper, CutsWhatIsNotFlat) {
   const Polygon saddle{{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}};
   EXPECT_EQ(clipper.cut(saddle), PolygonKind::kSimple);
   EXPECT_EQ(clipper.triangles().size(), 2u);
-  // Upright: its projection along z has no area.
+  // An upright polygon, whose projection along z has no area.
   const Polygon upright{{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0.5f, 0.25f}, {0, 0, 1}};
   EXPECT_EQ(clipper.cut(upright), PolygonKind::kSimple);
   EXPECT_EQ(clipper.triangles().size(), 3u);
@@ -139,7 +139,7 @@ TEST(EarClipper, CutsRandomStarShapedPolygons) {
       angle = std::uniform_real_distribution(0.0, 2.0 * std::numbers::pi)(random);
     }
     std::sort(angles.begin(), angles.end());
-    // Star-shaped from the origin only if no gap is half a orient2d or more.
+    // The polygon is star-shaped from the origin only if all gaps between angles are below pi.
     double gap = angles.front() + 2.0 * std::numbers::pi - angles.back();
     for (std::size_t i = 1; i < size; ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
     if (gap > 3.0) continue;
@@ -174,7 +174,7 @@ std::vector<glm::dvec2> comb(int size) {
 std::vector<glm::dvec2> spiral(int size) {
   std::vector<glm::dvec2> points;
   for (int i = 0; i < size; ++i) {
-    const int step = i < size / 2 ? i : size - 1 - i;  // outwards, and back inside of that
+    const int step = i < size / 2 ? i : size - 1 - i;  // outwards, then back along the inner side
     const double angle = 40.0 * std::numbers::pi * step / (size / 2);
     const double radius = angle + (i < size / 2 ? 3.0 : 2.0);
     points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
@@ -188,7 +188,7 @@ TEST(EarClipper, CutsManyCorners) {
   expect_simple(spiral(20000));
 }
 
-// Four times the corners take about four times as long; were it quadratic, sixteen times.
+// Four times the corners take about four times as long; quadratic code would take 16 times.
 TEST(EarClipper, IsNotQuadratic) {
   const auto seconds = [](const std::vector<glm::dvec2>& points) {
     const Polygon polygon = in_plane(points);

@@ -67,7 +67,7 @@ TEST_F(LoadGltf, ASquare) {
 }
 
 TEST_F(LoadGltf, NodesArePutWhereTheirParentsAre) {
-  // Twice as large, a quarter turn about z, then moved; its child moved within that. Far away.
+  // The parent is doubled, turned by 90 degrees about z and moved far away; its child follows.
   const Scene scene = load(square_json(R"([
       {"name": "parent", "mesh": 0, "scale": [2, 2, 2], "rotation": [0, 0, 0.70710678118654757, 0.70710678118654757],
        "translation": [1000000, 0, 0], "children": [1]},
@@ -134,7 +134,7 @@ TEST_F(LoadGltf, AMirroredNodeKeepsItsFront) {
   const Scene scene = load(square_json(R"([{"mesh": 0, "scale": [-1, 1, 1]}])"));
   expect_front(scene, 0);
   const Scene file = load(square_json(R"([{"mesh": 0}])"));
-  for (int k = 0; k < 3; ++k) {  // its corners are the file's, the last one first
+  for (int k = 0; k < 3; ++k) {  // the file's corners, in reverse order
     const glm::dvec3 mirrored = corner(scene, 0, k) * glm::dvec3(-1, 1, 1);
     EXPECT_EQ(mirrored, corner(file, 0, 2 - k)) << k;
   }
@@ -173,7 +173,7 @@ TEST_F(LoadGltf, CamerasAndLights) {
   EXPECT_EQ(scene.directional_lights[0].irradiance, glm::vec3(1));
 }
 
-// Parallel rays show 2 ymag from the lower to the upper edge, whatever the target's distance.
+// An image's height shows 2 ymag, whatever the target's distance.
 TEST_F(LoadGltf, OrthographicCameras) {
   const auto with_size = [](const std::string& ymag) {
     return square_json(
@@ -232,7 +232,7 @@ TEST_F(LoadGltf, Materials) {
   EXPECT_EQ(dull.metallic_roughness->specular_color, glm::vec3(1, 2, 0));
 }
 
-/// A TGA of one row: red and opaque, then blue and clear.
+/// Returns a TGA of one row: an opaque red pixel, then a nearly clear blue one.
 std::string half_clear() {
   std::string bytes(18, '\0');
   bytes[2] = 2;
@@ -245,7 +245,7 @@ std::string half_clear() {
 
 class LoadGltfPicture : public LoadGltf {
  protected:
-  /// A square with one material, and a picture that is red and opaque on the left, blue and nearly
+  /// Returns a square with one material and a picture: red and opaque on the left, blue and nearly
   /// clear on the right.
   [[nodiscard]] Scene with_picture(const std::string& material, const std::string& texture = "",
                                    const std::string& more = "",

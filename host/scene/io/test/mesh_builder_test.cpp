@@ -38,7 +38,7 @@ TEST(OriginForBox, LosesNoBitFarAway) {
       for (int axis = 0; axis < 3; ++axis) {
         ASSERT_LE(std::abs(p[axis] - origin[axis]), 3.0 * largest) << "round " << round;
         if (std::abs(p[axis]) < 3.0 * largest) continue;
-        // Two-sum: the rounding error of the subtraction.
+        // Two-sum gives the rounding error of the subtraction.
         const double difference = p[axis] - origin[axis];
         const double back = difference - p[axis];
         const double error = (p[axis] - (difference - back)) + (-origin[axis] - back);

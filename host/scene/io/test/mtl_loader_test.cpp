@@ -1,4 +1,4 @@
-// Materials: every field, the defaults, odd MTL files, and what is refused.
+// Materials: every field, the defaults, odd MTL files, and refused files.
 #include <gtest/gtest.h>
 
 #include "host/base/test/temp_folder.h"
@@ -13,7 +13,7 @@ constexpr std::string_view kObjTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 class LoadMtl : public testing::Test {
  protected:
-  // The scene of one triangle that uses material `a` of `mtl`.
+  // Returns a scene of one triangle that uses material `a` of `mtl`.
   Scene load(std::string_view mtl) {
     folder_.write("m.mtl", mtl);
     return load_obj_text("mtllib m.mtl\nusemtl a\nf 1 2 3\n");
@@ -26,7 +26,7 @@ class LoadMtl : public testing::Test {
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
     return scene.materials.at(scene.triangles.at(0).material);
   }
-  // Of the warning or error in `mtl`: what follows "FOLDER/".
+  // Returns the only warning about `mtl`, without "FOLDER/".
   std::string warning(std::string_view mtl) {
     const Scene scene = load(mtl);
     if (scene.warnings.size() != 1) return std::to_string(scene.warnings.size()) + " warnings";
@@ -224,7 +224,7 @@ TEST_F(LoadMtl, TheFirstOfTwoMaterialsOfOneNameStands) {
   EXPECT_EQ(scene.materials[scene.triangles[0].material].diffuse, glm::vec3(1, 0, 0));
 }
 
-// As Blender writes for what has no material.
+// Blender writes newmtl without a name for objects without a material.
 TEST_F(LoadMtl, AMaterialWithoutAName) {
   const Scene scene = load("newmtl \nKd 0 1 0\nnewmtl a\nKd 1 0 0\nnewmtl\nKd 0 0 1\n");
   ASSERT_EQ(scene.materials.size(), 1u);

@@ -1,4 +1,4 @@
-// Every bad file is refused, with its line and what is wrong.
+// Every bad file is refused, with its line and what is wrong there.
 #include <gtest/gtest.h>
 
 #include "host/base/test/temp_folder.h"
@@ -28,7 +28,7 @@ TEST(BadObj, IsRefused) {
       {"v 0 0 0\nv 1 0 0\nf -1 -2 -3\nv 0 1 0\n",
        "3: face corner '-3', but the file has 2 vertices so far"},
       {"v 0 0 0\nv 1 1 1\nv 3 3 3\nv 7 7 7\nf 1 2 \\\n 3 4\n", "5: no face has an area"},
-      // Distinct as doubles, one point as floats.
+      // Two of these points differ as doubles but not as floats.
       {"v 0 0 0\nv 1 0 0\nv 1 1e-60 0\nf 1 2 3\n", "4: no face has an area"},
       {"v 3e38 0 0\nv -3e38 0 0\nv 0 1 0\nv 1 1 0\nf 3 4 3\nf 1 2 3\n",
        "6: found a corner farther than 2^126 from the scene's middle, expected a nearer one"},

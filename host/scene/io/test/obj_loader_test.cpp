@@ -28,7 +28,7 @@ std::vector<Indices> vertices_of(const Scene& scene) {
   return vertices;
 }
 
-// "scene.obj:LINE: what", without the folder.
+// Returns the only warning, "scene.obj:LINE: what", without the folder.
 std::string only_warning(const Scene& scene) {
   if (scene.warnings.size() != 1) return std::to_string(scene.warnings.size()) + " warnings";
   return scene.warnings[0].substr(scene.warnings[0].rfind('/', scene.warnings[0].find(':')) + 1);
@@ -54,7 +54,7 @@ TEST(LoadObj, AQuadInManyForms) {
   const std::string square(kSquare);
   for (const std::string& text :
        {square + "f 1 2 3 4\n", square + "f 1 2 3 4", square + "f -4 -3 -2 -1\n",
-        // Negative ones count from where the face is, not from the end of the file.
+        // Negative indices count back from their face, not from the end of the file.
         std::string("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\nf -4 -2 -1\n"),
         "f 1 2 3 4\n" + square, "\xEF\xBB\xBF" + square + "f 1 2 3 4\n",
         std::string("v 0 \\\n0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2\\\n 3 \\\r\n4\n"),
@@ -145,7 +145,7 @@ TEST(LoadObj, WhatIsNoPolygonIsIgnoredWithOneWarningEach) {
 TEST(LoadObj, FacesWithoutAreaAreLeftOut) {
   const std::string text = std::string(kSquare) + "f 1 1 2\nf 1 2 3 4\nf 1 2 1 2\n";
   const Scene scene = load(text);
-  // Those that are left keep their numbers.
+  // The other faces keep their indices.
   EXPECT_EQ(vertices_of(scene),
             (std::vector<Indices>{{0, 0, 0}, {0, 1, 2}, {0, 2, 3}, {0, 0, 0}, {0, 0, 0}}));
   EXPECT_EQ(only_warning(scene),
@@ -154,7 +154,7 @@ TEST(LoadObj, FacesWithoutAreaAreLeftOut) {
 }
 
 TEST(LoadObj, CornersThatBinary32MovesAreCounted) {
-  // Half a unit is the distance of floats at the first face.
+  // Floats near the first face are 0.5 apart.
   const std::string far =
       "v 5411987 0 0\nv 5411987 1 0\nv 5411987.2 0 0\nv -1 0 0\nv 0 0 0\nv -1 1 0\n";
   const std::string flattened = far + "f 1 2 3\nf 4 5 6\n";
@@ -173,10 +173,10 @@ TEST(LoadObj, CornersThatBinary32MovesAreCounted) {
     EXPECT_TRUE(exact.warnings.empty());
     EXPECT_EQ(exact.origin + exact.vertex(2), glm::dvec3(5411987.2, 0, 0));
     EXPECT_EQ(exact.origin + exact.vertex(3), glm::dvec3(-1, 0, 0));
-    // What pictures do not show is rounded for them.
+    // kAsPictures rounds positions if no picture shows it.
     const Scene near = load("v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", {.vertices = vertices});
     EXPECT_EQ(near.rests.empty(), vertices == Vertices::kAsPictures);
-    // So are faces without area, and a face that rounding flattens but hardly moves.
+    // It also rounds faces without area, and a face that rounding flattens but hardly moves.
     const Scene flat = load(
         "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 1\nv 1000000.1 0 0\nv 1000000.1 9 0\n"
         "v 1000000.101 5 0\nf 4 5 6\n",
@@ -212,7 +212,7 @@ TEST(LoadObj, NormalsOfAnyLength) {
 TEST(LoadObj, AVeryLongLine) {
   std::string text;
   const int corners = 100000;
-  for (int i = 0; i < corners; ++i) {  // a flight of stairs, closed from below
+  for (int i = 0; i < corners; ++i) {  // a flight of stairs; the last corner closes it from below
     text += "v " + std::to_string((i + 1) / 2) + " " + std::to_string(i / 2) + " 0\n";
   }
   text += "v " + std::to_string(corners) + " -1 0\nf";

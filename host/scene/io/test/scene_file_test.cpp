@@ -1,4 +1,4 @@
-// scene.json: every key, and one clear line with its place for everything else.
+// scene.json: every key; any other contents give a one-line error that names the place.
 #include <gtest/gtest.h>
 
 #include "host/base/input_error.h"
@@ -84,7 +84,7 @@ TEST_F(ReadSceneFile, WhatIsNoJson) {
   EXPECT_TRUE(error("{\"obj\": \"\xFF\"}").starts_with("s.json:1: not JSON: "));
   EXPECT_TRUE(error(std::string(100'000, '[')).starts_with("s.json:1: not JSON: "));
   EXPECT_EQ(error("{\n\"obj\": \"a\",\n\"obj\": \"b\"}"), "s.json:3: key 'obj' is there twice");
-  // In no time that grows with the square of their number.
+  // The time must not grow with the square of the number of keys.
   std::string many;
   for (int i = 0; i < 100000; ++i) many.append("\"").append(std::to_string(i)).append("\": 0,\n");
   EXPECT_EQ(error("{\n" + many + "\"99999\": 1}"), "s.json:100002: key '99999' is there twice");
@@ -252,7 +252,7 @@ TEST_F(ReadSceneFile, LightsBeyondFloatAreRefused) {
   EXPECT_THROW((void)load_scene(tiny), InputError);
 }
 
-/// Damaged files: read, or refused in one line that names the file.
+/// Damaged files are read, or refused in one line that names the file.
 TEST_F(ReadSceneFile, DamagedFilesAreReadOrRefused) {
   const std::uint64_t seed = 20240607;
   RecordProperty("seed", std::to_string(seed));

@@ -1,4 +1,4 @@
-// Which file is read as what; and damaged files of all kinds: a sound scene, or one clear line.
+// Formats by file ending; damaged files of all formats give a sound scene or one clear line.
 #include "host/scene/io/scene_loader.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ std::string binary_stl_file() {
                         std::uint16_t{0});
 }
 
-/// A file of JSON beside square.bin and dot.tga.
+/// Returns the JSON of a glTF file that refers to square.bin and dot.tga.
 std::string whole_gltf() {
   std::string json = test::square_json(
       R"([{"mesh": 0, "children": [1, 2], "rotation": [0, 0, 0, 1], "scale": [1, 1, 1]},
@@ -98,14 +98,14 @@ constexpr const char* kObjSplinters[] = {
 constexpr const char* kSplinters[] = {"\"", "[", "]", "{}", "null", "\n", " ", ",", "2147483647"};
 
 struct Kind {
-  std::string name;  ///< a damaged m.mtl is loaded with s.obj
+  std::string name;  ///< if "m.mtl", s.obj is loaded, which uses it
   std::string bytes;
   int rounds = 600;
-  int least = 20;  ///< rounds that load, and rounds that are refused
+  int least = 20;  ///< minimum of rounds that load, and of rounds refused
   std::span<const char* const> splinters = kSplinters;
 };
 
-/// Finite positions, indices of something, unit normals, triangles that have an area.
+/// Expects finite positions, indices in range, unit normals, and triangles that have an area.
 void expect_sound(const Scene& scene) {
   ASSERT_FALSE(scene.triangles.empty());
   for (const glm::vec3& p : scene.positions) {

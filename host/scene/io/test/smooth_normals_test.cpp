@@ -23,8 +23,7 @@ void expect_normal_near(const glm::vec3& a, const glm::vec3& b) {
   EXPECT_LT(glm::length(a - b), 1e-6f) << a.x << " " << a.y << " " << a.z;
 }
 
-/// Two squares that share an edge, at a right angle to each other: one looks along +z, the other
-/// along +x.
+/// Two squares at a right angle that share an edge: one faces +z, the other +x.
 constexpr std::string_view kCorner = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 -1\nv 1 1 -1\n";
 
 TEST(SmoothNormals, AreThoseOfSmoothingGroups) {
@@ -65,7 +64,7 @@ TEST(SmoothNormals, FollowTheAngle) {
 }
 
 TEST(SmoothNormals, JoinVerticesAtOnePlace) {
-  // As STL has them: each facet with corners of its own.
+  // As in STL files, each facet has its own corners.
   const Scene scene =
       load("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 -1\nv 0 1 -0\nf 1 2 3\nf 4 5 6\n", 130.0);
   EXPECT_EQ(scene.triangles[0].normals[1], scene.triangles[1].normals[0]);

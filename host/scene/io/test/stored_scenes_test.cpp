@@ -1,4 +1,4 @@
-// The scenes of scenes/: they load without a warning and are what they claim to be.
+// The scenes in scenes/ load without a warning and have the geometry and materials they claim.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 Scene stored(const std::string& name) { return load_obj(RAYGATE_SCENES "/" + name); }
 Scene made(const std::string& name) { return load_obj(RAYGATE_MADE_SCENES "/" + name); }
 
-// Sides that do not have exactly one partner in the opposite direction.
+// Returns the number of sides without exactly one partner in the opposite direction.
 std::size_t open_sides(const Scene& scene) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (const Triangle& triangle : scene.triangles) {
@@ -38,7 +38,7 @@ TEST(StoredScenes, CornellBox) {
   ASSERT_EQ(scene.materials.size(), 4u);
   EXPECT_EQ(scene.materials[3].emission, glm::vec3(17, 12, 4));
 
-  // It is seen through its opening: from in front, below the ceiling, between the walls.
+  // The box is seen through its opening: from in front, below the ceiling, between the walls.
   const glm::vec3 eye = front_camera(scene, 1.0).eye();
   EXPECT_GT(eye.z, 559.2f);
   EXPECT_LT(eye.y, 548.8f);
@@ -48,14 +48,14 @@ TEST(StoredScenes, CornellBox) {
 TEST(StoredScenes, PaperSize) {
   const Scene scene = stored("paper.obj");
   EXPECT_TRUE(scene.warnings.empty());
-  EXPECT_EQ(scene.triangles.size(), 34u);  // of 20 polygons
+  EXPECT_EQ(scene.triangles.size(), 34u);  // from 20 polygons
   EXPECT_EQ(scene.materials.size(), 9u);
 }
 
 TEST(StoredScenes, Teapot) {
   const Scene scene = stored("teapot.obj");
   EXPECT_TRUE(scene.warnings.empty());
-  // 32 patches of 8 x 8 x 2, less one triangle at each of the 8 x 8 steps around two poles.
+  // 32 patches of 8 x 8 quads, less one triangle at each of 4 x 8 steps around two poles.
   EXPECT_EQ(scene.triangles.size(), 32u * 128 - 2 * 4 * 8);
   EXPECT_EQ(scene.objects.size(), 10u);
   for (const Triangle& triangle : scene.triangles) {
@@ -84,7 +84,7 @@ TEST(StoredScenes, SceneFilesAndTheirObjsGoTogether) {
     if (entry.path().extension() != ".json") continue;
     SCOPED_TRACE(entry.path());
     SceneFile file = read_scene_file(entry.path());
-    // Scenes that are made are in this build's folder.
+    // Generated scenes are in the build folder.
     if (file.obj.parent_path() != entry.path().parent_path()) {
       file.obj = RAYGATE_MADE_SCENES / file.obj.filename();
     }

@@ -73,7 +73,7 @@ TEST(TextLines, RefuseWhatIsNoText) {
             path + "/wide:1: UTF-16 text, expected ASCII or UTF-8");
 }
 
-// Were each line searched for its end to the end of the file, this would take minutes.
+// If the search for each line's end went to the end of the file, this would take minutes.
 TEST(TextLines, ManyLinesEndedByCrAlone) {
   std::string text;
   for (int i = 0; i < 1000000; ++i) text += "v 1\r";
