@@ -36,8 +36,8 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
     rows = [catalogue.Row(design.name, design, plan)]
     if cells:
         width = dict(design.parameters).get("Width", grading.WIDTH)
-        others = [catalogue.design("adder", adder=kind, look_ahead=False if kind == "uniform" else None, Width=width)
-                  for kind in ("ripple", "uniform", "prefix", catalogue.BEHAVIOURAL)]
+        others = [catalogue.design("adder", adder=kind, look_ahead=False if kind in ("uniform", "graded") else None, Width=width)
+                  for kind in ("ripple", "uniform", "graded", "prefix", catalogue.BEHAVIOURAL)]
         rows += [catalogue.Row(design.name, other, plan) for other in others if other.name != design.name]
     records, failures, _ = report.measured_tables(rows, targets)
     print(report.legend(records))
@@ -73,7 +73,7 @@ def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
     sections = [("The paper's delay model", grading.model_table())] if given.top == "adders" or given.all else []
     for title, text in sections:
         print(f"{title}\n\n{text}")
-    report.write(records, measured, sections, bool(given.publish))
+    report.write(records, measured, sections, "make synth" + (f" TOP={given.top}" if given.top else " ALL=1" if given.all else ""), bool(given.publish))
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"Took {used.ru_utime + used.ru_stime:.0f} s of processor time. Report: "
           f"{(store.OUT / 'report.md').relative_to(tools.ROOT)}" + "; ALL=1 measures everything." * (not given.all and not given.top))

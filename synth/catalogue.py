@@ -237,7 +237,7 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
                  {None: "", True: "look_ahead", False: "" if top == "adder" else "ripple_groups"}[look_ahead],
                  *(f"{key}{value}" for key, value in parameters.items())]
         name = "-".join(word for word in words if word)
-    clocked = " clk_i," in source and " Pipelined " not in source
+    clocked = " clk_i," in source and not re.search(r"parameter bit +Pipelined\b", source)
     return Design(name, top, folder, tuple(text.items()), clock="clk_i" if clocked else "")
 
 

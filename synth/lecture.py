@@ -261,7 +261,7 @@ def main() -> int:
     """The command line."""
     parser = argparse.ArgumentParser(prog="synth.lecture", description="Draws adders with operands in them, as a page.")
     operand = chosen.whole(0, 2**MOST_BITS - 1)
-    parser.add_argument("--width", type=chosen.whole(2, MOST_BITS), default=12, help="bits of the adders (%(default)s)")
+    parser.add_argument("--width", type=chosen.whole(2, MOST_BITS), default=16, help="bits of the adders (%(default)s)")
     parser.add_argument("--groups", type=chosen.whole_numbers, help="the graded adder's groups, lowest first")
     parser.add_argument("--a", type=operand, default=1365, help="an operand (%(default)s)")
     parser.add_argument("--b", type=operand, default=2731, help="the other (%(default)s)")

@@ -84,15 +84,15 @@ def versions() -> str:
     return ", ".join([f"yosys {yosys.version()}", *stated, f"Python {platform.python_version()}"])
 
 
-def write(records: list[dict], measured: str, sections: list[tuple[str, str]], publish: bool = False) -> None:
+def write(records: list[dict], measured: str, sections: list[tuple[str, str]], command: str, publish: bool = False) -> None:
     """Writes the three files; with `publish` the CSV into results/, too. `measured`: of measured_tables; `sections`:
-    (title, Markdown) that follow."""
+    (title, Markdown) that follow; `command`: what measured."""
     store.OUT.mkdir(parents=True, exist_ok=True)
     parts = ["# What the arithmetic costs\n", f"Made by `make synth` with {versions()}.\n", legend(records).replace("\n", "\n\n"), measured,
              *(f"## {heading}\n\n{text}" for heading, text in sections)]
-    (store.OUT / "report.md").write_text("\n".join([*parts, tables.measured("make synth ALL=1")]))
+    (store.OUT / "report.md").write_text("\n".join([*parts, tables.measured(command)]))
     (store.OUT / "results.json").write_text(json.dumps({"tools": versions(), "results": records}, indent=1) + "\n")
     text = tables.comma_separated(records, ["section", "design", "target", "flow", "area", "delay_ns", "luts", "mhz"])
     (store.OUT / "results.csv").write_text(text)
     if publish:
-        tables.publish("synth.csv", text, "make synth ALL=1 PUBLISH=1")
+        tables.publish("synth.csv", text, f"{command} PUBLISH=1")

@@ -42,6 +42,7 @@ endif
 
 lecture: ## hardware: numbers in gates, a page: make lecture [WIDTH=12 GROUPS=3,4,5 A=1365 B=2731 X=1.5 Y=-0.3 | EXAMPLE=1: the paper's, clock by clock | PIXEL=64,64 SCENE= ARGS=: its ray in the ray core]
 ifdef EXAMPLE
+	$(foreach name,$(filter WIDTH GROUPS A B CARRY X Y PIXEL ARGS,$(given)),$(error $(name): EXAMPLE=1 takes the paper's numbers; make page takes others))
 	$(call build,build,worked_example)
 	@build/sim/worked_example --trace build/worked_example.vcd
 	@echo "With the paper's divider, whose quotients have 21 bits:"

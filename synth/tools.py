@@ -85,9 +85,8 @@ def version(tool: str) -> str:
     if arguments is None:
         return ""
     done = subprocess.run([find(tool), *arguments], capture_output=True, text=True, check=False)
-    line = (done.stdout + done.stderr).strip().splitlines()[0]
-    match = re.search(r"\d+\.\d+[\w.+-]*", line)
-    return match.group(0).rstrip(".,)") if match else line
+    match = re.search(r"\d+\.\d+[\w.+-]*", done.stdout + done.stderr)
+    return match.group(0).rstrip(".,)") if match else ""
 
 
 _costs = threading.local()  # .list: (processor seconds, megabytes) of each command of this thread

@@ -331,6 +331,7 @@ SceneFile scene_file_of(const fs::path& scene) {
   std::error_code ignored;
   if (scene != beside && !fs::is_regular_file(beside, ignored))
     return {.file = scene, .obj = scene};
+  if (scene != beside) require_model_ending(scene);  // a misspelt ending is not the scene beside it
   SceneFile file = read_scene_file(beside);
   // The scene file's model may be elsewhere, if a script makes it.
   if (scene != beside && fs::exists(scene, ignored) &&

@@ -98,13 +98,13 @@ class Page(unittest.TestCase):
         self.assertGreaterEqual(len(lines), 2)
         for line in lines:
             words = dict(word.split("=") for word in line.split())
-            options = {"width": 12, "carry": 0, "x": 1.5, "y": -0.3} | {name.lower(): float(value) if name in "XY" else int(value)
+            options = {"width": 16, "carry": 0, "x": 1.5, "y": -0.3} | {name.lower(): float(value) if name in "XY" else int(value)
                                                                          for name, value in words.items()}
             page = lecture.page(given(**options))
             self.assertEqual(page.count(f"{options['a']:,} + {options['b']:,}".replace(",", "")), len(lecture.KINDS))
 
     def test_says_what_it_cannot_draw(self) -> None:
-        for options, words in ((["--a", "5000"], "expected numbers of 12 bits"), (["--groups", "3,4"], "expected 12 bits together"),
+        for options, words in ((["--width", "12", "--a", "5000"], "expected numbers of 12 bits"), (["--groups", "3,4"], "expected 16 bits together"),
                                (["--x", "1e9"], "expected a number from -65504"), (["--y", "two"], "got 'two'"), (["--width", "17"], "from 2 to 16")):
             run = subprocess.run([sys.executable, "-m", "synth.lecture", *options], cwd=tools.ROOT, capture_output=True, text=True, check=False)
             self.assertEqual(run.returncode, 2, options)

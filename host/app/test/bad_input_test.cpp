@@ -65,7 +65,12 @@ TEST_F(BadInput, TheGoodSceneIsGood) {
   EXPECT_EQ(folder_.list().size(), 4u);
 }
 
-TEST_F(BadInput, MissingFile) { expect_refused(render({"missing.obj"}), "missing\\.obj: [^\n]+"); }
+TEST_F(BadInput, MissingFile) {
+  expect_refused(render({"missing.obj"}), "missing\\.obj: [^\n]+");
+  folder_.write("scene.obj", kGoodScene);
+  folder_.write("scene.json", "{}");
+  expect_refused(render({"scene.jso"}), "scene\\.jso: found a \\.jso file, expected [^\n]+");
+}
 
 TEST_F(BadInput, UnreadableFile) {
   folder_.write("scene.obj", kGoodScene);

@@ -27,6 +27,18 @@ constexpr Kind kKinds[] = {{".obj", load_obj},
                            {".ply", load_ply},
                            {".stl", load_stl}};
 
+/// Returns the reader of models with the ending of `file`; without ending OBJ's. Throws InputError.
+auto loader_of(const std::filesystem::path& file) {
+  const std::string ending = in_lower_case(file.extension().string());
+  if (ending.empty()) return kKinds[0].load;
+  for (const Kind& kind : kKinds) {
+    if (ending == kind.ending) return kind.load;
+  }
+  throw InputError(file.string() + ": found a " + file.extension().string() +
+                   " file, expected .obj, .glb, .gltf, .ply or .stl; Blender writes them by File > "
+                   "Export > glTF 2.0 (with materials, lights and camera) or Wavefront");
+}
+
 constexpr double kMost = std::numeric_limits<float>::max();
 constexpr double kLeast = std::numeric_limits<float>::min();
 
@@ -172,15 +184,10 @@ void add_lights(const SceneFile& file, Scene& scene) {
 
 }  // namespace
 
+void require_model_ending(const std::filesystem::path& file) { (void)loader_of(file); }
+
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) {
-  const std::string ending = in_lower_case(file.extension().string());
-  if (ending.empty()) return load_obj(file, options);
-  for (const Kind& kind : kKinds) {
-    if (ending == kind.ending) return kind.load(file, options);
-  }
-  throw InputError(file.string() + ": found a " + file.extension().string() +
-                   " file, expected .obj, .glb, .gltf, .ply or .stl; Blender writes them by File > "
-                   "Export > glTF 2.0 (with materials, lights and camera) or Wavefront");
+  return loader_of(file)(file, options);
 }
 
 std::optional<std::filesystem::path> find_file(const std::filesystem::path& folder,

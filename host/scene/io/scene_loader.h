@@ -52,6 +52,9 @@ struct LoadOptions {
                                                              const std::string& place,
                                                              std::vector<std::string>& warnings);
 
+/// Throws InputError if no model has the ending of `file`.
+void require_model_ending(const std::filesystem::path& file);
+
 /// Returns the first existing file of STEM.obj, .glb, .gltf, .ply and .stl, or else "STEM.obj".
 [[nodiscard]] std::filesystem::path find_scene_file(const std::filesystem::path& stem);
 
