@@ -214,6 +214,16 @@ int run_guarded(const std::function<int()>& program) {
   }
 }
 
+std::string as_called(std::string text, std::string called) {
+  called.resize(called.find_last_not_of("abcdefghijklmnopqrstuvwxyz") + 1);
+  for (const char* name : {"./render", "./trace", "./merge"}) {
+    for (std::size_t at = 0; (at = text.find(name, at)) != text.npos; at += called.size()) {
+      text.replace(at, 2, called);
+    }
+  }
+  return text;
+}
+
 int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program) {
   const auto body = [&] {
@@ -223,7 +233,11 @@ int run_main(int argc, char** argv,
     } catch (const std::runtime_error& error) {
       throw InputError(error.what());
     }
-    return program({argv + 1, argv + argc});
+    try {
+      return program({argv + 1, argv + argc});
+    } catch (const Information& asked) {
+      throw Information(as_called(asked.what(), argv[0]));
+    }
   };
   // Freed arrays return to the system, which lowers the peak memory.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);

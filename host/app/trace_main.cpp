@@ -33,6 +33,9 @@ semicolons or spaces, are the origin, the direction and, optionally, a limit:
 
   OX,OY,OZ,DX,DY,DZ[,LIMIT]        hits P = O + t D have 0 < t < LIMIT
 
+A first line of names and lines that begin with # are skipped; these names in
+another order are refused. A ray with the direction 0,0,0 hits nothing.
+
   ./trace scenes/cornell.obj rays.csv
   ./trace scenes/teapot.obj rays.csv -o hits.csv --hits all
   echo 0,1,5,0,0,-1 | ./trace scenes/cornell.obj - --columns triangle,t
@@ -153,7 +156,10 @@ int run(const std::vector<std::string>& words) {
   add_engine_options(table, options.engine);
   table.flag("-q,--quiet", "print no summary (on standard error)", options.quiet);
   const CommandLine line = table.parse(words);
-  if (line.plain.size() != 2) throw InputError("expected SCENE and RAYS (see --help)");
+  if (line.plain.size() != 2) {
+    const std::string surplus = line.plain.size() < 2 ? "" : "found '" + line.plain[2] + "', ";
+    throw InputError(surplus + "expected SCENE and RAYS (see --help)");
+  }
   options.scene = line.plain[0];
   options.rays = line.plain[1];
   if (options.output != "-" && options.output.extension() != ".csv") {
