@@ -220,13 +220,9 @@ class PythonScene {
       }
       block.clear(next);
       for (; block.rays.size() < std::min(most, std::size_t(block_size)) && next < count; ++next) {
-        const glm::dvec3 direction = vector_at(directions, next);
-        const char* const wrong =
-            direction == glm::dvec3(0.0)
-                ? "found the direction (0, 0, 0), expected another one"
-                : block.add(vector_at(origins, next), direction,
-                            limits ? (*limits)(next) : std::numeric_limits<double>::infinity(),
-                            scene_.origin);
+        const char* const wrong = block.add(
+            vector_at(origins, next), vector_at(directions, next),
+            limits ? (*limits)(next) : std::numeric_limits<double>::infinity(), scene_.origin);
         if (wrong != nullptr) throw InputError("ray " + std::to_string(next) + ": " + wrong);
       }
       return !block.rays.empty();
@@ -285,7 +281,9 @@ class PythonScene {
     chosen.threads = keywords.threads;
     const int width = chosen.width, height = chosen.height;
     if (std::int64_t{width} * height > kMaxPixels) {
-      throw InputError("width, height: expected at most " + std::to_string(kMaxPixels) + " pixels");
+      throw InputError("width, height: found " + std::to_string(width) + " x " +
+                       std::to_string(height) + ", expected at most " + std::to_string(kMaxPixels) +
+                       " pixels");
     }
     if (eye) camera.eye = vector_of(*eye);
     if (target) camera.target = vector_of(*target);
@@ -318,8 +316,9 @@ class PythonScene {
  private:
   void build(const SceneKeywords& keywords) {
     if (const auto faces = degenerate_faces(); keywords.refuses && !faces.empty()) {
-      throw InputError("found face " + std::to_string(faces[0]) + " without area, of " +
-                       std::to_string(faces.size()) + ", expected none");
+      throw InputError("degenerate: found face " + std::to_string(faces[0]) +
+                       " without area, and " + std::to_string(faces.size() - 1) +
+                       " more, expected none");
     }
     bvh_ = std::make_unique<Bvh>(scene_, keywords.threads);
     prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);
@@ -416,6 +415,8 @@ NB_MODULE(_raygate, m) {
                 "-> object"));
   static const nb::object input_error =
       nb::exception<InputError>(m, "InputError", PyExc_ValueError);
+  input_error.attr("__doc__") =
+      "Invalid input: a ValueError with one line, what was found and what was expected.";
   nb::register_exception_translator([](const std::exception_ptr& error, void*) {
     try {
       std::rethrow_exception(error);

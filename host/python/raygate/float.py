@@ -1,7 +1,7 @@
 """IEEE 754 arithmetic in any small format, rounding mode and kind of tininess: value and flags.
 
     import numpy as np, raygate.float as rf
-    rf.fp_add(0.1, 0.2)                     # 0.30000001192092896, INEXACT: in binary32
+    rf.fp_add(0.1, 0.2)                     # Result(0.30000001192092896, INEXACT): in binary32, with a RoundingWarning
     rf.fp_divide(1, 3, rf.BINARY16).value   # 0.333251953125
     rf.fp_add(np.float32(1), np.float32(2 ** -24), rounding="up")   # 1.0000001, INEXACT
     rf.fp_multiply(np.uint32([0x7F7FFFFF]), np.uint32([0x40000000])).flag_names  # OVERFLOW|INEXACT
@@ -44,7 +44,7 @@ _OPERATIONS = ("+", "-", "*", "/", *RELATIONS)
 @dataclasses.dataclass(frozen=True)
 class Format:
     """A binary format: a sign, `exponent_bits` of biased exponent (2 to 11) and `fraction_bits` of fraction (1 to 29),
-    at most 32 bits in all."""
+    at most 32 bits in all. Raises InputError for others."""
 
     exponent_bits: int
     fraction_bits: int
@@ -136,7 +136,7 @@ def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: F
 @in_context
 def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
              tininess: Tininess = "after") -> Result:
-    """Returns numbers rounded to the format, as floats of their own type if it holds the format and else float64, and
+    """Returns numbers rounded to the format, as floats of their own type, or as float64 if that cannot hold the format, and
     the flags of the rounding. Arguments as of fp_add."""
     x = _numbers(x)
     bits, flags = encode(x, format, rounding, tininess)
@@ -156,7 +156,7 @@ def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "ne
 
 @in_context
 def decode(bits: npt.ArrayLike, format: Format) -> Any:
-    """Returns the values, float64, of words of the format, unsigned integers."""
+    """Returns the values, float64, of words of the format. Raises InputError unless these are unsigned integers that fit."""
     bits = _words(_arrays.plain("bits", bits), format)
     field = bits >> format.fraction_bits & (1 << format.exponent_bits) - 1
     fraction = (bits & (1 << format.fraction_bits) - 1).astype(np.float64)
@@ -201,6 +201,7 @@ def _results(compute: Callable[..., Array], operands: Sequence[Array], format: F
     """Returns the words and flags that `compute`, of the C++ half, returns for operands of one shape."""
     _one_of("rounding", rounding, ROUNDINGS)
     _one_of("tininess", tininess, get_args(Tininess))
+    _check(format)
     columns = [np.ascontiguousarray(operand).ravel() for operand in operands]
     rows = compute(*columns, format.exponent_bits, format.fraction_bits, ROUNDINGS.index(rounding), tininess == "after")
     fields = np.dtype([("bits", np.uint32), ("flags", np.uint8)], align=True)
@@ -222,6 +223,7 @@ def _numbers(x: npt.ArrayLike) -> Array:
 
 
 def _words(array: Array, format: Format) -> Array:
+    _check(format)
     if array.dtype.kind != "u":
         raise InputError(f"found an array of {array.dtype}, expected one of unsigned integers")
     if array.size and int(array.max()) >> format.width:
@@ -247,6 +249,11 @@ def _held(values: Array, dtype: np.dtype[Any], format: Format) -> Any:
     info = np.finfo(dtype)
     fits = format.fraction_bits <= info.nmant and format.exponent_bits <= info.nexp
     return np.asarray(values).astype(dtype if fits else np.float64)[()]
+
+
+def _check(format: object) -> None:
+    if not isinstance(format, Format):
+        raise InputError(f"format: found {format!r}, expected a Format, such as BINARY16")
 
 
 def _one_of(name: str, found: str, expected: Sequence[str]) -> None:

@@ -2,9 +2,10 @@
 
     mesh.ray = raygate.trimesh.RayMeshIntersector(mesh)
 
-It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector, and needs no trimesh to be installed. Where its answers
-differ from theirs: a ray through an edge or a vertex of a closed mesh hits it once, not once for each triangle there; all
-hits of a ray are found, however near each other they are; a point on the surface may count as inside or outside.
+It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector and does not need trimesh. Its answers differ from theirs
+in three cases: a ray through an edge or a vertex of a closed mesh hits it once, not once for each triangle there; all hits of
+a ray are found, however near each other they are; a point on the surface may count as inside or outside. mesh.copy() has
+trimesh's own intersector again, and mesh.nearest stays trimesh's: mesh.ray.scene.closest() is raygate's.
 """
 
 from __future__ import annotations
@@ -14,23 +15,26 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ._arrays import Array
+from ._raygate import InputError
 from ._scene import Scene
-
-Array = npt.NDArray[Any]
 
 
 class RayMeshIntersector:
-    """Rays and points against a mesh: anything with `vertices`, shape (n, 3), and `faces`, shape (m, 3). When these have
-    changed, the next query builds the scene again."""
+    """Rays and points against a mesh: any object with `vertices`, shape (n, 3), and `faces`, shape (m, 3). When these have
+    changed, the next query builds the scene again. Rays and points are as of Scene.trace() and Scene.inside(), and raise
+    their errors."""
 
     def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
-        """`scale_to_box` is an argument of trimesh's own intersectors; it changes no answer here."""
+        """`scale_to_box` has no effect; trimesh's own intersectors take it. Raises InputError for no mesh."""
+        if not (hasattr(geometry, "vertices") and hasattr(geometry, "faces")):
+            raise InputError(f"geometry: found a value of type {type(geometry).__name__}, expected a mesh")
         self.mesh = geometry
         self._built: tuple[Any, Scene] | None = None
 
     @property
     def scene(self) -> Scene:
-        """The mesh as raygate's scene."""
+        """The mesh as a raygate.Scene."""
         vertices, faces = np.asarray(self.mesh.vertices, np.float64), np.asarray(self.mesh.faces, np.int64)
         state = hash((vertices.tobytes(), faces.tobytes()))
         if self._built is None or self._built[0] != state:
@@ -39,9 +43,9 @@ class RayMeshIntersector:
 
     def intersects_id(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True,
                       max_hits: int | None = None, return_locations: bool = False) -> tuple[Array, ...]:
-        """Returns the triangles that rays hit, shape (k,), the numbers of the rays, shape (k,), and with
-        `return_locations` the points, shape (k, 3): of each ray all hits, near before far, at most `max_hits`, or without
-        `multiple_hits` the nearest."""
+        """Returns the triangles that rays hit, shape (k,), the numbers of their rays, shape (k,), and with
+        `return_locations` the points, shape (k, 3). Returns all hits of each ray, near before far, at most `max_hits`, or
+        without `multiple_hits` the nearest."""
         columns = ["ray", "triangle", "t"]
         hits = self.scene.trace(ray_origins, ray_directions, hits="all" if multiple_hits else "nearest", columns=columns)
         hits = hits[hits["triangle"] >= 0]
@@ -72,5 +76,6 @@ class RayMeshIntersector:
         return found.astype(bool)
 
     def contains_points(self, points: npt.ArrayLike) -> Array:
-        """Returns whether points are inside of the mesh, which must be closed: shape (n,)."""
+        """Returns whether points are inside of the mesh, which must be closed: shape (n,). As of trimesh, a closed shell
+        within another one is a cavity, and the orientation of faces does not matter."""
         return self.scene.inside(points)

@@ -8,14 +8,14 @@ import nbclient
 import nbformat
 
 ROOT = pathlib.Path(__file__).parents[3]
-FILE = ROOT / "host/python/three_figures.ipynb"
+FILE = ROOT / "host/docs/three_figures.ipynb"
 
 
 def executed():
     """The notebook with new outputs; a cell that fails raises its error."""
     notebook = nbformat.read(FILE, 4)
     nbclient.NotebookClient(notebook, timeout=300, record_timing=False,
-                            resources={"metadata": {"path": str(ROOT)}}).execute()
+                            resources={"metadata": {"path": str(FILE.parent)}}).execute()
     return notebook
 
 
