@@ -508,6 +508,9 @@ class Reports(unittest.TestCase):
                 run = subprocess.run([program, path, "-", "--columns", "triangle,t", "-q"],
                     input=table.encode(), capture_output=True, check=False)
                 self.assertEqual((run.returncode, run.stdout, run.stderr), (0, b"triangle,t\n0,5\n", b""), table)
+            os.symlink(program, f"{folder}/raygate-trace")
+            said = subprocess.run(["raygate-trace", "--help"], env=os.environ | {"PATH": folder}, capture_output=True, text=True, check=True).stdout
+            self.assertTrue(said.startswith("Usage: raygate-trace SCENE") and "./trace" not in said, said)
 
 
 if __name__ == "__main__":
