@@ -214,16 +214,6 @@ int run_guarded(const std::function<int()>& program) {
   }
 }
 
-std::string as_called(std::string text, std::string called) {
-  called.resize(called.find_last_not_of("abcdefghijklmnopqrstuvwxyz") + 1);
-  for (const char* name : {"./render", "./trace", "./merge"}) {
-    for (std::size_t at = 0; (at = text.find(name, at)) != text.npos; at += called.size()) {
-      text.replace(at, 2, called);
-    }
-  }
-  return text;
-}
-
 int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program) {
   const auto body = [&] {
@@ -236,7 +226,12 @@ int run_main(int argc, char** argv,
     try {
       return program({argv + 1, argv + argc});
     } catch (const Information& asked) {
-      throw Information(as_called(asked.what(), argv[0]));
+      std::string text = asked.what(), path = argv[0];  // "bin/raygate-trace": bin/raygate-render
+      path.resize(path.find_last_not_of("abcdefghijklmnopqrstuvwxyz") + 1);
+      for (std::size_t at = 0; (at = text.find("./", at)) != text.npos; at += path.size()) {
+        text.replace(at, 2, path);
+      }
+      throw Information(text);
     }
   };
   // Freed arrays return to the system, which lowers the peak memory.

@@ -49,8 +49,7 @@ struct RayTable {
 /// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or
 /// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add), between commas, or else semicolons, or else spaces
 /// and tabs. Spaces and quotes around numbers, a byte order mark, empty lines, lines that begin
-/// with # and one header line, without a number, are allowed. A header that has these names in
-/// other columns is refused.
+/// with # and one header without a number are allowed, but not these names in other columns.
 class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".

@@ -70,15 +70,14 @@ void find_hits(const Bvh& bvh, Intersector& intersector, const RayTable& block, 
       .t_max = t_max, .exact_rays = block.exact_rays, .work = work, .with_points = false};
   if (any) query.any_hit_before = t_max;
   intersector.nearest(block.rays, query, hits);
+  std::vector<NearestHit> before;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const ExactRay ray = block.exact_ray(i);
-    if (hits[i].primitive == NearestHit::kNone || is_before(bvh, ray, hits[i], block.limits[i])) {
-      continue;
-    }
-    std::vector<NearestHit> found;
+    const double limit = block.limits[i];
+    if (hits[i].primitive == NearestHit::kNone || is_before(bvh, ray, hits[i], limit)) continue;
     RayWork ignored;
-    all_hits(bvh, ray, block.limits[i], found, ignored);
-    hits[i] = found.empty() ? NearestHit{} : found[0];
+    all_hits(bvh, ray, limit, before, ignored);
+    hits[i] = before.empty() ? NearestHit{} : before[0];
   }
 }
 

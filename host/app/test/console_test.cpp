@@ -16,14 +16,6 @@ TEST(RunGuarded, AListThatIsTooLong) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "error: out of memory\n");
 }
 
-TEST(AsCalled, NamesAllPrograms) {
-  constexpr const char* kHelp = "Usage: ./trace A | ./render ./a";
-  EXPECT_EQ(as_called(kHelp, "./trace"), kHelp);
-  EXPECT_EQ(as_called(kHelp, "raygate-trace"), "Usage: raygate-trace A | raygate-render ./a");
-  EXPECT_EQ(as_called(kHelp, "/bin/trace"), "Usage: /bin/trace A | /bin/render ./a");
-  EXPECT_EQ(as_called(kHelp, "trace"), "Usage: trace A | render ./a");
-}
-
 TEST(Format, Counts) {
   EXPECT_EQ(format_count(0), "0");
   EXPECT_EQ(format_count(999), "999");

@@ -214,8 +214,9 @@ TEST_F(TraceRays, LosesNothing) {
 }
 
 TEST_F(TraceRays, RefusesWhatItCannotDo) {
-  expect_refused({"sheets.obj"}, "expected SCENE and RAYS");
-  expect_refused({"sheets.obj", "rays.csv", "more"}, "found 'more', expected SCENE and RAYS");
+  expect_refused({"sheets.obj"}, "found 'sheets.obj', expected SCENE and RAYS");
+  expect_refused({"sheets.obj", "rays.csv", "more"},
+                 "found 'sheets.obj, rays.csv, more', expected SCENE and RAYS");
   expect_refused({"sheets.obj", "none.csv"}, "none.csv: cannot read: No such file");
   expect_refused({"none.obj", "rays.csv"}, "none.obj: cannot read");
   const std::array<const char*, 3> options[] = {

@@ -72,36 +72,31 @@ class Scene(_raygate.Scene):
     @in_context
     def __init__(self, file_or_vertices: Any, /, faces: npt.ArrayLike | None = None, *, smooth: float | None = None,
                  degenerate: Degenerate = "leave out", threads: int | None = None) -> None:
-        """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Unlike ./render, "teapot.obj" does not read teapot.json
-        beside it. Or takes arrays: vertices of shape (N, 3), float32 or float64, and faces of shape (M, 3), whole numbers:
-        three vertices, counted from 0, in each row.
+        """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Unlike ./render, a.obj does not read a.json beside it. Or
+        takes vertices, shape (N, 3), float32 or float64, and faces, shape (M, 3), whole numbers: the vertices, from 0, of each.
 
-        Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them;
-        `degenerate_faces` lists them. A scene needs a face with an area; degenerate="refuse" raises InputError for any
-        without. `smooth`: faces without normals that meet at up to this angle, 0 to 180 degrees, are shaded smoothly.
-        `threads`: 1 to 1024, one per processor by default. Raises InputError, which names the file and line, the vertex
-        or the face that cannot be used."""
-        file = file_or_vertices
+        Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them; `degenerate_faces`
+        lists them. A scene needs a face with an area; degenerate="refuse" raises InputError for any without. `smooth`: faces
+        without normals that meet at up to this angle, 0 to 180 degrees, are shaded smoothly. `threads`: 1 to 1024, one per
+        processor by default. Raises InputError, which names the file and line, the vertex or the face that cannot be used."""
         options = {"smooth": smooth, "degenerate": degenerate, "threads": threads}
-        if faces is None and isinstance(file, (str, bytes, os.PathLike)):
-            name = os.fsencode(file)
+        if faces is None and isinstance(file_or_vertices, (str, bytes, os.PathLike)):
+            name = os.fsencode(file_or_vertices)
             if b"\0" in name:
-                raise InputError(f"file: found {file!r}, expected a name without a null byte")
+                raise InputError(f"file: found {file_or_vertices!r}, expected a name without a null byte")
             self._recipe: tuple[Any, ...] = Scene, (os.path.abspath(name),), options
             super().__init__(name, _settings(**options))
             return
-        vertices = np.array(_arrays.vectors("vertices", file))
+        vertices = np.array(_arrays.vectors("vertices", file_or_vertices))
         numbers = np.array(_arrays.vertex_numbers(faces, len(vertices)))
-        used = np.zeros_like(vertices)  # other vertices may be anything, such as NaN
-        used[numbers] = vertices[numbers]
-        _arrays.check_finite("vertices", used, "vertex", 125)
+        is_used = np.isin(np.arange(len(vertices)), numbers)  # others may be NaN
+        _arrays.check_finite("vertices", np.where(is_used[:, None], vertices, 0), "vertex", 125)
         self._recipe = Scene, (vertices, numbers), options
         super().__init__("faces", _arrays.triangles("faces", vertices[numbers]), _settings(**options))
 
     @classmethod
     @in_context
-    def of_triangles(cls, corners: npt.ArrayLike, *, degenerate: Degenerate = "leave out",
-                     threads: int | None = None) -> Scene:
+    def of_triangles(cls, corners: npt.ArrayLike, *, degenerate: Degenerate = "leave out", threads: int | None = None) -> Scene:
         """Returns a scene of grey triangles from their corners, of shape (N, 3, 3), float32 or float64. Triangles
         without area are as in Scene(). Raises InputError, which names the triangle that cannot be used."""
         scene = cls.__new__(cls)
@@ -124,22 +119,20 @@ class Scene(_raygate.Scene):
               threads: int | None = None) -> Array:
         """Returns the hits of rays: a structured array with a field, int64 or float64, for each answer.
 
-        origins, directions: shape (N, 3); float64 in C order is read without a copy. One of them, or both, may be one
-        vector for all rays, of shape (3,) or (1, 3). Hits are at origin + t direction with 0 < t < limit, exactly, in
-        float64. Directions may have any length; a direction of 0 hits nothing. limits: shape (N,), or one number for all
-        rays; none by default. threads: 1 to 1024, one per processor by default.
+        origins, directions: shape (N, 3), or one vector for all rays, of shape (3,) or (1, 3); float64 in C order is read
+        without a copy. Hits are at origin + t direction with 0 < t < limit, exactly, in float64. A direction may have any
+        length; (0, 0, 0) hits nothing. limits: shape (N,), or one number for all rays; none by default. threads: 1 to 1024,
+        one per processor by default. hits: "nearest", a row for each ray; "any", a row for each ray that says whether it hits
+        anything, sooner; "all", a row for each hit of each ray, near before far, at equal t the lower triangle first.
 
-        hits: "nearest", a row for each ray; "any", a row for each ray that says whether it hits anything, which takes less
-        time; "all", a row for each hit of each ray, near before far, and at equal t by the number of the triangle.
-        columns: the names of one or several, by default all but material and side; of "any" only ray, hit and doubts,
-        by default ray and hit. Numbers count from 0. A miss has -1, inf as t and nan in other fields of float64; tell it by
-        `hit` or `triangle`, as t of a hit is inf where it overflows. The columns:
-        ray: number of the ray. hit: 1 or 0. triangle, object, material: their numbers. t: relative error at most 2^-33.
-        point (fields x, y, z): in the scene's coordinates. uv (u, v): the point is (1 - u - v) A + u B + v C; error at most
-        2^-34. normal (nx, ny, nz): (B - A) x (C - A), of length 1. side: exact sign of direction . normal: -1 hits the
-        front, 1 the back; 0, no hit. doubts: how many tests of the ray needed exact arithmetic.
+        columns: one name or several; by default all but material and side, or of "any" ray and hit (doubts is the third that
+        it has). ray, triangle, object, material: numbers from 0. hit: 1 or 0. t: off by at most 2^-33 of itself. point (fields
+        x, y, z): in the scene's coordinates. uv (u, v): the point is (1 - u - v) A + u B + v C; off by at most 2^-34. normal
+        (nx, ny, nz): (B - A) x (C - A) divided by its length. side: the exact sign of direction . normal, -1 for the front, 1
+        for the back, 0 for a miss. doubts: tests of the ray that exact arithmetic decided. A miss has -1 in other fields of
+        int64, inf as t, and nan. As t of a hit is inf if it overflows, tell misses by `hit` or `triangle`.
 
-        No rays, shape (0, 3), give no rows. Raises InputError for other shapes, masked elements and unknown names. For inf,
+        No rays, shape (0, 3), give no rows. Raises InputError for other shapes, masked elements and unknown names; for inf,
         NaN, limits that are not above 0 and origins farther than 2^126 from the scene it names the ray."""
         origins, directions = _arrays.rays(origins, directions)
         if limits is not None:
@@ -159,8 +152,7 @@ class Scene(_raygate.Scene):
     @in_context
     def render(self, width: int | None = None, height: int | None = None, *, eye: npt.ArrayLike | None = None,
                target: npt.ArrayLike | None = None, up: npt.ArrayLike | None = None, **options: Unpack[RenderOptions]) -> Picture:
-        """Returns a Picture: a dictionary of arrays of `height` rows, the top one first, and `width` columns, in pixels,
-        640 x 480 by default; each may be given alone.
+        """Returns a Picture: a dictionary of arrays of `height` rows (480), the top one first, and `width` columns (640), pixels.
 
         "color", shape (height, width, 4): scene-linear R, G, B, A, premultiplied. "normal", "point", "albedo", shape
         (height, width, 3); "depth", shape (height, width): float32. "triangle" and "object", shape (height, width):
@@ -174,14 +166,12 @@ class Scene(_raygate.Scene):
 
     @in_context
     def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Returns whether points are inside of closed surfaces: an array of bool, of shape (N,). points: shape (N, 3), or
-        (3,) for one.
+        """Returns whether points, of shape (N, 3), or (3,) for one, are inside of closed surfaces: an array of bool, (N,).
 
-        A point is inside if a ray from it crosses surfaces an odd number of times. That is exact, for points as trace()
-        rounds origins, and does not depend on how faces are oriented. So a shell within another one is a cavity, and what
-        two solids share is outside; for their union, of faces that are oriented alike: winding_number(points)[0] != 0.
-        Answers have no meaning for an open surface or a point on a surface. Raises InputError, which names the point, for
-        inf, NaN and coordinates beyond 2^125."""
+        A point is inside if a ray from it crosses surfaces an odd number of times, counted exactly, for points as trace() rounds
+        origins. So the orientation of faces does not matter, a shell within another one is a cavity, and what two solids share
+        is outside; of faces oriented alike, winding_number(points)[0] != 0 is the union. Answers have no meaning for an open
+        surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns="ray")
         is_inside: npt.NDArray[np.bool_] = np.bincount(hits["ray"], minlength=len(points)) % 2 == 1

@@ -15,13 +15,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _arrays
+from ._arrays import Array
 from ._raygate import InputError
-from ._scene import _DIRECTION, Scene
-
-Array = npt.NDArray[Any]
+from ._scene import Scene
 
 
 def _array(values: Any) -> Any:
@@ -44,9 +42,8 @@ def _threads(nthreads: int) -> int | None:
 
 
 class RaycastingScene:
-    """Triangles, and queries of rays and points. Shapes are those of Open3D: (..., N, 6) for rays, (..., N, 3) for points,
-    and the same leading axes for answers. `nthreads` of a query: 0: one per processor; distances and closest points take
-    one."""
+    """Triangles, and queries of rays and points. Shapes are those of Open3D: (..., N, 6) for rays, (..., N, 3) for points, and
+    the same leading axes for answers. `nthreads` of a query of rays: 0 is one per processor; other queries ignore it."""
 
     INVALID_ID = 4294967295
 
@@ -81,16 +78,14 @@ class RaycastingScene:
     def _trace(self, rays: Any, nthreads: int, hits: Any, columns: list[str],
                limits: float | None = None) -> tuple[tuple[int, ...], Array]:
         shape, rows = _rows("rays", rays, 6)
-        return shape, self._built.trace(rows[:, :3], rows[:, 3:], limits, hits=hits, columns=columns,
-                                        threads=_threads(nthreads))
+        return shape, self._built.trace(rows[:, :3], rows[:, 3:], limits, hits=hits, columns=columns, threads=_threads(nthreads))
 
     def _names(self, triangles: Array, shape: tuple[int, ...]) -> dict[str, Array]:
         """Returns the numbers of geometries, and of triangles in them, in this shape."""
         parts = np.searchsorted(self._starts, triangles, "right") - 1
         is_hit = triangles >= 0
         numbers = {"geometry_ids": parts, "primitive_ids": triangles - self._starts[parts]}
-        return {name: np.where(is_hit, number, self.INVALID_ID).astype(np.uint32).reshape(shape)
-                for name, number in numbers.items()}
+        return {name: np.where(is_hit, number, self.INVALID_ID).astype(np.uint32).reshape(shape) for name, number in numbers.items()}
 
     def _normals(self, triangles: Array) -> Array:
         """Returns unit normals; 0 for -1."""
@@ -134,12 +129,15 @@ class RaycastingScene:
                 "ray_ids": hits["ray"].astype(np.uint32), "t_hit": hits["t"], **self._names(hits["triangle"], (-1,)),
                 "primitive_uvs": np.stack([hits["u"], hits["v"]], -1)}
 
+    def _closest(self, query_points: Any, nthreads: int) -> tuple[tuple[int, ...], Array]:
+        _threads(nthreads)
+        shape, points = _rows("query_points", query_points, 3)
+        return shape, self._built.closest(points)
+
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> dict[str, Array]:
         """Returns the nearest point of the surface to each point: "points", "geometry_ids", "primitive_ids", "primitive_uvs"
         and "primitive_normals"."""
-        _threads(nthreads)
-        shape, points = _rows("query_points", query_points, 3)
-        found = self._built.closest(points)
+        shape, found = self._closest(query_points, nthreads)
         at = np.stack([found["x"], found["y"], found["z"]], -1)
         a, b, c = np.moveaxis(self._corners[found["triangle"]], 1, 0)
         normals = np.cross(b - a, c - a)
@@ -152,18 +150,17 @@ class RaycastingScene:
 
     def compute_distance(self, query_points: Any, nthreads: int = 0) -> Array:
         """Returns the distance of each point from the surface."""
-        _threads(nthreads)
-        shape, points = _rows("query_points", query_points, 3)
-        return self._built.closest(points)["distance"].reshape(shape)
+        shape, found = self._closest(query_points, nthreads)
+        return found["distance"].reshape(shape)
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
-        """Returns 1 for points inside of the surface, which must be closed, and 0 for those outside. `nsamples` changes
-        nothing: one ray tells; as in Open3D, it must be odd."""
+        """Returns 1 for points inside of the surface, as of Scene.inside(), and 0 for others. `nsamples`, which must be odd as in
+        Open3D, changes nothing: one ray tells."""
         if nsamples < 1 or nsamples % 2 != 1:
             raise InputError(f"nsamples: found {nsamples!r}, expected an odd number of at least 1")
+        _threads(nthreads)
         shape, points = _rows("query_points", query_points, 3)
-        crossings = self.count_intersections(np.concatenate([points, np.broadcast_to(_DIRECTION, points.shape)], -1), nthreads)
-        return (crossings % 2).astype(np.float32).reshape(shape)
+        return self._built.inside(points).astype(np.float32).reshape(shape)
 
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Returns the distance of each point from the surface, which must be closed; negative inside."""

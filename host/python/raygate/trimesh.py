@@ -2,10 +2,10 @@
 
     mesh.ray = raygate.trimesh.RayMeshIntersector(mesh)
 
-It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector and does not need trimesh. Its answers differ from theirs
-in three cases: a ray through an edge or a vertex of a closed mesh hits it once, not once for each triangle there; all hits of
-a ray are found, however near each other they are; a point on the surface may count as inside or outside. mesh.copy() has
-trimesh's own intersector again, and mesh.nearest stays trimesh's: mesh.ray.scene.closest() is raygate's.
+It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector and does not need trimesh. Where its answers differ: a ray
+through an edge or a vertex of a closed mesh hits it once, not once for each triangle there; all hits of a ray are found,
+however near each other they are; a point on the surface may count as inside or outside. mesh.copy() has trimesh's own
+intersector again, and mesh.nearest stays trimesh's: mesh.ray.scene.closest() is raygate's.
 """
 
 from __future__ import annotations
@@ -21,9 +21,8 @@ from ._scene import Scene
 
 
 class RayMeshIntersector:
-    """Rays and points against a mesh: any object with `vertices`, shape (n, 3), and `faces`, shape (m, 3). When these have
-    changed, the next query builds the scene again. Rays and points are as of Scene.trace() and Scene.inside(), and raise
-    their errors."""
+    """Rays and points against a mesh: an object with `vertices`, shape (n, 3), and `faces`, shape (m, 3). When these change,
+    the next query builds the scene again. Arguments and errors of queries: Scene.trace() and Scene.inside()."""
 
     def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
         """`scale_to_box` has no effect; trimesh's own intersectors take it. Raises InputError for no mesh."""
@@ -46,19 +45,15 @@ class RayMeshIntersector:
         """Returns the triangles that rays hit, shape (k,), the numbers of their rays, shape (k,), and with
         `return_locations` the points, shape (k, 3). Returns all hits of each ray, near before far, at most `max_hits`, or
         without `multiple_hits` the nearest."""
-        columns = ["ray", "triangle", "t"]
+        columns = ["ray", "triangle", "point"]
         hits = self.scene.trace(ray_origins, ray_directions, hits="all" if multiple_hits else "nearest", columns=columns)
         hits = hits[hits["triangle"] >= 0]
         if max_hits is not None and multiple_hits:
             first = np.searchsorted(hits["ray"], hits["ray"])  # hits are sorted by ray
             hits = hits[np.arange(len(hits)) - first < max_hits]
         triangles, rays = hits["triangle"].astype(np.int64), hits["ray"].astype(np.int64)
-        if not return_locations:
-            return triangles, rays
-        shape = (len(np.atleast_2d(np.asarray(ray_origins))), 3)
-        origins = np.broadcast_to(np.asarray(ray_origins, np.float64), shape)
-        directions = np.broadcast_to(np.asarray(ray_directions, np.float64), shape)
-        return triangles, rays, origins[rays] + hits["t"][:, None] * directions[rays]
+        locations = [np.stack([hits[axis] for axis in "xyz"], axis=-1)] if return_locations else []
+        return triangles, rays, *locations
 
     def intersects_location(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike,
                             multiple_hits: bool = True) -> tuple[Array, Array, Array]:

@@ -47,8 +47,7 @@ class Trace(unittest.TestCase):
         every = self.scene.trace(self.origins, self.directions, hits="all")
         rays, first = np.unique(every["ray"], return_index=True)
         np.testing.assert_array_equal(rays, nearest["ray"][nearest["hit"] == 1])
-        np.testing.assert_array_equal(every["triangle"][first],
-                                      nearest["triangle"][nearest["hit"] == 1])
+        np.testing.assert_array_equal(every["triangle"][first], nearest["triangle"][nearest["hit"] == 1])
         same = np.diff(every["ray"]) == 0
         self.assertTrue((np.diff(every["t"])[same] >= 0).all())
 
@@ -59,8 +58,7 @@ class Trace(unittest.TestCase):
         np.testing.assert_array_equal(any_hit["hit"] == 1, nearest["t"] < limits)
 
     def test_takes_float32_and_refuses_what_it_cannot_use(self):
-        narrow = self.scene.trace(self.origins.astype(np.float32),
-                                  self.directions.astype(np.float32), columns=["triangle"])
+        narrow = self.scene.trace(self.origins.astype(np.float32), self.directions.astype(np.float32), columns=["triangle"])
         self.assertEqual(narrow.dtype.names, ("triangle",))
         for origins, directions, line in (
                 ([0, 0, 0], np.ones((4, 4, 3)), r"^directions: found an array of shape \(4, 4, 3\), expected \(N, 3\)$"),
@@ -419,8 +417,7 @@ class Render(unittest.TestCase):
         self.assertEqual(picture["color"].shape, (30, 40, 4))
         self.assertEqual(picture["color"].dtype, np.float32)
         self.assertGreater(picture["color"][..., :3].max(), 0.1)
-        np.testing.assert_array_equal(picture["color"][..., 3] == 1,
-                                      picture["triangle"] != 0xFFFFFFFF)
+        np.testing.assert_array_equal(picture["color"][..., 3] == 1, picture["triangle"] != 0xFFFFFFFF)
         again = scene.render(40, 30, spp=1, threads=1)
         for name, channel in picture.items():
             self.assertEqual(channel.tobytes(), again[name].tobytes(), name)

@@ -40,8 +40,7 @@ class Types(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
         # mypy does not check packages where they are installed.
-        shutil.copytree(PACKAGE, cls.folder / "raygate", ignore=shutil.ignore_patterns("*.so"),
-                        ignore_dangling_symlinks=True)
+        shutil.copytree(PACKAGE, cls.folder / "raygate", ignore=shutil.ignore_patterns("*.so"), ignore_dangling_symlinks=True)
 
     def mypy(self, text):
         """Returns mypy's lines on a program, and on the package that it imports."""
