@@ -75,11 +75,6 @@ std::string_view unquoted(std::string_view text) {
   return is_quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
 }
 
-bool begins_as_number(std::string_view text) {
-  return text.empty() ||
-         std::string_view("0123456789+-.").find(text.front()) != std::string_view::npos;
-}
-
 }  // namespace
 
 RayTableReader::RayTableReader(const std::filesystem::path& file, const glm::dvec3& scene_origin)
@@ -137,7 +132,7 @@ int RayTableReader::split(std::string_view line, double (&numbers)[kMostNumbers]
     const std::string_view field = unquoted(trimmed(line.substr(start, end - start)));
     start = end + 1;
     const std::optional<double> number = to_number(field);
-    is_header = is_header && !number && !begins_as_number(field);
+    is_header = is_header && !number && !field.empty() && field.find_first_of("0123456789+-.") != 0;
     if (!number && wrong.data() == nullptr) wrong = field;
     if (is_header && misplaced.empty()) {
       const auto at = std::ranges::find(kNames, in_lower_case(std::string(field))) - kNames;

@@ -56,8 +56,7 @@ def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
     wrong = ~(np.abs(array) <= 2.0 ** exponent).all(axis=tuple(range(1, array.ndim)))
     if wrong.any():
         row = int(wrong.argmax())
-        raise InputError(f"{name}: found {array[row].tolist()} in {each} {row}, expected finite numbers of magnitude "
-                         f"at most 2^{exponent}")
+        raise InputError(f"{name}: found {array[row].tolist()} in {each} {row}, expected finite numbers of at most 2^{exponent}")
 
 
 def points(values: npt.ArrayLike, exponent: int) -> Array:
@@ -81,12 +80,11 @@ def vertex_numbers(faces: npt.ArrayLike | None, count: int, name: str = "faces")
         raise InputError(f"{name}: found None, expected the numbers of three vertices in each row")
     array = plain(name, faces)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind == "f" or not len(array):
-        raise InputError(f"{name}: found an array of {array.dtype} of shape {array.shape}, expected whole numbers of "
-                         "shape (M, 3), M at least 1")
+        raise InputError(f"{name}: found an array of {array.dtype} of shape {array.shape}, expected whole numbers, shape (M, 3)")
     wrong = ((array < 0) | (array >= count)).any(axis=1)
     if wrong.any():
-        raise InputError(f"{name}: found {array[wrong.argmax()].tolist()} in face {wrong.argmax()}, expected numbers "
-                         f"from 0 to {count - 1}")
+        row = wrong.argmax()
+        raise InputError(f"{name}: found {array[row].tolist()} in face {row}, expected numbers from 0 to {count - 1}")
     return array
 
 
@@ -97,5 +95,4 @@ def point(name: str, values: npt.ArrayLike | None) -> list[float] | None:
     array = reals(name, values)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise InputError(f"{name}: found {array.tolist()}, expected three finite numbers")
-    numbers: list[float] = array.tolist()
-    return numbers
+    return [float(number) for number in array]

@@ -19,10 +19,9 @@ if TYPE_CHECKING:
 
 Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 Degenerate = Literal["leave out", "refuse"]
-RenderOptions = TypedDict("RenderOptions", {
-    "spp": int, "error": float, "integrator": Literal["primary", "whitted", "path"], "depth": int, "seed": int, "fov": float,
-    "filter": Literal["box", "blackman-harris"], "caustics": Literal["auto", "off"], "threshold": float, "ambient": float,
-    "threads": int}, total=False)
+RenderOptions = TypedDict("RenderOptions", {"spp": int, "error": float, "depth": int, "seed": int, "fov": float, "threads": int,
+    "integrator": Literal["primary", "whitted", "path"], "filter": Literal["box", "blackman-harris"], "caustics": Literal["auto", "off"],
+    "threshold": float, "ambient": float}, total=False)
 
 _DIRECTION = np.array([0.36, 0.48, 0.8], np.float32)  # of rays that count crossings; arbitrary
 
@@ -58,8 +57,7 @@ class Picture(dict[str, Array]):
 
 
 class Scene(_raygate.Scene):
-    """Triangles, materials and lights. Pickling a scene keeps the absolute name of its file or copies of its arrays,
-    and its options; unpickling reads the file or builds the scene again."""
+    """Triangles, materials and lights. A pickle holds the absolute name of the file, or the arrays, and the options to build it again."""
 
     @overload
     def __init__(self, file: Path, /, *, smooth: float | None = None, degenerate: Degenerate = "leave out",
@@ -137,12 +135,9 @@ class Scene(_raygate.Scene):
         origins, directions = _arrays.rays(origins, directions)
         if limits is not None:
             limits = _arrays.reals("limits", limits)
-            if limits.ndim == 0:
-                limits = np.broadcast_to(limits, (len(origins),))
-            if limits.shape != (len(origins),):
-                raise InputError(f"limits: found an array of shape {limits.shape}, expected one number or one for each "
-                                 f"ray, ({len(origins)},)")
-            limits = np.ascontiguousarray(limits)
+            if limits.shape not in ((), (len(origins),)):
+                raise InputError(f"limits: found an array of shape {limits.shape}, expected one number or shape ({len(origins)},)")
+            limits = np.ascontiguousarray(np.broadcast_to(limits, len(origins)))
         if not isinstance(columns, (str, Iterable, type(None))):
             raise InputError(f"columns: found {columns!r}, expected a name or several names")
         names = [columns] if isinstance(columns, str) else [str(column) for column in columns or []]
@@ -174,20 +169,18 @@ class Scene(_raygate.Scene):
         surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns="ray")
-        is_inside: npt.NDArray[np.bool_] = np.bincount(hits["ray"], minlength=len(points)) % 2 == 1
-        return is_inside
+        return np.asarray(np.bincount(hits["ray"], minlength=len(points)) % 2, np.bool_)
 
     @in_context
     def winding_number(self, points: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Returns how often the surfaces wind around points, of shape (N, 3) or (3,), and a bound of the error of each
-        number: two arrays of float64, of shape (N,). Around a closed surface whose faces are oriented alike, also one that
-        crosses itself, the number is whole and exact: 1 inside, 0 outside, 2 where two solids overlap. Around an open one
-        it is the solid angle seen from the point over 4 pi. The error is inf if a point is so near a surface that rounding,
-        as of origins in trace(), may move it across. The numbers have no meaning for a point on a surface. Raises
-        InputError as inside() does."""
+        """Returns how often the surfaces wind around points, of shape (N, 3) or (3,), and bounds of the errors: two arrays of float64,
+        (N,). Around a closed surface of faces oriented alike, also one that crosses itself, the number is whole and exact: 1 inside, 0
+        outside, 2 where two solids overlap. Around an open one it is the solid angle seen from the point over 4 pi. The error is inf if
+        a point is so near a surface that rounding, as of origins in trace(), may move it across. The numbers have no meaning for a
+        point on a surface. Raises InputError as inside() does."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
-        crossings = np.bincount(hits["ray"], hits["side"], minlength=len(points))
+        crossings: Array = np.bincount(hits["ray"], hits["side"], minlength=len(points))
         rows = self._winding(points, crossings, _DIRECTION.tolist()).view(np.float64)
         return rows[0::2].copy(), rows[1::2].copy()
 

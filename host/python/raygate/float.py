@@ -151,14 +151,13 @@ def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "ne
 def decode(bits: npt.ArrayLike, format: Format) -> Any:
     """Returns the values, float64, of words of the format. Raises InputError unless these are unsigned integers that fit."""
     bits = _words(_arrays.plain("bits", bits), format)
-    field = bits >> format.fraction_bits & (1 << format.exponent_bits) - 1
+    highest = (1 << format.exponent_bits) - 1
+    field = bits >> format.fraction_bits & highest
     fraction = (bits & (1 << format.fraction_bits) - 1).astype(np.float64)
     bias = (1 << format.exponent_bits - 1) - 1
-    one = np.float64(1 << format.fraction_bits)
     exponent = np.maximum(field, 1).astype(np.int64) - bias - format.fraction_bits
-    size = np.ldexp(np.where(field == 0, fraction, fraction + one), exponent)
-    special = np.where(fraction == 0, np.inf, np.nan)
-    size = np.where(field == (1 << format.exponent_bits) - 1, special, size)
+    size = np.ldexp(fraction + (field > 0) * 2.0 ** format.fraction_bits, exponent)
+    size = np.where(field == highest, np.where(fraction == 0, np.inf, np.nan), size)
     return np.where(bits >> format.width - 1 == 1, -size, size)[()]
 
 
@@ -169,8 +168,7 @@ def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rou
     if kinds == {"u"}:
         words: tuple[Array, ...] = _words(a, format), _words(b, format)
     elif kinds == {"f"}:
-        words = tuple(_exact(array, format, is_pythons=not isinstance(x, (np.ndarray, np.generic)))
-                      for array, x in zip((a, b), operands))
+        words = tuple(_exact(array, format, is_pythons=not isinstance(x, (np.ndarray, np.generic))) for array, x in zip((a, b), operands))
     else:
         raise InputError(f"found arrays of {a.dtype} and {b.dtype}, expected both of unsigned "
                          "integers (the format's words) or both of floats")
@@ -187,12 +185,11 @@ def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rou
     return Result(value, flags)
 
 
-def _results(compute: Callable[..., Array], operands: Sequence[Array], format: Format, rounding: Rounding,
-             tininess: Tininess) -> Result:
+def _results(compute: Callable[..., Array], operands: Sequence[Array], format: Format, rounding: Rounding, tininess: Tininess) -> Result:
     """Returns the words and flags that `compute`, of the C++ half, returns for operands of one shape."""
     _one_of("rounding", rounding, ROUNDINGS)
     _one_of("tininess", tininess, get_args(Tininess))
-    _check(format)
+    _one_of("format", type(format).__name__, ["Format"])
     columns = [np.ascontiguousarray(operand).ravel() for operand in operands]
     rows = compute(*columns, format.exponent_bits, format.fraction_bits, ROUNDINGS.index(rounding), tininess == "after")
     fields = np.dtype([("bits", np.uint32), ("flags", np.uint8)], align=True)
@@ -213,7 +210,7 @@ def _numbers(x: npt.ArrayLike) -> Array:
 
 
 def _words(array: Array, format: Format) -> Array:
-    _check(format)
+    _one_of("format", type(format).__name__, ["Format"])
     if array.dtype.kind != "u":
         raise InputError(f"found an array of {array.dtype}, expected one of unsigned integers")
     if array.size and int(array.max()) >> format.width:
@@ -238,11 +235,6 @@ def _held(values: Array, dtype: np.dtype[Any], format: Format) -> Any:
     info = np.finfo(dtype)
     fits = format.fraction_bits <= info.nmant and format.exponent_bits <= info.nexp
     return np.asarray(values).astype(dtype if fits else np.float64)[()]
-
-
-def _check(format: object) -> None:
-    if not isinstance(format, Format):
-        raise InputError(f"format: found {format!r}, expected a Format, such as BINARY16")
 
 
 def _one_of(name: str, found: str, expected: Sequence[str]) -> None:

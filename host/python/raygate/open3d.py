@@ -4,10 +4,9 @@
     scene.add_triangles(vertices, triangles)       # or a mesh of Open3D
     scene.cast_rays([[0, 0, 5, 0, 0, -1]])["t_hit"]
 
-It needs no Open3D to be installed. Arguments are arrays of NumPy, or anything that becomes one, in place of tensors, and so
-are the answers. Where these differ from Open3D's: positions and rays are float64, and so are distances and points; a ray
-through an edge or a vertex of a closed mesh hits it once, so that counts of intersections are right and one sample tells
-inside from outside.
+It needs no Open3D to be installed. Arguments are arrays of NumPy, or anything that becomes one, in place of tensors, and so are the
+answers. Where these differ from Open3D's: positions and rays are float64, and so are distances and points; a ray through an edge or
+a vertex of a closed mesh hits it once, so that counts of intersections are right and one sample tells inside from outside.
 """
 
 from __future__ import annotations
@@ -100,9 +99,7 @@ class RaycastingScene:
         shape, hits = self._trace(rays, nthreads, "nearest", ["triangle", "t", "uv"])
         triangles = hits["triangle"]
         uvs = np.nan_to_num(np.stack([hits["u"], hits["v"]], -1))
-        return {"t_hit": hits["t"].reshape(shape),
-                **self._names(triangles, shape),
-                "primitive_uvs": uvs.reshape(*shape, 2),
+        return {"t_hit": hits["t"].reshape(shape), **self._names(triangles, shape), "primitive_uvs": uvs.reshape(*shape, 2),
                 "primitive_normals": self._normals(triangles).reshape(*shape, 3)}
 
     def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Array:
@@ -143,8 +140,7 @@ class RaycastingScene:
         normals = np.cross(b - a, c - a)
         squares = np.maximum((normals * normals).sum(-1), 1e-300)
         uvs = np.stack([(np.cross(c - a, a - at) * normals).sum(-1), (np.cross(b - a, at - a) * normals).sum(-1)], -1)
-        return {"points": at.reshape(*shape, 3),
-                **self._names(found["triangle"], shape),
+        return {"points": at.reshape(*shape, 3), **self._names(found["triangle"], shape),
                 "primitive_uvs": np.clip(uvs / squares[:, None], 0.0, 1.0).reshape(*shape, 2),
                 "primitive_normals": self._normals(found["triangle"]).reshape(*shape, 3)}
 
@@ -165,5 +161,4 @@ class RaycastingScene:
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Returns the distance of each point from the surface, which must be closed; negative inside."""
         sign = 1.0 - 2.0 * self.compute_occupancy(query_points, nthreads, nsamples)
-        distance: Array = sign * self.compute_distance(query_points)
-        return distance
+        return np.asarray(sign * self.compute_distance(query_points))

@@ -67,8 +67,7 @@ class RayMeshIntersector:
 
     def intersects_any(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> Array:
         """Returns whether each ray hits anything: shape (n,)."""
-        found: Array = self.scene.trace(ray_origins, ray_directions, hits="any", columns="hit")["hit"]
-        return found.astype(bool)
+        return np.asarray(self.scene.trace(ray_origins, ray_directions, hits="any", columns="hit")["hit"], bool)
 
     def contains_points(self, points: npt.ArrayLike) -> Array:
         """Returns whether points are inside of the mesh, which must be closed: shape (n,). As of trimesh, a closed shell
