@@ -160,15 +160,16 @@ class Scene(_raygate.Scene):
         return Picture(channels, film)
 
     @in_context
-    def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    def inside(self, points: npt.ArrayLike, *, threads: int | None = None) -> npt.NDArray[np.bool_]:
         """Returns whether points, of shape (N, 3), or (3,) for one, are inside of closed surfaces: an array of bool, (N,).
+        threads: as of trace().
 
         A point is inside if a ray from it crosses surfaces an odd number of times, counted exactly, for points as trace() rounds
         origins. So the orientation of faces does not matter, a shell within another one is a cavity, and what two solids share
         is outside; of faces oriented alike, winding_number(points)[0] != 0 is the union. Answers have no meaning for an open
         surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
         points = _arrays.points(points, 125)
-        hits = self.trace(points, _DIRECTION, hits="all", columns="ray")
+        hits = self.trace(points, _DIRECTION, hits="all", columns="ray", threads=threads)
         return np.asarray(np.bincount(hits["ray"], minlength=len(points)) % 2, np.bool_)
 
     @in_context

@@ -42,7 +42,7 @@ def _threads(nthreads: int) -> int | None:
 
 class RaycastingScene:
     """Triangles, and queries of rays and points. Shapes are those of Open3D: (..., N, 6) for rays, (..., N, 3) for points, and
-    the same leading axes for answers. `nthreads` of a query of rays: 0 is one per processor; other queries ignore it."""
+    the same leading axes for answers. `nthreads` of a query: 0 is one per processor; distances and closest points take one."""
 
     INVALID_ID = 4294967295
 
@@ -154,9 +154,8 @@ class RaycastingScene:
         Open3D, changes nothing: one ray tells."""
         if nsamples < 1 or nsamples % 2 != 1:
             raise InputError(f"nsamples: found {nsamples!r}, expected an odd number of at least 1")
-        _threads(nthreads)
         shape, points = _rows("query_points", query_points, 3)
-        return self._built.inside(points).astype(np.float32).reshape(shape)
+        return self._built.inside(points, threads=_threads(nthreads)).astype(np.float32).reshape(shape)
 
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Returns the distance of each point from the surface, which must be closed; negative inside."""
