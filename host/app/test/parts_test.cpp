@@ -209,7 +209,8 @@ TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
       "--crop: found '0,0,30,44', expected multiples of 4, or the frame's edge, with --error");
   expect_refused(part({"--spp", "20", "--error", "2", "--samples", "0:18"}),
                  "--samples and --error exclude each other");
-  expect_refused(part({"--error", "2"}), "expected more than the 16 that adaptive sampling");
+  expect_refused(part({"--error", "2"}),
+                 "--spp: found '12', expected more than the 16 that adaptive");
   expect_refused(part({"--false-colour", "samples=b.png"}),
                  "--false-colour: expected --error for the channel samples");
   make({"-o", "b.exr", "--samples", "0:5"});
