@@ -83,8 +83,8 @@ class Information : public std::runtime_error {
 /// standard error and the status 2 (InputError, no memory), 128 + signal (Interrupted) or 1.
 int run_guarded(const std::function<int()>& program);
 
-/// Body of main(): checks the machine's arithmetic, chooses vector code by RAYGATE_VECTORS, and runs
-/// `program`, guarded, with the command line. Information has the path of argv[0] in place of "./".
+/// Body of main(): checks the machine's arithmetic, chooses vector code (RAYGATE_VECTORS) and runs
+/// `program`, guarded, with the command line. Information has argv[0]'s path in place of "./".
 int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program);
 

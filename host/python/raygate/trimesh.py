@@ -25,15 +25,15 @@ class RayMeshIntersector:
     the next query builds the scene again. Arguments and errors of queries: Scene.trace() and Scene.inside()."""
 
     def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
-        """`scale_to_box` has no effect; trimesh's own intersectors take it. Raises InputError for no mesh."""
-        if not (hasattr(geometry, "vertices") and hasattr(geometry, "faces")):
-            raise InputError(f"geometry: found a value of type {type(geometry).__name__}, expected a mesh")
+        """`scale_to_box` has no effect; trimesh's own intersectors take it. Queries raise InputError for no mesh."""
         self.mesh = geometry
         self._built: tuple[Any, Scene] | None = None
 
     @property
     def scene(self) -> Scene:
         """The mesh as a raygate.Scene."""
+        if not (hasattr(self.mesh, "vertices") and hasattr(self.mesh, "faces")):
+            raise InputError(f"geometry: found a value of type {type(self.mesh).__name__}, expected a mesh")
         vertices, faces = np.asarray(self.mesh.vertices, np.float64), np.asarray(self.mesh.faces, np.int64)
         state = hash((vertices.tobytes(), faces.tobytes()))
         if self._built is None or self._built[0] != state:

@@ -57,7 +57,7 @@ class Intersector(unittest.TestCase):
         np.testing.assert_array_equal(rays.contains_points(points), (size < 1) & (size > 0.5))
         self.assertEqual(rays.intersects_any([[0, 0, 5]] * 2, [[0, 0, 0], [0, 0, -1]]).tolist(), [False, True])
         with self.assertRaisesRegex(ValueError, "^geometry: found a value of type str, expected a mesh$"):
-            RayMeshIntersector("x")
+            RayMeshIntersector("x").intersects_any([[0, 0, 5]], [[0, 0, 1]])
 
     def test_follows_changes_of_the_mesh(self):
         mesh = types.SimpleNamespace(vertices=CUBE.vertices.copy(), faces=CUBE.faces)
