@@ -121,8 +121,8 @@ Bytes bytes_of(const std::shared_ptr<const void>& owner, const void* data, std::
   return Bytes(array_of<std::uint8_t>(owner, data, {size}));
 }
 
-/// Returns compute(0), compute(1) and so on, `count` rows, computed without Python's lock. Between
-/// two checkpoints are `interval` rows.
+/// Returns the `count` rows compute(0), compute(1) and so on, computed without Python's lock. Calls
+/// checkpoint() every `interval` rows.
 template <class Row, class Compute>
 Bytes computed_rows(std::size_t count, std::size_t interval, const Compute& compute) {
   const auto rows = std::make_shared<std::vector<Row>>(count);
@@ -195,8 +195,8 @@ class PythonScene {
     return names;
   }
 
-  /// Returns the rows of HitTable as bytes, and the names and types of their fields. There are as
-  /// many directions and limits as origins.
+  /// Returns the rows of HitTable as bytes, and the names and types of their fields. Origins,
+  /// directions and limits must be equally many.
   std::pair<Bytes, Settings> trace_rays(const Vectors3& origins, const Vectors3& directions,
                                         const std::optional<Numbers>& limits,
                                         const std::vector<std::string>& columns,
@@ -384,8 +384,8 @@ Bytes float_encode(const Numbers& values, int exp_bits, int frac_bits, int round
   });
 }
 
-/// Calls a Python function with IEEE 754 arithmetic. Its long work runs Python's signal handlers,
-/// every 20 ms, and ends with their exceptions, such as KeyboardInterrupt.
+/// Calls a Python function with IEEE 754 arithmetic. Checkpoints run Python's signal handlers, at
+/// most every 20 ms; an exception of a handler, such as KeyboardInterrupt, ends the call.
 nb::object call_in_context(const nb::callable& function, const nb::args& arguments,
                            const nb::kwargs& keywords) {
   const IeeeFloats floats;

@@ -123,12 +123,12 @@ class Scene(_raygate.Scene):
         one per processor by default. hits: "nearest", a row for each ray; "any", a row for each ray that says whether it hits
         anything, sooner; "all", a row for each hit of each ray, near before far, at equal t the lower triangle first.
 
-        columns: one name or several; by default all but material and side, or of "any" ray and hit (doubts is the third that
-        it has). ray, triangle, object, material: numbers from 0. hit: 1 or 0. t: off by at most 2^-33 of itself. point (fields
-        x, y, z): in the scene's coordinates. uv (u, v): the point is (1 - u - v) A + u B + v C; off by at most 2^-34. normal
-        (nx, ny, nz): (B - A) x (C - A) divided by its length. side: the exact sign of direction . normal, -1 for the front, 1
-        for the back, 0 for a miss. doubts: tests of the ray that exact arithmetic decided. A miss has -1 in other fields of
-        int64, inf as t, and nan. As t of a hit is inf if it overflows, tell misses by `hit` or `triangle`.
+        columns: one name or several; by default all but material and side. "any" has only ray, hit and doubts, by default ray
+        and hit. ray, triangle, object, material: numbers from 0. hit: 1 or 0. t: relative error at most 2^-33. point (fields x,
+        y, z): in the scene's coordinates. uv (u, v): the point is (1 - u - v) A + u B + v C; error at most 2^-34. normal (nx,
+        ny, nz): (B - A) x (C - A) divided by its length. side: the exact sign of direction . normal, -1 for the front, 1 for
+        the back, 0 for a miss. doubts: tests of the ray that exact arithmetic decided. A miss has triangle, object and material
+        -1, t inf and other float64 fields nan. The t of a hit is inf if it overflows: tell misses by `hit` or `triangle`.
 
         No rays, shape (0, 3), give no rows. Raises InputError for other shapes, masked elements and unknown names; for inf,
         NaN, limits that are not above 0 and origins farther than 2^126 from the scene it names the ray."""

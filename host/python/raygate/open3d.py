@@ -4,9 +4,9 @@
     scene.add_triangles(vertices, triangles)       # or a mesh of Open3D
     scene.cast_rays([[0, 0, 5, 0, 0, -1]])["t_hit"]
 
-It needs no Open3D to be installed. Arguments are arrays of NumPy, or anything that becomes one, in place of tensors, and so are the
-answers. Where these differ from Open3D's: positions and rays are float64, and so are distances and points; a ray through an edge or
-a vertex of a closed mesh hits it once, so that counts of intersections are right and one sample tells inside from outside.
+Open3D need not be installed. Arguments and answers are NumPy arrays, or what NumPy makes an array of, instead of tensors. Where
+answers differ from Open3D's: positions, rays, distances and points are float64; a ray through an edge or a vertex of a closed mesh
+hits it once, so that counts of intersections are right and one sample tells inside from outside. Invalid arguments raise InputError.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class RaycastingScene:
     INVALID_ID = 4294967295
 
     def __init__(self, nthreads: int = 0) -> None:
-        """`nthreads`: how many build the scene; 0: one per processor."""
+        """`nthreads`: number of threads that build the scene, up to 1024; 0 is one per processor."""
         self._threads = _threads(nthreads)
         self._parts: list[Array] = []  # corners, (n, 3, 3), of each geometry
         self._scene: Scene | None = None
