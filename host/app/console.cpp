@@ -223,7 +223,16 @@ int run_main(int argc, char** argv,
     } catch (const std::runtime_error& error) {
       throw InputError(error.what());
     }
-    return program({argv + 1, argv + argc});
+    try {
+      return program({argv + 1, argv + argc});
+    } catch (const Information& asked) {
+      std::string text = asked.what(), path = argv[0];  // "bin/raygate-trace": bin/raygate-render
+      path.resize(path.find_last_not_of("abcdefghijklmnopqrstuvwxyz") + 1);
+      for (std::size_t at = 0; (at = text.find("./", at)) != text.npos; at += path.size()) {
+        text.replace(at, 2, path);
+      }
+      throw Information(text);
+    }
   };
   // Freed arrays return to the system, which lowers the peak memory.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);

@@ -83,8 +83,8 @@ class Information : public std::runtime_error {
 /// standard error and give status 2 (InputError, no memory), 128 + signal (Interrupted) or 1.
 int run_guarded(const std::function<int()>& program);
 
-/// Body of main(): checks the machine's arithmetic, chooses the vector code that RAYGATE_VECTORS
-/// names (host/base/vectors.h), and runs `program` with the command line's words by run_guarded().
+/// Body of main(): checks the machine's arithmetic, chooses vector code (RAYGATE_VECTORS) and runs
+/// `program` with the command line's words by run_guarded(). Help shows argv[0]'s path, not "./".
 int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program);
 

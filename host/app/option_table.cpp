@@ -121,7 +121,7 @@ std::string OptionTable::given(const std::string& name) const {
 }
 
 void OptionTable::fail_value(const std::string& name, const std::string& expected) const {
-  fail(dashes_ + name + ": expected " + expected + ", got '" + given(name) + "'", {name.c_str()});
+  fail(dashes_ + name + ": found '" + given(name) + "', expected " + expected, {name.c_str()});
 }
 
 void OptionTable::fail(const std::string& message, std::initializer_list<const char*> names) const {

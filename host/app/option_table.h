@@ -197,7 +197,7 @@ class OptionTable {
   [[nodiscard]] CommandLine split(const std::vector<std::string>& words);
 
   /// Reads values of known options: row by row, each row's values in their order, so that the last
-  /// one counts. Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'".
+  /// one counts. Throws InputError "--size: found 'big', expected WIDTHxHEIGHT".
   void read(const std::vector<OptionValue>& values);
 
   /// Splits a command line and reads its values.
@@ -206,7 +206,7 @@ class OptionTable {
   /// Returns the last value read for an option, which is named without dashes; "" if there is none.
   [[nodiscard]] std::string given(const std::string& name) const;
 
-  /// Throws InputError "--size: expected WIDTHxHEIGHT, got 'big'" about the option's last value.
+  /// Throws InputError "--size: found 'big', expected WIDTHxHEIGHT" about the last value given.
   [[noreturn]] void fail_value(const std::string& name, const std::string& expected) const;
   /// Throws InputError with this message and, if values of these options are in a scene file, their
   /// place there.

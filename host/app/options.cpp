@@ -583,8 +583,8 @@ Options parse_options(const std::vector<std::string>& words) {
   add_render_options(table, options);
   const CommandLine line = table.split(words);
   if (line.plain.size() != 1) {
-    throw InputError("expected one scene, got " + std::to_string(line.plain.size()) +
-                     "; try ./render scenes/cornell.obj");
+    throw InputError("found " + std::to_string(line.plain.size()) +
+                     " scenes, expected one; try ./render scenes/cornell.obj");
   }
   options.scene = line.plain.front();
   options.scene_file = scene_file_of(options.scene);

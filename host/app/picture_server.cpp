@@ -129,9 +129,8 @@ class PictureServer {
     mg_server_port bound{};
     if (!server || mg_get_server_ports(server.get(), 1, &bound) != 1) {
       throw InputError(
-          "--port: expected a port that no other program listens at, and room for 66 "
-          "threads, got " +
-          std::to_string(options_.port));
+          "--port: found " + std::to_string(options_.port) +
+          ", expected a port that no other program listens at, and room for 66 threads");
     }
     const std::string number = std::to_string(bound.port);
     names_ = {"127.0.0.1:" + number, "localhost:" + number};

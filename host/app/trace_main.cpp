@@ -29,7 +29,8 @@ constexpr const char* kAbout = R"(Usage: ./trace SCENE RAYS [options]
 Prints the exact hits of rays in a scene (OBJ, glTF, PLY, STL): the triangle,
 the position, and how often binary32 left a test undecided. RAYS is a CSV table
 of any length, or - for standard input. Its columns, separated by commas,
-semicolons or spaces, are the origin, the direction and, optionally, a limit:
+semicolons or spaces, are the origin, the direction and, optionally, a limit. A
+first line of names is skipped, or refused if it has these in another order:
 
   OX,OY,OZ,DX,DY,DZ[,LIMIT]        hits P = O + t D have 0 < t < LIMIT
 
@@ -39,10 +40,10 @@ semicolons or spaces, are the origin, the direction and, optionally, a limit:
 )";
 
 constexpr const char* kFooter =
-    R"(Numbers count from 0. A ray without a hit has triangle -1, t inf, and nan
-elsewhere. Answers are exact for the numbers as given, in binary64. The summary
-reports rays and corners that had to be rounded: to binary32 by --engine rtl and
-model, and in meshes with instances.
+    R"(Numbers count from 0. A ray without a hit, as with a direction of 0, has
+triangle -1, t inf, and nan elsewhere. Answers are exact for the numbers as
+given, in binary64. The summary reports rays and corners that had to be rounded:
+to binary32 by --engine rtl and model, and in meshes with instances.
 
 Exit status: 0 done; 1 the engines differ, or an internal error; 2 the command
 line, the scene, the rays or the output cannot be used; 130 interrupted.)";
@@ -153,7 +154,10 @@ int run(const std::vector<std::string>& words) {
   add_engine_options(table, options.engine);
   table.flag("-q,--quiet", "print no summary (on standard error)", options.quiet);
   const CommandLine line = table.parse(words);
-  if (line.plain.size() != 2) throw InputError("expected SCENE and RAYS (see --help)");
+  if (line.plain.size() != 2) {
+    throw InputError("found '" + listed(line.plain, ", ") +
+                     "', expected SCENE and RAYS (see --help)");
+  }
   options.scene = line.plain[0];
   options.rays = line.plain[1];
   if (options.output != "-" && options.output.extension() != ".csv") {

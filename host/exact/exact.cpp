@@ -267,12 +267,12 @@ int compare_hits(const ExactRay& ray, const Corners& first, const Corners& secon
          order_of_planes(ray, first, second);
 }
 
-int compare_hit_to_limit(const ExactRay& ray, const Corners& triangle, float limit) {
+int compare_hit_to_limit(const ExactRay& ray, const Corners& triangle, double limit) {
   const Interval t = hit_distance(ray, triangle);
   if (t.high < limit) return -1;
   if (t.low > limit) return 1;
-  const auto excess = exact_plane(ray.origin, triangle) -
-                      exact_slope(ray.direction, triangle) * static_cast<double>(limit);
+  const auto excess =
+      exact_plane(ray.origin, triangle) - exact_slope(ray.direction, triangle) * limit;
   return orient3d(ray.origin, triangle) * excess.sign();
 }
 

@@ -168,8 +168,8 @@ struct Barycentric {
 /// Returns the exact sign of t(first) - t(second). Both must be hits.
 [[nodiscard]] int compare_hits(const ExactRay& ray, const Corners& first, const Corners& second);
 
-/// Returns the exact sign of t - limit. The triangle must be hit; `limit` is positive and finite.
-[[nodiscard]] int compare_hit_to_limit(const ExactRay& ray, const Corners& triangle, float limit);
+/// Returns the exact sign of t - limit. The triangle must be hit; 2^-149 <= limit < 2^128.
+[[nodiscard]] int compare_hit_to_limit(const ExactRay& ray, const Corners& triangle, double limit);
 
 /// Returns orient3d of `other` for the exact point in which the ray hits `hit`.
 [[nodiscard]] int plane_side_at_hit(const ExactRay& ray, const Corners& hit, const Corners& other);

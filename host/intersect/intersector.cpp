@@ -9,7 +9,7 @@ namespace {
 bool overlap(const Interval& a, const Interval& b) { return a.low <= b.high && b.low <= a.high; }
 
 /// Returns whether the interval decides on which side of t_max the hit is.
-bool tells(const Interval& t, float t_max) { return t.high < t_max || t.low >= t_max; }
+bool tells(const Interval& t, double t_max) { return t.high < t_max || t.low >= t_max; }
 
 }  // namespace
 
@@ -30,8 +30,8 @@ void throw_unscaled(const Ray& ray) {
   throw std::invalid_argument(text);
 }
 
-bool is_before(const Bvh& bvh, const ExactRay& ray, const NearestHit& hit, float t_max) {
-  if (t_max == std::numeric_limits<float>::infinity()) return true;
+bool is_before(const Bvh& bvh, const ExactRay& ray, const NearestHit& hit, double t_max) {
+  if (t_max > std::numeric_limits<float>::max()) return true;
   if (tells(hit.t, t_max)) return hit.t.high < t_max;
   return compare_hit_to_limit(ray, bvh.corners_of(hit.primitive), t_max) < 0;
 }

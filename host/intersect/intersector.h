@@ -157,9 +157,9 @@ class Intersector {
 /// Makes the intersector of a thread; called on that thread. The factory owns shared data.
 using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 
-/// Returns whether a hit has t < t_max (positive); exact.
+/// Returns whether a hit has t < t_max (at least 2^-149; infinite in binary32: no limit); exact.
 [[nodiscard]] bool is_before(const Bvh& bvh, const ExactRay& ray, const NearestHit& hit,
-                             float t_max);
+                             double t_max);
 
 /// Returns whether hit `a` is nearer than `b`, exactly; for equal t, by the lower triangle index.
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a,

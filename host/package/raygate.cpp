@@ -78,7 +78,7 @@ struct Tracer::Tree {
   [[nodiscard]] std::vector<NearestHit> find(const RayTable& block, bool any) const {
     std::vector<NearestHit> hits(block.rays.size());
     CpuIntersector intersector(bvh);
-    find_hits(intersector, block, any, hits);
+    find_hits(bvh, intersector, block, any, hits);
     return hits;
   }
 

@@ -49,8 +49,8 @@ class Tracer {
   // not finite, starts farther away than 2^126, or has a limit that is not positive.
   //
   // Rays are traced with the direction scaled by a power of two, so that the largest component is
-  // in [1, 2), and the limit divided by it and rounded to binary32. All coordinates are rounded to
-  // multiples of 2^-149: those of at least 2^-97 are exact. If the triangles' coordinates are not
+  // in [1, 2), and the limit divided by it. All coordinates are rounded to multiples of 2^-149:
+  // those of at least 2^-97 are exact. If the triangles' coordinates are not
   // all floats, origins are rounded to binary64 relative to a point near the middle of the
   // triangles.
 

@@ -121,8 +121,8 @@ Bytes bytes_of(const std::shared_ptr<const void>& owner, const void* data, std::
   return Bytes(array_of<std::uint8_t>(owner, data, {size}));
 }
 
-/// Returns compute(0), compute(1) and so on, `count` rows, computed without Python's lock. Between
-/// two checkpoints are `interval` rows.
+/// Returns the `count` rows compute(0), compute(1) and so on, computed without Python's lock. Calls
+/// checkpoint() every `interval` rows.
 template <class Row, class Compute>
 Bytes computed_rows(std::size_t count, std::size_t interval, const Compute& compute) {
   const auto rows = std::make_shared<std::vector<Row>>(count);
@@ -195,8 +195,8 @@ class PythonScene {
     return names;
   }
 
-  /// Returns the rows of HitTable as bytes, and the names and types of their fields. There are as
-  /// many directions and limits as origins.
+  /// Returns the rows of HitTable as bytes, and the names and types of their fields. Origins,
+  /// directions and limits must be equally many.
   std::pair<Bytes, Settings> trace_rays(const Vectors3& origins, const Vectors3& directions,
                                         const std::optional<Numbers>& limits,
                                         const std::vector<std::string>& columns,
@@ -220,13 +220,9 @@ class PythonScene {
       }
       block.clear(next);
       for (; block.rays.size() < std::min(most, std::size_t(block_size)) && next < count; ++next) {
-        const glm::dvec3 direction = vector_at(directions, next);
-        const char* const wrong =
-            direction == glm::dvec3(0.0)
-                ? "found the direction (0, 0, 0), expected another one"
-                : block.add(vector_at(origins, next), direction,
-                            limits ? (*limits)(next) : std::numeric_limits<double>::infinity(),
-                            scene_.origin);
+        const char* const wrong = block.add(
+            vector_at(origins, next), vector_at(directions, next),
+            limits ? (*limits)(next) : std::numeric_limits<double>::infinity(), scene_.origin);
         if (wrong != nullptr) throw InputError("ray " + std::to_string(next) + ": " + wrong);
       }
       return !block.rays.empty();
@@ -285,7 +281,9 @@ class PythonScene {
     chosen.threads = keywords.threads;
     const int width = chosen.width, height = chosen.height;
     if (std::int64_t{width} * height > kMaxPixels) {
-      throw InputError("width, height: expected at most " + std::to_string(kMaxPixels) + " pixels");
+      throw InputError("width, height: found " + std::to_string(width) + " x " +
+                       std::to_string(height) + ", expected at most " + std::to_string(kMaxPixels) +
+                       " pixels");
     }
     if (eye) camera.eye = vector_of(*eye);
     if (target) camera.target = vector_of(*target);
@@ -318,8 +316,9 @@ class PythonScene {
  private:
   void build(const SceneKeywords& keywords) {
     if (const auto faces = degenerate_faces(); keywords.refuses && !faces.empty()) {
-      throw InputError("found face " + std::to_string(faces[0]) + " without area, of " +
-                       std::to_string(faces.size()) + ", expected none");
+      throw InputError("degenerate: found face " + std::to_string(faces[0]) +
+                       " without area, and " + std::to_string(faces.size() - 1) +
+                       " more, expected none");
     }
     bvh_ = std::make_unique<Bvh>(scene_, keywords.threads);
     prepared_ = std::make_unique<PreparedScene>(scene_, *bvh_);
@@ -385,8 +384,8 @@ Bytes float_encode(const Numbers& values, int exp_bits, int frac_bits, int round
   });
 }
 
-/// Calls a Python function with IEEE 754 arithmetic. Its long work runs Python's signal handlers,
-/// every 20 ms, and ends with their exceptions, such as KeyboardInterrupt.
+/// Calls a Python function with IEEE 754 arithmetic. Checkpoints run Python's signal handlers, at
+/// most every 20 ms; an exception of a handler, such as KeyboardInterrupt, ends the call.
 nb::object call_in_context(const nb::callable& function, const nb::args& arguments,
                            const nb::kwargs& keywords) {
   const IeeeFloats floats;
@@ -416,6 +415,8 @@ NB_MODULE(_raygate, m) {
                 "-> object"));
   static const nb::object input_error =
       nb::exception<InputError>(m, "InputError", PyExc_ValueError);
+  input_error.attr("__doc__") =
+      "Invalid input: a ValueError with one line, what was found and what was expected.";
   nb::register_exception_translator([](const std::exception_ptr& error, void*) {
     try {
       std::rethrow_exception(error);

@@ -1,4 +1,4 @@
-// Winding numbers of meshes that may be open or cross themselves. A part of module.cpp.
+// Winding numbers of meshes that may be open or self-intersecting. Included by module.cpp only.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ class WindingNumbers {
 
   /// Returns how often the triangles wind around `point`. The error is 0 if no edge is open, and
   /// infinite if rounding relative to the scene's origin may move the point across a triangle.
-  /// `crossings`: how often a ray from the point leaves triangles, less how often it enters them.
+  /// `crossings`: number of triangles that a ray from the point leaves minus those it enters.
   /// `away`: the unit vector opposite to the ray.
   ///
   /// The crossings are exact for a mesh whose open edges are closed by strips to infinity in
@@ -80,7 +80,7 @@ class WindingNumbers {
 
   const Bvh& bvh_;
   glm::dvec3 origin_;
-  std::map<Ends, int> open_edges_;  // by ends: triangles along the edge, less those against it
+  std::map<Ends, int> open_edges_;  // by its ends: triangles along an edge minus those against it
 };
 
 }  // namespace raygate

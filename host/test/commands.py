@@ -93,9 +93,10 @@ def quick(name: str, text: str, folder: pathlib.Path) -> list[str]:
         more = f'case "$*" in *--size*|*--help*) ;; *) set -- "$@" --size 64x48 ;; esac\ncase "$*" in *--engine*) ;; *) set -- "$@" {engine} ;; esac\n'
         (folder / program).write_text(f'#!/bin/sh\n{more if program == "render" else ""}exec {shlex.quote(str(ROOT / "build" / program))} "$@"\n')
         (folder / program).chmod(0o755)
+        (folder / f"raygate-{program}").symlink_to(program)  # as pip installs it
     prepare(folder)
     page = [command for command in commands(text) if command.split("\n")[-1].startswith(QUICK) or command.startswith(QUICK)]
-    return run(name, page, folder, os.environ | {"PYTHON": sys.executable, "PYTHONPATH": str(ROOT / "build/host/python")})
+    return run(name, page, folder, os.environ | {"PYTHON": sys.executable, "PYTHONPATH": str(ROOT / "build/host/python"), "PATH": f"{folder}:{os.environ['PATH']}"})
 
 
 def main() -> int:

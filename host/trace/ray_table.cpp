@@ -12,6 +12,7 @@
 
 #include "host/base/input.h"
 #include "host/base/input_error.h"
+#include "host/scene/io/text.h"
 
 namespace raygate {
 
@@ -46,17 +47,13 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
     is_changed |= !has_exact_difference(origin[k], scene_origin[k]) || exact.origin[k] != start ||
                   std::ldexp(exact.direction[k], -exponent) != direction[k];
   }
-  const double scaled_limit = std::ldexp(limit, -exponent);
-  const float float_limit =
-      std::max(static_cast<float>(scaled_limit), std::numeric_limits<float>::denorm_min());
-  is_changed |= double{float_limit} != scaled_limit && std::isfinite(float_limit);
   const bool are_floats = is_binary32(exact.origin) && is_binary32(exact.direction);
   rounded += is_changed ? 1 : 0;
   rounded_to_floats_ += is_changed || !are_floats ? 1 : 0;
   if (!are_floats && exact_rays.empty()) exact_rays.assign(rays.begin(), rays.end());
   if (!are_floats || !exact_rays.empty()) exact_rays.push_back(exact);
   rays.push_back({glm::vec3(exact.origin), glm::vec3(exact.direction)});
-  limits.push_back(float_limit);
+  limits.push_back(std::max(std::ldexp(limit, -exponent), 0x1p-149));
   exponents.push_back(exponent);
   return nullptr;
 }
@@ -65,6 +62,7 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // of a line
 constexpr const char* kWanted = "expected OX,OY,OZ,DX,DY,DZ or OX,OY,OZ,DX,DY,DZ,LIMIT";
+constexpr std::string_view kNames[] = {"ox", "oy", "oz", "dx", "dy", "dz", "limit"};
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = std::min(text.find_first_not_of(" \t\r"), text.size());
@@ -75,11 +73,6 @@ std::string_view unquoted(std::string_view text) {
   const bool is_quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') &&
                          text.back() == text.front();
   return is_quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
-}
-
-bool begins_as_number(std::string_view text) {
-  return text.empty() ||
-         std::string_view("0123456789+-.").find(text.front()) != std::string_view::npos;
 }
 
 }  // namespace
@@ -126,6 +119,7 @@ int RayTableReader::next(double (&numbers)[kMostNumbers]) {
 
 int RayTableReader::split(std::string_view line, double (&numbers)[kMostNumbers]) {
   std::string_view wrong;
+  std::string misplaced;  // a known name that is not where kWanted has it
   int count = 0;
   bool is_header = !std::exchange(past_header_, true);
   const char* const separators = line.find(',') != std::string_view::npos   ? ","
@@ -138,10 +132,17 @@ int RayTableReader::split(std::string_view line, double (&numbers)[kMostNumbers]
     const std::string_view field = unquoted(trimmed(line.substr(start, end - start)));
     start = end + 1;
     const std::optional<double> number = to_number(field);
-    is_header = is_header && !number && !begins_as_number(field);
+    is_header = is_header && !number && !field.empty() && field.find_first_of("0123456789+-.") != 0;
     if (!number && wrong.data() == nullptr) wrong = field;
+    if (is_header && misplaced.empty()) {
+      const auto at = std::ranges::find(kNames, in_lower_case(std::string(field))) - kNames;
+      if (at != std::ssize(kNames) && at != count) {
+        misplaced = in_quotes(field) + " in column " + std::to_string(count + 1) + ", ";
+      }
+    }
     if (number && count < kMostNumbers) numbers[count] = *number;
   }
+  if (is_header && !misplaced.empty()) fail("found " + misplaced + kWanted);
   if (is_header) return 0;
   if (wrong.data() != nullptr) fail("found " + in_quotes(wrong) + ", expected a number");
   if (count != 6 && count != 7) {

@@ -19,7 +19,7 @@ struct RayTable {
   std::uint64_t first = 0;           ///< index of the first ray
   std::vector<Ray> rays;             ///< relative to the scene's origin, scaled, in binary32
   std::vector<ExactRay> exact_rays;  ///< the same in binary64; empty: `rays` are exact
-  std::vector<float> limits;         ///< of the scaled rays; +infinity: none
+  std::vector<double> limits;        ///< of the scaled rays; see is_before()
   std::vector<int> exponents;        ///< t of the given ray is 2^exponent times t of the scaled ray
   std::uint64_t rounded = 0;         ///< number of rays that were rounded
 
@@ -27,8 +27,8 @@ struct RayTable {
 
   /// Adds the ray P = origin + t direction with hits 0 < t < limit, in the file's coordinates. The
   /// direction can have any length; a zero direction hits nothing. Origins are rounded to binary64
-  /// after subtracting the scene's origin, and limits to binary32. Returns null, or, for an invalid
-  /// ray, which is not added, the message "found ..., expected ...".
+  /// after subtracting the scene's origin. Returns null, or, for an invalid ray, which is not
+  /// added, the message "found ..., expected ...".
   const char* add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
                   const glm::dvec3& scene_origin);
 
@@ -49,7 +49,7 @@ struct RayTable {
 /// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or
 /// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add), between commas, or else semicolons, or else spaces
 /// and tabs. Spaces and quotes around numbers, a byte order mark, empty lines, lines that begin
-/// with # and one header line, without a number, are allowed.
+/// with # and one header without a number are allowed, but not these names in other columns.
 class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".

@@ -35,12 +35,12 @@ struct Desk {
 };
 
 /// Finds one row for each ray: its nearest hit, or any hit.
-void find_one(Desk& desk, Hits asked, const HitTable& answers) {
+void find_one(Desk& desk, Hits asked, const Bvh& bvh, const HitTable& answers) {
   const std::size_t count = desk.block.rays.size();
   desk.nearest.assign(count, {});
   desk.work.assign(count, {});
   if (!desk.intersector->traits().takes_exact_rays) desk.block.round();
-  find_hits(*desk.intersector, desk.block, asked == Hits::kAny, desk.nearest, desk.work);
+  find_hits(bvh, *desk.intersector, desk.block, asked == Hits::kAny, desk.nearest, desk.work);
   for (std::uint32_t i = 0; i < count; ++i) {
     desk.found.push_back({i, desk.nearest[i], desk.work[i].doubts});
   }
@@ -62,12 +62,23 @@ void find_all(Desk& desk, const Bvh& bvh, const HitTable& answers) {
 
 }  // namespace
 
-void find_hits(Intersector& intersector, const RayTable& block, bool any,
+void find_hits(const Bvh& bvh, Intersector& intersector, const RayTable& block, bool any,
                std::span<NearestHit> hits, std::span<RayWork> work) {
+  std::vector<float> t_max(hits.size());  // intersectors compare with limits in binary32
+  std::ranges::transform(block.limits, t_max.begin(), float_above);
   RayQuery query{
-      .t_max = block.limits, .exact_rays = block.exact_rays, .work = work, .with_points = false};
-  if (any) query.any_hit_before = block.limits;
+      .t_max = t_max, .exact_rays = block.exact_rays, .work = work, .with_points = false};
+  if (any) query.any_hit_before = t_max;
   intersector.nearest(block.rays, query, hits);
+  std::vector<NearestHit> before;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const ExactRay ray = block.exact_ray(i);
+    const double limit = block.limits[i];
+    if (hits[i].primitive == NearestHit::kNone || is_before(bvh, ray, hits[i], limit)) continue;
+    RayWork ignored;
+    all_hits(bvh, ray, limit, before, ignored);
+    hits[i] = before.empty() ? NearestHit{} : before[0];
+  }
 }
 
 TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const HitTable& answers,
@@ -89,7 +100,7 @@ TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh, const HitTab
         find_all(desk, bvh, answers);
       } else {
         if (!desk.intersector) desk.intersector = make_intersector();
-        find_one(desk, asked, answers);
+        find_one(desk, asked, bvh, answers);
       }
     });
     for (; first < busy; ++first) {

@@ -24,7 +24,7 @@ using ReadRays = std::function<bool(std::size_t, RayTable&)>;
 
 /// Finds the nearest hit of each ray of a block, or the first one found if `any`. `work` is empty
 /// or receives the work of each ray.
-void find_hits(Intersector& intersector, const RayTable& block, bool any,
+void find_hits(const Bvh& bvh, Intersector& intersector, const RayTable& block, bool any,
                std::span<NearestHit> hits, std::span<RayWork> work = {});
 
 /// Reads all rays and passes the rows to `write`, block by block in the order of the rays. At most

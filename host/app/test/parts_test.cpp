@@ -205,10 +205,10 @@ TEST_F(Parts, WithSamplesByErrorAreRefusedWhereTheyMakeNone) {
   expect_refused(part({"--resume", "a.exr", "--spp", "20"}),
                  "a.exr: found error 2, expected no error as this run has it");
   expect_refused(part({"--spp", "20", "--error", "2", "--crop", "0,0,30,44"}),
-                 "--crop: expected multiples of 4, or the frame's edge, with --error");
+                 "--crop: found '0,0,30,44', expected multiples of 4");
   expect_refused(part({"--spp", "20", "--error", "2", "--samples", "0:18"}),
                  "--samples and --error exclude each other");
-  expect_refused(part({"--error", "2"}), "--spp: expected more than the 16 that adaptive sampling");
+  expect_refused(part({"--error", "2"}), "--spp: found '12', expected more than the 16");
   expect_refused(part({"--false-colour", "samples=b.png"}),
                  "--false-colour: expected --error for the channel samples");
   make({"-o", "b.exr", "--samples", "0:5"});
@@ -309,8 +309,8 @@ TEST_F(Parts, OfDifferentPicturesAreRefused) {
                  "b.exr: found samples 0:5, expected the first of 0:3");
   expect_refused(part({"--resume", "b.exr", "--channels", "Albedo"}),
                  "b.exr: found no channel Albedo");
-  expect_refused(part({"--samples", "0:13"}), "--samples: expected some of the 12 of --spp");
-  expect_refused(part({"--samples", "5"}), "--samples: expected A:B");
+  expect_refused(part({"--samples", "0:13"}), "--samples: found '0:13', expected some of the 12");
+  expect_refused(part({"--samples", "5"}), "--samples: found '5', expected A:B");
 }
 
 }  // namespace

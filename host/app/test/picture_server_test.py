@@ -98,12 +98,12 @@ class Http(unittest.TestCase):
                     ("/picture", {"width": 3}, "unknown option"),
                     ("/picture", {f"option{n}": n for n in range(65)}, "more than 64 parameters"),
                     ("/picture", {"output": "a.png"}, "unknown option"),
-                    ("/picture", {"size": "3"}, "--size: expected WIDTHxHEIGHT"),
+                    ("/picture", {"size": "3"}, "--size: found '3', expected WIDTHxHEIGHT"),
                     ("/picture", {"size": "5000x5000"}, "--size: expected at most 16777216 pixels"),
                     ("/picture", {"spp": 100000}, "--spp: expected at most 65536"),
                     ("/picture", {"slot": "left"}, "unknown option"),
                     ("/picture", {"false-colour": "nothing=a.png"}, "nothing"),
-                    ("/picture", {"variant": "e8p9-raw"}, "--engine: expected model with --variant e8p9-raw, got 'cpu'")):
+                    ("/picture", {"variant": "e8p9-raw"}, "--engine: found 'cpu', expected model with --variant e8p9-raw")):
                 status, _, text = served.get(path, **options)
                 self.assertEqual(status, 400)
                 self.assertIn(said, text.decode())
@@ -163,7 +163,7 @@ class Http(unittest.TestCase):
     def test_command_lines_that_are_refused(self):
         with Served() as served:
             port = served.address.rpartition(":")[2]
-            for words, said in ((["--serve", "--port", port], "--port: expected a port"),
+            for words, said in ((["--serve", "--port", port], f"--port: found {port}, expected a port"),
                                 (["--port", port], "--port: expected with --serve"),
                                 (["--serve", "--crop", "0,0,8,8"], "--crop and --serve exclude")):
                 run = subprocess.run([PROGRAM, *served.arguments, *words], capture_output=True,

@@ -214,16 +214,17 @@ TEST_F(TraceRays, LosesNothing) {
 }
 
 TEST_F(TraceRays, RefusesWhatItCannotDo) {
-  expect_refused({"sheets.obj"}, "expected SCENE and RAYS");
-  expect_refused({"sheets.obj", "rays.csv", "more"}, "expected SCENE and RAYS");
+  expect_refused({"sheets.obj"}, "found 'sheets.obj', expected SCENE and RAYS");
+  expect_refused({"sheets.obj", "rays.csv", "more"},
+                 "found 'sheets.obj, rays.csv, more', expected SCENE and RAYS");
   expect_refused({"sheets.obj", "none.csv"}, "none.csv: cannot read: No such file");
   expect_refused({"none.obj", "rays.csv"}, "none.obj: cannot read");
   const std::array<const char*, 3> options[] = {
-      {"-o", "hits.txt", "--output: expected FILE.csv or -, got 'hits.txt'"},
-      {"--hits", "nearst", "--hits: expected nearest, any or all, got 'nearst'"},
+      {"-o", "hits.txt", "--output: found 'hits.txt', expected FILE.csv or -"},
+      {"--hits", "nearst", "--hits: found 'nearst', expected nearest, any or all"},
       {"--colums", "t", "--colums: unknown option (see --help)"},
       {"--columns", "ray,tt", "--columns: found 'tt', expected some of ray, hit, triangle"},
-      {"--unit", "core", "--unit: expected with --engine rtl, model or check, got 'core'"}};
+      {"--unit", "core", "--unit: found 'core', expected with --engine rtl, model or check"}};
   for (const auto& [name, value, line] : options) {
     expect_refused({"sheets.obj", "rays.csv", name, value}, line);
   }

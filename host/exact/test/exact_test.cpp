@@ -208,10 +208,10 @@ TEST(Exact, SidesAndLimitsAtAHitAgreeWithRationals) {
     const int side = sgn(dot(v[0], cross(v[1], v[2])));
     ASSERT_EQ(plane_side_at_hit(ray, t, other), side);
     on_plane += side == 0 ? 1 : 0;
-    const auto near = static_cast<float>(distance.get_d());
-    if (!(near > 0.0f) || !std::isfinite(near)) continue;
-    for (const float limit : {near, std::nextafter(near, 0.0f), std::nextafter(near, 3e38f)}) {
-      if (limit == 0.0f) continue;
+    const double near = distance.get_d(), rounded = static_cast<float>(near);
+    for (const double limit :
+         {near, std::nextafter(near, 0.0), std::nextafter(near, 1e300), rounded}) {
+      if (!(limit >= 0x1p-149 && limit < 0x1p128)) continue;
       const int order = cmp(distance, mpq_class(limit));
       ASSERT_EQ(compare_hit_to_limit(ray, t, limit), order < 0 ? -1 : (order > 0 ? 1 : 0));
     }

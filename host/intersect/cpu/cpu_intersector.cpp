@@ -75,7 +75,7 @@ void PointWriter::write() {
   computed_ = planes_;
 }
 
-void all_hits(const Bvh& bvh, const ExactRay& ray, float t_max, std::vector<NearestHit>& hits,
+void all_hits(const Bvh& bvh, const ExactRay& ray, double t_max, std::vector<NearestHit>& hits,
               RayWork& work) {
   hits.clear();
   if (!is_usable(ray.direction)) return;

@@ -135,9 +135,9 @@ void trace_single_rays(const Bvh& bvh, std::span<const Ray> rays, const RayQuery
                        std::span<NearestHit> hits, IntersectCounters& counters);
 
 /// Replaces `hits` by all hits of `ray` with t < t_max, nearest first, then by triangle index.
-/// `t_max` is positive; +infinity: no limit. The direction must be scaled, or is not usable and
+/// `t_max` is as of is_before(). The direction must be scaled, or is not usable and
 /// hits nothing. `point` and `point_error` of the hits are not valid.
-void all_hits(const Bvh& bvh, const ExactRay& ray, float t_max, std::vector<NearestHit>& hits,
+void all_hits(const Bvh& bvh, const ExactRay& ray, double t_max, std::vector<NearestHit>& hits,
               RayWork& work);
 
 }  // namespace raygate

@@ -4,15 +4,14 @@
     scene = raygate.Scene("scenes/teapot.obj")
     hits = scene.trace(origins, directions)        # arrays of shape (N, 3)
     hits["triangle"], hits["t"]                    # -1 and inf where nothing is hit
-    scene.inside(points), scene.closest(points)    # points: an array of shape (N, 3)
+    scene.closest(points)                          # points: shape (N, 3), or (3,) for one
+    scene.inside(points)                           # of closed surfaces
     picture = scene.render(640, 480)               # a notebook shows it
     picture["color"]                               # (480, 640, 4), scene-linear
     picture.save("teapot.png")
 
-Hits are exact for float64 corners and rays: the nearest triangle and the order of several triangles are always the right
-ones. raygate.trimesh and raygate.open3d answer as the ray casters of these libraries do.
-
-raygate.float is IEEE 754 arithmetic in any small format.
+Which triangles a ray hits, and in which order, is exact for float64 vertices and rays. raygate.trimesh and raygate.open3d
+answer as the ray casters of these libraries do. raygate.float is IEEE 754 arithmetic in any small format.
 """
 
 from . import _raygate, float, open3d, trimesh  # from here on `float` is the module, not Python's class

@@ -21,7 +21,8 @@ def plain(name: str, values: npt.ArrayLike) -> Array:
     except ValueError:
         raise InputError(f"{name}: found rows of different lengths, expected an array of numbers") from None
     if array.dtype.kind not in "fiu":
-        raise InputError(f"{name}: found an array of {array.dtype}, expected numbers")
+        kind = f"an array of {array.dtype}" if array.ndim else f"a value of type {type(values).__name__}"
+        raise InputError(f"{name}: found {kind}, expected numbers")
     return array
 
 
@@ -31,9 +32,11 @@ def reals(name: str, values: npt.ArrayLike) -> Array:
     return array if array.dtype in (np.float32, np.float64) else array.astype(np.float64)
 
 
-def vectors(name: str, values: npt.ArrayLike) -> Array:
-    """Returns `values` as float32 or float64 of shape (N, 3), in C order."""
+def vectors(name: str, values: npt.ArrayLike, *, takes_one: bool = False) -> Array:
+    """Returns `values` as float32 or float64 of shape (N, 3), in C order. `takes_one`: also takes one of shape (3,)."""
     array = reals(name, values)
+    if takes_one and array.shape == (3,):
+        array = array[None]
     if array.ndim != 2 or array.shape[1] != 3:
         raise InputError(f"{name}: found an array of shape {array.shape}, expected (N, 3)")
     return np.ascontiguousarray(array)
@@ -41,31 +44,24 @@ def vectors(name: str, values: npt.ArrayLike) -> Array:
 
 def rays(origins: npt.ArrayLike, directions: npt.ArrayLike) -> tuple[Array, Array]:
     """Returns origins and directions, each of shape (N, 3). One vector, of shape (3,) or (1, 3), serves all rays."""
-    origins, directions = reals("origins", origins), reals("directions", directions)
-    if origins.shape in ((3,), (1, 3)) and directions.ndim == 2:
-        origins = np.broadcast_to(origins, (len(directions), 3))
-    elif directions.shape in ((3,), (1, 3)) and origins.ndim == 2:
-        directions = np.broadcast_to(directions, (len(origins), 3))
-    origins, directions = vectors("origins", origins), vectors("directions", directions)
-    if len(directions) != len(origins):
-        raise InputError(f"directions: found an array of shape {directions.shape}, expected {origins.shape}, "
-                         "as many as origins")
-    return origins, directions
+    starts, ways = vectors("origins", origins, takes_one=True), vectors("directions", directions, takes_one=True)
+    if len(starts) != len(ways) and 1 not in (len(starts), len(ways)):
+        raise InputError(f"directions: found an array of shape {ways.shape}, expected {starts.shape}, as many as origins")
+    starts, ways = np.broadcast_arrays(starts, ways)
+    return np.ascontiguousarray(starts), np.ascontiguousarray(ways)
 
 
 def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
-    """Raises InputError unless all numbers are finite with a magnitude of at most 2^exponent. `each`: a word for a
-    row."""
+    """Raises InputError unless all numbers are finite with a magnitude of at most 2^exponent. `each`: a word for a row."""
     wrong = ~(np.abs(array) <= 2.0 ** exponent).all(axis=tuple(range(1, array.ndim)))
     if wrong.any():
         row = int(wrong.argmax())
-        raise InputError(f"{name}: found {array[row].tolist()} in {each} {row}, expected finite numbers of magnitude "
-                         f"at most 2^{exponent}")
+        raise InputError(f"{name}: found {array[row].tolist()} in {each} {row}, expected finite numbers of at most 2^{exponent}")
 
 
 def points(values: npt.ArrayLike, exponent: int) -> Array:
-    """Returns points of shape (N, 3), with coordinates of a magnitude of at most 2^exponent."""
-    array = vectors("points", values)
+    """Returns points as of shape (N, 3); one has the shape (3,), too. Coordinates beyond 2^exponent raise InputError."""
+    array = vectors("points", values, takes_one=True)
     check_finite("points", array, "point", exponent)
     return array
 
@@ -84,12 +80,11 @@ def vertex_numbers(faces: npt.ArrayLike | None, count: int, name: str = "faces")
         raise InputError(f"{name}: found None, expected the numbers of three vertices in each row")
     array = plain(name, faces)
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind == "f" or not len(array):
-        raise InputError(f"{name}: found an array of {array.dtype} of shape {array.shape}, expected whole numbers of "
-                         "shape (M, 3), M at least 1")
+        raise InputError(f"{name}: found an array of {array.dtype} of shape {array.shape}, expected whole numbers, shape (M, 3)")
     wrong = ((array < 0) | (array >= count)).any(axis=1)
     if wrong.any():
-        raise InputError(f"{name}: found {array[wrong.argmax()].tolist()} in face {wrong.argmax()}, expected numbers "
-                         f"from 0 to {count - 1}")
+        row = wrong.argmax()
+        raise InputError(f"{name}: found {array[row].tolist()} in face {row}, expected numbers from 0 to {count - 1}")
     return array
 
 
@@ -100,5 +95,4 @@ def point(name: str, values: npt.ArrayLike | None) -> list[float] | None:
     array = reals(name, values)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise InputError(f"{name}: found {array.tolist()}, expected three finite numbers")
-    numbers: list[float] = array.tolist()
-    return numbers
+    return [float(number) for number in array]

@@ -1,16 +1,15 @@
 """IEEE 754 arithmetic in any small format, rounding mode and kind of tininess: value and flags.
 
     import numpy as np, raygate.float as rf
-    rf.fp_add(0.1, 0.2)                     # 0.30000001192092896, INEXACT: in binary32
+    rf.fp_add(0.1, 0.2)                     # Result(0.30000001192092896, INEXACT): in binary32, with a RoundingWarning
     rf.fp_divide(1, 3, rf.BINARY16).value   # 0.333251953125
     rf.fp_add(np.float32(1), np.float32(2 ** -24), rounding="up")   # 1.0000001, INEXACT
     rf.fp_multiply(np.uint32([0x7F7FFFFF]), np.uint32([0x40000000])).flag_names  # OVERFLOW|INEXACT
 
-There are three kinds of operands. Python's numbers, or lists of them, are rounded to the nearest number of the
-format, with a RoundingWarning. NumPy's arrays and scalars of floats or signed integers must be numbers of the format,
-as returned by round_to. NumPy's unsigned integers are words of the format: sign, exponent, fraction. Results have the
-kind of the operands. Arrays of any shape are broadcast; empty ones give empty results. Masked elements and other
-operands raise an InputError.
+There are three kinds of operands. Python's numbers, or lists of them, are rounded to the nearest number of the format, with a
+RoundingWarning. NumPy's arrays and scalars of floats or signed integers must be numbers of the format, as returned by round_to.
+NumPy's unsigned integers are words of the format: sign, exponent, fraction. Results have the kind of the operands. Arrays of
+any shape are broadcast; empty ones give empty results. Masked elements and other operands raise an InputError.
 
 Results are those of the reference model that this repository's tests (sim/test/fp) compare with the simulated cores of
 hw/fp, bit by bit. A NaN result is always the positive quiet NaN.
@@ -44,16 +43,14 @@ _OPERATIONS = ("+", "-", "*", "/", *RELATIONS)
 @dataclasses.dataclass(frozen=True)
 class Format:
     """A binary format: a sign, `exponent_bits` of biased exponent (2 to 11) and `fraction_bits` of fraction (1 to 29),
-    at most 32 bits in all."""
+    at most 32 bits in all. Raises InputError for others."""
 
     exponent_bits: int
     fraction_bits: int
 
     def __post_init__(self) -> None:
-        if not (2 <= self.exponent_bits <= 11 and 1 <= self.fraction_bits <= 29
-                and self.width <= 32):
-            raise InputError(f"found {self}, expected 2 to 11 exponent bits, 1 to 29 fraction bits "
-                             "and at most 32 bits in all")
+        if not (2 <= self.exponent_bits <= 11 and 1 <= self.fraction_bits <= 29 and self.width <= 32):
+            raise InputError(f"found {self}, expected 2 to 11 exponent bits, 1 to 29 fraction bits and at most 32 bits in all")
 
     @property
     def width(self) -> int:
@@ -90,8 +87,7 @@ class Result(NamedTuple):
     @property
     def flag_names(self) -> Any:
         """The flags as text, "OVERFLOW|INEXACT": a str, or an array of str."""
-        names = np.array(["|".join(str(flag.name) for flag in reversed(Flags) if bits & flag)
-                          for bits in range(32)])
+        names = np.array(["|".join(str(flag.name) for flag in reversed(Flags) if bits & flag) for bits in range(32)])
         return names[np.asarray(self.flags)]
 
 
@@ -134,9 +130,8 @@ def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: F
 
 
 @in_context
-def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
-             tininess: Tininess = "after") -> Result:
-    """Returns numbers rounded to the format, as floats of their own type if it holds the format and else float64, and
+def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even", tininess: Tininess = "after") -> Result:
+    """Returns numbers rounded to the format, as floats of their own type, or as float64 if that cannot hold the format, and
     the flags of the rounding. Arguments as of fp_add."""
     x = _numbers(x)
     bits, flags = encode(x, format, rounding, tininess)
@@ -144,10 +139,8 @@ def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "
 
 
 @in_context
-def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
-           tininess: Tininess = "after") -> Result:
-    """Returns numbers rounded to the format, as words, uint32, and the flags of the rounding. Arguments as of
-    fp_add."""
+def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even", tininess: Tininess = "after") -> Result:
+    """Returns numbers rounded to the format, as words, uint32, and the flags of the rounding. Arguments as of fp_add."""
     x = _numbers(x)
     if x.dtype.kind != "f" or x.dtype.itemsize > 8:
         raise InputError(f"found an array of {x.dtype}, expected one of float16, float32 or float64")
@@ -156,37 +149,33 @@ def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "ne
 
 @in_context
 def decode(bits: npt.ArrayLike, format: Format) -> Any:
-    """Returns the values, float64, of words of the format, unsigned integers."""
+    """Returns the values, float64, of words of the format. Raises InputError unless these are unsigned integers that fit."""
     bits = _words(_arrays.plain("bits", bits), format)
-    field = bits >> format.fraction_bits & (1 << format.exponent_bits) - 1
+    highest = (1 << format.exponent_bits) - 1
+    field = bits >> format.fraction_bits & highest
     fraction = (bits & (1 << format.fraction_bits) - 1).astype(np.float64)
     bias = (1 << format.exponent_bits - 1) - 1
-    one = np.float64(1 << format.fraction_bits)
     exponent = np.maximum(field, 1).astype(np.int64) - bias - format.fraction_bits
-    size = np.ldexp(np.where(field == 0, fraction, fraction + one), exponent)
-    special = np.where(fraction == 0, np.inf, np.nan)
-    size = np.where(field == (1 << format.exponent_bits) - 1, special, size)
+    size = np.ldexp(fraction + (field > 0) * 2.0 ** format.fraction_bits, exponent)
+    size = np.where(field == highest, np.where(fraction == 0, np.inf, np.nan), size)
     return np.where(bits >> format.width - 1 == 1, -size, size)[()]
 
 
-def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rounding: Rounding,
-         tininess: Tininess) -> Result:
+def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rounding: Rounding, tininess: Tininess) -> Result:
     operands = a, b
     a, b = _numbers(a), _numbers(b)
     kinds = {a.dtype.kind, b.dtype.kind}
     if kinds == {"u"}:
         words: tuple[Array, ...] = _words(a, format), _words(b, format)
     elif kinds == {"f"}:
-        words = tuple(_exact(array, format, is_pythons=not isinstance(x, (np.ndarray, np.generic)))
-                      for array, x in zip((a, b), operands))
+        words = tuple(_exact(array, format, is_pythons=not isinstance(x, (np.ndarray, np.generic))) for array, x in zip((a, b), operands))
     else:
         raise InputError(f"found arrays of {a.dtype} and {b.dtype}, expected both of unsigned "
                          "integers (the format's words) or both of floats")
     try:
         x, y = np.broadcast_arrays(*words)
     except ValueError:
-        raise InputError(f"found arrays of shape {a.shape} and {b.shape}, expected shapes that can "
-                         "be broadcast together") from None
+        raise InputError(f"found arrays of shape {a.shape} and {b.shape}, expected shapes that can be broadcast together") from None
     compute = functools.partial(_raygate.float_run, _OPERATIONS.index(operation))
     value, flags = _results(compute, [x, y], format, rounding, tininess)
     if operation in RELATIONS:
@@ -196,11 +185,11 @@ def _run(operation: str, a: npt.ArrayLike, b: npt.ArrayLike, format: Format, rou
     return Result(value, flags)
 
 
-def _results(compute: Callable[..., Array], operands: Sequence[Array], format: Format, rounding: Rounding,
-             tininess: Tininess) -> Result:
+def _results(compute: Callable[..., Array], operands: Sequence[Array], format: Format, rounding: Rounding, tininess: Tininess) -> Result:
     """Returns the words and flags that `compute`, of the C++ half, returns for operands of one shape."""
     _one_of("rounding", rounding, ROUNDINGS)
     _one_of("tininess", tininess, get_args(Tininess))
+    _one_of("format", type(format).__name__, ["Format"])
     columns = [np.ascontiguousarray(operand).ravel() for operand in operands]
     rows = compute(*columns, format.exponent_bits, format.fraction_bits, ROUNDINGS.index(rounding), tininess == "after")
     fields = np.dtype([("bits", np.uint32), ("flags", np.uint8)], align=True)
@@ -215,13 +204,13 @@ def _numbers(x: npt.ArrayLike) -> Array:
     if array.dtype.kind == "i":
         wide = array.astype(np.float64)
         if array.size and (np.abs(wide) >= 2.0 ** 53).any():
-            raise InputError(f"found {int(array.flat[np.abs(wide).argmax()])}, expected a whole number "
-                             "below 2^53")
+            raise InputError(f"found {int(array.flat[np.abs(wide).argmax()])}, expected a whole number below 2^53")
         return wide
     return array
 
 
 def _words(array: Array, format: Format) -> Array:
+    _one_of("format", type(format).__name__, ["Format"])
     if array.dtype.kind != "u":
         raise InputError(f"found an array of {array.dtype}, expected one of unsigned integers")
     if array.size and int(array.max()) >> format.width:
@@ -237,8 +226,7 @@ def _exact(array: Array, format: Format, is_pythons: bool) -> Array:
         if not is_pythons:
             raise InputError(f"found {wrong}, which is no number of {format}: round_to makes it one")
         taken = decode(np.atleast_1d(bits)[np.atleast_1d(flags) != 0][:1], format)[0]
-        warnings.warn(f"{wrong} is no number of {format}: taken as {taken}, the nearest one",
-                      RoundingWarning, stacklevel=6)
+        warnings.warn(f"{wrong} is no number of {format}: taken as {taken}, the nearest one", RoundingWarning, stacklevel=6)
     return np.asarray(bits)
 
 

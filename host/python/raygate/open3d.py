@@ -4,10 +4,9 @@
     scene.add_triangles(vertices, triangles)       # or a mesh of Open3D
     scene.cast_rays([[0, 0, 5, 0, 0, -1]])["t_hit"]
 
-It needs no Open3D to be installed. Arguments are arrays of NumPy, or anything that becomes one, in place of tensors, and so
-are the answers. Where these differ from Open3D's: positions and rays are float64, and so are distances and points; a ray
-through an edge or a vertex of a closed mesh hits it once, so that counts of intersections are right and one sample tells
-inside from outside.
+Open3D need not be installed. Arguments and answers are NumPy arrays, or what NumPy makes an array of, instead of tensors. Where
+answers differ from Open3D's: positions, rays, distances and points are float64; a ray through an edge or a vertex of a closed mesh
+hits it once, so that counts of intersections are right and one sample tells inside from outside. Invalid arguments raise InputError.
 """
 
 from __future__ import annotations
@@ -15,13 +14,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _arrays
+from ._arrays import Array
 from ._raygate import InputError
-from ._scene import _DIRECTION, Scene
-
-Array = npt.NDArray[Any]
+from ._scene import Scene
 
 
 def _array(values: Any) -> Any:
@@ -44,14 +41,13 @@ def _threads(nthreads: int) -> int | None:
 
 
 class RaycastingScene:
-    """Triangles, and queries of rays and points. Shapes are those of Open3D: (..., N, 6) for rays, (..., N, 3) for points,
-    and the same leading axes for answers. `nthreads` of a query: 0: one per processor; distances and closest points take
-    one."""
+    """Triangles, and queries of rays and points. Shapes are those of Open3D: (..., N, 6) for rays, (..., N, 3) for points, and
+    the same leading axes for answers. `nthreads` of a query: 0 is one per processor; distances and closest points take one."""
 
     INVALID_ID = 4294967295
 
     def __init__(self, nthreads: int = 0) -> None:
-        """`nthreads`: how many build the scene; 0: one per processor."""
+        """`nthreads`: number of threads that build the scene, up to 1024; 0 is one per processor."""
         self._threads = _threads(nthreads)
         self._parts: list[Array] = []  # corners, (n, 3, 3), of each geometry
         self._scene: Scene | None = None
@@ -81,16 +77,14 @@ class RaycastingScene:
     def _trace(self, rays: Any, nthreads: int, hits: Any, columns: list[str],
                limits: float | None = None) -> tuple[tuple[int, ...], Array]:
         shape, rows = _rows("rays", rays, 6)
-        return shape, self._built.trace(rows[:, :3], rows[:, 3:], limits, hits=hits, columns=columns,
-                                        threads=_threads(nthreads))
+        return shape, self._built.trace(rows[:, :3], rows[:, 3:], limits, hits=hits, columns=columns, threads=_threads(nthreads))
 
     def _names(self, triangles: Array, shape: tuple[int, ...]) -> dict[str, Array]:
         """Returns the numbers of geometries, and of triangles in them, in this shape."""
         parts = np.searchsorted(self._starts, triangles, "right") - 1
         is_hit = triangles >= 0
         numbers = {"geometry_ids": parts, "primitive_ids": triangles - self._starts[parts]}
-        return {name: np.where(is_hit, number, self.INVALID_ID).astype(np.uint32).reshape(shape)
-                for name, number in numbers.items()}
+        return {name: np.where(is_hit, number, self.INVALID_ID).astype(np.uint32).reshape(shape) for name, number in numbers.items()}
 
     def _normals(self, triangles: Array) -> Array:
         """Returns unit normals; 0 for -1."""
@@ -105,9 +99,7 @@ class RaycastingScene:
         shape, hits = self._trace(rays, nthreads, "nearest", ["triangle", "t", "uv"])
         triangles = hits["triangle"]
         uvs = np.nan_to_num(np.stack([hits["u"], hits["v"]], -1))
-        return {"t_hit": hits["t"].reshape(shape),
-                **self._names(triangles, shape),
-                "primitive_uvs": uvs.reshape(*shape, 2),
+        return {"t_hit": hits["t"].reshape(shape), **self._names(triangles, shape), "primitive_uvs": uvs.reshape(*shape, 2),
                 "primitive_normals": self._normals(triangles).reshape(*shape, 3)}
 
     def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Array:
@@ -134,39 +126,38 @@ class RaycastingScene:
                 "ray_ids": hits["ray"].astype(np.uint32), "t_hit": hits["t"], **self._names(hits["triangle"], (-1,)),
                 "primitive_uvs": np.stack([hits["u"], hits["v"]], -1)}
 
+    def _closest(self, query_points: Any, nthreads: int) -> tuple[tuple[int, ...], Array]:
+        _threads(nthreads)
+        shape, points = _rows("query_points", query_points, 3)
+        return shape, self._built.closest(points)
+
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> dict[str, Array]:
         """Returns the nearest point of the surface to each point: "points", "geometry_ids", "primitive_ids", "primitive_uvs"
         and "primitive_normals"."""
-        _threads(nthreads)
-        shape, points = _rows("query_points", query_points, 3)
-        found = self._built.closest(points)
+        shape, found = self._closest(query_points, nthreads)
         at = np.stack([found["x"], found["y"], found["z"]], -1)
         a, b, c = np.moveaxis(self._corners[found["triangle"]], 1, 0)
         normals = np.cross(b - a, c - a)
         squares = np.maximum((normals * normals).sum(-1), 1e-300)
         uvs = np.stack([(np.cross(c - a, a - at) * normals).sum(-1), (np.cross(b - a, at - a) * normals).sum(-1)], -1)
-        return {"points": at.reshape(*shape, 3),
-                **self._names(found["triangle"], shape),
+        return {"points": at.reshape(*shape, 3), **self._names(found["triangle"], shape),
                 "primitive_uvs": np.clip(uvs / squares[:, None], 0.0, 1.0).reshape(*shape, 2),
                 "primitive_normals": self._normals(found["triangle"]).reshape(*shape, 3)}
 
     def compute_distance(self, query_points: Any, nthreads: int = 0) -> Array:
         """Returns the distance of each point from the surface."""
-        _threads(nthreads)
-        shape, points = _rows("query_points", query_points, 3)
-        return self._built.closest(points)["distance"].reshape(shape)
+        shape, found = self._closest(query_points, nthreads)
+        return found["distance"].reshape(shape)
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
-        """Returns 1 for points inside of the surface, which must be closed, and 0 for those outside. `nsamples` changes
-        nothing: one ray tells; as in Open3D, it must be odd."""
+        """Returns 1 for points inside of the surface, as of Scene.inside(), and 0 for others. `nsamples`, which must be odd as in
+        Open3D, changes nothing: one ray tells."""
         if nsamples < 1 or nsamples % 2 != 1:
             raise InputError(f"nsamples: found {nsamples!r}, expected an odd number of at least 1")
         shape, points = _rows("query_points", query_points, 3)
-        crossings = self.count_intersections(np.concatenate([points, np.broadcast_to(_DIRECTION, points.shape)], -1), nthreads)
-        return (crossings % 2).astype(np.float32).reshape(shape)
+        return self._built.inside(points, threads=_threads(nthreads)).astype(np.float32).reshape(shape)
 
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Returns the distance of each point from the surface, which must be closed; negative inside."""
         sign = 1.0 - 2.0 * self.compute_occupancy(query_points, nthreads, nsamples)
-        distance: Array = sign * self.compute_distance(query_points)
-        return distance
+        return np.asarray(sign * self.compute_distance(query_points))

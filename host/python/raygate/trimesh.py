@@ -2,9 +2,10 @@
 
     mesh.ray = raygate.trimesh.RayMeshIntersector(mesh)
 
-It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector, and needs no trimesh to be installed. Where its answers
-differ from theirs: a ray through an edge or a vertex of a closed mesh hits it once, not once for each triangle there; all
-hits of a ray are found, however near each other they are; a point on the surface may count as inside or outside.
+It has the methods of trimesh.ray.ray_pyembree.RayMeshIntersector and does not need trimesh. Where its answers differ: a ray
+through an edge or a vertex of a closed mesh hits it once, not once for each triangle there; all hits of a ray are found,
+however near each other they are; a point on the surface may count as inside or outside. mesh.copy() has trimesh's own
+intersector again, and mesh.nearest stays trimesh's: mesh.ray.scene.closest() is raygate's.
 """
 
 from __future__ import annotations
@@ -14,23 +15,25 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ._arrays import Array
+from ._raygate import InputError
 from ._scene import Scene
-
-Array = npt.NDArray[Any]
 
 
 class RayMeshIntersector:
-    """Rays and points against a mesh: anything with `vertices`, shape (n, 3), and `faces`, shape (m, 3). When these have
-    changed, the next query builds the scene again."""
+    """Rays and points against a mesh: an object with `vertices`, shape (n, 3), and `faces`, shape (m, 3). When these change,
+    the next query builds the scene again. Arguments and errors of queries: Scene.trace() and Scene.inside()."""
 
     def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
-        """`scale_to_box` is an argument of trimesh's own intersectors; it changes no answer here."""
+        """`scale_to_box` has no effect; trimesh's own intersectors take it. Queries raise InputError for no mesh."""
         self.mesh = geometry
         self._built: tuple[Any, Scene] | None = None
 
     @property
     def scene(self) -> Scene:
-        """The mesh as raygate's scene."""
+        """The mesh as a raygate.Scene."""
+        if not (hasattr(self.mesh, "vertices") and hasattr(self.mesh, "faces")):
+            raise InputError(f"geometry: found a value of type {type(self.mesh).__name__}, expected a mesh")
         vertices, faces = np.asarray(self.mesh.vertices, np.float64), np.asarray(self.mesh.faces, np.int64)
         state = hash((vertices.tobytes(), faces.tobytes()))
         if self._built is None or self._built[0] != state:
@@ -39,22 +42,18 @@ class RayMeshIntersector:
 
     def intersects_id(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True,
                       max_hits: int | None = None, return_locations: bool = False) -> tuple[Array, ...]:
-        """Returns the triangles that rays hit, shape (k,), the numbers of the rays, shape (k,), and with
-        `return_locations` the points, shape (k, 3): of each ray all hits, near before far, at most `max_hits`, or without
-        `multiple_hits` the nearest."""
-        columns = ["ray", "triangle", "t"]
+        """Returns the triangles that rays hit, shape (k,), the numbers of their rays, shape (k,), and with
+        `return_locations` the points, shape (k, 3). Returns all hits of each ray, near before far, at most `max_hits`, or
+        without `multiple_hits` the nearest."""
+        columns = ["ray", "triangle", "point"]
         hits = self.scene.trace(ray_origins, ray_directions, hits="all" if multiple_hits else "nearest", columns=columns)
         hits = hits[hits["triangle"] >= 0]
         if max_hits is not None and multiple_hits:
             first = np.searchsorted(hits["ray"], hits["ray"])  # hits are sorted by ray
             hits = hits[np.arange(len(hits)) - first < max_hits]
         triangles, rays = hits["triangle"].astype(np.int64), hits["ray"].astype(np.int64)
-        if not return_locations:
-            return triangles, rays
-        shape = (len(np.atleast_2d(np.asarray(ray_origins))), 3)
-        origins = np.broadcast_to(np.asarray(ray_origins, np.float64), shape)
-        directions = np.broadcast_to(np.asarray(ray_directions, np.float64), shape)
-        return triangles, rays, origins[rays] + hits["t"][:, None] * directions[rays]
+        locations = [np.stack([hits[axis] for axis in "xyz"], axis=-1)] if return_locations else []
+        return triangles, rays, *locations
 
     def intersects_location(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike,
                             multiple_hits: bool = True) -> tuple[Array, Array, Array]:
@@ -68,9 +67,9 @@ class RayMeshIntersector:
 
     def intersects_any(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> Array:
         """Returns whether each ray hits anything: shape (n,)."""
-        found: Array = self.scene.trace(ray_origins, ray_directions, hits="any", columns="hit")["hit"]
-        return found.astype(bool)
+        return np.asarray(self.scene.trace(ray_origins, ray_directions, hits="any", columns="hit")["hit"], bool)
 
     def contains_points(self, points: npt.ArrayLike) -> Array:
-        """Returns whether points are inside of the mesh, which must be closed: shape (n,)."""
+        """Returns whether points are inside of the mesh, which must be closed: shape (n,). As of trimesh, a closed shell
+        within another one is a cavity, and the orientation of faces does not matter."""
         return self.scene.inside(points)

@@ -10,8 +10,7 @@ import raygate.float as rf
 rng = np.random.default_rng(1)
 WORDS16 = rng.integers(0, 1 << 16, (2, 200_000)).astype(np.uint16)
 WORDS32 = rng.integers(0, 1 << 32, (2, 200_000), dtype=np.uint64).astype(np.uint32)
-ARITHMETIC = {"add": rf.fp_add, "subtract": rf.fp_subtract, "multiply": rf.fp_multiply,
-              "divide": rf.fp_divide}
+ARITHMETIC = {"add": rf.fp_add, "subtract": rf.fp_subtract, "multiply": rf.fp_multiply, "divide": rf.fp_divide}
 
 
 class Operations(unittest.TestCase):
@@ -25,13 +24,10 @@ class Operations(unittest.TestCase):
                     value = function(*words, form).value
                     self.assertEqual(value.dtype, np.uint32)
                     is_nan = np.isnan(expected)
-                    self.assertTrue((value[is_nan] == ((1 << form.exponent_bits + 1) - 1)
-                                     << form.fraction_bits - 1).all())
-                    np.testing.assert_array_equal(value[~is_nan],
-                                                  expected.view(words.dtype)[~is_nan])
+                    self.assertTrue((value[is_nan] == ((1 << form.exponent_bits + 1) - 1) << form.fraction_bits - 1).all())
+                    np.testing.assert_array_equal(value[~is_nan], expected.view(words.dtype)[~is_nan])
             for relation, function in (("==", np.equal), ("<", np.less), ("<=", np.less_equal)):
-                np.testing.assert_array_equal(rf.fp_compare(*words, relation, form).value,
-                                              function(a, b))
+                np.testing.assert_array_equal(rf.fp_compare(*words, relation, form).value, function(a, b))
 
     def test_floats_are_their_words(self):
         a, b = WORDS16.view(np.float16)
@@ -57,8 +53,7 @@ class Operations(unittest.TestCase):
         # Rounds up to the least normal number: tiny before rounding, not after.
         a, b = np.uint32(0x00FFFFFE), np.uint32(0x3F000001)
         self.assertEqual(rf.fp_multiply(a, b).flags, rf.Flags.INEXACT)
-        self.assertEqual(rf.fp_multiply(a, b, tininess="before").flags,
-                         rf.Flags.INEXACT | rf.Flags.UNDERFLOW)
+        self.assertEqual(rf.fp_multiply(a, b, tininess="before").flags, rf.Flags.INEXACT | rf.Flags.UNDERFLOW)
 
     def test_takes_pythons_numbers(self):
         with self.assertWarnsRegex(rf.RoundingWarning, "0.1 is no number of .*: taken as 0.100000001") as said:
@@ -87,8 +82,7 @@ class Operations(unittest.TestCase):
         got = rf.decode(products, form)
         for x, y in zip(exact.ravel(), got.ravel()):
             finite = numbers[np.isfinite(numbers)]
-            nearest = (x if np.isnan(x) or np.isinf(x) else
-                       np.copysign(np.abs(finite)[np.abs(finite) <= abs(x)].max(), x))
+            nearest = (x if np.isnan(x) or np.isinf(x) else np.copysign(np.abs(finite)[np.abs(finite) <= abs(x)].max(), x))
             np.testing.assert_equal(y, nearest)
 
     def test_round_to(self):
@@ -97,10 +91,8 @@ class Operations(unittest.TestCase):
         np.testing.assert_array_equal(flags, [1, 0, 5, 0, 0])
         self.assertTrue(np.signbit(value[4]))
         x = rng.normal(size=100_000) * 10.0 ** rng.uniform(-45, 38, 100_000)
-        np.testing.assert_array_equal(rf.encode(x, rf.BINARY32).value,
-                                      x.astype(np.float32).view(np.uint32))
-        np.testing.assert_array_equal(rf.decode(WORDS16[0], rf.BINARY16),
-                                      WORDS16[0].view(np.float16).astype(np.float64))
+        np.testing.assert_array_equal(rf.encode(x, rf.BINARY32).value, x.astype(np.float32).view(np.uint32))
+        np.testing.assert_array_equal(rf.decode(WORDS16[0], rf.BINARY16), WORDS16[0].view(np.float16).astype(np.float64))
 
     def test_broadcasts(self):
         self.assertEqual(rf.fp_add(np.ones((3, 1)), np.ones(4)).value.shape, (3, 4))
@@ -109,7 +101,7 @@ class Operations(unittest.TestCase):
     def test_says_what_it_cannot_use(self):
         for expected, call in (
                 ("below 2\\^53", lambda: rf.fp_add(1 << 60, 2)),
-                ("^operand: found an array of <U1, expected numbers$", lambda: rf.fp_add("1", 2.0)),
+                ("^operand: found a value of type str, expected numbers$", lambda: rf.fp_add("1", 2.0)),
                 ("float64 and uint32", lambda: rf.fp_add([1.0], np.uint32([2]))),
                 ("found 0.1, which is no number", lambda: rf.fp_add(np.float64(0.1), 0.5, rf.BINARY16)),
                 ("word 0x10000, expected 16 bits", lambda: rf.fp_add(

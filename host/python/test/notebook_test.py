@@ -8,28 +8,25 @@ import nbclient
 import nbformat
 
 ROOT = pathlib.Path(__file__).parents[3]
-FILE = ROOT / "host/python/three_figures.ipynb"
+FILE = ROOT / "host/docs/three_figures.ipynb"
 
 
 def executed():
     """The notebook with new outputs; a cell that fails raises its error."""
     notebook = nbformat.read(FILE, 4)
-    nbclient.NotebookClient(notebook, timeout=300, record_timing=False,
-                            resources={"metadata": {"path": str(ROOT)}}).execute()
+    nbclient.NotebookClient(notebook, timeout=300, record_timing=False, resources={"metadata": {"path": str(FILE.parent)}}).execute()
     return notebook
 
 
 def figures(notebook):
-    return [output for cell in notebook.cells for output in cell.get("outputs", [])
-            if "image/png" in output.get("data", {})]
+    return [output for cell in notebook.cells for output in cell.get("outputs", []) if "image/png" in output.get("data", {})]
 
 
 class Notebook(unittest.TestCase):
     def test_runs_and_draws(self):
         notebook = executed()
         self.assertEqual(len(figures(notebook)), 3)
-        said = "".join(output.get("text", "") for cell in notebook.cells
-                       for output in cell.get("outputs", []))
+        said = "".join(output.get("text", "") for cell in notebook.cells for output in cell.get("outputs", []))
         self.assertIn("raygate                 0 of 200,000 rays hit nothing", said)
 
     def test_is_kept_with_its_figures(self):

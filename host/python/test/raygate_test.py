@@ -6,6 +6,7 @@ import os
 import pathlib
 import pickle
 import platform
+import random
 import re
 import resource
 import signal
@@ -46,8 +47,7 @@ class Trace(unittest.TestCase):
         every = self.scene.trace(self.origins, self.directions, hits="all")
         rays, first = np.unique(every["ray"], return_index=True)
         np.testing.assert_array_equal(rays, nearest["ray"][nearest["hit"] == 1])
-        np.testing.assert_array_equal(every["triangle"][first],
-                                      nearest["triangle"][nearest["hit"] == 1])
+        np.testing.assert_array_equal(every["triangle"][first], nearest["triangle"][nearest["hit"] == 1])
         same = np.diff(every["ray"]) == 0
         self.assertTrue((np.diff(every["t"])[same] >= 0).all())
 
@@ -58,18 +58,17 @@ class Trace(unittest.TestCase):
         np.testing.assert_array_equal(any_hit["hit"] == 1, nearest["t"] < limits)
 
     def test_takes_float32_and_refuses_what_it_cannot_use(self):
-        narrow = self.scene.trace(self.origins.astype(np.float32),
-                                  self.directions.astype(np.float32), columns=["triangle"])
+        narrow = self.scene.trace(self.origins.astype(np.float32), self.directions.astype(np.float32), columns=["triangle"])
         self.assertEqual(narrow.dtype.names, ("triangle",))
         for origins, directions, line in (
-                ([0, 0, 0], [1, 0, 0], r"shape \(3,\), expected \(N, 3\)"),
+                ([0, 0, 0], np.ones((4, 4, 3)), r"^directions: found an array of shape \(4, 4, 3\), expected \(N, 3\)$"),
+                ([0, 0, 0], [], r"^directions: found an array of shape \(0,\), expected \(N, 3\)$"),
                 (np.zeros((2, 3)), [[1, 0, 0], [np.nan, 0, 0]], "ray 1: found inf or nan"),
-                (np.zeros((2, 3)), np.ones((3, 3)), r"directions: found an array of shape \(3, 3\), expected \(2, 3\)"),
-                (np.zeros((3, 3)), [[1, 0, 0], [0, -0.0, 0], [0, 0, 0]], r"^ray 1: found the direction \(0, 0, 0\), expected another one$")):
+                (np.zeros((2, 3)), np.ones((3, 3)), r"directions: found an array of shape \(3, 3\), expected \(2, 3\)")):
             with self.assertRaisesRegex(raygate.InputError, line):
                 self.scene.trace(origins, directions)
         for wrong, line in (
-                ({"hits": "some"}, "hits: expected nearest, any or all, got 'some'"),
+                ({"hits": "some"}, "hits: found 'some', expected nearest, any or all"),
                 ({"hits": "any", "columns": ["t"]},
                  "columns: found 't', expected ray, hit or doubts with hits any"),
                 ({"columns": ["t", "t"]}, "columns: found 't', expected each name once"),
@@ -79,8 +78,8 @@ class Trace(unittest.TestCase):
                 ({"limits": [1, 2, 3]}, "limits: found an array of shape (3,), expected one number"),
                 ({"limits": np.ma.masked_greater([1.0, 9.0], 5)}, "limits: found masked elements"),
                 ({"limits": ["a", "b"]}, "limits: found an array of <U1, expected numbers"),
-                ({"threads": "two"}, "threads: expected a whole number from 1 to 1024, got 'two'"),
-                ({"threads": 0}, "threads: expected a whole number from 1 to 1024, got '0'")):
+                ({"threads": "two"}, "threads: found 'two', expected a whole number from 1 to 1024"),
+                ({"threads": 0}, "threads: found '0', expected a whole number from 1 to 1024")):
             with self.assertRaises(ValueError) as caught:
                 self.scene.trace(np.zeros((2, 3)), np.ones((2, 3)), **wrong)
             self.assertEqual(str(caught.exception)[:len(line)], line)
@@ -117,7 +116,7 @@ class Trace(unittest.TestCase):
             raygate.Scene(vertices, faces[7:8])
         for wrong, line in ((infinite, "in triangle 9"),
                             (corners[:0], r"shape \(0, 3, 3\)"), (corners[0], r"shape \(3, 3\)"),
-                            ("teapot", "array of <U6")):
+                            ("teapot", "value of type str")):
             with self.assertRaisesRegex(ValueError, line):
                 raygate.Scene.of_triangles(wrong)
 
@@ -172,8 +171,7 @@ class Arrays(unittest.TestCase):
     """A scene of NumPy arrays, and what is asked of points."""
 
     VERTICES = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-    FACES = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
-             [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+    FACES = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
 
     def setUp(self):
         self.cube = raygate.Scene(self.VERTICES, self.FACES)
@@ -196,11 +194,11 @@ class Arrays(unittest.TestCase):
     def test_faces_without_area_are_refused_by_choice(self):
         faces = np.concatenate([self.FACES, [[1, 1, 2]], self.FACES, [[0, 7, 7]]])
         self.assertEqual(raygate.Scene(self.VERTICES, faces).degenerate_faces, [12, 25])
-        with self.assertRaisesRegex(raygate.InputError, "found face 12 without area, of 2, expected none"):
+        with self.assertRaisesRegex(raygate.InputError, "^degenerate: found face 12 without area, and 1 more, expected none$"):
             raygate.Scene(self.VERTICES, faces, degenerate="refuse")
         with self.assertRaisesRegex(raygate.InputError, "no face has an area"):
             raygate.Scene.of_triangles(np.ones((1, 3, 3)), degenerate="refuse")
-        with self.assertRaisesRegex(raygate.InputError, "degenerate: expected leave out or refuse, got 'drop'"):
+        with self.assertRaisesRegex(raygate.InputError, "degenerate: found 'drop', expected leave out or refuse"):
             raygate.Scene(self.VERTICES, faces, degenerate="drop")
 
     def test_float64_is_kept(self):
@@ -254,8 +252,7 @@ class Arrays(unittest.TestCase):
         a, b, c = np.moveaxis(corners, 1, 0)
         size = [np.linalg.norm(corner, axis=-1) for corner in (a, b, c)]
         dot = lambda p, q: (p * q).sum(-1)  # noqa: E731
-        return 2 * np.arctan2(dot(a, np.cross(b, c)), size[0] * size[1] * size[2] + dot(a, b) * size[2] +
-                              dot(b, c) * size[0] + dot(c, a) * size[1])
+        return 2 * np.arctan2(dot(a, np.cross(b, c)), size[0] * size[1] * size[2] + dot(a, b) * size[2] + dot(b, c) * size[0] + dot(c, a) * size[1])
 
     def test_a_wall_in_utm_coordinates(self):
         wall = np.array(self.VERTICES) * [2, 0.04, 1.5] + [447125.456, 5411987.361, 233.289]
@@ -275,10 +272,62 @@ class Arrays(unittest.TestCase):
         expected = (np.abs(self.points) < 1).all(axis=1)
         self.assertTrue(expected.any())
         np.testing.assert_array_equal(self.cube.inside(self.points), expected)
-        two = raygate.Scene(np.concatenate([self.VERTICES, np.array(self.VERTICES) * 0.9 + 0.5]),
-                            np.concatenate([self.FACES, np.array(self.FACES) + 8]))
-        both = expected | (np.abs(self.points - 0.5) < 0.9).all(axis=1)
-        np.testing.assert_array_equal(two.inside(self.points), both)  # also where they overlap
+        two = raygate.Scene(np.concatenate([self.VERTICES, np.array(self.VERTICES) * 0.9 + 0.5]), np.concatenate([self.FACES, np.array(self.FACES) + 8]))
+        second = (np.abs(self.points - 0.5) < 0.9).all(axis=1)
+        np.testing.assert_array_equal(two.inside(self.points), expected ^ second)
+        np.testing.assert_array_equal(two.winding_number(self.points)[0] != 0, expected | second)
+
+    def test_inside_of_faces_oriented_in_any_way(self):
+        way = np.array([0.36, 0.48, 0.8], np.float32).astype(float)  # of the rays
+        vertices, faces = np.array(self.VERTICES), np.array(self.FACES)
+        points = np.concatenate([self.points, *(vertices - scale * way for scale in (0.125, 0.5, 2))])  # rays through vertices, too
+        expected, hollow = (np.abs(points) < 1).all(axis=1), (np.abs(points) < 0.5).all(axis=1)
+        whole = np.vectorize(lambda x: int(x * 2 ** 60), otypes=[object])  # whole numbers of any length
+        cross = lambda a, b: np.roll(a, -1) * np.roll(b, -2) - np.roll(a, -2) * np.roll(b, -1)  # noqa: E731
+        for point, is_inside in list(zip(points, expected))[:300]:
+            crossings = 0
+            for a, b, c in whole(vertices[faces].astype(float)) - whole(point):
+                sides = [cross(p, q) @ whole(way) > 0 for p, q in ((a, b), (b, c), (c, a))]
+                crossings += sides == [cross(a, b) @ c > 0] * 3
+            self.assertEqual(crossings % 2, is_inside)
+        for flipped in range(12):
+            turned = np.array([face[::-1] if k == flipped else face for k, face in enumerate(faces)])
+            np.testing.assert_array_equal(raygate.Scene(vertices, turned).inside(points), expected)
+            shells = np.concatenate([turned, faces[:, ::1 if flipped % 2 else -1] + 8])
+            nested = raygate.Scene(np.concatenate([vertices, vertices / 2]), shells)
+            np.testing.assert_array_equal(nested.inside(points), expected & ~hollow)
+
+    def test_limits_are_compared_in_float64(self):
+        for start in (0.0, 5411943.125):
+            walls = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]]) + [[[start, start, z]] for z in (-1e-9, 0, 1e-9)]
+            for order in ([0, 1, 2], [2, 1, 0]):
+                scene = raygate.Scene.of_triangles(walls[order])
+                for t in (4.0, 2000.0):
+                    for limit, count in ((np.nextafter(t, 0), 1), (t, 1), (np.nextafter(t, 9e9), 2), (t + 1e-8, 3), (t - 1e-8, 0)):
+                        origin = [start, start, t], [0, 0, -1], limit
+                        self.assertEqual(len(scene.trace(*origin, hits="all")), count)
+                        self.assertEqual(scene.trace(*origin, hits="any")["hit"], count > 0)
+                        self.assertEqual(scene.trace(*origin)["triangle"], order.index(2) if count else -1)
+
+    def test_one_point_and_directions_of_zero(self):
+        hits = self.cube.trace([0, 0.1, 5], [0, 0, -2])
+        self.assertEqual(hits["t"].tolist(), [2])
+        self.assertEqual(self.cube.inside([0, 0.1, 0]).tolist(), [True])
+        self.assertEqual(self.cube.closest([0, 0.1, 5])["distance"].tolist(), [4])
+        self.assertEqual(self.cube.winding_number([0, 0.1, 0])[0].tolist(), [1])
+        for hits in ("nearest", "any", "all"):
+            rays = self.cube.trace([0, 0.1, 5], [[0, 0, -1], [0, -0.0, 0]], hits=hits, columns=["ray", "hit"])
+            self.assertEqual(rays["hit"].tolist(), [1, 1] if hits == "all" else [1, 0])
+
+    def test_is_shown_as_one_line_and_lists_its_options(self):
+        self.assertEqual(repr(self.cube), "<raygate.Scene: 12 triangles, 1 objects, 1 materials>")
+        self.assertRegex(repr(self.cube.render(8, 6)), "^<raygate.Picture: 8 x 6 pixels; color, depth, normal, .*>$")
+        self.assertIn("ValueError", raygate.InputError.__doc__)
+        with self.assertRaisesRegex(raygate.InputError, "unknown option 'ssp', expected some of ") as caught:
+            self.cube.render(ssp=4)
+        names = set(str(caught.exception).partition("some of ")[2].split(", ")) - {"width", "height"}
+        self.assertEqual(names, set(raygate._scene.RenderOptions.__annotations__))
+        self.assertLessEqual(names, set(re.findall(r"\w+", raygate.Scene.render.__doc__)))
 
     def test_inside_beside_faces_along_the_ray(self):
         """Tetrahedra with an edge that runs along the ray of `inside` but for 2^-58, and points near
@@ -339,6 +388,11 @@ class Arrays(unittest.TestCase):
                 ("face 1, expected numbers from 0 to 7",
                  lambda: raygate.Scene(self.VERTICES, [[0, 1, 2], [0, 1, 8]])),
                 ("faces: found None", lambda: raygate.Scene(np.zeros((3, 3)))),
+                ("^vertices: found a value of type Random, expected numbers$", lambda: raygate.Scene(random.Random())),
+                (r"^vertices: found \[0.0, nan, 0.0\] in vertex 1, expected finite",
+                 lambda: raygate.Scene([[0, 0, 0], [0, np.nan, 0], [0, 1, 0], [np.nan] * 3], [[0, 1, 2]])),
+                ("^width, height: found 9000 x 9000, expected at most", lambda: self.cube.render(9000, 9000)),
+                ("^format: found 'str', expected one of Format$", lambda: raygate.float.fp_add(1, 2, "binary16")),
                 ("faces: found an array of float64",
                  lambda: raygate.Scene(self.VERTICES, [[0.0, 1.0, 2.0]])),
                 (r"points: found \[nan, 0.0, 0.0\] in point 1", lambda: self.cube.inside([[0, 0, 0], [np.nan, 0, 0]])),
@@ -354,8 +408,7 @@ class Render(unittest.TestCase):
         self.assertEqual(picture["color"].shape, (30, 40, 4))
         self.assertEqual(picture["color"].dtype, np.float32)
         self.assertGreater(picture["color"][..., :3].max(), 0.1)
-        np.testing.assert_array_equal(picture["color"][..., 3] == 1,
-                                      picture["triangle"] != 0xFFFFFFFF)
+        np.testing.assert_array_equal(picture["color"][..., 3] == 1, picture["triangle"] != 0xFFFFFFFF)
         again = scene.render(40, 30, spp=1, threads=1)
         for name, channel in picture.items():
             self.assertEqual(channel.tobytes(), again[name].tobytes(), name)
@@ -390,7 +443,7 @@ class Render(unittest.TestCase):
         scene = raygate.Scene(SCENES / "cornell.json")
         coarse, fine = (scene.render(16, 12, integrator="path", error=error)["color"] for error in (200, 8))
         self.assertFalse((coarse == fine).all())
-        with self.assertRaisesRegex(raygate.InputError, "spp: expected more than the 16 that adaptive sampling to an error begins with, got '4'"):
+        with self.assertRaisesRegex(raygate.InputError, "spp: found '4', expected more than the 16 that adaptive sampling to an error begins with"):
             scene.render(16, 12, spp=4, error=2)
 
     def test_threads_render_by_their_own_lights(self):

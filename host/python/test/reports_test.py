@@ -135,8 +135,7 @@ def skinned(joint, own):
     gltf = Gltf(WEIGHTS_0=[(1., 0., 0., 0.)] * 4)
     gltf.mesh["attributes"]["JOINTS_0"] = gltf.add([(0, 0, 0, 0)] * 4, "B")
     inverse = gltf.add([tuple(float(i % 5 == 0) for i in range(16))])
-    return gltf.text(nodes=[{"mesh": 0, "skin": 0, **own}, joint], scenes=[{"nodes": [0, 1]}],
-        skins=[{"joints": [1], "inverseBindMatrices": inverse}])
+    return gltf.text(nodes=[{"mesh": 0, "skin": 0, **own}, joint], scenes=[{"nodes": [0, 1]}], skins=[{"joints": [1], "inverseBindMatrices": inverse}])
 
 
 def material(picture=None, more=None, texture=None, sampler=None, **attributes):
@@ -424,8 +423,7 @@ class Reports(unittest.TestCase):
         shown = colours or triangles or "K"
         if colours or albedo or normal:
             size = len(shown.split("/"))
-            picture = scene.render(size, size, eye=(0, 0, 5), target=(0, 0, 0),
-                up=(0, 1, 0), fov=math.degrees(2 * math.atan(0.2)), spp=1, integrator="primary")
+            picture = scene.render(size, size, eye=(0, 0, 5), target=(0, 0, 0), up=(0, 1, 0), fov=math.degrees(2 * math.atan(0.2)), spp=1, integrator="primary")
             mean = picture["albedo"].reshape(-1, 3)
             if colours:
                 names, values = zip(*LETTERS.items())
@@ -452,8 +450,7 @@ class Reports(unittest.TestCase):
                 ("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 4 +X 8\n", pixels, r"\+Y"),
                  ("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 -X 8\n", pixels, "-X"),
                 ("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 4 +X 8\n", pixels, "xyze"), ("RADIANCE\n\n-Y 4 +X 8\n", pixels, "a.hdr")):
-            files = {"a.json": json.dumps({"obj": "a.obj", "environment": {"file": "a.hdr"}}), "a.obj": SQUARE + "f 1 2 3 4\n",
-                "a.hdr": header.encode() + data}
+            files = {"a.json": json.dumps({"obj": "a.obj", "environment": {"file": "a.hdr"}}), "a.obj": SQUARE + "f 1 2 3 4\n", "a.hdr": header.encode() + data}
             with self.subTest(header), tempfile.TemporaryDirectory() as folder:
                 if isinstance(expected, str):
                     with self.assertRaisesRegex(raygate.InputError, expected):
@@ -467,8 +464,7 @@ class Reports(unittest.TestCase):
         sides = [[p for p in points if p[axis] == value] for axis in range(3) for value in (0, 1)]
         cube = raygate.Scene.of_triangles([t for a, b, c, d in sides for t in ((a, b, d), (a, d, c))])
         places = list(itertools.product((-2, 0, .5, 1, 3), repeat=3))
-        rays = [(o, tuple(b - a for a, b in zip(o, to))) for o, to in itertools.product(places, places)
-            if o != to and not all(0 <= x <= 1 for x in o)]
+        rays = [(o, tuple(b - a for a, b in zip(o, to))) for o, to in itertools.product(places, places) if o != to and not all(0 <= x <= 1 for x in o)]
         hits = cube.trace(*map(np.array, zip(*rays)), hits="all", columns="ray")
         counts = np.bincount(hits["ray"], minlength=len(rays))
         for (origin, direction), count in zip(rays, counts):
@@ -505,9 +501,11 @@ class Reports(unittest.TestCase):
             path.write_text(SQUARE + "f 1 2 3 4\n")
             for table in ("\ufeffox,oy,oz,dx,dy,dz\n.5,-.5,5,0,0,-1\n", "# rays\r\n.5,-.5,5,0,0,-1\r\n",
                 "\ufeff.5,-.5,5,0,0,-1\n", '".5","-.5","5","0","0","-1"\n'):
-                run = subprocess.run([program, path, "-", "--columns", "triangle,t", "-q"],
-                    input=table.encode(), capture_output=True, check=False)
+                run = subprocess.run([program, path, "-", "--columns", "triangle,t", "-q"], input=table.encode(), capture_output=True, check=False)
                 self.assertEqual((run.returncode, run.stdout, run.stderr), (0, b"triangle,t\n0,5\n", b""), table)
+            os.symlink(program, f"{folder}/raygate-trace")
+            said = subprocess.run(["raygate-trace", "--help"], env=os.environ | {"PATH": folder}, capture_output=True, text=True, check=True).stdout
+            self.assertTrue(said.startswith("Usage: raygate-trace SCENE") and "./trace" not in said, said)
 
 
 if __name__ == "__main__":

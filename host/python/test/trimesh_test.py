@@ -48,6 +48,17 @@ class Intersector(unittest.TestCase):
         self.assertEqual([len(part) for part in rays.intersects_id(origins, directions, multiple_hits=False)], [2, 2])
         self.assertEqual([part.shape for part in rays.intersects_location([[9, 9, 9]], [[1, 0, 0]])], [(0, 3), (0,), (0,)])
 
+    def test_cavities_faces_turned_over_and_directions_of_zero(self):
+        faces = np.concatenate([CUBE.faces, CUBE.faces + 8])
+        faces[3] = faces[3][::-1]
+        rays = RayMeshIntersector(types.SimpleNamespace(vertices=np.concatenate([CUBE.vertices, CUBE.vertices / 2]), faces=faces))
+        points = np.random.default_rng(1).uniform(-1.5, 1.5, (2000, 3))
+        size = np.abs(points).max(axis=1)
+        np.testing.assert_array_equal(rays.contains_points(points), (size < 1) & (size > 0.5))
+        self.assertEqual(rays.intersects_any([[0, 0, 5]] * 2, [[0, 0, 0], [0, 0, -1]]).tolist(), [False, True])
+        with self.assertRaisesRegex(ValueError, "^geometry: found a value of type str, expected a mesh$"):
+            RayMeshIntersector("x").intersects_any([[0, 0, 5]], [[0, 0, 1]])
+
     def test_follows_changes_of_the_mesh(self):
         mesh = types.SimpleNamespace(vertices=CUBE.vertices.copy(), faces=CUBE.faces)
         rays = RayMeshIntersector(mesh)

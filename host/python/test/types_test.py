@@ -26,6 +26,8 @@ WRONG = {  # mypy's code for a line that it refuses
     'raygate.Scene("a.obj").trace([0, 0, 0], [[0, 0, 1]], hits="some")': "arg-type",
     'raygate.Scene("a.obj", smoth=3.0)': "call-overload",
     'raygate.Scene("a.obj").objects + 1': "operator",
+    'raygate.Scene("a.obj").render(ssp=4)': "call-arg",
+    'raygate.Scene("a.obj").render(filter="gauss")': "arg-type",
     'raygate.Scene("a.obj").volume': "attr-defined",
     'raygate.float.fp_add(1, 2, rounding="upward")': "arg-type",
 }
@@ -38,8 +40,7 @@ class Types(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
         # mypy does not check packages where they are installed.
-        shutil.copytree(PACKAGE, cls.folder / "raygate", ignore=shutil.ignore_patterns("*.so"),
-                        ignore_dangling_symlinks=True)
+        shutil.copytree(PACKAGE, cls.folder / "raygate", ignore=shutil.ignore_patterns("*.so"), ignore_dangling_symlinks=True)
 
     def mypy(self, text):
         """Returns mypy's lines on a program, and on the package that it imports."""

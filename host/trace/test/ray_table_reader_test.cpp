@@ -54,7 +54,8 @@ TEST_F(Table, OfText) {
   EXPECT_EQ(rays.limits[1], 4.0f);
   EXPECT_EQ(rays.rays[3].direction, glm::vec3(0.0f));
   EXPECT_EQ(rays.exponents[4], 3);
-  EXPECT_EQ(rounded_, 1u);  // the limit 1e-3
+  EXPECT_EQ(rays.limits[4], std::ldexp(1e-3, -3));
+  EXPECT_EQ(rounded_, 0u);
 }
 
 TEST_F(Table, OfTextWithoutAHeader) { EXPECT_EQ(read_all("1,2,3,4,5,6\n").rays.size(), 1u); }
@@ -80,6 +81,10 @@ TEST_F(Table, OfNoRays) {
 
 TEST_F(Table, SaysWhichLineIsWrong) {
   const std::string wanted = ", expected OX,OY,OZ,DX,DY,DZ or OX,OY,OZ,DX,DY,DZ,LIMIT";
+  EXPECT_EQ(refusal("# a\ndx,dy,dz,ox,oy,oz\n1,2,3,4,5,6\n"),
+            ":2: found 'dx' in column 1" + wanted);
+  EXPECT_EQ(refusal("OX OY OZ DX DY DX\n"), ":1: found 'DX' in column 6" + wanted);
+  EXPECT_EQ(read_all("x;y;z;dx;dy;dz\n1;2;3;4;5;6\n").rays.size(), 1u);
   EXPECT_EQ(refusal("1,2,3,4,5,6\n1,2,3,4,5\n"), ":2: found 5 numbers" + wanted);
   EXPECT_EQ(refusal("1,2,3,4,5,6\n1,2,3,4,5,6,7,8\n"), ":2: found 8 numbers" + wanted);
   EXPECT_EQ(refusal("\n\n1,2,x,4,5,6\n"), ":3: found 'x', expected a number");
@@ -115,10 +120,10 @@ TEST(RayTable, CountsEachRayOnce) {
   RayTable table;
   table.add({1, 0, 0}, {1, 0, 0}, kInfinity, {});
   table.add({0.1, 0, 0}, {1, 0, 0}, kInfinity, {});          // rounded by round()
-  table.add({0.1, 0, 0}, {1, 0, 0}, 0.1, {});                // and, before, the limit
+  table.add({0.1, 0, 0}, {1, 0, 0}, 0.1, {});                // limits are kept
   table.add({0, 0, 0}, {1e300, 1e-300, 0}, kInfinity, {});   // what becomes 0 counts
   table.add({0, 0, 0}, {1e-300, 1e-300, 0}, kInfinity, {});  // scaled exactly
-  EXPECT_EQ(table.rounded, 2u);
+  EXPECT_EQ(table.rounded, 1u);
   table.round();
   EXPECT_EQ(table.rounded, 4u);
   EXPECT_TRUE(table.exact_rays.empty());

@@ -27,7 +27,7 @@ constexpr const char* kSplinters[] = {"1e38", "1e39", "-0", ",", ",,",   "\n",  
 /// What reading a table ends in: its rays, or what is wrong.
 struct Outcome {
   std::vector<Ray> rays;
-  std::vector<float> limits;
+  std::vector<double> limits;
   std::string error;
 };
 
@@ -69,7 +69,7 @@ TEST_F(DamagedRays, CanBeTracedOrAreRefused) {
                   std::isfinite(ray.origin.z));
       ASSERT_TRUE(!is_usable(ray.direction) || is_scaled(ray.direction)) << "round " << round;
     }
-    for (const float limit : outcome.limits) ASSERT_GT(limit, 0.0f) << "round " << round;
+    for (const double limit : outcome.limits) ASSERT_GT(limit, 0.0) << "round " << round;
     ++(outcome.error.empty() ? usable : refused);
     if (!outcome.error.empty()) {
       ASSERT_TRUE(outcome.error.starts_with(path_.string() + ":")) << outcome.error;
