@@ -33,9 +33,9 @@ module carry_select_adder #(
   logic [NumGroups-1:0] carry_0, carry_1;
 
   if (LookAhead) begin : gen_look_ahead
-    // All groups are worked on at once, as words: a prefix scan of (generate, propagate) pairs that doubles its reach with
-    // every step and never looks past the start of a group. A group's carries are then "generate" if no carry enters it
-    // and "generate or propagate" if one does, so that one scan serves both sums. carry_i counts as generated.
+    // All groups are computed at once, as words: a prefix scan of (generate, propagate) pairs that doubles its reach in
+    // every step and stops at the start of a group. A group's carries are then "generate" if no carry enters it and
+    // "generate or propagate" if one does, so that one scan serves both sums. carry_i counts as generated.
     localparam int unsigned Widest = arith_pkg::widest_group(GroupWidths);
     localparam logic [Width-1:0] Starts = Width'(arith_pkg::group_starts(GroupWidths));
 

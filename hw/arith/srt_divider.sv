@@ -7,7 +7,8 @@
 // dividend_i and divisor_i: normalised, one integer bit which must be 1 (else the outputs are invalid). quotient_o: two
 // integer bits and 2 * Rows fraction bits, truncated. side_o is the side_i of the same division.
 //
-// Pipelined: registers after the first digit, each row, remainder and quotient. Latency: 0 or, Pipelined, Rows + 3 clocks. Throughput: one division a clock. Registers load valid data only: valid_o is valid_i after the latency,
+// Pipelined: registers after the first digit, each row, remainder and quotient. Latency: 0 or, Pipelined, Rows + 3
+// clocks. Throughput: one division a clock. Registers load valid data only: valid_o is valid_i after the latency,
 // and while it is low the outputs of a pipelined divider are invalid. Nothing is reset: valid_o is undefined at first.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection constants: srt_pkg.
 module srt_divider #(

@@ -1,4 +1,4 @@
-// Link to a host: makes lines and rays of words, words of results.
+// Link to a host: lines and rays from words, words from results.
 //
 // Bits 31:28 of a message's first word are its kind, bits 27:0 a number:
 //   1     the line of that number; its 16 words follow

@@ -1,7 +1,7 @@
 // Accumulator of the exact unit: sums of digit products, without rounding.
 //
-// Product scanning (Comba, "Exponentiation cryptosystems on the IBM PC", IBM Systems Journal 29, 1990): column k has all
-// products of a digit i and a digit k - i. Kulisch's long accumulator (Computer Arithmetic and Validity, 2013) is a
+// Product scanning (Comba, "Exponentiation cryptosystems on the IBM PC", IBM Systems Journal 29, 1990): column k has
+// all products of a digit i and a digit k - i. Kulisch's long accumulator (Computer Arithmetic and Validity, 2013) is a
 // memory as wide as the exponents' range; this is one register, which holds one column at a time:
 //
 //   upwards    the low DigitWidth bits of a column's sum are a balanced digit of the result; the rest is carried into

@@ -5,8 +5,8 @@
 //   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least the leading bit:
 //         exact, so only a leading-zero count and a left shift
 //
-// Pipelined: registers between ordering and adding, between adding and rounding, and after the result. Latency: 0 or, Pipelined, 3
-// clocks. Throughput: one operation a clock. The rounding mode is used in several stages and should stay
+// Pipelined: registers between ordering and adding, between adding and rounding, and after the result. Latency: 0 or,
+// Pipelined, 3 clocks. Throughput: one operation a clock. The rounding mode is used in several stages and should stay
 // the same.
 //
 // Takes every bit pattern. Correctly rounded; a sum of exactly zero is +0, or -0 when rounding down, unless both
