@@ -50,7 +50,7 @@ class Yosys(unittest.TestCase):
             yosys.run(yosys.read([self.source], "top"), self.log)
 
     def test_a_crash_is_an_error(self):
-        """The process that runs Yosys ends by a signal: an exception here, and not the end of this program."""
+        """If the process that runs Yosys ends by a signal, this program gets an exception."""
         with self.assertRaisesRegex(tools.ToolFailed, "^yosys failed"):
             yosys.run("exec -- kill -SEGV $PPID", self.log)
 
@@ -72,7 +72,7 @@ class Yosys(unittest.TestCase):
         self.assertEqual(said.getvalue(), "synth.yosys: Yosys is not installed: pip install -r synth/requirements.txt\n")
 
     def test_comparisons_take_no_equality(self):
-        """With its operands swapped, one takes as many gates."""
+        """A comparison takes as many gates with its operands swapped."""
         counts = []
         for operator in ("<", ">", ">=", "<="):
             self.source.write_text(f"module top(input logic [7:0] a_i, b_i, output logic y_o); assign y_o = a_i {operator} b_i; endmodule\n")
@@ -86,7 +86,7 @@ class Memories(unittest.TestCase):
     """Flow `blocks`."""
 
     def check(self, design: catalogue.Design, depth: int, width: int, address: int, enables: int) -> None:
-        """A memory's ports are the design's: each bit of data and address, and an enable for each part of a word."""
+        """Checks that a memory's ports become the design's: each bit of data and address, and an enable for each part of a word."""
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             found, _ = mapping.synthesise(design, catalogue.library("osu035"), "blocks", root)
