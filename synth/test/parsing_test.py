@@ -128,7 +128,7 @@ class Wrappers(unittest.TestCase):
         """All inputs and outputs get registers."""
         ports = fpga.port_widths("d", {"modules": {"d": {"ports": self.PORTS}}})
         self.assertEqual(ports, [("input", "a_i", 2), ("output", "b_o", 1)])
-        text = fpga.registered(Design("d", "d", "fp", clock="clk_i"), [("input", "clk_i", 1), *ports])  # the registers have the design's clock
+        text = fpga.registered(Design("d", "d", "fp", clock="clk_i"), [("input", "clk_i", 1), *ports])  # its clock is the registers'
         self.assertIn(".clk_i(clk_i)", text)
         self.assertIn("reg [1:0] in;", text)
         self.assertIn(".a_i(in[0 +: 2])", text)
