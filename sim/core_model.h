@@ -112,8 +112,8 @@ class CoreModel : public CoreUnit {
     throw std::runtime_error("ray_core: " + what);
   }
 
-  /// Returns for how many clocks a sound core may show no progress, if it may have to answer so
-  /// many questions.
+  /// Returns the clocks for which a sound core may show no progress, if up to `questions` exact
+  /// decisions may be open.
   [[nodiscard]] std::uint64_t patience(std::uint64_t questions) const {
     return kPatience + (is_exact() ? kQuestionClocks * std::min(questions, kMostQuestions) : 0);
   }

@@ -15,7 +15,7 @@ struct ModelFile {
 /// built. Thread-safe.
 [[nodiscard]] void* load_model(const ModelFile& file);
 
-/// Returns it as a `Function`, which must be the type in the file's source (sim/models).
+/// Returns `make_model` as a `Function`, which must be its type in sim/models.
 template <class Function>
 [[nodiscard]] Function* load_model(const ModelFile& file) {
   return reinterpret_cast<Function*>(load_model(file));

@@ -17,7 +17,7 @@ module booth_encoder #(
 
   localparam logic [2*Digits-1:0] EvenBits = {Digits{2'b01}};
 
-  logic [2*Digits-1:0] low, middle, high;  // with b[2k-1], b[2k], b[2k+1] at bit 2k
+  logic [2*Digits-1:0] low, middle, high;  // bit 2k: b[2k-1], b[2k], b[2k+1]
 
   assign middle = (2 * Digits)'(b_i);
   assign low    = middle << 1;

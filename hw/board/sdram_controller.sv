@@ -48,7 +48,7 @@ module sdram_controller
   // ---- Times in clocks, rounded up
 
   localparam int unsigned Start = 200 * ClockMhz;  // 200 us
-  localparam int unsigned Refresh = 6 * ClockMhz;  // 6 us: at most 7.8 with a line that goes first
+  localparam int unsigned Refresh = 6 * ClockMhz;  // 6 us; at most 7.8 if a line goes first
   localparam int unsigned CycleClocks = (70 * ClockMhz + 999) / 1000;  // tRFC
   localparam int unsigned RowClocks = (20 * ClockMhz + 999) / 1000;  // tRCD and tRP
   localparam int unsigned Words = 32;

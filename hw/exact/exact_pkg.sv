@@ -45,7 +45,7 @@ package exact_pkg;
   localparam int unsigned OtherDistance = 20;
   localparam int unsigned Numbers = 22;
 
-  localparam int unsigned CountWidth = 6;  // of a number's digits
+  localparam int unsigned CountWidth = 6;  // of the number of a number's digits
 
   // Words of the memory of digits, if a difference has `digits` digits.
   function automatic int unsigned memory_depth(int unsigned digits);
@@ -99,7 +99,7 @@ package exact_pkg;
 
   typedef struct packed {
     kind_e kind;
-    logic decide;  // takes the sign of the sum; else makes the number `result`
+    logic decide;  // 1: takes the sign of the sum; 0: makes the number `result`
     logic fence;  // begins when all earlier results are written
     logic last;  // the last of the program Hit
     logic [NumberWidth-1:0] result;

@@ -21,7 +21,7 @@ module plane_offset #(
 
   if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     logic [SumWidth-1:0] product_q;
-    logic unused;  // fractions of a unit
+    logic unused;  // the product's fraction of a unit
     assign unused = ^product_q[7:0];
 
     always_ff @(posedge clk_i) product_q <= SumWidth'(q_i) * SumWidth'(step_i);

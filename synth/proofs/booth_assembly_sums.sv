@@ -8,7 +8,7 @@ module booth_assembly_sums #(
   parameter int unsigned Words = 13
 ) (
   input logic [13*25-1:0] row_values,
-  input logic [11:0]      n           // of digits 0 to 11; digit 12 is not negative (step 1)
+  input logic [11:0]      n           // bit k: digit k is negative; digit 12 never is (step 1)
 );
 
   logic [48*Words-1:0] words, bare;

@@ -1,6 +1,6 @@
 // The core's memory port, for any memory that answers in any order, with interleaved beats and any errors, from reset
 // on: it keeps AXI4 (sim/checks/axi_read_checks). A read is requested at its line's address and gets one line, with its
-// id, of its beats in their order, with an error if one of them had one or RLAST was not at its burst's last beat.
+// id: its burst's beats in order, with an error if a beat had one or RLAST did not come with the last beat.
 // There are never more lines than reads. Memory is assumed to send no beat that was not requested.
 // opened_axi_read_manager is the manager of two IDs, two beats a line, with its registers as outputs.
 module reader_gives_lines (

@@ -43,7 +43,7 @@ module stack_keeps_nodes #(
   logic t_max_ray;
   logic [AddressWidth-1:0] node_line;
   logic [Rays-1:0] traversing, busy_q, waiting_q;
-  // For each stage: whether it has a ray that was picked, or a ray that starts, and which
+  // For each stage: whether it has a picked ray, or a ray that starts; and the ray's number
   logic picked_q, ray_q, choosing_q, choosing_ray_q, asked_q, asking_ray_q;
   logic next_valid_q, next_started_q, next_ray_q;
   logic [Rays-1:0] ready_q;

@@ -7,7 +7,7 @@ from synth import cores, datasheet, registers, tables
 
 
 class Datasheet(unittest.TestCase):
-    """Headers, and the pages' tables and figures."""
+    """Tests the reading of headers, and the pages' tables and figures."""
 
     HEADER = """// What it is, I . N being
 // a product. Combinational;
@@ -56,7 +56,7 @@ module m;
 
 
 class Registers(unittest.TestCase):
-    """hw/ray_core/registers.md. (`synth.datasheet --check` checks that the generated files are up to date.)"""
+    """Tests the reading of hw/ray_core/registers.md. (`synth.datasheet --check` checks the generated files.)"""
 
     def setUp(self):
         self.text = registers.PAGE.read_text()

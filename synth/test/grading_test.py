@@ -35,7 +35,7 @@ def compositions(total: int) -> list[tuple[int, ...]]:
 
 
 class Grading(unittest.TestCase):
-    """best_by_model."""
+    """Tests best_by_model."""
 
     def test_optimum_of_10_bits(self):
         """The dynamic programme finds the optimum of all 512 groupings."""
@@ -74,7 +74,7 @@ MODULE = {
 
 
 class Count(unittest.TestCase):
-    """structure.delay."""
+    """Tests structure.delay."""
 
     def test_countings(self):
         """Each counting has its own delay of the last multiplexer."""

@@ -127,10 +127,10 @@ class Trees(unittest.TestCase):
 
 
 class Estimate(unittest.TestCase):
-    """Wires before routing."""
+    """Tests estimated wires."""
 
     def test_tree(self):
-        """A point joins the nearest of those joined, not the first."""
+        """A new point joins the nearest point of the tree, not the first."""
         self.assertEqual(estimate.tree([(0, 0), (10, 0), (12, 1), (0, 3)]), [(0, 3), (0, 1), (1, 2)])
 
     def test_wires(self):
@@ -152,7 +152,7 @@ class Estimate(unittest.TestCase):
 
 
 class Parts(unittest.TestCase):
-    """picture.parts_of."""
+    """Tests picture.parts_of."""
 
     def test_bits(self):
         """A cell of an adder belongs to the highest operand bit that it depends on."""

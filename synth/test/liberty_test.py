@@ -34,7 +34,7 @@ LIBRARY = ("library (small) { /* of a test */\n  time_unit : \"1ps\"\n  capaciti
 
 
 class Reading(unittest.TestCase):
-    """liberty.parse."""
+    """Tests liberty.parse."""
 
     def test_units_without_semicolons_comments_and_tables(self):
         found = liberty.parse(LIBRARY, "small.lib")
@@ -56,7 +56,7 @@ class Reading(unittest.TestCase):
 
 
 class OfUser(unittest.TestCase):
-    """LIBERTY=FILE."""
+    """Tests LIBERTY=FILE."""
 
     def measured(self, text: str, flow: str) -> tuple[catalogue.Library, dict]:
         """Returns the library in `text`, and a ripple adder of 4 bits that is mapped to it."""
@@ -88,7 +88,7 @@ class OfUser(unittest.TestCase):
                 self.assertAlmostEqual(got["delay_ns"] / same["delay_ns"], 1, delta=0.02)
 
     def test_the_command_line(self):
-        """One design, and of the report's rows the flows of OSU's cells."""
+        """Measures one design; the report's rows have only the flows for which the library has the cells."""
         said, libraries = io.StringIO(), list(catalogue.LIBRARIES)
         with (tempfile.TemporaryDirectory() as name, mock.patch.object(store, "OUT", pathlib.Path(name)),
               mock.patch.object(catalogue, "LIBRARIES", libraries), contextlib.redirect_stdout(said)):

@@ -29,7 +29,7 @@ OPENSTA = """\
 
 
 class Options(unittest.TestCase):
-    """chosen.whole and chosen.whole_numbers."""
+    """Tests chosen.whole and chosen.whole_numbers."""
 
     def test_whole(self):
         """Options are checked before anything runs."""
@@ -43,7 +43,7 @@ class Options(unittest.TestCase):
 
 
 class Parsing(unittest.TestCase):
-    """mapping's readers."""
+    """Tests mapping's readers."""
 
     def test_critical_path(self):
         """Arrival and set-up time add up; steps are pins with their cells."""
@@ -92,7 +92,7 @@ end
 
 
 class Blocks(unittest.TestCase):
-    """mapping.block_costs and mapping.kept_memories."""
+    """Tests mapping.block_costs and mapping.kept_memories."""
 
     def test_blocks_count_what_is_in_them(self):
         memories = mapping.kept_memories(DUMP)

@@ -28,7 +28,7 @@ endmodule
 
 
 class Yosys(unittest.TestCase):
-    """yosys.read, run, abc and the command line."""
+    """Tests yosys.read, run, abc and the command line."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -83,7 +83,7 @@ class Yosys(unittest.TestCase):
 
 
 class Memories(unittest.TestCase):
-    """Flow `blocks`."""
+    """Tests flow `blocks`."""
 
     def check(self, design: catalogue.Design, depth: int, width: int, address: int, enables: int) -> None:
         """Checks that a memory's ports become the design's: each bit of data and address, and an enable for each part of a word."""
@@ -98,9 +98,9 @@ class Memories(unittest.TestCase):
                          [width, width, address, enables])
 
     def test_every_bit_of_a_kept_memory_is_timed(self):
-        """A queue around a ram."""
+        """Checks a queue around a ram."""
         self.check(catalogue.design("fifo", Width=48, Depth=64, Memory=1), 64, 48, 6, 1)
 
     def test_parts_of_a_word_have_an_enable_each(self):
-        """As the tags of a cache's ways."""
+        """Checks a ram like that of the tags of a cache's ways."""
         self.check(catalogue.design("ram", Width=48, Depth=64, Parts=4), 64, 48, 6, 4)

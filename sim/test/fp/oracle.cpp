@@ -59,7 +59,7 @@ ExactValue exact_result(FloatFormat format, FloatOp op, std::uint32_t a, std::ui
       ternary = mpfr_div(mp.result, mp.a, mp.b, MPFR_RNDZ);
       break;
   }
-  if (mpfr_nan_p(mp.result)) {  // of operands that are no NaN
+  if (mpfr_nan_p(mp.result)) {  // though no operand is a NaN
     out.kind = ExactValue::Kind::kNan;
     out.flags |= kInvalid;
     return out;

@@ -22,7 +22,7 @@ const BusTest<7> kWorkedExample{{bits(3.3125f), bits(5.875f), bits(2.921875f), b
 TEST(HitTestUnit, WorkedExampleWithItsIntermediateValues) {
   Model<Vhit_test_unit_open> unit;
   unit.reset();
-  std::vector<std::uint32_t> products;  // products that enter the divider
+  std::vector<std::uint32_t> products;  // those that enter the divider
   std::uint32_t dot = 0;
   const auto* inside = unit->rootp;
   const auto results = stream_tests(unit, std::vector{kWorkedExample}, [&] {

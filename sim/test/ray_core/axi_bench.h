@@ -27,7 +27,7 @@ namespace raygate::test {
 constexpr std::uint32_t kSeed = 20261122;
 constexpr std::uint64_t kBase = 0x9234'5678'8000'0000, kResults = 0x0123'4567'89AB'CFC0;
 
-/// `Top` is Verilator's class of a ray_core_axi; its m_axi_rdata sets the width of the AXI4 port.
+/// `Top`: a class that Verilator made of ray_core_axi, with an AXI4 port as wide as m_axi_rdata.
 template <class Top>
 class AxiBench : public testing::Test {
  protected:

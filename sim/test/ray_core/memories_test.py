@@ -1,5 +1,5 @@
-"""Checks that the ray core's memories of more than 2,048 bits, as Yosys elaborates them, have clocked read ports, as the ram of hw/common
-has."""
+"""Checks that the ray core's memories of more than 2,048 bits, as Yosys elaborates them, have clocked read ports, as
+hw/common's ram has."""
 
 import json
 import pathlib

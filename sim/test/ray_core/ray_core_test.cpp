@@ -193,8 +193,8 @@ TEST_F(RayCoreTest, MemoryIsAtRestWhenTheCoreSaysSo) {
 }
 
 /// Ends equal the reference's word by word, except the number of tests, unless either core left a
-/// doubt (which depends on the order of tests). P equals the reference's, from the core's own
-/// records, bit for bit.
+/// doubt (which depends on the order of tests). P, computed from the core's own records, equals the
+/// reference's bit for bit.
 TEST_P(EachRayCoreTest, EndsAreTheReferences) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 2'000);
   std::vector<CoreRay> sent;
