@@ -27,7 +27,7 @@ CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / "
 STATE = pathlib.Path(os.environ.get("RAYGATE_CI_STATE") or CACHE / "raygate" / "ci.json")
 
 
-# Beginnings of the paths of what all guards depend on.
+# Path prefixes of files that all guards depend on.
 SET_UP = (".ci/", ".clang-tidy", "CMakeLists.txt", "host/CMakeLists.txt", "sim/verilate.cmake")
 
 
@@ -36,7 +36,7 @@ def git(*words: str) -> str:
 
 
 def last_passed() -> dict:
-    """The commit that last passed on this machine and the number of runs before it; no commit if none is known."""
+    """Returns the commit that last passed on this machine and the number of runs before it; without a known one, None."""
     state = json.loads(STATE.read_text()) if STATE.exists() else {}
     known = state and subprocess.run(["git", "cat-file", "-e", f"{state['commit']}^{{commit}}"], cwd=ROOT,
                                      capture_output=True, check=False).returncode == 0
@@ -44,7 +44,7 @@ def last_passed() -> dict:
 
 
 def changed(commit: str | None) -> list[str]:
-    """Files that differ from `commit`, deleted ones and new ones included; all files if there is no such commit."""
+    """Returns the files that differ from `commit`, including deleted and new ones; all files if `commit` is None."""
     if commit is None:
         return git("ls-files").splitlines()
     return [*git("diff", "--name-only", commit).splitlines(),
@@ -62,7 +62,7 @@ def room(file: str) -> str:
 
 
 class Plan:
-    """What runs, given the files that changed and the number of runs before this one."""
+    """Selects what runs, from the changed files and the number of runs before this one."""
 
     def __init__(self, files: list[str], runs: int) -> None:
         self.files = files
@@ -72,12 +72,12 @@ class Plan:
         return "turns" not in TABLE[name] or is_touched({"files": [*SET_UP, *TABLE[name]["files"]]}, self.files)
 
     def has_turn(self, name: str, case: str) -> bool:
-        """Whether it is this case's turn."""
+        """Returns whether a case has its turn in this run."""
         turns = TABLE[name]["turns"]
         return int(hashlib.sha256(case.encode()).hexdigest(), 16) % turns == self.runs % turns
 
     def cases(self, name: str, cases: list[str]) -> list[str]:
-        """Those cases that run."""
+        """Returns those of the cases that run."""
         if any(file.startswith(SET_UP) for file in self.files):
             return cases
         guard, touched = TABLE[name], {room(file) for file in self.files}
@@ -89,7 +89,7 @@ class Plan:
         return cases if self.runs_in_full(name) else [case for case in cases if self.has_turn(name, case)]
 
     def skipped(self, tests: list[str]) -> list[str]:
-        """Those tests of ctest that do not run."""
+        """Returns those of ctest's tests that do not run."""
         skipped = []
         for name, guard in TABLE.items():
             if "tests" in guard:
@@ -100,14 +100,14 @@ class Plan:
 
 
 def tests_of(build: str) -> list[str]:
-    """The names of a build's tests."""
+    """Returns the names of a build's tests."""
     listed = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], cwd=ROOT, check=True,
                             capture_output=True, text=True).stdout
     return [test["name"] for test in json.loads(listed)["tests"]]
 
 
 def refuses(name: str, clone: pathlib.Path, state: dict) -> bool:
-    """Whether a guard, as it runs in this state, fails in the clone."""
+    """Returns whether a guard, run in this state, fails in the clone."""
     file = clone / "build/state.json"
     file.write_text(json.dumps(state))
     environment = os.environ | {"RAYGATE_CI": "1", "RAYGATE_CI_STATE": str(file)}
@@ -128,8 +128,8 @@ def refuses(name: str, clone: pathlib.Path, state: dict) -> bool:
 
 
 def try_faults(names: list[str]) -> int:
-    """Commits each guard's fault in a clone. The guard must refuse it at the commit that brings it in; a guard with turns also
-    when it is there already and the commit touches nothing, within that many runs. 1 where one does not."""
+    """Commits each guard's fault in a clone. The guard must refuse it at that commit; a guard with turns must also refuse it within
+    `turns` runs after the fault's commit, with no file touched. Returns 1 if a guard does not."""
     clone = ROOT / "build/guards"
     if not clone.exists():
         subprocess.run(["git", "clone", "-q", ROOT, clone], check=True)

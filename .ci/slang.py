@@ -1,4 +1,4 @@
-"""`slang.py FILE ...`: slang elaborates every module in these files as a top; 1 for any complaint."""
+"""`slang.py FILE ...`: slang elaborates every module in these files as a top. Exits 1 for any complaint."""
 
 import pathlib
 import re

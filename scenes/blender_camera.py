@@ -14,9 +14,9 @@ import sys
 
 
 def vertical_fov(lens: float, sensor: tuple[float, float], fit: str, size: tuple[float, float]) -> float:
-    """Degrees from the lower to the upper edge of a picture of `size` (width and height, times the pixels' aspect), of a
-    camera of focal length `lens`, with a sensor of such a width and height in the same unit; `fit` is Blender's
-    Sensor Fit: AUTO (the sensor's width is the longer side), HORIZONTAL or VERTICAL."""
+    """Returns the vertical field of view in degrees, for a picture of `size` (width and height, times the pixel
+    aspect) and a focal length `lens` and sensor width and height in one unit. `fit` is Blender's Sensor Fit: AUTO
+    (the sensor's width is the picture's longer side), HORIZONTAL or VERTICAL."""
     width, height = size
     is_across = fit == "HORIZONTAL" or (fit == "AUTO" and width >= height)
     sensor_side = sensor[1] if fit == "VERTICAL" else sensor[0]
@@ -25,14 +25,14 @@ def vertical_fov(lens: float, sensor: tuple[float, float], fit: str, size: tuple
 
 
 def axes_of_file(vector: tuple[float, float, float], up: str) -> list[float]:
-    """A vector of Blender's (+z upwards) in a file exported with Y Up and -Z Forward (up "y"), or as it is ("z")."""
+    """Converts a vector of Blender's (z up) to a file's axes: exported with Y Up and -Z Forward (up "y"), or unchanged ("z")."""
     x, y, z = vector
     return [x, z, -y] if up == "y" else [x, y, z]
 
 
 def camera_setting(world: list[list[float]], fov: float, up: str) -> dict:
-    """The key `camera` of a scene file, for a camera whose matrix from its own coordinates to the world's has these
-    rows: it looks along its -z, with +y upwards in the picture."""
+    """Returns the key `camera` of a scene file. `world` has the rows of the matrix from camera to world coordinates:
+    the camera looks along its -z, with +y upwards in the picture."""
     right, upwards, back, eye = ([row[column] for row in world[:3]] for column in range(4))
     del right
     length = math.sqrt(sum(x * x for x in back))

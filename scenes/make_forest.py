@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Writes a forest: one tree as OBJ and MTL, hilly ground, and a scene file with the tree's places.
 
-OUTPUT.obj is the ground, OUTPUT_tree.obj the tree, OUTPUT.json the scene: 10,000 instances of
-100,000 triangles by default. A tree's branches are prisms that fork at random; leaves, of two
-triangles each, are what is left of the number of triangles.
+OUTPUT.obj is the ground, OUTPUT_tree.obj the tree, OUTPUT.json the scene: by default 10,000
+instances of 100,000 triangles. A tree's branches are prisms that fork at random; leaves of two
+triangles each make up the rest of its triangles.
 """
 import argparse
 import json
@@ -45,13 +45,13 @@ def cross(a, b):
 
 
 def frame(along):
-    """Two unit vectors across."""
+    """Returns two unit vectors across `along`, which is a unit vector."""
     across = unit(cross(along, [1, 0, 0] if abs(along[0]) < 0.7 else [0, 0, 1]))
     return across, cross(along, across)
 
 
 class Tree:
-    """Vertices, faces by material, and the twigs that leaves grow on."""
+    """A tree's vertices, its faces by material, and the twigs that leaves grow on."""
 
     def __init__(self, rng):
         self.rng = rng
@@ -67,7 +67,7 @@ class Tree:
         return first
 
     def branch(self, start, along, length, radius, level):
-        """A bent prism that becomes thinner; others begin on it."""
+        """Adds a bent prism that becomes thinner, and the branches that begin on it."""
         rng, parts = self.rng, 4 if level == 0 else 2
         below, at = self.ring(start, along, radius), start
         for part in range(parts):
@@ -156,7 +156,7 @@ def write_ground(path, side, cells):
 
 
 def places(count, rng):
-    """Rows of matrices: turned, a little stretched and leaning, on a grid that chance disturbs."""
+    """Yields matrices by rows: trees turned, a little stretched and leaning, on a randomly disturbed grid."""
     side = math.ceil(math.sqrt(count))
     for i in range(count):
         x = SPACE * (i % side - 0.5 * (side - 1) + rng.uniform(-0.4, 0.4))

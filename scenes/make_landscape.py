@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Writes a landscape as OBJ and MTL: a square of hills, two triangles to each cell of a grid.
 
-Heights are sums of smooth random waves, each octave half as long and half as high as the one
-before: the midpoints between random numbers at the corners of a lattice (value noise). The default
-of 448 cells a side makes 401,408 triangles.
+Heights are sums of octaves of value noise: random numbers at the corners of a lattice, interpolated
+smoothly. Each octave has half the wavelength and half the height of the one before. The default of
+448 cells a side makes 401,408 triangles.
 """
 import argparse
 import pathlib
@@ -23,7 +23,7 @@ def smooth(t):
 
 
 def octave(cells, waves, rng):
-    """Heights at the (cells + 1)^2 corners of the grid, between random ones of a coarser one."""
+    """Yields rows of heights at the (cells + 1)^2 corners of the grid, interpolated from a coarser random lattice."""
     lattice = [[rng.uniform(-1, 1) for _ in range(waves + 2)] for _ in range(waves + 2)]
     steps = [divmod(i * waves, cells) for i in range(cells + 1)]
     steps = [(whole, smooth(part / cells)) for whole, part in steps]
@@ -34,7 +34,7 @@ def octave(cells, waves, rng):
 
 
 def landscape(cells, seed):
-    """Rows of heights; the grid's side is 1."""
+    """Returns rows of heights, for a grid whose side is 1."""
     rng = random.Random(seed)
     heights = [[0.0] * (cells + 1) for _ in range(cells + 1)]
     waves, height = 4, 0.08

@@ -27,7 +27,7 @@ RADIUS = 0.07  # of a lantern
 
 
 def write_lantern(file, first, centre, colour):
-    """An octahedron; returns the number of the next vertex."""
+    """Writes an octahedron; returns the number of the next vertex."""
     file.write(f"o lantern{first}\nusemtl lantern{colour}\n")
     for axis in range(3):
         for sign in (1, -1):
@@ -41,7 +41,7 @@ def write_lantern(file, first, centre, colour):
 
 
 def places(strings, lanterns):
-    """Strings from wall to wall that sag, every second one across the others."""
+    """Yields each lantern's string and centre. Strings sag from wall to wall, every second one across the others."""
     for string in range(strings):
         aside = HALF * (2 * (string + 0.5) / strings - 1)
         for i in range(lanterns):

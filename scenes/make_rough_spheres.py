@@ -46,7 +46,7 @@ def write_scene(output):
 
 
 def sky(direction):
-    """Radiance from a direction: the glow of a low sun, a sky that is warm at the horizon, dark ground."""
+    """Returns the radiance from a direction: the glow of a low sun, a sky that is warm at the horizon, dark ground."""
     _, height, _ = direction
     if height < 0:
         return (0.1, 0.09, 0.08)
@@ -58,7 +58,7 @@ def sky(direction):
 
 
 def rgbe(colour):
-    """Four bytes: three mantissas and the exponent that they share (Ward, 1991)."""
+    """Returns four bytes: three mantissas and their common exponent (Ward, 1991)."""
     exponent = math.frexp(max(colour))[1]
     scale = math.ldexp(256.0, -exponent)
     return bytes([min(255, int(x * scale)) for x in colour] + [exponent + 128])

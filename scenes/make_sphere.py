@@ -10,7 +10,7 @@ import making
 
 
 def icosphere(fineness):
-    """Unit vectors and counter-clockwise triangles of indices (from 0) of the sphere."""
+    """Returns the sphere's vertices (unit vectors) and its triangles: vertex indices from 0, counter-clockwise."""
     golden = (1 + math.sqrt(5)) / 2
     # The corners of three golden rectangles.
     vertices = []
@@ -51,7 +51,7 @@ def unit(v):
 
 
 def faces_outwards(a, b, c):
-    """For a triangle of the sphere around the origin: the sign of the triple product."""
+    """Returns whether a triangle of a sphere around the origin faces outwards, by the sign of the triple product."""
     return (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
             + a[2] * (b[0] * c[1] - b[1] * c[0])) > 0
 
@@ -62,13 +62,13 @@ def write_vertices(file, vertices, centre, radius):
 
 
 def write_faces(file, triangles, first):
-    """Faces of a sphere whose vertices begin at number `first` and its normals at 1."""
+    """Writes the faces of a sphere whose first vertex has number `first`; its normals begin at 1."""
     for i, j, k in triangles:
         file.write(f"f {first + i}//{i + 1} {first + j}//{j + 1} {first + k}//{k + 1}\n")
 
 
 def write_normals(file, vertices):
-    """The vertices of the unit sphere, which are the normals of every sphere in a file."""
+    """Writes the vertices of the unit sphere, which are the normals of every sphere in the file."""
     for v in vertices:
         file.write("vn %.6f %.6f %.6f\n" % v)
 

@@ -41,15 +41,15 @@ illum 1
 
 
 def spheres_of(centre, radius, axis, depth, generation=0):
-    """Yields (centre, radius, generation) of a sphere and of all that it carries."""
+    """Yields (centre, radius, generation) of a sphere and of all spheres that it carries."""
     yield centre, radius, generation
     if generation == depth:
         return
-    # u and v: two directions across the axis.
+    # u and v: two unit vectors across the axis.
     across = min(range(3), key=lambda i: abs(axis[i]))
     u = unit(cross(axis, tuple(float(i == across) for i in range(3))))
     v = cross(axis, u)
-    # Six around the waist, three above (at the angle of a cube's edges to its diagonal).
+    # Six around the waist, and three above, at the angle between a cube's edges and its diagonal.
     places = [(0.0, (k + 0.25) / 6) for k in range(6)]
     places += [(math.asin(math.sqrt(2 / 3)), (k + 0.375) / 3) for k in range(3)]
     for raised, turned in places:

@@ -44,7 +44,7 @@ illum 3
 
 
 def write_png(path, width, height, color_at):
-    """24-bit RGB; color_at(x, y) gives three codes from 0 to 255."""
+    """Writes 24-bit RGB; color_at(x, y) returns three codes from 0 to 255."""
     def chunk(kind, data):
         return (struct.pack(">I", len(data)) + kind + data
                 + struct.pack(">I", zlib.crc32(kind + data)))
@@ -56,14 +56,14 @@ def write_png(path, width, height, color_at):
 
 
 def tile_at(x, y):
-    """Four tiles, dark and light, with joints between them."""
+    """Returns the colour of four tiles, dark and light, with joints between them."""
     if x % 32 == 0 or y % 32 == 0:
         return 70, 66, 60
     return (196, 186, 168) if (x // 32 + y // 32) % 2 else (98, 84, 76)
 
 
 def globe_at(x, y):
-    """Land where a few waves around the sphere add up, a grid of degrees, white poles."""
+    """Returns the colour of a map: land where a few waves around the sphere add up, a grid of degrees, white poles."""
     longitude, latitude = 2 * math.pi * (x + 0.5) / 512, math.pi * (0.5 - (y + 0.5) / 256)
     if abs(latitude) > 1.25:
         return 235, 240, 245
@@ -109,8 +109,8 @@ def main():
 
 
 def write_globe(file, vertices, triangles, first, first_uv):
-    """Faces with longitude and latitude as texture coordinates; each face its own, because of the
-    seam where longitude begins anew."""
+    """Writes faces with longitude and latitude as texture coordinates, separate for each face because of
+    the seam where longitudes wrap around. Returns the next coordinates' number."""
     axis = unit((0.3, 1.0, 0.1))
     east = unit((axis[1], -axis[0], 0.0))
     north = (axis[1] * east[2] - axis[2] * east[1], axis[2] * east[0] - axis[0] * east[2],

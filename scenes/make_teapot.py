@@ -3,17 +3,17 @@
 
 Source: M. Newell, "The Utilization of Procedure Models in Digital Image Synthesis", University of
 Utah, 1975; control points as in F. Crow, "The Origins of the Teapot", IEEE CG&A 7(1), 1987, with
-the bottom that came later. y is up, the spout points along +x. The surface is the original's: the
-lid does not quite touch the rim, handle and spout go through the wall.
+the bottom that was added later. y is up, the spout points along +x. The surface is the original's:
+the lid does not quite touch the rim, and handle and spout pass through the wall.
 """
 import argparse
 import math
 
 import making
 
-# The round parts: rows of (radius, height); four rows make a ring of four patches. A row's
-# control points in a quadrant are (r, 0), (r, q), (q, r), (0, r), with q = 0.56 r
-# (but in the lid's first row, where Newell had 0.45 for 0.448).
+# The round parts: four rows of (radius, height) for a ring of four patches. The control points of a
+# row in a quadrant are (r, 0), (r, q), (q, r), (0, r), with q = 0.56 r, or a third number: in the
+# knob Newell had 0.45 for 0.448.
 ROUND_PARTS = {
     "rim": [(1.4, 2.4), (1.3375, 2.53125), (1.4375, 2.53125), (1.5, 2.4)],
     "body": [(1.5, 2.4), (1.75, 1.875), (2.0, 1.35), (2.0, 0.9)],
@@ -38,7 +38,7 @@ TUBES = {
 
 
 def patches():
-    """Yields (name, 4 x 4 control points), u along the rows and v across them."""
+    """Yields (name, 4 x 4 control points) of each patch, with u along the rows and v across them."""
     for name, rows in ROUND_PARTS.items():
         for sine, cosine in ((0, 1), (1, 0), (0, -1), (-1, 0)):  # the four quadrants
             patch = []
@@ -55,7 +55,7 @@ def patches():
 
 
 def bezier(points, t):
-    """Value and derivative of a cubic at t."""
+    """Returns the value and the derivative of a cubic Bezier curve at t."""
     s = 1 - t
     weights = (s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t)
     slopes = (-3 * s * s, 3 * s * (s - 2 * t), 3 * t * (2 * s - t), 3 * t * t)
@@ -64,7 +64,7 @@ def bezier(points, t):
 
 
 def surface(patch, u, v):
-    """Point, and the cross product of the partial derivatives."""
+    """Returns the point and the cross product of the partial derivatives."""
     along = [bezier(column, u) for column in zip(*patch)]
     point, dv = bezier([value for value, _ in along], v)
     du, _ = bezier([slope for _, slope in along], v)
@@ -80,7 +80,7 @@ def dot(a, b):
 
 
 def normal_at(patch, u, v):
-    """Unit normal; at a pole, where a whole border is one point, that of a point nearby."""
+    """Returns the unit normal; at a pole, where a whole border is one point, that of a nearby point."""
     _, normal = surface(patch, u, v)
     if math.hypot(*normal) < 1e-9:
         _, normal = surface(patch, u + 1e-4 * (0.5 - u), 0.5)
@@ -90,7 +90,7 @@ def normal_at(patch, u, v):
 
 
 def outward_sign(patch):
-    """1 or -1: which way the cross product must be turned to point out of the pot or tube."""
+    """Returns 1 or -1, the factor that makes the cross product point out of the pot or the tube."""
     middle, normal = surface(patch, 0.5, 0.5)
     corners = [p for row in patch for p in row]
     if all(abs(p[2]) < 1 for p in corners):  # a tube: away from its own axis

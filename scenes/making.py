@@ -1,4 +1,4 @@
-"""What the scripts beside it share: numbers on their command lines, and what becomes of a file that cannot be written."""
+"""Shared by the scripts beside it: numbers as options, and the error for a file that cannot be written."""
 
 import argparse
 import sys
@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 
 def at_least(least: int) -> Callable[[str], int]:
-    """The `type` of an option: a whole number, no smaller than that."""
+    """Returns the `type` of an option that is a whole number of at least `least`."""
     def checked(text: str) -> int:
         try:
             number = int(text)
@@ -19,7 +19,7 @@ def at_least(least: int) -> Callable[[str], int]:
 
 
 def run(main: Callable[[], None]) -> None:
-    """Runs `main` and ends the program: with status 2 and a line where a file cannot be used."""
+    """Runs `main`. If a file cannot be used, prints one line and ends the program with status 2."""
     try:
         main()
     except OSError as error:

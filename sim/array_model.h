@@ -18,7 +18,7 @@
 
 namespace raygate {
 
-/// What RtlBurstUnit needs of an array.
+/// Interface of an array, as RtlBurstUnit needs it.
 class BurstModel {
  public:
   virtual ~BurstModel() = default;
@@ -34,7 +34,7 @@ T read_slot(Port& port, int n) {
   return value;
 }
 
-/// The bursts of a batch, one after the other.
+/// Iterates over the bursts of a batch.
 class BurstCursor {
  public:
   struct Burst {
@@ -56,7 +56,7 @@ class BurstCursor {
   }
 
  private:
-  /// To the first bundle from here on with a test in it.
+  /// Moves to the first bundle from here on that has a test.
   void settle() {
     while (!done() && (batch_[bundle_].record_count == 0 || batch_[bundle_].lanes == 0)) ++bundle_;
     lanes_ = done() ? 0 : batch_[bundle_].lanes;
@@ -67,11 +67,11 @@ class BurstCursor {
   std::uint32_t lanes_ = 0;
 };
 
-/// What a lane of the hardware has of a batch: the bursts that went in, and what came out of them.
+/// A hardware lane's part of a batch: its bursts and their results.
 struct LaneShare {
-  std::vector<BurstCursor::Burst> bursts;  // all that went in, and the one that does
-  std::size_t closed = 0;                  // so many of them are over
-  std::size_t pointed = 0;                 // so many of `results` are complete
+  std::vector<BurstCursor::Burst> bursts;  // all that went in, and the one that is going in
+  std::size_t closed = 0;                  // number of bursts that are over
+  std::size_t pointed = 0;                 // number of `results` that are complete
   BurstResults results;
 
   void clear() {
@@ -80,7 +80,7 @@ struct LaneShare {
     closed = pointed = 0;
   }
   [[nodiscard]] bool all_closed() { return closed == bursts.size(); }
-  /// Whether no hit lacks its point.
+  /// Returns whether every hit has its point.
   [[nodiscard]] bool all_pointed() {
     while (pointed < results.size() && results[pointed].kind != BurstResult::Kind::kHit) ++pointed;
     return pointed == results.size();
@@ -108,14 +108,14 @@ enum Count {
 };
 
 /// An array of `lanes` lanes, in models of the class `Top` that Verilator made of hit_test_array
-/// with kModelLanes lanes each. Lanes share nothing but the sums of their counters, so that models
-/// side by side have the results, clocks and counters of one model of all lanes. Hardware that is
-/// broken is told by std::runtime_error: nothing goes in and nothing ends for kPatience clocks, or
-/// a result that nobody waits for.
+/// with kModelLanes lanes each. Lanes share only the sums of their counters, so models side by side
+/// have the results, clocks and counters of one model of all lanes. Throws std::runtime_error if
+/// the hardware is broken: nothing goes in and nothing ends for kPatience clocks, or a result
+/// belongs to no burst.
 template <class Top, int kModelLanes = 1, class Numbers = Binary32Numbers>
 class ArrayModel : public BurstModel {
  public:
-  /// `lanes`: a multiple of kModelLanes, at most 32; others are a bug of the caller.
+  /// `lanes`: a multiple of kModelLanes, at most 32; other values are a bug of the caller.
   explicit ArrayModel(int lanes, const BurstStalls& stalls = {}, const Numbers& numbers = {})
       : models_(static_cast<std::size_t>(lanes / kModelLanes)),
         numbers_(numbers),
@@ -170,7 +170,7 @@ class ArrayModel : public BurstModel {
   static constexpr unsigned kMostBatches = 2;
   static constexpr unsigned kPatience = 10'000;
 
-  /// A batch on its way.
+  /// A batch in flight.
   struct Work {
     std::span<const RayBundle> batch;
     BurstCursor cursor;
@@ -183,7 +183,7 @@ class ArrayModel : public BurstModel {
     for (Model<Top>& model : models_) model.clock();
   }
 
-  /// The batches in flight in the order of their start.
+  /// Returns a batch in flight; the oldest has age 0.
   Work& work_at(unsigned age) { return works_[(oldest_ + age) % kMostBatches]; }
 
   static bool drained(Work& work) {
@@ -192,7 +192,7 @@ class ArrayModel : public BurstModel {
            });
   }
 
-  /// A clock: every lane is offered a test, and its result is taken.
+  /// Runs a clock: offers every lane a test and takes its result.
   void step() {
     unsigned valid = 0, ready = ~0u;
     for (int n = 0; n < lanes(); ++n) {
@@ -239,7 +239,7 @@ class ArrayModel : public BurstModel {
     return sum;
   }
 
-  /// The next burst of the batches goes into lane n, if there is one.
+  /// Starts the next burst of the batches, if there is one, in lane n.
   void start_burst(int n) {
     for (unsigned age = 0; age < in_flight_; ++age) {
       Work& work = work_at(age);
@@ -271,7 +271,7 @@ class ArrayModel : public BurstModel {
     if (++lane.record == lane.end) lane.record = nullptr;
   }
 
-  /// Lane n's bit of a port of its model.
+  /// Returns lane n's bit of a port of its model.
   template <class Port>
   static bool bit(Port port, int n) {
     return (port >> (n % kModelLanes) & 1) != 0;
@@ -281,7 +281,7 @@ class ArrayModel : public BurstModel {
     port = static_cast<Port>((port & ~(1u << own)) | static_cast<unsigned>(value) << own);
   }
 
-  /// The oldest batch of which lane n still has something to say, by `all` of LaneShare.
+  /// Returns lane n's share of the oldest batch for which `all` is false, or null.
   LaneShare* awaited(int n, bool (LaneShare::*all)()) {
     for (unsigned age = 0; age < in_flight_; ++age) {
       LaneShare& share = work_at(age).shares[n];
@@ -290,8 +290,8 @@ class ArrayModel : public BurstModel {
     return nullptr;
   }
 
-  /// What ends nothing (a report, or no news at all) is no sign of life: broken hardware may say it
-  /// for ever.
+  /// Takes a result. A word that ends nothing (a report, or nothing at all) does not count as
+  /// progress: broken hardware may repeat it for ever.
   void take_result(int n) {
     Top& model = model_of(n);
     const int own = n % kModelLanes;
@@ -325,7 +325,7 @@ class ArrayModel : public BurstModel {
     }
   }
 
-  /// The lanes' results, each in order, into one list in the order of the batch.
+  /// Merges the lanes' results, each in order, into one list in the order of the batch.
   void merge(const Work& work, BurstResults& results) {
     const auto before = [](const auto& a, const auto& b) {
       return a.bundle != b.bundle ? a.bundle < b.bundle : a.lane < b.lane;
@@ -339,9 +339,9 @@ class ArrayModel : public BurstModel {
 
   std::vector<Model<Top>> models_;
   Numbers numbers_;
-  std::vector<LaneInput> inputs_;  // a lane each
+  std::vector<LaneInput> inputs_;  // one per lane
   unsigned offered_ = 0;           // lanes whose slot holds a test that was not taken yet
-  unsigned quiet_ = 0;             // clocks since something was taken, on either side
+  unsigned quiet_ = 0;             // clocks since a test was taken, or a burst or a point ended
   Work works_[kMostBatches];
   unsigned oldest_ = 0, in_flight_ = 0;
   BurstStalls stalls_;

@@ -10,8 +10,8 @@
 
 namespace raygate {
 
-/// `Top`: a class that Verilator made of board_core. A word a clock at most, either way. A board
-/// that neither takes nor gives a word for kPatience clocks is told by std::runtime_error.
+/// `Top`: a class that Verilator made of board_core. At most one word a clock in each direction.
+/// Throws std::runtime_error if the board neither takes nor gives a word for kPatience clocks.
 template <class Top>
 class BoardLink : public WordLink {
  public:

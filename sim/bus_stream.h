@@ -25,16 +25,16 @@ struct BusResult {
 
 /// Sends `tests` through `unit`, a Model or WaveModel that has been reset, each as soon as the unit
 /// is ready and its gap is over, and calls `after_clock()` after each clock until the last result
-/// is there. The bus carries noise where it carries no word. Throws std::runtime_error where a
-/// result comes before its test, or none in 64 clocks.
+/// has come. The bus carries noise when it carries no word. Throws std::runtime_error if a result
+/// comes before its test, or if nothing happens for 64 clocks.
 template <class UnitModel, std::size_t NumWords, class AfterClock>
 std::vector<BusResult> stream_tests(UnitModel& unit, const std::vector<BusTest<NumWords>>& tests,
                                     AfterClock&& after_clock) {
   std::mt19937 noise(1);
   std::vector<BusResult> results;
-  std::size_t word = 0;            // the next one of the test that is being sent
-  unsigned waited = 0;             // with the unit ready
-  std::size_t component = 0;       // the next one of all results, three each
+  std::size_t word = 0;            // next word of the test that is being sent
+  unsigned waited = 0;             // clocks with the unit ready
+  std::size_t component = 0;       // next component; three per result
   std::uint64_t quiet_until = 64;  // the edge by which something must have happened
   for (std::uint64_t edge = 1; component < 3 * tests.size(); ++edge) {
     const bool more = results.size() < tests.size();

@@ -17,10 +17,10 @@
 
 namespace raygate {
 
-/// Cores of `Top`, each with a `Holder` (see CorePort), in step: they share one port to memory,
-/// which takes one request and gives one line a clock, in turn. Hardware that is broken is told by
-/// std::runtime_error: no line, no result and no test for longer than the questions in its queue
-/// can take, a ray that ends twice, lines on their way that it does not tell of.
+/// Cores of class `Top`, each in a `Holder` (see CorePort), clocked together. They share one port
+/// to memory, which takes one request and gives one line a clock, in turn. Throws
+/// std::runtime_error if a core is broken: no line, result or test for longer than its queued
+/// questions can take, a ray that ends twice, lines in flight that it does not report.
 template <class Top, template <class> class Holder = Model>
 class CoreModel : public CoreUnit {
  public:
@@ -32,7 +32,7 @@ class CoreModel : public CoreUnit {
         stalls_(stalls),
         random_(stalls.seed) {}
 
-  /// The only core, or the first one.
+  /// Returns the model of the only core, or of the first one.
   Holder<Top>& model() { return cores_.front().model(); }
 
   void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
@@ -77,7 +77,7 @@ class CoreModel : public CoreUnit {
     }
   }
 
-  /// Traces for so many clocks and resets the cores in mid-run: what they said is forgotten.
+  /// Traces for `clocks` clocks, then resets the cores in mid-run; their results are dropped.
   void abandon(std::span<const MemoryLine> lines, std::span<const CoreRay> rays, unsigned clocks) {
     memory_.load(lines);
     for (Core& core : cores_) core.invalidate(lines.size());
@@ -105,15 +105,15 @@ class CoreModel : public CoreUnit {
   using Core = CorePort<Top, Holder>;
   static constexpr std::uint64_t kPatience = 10'000;       // clocks
   static constexpr std::uint64_t kQuestionClocks = 4'000;  // at most: hw/exact/exact_unit.sv
-  static constexpr std::uint64_t kMostQuestions = 3 * kTableRays + 128;  // that wait in a core
+  static constexpr std::uint64_t kMostQuestions = 3 * kTableRays + 128;  // waiting in a core
   static constexpr unsigned kCoreBit = 48;  // of a tag in memory: above the core's own
 
   [[noreturn]] static void broken(const std::string& what) {
     throw std::runtime_error("ray_core: " + what);
   }
 
-  /// Clocks in which a sound core may show no sign of work, if it was given reason for so many
-  /// questions.
+  /// Returns the clocks for which a sound core may show no progress, if up to `questions` exact
+  /// decisions may be open.
   [[nodiscard]] std::uint64_t patience(std::uint64_t questions) const {
     return kPatience + (is_exact() ? kQuestionClocks * std::min(questions, kMostQuestions) : 0);
   }
@@ -125,8 +125,8 @@ class CoreModel : public CoreUnit {
 
   bool chance(int of_256) { return of_256 != 0 && static_cast<int>(random_() & 0xFF) < of_256; }
 
-  /// A clock of the memory: a request of the core whose turn it is, and a line; whether there was
-  /// a request.
+  /// Runs a clock of the memory: takes a request, of the core whose turn it is, and gives a line.
+  /// Returns whether there was a request.
   bool serve_memory() {
     memory_.clock();
     bool taken = false;
@@ -159,7 +159,7 @@ class CoreModel : public CoreUnit {
   CoreStalls stalls_;
   std::mt19937_64 random_;
   std::uint32_t lacking_ = 0;  // a line that memory answered with an error
-  std::size_t turn_ = 0;       // of the core that asks first
+  std::size_t turn_ = 0;       // the core that is served first
 };
 
 }  // namespace raygate

@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// A result's record of eight words at the ports of ray_core_axi: hw/ray_core/registers.md.
+/// Returns the result in a record of ray_core_axi: hw/ray_core/registers.md.
 inline CoreResult result_of(const std::array<std::uint32_t, 8>& words) {
   CoreResult result;
   result.kind = static_cast<CoreResult::Kind>(words[0] & 1);
@@ -42,7 +42,7 @@ void put_ray(Top& top, const CoreRay& ray) {
   top.ray_valid_i = 1;
 }
 
-/// The word at the result port of `top`, of ray_core.
+/// Returns the result at the result port of `top`, a ray_core.
 template <class Top>
 CoreResult result_at(const Top& top) {
   return unpack_result(top.result_o);
@@ -66,14 +66,14 @@ class CorePort {
   [[nodiscard]] const CoreCounters& counters() const { return counters_; }
   [[nodiscard]] std::uint64_t clocks() const { return model_.clocks(); }
 
-  /// A reset in mid-run: whatever was on its way is gone.
+  /// Resets the core in mid-run: everything in flight is lost.
   void reset() {
     model_->ray_valid_i = model_->line_valid_i = 0;
     model_.reset();
     rays_ = 0;
   }
 
-  /// Empties the core's caches, for a memory of so many lines: a clock.
+  /// Empties the core's caches, for a memory of `lines` lines; takes a clock.
   void invalidate(std::size_t lines) {
     model_->lines_i = static_cast<std::uint32_t>(lines);
     model_->invalidate_i = 1;
@@ -89,12 +89,12 @@ class CorePort {
     put_ray(*model_, ray);
     ++rays_;
   }
-  /// Rays offered whose ends were not taken.
+  /// Returns the number of rays offered whose ends have not been taken.
   [[nodiscard]] int rays() const { return rays_; }
 
   // ---- Results
 
-  /// Whether a result is taken in this clock.
+  /// Makes the port ready or not; returns whether a result is taken in this clock.
   bool take_result(bool ready) {
     model_->result_ready_i = ready;
     const bool taken = ready && model_->result_valid_o != 0;
@@ -106,9 +106,9 @@ class CorePort {
 
   // ---- Memory
 
-  /// Whether lines are on their way, or will be: memory must not change.
+  /// Whether lines are in flight, or will be: memory must not change.
   [[nodiscard]] bool is_busy_with_memory() const { return model_->outstanding_o != 0; }
-  /// Whether a line is asked for; of which number, with which tag.
+  /// Whether a line is requested; below, its number and its tag.
   [[nodiscard]] bool is_reading() const { return model_->read_valid_o != 0; }
   [[nodiscard]] std::uint32_t line() const { return model_->read_line_o; }
   [[nodiscard]] std::uint64_t tag() const { return model_->read_id_o; }

@@ -1,8 +1,8 @@
-# Second half of raygate_model's build step: gathers what Verilator wrote into DIR for class NAME.
-# Writes all.cpp, one translation unit; slow.cpp, another one of what runs once in a model's life, where that is
-# much; and all.d, on what both depend, in make's syntax.
+# Second half of raygate_model's build step: gathers what Verilator wrote into DIR for class NAME. Writes all.cpp, one
+# translation unit; slow.cpp, another with the code that runs once in a model's life, if that is much; and all.d, make's
+# rule for the files that both depend on.
 file(GLOB sources RELATIVE ${DIR} ${DIR}/*.cpp)
-list(REMOVE_ITEM sources all.cpp slow.cpp)  # there if two builds meet in one folder
+list(REMOVE_ITEM sources all.cpp slow.cpp)  # exist if two builds share a folder
 set(slow ${sources})
 list(FILTER slow INCLUDE REGEX "__Slow\\.cpp")
 set(slow_bytes 0)
@@ -10,7 +10,7 @@ foreach(file ${slow})
   file(SIZE ${DIR}/${file} bytes)
   math(EXPR slow_bytes "${slow_bytes} + ${bytes}")
 endforeach()
-if(slow_bytes LESS 200000)  # it would take longer to read Verilator's headers again
+if(slow_bytes LESS 200000)  # reading Verilator's headers again would take longer
   set(slow)
 endif()
 list(REMOVE_ITEM sources "" ${slow})
@@ -21,8 +21,8 @@ endforeach()
 file(WRITE ${DIR}/all.cpp "${sources}\n")
 file(WRITE ${DIR}/slow.cpp "${slow}\n")
 
-# Verilator names every file it wrote as a target; the build knows of all.cpp alone. What it read has names relative to
-# the folder that it and this script run in.
+# Verilator names every file it wrote as a target; the build knows only all.cpp. The names of the files it read are
+# relative to the folder in which it and this script run.
 file(READ ${DIR}/${NAME}__ver.d depends)
 string(REGEX REPLACE "^[^:]*:" "" depends "${depends}")
 string(REGEX REPLACE " ([^/ \n])" " ${CMAKE_CURRENT_SOURCE_DIR}/\\1" depends "${depends}")

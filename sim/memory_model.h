@@ -13,7 +13,7 @@
 
 namespace raygate {
 
-/// Lines by number, each with the tag of its request. One request and one line a clock at most.
+/// Memory of lines, by number; a line has its request's tag. At most one request and line a clock.
 class MemoryModel {
  public:
   explicit MemoryModel(const MemoryTiming& timing)
@@ -21,13 +21,13 @@ class MemoryModel {
         random_(timing.seed),
         cached_(static_cast<std::size_t>(timing.cache_lines), kNothing) {}
 
-  /// What the memory holds from now on, while no line is on its way.
+  /// Sets the memory's contents; only while no line is in flight.
   void load(std::span<const MemoryLine> lines) {
     std::ranges::fill(cached_, kNothing);
     lines_ = lines;
   }
 
-  /// The next clock.
+  /// Advances by a clock.
   void clock() {
     ++now_;
     ready_ = now_ >= free_at_ &&
@@ -57,15 +57,15 @@ class MemoryModel {
   [[nodiscard]] bool valid() const { return !due_.empty() && due_.top().at <= now_; }
   [[nodiscard]] std::uint32_t number() const { return due_.top().line; }
   [[nodiscard]] bool is_error() const { return number() >= lines_.size(); }
-  /// Zeros where it is an error.
+  /// Returns the line; zeros if it is an error.
   [[nodiscard]] MemoryLine line() const { return is_error() ? MemoryLine{} : lines_[number()]; }
   [[nodiscard]] std::uint64_t tag() const { return due_.top().tag; }
   void pop() { due_.pop(); }
 
-  /// Whether no line is on its way.
+  /// Whether no line is in flight.
   [[nodiscard]] bool is_idle() const { return due_.empty(); }
 
-  /// Lines that the cache lacked.
+  /// Returns the number of lines that the cache lacked.
   [[nodiscard]] std::uint64_t misses() const { return misses_; }
 
  private:
@@ -76,7 +76,7 @@ class MemoryModel {
     std::uint32_t line;
     std::uint64_t tag;
 
-    /// For a queue whose top is the earliest.
+    /// Orders a queue so that its top is the earliest.
     friend bool operator<(const Due& a, const Due& b) {
       return a.at != b.at ? a.at > b.at : a.number > b.number;
     }

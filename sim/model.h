@@ -9,8 +9,9 @@
 
 namespace raygate {
 
-/// A context whose models start with zeros in all registers; with RAYGATE_RANDOM_RESET=<seed> in
-/// the environment with random bits, as hardware does. No result may depend on them.
+/// Returns a context whose models start with zeros in all registers or, with
+/// RAYGATE_RANDOM_RESET=<seed> in the environment, with random bits, as hardware does. No result
+/// may depend on them.
 inline std::unique_ptr<VerilatedContext> make_context() {
   auto context = std::make_unique<VerilatedContext>();
   if (const char* seed = std::getenv("RAYGATE_RANDOM_RESET")) {
@@ -26,8 +27,8 @@ inline std::unique_ptr<VerilatedContext> make_context() {
 template <class Top>
 class Model {
  public:
-  /// Verilator's first evaluation is the start: an edge of the clock in it would not count. Of a
-  /// netlist with faults (sim/mutate) RAYGATE_MUTANT in the environment says which one it has.
+  /// Evaluates once: in its first evaluation Verilator sees no clock edge. RAYGATE_MUTANT in the
+  /// environment selects the fault in a netlist with faults (sim/mutate).
   Model() {
     if constexpr (requires(Top top) { top.mutant; }) {
       if (const char* fault = std::getenv("RAYGATE_MUTANT")) {
@@ -58,9 +59,8 @@ class Model {
   /// One clock cycle: a rising edge with the inputs as they are, then the falling edge. The
   /// outputs read afterwards are those between this rising edge and the next.
   ///
-  /// Nothing happens at a falling edge but that Verilator sees the clock low. Where it lets itself
-  /// be told so (its 5.006 does, to those who include the model's ___024root.h), that evaluation is
-  /// saved.
+  /// At a falling edge Verilator only notes that the clock is low. If it can be told so (Verilator
+  /// 5.006 can, where the model's ___024root.h is included), that evaluation is skipped.
   void clock() {
     if constexpr (requires(Top top) { top.rootp->__Vtrigrprev__TOP__clk_i = 0; }) {
       edge(1);

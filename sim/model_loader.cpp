@@ -50,7 +50,7 @@ class BuildLock {
   int descriptor_;
 };
 
-/// For a shell.
+/// Quotes `text` for a shell.
 std::string quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -67,7 +67,7 @@ void build(const ModelFile& file) {
   if (status != 0) fail(file, "building it failed (" + log + ")");
 }
 
-/// Null where there is no such file, or none that is whole.
+/// Opens a model's file; returns null if it is missing or incomplete.
 void* open_file(const ModelFile& file) {
   return ::dlopen((std::string(kModels) + file.name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
 }
@@ -76,7 +76,7 @@ void* make_model_of(const ModelFile& file) {
   void* library = open_file(file);
   if (library == nullptr) {
     const BuildLock lock(file);
-    library = open_file(file);  // by another process, while we waited
+    library = open_file(file);  // built by another process meanwhile
     if (library == nullptr) build(file);
     if (library == nullptr) library = open_file(file);
   }

@@ -1,4 +1,4 @@
-// Simulated models in files of their own, which are built where they are first asked for.
+// Simulated models in files of their own, which are built on first use.
 #pragma once
 
 namespace raygate {
@@ -7,15 +7,15 @@ namespace raygate {
 struct ModelFile {
   const char* name;
   const char* what;  ///< in words: "the simulated ray core"
-  int seconds;       ///< that two cores take to build it, roughly
+  int seconds;       ///< rough build time on two cores
 };
 
-/// The function `make_model` of the model's file. A file that is missing is built first, by one
-/// process if several ask for it, with a line on standard error. Throws InputError where it can't
-/// be built. For any number of threads at once.
+/// Returns the function `make_model` of the model's file. Builds a missing file first, in one
+/// process if several ask for it, and says so on standard error. Throws InputError if it cannot be
+/// built. Thread-safe.
 [[nodiscard]] void* load_model(const ModelFile& file);
 
-/// As a function of that type, which is the one of the file's source (sim/models).
+/// Returns `make_model` as a `Function`, which must be its type in sim/models.
 template <class Function>
 [[nodiscard]] Function* load_model(const ModelFile& file) {
   return reinterpret_cast<Function*>(load_model(file));

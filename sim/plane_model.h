@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// What RtlPlaneUnit needs of a unit.
+/// Interface of a unit, as RtlPlaneUnit needs it.
 class PlaneModel {
  public:
   virtual ~PlaneModel() = default;

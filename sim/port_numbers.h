@@ -7,17 +7,17 @@
 
 namespace raygate {
 
-/// Slot `n` of a port, `size` bytes a slot: Verilator keeps the lowest bits at the lowest address,
-/// as this machine does.
+/// Returns slot `n` of a port with `size` bytes a slot: Verilator keeps the lowest bits at the
+/// lowest address, as this machine does.
 template <class Port>
 char* slot(Port& port, int n, std::size_t size) {
   static_assert(std::endian::native == std::endian::little);
   return reinterpret_cast<char*>(&port) + size * static_cast<std::size_t>(n);
 }
 
-/// Floats as they stand. Numbers of other formats are packed otherwise (host/variants).
+/// Floats, unchanged. Numbers of other formats are packed differently (host/variants).
 struct Binary32Numbers {
-  /// `count` numbers of lane `lane`, each of whose slots has as many.
+  /// Writes `count` numbers to the slot of lane `lane`; every slot has as many.
   template <class Port>
   void write(Port& port, int lane, const float* x, int count) const {
     const std::size_t size = sizeof(float) * static_cast<std::size_t>(count);

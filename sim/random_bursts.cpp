@@ -7,7 +7,7 @@
 namespace raygate {
 namespace {
 
-/// `x`, `steps` floats further up or down (by its bits, whatever they are).
+/// Returns `x` moved up or down by `steps` floats (by its bits, whatever they are).
 float stepped(float x, int steps) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + static_cast<std::uint32_t>(steps));
 }
@@ -55,7 +55,7 @@ glm::vec3 RandomBursts::random_direction() {
   return direction;
 }
 
-/// A triangle around a point that the ray meets, or beside it, or in line with it.
+/// Returns a triangle around a point that the ray meets, beside it, or nearly parallel to the ray.
 PolygonRecord RandomBursts::triangle(const glm::vec3& direction) {
   const double size = std::exp2(uniform(-6.0, 3.0));
   const glm::dvec3 center = glm::dvec3(direction) * std::exp2(uniform(-4.0, 6.0));
@@ -130,7 +130,7 @@ BurstBatch RandomBursts::make(std::uint64_t tests) {
     bundle.record_count = below(7);
     glm::vec3 direction{1.0f};
     for (int lane = 0; lane < kLanes; ++lane) {
-      // Rays that start from one: neighbours of it.
+      // Most rays are neighbours of the one before.
       if (lane == 0 || one_in(4)) direction = random_direction();
       for (int k = 0; k < 3; ++k) {
         bundle.direction[k][lane] = stepped(direction[k], static_cast<int>(below(5)) - 2);

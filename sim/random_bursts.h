@@ -1,4 +1,4 @@
-// Bursts of hit tests to compare pipelined units by: likely ones, and ones meant to hurt.
+// Bursts of hit tests to compare pipelined units: typical ones and adversarial ones.
 #pragma once
 
 #include <random>
@@ -18,7 +18,7 @@ struct BurstBatch {
 /// Makes batches from a seed. Of the records about
 ///   half are triangles that some of the rays hit, edge-on and grazing ones among them;
 ///   a quarter are such triangles with words replaced: by specials (zeros, subnormals, infinities,
-///   NaN, the largest and smallest), bounds by the very |U| of a ray or its neighbours, d by
+///   NaN, the largest and smallest), bounds by |U| of a ray or its neighbours, d by
 ///   values that bring distances to near ties, to overflow and to underflow;
 ///   an eighth are copies of the record before, alike or with d a few units off;
 ///   an eighth are random bits.

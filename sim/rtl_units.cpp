@@ -23,8 +23,8 @@ std::unique_ptr<PlaneModel> make_plane(Arith arith) {
   return std::unique_ptr<PlaneModel>(make());
 }
 
-// The unit runs empty for 46 clocks after a batch if no other one follows. Of 0 to 256 tests a lane
-// this took the fewest clocks on most scenes, for one lane and for eight.
+// If no other batch follows, the unit runs empty for 46 clocks after a batch. Of 0 to 256 tests a
+// lane, this number took the fewest clocks on most scenes, for one lane and for eight.
 constexpr std::size_t kEnoughTestsALane = 64;
 
 constexpr ModelFile kBehaviouralArray{"hit_test_array_behavioural",

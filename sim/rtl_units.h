@@ -9,12 +9,12 @@
 
 namespace raygate {
 
-/// What RtlPlaneUnit needs of a Verilated unit, of either kind of arithmetic.
+/// Interface of a Verilated unit, of either kind of arithmetic.
 class PlaneModel;
 
-/// hw/hit_test/hit_test_unit.sv in binary32, rounded to nearest even. Tests go through it back to
-/// back: 7 clocks each, and 3 more a call for the last one's result. Not for two threads at once;
-/// each may have its own.
+/// hw/hit_test/hit_test_unit.sv in binary32, rounded to nearest even. Tests follow each other
+/// without a gap: 7 clocks each, and 3 more a call for the last result. Not thread-safe; each
+/// thread may have its own.
 class RtlPlaneUnit final : public PlaneUnit {
  public:
   explicit RtlPlaneUnit(Arith arith = Arith::kStructural);
@@ -34,14 +34,14 @@ struct BurstStalls {
   std::uint64_t seed = 0;
 };
 
-/// What RtlBurstUnit needs of an array.
+/// Interface of a Verilated array.
 class BurstModel;
 
-/// hit_test_array of any number of lanes to 32: one lane, Verilated, many times over. Not for use
-/// by two threads at once: each thread makes its own.
+/// hit_test_array of up to 32 lanes: one Verilated lane, instantiated many times. Not thread-safe:
+/// each thread makes its own.
 class RtlBurstUnit : public BurstUnit {
  public:
-  /// Throws InputError where the model can't be built.
+  /// Throws InputError if the model cannot be built.
   explicit RtlBurstUnit(int lanes, Arith arith = Arith::kStructural,
                         const BurstStalls& stalls = {});
   explicit RtlBurstUnit(std::unique_ptr<BurstModel> model);  ///< of another format

@@ -10,13 +10,13 @@
 
 namespace raygate {
 
-/// Data sheets of MT48LC16M16A2 and AS4C16M16. It takes a command between two edges of its user's
-/// clock, and a word that is read is there for the second edge after the one behind which the
-/// command left. What no data sheet allows is told by std::runtime_error: a command too early, a
-/// row that is not open, a refresh too late.
+/// SDRAM by the data sheets of MT48LC16M16A2 and AS4C16M16. It takes a command between two edges of
+/// its user's clock; a word that is read is valid at the second edge after that at which the
+/// command left. Throws std::runtime_error if the user violates a data sheet: a command too early,
+/// a row that is not open, a refresh too late.
 class SdramModel {
  public:
-  /// At the pins in a clock.
+  /// State of the pins in a clock.
   struct Pins {
     bool ras_n = true, cas_n = true, we_n = true;
     unsigned bank = 0, address = 0;
@@ -27,7 +27,7 @@ class SdramModel {
   explicit SdramModel(double clock_mhz)
       : clock_ns_(1000.0 / clock_mhz), words_(std::size_t{1} << 24) {}
 
-  /// Takes what left at the user's last edge; what is at the data pins at its next one.
+  /// Takes the pins after the user's last edge; returns the data pins at its next edge.
   std::uint16_t clock(const Pins& pins) {
     ++now_;
     const std::uint16_t out = coming_;
@@ -109,7 +109,7 @@ class SdramModel {
   void need(bool holds, const char* what) const {
     if (!holds) broken(what);
   }
-  /// 8,192 rows in 64 ms, one by one.
+  /// Checks the rate of refreshes: 8,192 rows in 64 ms, one by one.
   void check_refresh() const {
     need(!is_set_ || static_cast<double>(now_ - refreshed_at_) * clock_ns_ <= 7'812.5,
          "a refresh is late");

@@ -3,8 +3,8 @@
 
 namespace raygate {
 
-/// False of programs that were built without Verilator (`make cpu`), whose simulated units throw
-/// InputError where they are made.
+/// False in programs that were built without Verilator (`make cpu`): there, making a simulated unit
+/// throws InputError.
 [[nodiscard]] bool has_simulation();
 
 }  // namespace raygate

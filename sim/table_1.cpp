@@ -17,7 +17,7 @@ constexpr double kFrameTests = kPixels * kPolygons * kDepth;
 
 double per_test(std::uint64_t count) { return static_cast<double>(count) / kTests; }
 
-// `divisions` is what counts as one. Returns the operations of a test.
+// `divisions`: how many divisions count. Returns the operations of a test.
 double print_row(const char* form, const OperationCount& count, std::uint64_t divisions,
                  double preparation) {
   const double operations = per_test(count.multiplications + count.additions + divisions);

@@ -26,8 +26,8 @@ std::vector<BusTest<NumWords>> random_tests(std::size_t num_tests) {
 
 }  // namespace
 
-// A register's enable in the clock before an edge is read after the edge before it, and the first
-// edge of all takes a word and computes nothing: so looking after every edge misses no operation.
+// A register's enable for an edge is read after the edge before. The first edge of all takes a word
+// and computes nothing, so reading after every edge misses no operation.
 
 OperationCount count_proposed_form(std::size_t num_tests) {
   Model<Vhit_test_unit_open> unit;

@@ -11,7 +11,7 @@ struct OperationCount {
   std::uint64_t multiplications = 0;
   std::uint64_t additions = 0;
   std::uint64_t quotients = 0;  ///< results of the divider
-  std::uint64_t divisors = 0;   ///< what it divided by; the paper counts these as its divisions
+  std::uint64_t divisors = 0;   ///< loaded divisors; the paper counts these as its divisions
   std::uint64_t clocks = 0;     ///< from the first test's first word to the last test's result
 
   bool operator==(const OperationCount&) const = default;
@@ -20,7 +20,7 @@ struct OperationCount {
 /// Runs `num_tests` random tests back to back through hit_test_unit (equation 10).
 [[nodiscard]] OperationCount count_proposed_form(std::size_t num_tests);
 
-/// The same through general_hit_test_unit (equations 4 and 5).
+/// Runs as many tests through general_hit_test_unit (equations 4 and 5).
 [[nodiscard]] OperationCount count_general_form(std::size_t num_tests);
 
 }  // namespace raygate

@@ -3,32 +3,32 @@
 #   raygate_model(fp_adder_f16 TOP fp_adder PARAMETERS ExpWidth=5 FracWidth=10 [OPEN [LEVELS 6]])
 #     A static library `fp_adder_f16`: module TOP of hw/ (or of the calling folder, where a test joins
 #     several modules under one top) with these parameters, as class Vfp_adder_f16 in
-#     "Vfp_adder_f16.h". OPEN, at the price of speed, lets it be written to a waveform (sim/wave_model.h),
-#     down to so many levels of instances, and the signals that visible.vlt lists be read. Name a model after its module and what its
-#     parameters stand for; models that several programs use are built once.
+#     "Vfp_adder_f16.h". OPEN, at the price of speed, allows writing a waveform (sim/wave_model.h) of up to
+#     LEVELS levels of instances, and reading the signals that visible.vlt lists. Name a model after its module
+#     and its parameters' meaning; models that several programs use are built once.
 #
-#     PATCHES <folder>: modules found there are taken instead of those of hw/: broken on purpose, or brought
-#     along (synth/brought.py), so without lint.
-#     NETLIST <file>: TOP is in that file, as Yosys wrote it; what it instantiates and lacks is in hw/.
-#     AS <name>: its class is that of model <name>, V<name>, so that a program takes it in that one's place.
+#     PATCHES <folder>: modules in it replace those of hw/, without lint: broken on purpose, or supplied by a
+#     user (synth/brought.py).
+#     NETLIST <file>: Yosys wrote TOP to this file; modules that it instantiates but lacks are taken from hw/.
+#     AS <name>: the class is called V<name>, as that of model <name>, so that a program can use it instead.
 #
 #   raygate_model_file(ray_core_exact ray_core.cpp TOP ray_core ...)
-#     The same, and a target ray_core_exact.so: a file of that name in build/sim/models, which programs
-#     load (model_loader.h), with the model and what ray_core.cpp of sim/models puts around it.
+#     The same, and a target ray_core_exact.so: a file of that name in build/sim/models, which programs load
+#     (model_loader.h). It contains the model and the wrapper sim/models/ray_core.cpp.
 #
 #   raygate_sim_test(fp_adder_test MODELS fp_adder_f16 ... [LIBRARIES ...] [RANDOM_RESETS <filter>])
-#     Builds <name>.cpp of this folder with GoogleTest and gives its cases to ctest. RANDOM_RESETS: those
-#     cases (of GoogleTest's filter) once more, from each of three sets of random register contents.
+#     Builds <name>.cpp of this folder with GoogleTest and adds its cases to ctest. RANDOM_RESETS: the cases
+#     that match GoogleTest's filter run again, from each of three sets of random register contents.
 #
-# Debian's verilate() isn't used: it runs Verilator while CMake configures, one model after the
-# other, and compiles the run-time library again for each. Here a model is one build step and two
+# Debian's verilate() isn't used: it runs Verilator while CMake configures, one model after the other,
+# and compiles the run-time library again for each model. Here a model is one build step and two
 # translation units, so that the compiler sees across Verilator's functions.
 
 find_program(VERILATOR_BIN NAMES verilator_bin HINTS $ENV{VERILATOR_ROOT}/bin REQUIRED)
 find_path(VERILATOR_INCLUDE verilated.h
   HINTS $ENV{VERILATOR_ROOT}/include /usr/share/verilator/include REQUIRED)
 
-# What all models share; waves are written as VCD, which needs no other library.
+# Code that all models share; waveforms are written as VCD, which needs no other library.
 add_library(verilated STATIC
   ${VERILATOR_INCLUDE}/verilated.cpp
   ${VERILATOR_INCLUDE}/verilated_threads.cpp
@@ -51,13 +51,13 @@ file(GLOB cores CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/hw/*/*.core)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${cores})
 set(RAYGATE_HW_PACKAGES ${RAYGATE_HW})
 list(FILTER RAYGATE_HW_PACKAGES INCLUDE REGEX "_pkg\\.sv$")
-# Verilator finds a module by its name in these folders, so that it reads only what a top needs.
+# Verilator finds a module by its name in these folders, so that it reads only the modules that a top needs.
 set(RAYGATE_HW_FOLDERS ${RAYGATE_HW})
 list(TRANSFORM RAYGATE_HW_FOLDERS REPLACE "/[^/]*$" "")
 list(REMOVE_DUPLICATES RAYGATE_HW_FOLDERS)
 list(TRANSFORM RAYGATE_HW_FOLDERS PREPEND -I)
 
-# Every warning stops the build, UNOPTFLAT (a loop in the logic, simulated by repetition) too.
+# Every warning stops the build, including UNOPTFLAT (a loop in the logic, simulated by repetition).
 # Verilator 5.006 folds trees of single-bit operations wrongly: a netlist of fp_divider in bfloat16,
 # which Yosys evaluates rightly, gave wrong quotients. Without that pass the speed is the same.
 # Assertions stop a simulation that breaks them; they read the asynchronous reset in step with the clock
@@ -80,7 +80,7 @@ function(raygate_model NAME)
   endif()
   set(patches)
   set(options ${RAYGATE_VERILATED_OPTIONS})
-  if(MODEL_NETLIST)  # lint is for what people write
+  if(MODEL_NETLIST)  # lint is for hand-written code
     set(top_file ${MODEL_NETLIST})
     set(patches -Wno-lint -Wno-style -Wno-UNOPTFLAT +define+RAYGATE_NETLIST)
   elseif(NOT EXISTS ${CMAKE_SOURCE_DIR}/${top_file})
@@ -91,8 +91,8 @@ function(raygate_model NAME)
     set(MODEL_AS ${NAME})
   endif()
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.verilated)
-  # They include all that Verilator wrote, whose names only it knows; slow.cpp, of large models, what runs once: resets,
-  # the first evaluation. That is half of the code, and an eighth of the time to compile where nothing optimises it.
+  # all.cpp includes all files that Verilator wrote, whose names only it knows; for large models, slow.cpp has the code
+  # that runs once (resets, first evaluation): half of the code, but an eighth of the compile time without optimisation.
   set(all ${dir}/all.cpp ${dir}/slow.cpp)
   set_source_files_properties(${dir}/slow.cpp PROPERTIES COMPILE_OPTIONS -O0)
   list(TRANSFORM MODEL_PARAMETERS PREPEND -G)
@@ -135,7 +135,7 @@ function(raygate_model_file NAME SOURCE)
   raygate_model(${NAME} ${ARGN})
   add_library(${NAME}.so MODULE EXCLUDE_FROM_ALL ${CMAKE_SOURCE_DIR}/sim/models/${SOURCE})
   set_target_properties(${NAME} PROPERTIES EXCLUDE_FROM_ALL ON)
-  # Hidden: functions that another library could replace would not be inlined.
+  # Hidden symbols: functions that another library could replace would not be inlined.
   set_target_properties(${NAME} ${NAME}.so PROPERTIES
     POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   set_target_properties(${NAME}.so PROPERTIES PREFIX "" OUTPUT_NAME ${NAME} SUFFIX .so

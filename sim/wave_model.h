@@ -15,7 +15,7 @@ namespace raygate {
 template <class Top>
 class WaveModel : public Model<Top> {
  public:
-  /// Starts the file at `path`. Throws InputError where that can't be written.
+  /// Starts the file at `path`. Throws InputError if it cannot be written.
   void record(const std::string& path) {
     this->context().traceEverOn(true);
     this->context().timeunit(-9);
@@ -26,7 +26,7 @@ class WaveModel : public Model<Top> {
     if (!wave_->isOpen()) throw InputError(path + ": can't be written");
   }
 
-  /// As Model's. In the waveform inputs change 2 ns before the edge that takes them.
+  /// As Model::clock. In the waveform inputs change 2 ns before the edge that takes them.
   void clock() {
     if (wave_) {
       this->eval();

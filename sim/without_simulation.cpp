@@ -1,4 +1,4 @@
-// The simulated units' place in programs without them: what asks for one is told how to get it.
+// Stubs for programs without simulated units: making one throws InputError, with how to get it.
 #include <string>
 
 #include "host/base/input_error.h"

@@ -1,4 +1,4 @@
-"""What each adder, core and unit of hw/ costs, measured with Yosys, ABC, OpenSTA and nextpnr."""
+"""Measures area and delay of the adders, cores and units of hw/ with Yosys, ABC, OpenSTA and nextpnr."""
 
 import sys
 from types import TracebackType

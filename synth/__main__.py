@@ -9,7 +9,7 @@ from synth import catalogue, chosen, float_peers, grading, measure, prove, repor
 
 
 def arguments() -> argparse.Namespace:
-    """The command line."""
+    """Returns the parsed command line."""
     parser = argparse.ArgumentParser(prog="synth", description=(
         "Synthesises hw/ for standard cells and FPGAs. Without --top: the main designs, or everything, and a report "
         "in build/synth/. With it: one design, its area, delay, critical path and, for an adder, "
@@ -26,7 +26,7 @@ def arguments() -> argparse.Namespace:
 
 
 def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
-    """Measures one design and prints it; an adder beside the other kinds of its width."""
+    """Measures one design and prints the results; an adder's with those of the other kinds of its width."""
     cells = design.top == "adder"
     flows = (("cells", "kept", "default", "fast") if cells else
              ("blocks",) if design.clock and design.folder in ("exact", "ray_core") else
@@ -64,7 +64,7 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
 
 
 def run_all(given: argparse.Namespace, targets: measure.Targets) -> int:
-    """Measures the first designs, or with --all everything, prints its tables and writes the report."""
+    """Measures the main designs, or with --all every design, prints the tables and writes the report."""
     rows = catalogue.report_rows() if given.all else catalogue.first_rows()
     if given.top == "adders":
         rows = [row for row in catalogue.report_rows() if row.design.top == "adder"]

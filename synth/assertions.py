@@ -1,4 +1,4 @@
-"""Proofs of assertions: a module of proofs/, the RTL that it speaks of, and whether they hold."""
+"""Proves the assertions of modules of proofs/ about RTL."""
 
 import dataclasses
 import pathlib
@@ -14,8 +14,7 @@ PORT = re.compile(r"^  \\(\S+) +\S+ +\S+ +([01x]+)$", re.M)
 
 @dataclasses.dataclass(frozen=True)
 class Proof:
-    """Something that is shown; `quick`: in well under half a minute, so `make test` shows it too;
-    `long`: only where it is asked for."""
+    """A proof or a check; `quick`: takes well under half a minute, so that `make test` runs it, too; `long`: runs only on request."""
 
     name: str
     claim: str
@@ -26,18 +25,18 @@ class Proof:
 
 
 def rtl(core: str) -> list[pathlib.Path]:
-    """The files of a core of hw/."""
+    """Returns the files of a core of hw/."""
     return catalogue.Design("", "", core).sources()
 
 
-Prepare = Callable[[list[pathlib.Path]], str]  # of the RTL, the commands of Yosys that make what a proof instantiates
+Prepare = Callable[[list[pathlib.Path]], str]  # from the RTL, Yosys's commands that make the module which a proof instantiates
 
 
 def opened(name: str, wires: str, memories: str = "", **parameters: object) -> Prepare:
-    """The module opened_NAME is module `name`, flat, with inner wires as outputs, for invariants speak of what is inside.
+    """Makes module opened_NAME of module `name`: flat, with inner wires as outputs, as invariants refer to them.
 
-    `wires`: their names, in Yosys's patterns. `memories`: name, depth and width of each: all its words are one output, word 0
-    lowest, of its name without generate blocks and without the `ram` that it may be in.
+    `wires`: their names, in Yosys's patterns. `memories`: name, depth and width of each: all its words become one output, word 0
+    lowest, named like the memory without generate blocks and without the `ram` around it.
     """
     words = memories.split()
     lines = ["flatten -noscopeinfo", f"rename -top opened_{name}", f"cd opened_{name}"]
@@ -54,14 +53,14 @@ def opened(name: str, wires: str, memories: str = "", **parameters: object) -> P
 def holds(top: str, method: str = "SAT", sources: list[pathlib.Path] | None = None,
           prepare: Prepare | None = None, parameters: tuple[tuple[str, object], ...] = (), steps: int = 0,
           reach: int = 0, beside: tuple[str, ...] = (), name: str = "") -> tuple[dict, bool]:
-    """Proves the assertions of proofs/<top>.sv; raises Refuted or ToolFailed where one does not hold, where there
-    is none, and where what is assumed leaves a `cover` out of reach.
+    """Proves the assertions of proofs/<top>.sv; raises Refuted or ToolFailed if one does not hold, if there is
+    none, or if the assumptions leave a `cover` out of reach.
 
-    `method`: "SAT" (Yosys's) or "Bitwuzla". `sources`: the RTL, what is named of hw/arith unless said.
-    `prepare`: makes a module of it first. `beside`: files of `sources`, by name, whose modules the proof itself has beside
-    that one.
-    `steps`: 0 for combinational ones; else proven for that many clocks from reset and, where they
-    held for so many, for the next one. `reach`: clocks to reach covers in, `steps` unless said.
+    `method`: "SAT" (Yosys's) or "Bitwuzla". `sources`: the RTL, by default the modules of hw/arith that are used.
+    `prepare`: makes a module of it first. `beside`: files of `sources`, by name, whose modules the proof itself instantiates
+    beside that module.
+    `steps`: 0 for combinational assertions; else they are proven for that many clocks from reset and for the
+    clock after any `steps` clocks in which they held. `reach`: clocks to reach covers in, by default `steps`.
     """
     folder = store.OUT / "proofs" / (name or top)
     own = PROOFS / f"{top}.sv"

@@ -15,11 +15,11 @@ from synth import catalogue, cores, fpga, store, tools
 class Board(catalogue.Design):
     """A board: its top is boards/NAME.sv."""
 
-    holds: str = ""  # the design of the catalogue that is on it
-    device: catalogue.Fpga = catalogue.ECP5_LUT4S  # its wanted_mhz is what the top makes of the board's oscillator
+    holds: str = ""  # the catalogue's design on the board
+    device: catalogue.Fpga = catalogue.ECP5_LUT4S  # its wanted_mhz is the clock that the top derives from the oscillator
 
     def sources(self, structural: bool = False) -> list[pathlib.Path]:
-        """RTL, the top last."""
+        """Returns the RTL files, the top last."""
         return cores.used(self.top, [*cores.files(self.folder), tools.ROOT / "synth" / "boards" / f"{self.name}.sv"])
 
 
@@ -29,7 +29,7 @@ BOARDS = [Board("ulx3s", "ulx3s", "board", clock="clk_25mhz", holds="small_core"
 
 
 def bitstream(board: Board, seed: int) -> pathlib.Path:
-    """The file, from the repository's root. Raises ToolFailed where the board misses its clock."""
+    """Makes the bitstream and returns its path from the repository's root. Raises ToolFailed if the board misses its clock."""
     device = dataclasses.replace(board.device, seeds=(seed,))
     got, _ = fpga.place(board, device)
     print(f"{got['mhz']} MHz, {got['luts']} LUTs, from {got['from']} to {got['to']}")
@@ -45,7 +45,7 @@ def bitstream(board: Board, seed: int) -> pathlib.Path:
 
 @tools.command("fpga")
 def main() -> int:
-    """1 where a clock is missed or a tool fails, 2 for what the user can mend."""
+    """Runs the command line. Returns 1 if a clock is missed or a tool fails, 2 for errors that the user can correct."""
     parser = argparse.ArgumentParser(prog="synth.board", description="Makes a board's bitstream.")
     parser.add_argument("top", help="the design on the board")
     parser.add_argument("board")

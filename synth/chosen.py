@@ -1,4 +1,4 @@
-"""One design of hw/, as a command line describes it."""
+"""Reads one design of hw/ from a command line."""
 
 import argparse
 import re
@@ -9,7 +9,7 @@ from synth import catalogue
 
 
 def whole(least: int, most: int) -> Callable[[str], int]:
-    """The `type` of an option: a whole number."""
+    """Returns the `type` of an option: a whole number from `least` to `most`."""
     def checked(text: str) -> int:
         if not re.fullmatch(r"\d+", text) or not least <= int(text) <= most:
             raise argparse.ArgumentTypeError(f"expected a whole number from {least} to {most}, got {text!r}")
@@ -18,12 +18,12 @@ def whole(least: int, most: int) -> Callable[[str], int]:
 
 
 def whole_numbers(text: str) -> list[int]:
-    """The same of several with commas between."""
+    """The `type` of an option: whole numbers from 1 to 255 with commas between."""
     return [whole(1, 255)(number) for number in text.split(",")]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options that `design` reads."""
+    """Adds the options that `design` reads."""
     parser.add_argument("--adder", default="", help="ripple, uniform, graded, prefix or behavioural")
     parser.add_argument("--width", type=whole(1, catalogue.MOST_BITS), help="bits of an adder or a multiplier")
     parser.add_argument("--groups", type=whole_numbers, help="carry-select groups, least significant first: 4,5,7,...")
@@ -34,14 +34,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
-    """The command line, whose options may be in capitals, as make's variables are. A wrong value is told in one line, without
-    all options."""
+    """Parses the command line, whose options may be in capitals, like make's variables. Reports a wrong value in one line, without all
+    options."""
     parser.print_usage = lambda *_: None
     return parser.parse_args([re.sub("^--[A-Z-]+", lambda name: name[0].lower(), word) for word in sys.argv[1:]])
 
 
 def design(given: argparse.Namespace) -> catalogue.Design:
-    """The design that `given.top` and the options describe."""
+    """Returns the design that `given.top` and the options describe."""
     parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width, "Exact": given.exact}
     kind = given.adder or ("graded" if given.groups else "")
     kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]

@@ -1,8 +1,8 @@
-"""Reads what hardware there is from hw/*/*.core: FuseSoC's format (CAPI2), and the only list of files.
+"""Reads the hardware's lists of files, hw/*/*.core, in FuseSoC's format (CAPI2). There is no other list.
 
-`python3 -m synth.cores [CORE ...]`: the files of these cores (hit_test, ...; all if none) and of those
-that they depend on, one a line, in the order to compile them: a core after those that it uses, its
-packages first. Exit status 2 where a list and its folder disagree.
+`python3 -m synth.cores [CORE ...]` prints the files of these cores (hit_test, ...; all if none) and of the
+cores that they depend on, one a line, in the order to compile them: a core after those that it uses, its
+packages first. Exit status 2 if a list and its folder disagree.
 """
 
 import pathlib
@@ -13,25 +13,25 @@ HW = pathlib.Path(__file__).resolve().parent.parent / "hw"
 
 
 def names(hw: pathlib.Path = HW) -> list[str]:
-    """All cores, each after those that it depends on."""
+    """Returns all cores, each after those that it depends on."""
     return _ordered(sorted(file.stem for file in hw.glob("*/*.core")), hw)
 
 
-# A folder: its files are taken in place of hw/'s of the same names (brought.py).
+# A folder whose files replace hw/'s of the same names (brought.py).
 replaced: pathlib.Path | None = None
 
 
 def files(core: str, hw: pathlib.Path = HW) -> list[pathlib.Path]:
-    """The files of `core` and of all that it depends on, in the order to compile them.
+    """Returns the files of `core` and of all cores that it depends on, in the order to compile them.
 
-    Raises ValueError where a list names a file that is not there, or leaves one out that is.
+    Raises ValueError if a list names a file that does not exist, or omits one that does.
     """
     found = [file for name in _ordered([core], hw) for file in _own(name, hw)]
     return [replaced / file.name if replaced and (replaced / file.name).exists() else file for file in found]
 
 
 def used(top: str, among: list[pathlib.Path]) -> list[pathlib.Path]:
-    """Those of `among` that module `top` needs: its own file and, again and again, those named in it."""
+    """Returns the files of `among` that module `top` needs: its own and, recursively, those of modules named in them."""
     at = {file.stem: file for file in among}
     needed, open_ends = set(), {top} & at.keys()
     while open_ends:
@@ -66,7 +66,7 @@ def _ordered(cores: list[str], hw: pathlib.Path) -> list[str]:
 
 
 def main() -> int:
-    """Prints the files, relative to the repository's root."""
+    """Runs the command line: prints the files, relative to the repository's root."""
     try:
         found = dict.fromkeys(file for core in sys.argv[1:] or names() for file in files(core))
     except ValueError as error:

@@ -1,9 +1,9 @@
 """Writes hw/modules.md, the table of modules, and the tables of pages that show published CSV files.
 
-`python3 -m synth.datasheet` writes them; with `--check` it changes nothing, and its exit status is 1 where a page or what is made
-of the registers' page is out of date, or where the example of hw/README.md does not pass Verilator.
+`python3 -m synth.datasheet` writes them; with `--check` it changes nothing, and its exit status is 1 if a page or a file generated
+from registers.md is out of date, or if the example of hw/README.md does not pass Verilator.
 
-A module's row: what its header says first, latency, throughput, area and delay. For the registers' files see `synth.registers`.
+A module's row: the first sentence of its header, latency, throughput, area and delay. For the registers' files see `synth.registers`.
 """
 
 import difflib
@@ -14,7 +14,7 @@ import sys
 from synth import catalogue, cores, measure, registers, store, tables, tools
 
 PAGE = cores.HW / "modules.md"
-FLOWS = {"arith": "fast", "fp": "fast", "hit_test": "parts"}  # of a folder's modules; else `blocks`
+FLOWS = {"arith": "fast", "fp": "fast", "hit_test": "parts"}  # by folder; else `blocks`
 WORDS = 12  # of a module's description, at most
 INTRO = """\
 # Modules
@@ -26,19 +26,19 @@ the clocks depend on memory, the host or other rays.
 
 
 def header(text: str) -> str:
-    """The comment that a file begins with, as one text with a newline between paragraphs."""
+    """Returns the comment at the beginning of a file as one text, with a newline between paragraphs."""
     lines = [line[2:].strip() for line in re.match(r"(?://.*\n)*", text)[0].splitlines()]
     return re.sub(r"\s*\n\s*\n\s*|(?<=\S)\n(?=\S)",
                   lambda gap: " " if gap[0] == "\n" else "\n", "\n".join(lines)).strip()
 
 
 def sentences(text: str) -> list[str]:
-    """Its sentences, without the full stop; the one in `I . N` ends none."""
+    """Returns the sentences of a text, without full stops; the one in `I . N` ends no sentence."""
     return [part.strip() for part in re.split(r"(?<=[^\s.])\.(?=\s|$)|\n", text) if part.strip()]
 
 
 def stated(said: list[str]) -> list[str]:
-    """What a module is, its latency in clocks and its throughput, as its header's sentences have them."""
+    """Returns a module's description, latency in clocks and throughput, from the sentences of its header."""
     def after(word: str) -> str:
         return next((re.split(r"[:;(]", part.removeprefix(f"{word}: "))[0].strip() for part in said if part.startswith(f"{word}: ")), "")
     what = said[0] if len(said[0].split()) <= WORDS else said[0].partition(": ")[0]
@@ -47,13 +47,13 @@ def stated(said: list[str]) -> list[str]:
 
 
 def modules() -> dict[str, dict[str, pathlib.Path]]:
-    """The file of each module, by folder and name."""
+    """Returns the file of each module, by folder and name."""
     return {core: {file.stem: file for file in cores.files(core) if file.parent.name == core and not file.stem.endswith("_pkg")}
             for core in cores.names()}
 
 
 def page(figures: dict[str, list[str]]) -> str:
-    """PAGE; `figures`: the last columns of a module's row."""
+    """Returns the text of PAGE; `figures`: the last columns of each module's row."""
     parts = [INTRO]
     for core, files in modules().items():
         parts += [f"## {core}\n", tables.page(["module", "what it is", "latency, clocks", "throughput", "um2", "ns", "bits"],
@@ -62,12 +62,12 @@ def page(figures: dict[str, list[str]]) -> str:
 
 
 def published(text: str) -> dict[str, list[str]]:
-    """The figures in a page that `page` wrote."""
+    """Returns the figures in a page that `page` wrote, by module."""
     return {row[1]: row[-4:-1] for row in (line.split("|") for line in text.splitlines() if line.startswith("|"))}
 
 
 def figures() -> dict[str, list[str]]:
-    """Area, slowest path and bits of memory of each module; what was measured before is not measured again."""
+    """Returns area, slowest path and bits of memory of each module; what was measured before is not measured again."""
     library = catalogue.LIBRARIES[0]
     rows = [catalogue.Row(core, catalogue.design(name), {library.name: (FLOWS.get(core, "blocks"),)})
             for core, files in modules().items() for name in files]
@@ -80,7 +80,7 @@ def figures() -> dict[str, list[str]]:
 
 
 def lint(text: str) -> None:
-    """The module of the text's first block of SystemVerilog passes Verilator; raises ToolFailed where it doesn't."""
+    """Checks the first module of SystemVerilog in a page with Verilator. Raises ToolFailed if it does not pass."""
     module, top = re.search(r"```systemverilog\n(module (\w+).*?)```", text, re.S).groups()
     file = tools.ROOT / "build" / "datasheet" / "example.sv"
     store.replace(file, module)
@@ -89,20 +89,20 @@ def lint(text: str) -> None:
 
 
 def made(figures: dict[str, list[str]]) -> dict[pathlib.Path, str]:
-    """All that is made of other files, by file."""
+    """Returns the contents of all generated files, by file."""
     results = tables.RESULTS / "README.md"
     return registers.made(registers.PAGE.read_text()) | {PAGE: page(figures), results: tables.with_results(results.read_text())}
 
 
 def write() -> None:
-    """Writes the files that `made` has."""
+    """Writes the files of `made`."""
     print(f"datasheet: measuring {sum(map(len, modules().values()))} modules: some twenty minutes of a processor the first time", file=sys.stderr, flush=True)
     for file, text in made(figures()).items():
         file.write_text(text)
 
 
 def check() -> list[str]:
-    """What is out of date."""
+    """Returns what is out of date, as lines of a diff. Raises ToolFailed as `lint` does."""
     lines = []
     for file, new in made(published(PAGE.read_text())).items():
         lines += difflib.unified_diff(file.read_text().splitlines(), new.splitlines(),

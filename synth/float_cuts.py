@@ -1,7 +1,7 @@
-"""The float cores with all their registers against those without: the same results, so much later.
+"""Proves that the float cores give the same results with all their registers as without, only later.
 
-From whatever state, and whatever comes before and after: what goes in with clock 0 comes out in clock
-`latency`. The rounding mode stays the same on the way.
+From any state, and with any operands before and after: the result of the operands of clock 0 comes out in clock
+`latency`. The rounding mode stays the same meanwhile.
 """
 
 import dataclasses
@@ -30,8 +30,7 @@ CUTS = [
 
 
 def question(cut: Cut, latency: int, stages: str, uncut: str) -> str:
-    """What can be, and the claim about it: ports of state k have _k behind their names, those of the
-    module without registers nothing."""
+    """Returns the model and the claim: ports of state k have the suffix _k, those of the module without registers none."""
     named, wires = smt.ports(uncut, "uncut")
     modes = [wire for wire in wires if wire in ("rounding_mode_i", "tininess_after_i")]
     enters = {wire: word(uncut, wire) for wire in wires if wire.endswith("_i")}
@@ -48,14 +47,14 @@ def question(cut: Cut, latency: int, stages: str, uncut: str) -> str:
 
 
 def word(model: str, wire: str) -> str:
-    """A port's term, a bit as a word of one."""
+    """Returns a port's term; a bit becomes a word of one bit."""
     is_bit = re.search(rf"\(define-fun \|\S+_n {wire}\| \(\(state \S+\)\) Bool", model)
     return f"(ite {wire} #b1 #b0)" if is_bit else wire
 
 
 def joints(cut: Cut, stages: str, uncut: str) -> list[str]:
-    """Equalities to be proven one after the other, each from those before: what is behind each row of
-    the divider's. A solver that is asked for the result alone does not end."""
+    """Returns equalities to be proven in this order, each from those before: of the registers after each row of the divider. A solver that
+    gets only the claim about the result does not end."""
     found: dict[int, list[str]] = {}
     for wire, row in re.findall(rf"\(define-fun \|{cut.top}_n (\S+gen_row\[(\d+)\]\.\w+_q)\|", stages):
         inside = f"uncut_n {wire}|"
@@ -66,7 +65,7 @@ def joints(cut: Cut, stages: str, uncut: str) -> list[str]:
 
 
 def agree(cut: Cut, name: str, arithmetic: str) -> tuple[dict, bool]:
-    """Proves that a core gives the same with its registers; raises ToolFailed where it does not."""
+    """Proves that a core gives the same results with its registers; raises ToolFailed if it does not."""
     exp, frac, *_ = FORMATS[name]
     folder = store.OUT / "proofs" / f"float.cuts.{cut.name}.{name}.{arithmetic}"
     uncut = FloatProof(cut.uncut, name, arithmetic)

@@ -1,4 +1,4 @@
-"""Other people's binary32 cores beside ours, by the same flows: `make synth TOP=float_peers`.
+"""Compares other projects' binary32 cores with ours in the same flows: `make synth TOP=float_peers`.
 
 HardFloat is in the Verilog of a Rocket core, cvfpu and T-Head's divider in the sources of CV32E40P; both are wheels of PyPI.
 """
@@ -18,7 +18,7 @@ FOLDER = store.OUT / "float_peers"
 WRAPPERS = tools.FLOWS / "float_peers.sv"
 BENCH = tools.FLOWS / "float_peers.cpp"
 OPERATIONS = {"add": np.add, "multiply": np.multiply, "divide": np.divide}
-# Whose, operation, wrapper, its parameter Does, what it is, and its stages of registers; None: iterative.
+# Origin, operation, wrapper, its parameter Does, description, and its stages of registers (None: iterative).
 CORES = (
     ("ours", "add", "our_add", None, "", 0),
     ("HardFloat", "add", "hardfloat_multiply_add", 1, "multiply-add, times 1", 2),
@@ -44,7 +44,7 @@ class PeerDesign(catalogue.Design):
 
 
 def fetch() -> pathlib.Path:
-    """The unpacked wheels. Raises ToolFailed."""
+    """Downloads and unpacks the wheels; returns their folder. Raises ToolFailed."""
     wheels = FOLDER / "wheels"
     pins = (tools.ROOT / "synth" / "float_peers.txt").read_text()
     if not (FOLDER / "pins").exists() or (FOLDER / "pins").read_text() != pins:
@@ -59,7 +59,7 @@ def fetch() -> pathlib.Path:
 
 
 def modules(text: str, tops: list[str]) -> str:
-    """The Verilog of `tops` and of all modules in them."""
+    """Returns the Verilog of `tops` and of all modules in them."""
     bodies = {match[1]: match[0] for match in re.finditer(r"^module (\w+)\(.*?^endmodule$", text, re.M | re.S)}
     wanted: dict[str, None] = {}
     waiting = list(tops)
@@ -72,7 +72,7 @@ def modules(text: str, tops: list[str]) -> str:
 
 
 def sources(wrapper: str) -> list[pathlib.Path]:
-    """The files of a wrapper's core, packages first."""
+    """Returns the files of a wrapper's core, packages first."""
     if wrapper.startswith("our_"):
         return cores.used({"our_add": "fp_adder", "our_multiply": "fp_multiplier", "our_divide": "fp_divider"}[wrapper], cores.files("fp"))
     if wrapper.startswith("hardfloat_"):
@@ -92,15 +92,15 @@ def sources(wrapper: str) -> list[pathlib.Path]:
 
 
 def wrapped(wrapper: str) -> pathlib.Path:
-    """float_peers.sv without the wrappers of other cores."""
+    """Writes float_peers.sv without the wrappers of other cores; returns the file."""
     kept = FOLDER / f"{wrapper}.sv"
     store.replace(kept, re.sub(rf"^module (?!{wrapper}\b).*?^endmodule$", "", WRAPPERS.read_text(), flags=re.M | re.S))
     return kept
 
 
 def vectors(operation: str, count: int) -> pathlib.Path:
-    """`count` operations with the results of this processor: of any bits, of exponents near each other, and of results about
-    the smallest normal number, a third each."""
+    """Writes `count` operations with the results of this processor; returns the file. Operands have any bits, exponents near each other, or
+    results near the smallest normal number, a third each."""
     random = np.random.default_rng(1)
     a, b = random.integers(0, 2**32, (2, count), np.uint32)
     exponent, off, third = (a >> 23 & 255).astype(int), random.integers(-3, 4, count), np.arange(count) % 3
@@ -117,7 +117,7 @@ def vectors(operation: str, count: int) -> pathlib.Path:
 
 
 def simulate(design: PeerDesign, operation: str) -> dict:
-    """Clocks and instructions of an operation in simulation, and how many of 20,000 results differ."""
+    """Returns clocks and instructions per operation in simulation, and how many of 20,000 results differ."""
     folder = FOLDER / "models" / design.name
     wanted = store.key([*design.sources(), BENCH], design.facts, tools.version("verilator"))
 

@@ -1,4 +1,4 @@
-"""The float cores held against IEEE 754, for every operand: the queries, and the solver's answers.
+"""Proves the float cores against IEEE 754 for all operands: the queries, and the solver's answers.
 
 A query is one file of SMT-LIB, build/synth/proofs/float.NAME/query.smt2, that any solver reads:
 the specification (proofs/float/*.smt2), the core as Yosys writes it, and a claim
@@ -16,15 +16,15 @@ from synth import cores, smt, store, tools, yosys
 
 FLOAT = pathlib.Path(__file__).resolve().parent / "proofs" / "float"
 
-# Exponent and fraction widths of a format, and of a wider one that Bitwuzla knows: the next.
+# Exponent and fraction widths of a format, and of the next wider format that Bitwuzla knows.
 FORMATS = {"binary16": (5, 10, 8, 23), "binary32": (8, 23, 11, 52)}
-# Formats that it does not know: their numbers are held in the format of this fraction width, and
-# NARROW_CLAIMS are read instead of the claims of that name.
+# Formats that Bitwuzla does not know: their numbers are held in the format of this fraction width, and NARROW_CLAIMS have files of their
+# own for them (claims/*_narrow.smt2).
 NARROW_FORMATS = {"bfloat16": (8, 7, 11, 52)}
 HELD_FRACTION = {"bfloat16": 23}
 NARROW_CLAIMS = ("add", "multiply", "divide")
 
-# What a core is made of, as its parameters.
+# Kinds of arithmetic, as parameters of a core.
 ARITHMETIC = {
     "ripple": "Arith 2", "uniform": "Arith 3", "graded": "Arith 0", "prefix": "Arith 4", "structural": "Arith 0",
     "behavioural": "Arith 1", "": ""}
@@ -33,7 +33,7 @@ ADDERS = ["ripple", "uniform", "graded", "prefix"]  # the structural kinds
 
 @dataclasses.dataclass(frozen=True)
 class Operation:
-    """What is claimed of which module, by which specification, around which contracts.
+    """A claim about a module, with its specification and the contracts in it.
 
     `top`: "" for a claim about the specification alone. `parameters`: the module's.
     """
@@ -88,7 +88,7 @@ class FloatProof:
 
     @property
     def name(self) -> str:
-        """Unique; of the folder too."""
+        """Unique; the folder's name, too."""
         bits = self.quotient_bits
         parts = (self.operation, self.format, self.arithmetic, f"{bits}_bits" if bits else "")
         return ".".join(filter(None, parts))
@@ -100,12 +100,12 @@ class FloatProof:
 
     @property
     def parameters(self) -> str:
-        """The module's, "Name value ..."."""
+        """The module's parameters, "Name value ..."."""
         fixed = string.Template(OPERATIONS[self.operation].parameters).substitute(self.numbers())
         return f"{fixed} {ARITHMETIC[self.arithmetic]}"
 
     def numbers(self) -> dict[str, object]:
-        """What the specifications' placeholders stand for."""
+        """Returns the values of the specifications' placeholders."""
         exp, frac, wide_exp, wide_frac = (FORMATS | NARROW_FORMATS)[self.format]
         held_frac = HELD_FRACTION.get(self.format, frac)
         width = 1 + exp + frac
@@ -115,14 +115,14 @@ class FloatProof:
         residual = frac + 2
 
         def wide(significand: int, exponent: int) -> str:
-            """significand * 2**exponent as a Wide."""
+            """Returns significand * 2**exponent as a Wide."""
             top = significand.bit_length() - 1
             fraction = (significand << (wide_frac - top)) - (1 << wide_frac)
             return (f"(fp #b0 #b{exponent + top + wide_bias:0{wide_exp}b} "
                     f"#b{fraction:0{wide_frac}b})")
 
         def power(exponent: int) -> str:
-            """The number before 2**exponent, the middle between the two, and 2**exponent."""
+            """Returns the number before 2**exponent, the middle between the two, and 2**exponent."""
             one = 2 ** (frac + 2)
             return " ".join(wide(n, exponent - frac - 2) for n in (one - 2, one - 1, one))
 
@@ -131,7 +131,7 @@ class FloatProof:
             for row in range(1, rows + 1) for wire in ("sum", "carry", "divisor"))
 
         def digits(first: str, sign: str) -> str:
-            """The digits of a sign, the first one on top."""
+            """Returns the digits of a sign, the first digit on top."""
             return functools.reduce(lambda upper, row: f"(concat {upper} free_{sign}_o_{row})",
                                     range(1, rows + 1), first)
 
@@ -170,7 +170,7 @@ class FloatProof:
         }
 
     def files(self) -> list[pathlib.Path]:
-        """The specification, and behind it the claim."""
+        """Returns the files of the specification, then that of the claim."""
         parts = OPERATIONS[self.operation].specification
         claim = self.operation
         if self.is_narrow:
@@ -183,12 +183,12 @@ class FloatProof:
         return self.format in NARROW_FORMATS and self.operation in NARROW_CLAIMS
 
     def texts(self) -> list[str]:
-        """The contents of `files`, numbers in place of placeholders."""
+        """Returns the contents of `files`, with numbers in place of placeholders."""
         numbers = self.numbers()
         return [string.Template(file.read_text()).substitute(numbers) for file in self.files()]
 
     def sources(self) -> list[pathlib.Path]:
-        """The RTL, contracts in place of the modules that they stand for."""
+        """Returns the RTL, with contracts in place of the modules that they replace."""
         contracts = OPERATIONS[self.operation].contracts
         files = [file for file in cores.files("fp") if file.stem not in contracts]
         return files + [FLOAT / "contracts" / f"{module}.sv" for module in contracts]
@@ -215,7 +215,7 @@ PROOFS = [
 
 
 def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
-    """A query but for its last assertions, and the names of the module's ports."""
+    """Returns a query without its last assertions, and the names of the module's ports."""
     *specification, claim = one.texts()
     top = OPERATIONS[one.operation].top
     named, wires = smt.ports(model, top) if top else ("", [])
@@ -223,7 +223,7 @@ def query(one: FloatProof, model: str) -> tuple[str, list[str]]:
 
 
 def proven(one: FloatProof) -> tuple[dict, bool]:
-    """Proves a claim; raises ToolFailed, with the operands, where it does not hold."""
+    """Proves a claim; raises ToolFailed, with the operands, if it does not hold."""
     folder = store.OUT / "proofs" / f"float.{one.name}"
     wanted = store.key([*one.sources(), smt.FREE, FLOAT / "solve.py"],
                        yosys.version(), smt.version(), one.parameters, one.texts())
@@ -246,7 +246,7 @@ def proven(one: FloatProof) -> tuple[dict, bool]:
 
 
 def lemma(name: str) -> tuple[dict, bool]:
-    """Proves a lemma of numbers: z3 says "unsat", or "sat" where the question does."""
+    """Proves a lemma about numbers: z3 must answer "unsat", or "sat" where the question says so."""
     file = FLOAT / "lemmas" / f"{name}.smt2"
     folder = store.OUT / "proofs" / f"float.lemma.{name}"
 

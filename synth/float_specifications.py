@@ -1,4 +1,4 @@
-"""The specifications of the float cores (proofs/float/*.smt2) held against MPFR."""
+"""Checks the specifications of the float cores (proofs/float/*.smt2) against MPFR."""
 
 import string
 import struct
@@ -12,14 +12,14 @@ SPECIFICATIONS = [FloatProof(operation, name)
 VECTORS = 125_000  # for each of these
 BATCH = 5000  # evaluated in one query
 
-# What MPFR is asked of each: FloatOp of sim/fp/float_format.h, and `second` of vectors/.
+# The operations that MPFR computes for each: FloatOp of sim/fp/float_format.h, and `second` of vectors/.
 ASKED = {"add": {0: "false", 1: "true"}, "multiply": {2: "false"}, "divide": {3: "false"},
          "compare": {4: "false", 6: "true"}}
 CODES = {"binary16": ("<H", "<e", "<f", "<I"), "binary32": ("<I", "<f", "<d", "<Q")}
 
 
 def wide_word(word: int, name: str) -> str:
-    """The word of a number in the next wider format."""
+    """Returns the word of a number in the next wider format."""
     if name == "bfloat16":
         return wide_word(word << 16, "binary32")
     narrow, as_narrow, as_wide, wide = CODES[name]
@@ -29,8 +29,8 @@ def wide_word(word: int, name: str) -> str:
 
 
 def agrees_with_mpfr(one: FloatProof, count: int = VECTORS) -> tuple[dict, bool]:
-    """Evaluates a specification, by the solver, on `count` operations of which MPFR gives the
-    result; and sees that it refuses one of them with a bit of the result changed."""
+    """Evaluates a specification, by the solver, on `count` operations with MPFR's results, and checks that it refuses one of them with a
+    bit of the result changed."""
     folder = store.OUT / "proofs" / f"float.specification.{one.name}"
     vectors = FLOAT / "vectors" / f"{one.operation}{'_narrow' if one.is_narrow else ''}.smt2"
     numbers = one.numbers()

@@ -19,16 +19,16 @@ from synth import catalogue, runner, scripts, store, tables, tools, yosys
 from synth.catalogue import Design, Fpga
 
 
-MOST_PINS = 150  # what every package here has
+MOST_PINS = 150  # as many as every package here has
 
 
 def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
-    """LUTs, registers, multipliers, block RAMs, and the slowest path between registers as MHz: the median of the seeds."""
+    """Returns LUTs, registers, multipliers, block RAMs and MHz between registers, of the median seed; and whether all was kept."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     wanted = store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts,
                        inspect.getsource(registered), inspect.getsource(_map))
     netlist, mapped = store.cached(folder, wanted, lambda: step("mapping", folder / "yosys.log", lambda: _map(design, fpga, folder)))
-    # A placement is kept under the netlist's contents, so that RTL which makes the same one keeps it.
+    # A placement is kept under the netlist's contents, so that a change of the RTL that leaves the netlist alone keeps it.
     pins = [tools.ROOT / word for word in fpga.arguments if word.endswith(".lpf")]
     wanted = store.key(pins, netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz, inspect.getsource(_place))
     runs = [store.cached(folder / f"seed-{seed}", wanted,
@@ -38,13 +38,13 @@ def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
 
 
 def step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
-    """What `work` gives, after a line that says what has begun and where to watch it."""
+    """Returns the result of `work`, after printing what begins and where to watch it."""
     print(f"{what}: {log.relative_to(tools.ROOT)}", file=sys.stderr, flush=True)
     return work()
 
 
 def median(runs: list[dict]) -> dict:
-    """The run of the median clock rate."""
+    """Returns the run with the median clock rate."""
     return sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
 
 
@@ -60,7 +60,7 @@ def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
 
 
 def digest(netlist: pathlib.Path) -> str:
-    """Of what Yosys wrote, without the lines of RTL that it names."""
+    """Returns a hash of Yosys's netlist, without the lines of RTL that it names."""
     return hashlib.sha256(re.sub(r'"src": "[^"]*"', "", netlist.read_text()).encode()).hexdigest()
 
 
@@ -74,7 +74,7 @@ def _place(fpga: Fpga, folder: pathlib.Path, seed: int) -> dict:
 
 
 def reported(report: dict, fpga: Fpga) -> dict:
-    """Of nextpnr's report: cells, MHz of the fastest clock, or of `fpga`'s, and its slowest path."""
+    """Reads from nextpnr's report: cells, MHz of the fastest clock, or of `fpga.clock`, and its slowest path."""
     used = {name: count["used"] for name, count in report["utilization"].items() if count["used"]}
     counts = (used.get(cell, 0) for cell in fpga.cells)
     rates = [found["achieved"] for name, found in report["fmax"].items() if fpga.clock in name]
@@ -83,7 +83,7 @@ def reported(report: dict, fpga: Fpga) -> dict:
 
 
 def slowest_path(paths: list[dict], clock: str = "") -> dict:
-    """Where the slowest path between registers (of `clock`) begins and ends, and its ns in logic (registers included) and in wires."""
+    """Returns where the slowest path between registers (of `clock`) begins and ends, and its ns in logic (with registers) and in wires."""
     path = next(path["path"] for path in paths if path["from"] == path["to"] and clock in path["from"])
     ns = {kind: sum(step["delay"] for step in path if (step["type"] == "routing") == (kind == "wires"))
           for kind in ("logic", "wires")}
@@ -92,12 +92,12 @@ def slowest_path(paths: list[dict], clock: str = "") -> dict:
 
 
 def register(cell: str) -> str:
-    """What a register or DSP block that Yosys named holds: u_divider.norm_q of u_divider.norm_q_TRELLIS_FF_Q_7."""
+    """Returns the signal in a register or DSP block that Yosys named: u_divider.norm_q for u_divider.norm_q_TRELLIS_FF_Q_7."""
     return re.sub(r"_(TRELLIS_FF|SB_DFF|MULT18X18D|DP16KD|LUT4|CCU2C|PFUMX|L6MUX21).*", "", cell)
 
 
 def port_widths(top: str, netlist: dict) -> list[tuple[str, str, int]]:
-    """Direction, name and bits of each port of `top` in Yosys's JSON."""
+    """Returns direction, name and bits of each port of `top` in Yosys's JSON."""
     return [(body["direction"], port, len(body["bits"])) for port, body in netlist["modules"][top]["ports"].items()]
 
 
@@ -129,7 +129,7 @@ def registered(design: Design, ports: list[tuple[str, str, int]]) -> str:
 
 @tools.command("fpga")
 def main() -> int:
-    """Places the units, prints and keeps their table; 1 where one fails, 2 for what the user can mend."""
+    """Places the units, prints and keeps their table. Returns 1 if one fails, 2 for errors that the user can correct."""
     parser = argparse.ArgumentParser(prog="synth.fpga", description="Places and routes the units on FPGAs.")
     parser.add_argument("names", nargs="*", help="beginnings of units' names; all if none")
     parser.add_argument("--seeds", type=int, default=3, help="placements, of which the median counts "
@@ -161,7 +161,7 @@ def main() -> int:
 
 
 def period(top: str, clocks: str = "") -> int | None:
-    """Clocks a test: its parameter, or as the header of a unit's module has it."""
+    """Returns a unit's clocks per test: `clocks`, its parameter, if given, else as in the header of its module."""
     if clocks:
         return int(clocks)
     (file,) = catalogue.HW.glob(f"*/{top}.sv")
@@ -170,7 +170,7 @@ def period(top: str, clocks: str = "") -> int | None:
 
 
 def table(units: list[tuple[tuple, list[dict]]]) -> str:
-    """What units (of catalogue.fpga_units) take, and their clock rates over the seeds."""
+    """Returns the table of units (of catalogue.fpga_units): what they take, and their clock rates over the seeds."""
     heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "MHz (least to most)",
              "million tests/s"]
     rows = []
@@ -184,7 +184,7 @@ def table(units: list[tuple[tuple, list[dict]]]) -> str:
     return f"{tables.markdown(heads, rows)}\n{tables.measured('make fpga')}"
 
 
-# What a parameter makes of a unit, in words.
+# Parameters of units, in words.
 NAMES = {("QuotientBits", "21"): "21-bit quotients", ("Clocks", "11"): "small (a node and a triangle in 11 clocks)"}
 
 

@@ -1,4 +1,4 @@
-"""The paper's adders under its own delay model, and the best group widths under it, by dynamic programming, which is exact."""
+"""The paper's adders in its own delay model, and the optimal group widths in that model, by dynamic programming."""
 
 from synth import catalogue, structure, tables
 from synth.catalogue import Design
@@ -10,10 +10,10 @@ Grouping = tuple[int, ...]  # widths, least significant group first
 
 
 def best_by_model(width: int, counting: Counting) -> tuple[float, Grouping]:
-    """The least delay of the sum of `width` bits, in full-adder delays, and a grouping that has it.
+    """Returns the least delay of a sum of `width` bits, in full-adder delays, and a grouping that has it.
 
-    Groups add by ripple. Of several the one with the least hardware: the widest lowest group (which needs one sum alone), then
-    the fewest groups.
+    Groups add by ripple. Of several groupings, the one with the least hardware is returned: the widest lowest group (which
+    needs only one sum), then the fewest groups.
     """
     low, high = 0, 2 * width  # in half delays: every counting has steps of 1/2
     while low < high:
@@ -26,7 +26,7 @@ def best_by_model(width: int, counting: Counting) -> tuple[float, Grouping]:
 
 
 def _within(width: int, counting: Counting, limit: float) -> Grouping | None:
-    """The cheapest grouping whose sum bits all come by `limit`."""
+    """Returns the cheapest grouping whose sum bits all come by `limit`; None if there is none."""
     for first in range(min(width, int(limit)), 0, -1):
         # Position -> (earliest carry into it, groups below it), after n groups.
         carries: dict[int, tuple[float, Grouping]] = {first: (first, (first,))}
@@ -48,18 +48,18 @@ def _within(width: int, counting: Counting, limit: float) -> Grouping | None:
 
 
 def text_of(groups: Grouping) -> str:
-    """Widths, least significant first."""
+    """Returns the widths, least significant first, as text."""
     return ", ".join(map(str, groups))
 
 
 def graded(groups: Grouping, look_ahead: bool, width: int = WIDTH) -> Design:
-    """A carry-select adder of these groups."""
+    """Returns a carry-select adder of these groups."""
     return catalogue.design("adder", adder="graded", widths=list(groups), look_ahead=look_ahead,
                             Width=width)
 
 
 def model_table() -> str:
-    """The adders' delays under each counting, beside the paper's, and the best there is."""
+    """Returns a table of the adders' delays in each counting, beside the paper's, and the least possible ones."""
     optimum = best_by_model(WIDTH, structure.COUNTINGS[1])[1]
     rows = []
     for name, design, paper in [

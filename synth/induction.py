@@ -1,7 +1,7 @@
-"""What a module asserts, held against all that can come in: by induction over clocks, with Bitwuzla.
+"""Proves a module's assertions for all inputs, by induction over clocks, with Bitwuzla.
 
-The module is SMT-LIB as Yosys's `write_smt2 -stbv` writes it: a state, what may be its first one and its
-next one, and what of a state is assumed, asserted and covered.
+The module is SMT-LIB as Yosys's `write_smt2 -stbv` writes it: states, which of them may be first, which may
+follow which, and what is assumed, asserted and covered in a state.
 """
 
 import dataclasses
@@ -13,18 +13,18 @@ from synth import smt, tools
 
 @dataclasses.dataclass(frozen=True)
 class Model:
-    """A module of that kind, as text."""
+    """A module in that form, as text."""
 
     top: str
     text: str
 
     def listed(self, what: str) -> list[tuple[str, str]]:
-        """The numbers and names of its "assert" or "cover" statements; names and widths of "input", "wire"."""
+        """Returns the numbers and names of its "assert" or "cover" statements; names and widths of "input", "wire"."""
         return re.findall(rf"^; yosys-smt2-{what} (\S+) (.*)$", self.text, re.M)
 
     def functions(self) -> tuple[list[str], list[str]]:
-        """Declarations of the functions that contracts/functions.sv speaks of, and what holds of every `state`:
-        wire X_result is the function X of wire X_operands."""
+        """Returns declarations of the functions of contracts/functions.sv, and the equations for every `state`: wire X_result is the
+        function X of wire X_operands."""
         width = dict(self.listed("wire"))
         declared, equal = {}, []
         for result in width:
@@ -39,7 +39,7 @@ class Model:
         return list(declared.values()), equal
 
     def clocks(self, count: int) -> str:
-        """So many states, each the next of the one before; every assumption holds in each."""
+        """Returns `count` states, each the successor of the one before; every assumption holds in each."""
         declared, equal = self.functions()
         lines = ["(set-logic QF_UFBV)", self.text, *declared,
                  f"(define-fun functions ((state |{self.top}_s|)) Bool (and true true {' '.join(equal)}))"]
@@ -49,11 +49,11 @@ class Model:
         return "\n".join(lines) + "\n"
 
     def first(self) -> str:
-        """The state is one after power-up."""
+        """Returns the assertion that the first state is one after power-up."""
         return f"(assert (|{self.top}_i| s0))\n"
 
     def always(self, clocks: range) -> str:
-        """All assertions hold in these states."""
+        """Returns the term that all assertions hold in these states."""
         return "(and true " + " ".join(f"(|{self.top}_a| s{k})" for k in clocks) + ")"
 
 
@@ -75,10 +75,10 @@ def _refuse(model: Model, file: pathlib.Path, text: str, clocks: range) -> None:
 
 
 def holds(top: str, smt2: pathlib.Path, steps: int, reach: int) -> None:
-    """Raises Refuted or ToolFailed unless every assertion holds: in `steps` clocks from power-up on, and after any
-    so many in which they held; and unless there are such clocks at all, and each `cover` is reached within
-    `reach` of them. A module that assumes something must cover something: what contradicts itself would
-    hold of everything.
+    """Raises Refuted or ToolFailed unless every assertion holds in the first `steps` clocks from power-up, and after any
+    `steps` clocks in which all held; and unless such clocks exist, and each `cover` is reached within `reach`
+    clocks. A module that assumes something must cover something, as contradictory assumptions would prove
+    anything.
     `steps` = 0: it has no registers."""
     model = Model(top, smt2.read_text())
     if not model.listed("assert"):

@@ -1,7 +1,7 @@
-"""A page for a lecture: each kind of adder, a Booth multiplication and a float addition, drawn from their elaborated netlists with
-chosen operands in them.
+"""Makes a page for a lecture: each kind of adder, a Booth multiplication and a float addition, drawn from their elaborated netlists,
+with the values for chosen operands.
 
-`python3 -m synth.lecture`: see `--help`. Every value on the page is the netlist's (structure), none is computed beside it.
+`python3 -m synth.lecture`: see `--help`. All values of signals on the page come from the netlists (structure.evaluate).
 """
 
 import argparse
@@ -17,7 +17,7 @@ from synth.structure import evaluate, word
 
 MOST_BITS = 16  # wider adders do not fit on a page
 
-# What a cell counts on a path, in full-adder delays: a full adder's sum is two gates deep.
+# Delays of cells and of a gate, in full-adder delays: a full adder's sum is two gates deep.
 DELAYS = {"FULL_ADDER": 1.0, "MULTIPLEXER": 1.0}
 GATE = 0.5
 SYMBOLS = {"FULL_ADDER": "FA", "MULTIPLEXER": "mux", "$_AND_": "and", "$_OR_": "or", "$_XOR_": "xor", "$_NOT_": "not"}
@@ -32,7 +32,7 @@ KINDS = {
 
 
 class AdderDrawing:
-    """Where an adder's cells are on the page: columns by the highest operand bit that a cell depends on, rows by time."""
+    """Positions of an adder's cells on the page: columns by the highest operand bit that a cell depends on, rows by time."""
 
     def __init__(self, module: dict) -> None:
         self.module = module
@@ -40,7 +40,7 @@ class AdderDrawing:
         self.arrival, self.slowest = structure.arrivals(module, DELAYS, GATE)
         self.cells = list(structure.in_order(module))
         slots = collections.Counter()
-        self.at = []  # of each cell: column, row, place in that
+        self.at = []  # of each cell: column, arrival time, place among the cells there
         for cell in self.cells:
             outs = structure.outputs(cell)
             column, arrival = max(self.top.get(bit, 0) for bit in structure.inputs(cell)), self.arrival[outs[0]]
@@ -55,7 +55,7 @@ class AdderDrawing:
         self.middle = {place: self.left[place] + SLOT * most[place] // 2 for place in range(width)}
 
     def on_slowest_path(self) -> set[int]:
-        """The cells, by identity, that one longest path goes through."""
+        """Returns the cells, by identity, on one of the longest paths."""
         outputs = [bit for port in ("sum_o", "carry_o") for bit in self.module["ports"][port]["bits"]]
         bit, found = max(outputs, key=lambda bit: self.arrival.get(bit, 0.0)), set()
         while bit in self.slowest:
@@ -65,7 +65,7 @@ class AdderDrawing:
         return found
 
     def svg(self, values: dict[object, int]) -> str:
-        """The drawing with `values` (evaluate) on its wires."""
+        """Returns the drawing as SVG, with `values`, as returned by evaluate(), on its wires."""
         ports = self.module["ports"]
         below = MARGIN + 44 + ROW * len(self.rows)
         places = {}  # bit -> where its wire begins
@@ -105,32 +105,32 @@ class AdderDrawing:
 
 
 def text(x: float, y: float, words: str, kind: str) -> str:
-    """Centred at x."""
+    """Returns a text that is centred at x."""
     return f'<text class="{kind}" x="{x}" y="{y}">{html.escape(words)}</text>'
 
 
 def wire(begin: tuple[float, float], end: tuple[float, float], value: int) -> str:
-    """A line that leaves and arrives upright."""
+    """Returns a line that begins and ends vertically."""
     (x0, y0), (x1, y1) = begin, end
     bend = min(24.0, (y1 - y0) / 2)
     return f'<path class="w{value}" d="M{x0} {y0}C{x0} {y0 + bend} {x1} {y1 - bend} {x1} {y1}"/>'
 
 
 def binary(number: int, width: int, marked: range = range(0)) -> str:
-    """In groups of four bits, from the lowest; the bits of places `marked` are in <b>."""
+    """Returns a number in groups of four bits, from the lowest; the bits of places `marked` are in <b>."""
     bits = [f"<b>{number >> place & 1}</b>" if place in marked else f"{number >> place & 1}" for place in range(width)]
     groups = ["".join(reversed(bits[k:k + 4])) for k in range(0, width, 4)]
     return "\u2009".join(reversed(groups)).replace("</b><b>", "")
 
 
 def table(header: list[str], rows: list[list[str]]) -> str:
-    """Of cells that are HTML already."""
+    """Returns a table whose cells are HTML already."""
     line = lambda tag, cells: "<tr>" + "".join(f"<{tag}>{cell}</{tag}>" for cell in cells) + "</tr>"  # noqa: E731
     return "<table>" + line("th", header) + "".join(line("td", row) for row in rows) + "</table>"
 
 
 def adder_section(kind: str, given: argparse.Namespace) -> str:
-    """One kind of adder with the operands in it."""
+    """Returns the section of one kind of adder, with the operands in it."""
     design = catalogue.design("adder", adder=kind, widths=given.groups if kind == "graded" else None, Width=given.width,
                               look_ahead=None if kind in ("ripple", "prefix") else False)
     module = structure.without_constants(structure.netlist(design))
@@ -146,7 +146,7 @@ def adder_section(kind: str, given: argparse.Namespace) -> str:
 
 
 def booth_section(given: argparse.Namespace) -> str:
-    """The multiplication of the operands: digits, partial products, the tree's rows, the last addition."""
+    """Returns the section of the multiplication: digits, partial products, the tree's rows, the last addition."""
     width = given.width + given.width % 2
     module = structure.netlist(catalogue.design("booth_multiplier", Width=width))
     values = evaluate(module, {"a_i": given.a, "b_i": given.b})
@@ -187,7 +187,7 @@ def booth_section(given: argparse.Namespace) -> str:
 
 
 def float_section(given: argparse.Namespace) -> str:
-    """The sum of two binary16 numbers, step by step."""
+    """Returns the section of the sum of two binary16 numbers, step by step."""
     design = catalogue.design("fp_adder", ExpWidth=5, FracWidth=10)
     module = structure.netlist(design)
     packed = [struct.unpack("<H", struct.pack("<e", number))[0] for number in (given.x, given.y)]
@@ -241,14 +241,14 @@ $sections
 
 
 def page(given: argparse.Namespace) -> str:
-    """The whole page as HTML, without anything from elsewhere."""
+    """Returns the page as HTML that needs no other file."""
     sections = [adder_section(kind, given) for kind in KINDS] + [booth_section(given), float_section(given)]
     return PAGE.substitute(a=given.a, b=given.b, a_bits=binary(given.a, given.width), b_bits=binary(given.b, given.width),
                            sections="\n".join(sections))
 
 
 def binary16(text: str) -> float:
-    """The `type` of an option: a number that binary16 holds, rounded."""
+    """The `type` of an option: a number within binary16's range."""
     try:
         struct.pack("<e", float(text))
     except (OverflowError, ValueError):
@@ -258,7 +258,7 @@ def binary16(text: str) -> float:
 
 @tools.command("synth.lecture")
 def main() -> int:
-    """The command line."""
+    """Runs the command line."""
     parser = argparse.ArgumentParser(prog="synth.lecture", description="Draws adders with operands in them, as a page.")
     operand = chosen.whole(0, 2**MOST_BITS - 1)
     parser.add_argument("--width", type=chosen.whole(2, MOST_BITS), default=16, help="bits of the adders (%(default)s)")

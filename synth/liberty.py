@@ -11,28 +11,28 @@ TOKEN = re.compile(r'/\*.*?\*/|\\\s*\n|"(?:[^"\\]|\\.)*"|[{}();:]|[^\s{}();:"\\]
 
 @dataclasses.dataclass
 class Group:
-    """`kind (name) { ... }`: attributes by name, the last one where there are several, and the groups in it."""
+    """`kind (name) { ... }`: attributes by name (of several, the last one), and the groups in it."""
 
     kind: str
     name: str
-    begin: int  # of the text, in characters
+    begin: int  # place in the text, in characters
     end: int = 0
     attributes: dict[str, str] = dataclasses.field(default_factory=dict)
     groups: list["Group"] = dataclasses.field(default_factory=list)
 
     def of(self, kind: str) -> Iterator["Group"]:
-        """The groups of that kind."""
+        """Returns the groups of that kind."""
         return (group for group in self.groups if group.kind == kind)
 
     def number(self, name: str) -> float:
-        """An attribute as a number; 0 where there is none."""
+        """Returns an attribute as a number; 0 if there is none."""
         return float(self.attributes.get(name, 0))
 
 
 def parse(text: str, name: str) -> Group:
-    """The library in a Liberty file's text. Raises ValueError, which calls the file `name`."""
+    """Returns the library in a Liberty file's text. Raises ValueError, which calls the file `name`."""
     top = Group("", "", 0)
-    stack, words = [top], []  # words: of a statement, until its end
+    stack, words = [top], []  # words: of the statement that has not ended
     tokens = (found for found in TOKEN.finditer(text) if found[0][0] not in "/\\" or found[0][1:2] not in "*\n \t\r")
     for found in tokens:
         token = found[0]
@@ -51,7 +51,7 @@ def parse(text: str, name: str) -> Group:
                     raise ValueError(f"{name}:{_line(text, found)}: found }}, expected a group that it ends")
                 stack.pop().end = found.end()
         else:
-            # A line's end ends an attribute, too, where its semicolon is missing.
+            # The end of a line ends an attribute, too, if its semicolon is missing.
             if len(words) > 2 and words[1][0] == ":" and "\n" in text[words[-1][1]:found.start()] and token not in "():":
                 _attribute(stack[-1], words)
                 words = []
@@ -70,7 +70,7 @@ def _line(text: str, found: re.Match) -> int:
 
 
 def _attribute(group: Group, words: list[tuple[str, int]]) -> None:
-    """`name : value` or `name (value, ...)`."""
+    """Adds `name : value` or `name (value, ...)` to a group's attributes."""
     if len(words) > 2:
         value = " ".join(word for word, _ in words[2:] if word != ")" or words[1][0] == ":")
         group.attributes[words[0][0]] = value.strip('"') if value.count('"') == 2 else value
@@ -78,12 +78,12 @@ def _attribute(group: Group, words: list[tuple[str, int]]) -> None:
 
 @functools.cache
 def read(file: pathlib.Path) -> Group:
-    """The library in a file. Raises ValueError where it is none, and FileNotFoundError."""
+    """Returns the library in a file. Raises ValueError if the file is not Liberty, FileNotFoundError if there is no file."""
     return parse(file.read_text(errors="replace"), str(file))
 
 
 def inverters(library: Group) -> list[tuple[float, str]]:
-    """The input capacitances of the cells of one input whose only output is its inverse, and their names; the least first."""
+    """Returns the input capacitances and the names of all inverters, the smallest first."""
     found = []
     for cell in library.of("cell"):
         pins = {pin.name: pin for pin in cell.of("pin")}

@@ -17,19 +17,19 @@ PATH_STEP = re.compile(
 
 @functools.cache
 def flow_facts() -> tuple[str, ...]:
-    """What every mapping depends on besides the design: the tools' versions."""
+    """Returns what every mapping depends on besides the design: the tools' versions."""
     return yosys.version(), tools.version("sta")
 
 
 def files() -> list[pathlib.Path]:
-    """The files that say how a netlist is made and timed."""
+    """Returns the files that define how a netlist is made and timed."""
     names = ("comparisons.v", "structure.v", "known_inputs.v", "osu_cells.v", "kept_memory.v", "kept_memories.v", "kept_enables.v", "timing.tcl",
              "constraints.sdc", *set(scripts.ABC_SCRIPTS.values()))
     return [*scripts.FILES, *sorted(tools.FLOWS / name for name in names)]
 
 
 def top_module(file: pathlib.Path) -> dict:
-    """The top module in Yosys's JSON."""
+    """Returns the top module in Yosys's JSON."""
     modules = json.loads(file.read_text())["modules"]
     (module,) = [body for body in modules.values() if "top" in body["attributes"]]
     return module
@@ -37,7 +37,7 @@ def top_module(file: pathlib.Path) -> dict:
 
 def synthesise(design: Design, library: Library, flow: str,
                root: pathlib.Path | None = None) -> tuple[dict, bool]:
-    """Area (liberty units), delay (ns), cells and critical path; and whether it was cached."""
+    """Returns area (liberty units), delay (ns), cells and critical path; and whether they were cached."""
     folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
     read = [*design.sources(flow == "cells"), library.liberty, *files()]
     wanted = store.key(read, flow_facts(), design.facts, library, flow)
@@ -61,9 +61,9 @@ def _map_and_time(design: Design, library: Library, flow: str, folder: pathlib.P
 
 def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Path,
         spef: pathlib.Path | None = None, clock: str = "") -> str:
-    """OpenSTA's report of the slowest path of `netlist`.
+    """Returns OpenSTA's report of the slowest path of `netlist`.
 
-    `spef`: its wires; `clock`: the clock's port where `netlist` calls it otherwise than the design does.
+    `spef`: its wires; `clock`: the clock's port, if `netlist` names it differently from the design.
     """
     return tools.run(["sta", "-exit", tools.FLOWS / "timing.tcl"], log, {
         "LIBERTY": str(library.liberty), "NETLIST": str(netlist), "TOP": design.top,
@@ -73,14 +73,14 @@ def sta(design: Design, library: Library, netlist: pathlib.Path, log: pathlib.Pa
 
 
 def blocks(design: Design) -> list[str]:
-    """The modules that flow `blocks` maps on their own: those of the design's folder. What only joins them, a subsystem, is
-    the top's."""
+    """Returns the modules that flow `blocks` maps on their own: those of the design's folder, except subsystems, which only join others and
+    count as the top's."""
     return [file.stem for file in design.sources() if file.stem != design.top and not file.stem.endswith(("_pkg", "_subsystem"))
             and file.parent.name == design.folder]
 
 
 def kept_memories(dump: str) -> dict[str, int]:
-    """Bits of the memories in a dump of cells, by module; "" where the dump is of one module and names none."""
+    """Returns the bits of the memories in a dump of cells, by module; "" is the module of a dump that names none."""
     bits, module = collections.Counter(), ""
     for header, size in re.findall(r"^module \\?(\S+)|parameter \\BITS (\d+)", dump, re.M):
         module = header or module
@@ -89,15 +89,15 @@ def kept_memories(dump: str) -> dict[str, int]:
 
 
 def statistics(file: pathlib.Path) -> dict[str, dict]:
-    """Of each module what Yosys's `stat -json` states: its area (liberty units) and its cells by type, with all that is in it."""
+    """Returns for each module its area (liberty units) and cells by type, including submodules, from Yosys's `stat -json`."""
     return {name.removeprefix("\\"): {"area": 0, **module} for name, module in json.loads(file.read_text())["modules"].items()}
 
 
 def block_costs(modules: dict[str, dict], memories: dict[str, int]) -> dict[str, dict]:
-    """Of each kind of block in the top: how many there are, and the area (liberty units) and the bits of memory of
-    all of them, with what is in them.
+    """Returns for each kind of block in the top the number of its instances, and their total area (liberty units) and bits of
+    memory, including submodules.
 
-    `modules`: of `statistics`, before the modules are joined; `memories`: of kept_memories.
+    `modules`: from `statistics`, before the modules are joined; `memories`: from kept_memories.
     """
     inside = {name: {cell: count for cell, count in module["num_cells_by_type"].items() if cell in modules}
               for name, module in modules.items()}
@@ -117,7 +117,7 @@ def block_costs(modules: dict[str, dict], memories: dict[str, int]) -> dict[str,
 
 
 def registers(netlist: str, path: list[dict]) -> dict[str, str]:
-    """What the first and the last register of a path hold, or the port that it begins or ends at."""
+    """Returns the signals in the first and the last register of a path, or the ports at which it begins or ends."""
     def name(pin: str) -> str:
         instance, _, port = pin.partition("/")
         if not port:
@@ -129,9 +129,9 @@ def registers(netlist: str, path: list[dict]) -> dict[str, str]:
 
 
 def critical_path(report: str) -> tuple[float, list[dict]]:
-    """The slowest path in OpenSTA's report: its length in ns, set-up time included, and its steps.
+    """Returns the slowest path in OpenSTA's report: its length in ns, set-up time included, and its steps.
 
-    Raises ToolFailed where the report holds no path: a design without one was not timed.
+    Raises ToolFailed if the report has no path, as of a design that was not timed.
     """
     arrival = re.search(r"^\s*(-?[\d.]+)\s+data arrival time", report, re.M)
     if arrival is None:

@@ -11,17 +11,17 @@ from synth.catalogue import FPGAS, Library, Row
 
 @dataclasses.dataclass(frozen=True)
 class Targets:
-    """What is measured: names of libraries and FPGAs, and how many jobs at once."""
+    """The names of libraries and FPGAs to measure on, and the number of jobs at once."""
 
     names: tuple[str, ...]
     workers: int = 2
 
 
 def available(names: list[str] | None, everything: bool = True, one: bool = False) -> tuple[str, ...]:
-    """The targets asked for; else a user's library alone, or of `everything` all libraries and the FPGAs whose placers are
-    installed, of `one` design all libraries, of the main designs the first.
+    """Returns the targets: `names`, if given; else a user's library alone; else for `everything` all libraries and the FPGAs
+    whose placers are installed, for `one` design all libraries, for the main designs the first.
 
-    Raises MissingTool for a tool of a target that was asked for and for the standard-cell tools.
+    Raises MissingTool for a tool of a target in `names` and for the standard-cell tools, ValueError for an unknown name.
     """
     yosys.folder()
     known, libraries = catalogue.targets(), catalogue.LIBRARIES
@@ -45,7 +45,7 @@ def available(names: list[str] | None, everything: bool = True, one: bool = Fals
 
 
 def cost(record: dict | None) -> str:
-    """`area / ns` or `LUTs / MHz`."""
+    """Returns `area / ns` or `LUTs / MHz`."""
     if record is None:
         return "-"
     if "mhz" in record:

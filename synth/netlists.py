@@ -1,5 +1,4 @@
-"""Compares a mapped netlist with the RTL it was made of: by ABC where it has no registers, else by
-simulation, on the same vectors."""
+"""Compares a mapped netlist with the RTL it was made of: by ABC if it has no registers, else by simulation, on the same vectors."""
 
 import json
 import pathlib
@@ -13,7 +12,7 @@ SECONDS = 600  # for ABC, on one netlist
 
 
 def equal(design: Design, library: Library, flow: str) -> tuple[dict, bool]:
-    """Raises ToolFailed unless ABC proves that the netlist computes what its RTL does. No registers."""
+    """Raises ToolFailed unless ABC proves that the netlist computes what its RTL does. The design has no registers."""
     folder = store.OUT / "netlists" / f"{design.name}.{library.name}.{flow}"
     files = [*design.sources(), library.liberty, pathlib.Path(__file__), *mapping.files()]
     wanted = store.key(files, mapping.flow_facts(), design.facts, library, flow)
@@ -21,7 +20,7 @@ def equal(design: Design, library: Library, flow: str) -> tuple[dict, bool]:
     def work() -> dict:
         mapping.synthesise(design, library, flow)
         run = store.OUT / "runs" / f"{design.name}.{library.name}.{flow}"
-        # ABC cannot relate two ways to expand a product: here both sides begin with that of the flows.
+        # ABC cannot match two expansions of a product: here both sides begin with that of the flows.
         expand = "alumacc\n" if design.top == "multiplier" else ""
         gates = "flatten -noscopeinfo\nopt_expr\ntechmap\nopt_clean -purge\nselect -assert-none t:$*FF*\nwrite_blif"
         yosys.run(f"""{scripts.elaborated(design)}
@@ -42,14 +41,14 @@ proc
 
 
 def cells(library: Library) -> str:
-    """Commands that read the library's combinational cells and flip-flops, from the functions that it states."""
+    """Returns commands that read the library's combinational cells and flip-flops, as their Liberty functions define them."""
     return f"""read_liberty -ignore_miss_func -ignore_miss_dir -ignore_miss_data_latch {library.liberty}
 delete LATCH TBUFX1 TBUFX2 PAD*
 proc"""
 
 
 def agree(design: Design, library: Library, flow: str, vectors: int) -> tuple[dict, bool]:
-    """Raises ToolFailed where an output bit differs."""
+    """Simulates both on `vectors` vectors. Raises ToolFailed if an output bit differs."""
     folder = store.OUT / "netlists" / f"{design.name}.{library.name}.{flow}"
     files = [*design.sources(), library.liberty, PROOFS / "netlist_agrees.cpp", pathlib.Path(__file__), *mapping.files()]
     wanted = store.key(files, mapping.flow_facts(), tools.version("verilator"), design.facts,
@@ -72,8 +71,8 @@ write_verilog -noattr -noexpr {folder}/netlist.v""", folder / "cells.log")
     ports = json.loads((folder / "netlist.json").read_text())["modules"]["netlist"]["ports"]
     (folder / "twins.sv").write_text(twins(design, ports))
     sources = [*design.sources(), folder / "cells.v", folder / "netlist.v", folder / "twins.sv"]
-    # No lint: it is for what people write, and bits of one vector that depend on each other, as in any
-    # netlist, look to Verilator like loops (UNOPTFLAT).
+    # No lint: it is for hand-written code, and bits of a netlist's vector that depend on each other look like loops to Verilator
+    # (UNOPTFLAT).
     # Without -fno-const-bit-op-tree, Verilator 5.006 gives wrong bits for the divider's netlist, which
     # Yosys's own evaluation of the same file confirms to be right.
     tools.run(["verilator", "--cc", "--exe", "--build", "-O3", "-fno-const-bit-op-tree", "-Wno-fatal",
@@ -85,13 +84,13 @@ write_verilog -noattr -noexpr {folder}/netlist.v""", folder / "cells.log")
 
 
 def twins(design: Design, ports: dict) -> str:
-    """SystemVerilog of a module that holds RTL and netlist, with one vector of inputs for both."""
+    """Returns SystemVerilog of a module that holds RTL and netlist, with one vector of inputs for both."""
     named = {"clk_i", "rst_ni"}
     inputs = [(name, len(port["bits"])) for name, port in ports.items()
               if port["direction"] == "input" and name not in named]
     outputs = [(name, len(port["bits"])) for name, port in ports.items()
                if port["direction"] == "output"]
-    # Whole words, for Verilator wants no stray bits above a port; three, for C++ to see an array.
+    # Whole words, as Verilator wants no stray bits above a port; at least three, for an array in C++.
     total = 32 * max(3, -(-sum(width for _, width in inputs) // 32))
     low, slices = 0, {}
     for name, width in inputs:

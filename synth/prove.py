@@ -16,13 +16,13 @@ NETLIST_FLOWS = ("fast", "area")  # whose netlists are compared without LONG
 
 
 def adds(design: Design) -> tuple[dict, bool]:
-    """An adder of any kind and grouping adds, by SAT."""
+    """Proves by SAT that an adder of any kind and grouping adds."""
     return holds("adder_adds", parameters=design.parameters, name=f"adds.{design.name}")
 
 
 def booth_assembly(**parameters: object) -> Prepare:
-    """The module "assembly" is what booth_multiplier does between the recoded digits and the tree: the digits' signs and the
-    rows are its inputs, the words for the tree its output."""
+    """Makes module "assembly", the part of booth_multiplier between the recoded digits and the tree: its inputs are the digits' signs and
+    the rows, its output the words for the tree."""
     return lambda sources: f"""{yosys.read(sources, "booth_multiplier", parameters.items())}
 rename -top assembly
 expose -input assembly/w:negative assembly/w:gen_row*.row
@@ -33,7 +33,7 @@ opt_clean -purge assembly"""
 
 
 def every_product(width: int) -> tuple[dict, bool]:
-    """Every product of the Verilated multiplier."""
+    """Checks every product of the Verilated multiplier."""
     folder = store.OUT / "proofs" / f"every_product_{width}"
     harness = PROOFS / "booth_exhaustive.cpp"
     sources = cores.used("booth_multiplier", rtl("arith"))
@@ -57,7 +57,7 @@ def every_product(width: int) -> tuple[dict, bool]:
 
 
 def all_proofs() -> list[Proof]:
-    """Every proof there is, in the order of the report."""
+    """Returns all proofs, in the order of the report."""
     proofs = [
         Proof(f"adder.{name}", "carry, sum = a + b + carry at 48 bits", "SAT",
               functools.partial(adds, catalogue.design("adder", f"adder-{name}", kind, widths,
@@ -109,7 +109,7 @@ def all_proofs() -> list[Proof]:
     # The pipelined unit in binary16: Verilator would take an hour for binary32's hundred thousand
     # cells.
     narrow = catalogue.design("hit_test_pipeline", ExpWidth=5, FracWidth=10)
-    # Of flow `blocks` memories are ports: its netlists are no circuit of their own.
+    # In flow `blocks` memories are ports: its netlists cannot be compared with the RTL.
     rows = [row for row in catalogue.report_rows() if row.design.top != narrow.top and "blocks" not in row.flows["osu035"]]
     for row in [*rows, catalogue.Row("units", narrow, {"osu035": ("parts",)})]:
         for library in LIBRARIES:
@@ -127,7 +127,7 @@ def all_proofs() -> list[Proof]:
 
 
 def outcome(proof: Proof, result: dict | None) -> str:
-    """proven; simulated, which is none; or failed."""
+    """Returns proven; simulated, which is no proof; or FAILED."""
     if result is None:
         return "FAILED"
     return "simulated" if proof.how in ("simulation", "evaluation") else "proven"
@@ -138,7 +138,7 @@ COLUMNS = ["proofs", "claim", "by", "number", "most s", "most MB"]
 
 
 def group(name: str) -> str:
-    """A proof's name without what its siblings differ in: adders, sizes, the netlist's design."""
+    """Returns a proof's name without the parts in which proofs of a group differ: adders, arithmetics, the netlist's design."""
     if name.startswith("netlist."):
         return "netlist.*"
     return re.sub(r"^(adder)\..*|(?:\.(?:ripple|uniform|graded|prefix|structural|behavioural))(?=\.|$)",
@@ -146,7 +146,7 @@ def group(name: str) -> str:
 
 
 def record(proofs: list[Proof], results: list[dict | None]) -> None:
-    """Writes these proofs into TABLE: what each claims, and what it took; rows of others stay as they are."""
+    """Writes claims and costs of these proofs into TABLE; rows of other proofs stay as they are."""
     rows = {row["proofs"]: row for row in csv.DictReader(TABLE.read_text().splitlines())}
     groups: dict[str, list[tuple[Proof, dict]]] = {}
     for proof, result in zip(proofs, results, strict=True):
@@ -160,7 +160,7 @@ def record(proofs: list[Proof], results: list[dict | None]) -> None:
 
 
 def is_kept(proof: Proof) -> bool:
-    """Whether an earlier run has left its result, of the RTL and the claims as they are."""
+    """Returns whether an earlier run has kept the result, for the RTL and the claims as they are."""
     try:
         return proof.work()[1]
     except store.NotKept:
@@ -168,7 +168,7 @@ def is_kept(proof: Proof) -> bool:
 
 
 def main() -> int:
-    """Runs the proofs asked for; 1 where one fails, 2 for what the user can mend."""
+    """Runs the proofs asked for. Returns 1 if one fails, 2 for errors that the user can correct."""
     parser = argparse.ArgumentParser(prog="synth.prove", description=__doc__)
     parser.add_argument("names", nargs="*", help="beginnings of proofs' names; all if none")
     parser.add_argument("--quick", action="store_true", help="those alone that `make test` runs")

@@ -1,4 +1,4 @@
-"""What the tables of hw/ray_core/registers.md make: the package of the RTL and the header of drivers.
+"""Generates, from the tables of hw/ray_core/registers.md, the package of the RTL and the header for drivers.
 
 `made()` gives the files' texts; `make synth DATASHEET=1` writes them and `synth.datasheet --check` compares.
 """
@@ -10,13 +10,13 @@ import re
 from synth import cores
 
 PAGE = cores.HW / "ray_core" / "registers.md"
-PLAIN = 32  # words from address 0 on, of which those that can be written in idleness are plain registers
+PLAIN = 32  # words from address 0 on; those with access `idle` are plain registers
 ACCESSES = ("ro", "rw", "wo", "w1c", "idle")
 
 
 @dataclasses.dataclass(frozen=True)
 class Register:
-    """Words that follow each other; `mask`: the bits of each that can be written, where it is a plain register."""
+    """Consecutive words; `mask`: the writable bits of each word, if it is a plain register."""
 
     name: str
     address: int
@@ -27,13 +27,13 @@ class Register:
 
 
 def _cells(text: str, first: str) -> list[list[str]]:
-    """The rows of tables whose first cell matches, without marks."""
+    """Returns the cells of table rows whose first cell matches `first`, without spaces and backticks."""
     return [[cell.strip(" `") for cell in line.split("|")[1:-1]]
             for line in text.splitlines() if re.match(rf"\| {first} \|", line)]
 
 
 def registers(text: str) -> list[Register]:
-    """The page's registers by address, with their bits. Raises ValueError where they overlap or a row makes no sense."""
+    """Returns the page's registers by address, with their bits. Raises ValueError if they overlap or a row is malformed."""
     listed: dict[str, Register] = {}
     end = 0
     for address, words, name, access, mask, _ in _cells(text, "0x[0-9a-f]+"):
@@ -55,7 +55,7 @@ def _camel(*names: str) -> str:
 
 
 def package(listed: list[Register]) -> str:
-    """csr_pkg.sv: words by number, bits by number, and which bits of plain registers can be written."""
+    """Returns csr_pkg.sv: words by number, bits by number, and the writable bits of plain registers."""
     masks = [0] * PLAIN
     for register in listed:
         for word in range(register.address // 4, register.address // 4 + register.words):
@@ -78,7 +78,7 @@ def package(listed: list[Register]) -> str:
 
 
 def header(listed: list[Register]) -> str:
-    """registers.h: addresses, and bits as masks; of the counters, addresses."""
+    """Returns registers.h: addresses, and bits as masks; for the counters, addresses."""
     lines = ["/* Registers of the ray core: addresses, and bits as masks. Made of registers.md by `make synth DATASHEET=1`. */",
              "#ifndef RAYGATE_REGISTERS_H", "#define RAYGATE_REGISTERS_H", "", "enum {"]
     for register in listed:
@@ -91,6 +91,6 @@ def header(listed: list[Register]) -> str:
 
 
 def made(text: str) -> dict[pathlib.Path, str]:
-    """The files that a page of this text makes."""
+    """Returns the paths and contents of the files that are generated from the text of registers.md."""
     listed = registers(text)
     return {PAGE.with_name("csr_pkg.sv"): package(listed), PAGE.with_name("registers.h"): header(listed)}

@@ -9,12 +9,12 @@ from synth.catalogue import FLOWS, FPGAS, Row
 
 
 def title(target: str) -> str:
-    """What a target is called."""
+    """Returns the title of a target."""
     return catalogue.targets()[target].title
 
 
 def groups() -> list[tuple[str, list[tuple[str, str]]]]:
-    """The tables of a section: what each is of, and the target and flow of each column. One for each library, one for the FPGAs."""
+    """Returns the tables of a section, one for each library and one for the FPGAs: units, and target and flow of each column."""
     return [*((f"{library.title}: um2 / ns", [(library.name, flow) for flow in FLOWS]) for library in catalogue.LIBRARIES),
             ("LUTs / MHz", [(device.name, "placed") for device in FPGAS])]
 
@@ -50,7 +50,7 @@ def measured_tables(rows: list[Row], targets: measure.Targets) -> tuple[list[dic
 
 
 def legend(records: list[dict]) -> str:
-    """What the numbers and the flows of the tables are, a line each."""
+    """Returns the meaning of the tables' numbers and flows, a line each."""
     flows = [flow for flow in FLOWS if any(record["flow"] == flow for record in records)]
     parts = ["um2 / ns: of the cells alone (NAND2X1: 96 in 0.35 um); the slowest path at the typical corner, before layout"] if flows else []
     if any("mhz" in record for record in records):
@@ -59,7 +59,7 @@ def legend(records: list[dict]) -> str:
 
 
 def path_table(record: dict) -> str:
-    """A critical path, cell by cell (output pins alone: what a cell and its load take)."""
+    """Returns a table of a critical path, cell by cell (output pins only: delays of a cell with its load)."""
     rows = []
     for before, step in itertools.pairwise(record["path"]):
         (entered, _, came), (cell, _, pin) = before["pin"].rpartition("/"), step["pin"].rpartition("/")
@@ -69,7 +69,7 @@ def path_table(record: dict) -> str:
 
 
 def blocks_table(record: dict) -> str:
-    """Area and memories of each block of flow `blocks`, the largest first."""
+    """Returns a table of area and memories of each block of flow `blocks`, the largest first."""
     blocks = sorted(record["blocks"].items(), key=lambda item: -item[1]["area"])
     rows = [[name, f"{block['count']}", f"{block['area'] / 1e6:.2f}", f"{block['bits']:,}"] for name, block in blocks]
     rows.append([record["design"], "", f"{sum(block['area'] for _, block in blocks) / 1e6:.2f}",
@@ -78,15 +78,15 @@ def blocks_table(record: dict) -> str:
 
 
 def versions() -> str:
-    """The tools and their versions, one line."""
+    """Returns the tools and their versions as one line."""
     names = ["sta", *dict.fromkeys(device.tool for device in FPGAS)]
     stated = [f"{name} {tools.version(name)}" for name in names if tools.installed(name)]
     return ", ".join([f"yosys {yosys.version()}", *stated, f"Python {platform.python_version()}"])
 
 
 def write(records: list[dict], measured: str, sections: list[tuple[str, str]], command: str, publish: bool = False) -> None:
-    """Writes the three files; with `publish` the CSV into results/, too. `measured`: of measured_tables; `sections`:
-    (title, Markdown) that follow; `command`: what measured."""
+    """Writes the three files; with `publish` the CSV into results/, too. `measured`: the tables of measured_tables; `sections`: (title,
+    Markdown) to append; `command`: the make command that measured."""
     store.OUT.mkdir(parents=True, exist_ok=True)
     parts = ["# What the arithmetic costs\n", f"Made by `make synth` with {versions()}.\n", legend(records).replace("\n", "\n\n"), measured,
              *(f"## {heading}\n\n{text}" for heading, text in sections)]

@@ -1,4 +1,4 @@
-"""Runs jobs, several at once, and says how far it is."""
+"""Runs jobs, several at once, and prints their progress."""
 
 import concurrent.futures
 import dataclasses
@@ -44,7 +44,7 @@ def run(jobs: list[Job], workers: int, failures: list[str]) -> Iterator[dict | N
 
 
 def run_all(jobs: list[Job], workers: int) -> tuple[list[dict | None], list[str]]:
-    """All results of `run`, and the failures."""
+    """Returns all results of `run`, and the failures."""
     failures: list[str] = []
     return list(run(jobs, workers, failures)), failures
 

@@ -5,7 +5,7 @@ import pathlib
 from synth import tools, yosys
 from synth.catalogue import Design, Library
 
-# What ABC does in a flow; `default`: Yosys's own commands for it.
+# ABC's script in a flow; `default` has Yosys's own commands.
 ABC_SCRIPTS = {"cells": "keep.abc", "kept": "keep.abc", "area": "area.abc", "small": "small.abc",
                "fast": "fast.abc", "faster": "faster.abc", "parts": "fast.abc",
                "modules": "fast.abc", "blocks": "fast.abc"}
@@ -16,13 +16,13 @@ FILES = [pathlib.Path(__file__), pathlib.Path(yosys.__file__)]  # what results d
 
 
 def elaborated(design: Design, structural: bool = False) -> str:
-    """Reads and elaborates a design; `structural`: its full adders and multiplexers as cells."""
+    """Returns commands that elaborate a design; `structural`: with its full adders and multiplexers as cells."""
     return yosys.read(design.sources(structural), design.top, design.parameters)
 
 
 def structure(design: Design) -> str:
-    """A design, flat, down to the cells of structure.v and the gates between them."""
-    # structure.v again, for the ports of cells that are not instantiated until now.
+    """Returns commands that flatten a design to the cells of structure.v and the gates between them."""
+    # structure.v again, for the ports of cells that have had no instance until now.
     return f"""{elaborated(design, structural=True)}
 proc
 flatten -noscopeinfo
@@ -35,24 +35,24 @@ opt_clean"""
 
 
 def structure_json(design: Design, out: pathlib.Path) -> str:
-    """`structure` with gates of one bit, as JSON."""
+    """Returns the commands of `structure`, then for gates of one bit and JSON."""
     return f"{structure(design)}\nsimplemap\nopt_clean\nwrite_json {out}"
 
 
 def plain_verilog(design: Design, out: pathlib.Path) -> str:
-    """A design and all that it instantiates as one file of plain Verilog."""
+    """Returns commands that write a design and all that it instantiates as one file of plain Verilog."""
     return f"{elaborated(design)}\nproc\nopt_expr\nopt_clean\nbwmuxmap\nwrite_verilog -noattr {out}"
 
 
 def _kept(*modules: str) -> str:
-    """ABC maps each of these modules on its own, and once, however often it is instantiated."""
+    """Returns the command after which ABC maps each of these modules on its own, and once, however often it is instantiated."""
     return "setattr -mod -set keep_hierarchy 1 " + " ".join(f"{module}$*" for module in modules)
 
 
 def gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
-    """Of an elaborated design, gates and registers. Nothing here looks across a multiplexer, so carry-select stays that."""
+    """Returns commands that make gates and registers of an elaborated design. None looks across a multiplexer: carry-select stays."""
     lines = ["proc"]
-    if flow == "blocks":  # a read enable becomes the memory's, or its word would wait in a register behind it
+    if flow == "blocks":  # a read enable becomes the memory's; else the word would wait in a register after it
         lines += ["opt_clean", "opt_dff -nosdff ram$*"]
     if flow in ("parts", "blocks"):
         lines += [_kept("fp_adder", "fp_multiplier", "fp_divider", *(blocks if flow == "blocks" else []))]
@@ -69,11 +69,11 @@ def gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
 
 def standard_cells(design: Design, library: Library, flow: str, blocks: list[str], constraints: pathlib.Path,
                    out: pathlib.Path) -> str:
-    """Maps a design to a library by a flow of the catalogue.
+    """Returns commands that map a design to a library by a flow of the catalogue.
 
     `blocks`: modules that flow `blocks` maps on their own, beside the float cores. `constraints`: driver and load, for ABC.
-    Writes OUT.v, OUT.json, OUT.stat.json; OUT.timed.v for OpenSTA, which reads no concatenations in assignments: each bit is a
-    port of its own; and of flow `blocks` OUT.blocks.json, the same statistics module by module, and OUT.memories.
+    They write OUT.v, OUT.json, OUT.stat.json; OUT.timed.v for OpenSTA, which reads no concatenations in assignments, so that
+    each bit is a port of its own; and in flow `blocks` OUT.blocks.json, the same statistics module by module, and OUT.memories.
     """
     if flow == "cells":  # full adders and multiplexers become the library's own cells, out of ABC's reach
         mapped = f"{structure(design)}\ntechmap -map {tools.FLOWS}/osu_cells.v\ntechmap\nopt_expr\nopt_clean"
@@ -100,8 +100,8 @@ def standard_cells(design: Design, library: Library, flow: str, blocks: list[str
 
 
 def fpga(design: Design, family: str, luts: str, out: pathlib.Path, wrapper: pathlib.Path | None = None) -> str:
-    """Maps a design to an FPGA, ice40 or ecp5, as JSON for nextpnr. `luts`: options of which LUTs to take; `wrapper`: a file
-    of the module "registered", which puts registers around it."""
+    """Returns commands that map a design to an FPGA, ice40 or ecp5, as JSON for nextpnr. `luts`: options that select the kinds of LUTs;
+    `wrapper`: a file of the module "registered", which puts registers around the design."""
     lines = [elaborated(design)]
     if wrapper:
         lines += ["proc", "flatten -noscopeinfo", f"read_verilog {wrapper}"]
@@ -109,5 +109,5 @@ def fpga(design: Design, family: str, luts: str, out: pathlib.Path, wrapper: pat
 
 
 def netlist_json(out: pathlib.Path) -> str:
-    """Writes a mapped design for nextpnr, which does not know Yosys's notes of what was an instance."""
+    """Returns commands that write a mapped design for nextpnr, without $scopeinfo cells, which it does not know."""
     return f"delete t:$scopeinfo\nwrite_json {out}"

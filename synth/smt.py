@@ -1,4 +1,4 @@
-"""Modules as SMT-LIB, by Yosys, and what Bitwuzla says of them."""
+"""Makes SMT-LIB of modules, by Yosys, and solves it with Bitwuzla."""
 
 import functools
 import importlib.metadata
@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from synth import tools, yosys
 
-# One module, its assertions, assumptions and covers as cells that hold in every state, whatever clock they are read by.
+# One module; its assertions, assumptions and covers become cells that hold in every state, whatever clock they had.
 FLAT = "flatten -noscopeinfo\nopt\nsetparam -set TRG_ENABLE 0 t:$check\nchformal -lower"
 PROOFS = pathlib.Path(__file__).resolve().parent / "proofs"
 FLOAT = PROOFS / "float"
@@ -19,7 +19,7 @@ FREE = PROOFS / "free.v"
 
 
 def read(sources: Iterable[pathlib.Path], top: str, parameters: Iterable[tuple[str, object]] = ()) -> str:
-    """The commands that elaborate `top`, and make free what is declared (* anyseq *) or (* anyconst *)."""
+    """Returns the commands that elaborate `top` and make words free that are declared (* anyseq *) or (* anyconst *)."""
     return f"""{yosys.read(sources, top, parameters)}
 techmap -map {FREE} a:anyseq %ci1 t:$buf %i
 techmap -map {FREE} -D CONSTANT a:anyconst %ci1 t:$buf %i
@@ -29,9 +29,8 @@ setattr -unset anyseq -unset anyconst w:*"""
 
 def state(model: str, top: str, name: str, before: str = "",
           given: dict[str, str] | None = None) -> str:
-    """Declares a state of a module: one that follows `before`, or any. Registers are terms of the state
-    before, inputs in `given` the terms there, and no equations: what two states compute alike is then
-    one term to the solver."""
+    """Declares a state of a module: the successor of `before`, or any state. Registers are terms of the previous state, inputs in `given`
+    the terms there, without equations: what two states compute alike is then one term for the solver."""
     width = int(re.search(rf"\(define-sort \|{re.escape(top)}_s\| \(\) \(_ BitVec (\d+)\)\)", model)[1])
     fields = re.findall(r"^\(define-fun \|(\S+#\d+)\| .*\(\(_ extract (\d+) (\d+)\) state\).* ; (.*)$",
                         model, re.M)
@@ -60,9 +59,8 @@ def state(model: str, top: str, name: str, before: str = "",
 
 def ports(model: str, top: str, suffix: str = "", before: str = "",
           given: dict[str, str] | None = None) -> tuple[str, list[str]]:
-    """A state (see `state`), names for a module's ports in it and for what contracts leave free
-    ("free_..."; with the number of its row, where it is in one), and those names without `suffix`, which
-    each gets."""
+    """Returns a state (see `state`) with names, ending in `suffix`, for the module's ports and for wires that contracts leave free
+    ("free_...", in a row with its number); and these names without `suffix`."""
     text = [state(model, top, f"state{suffix}", before, given)]
     names = []
     pattern = re.compile(rf"\(define-fun \|({top}_n (\S+))\| \(\(state \|{top}_s\|\)\) "
@@ -81,8 +79,8 @@ def ports(model: str, top: str, suffix: str = "", before: str = "",
 
 def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: pathlib.Path,
                 keep: pathlib.Path | None = None) -> str:
-    """A module with parameters ("Name value ...") as functions of SMT-LIB, one of a state for every wire, the state being the
-    inputs and what contracts leave free; its netlist goes to `keep`, for faults to be put into."""
+    """Returns a module with parameters ("Name value ...") as functions of SMT-LIB, one of the state for every wire; the state includes
+    inputs and wires that contracts leave free. Its netlist goes to `keep`, for faults to be put into."""
     smt2, words = folder / "model.smt2", parameters.split()
     yosys.run("\n".join([read(sources, top, zip(words[::2], words[1::2])), FLAT,
                          *([f"write_rtlil {keep}"] if keep else []), f"dffunmap\nwrite_smt2 -stbv -wires {smt2}"]),
@@ -91,7 +89,7 @@ def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: 
 
 
 def version() -> str:
-    """The version of Bitwuzla, or "" where it is not installed."""
+    """Returns the version of Bitwuzla, or "" if it is not installed."""
     try:
         return importlib.metadata.version("bitwuzla")
     except importlib.metadata.PackageNotFoundError:
@@ -99,7 +97,7 @@ def version() -> str:
 
 
 def solve(file: pathlib.Path, text: str, terms: tuple[str, ...] = (), limit: float = 0) -> dict:
-    """Bitwuzla's answer to `text`, which is kept in `file`; see proofs/float/solve.py."""
+    """Returns Bitwuzla's answer to `text`, which is kept in `file`; see proofs/float/solve.py."""
     if importlib.util.find_spec("bitwuzla") is None:
         raise tools.MissingTool("Bitwuzla is not installed: pip install -r synth/requirements.txt")
     file.write_text(text + "(check-sat)\n")

@@ -12,14 +12,14 @@ from collections.abc import Callable, Iterable
 from synth import tools
 
 OUT = tools.ROOT / "build" / "synth"
-# Outcomes of proofs, kept for all checkouts of this user, and the programs that lead to them.
+# The programs that lead to outcomes of proofs, and the outcomes, kept for all checkouts of this user.
 PROVERS = [tools.ROOT / "synth" / f"{name}.py" for name in (
     "assertions", "float_cuts", "float_proofs", "float_specifications", "induction", "netlists", "prove", "smt", "unit_proofs", "yosys")]
 PROVEN = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "raygate" / "proven"
 
 
 class NotKept(Exception):
-    """A result is wanted that no earlier run has left, and only such are."""
+    """No earlier run has kept the result, and only kept results are wanted."""
 
 
 only_kept = False
@@ -28,7 +28,7 @@ _locks: dict[pathlib.Path, threading.Lock] = {}
 
 @functools.cache
 def _digest(file: pathlib.Path) -> str:
-    """Of the contents; RTL without its comments and blanks, which change no netlist."""
+    """Returns a hash of the contents; of RTL, without comments and blanks, which change no netlist."""
     text = file.read_bytes()
     if file.suffix == ".sv":
         text = re.sub(rb"//[^\n]*|\s+", b" ", text)
@@ -37,21 +37,20 @@ def _digest(file: pathlib.Path) -> str:
 
 
 def key(files: Iterable[pathlib.Path], *facts: object) -> str:
-    """A hash of the contents of `files` and of `facts` (tool versions, parameters, settings)."""
+    """Returns a hash of the contents of `files` and of `facts` (tool versions, parameters, settings)."""
     parts = [[file.name, _digest(file)] for file in files] + [repr(fact) for fact in facts]
     return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
 def kept(folder: pathlib.Path, wanted: str) -> dict | None:
-    """The result in `folder` if it was made under the key `wanted`."""
+    """Returns the result in `folder` if it was made under the key `wanted`, else None."""
     file = folder / "result.json"
     found = json.loads(file.read_text()) if file.exists() else {}
     return found["result"] if found.get("key") == wanted else None
 
 
 def replace(file: pathlib.Path, text: str) -> None:
-    """Writes `text` where it differs from what `file` holds. Readers see the whole file or none, and jobs that run at once
-    don't share theirs."""
+    """Writes `text` if `file` has other contents. Replaces the file atomically, through a temporary file that no other job uses."""
     if not file.exists() or file.read_text() != text:
         file.parent.mkdir(parents=True, exist_ok=True)
         written = file.with_suffix(f".{os.getpid()}-{threading.get_ident()}")
@@ -60,10 +59,9 @@ def replace(file: pathlib.Path, text: str) -> None:
 
 
 def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple[dict, bool]:
-    """The result in `folder` if it was made under the key `wanted`; else makes and keeps it.
+    """Returns the result in `folder` if it was made under the key `wanted`; else makes and keeps it.
 
-    Returns the result and whether it was already there. Jobs that want the same one wait for whichever
-    makes it.
+    Also returns whether it was already there. Jobs that want the same result wait for the one that makes it.
     """
     with _locks.setdefault(folder, threading.Lock()):
         there = kept(folder, wanted)
@@ -80,11 +78,11 @@ def cached(folder: pathlib.Path, wanted: str, make: Callable[[], dict]) -> tuple
 
 
 def proven(folder: pathlib.Path, wanted: str, prove: Callable[[], dict]) -> tuple[dict, bool]:
-    """`cached` for a proof, whose outcome is also kept in PROVEN under its key and the text of PROVERS: no checkout proves or
+    """Does as `cached` for a proof, and keeps the outcome also in PROVEN, under its key and the text of PROVERS: no checkout proves or
     refutes it again.
 
-    Raises Refuted where the proof does, at once or in an earlier run. No other failure is kept: a solver that ran out of time
-    or a missing tool says nothing about the claim.
+    Raises Refuted if the proof does, now or in an earlier run. No other failure is kept: a solver that ran out of time or a
+    missing tool says nothing about the claim.
     """
     file = PROVEN / f"{key(PROVERS, wanted)}.json"
     if file.exists():

@@ -1,7 +1,6 @@
 """Netlists of full adders, multiplexers and gates (flows/structure.v): made, timed by the paper's delay model, and evaluated.
 
-The paper states 48, 14 and 10 full-adder delays but not what a multiplexer counts, nor which paths; so every figure goes with
-its counting.
+The paper states 48, 14 and 10 full-adder delays, but neither a multiplexer's delay nor the paths; so every figure here names its counting.
 """
 
 import dataclasses
@@ -15,11 +14,11 @@ from synth.catalogue import Design
 
 @dataclasses.dataclass(frozen=True)
 class Counting:
-    """What a path's cells count, in full-adder delays; gates are free."""
+    """Delays of a path's cells, in full-adder delays; gates have none."""
 
     title: str
     multiplexer: float  # one multiplexer
-    last_multiplexer: float  # the one that gives a bit of the sum, the last on its path
+    last_multiplexer: float  # a multiplexer that gives a bit of the sum, the last on its path
 
 
 COUNTINGS = [
@@ -31,8 +30,8 @@ COUNTINGS = [
 
 
 def netlist(design: Design) -> dict:
-    """The module of `design` as Yosys's JSON, flattened to structure.v's cells and gates; `names`: the bits of each word of
-    the sources."""
+    """Returns the module of `design` as Yosys's JSON, flattened to structure.v's cells and gates; `names`: the bits of each word of the
+    sources."""
     folder = store.OUT / "structure" / design.name
     files = [*design.sources(structural=True), tools.FLOWS / "known_inputs.v", *scripts.FILES]
     wanted = store.key(files, yosys.version(), design.facts, "with names")
@@ -50,22 +49,22 @@ def _elaborate(design: Design, folder: pathlib.Path) -> dict:
 
 
 def pins(cell: dict, direction: str) -> dict[str, list]:
-    """Port -> bits, lowest first: numbers of the netlist's, or the constants "0", "1", "x"."""
+    """Returns port -> bits, lowest first: the netlist's numbers, or the constants "0", "1", "x"."""
     return {port: bits for port, bits in cell["connections"].items() if cell["directions"][port] == direction}
 
 
 def inputs(cell: dict) -> list:
-    """All bits that go into a cell."""
+    """Returns all input bits of a cell."""
     return [bit for bits in pins(cell, "input").values() for bit in bits]
 
 
 def outputs(cell: dict) -> list:
-    """All bits that come out of it."""
+    """Returns all output bits of a cell."""
     return [bit for bits in pins(cell, "output").values() for bit in bits]
 
 
 def in_order(module: dict, everything: bool = False) -> Iterator[dict]:
-    """The cells that the outputs depend on, or all, each behind those that it depends on."""
+    """Returns the cells that the outputs depend on, or all cells, each after those that it depends on."""
     cells = module["cells"]
     driver = {bit: place for place, cell in enumerate(cells) for bit in outputs(cell)}
     before = {place: [driver[bit] for bit in inputs(cell) if bit in driver] for place, cell in enumerate(cells)}
@@ -80,8 +79,8 @@ def in_order(module: dict, everything: bool = False) -> Iterator[dict]:
 
 
 def arrivals(module: dict, costs: dict[str, float], gate: float = 0) -> tuple[dict[object, float], dict[object, dict]]:
-    """Returns the arrival time of each bit, in full-adder delays, and the cell that drives it. `costs`: of cells by type; `gate`: of
-    all other types."""
+    """Returns the arrival time of each bit, in full-adder delays, and the cell that drives it. `costs`: delays of cells by type; `gate`:
+    the delay of all other types."""
     arrival: dict[object, float] = {}
     giver: dict[object, dict] = {}
     for cell in in_order(module):
@@ -92,20 +91,20 @@ def arrivals(module: dict, costs: dict[str, float], gate: float = 0) -> tuple[di
 
 
 def delay(module: dict, counting: Counting) -> float:
-    """The longest path from any input to the sum."""
+    """Returns the longest delay from any input to the sum."""
     arrival, giver = arrivals(module, {"FULL_ADDER": 1, "MULTIPLEXER": counting.multiplexer})
     uncounted = {"MULTIPLEXER": counting.multiplexer - counting.last_multiplexer}
     return max(arrival[bit] - uncounted.get(giver[bit]["type"], 0) for bit in module["ports"]["sum_o"]["bits"] if bit in giver)
 
 
 def hardware(module: dict) -> dict[str, int]:
-    """How many full adders, multiplexers and gates the whole netlist has."""
+    """Returns the numbers of full adders, multiplexers and gates in the whole netlist."""
     kinds = [cell["type"] for cell in module["cells"]]
     found = {"full_adder": kinds.count("FULL_ADDER"), "multiplexer": kinds.count("MULTIPLEXER")}
     return {**found, "gate": len(kinds) - sum(found.values())}
 
 
-# Output port -> its value from those of the cell's input ports; numbers without a sign.
+# By type of cell: output port -> its value from those of the input ports; unsigned numbers.
 FUNCTIONS: dict[str, dict[str, Callable[[dict[str, int]], int]]] = {
     "FULL_ADDER": {"SUM": lambda x: x["A"] ^ x["B"] ^ x["C"], "CARRY": lambda x: int(x["A"] + x["B"] + x["C"] > 1)},
     "MULTIPLEXER": {"OUT": lambda x: x["WHEN_1"] if x["SELECT"] else x["WHEN_0"]},
@@ -126,7 +125,7 @@ FUNCTIONS["CARRY_SAVE"] = FUNCTIONS["FULL_ADDER"]
 
 
 def evaluate(module: dict, given: dict[str, int]) -> dict[object, int]:
-    """Bit -> value, where input port `name` has the number given[name]; what nothing drives counts as 0."""
+    """Returns bit -> value, where input port `name` has the number given[name]; bits without a driver count as 0."""
     values: dict[object, int] = {"0": 0, "1": 1, "x": 0}
     for name, number in given.items():
         values |= split(module["ports"][name]["bits"], number)
@@ -138,18 +137,18 @@ def evaluate(module: dict, given: dict[str, int]) -> dict[object, int]:
 
 
 def split(bits: list, number: int) -> dict[object, int]:
-    """Bit -> its value, where `bits`, lowest first, hold `number`."""
+    """Returns bit -> its value if `bits`, lowest first, hold `number`."""
     return {bit: number >> place & 1 for place, bit in enumerate(bits)}
 
 
 def word(bits: list, values: dict[object, int]) -> int:
-    """The number that `bits`, lowest first, hold."""
+    """Returns the number that `bits`, lowest first, hold."""
     return sum(values.get(bit, 0) << place for place, bit in enumerate(bits))
 
 
 def without_constants(module: dict) -> dict:
-    """The same function with fewer gates: none with a constant or twice the same input, and none twice. Of gates and cells
-    that take and give single bits."""
+    """Returns the same function with fewer gates: no gate has a constant input or the same input twice, and none occurs twice. Gates and
+    cells must have ports of one bit."""
     same: dict[object, object] = {}  # bit -> the bit or constant that it equals
     cells, known = [], {}
     for cell in in_order(module):

@@ -7,7 +7,7 @@ SYNTH_JOBS ?= 2
 options = $(foreach name,$(1),$(if $($(name)),--$(subst _,-,$(name))='$($(name))'))
 design_words = TOP ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT TARGETS PUBLISH
 
-# What describes one design says nothing without it, nor does a parameter by its name.
+# Options of one design need TOP; PARAMS needs VERILOG.
 ifneq ($(and $(PARAMS),$(if $(VERILOG),,1)),)
 $(error PARAMS: expected VERILOG=1, too)
 endif

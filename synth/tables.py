@@ -1,4 +1,4 @@
-"""Tables of a report: Markdown that is aligned in a terminal too, and CSV; and what measured them."""
+"""Tables of reports, as Markdown that is aligned in a terminal, too, and as CSV; and the line that says what measured them."""
 
 import csv
 import datetime
@@ -11,7 +11,7 @@ RESULTS = pathlib.Path(__file__).resolve().parent / "results"  # what PUBLISH=1 
 
 
 def markdown(header: list[str], rows: list[list[object]]) -> str:
-    """A Markdown table whose columns line up; numbers to the right."""
+    """Returns a Markdown table whose columns line up; numbers are right-aligned."""
     text = [[str(cell) for cell in row] for row in [header, *rows]]
     if not rows:
         return ""
@@ -27,12 +27,12 @@ def markdown(header: list[str], rows: list[list[object]]) -> str:
 
 
 def page(header: list[str], rows: list[list[object]]) -> str:
-    """The same without padding, as pages have it."""
+    """Returns the same table without padding, as pages have it."""
     return re.sub(r"(?m)^\|-.*", lambda rule: re.sub("-+", "---", rule[0]), re.sub(r" *\| *", "|", markdown(header, rows)))
 
 
 def comma_separated(rows: list[dict], columns: list[str]) -> str:
-    """CSV of the scalar `columns` of `rows`; what a row has not is left empty."""
+    """Returns CSV of the scalar `columns` of `rows`; missing values are left empty."""
     out = io.StringIO()
     writer = csv.DictWriter(out, columns, extrasaction="ignore", lineterminator="\n")
     writer.writeheader()
@@ -41,16 +41,16 @@ def comma_separated(rows: list[dict], columns: list[str]) -> str:
 
 
 def measured(command: str) -> str:
-    """The last line of a page: the command, the commit and the date."""
+    """Returns the last line of a page: the command, the commit and the date."""
     commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=RESULTS, capture_output=True, text=True, check=False).stdout.strip()
     return f"`{command}` at {commit}, {datetime.date.today().isoformat()}.\n"
 
 
 def with_results(text: str, measured_by: dict[str, str] = {}) -> str:
-    """A page with its tables of published CSV files made again, each with the line that says what measured it.
+    """Returns a page whose tables of published CSV files are made again, each with the line that says what measured it.
 
     A table stands between `<!-- FILE: COLUMNS -->` and `<!-- end -->`; `<!-- synth.csv, SECTION: FLOWS -->` has area / ns of
-    the section's designs in OSU 0.35 um. `measured_by`: the line of files that are new."""
+    the section's designs in OSU 0.35 um. `measured_by`: that line, for new files."""
     def table(mark: re.Match) -> str:
         (file, _, section), heads = mark[2].partition(", "), mark[3].split(", ")
         rows = list(csv.DictReader((RESULTS / file).read_text().splitlines()))

@@ -1,4 +1,4 @@
-"""Finds the outside tools, says how to install the missing ones, and runs them."""
+"""Finds external tools, says how to install missing ones, and runs them."""
 
 import os
 import pathlib
@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-VENV = ROOT / "build" / "venv"  # what .ci/setup installs of Python's
+VENV = ROOT / "build" / "venv"  # of the Python packages that .ci/setup installs
 FLOWS = pathlib.Path(__file__).resolve().parent / "flows"
 
 # Tool -> (what installs it, arguments that print its version).
@@ -38,8 +38,8 @@ class ToolFailed(Exception):
 
 
 def command(name: str) -> Callable[[Callable[[], int]], Callable[[], int]]:
-    """Makes a `main` tell errors in one line, "NAME: error"; its exit status is then 2 for what the user can mend, 1 where a
-    tool failed."""
+    """Decorates a `main` to print errors as one line, "NAME: error". The exit status is then 1 if a tool failed, 2 for errors that the user
+    can correct."""
     def wrap(main: Callable[[], int]) -> Callable[[], int]:
         def run_main() -> int:
             try:
@@ -62,7 +62,7 @@ class Refuted(ToolFailed):
 
 
 def find(tool: str) -> str:
-    """The path of `tool`, from PATH or from the Python environment that runs this program."""
+    """Returns the path of `tool`, from PATH or from the Python environment that runs this program."""
     path = os.pathsep.join([os.environ.get("PATH", ""), str(pathlib.Path(sys.executable).parent)])
     found = shutil.which(tool, path=path)
     if found is None:
@@ -71,7 +71,7 @@ def find(tool: str) -> str:
 
 
 def installed(tool: str) -> bool:
-    """Whether `find` would succeed."""
+    """Returns whether `find` would succeed."""
     try:
         find(tool)
     except MissingTool:
@@ -80,7 +80,7 @@ def installed(tool: str) -> bool:
 
 
 def version(tool: str) -> str:
-    """The version that `tool` states, e.g. "2.0.17"."""
+    """Returns the version that `tool` states, e.g. "2.0.17"."""
     arguments = TOOLS[tool][1]
     if arguments is None:
         return ""
@@ -94,8 +94,8 @@ _costs = threading.local()  # .list: (processor seconds, megabytes) of each comm
 
 def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None,
         folder: pathlib.Path = ROOT, name: str = "") -> str:
-    """Runs `command` in `folder`, writes its output to `log` and returns it. Raises ToolFailed, which calls it `name`, or as the
-    program is called."""
+    """Runs `command` in `folder`, writes its output to `log` and returns it. Raises ToolFailed, which calls the command `name`, by default
+    the name of its program."""
     command = [find(command[0]), *map(str, command[1:])]
     environment = {**os.environ, "LC_ALL": "C", **(env or {})}
     log.parent.mkdir(parents=True, exist_ok=True)
@@ -116,7 +116,7 @@ def run(command: list[str], log: pathlib.Path, env: dict[str, str] | None = None
 
 
 def measured(work: Callable[[], dict]) -> Callable[[], dict]:
-    """`work`, its result with what its commands cost: processor seconds in all, megabytes at most."""
+    """Returns `work` with its result extended by the cost of its commands: total processor seconds, peak megabytes."""
 
     def with_costs() -> dict:
         _costs.list = []

@@ -1,5 +1,5 @@
-"""The proofs of proofs/units.toml: what is claimed of the units and what they are made of, around arithmetic of which as
-little is known as the claim needs (proofs/contracts)."""
+"""The proofs of proofs/units.toml: claims about the units and their modules. In place of arithmetic stand modules with only the properties
+that the claim needs (proofs/contracts)."""
 
 import functools
 import pathlib
@@ -13,7 +13,7 @@ CHECKS = cores.HW.parent / "sim" / "checks"
 
 
 def around(cells: list[str], contracts: list[str]) -> list[pathlib.Path]:
-    """The files of modules and of all that they need, with the modules of these files of contracts/ in place of hw/'s."""
+    """Returns the files of modules and of all that they need, with the modules of these files of contracts/ in place of hw/'s."""
     standing = [PROOFS / "contracts" / f"{name}.sv" for name in contracts]
     replaced = re.findall(r"^module (\w+)", "".join(file.read_text() for file in standing), re.M)
     folders = {file.parent.name for name in cells for file in catalogue.HW.glob(f"*/{name}.sv")} or {"ray_core"}

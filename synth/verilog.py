@@ -1,7 +1,7 @@
 """Writes a module of hw/, with its parameters and all that it instantiates, as one file of plain Verilog.
 
 `python3 -m synth.verilog TOP [Name=value ...]`: build/verilog/TOP.v, for tools that read no SystemVerilog,
-such as Icarus Verilog. Exit status 2 for a module or a parameter that there isn't.
+such as Icarus Verilog. Exit status 2 for an unknown module or parameter.
 """
 
 import pathlib
@@ -13,7 +13,7 @@ OUT = tools.ROOT / "build" / "verilog"
 
 
 def write(design: catalogue.Design, out: pathlib.Path) -> None:
-    """Elaborates `design` and writes `out`; raises ToolFailed where Yosys refuses it."""
+    """Elaborates `design` and writes `out`; raises ToolFailed if Yosys refuses the design."""
     out.parent.mkdir(parents=True, exist_ok=True)
     out.unlink(missing_ok=True)  # a run that fails must not leave the file of an earlier one
     yosys.run(scripts.plain_verilog(design, out), out.with_suffix(".log"))

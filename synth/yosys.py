@@ -16,8 +16,8 @@ from synth import tools
 
 
 def folder() -> pathlib.Path:
-    """The installed package, of this Python or of the one that .ci/setup makes: yosys-abc, and in share/ models and maps of
-    cells. Raises MissingTool."""
+    """Returns the folder of the installed package, of this Python or of the one that .ci/setup makes: it has yosys-abc and, in share/,
+    models and maps of cells. Raises MissingTool."""
     spec = importlib.util.find_spec("pyosys")
     found = [pathlib.Path(spec.origin).parent] if spec else [*tools.VENV.glob("lib/*/site-packages/pyosys")]
     if not found:
@@ -26,12 +26,12 @@ def folder() -> pathlib.Path:
 
 
 def _python() -> str:
-    """The Python that has the package. Raises MissingTool."""
+    """Returns the Python that has the package. Raises MissingTool."""
     return str(tools.VENV / "bin" / "python3") if tools.VENV in folder().parents else sys.executable
 
 
 def installed() -> bool:
-    """Whether `run` would find Yosys."""
+    """Returns whether `run` would find Yosys."""
     try:
         return folder().exists()
     except tools.MissingTool:
@@ -39,7 +39,7 @@ def installed() -> bool:
 
 
 def version() -> str:
-    """E.g. "0.70"; "" where it is not installed."""
+    """Returns the version, e.g. "0.70"; "" if Yosys is not installed."""
     if not installed():
         return ""
     (found,) = importlib.metadata.distributions(name="pyosys", path=[str(folder().parent)])
@@ -47,8 +47,8 @@ def version() -> str:
 
 
 def read(sources: Iterable[pathlib.Path], top: str, parameters: Iterable[tuple[str, object]] = (), options: str = "") -> str:
-    """The commands that elaborate `top`. Modules stay modules, named MODULE$PATH of their first instance; instances with the
-    same parameters share one."""
+    """Returns the commands that elaborate `top`. Modules stay modules, named MODULE$PATH of their first instance; instances with the same
+    parameters share one module."""
     overrides = "".join(f"-G {name}={value} " for name, value in parameters)
     return (f"read_slang -j 1 --keep-hierarchy --disable-instance-caching=false {options} {overrides}--top {top} "
             f"{' '.join(map(str, sources))}\nhierarchy -check -top {top}")
@@ -68,7 +68,7 @@ def abc(commands: str, log: pathlib.Path) -> str:
 
 
 def main() -> int:
-    """The command line."""
+    """Runs the command line."""
     parser = argparse.ArgumentParser(prog="synth.yosys", description="Runs commands of Yosys, or of ABC.")
     parser.add_argument("commands", nargs="?", help="one a line, or separated by semicolons")
     parser.add_argument("--file", help="a file of commands in their place")
@@ -83,7 +83,7 @@ def main() -> int:
     except tools.MissingTool as error:
         print(f"synth.yosys: {error}", file=sys.stderr)
         return 2
-    from pyosys import libyosys  # here alone: it takes a tenth of a second, and Yosys may end the process
+    from pyosys import libyosys  # only here: the import takes a tenth of a second, and Yosys may end the process
 
     if given.strict:
         libyosys.run_pass("logger -werror .")

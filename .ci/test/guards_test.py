@@ -1,4 +1,4 @@
-"""guards.toml and the plan that guards.py makes of it. In the root of the checkout; the build's tests are known by then."""
+"""Tests guards.toml and the plan that guards.py makes of it. Runs in the root of the checkout, after the build."""
 
 import pathlib
 import re
@@ -22,7 +22,7 @@ class Table(unittest.TestCase):
         self.assertEqual(rooms - set(guard["rooms"]) - set(guard["without"]), set())
 
     def test_names_are_there(self):
-        """Beginnings of paths, tests and the texts that faults replace."""
+        """Path prefixes, tests and the texts that faults replace exist."""
         files, tests = guards.git("ls-files").splitlines(), guards.tests_of("build")
         for name, guard in guards.TABLE.items():
             with self.subTest(name):

@@ -1,9 +1,9 @@
 // Adder of a chosen kind: {carry_o, sum_o} = a_i + b_i + carry_i. Combinational.
 //
 // Every addition of the cores goes through here, so that one parameter changes them all: Arith, see arith_pkg.
-// GroupWidths: the groups of a carry-select adder (see arith_pkg), or 0 for those of its kind: up to 12 bits, as in
-// exponents, one look-ahead group is not worth cutting. LookAhead: how the groups of a carry-select adder add, see
-// there.
+// GroupWidths: the groups of a carry-select adder (see arith_pkg). 0 selects the groups of Arith's kind or, with
+// LookAhead and up to 12 bits (as in exponents), a single group: cutting would not pay. LookAhead: see
+// carry_select_adder.
 module adder #(
   parameter int unsigned Width = 48,
   parameter int unsigned Arith = arith_pkg::Graded,

@@ -1,9 +1,9 @@
 // The kinds of arithmetic, and the group widths of carry-select adders.
 //
-// Arith, a parameter of all that calculates, is one of arith_e (a number, as tools can only override those from
-// outside). Behavioural is the language's own +, * and <, for tools that know how to build those (DSP blocks, carry
-// chains). The others are structural: Booth recoding, carry-save trees and adders of that kind. All have the same
-// stages and bits.
+// Arith, a parameter of every arithmetic module, is one of arith_e (declared as a number: tools can override only
+// numbers from outside). Behavioural is the language's own +, * and <, for tools that map these to DSP blocks and carry
+// chains. The others are structural: Booth recoding, carry-save trees and adders of the named kind. All kinds have the
+// same pipeline stages and give the same bits.
 //
 // A list of group widths is a vector of MaxGroups bytes: the lowest byte is the least significant group, a byte of 0
 // ends the list.
@@ -19,9 +19,9 @@ package arith_pkg;
 
   localparam int unsigned MaxGroups = 16;
 
-  // Groups of 4 bits, the narrowest on top where 4 does not divide `width`; wider ones only where MaxGroups of 4 bits
-  // would not do. At 48 bits: 12 groups, the 14 full-adder delays of the paper (4 full adders, then 10 multiplexers to
-  // the carry that selects the last group's sums).
+  // Groups of 4 bits, with a narrower one on top if 4 does not divide `width`; wider groups only if MaxGroups groups of
+  // 4 bits are too few. At 48 bits: 12 groups, the 14 full-adder delays of the paper (4 full adders, then 10
+  // multiplexers to the carry that selects the last group's sums).
   function automatic bit [8*MaxGroups-1:0] uniform_groups(int unsigned width);
     int unsigned size, left;
     size = (width <= 4 * MaxGroups) ? 4 : (width + MaxGroups - 1) / MaxGroups;
@@ -33,12 +33,12 @@ package arith_pkg;
     end
   endfunction
 
-  // Groups graded so that, with a full adder and a multiplexer of one delay each, the carry reaches every group just when
-  // the group's own two sums are ready: each group one bit wider than the one below it, so that the widest, on top, has
-  // as many bits as the adder has delays, d: the least with d (d + 1) / 2 + 1 >= width (groups of 1, 1, 2 ... d bits).
-  // From the top down the groups take d, d - 1 ... bits, until what is left fits into one more group no wider than the
-  // last. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays of the paper. Good to 121 bits; beyond, MaxGroups
-  // can be too few and the adder refuses the list.
+  // Groups graded so that, with a full adder and a multiplexer of one delay each, the carry reaches every group just
+  // when the group's own two sums are ready: each group is one bit wider than the one below it, and the widest, on top,
+  // has as many bits as the adder has delays: the least d with d (d + 1) / 2 + 1 >= width (groups of 1, 1, 2 ... d
+  // bits). From the top down the groups take d, d - 1 ... bits, until the rest fits into one more group no wider than
+  // the last. At 48 bits: 3, 5, 6, 7, 8, 9, 10, the 10 full-adder delays of the paper. Valid up to 121 bits; beyond,
+  // MaxGroups can be too few and the adder refuses the list.
   function automatic bit [8*MaxGroups-1:0] graded_groups(int unsigned width);
     int unsigned size, left;
     size = 1;
@@ -77,7 +77,7 @@ package arith_pkg;
     end
   endfunction
 
-  // A bit set at the lowest bit of every group.
+  // Returns a word with a 1 at the lowest bit of every group.
   function automatic bit [255:0] group_starts(bit [8*MaxGroups-1:0] widths);
     group_starts = '0;
     for (int unsigned k = 0; k < MaxGroups; k++) begin

@@ -1,9 +1,9 @@
 // Radix-4 Booth recoding of an unsigned number, all digits at once.
 //
 // b_i = sum over k of digit[k] * 4**k, digit[k] = -2 b[2k+1] + b[2k] + b[2k-1] in -2 .. 2. Bits above the top of b_i
-// count as 0, so the last digit is never negative. For each digit bit 2k of three words says that it is 1 or -1, that
-// it is 2 or -2, that it is to be subtracted (also where bits 111 make 0); bits 2k + 1 are 0. Digits: Width / 2 + 1, 13
-// for 24 bits. Combinational.
+// count as 0, so the last digit is never negative. Bit 2k of one_o: digit k is 1 or -1; of two_o: it is 2 or -2; of
+// negative_o: it is subtracted (also the 0 of bits 111). Bits 2k + 1 are 0. Digits: Width / 2 + 1, 13 for 24 bits.
+// Combinational.
 // Source: O. L. MacSorley, "High-speed arithmetic in binary computers", Proc. IRE 49, 1961.
 module booth_encoder #(
   parameter  int unsigned Width  = 24,
@@ -17,7 +17,7 @@ module booth_encoder #(
 
   localparam logic [2*Digits-1:0] EvenBits = {Digits{2'b01}};
 
-  logic [2*Digits-1:0] low, middle, high;  // with b[2k-1], b[2k], b[2k+1] at bit 2k
+  logic [2*Digits-1:0] low, middle, high;  // bit 2k: b[2k-1], b[2k], b[2k+1]
 
   assign middle = (2 * Digits)'(b_i);
   assign low    = middle << 1;

@@ -4,8 +4,8 @@
 // tree, a carry-propagate adder of 2 * Width bits: the paper's multiplier (section 3.4), for any Width from 2.
 //
 // ConstantRow: 1 for the paper's tree, with the constants in a row of their own (14 rows, 12 adders in 6 levels); 0
-// puts them into free places of the other rows (13 rows, 11 adders in 5 levels). Arith (a structural kind),
-// GroupWidths, LookAhead: the last adder, see there. Combinational.
+// puts the constants into free places of the other rows (13 rows, 11 adders in 5 levels). Arith (a structural kind),
+// GroupWidths and LookAhead are those of the last adder: see adder. Combinational.
 module booth_multiplier #(
   parameter int unsigned Width = 24,
   parameter int unsigned Arith = arith_pkg::Graded,
@@ -43,8 +43,8 @@ module booth_multiplier #(
 
   // Partial products: row k has weight 4**k
   //
-  // With n the word `negative`, the rows lack n - n * 2**(Width+1). Modulo 2**(2*Width) the second is 2**(Width+1)
-  // + ~n * 2**(Width+1), where the odd bits of ~n are the constants that stand for all sign extensions.
+  // With n the word `negative`, the rows lack n - n * 2**(Width+1). Modulo 2**(2*Width) the second term is 2**(Width+1)
+  // + ~n * 2**(Width+1), where the odd bits of ~n are the constants that replace all sign extensions.
 
   logic [2*Width*Rows-1:0] rows;
 
@@ -62,14 +62,14 @@ module booth_multiplier #(
     );
 
     if (ConstantRow) begin : gen_bare
-      if (k == 0) begin : gen_first  // the 1 finds room above row 0
+      if (k == 0) begin : gen_first  // the 1 fits above row 0
         assign rows[2*Width+:2*Width] = (2 * Width)'({1'b1, row});
       end else begin : gen_next
         assign rows[2*Width*(k+1)+:2*Width] = (2 * Width)'(row) << 2 * k;
       end
     end else begin : gen_full
-      // n fits below the last row and ~n above row 0, all but one: at bit Width + 1 the 1 and ~n[0]
-      // are 4 - n[0], whose three bits push ~n[2] into row 1.
+      // n fits below the last row and ~n above row 0, except ~n[2]: from bit Width + 1 on, the 1 and ~n[1:0] add up to
+      // 4 - n[0], whose three bits displace ~n[2] to row 1.
       if (k == 0) begin : gen_first
         assign rows[0+:2*Width] = (2 * Width)'({
           ~negative[2*Digits-1:3], ~negative[0], negative[0], negative[0], row
@@ -84,7 +84,7 @@ module booth_multiplier #(
     end
   end
 
-  if (ConstantRow) begin : gen_constant_row  // first in the tree, for it is known first
+  if (ConstantRow) begin : gen_constant_row  // first in the tree: it is available first
     assign rows[0+:2*Width] = {~negative[Width-2:0], (Width + 1)'(negative)};
   end
 

@@ -1,10 +1,10 @@
 // Carry-save tree: rows_i add up to sum_o + carry_o modulo 2**Width.
 //
-// A queue: each carry-save adder takes the three oldest rows and appends its sum and its carry, until two are left
-// after Rows - 2 adders. So every level makes two rows of three and passes on what is left: of 14 rows 10, 7, 5, 4, 3
-// and 2 by 12 adders in 6 levels, the paper's tree (section 3.4).
+// The rows form a queue: each carry-save adder takes the three oldest rows and appends its sum and its carry, until two
+// are left after Rows - 2 adders. So every level turns threes of rows into twos and passes on the rest: 14 rows become
+// 10, 7, 5, 4, 3 and 2, with 12 adders in 6 levels, the paper's tree (section 3.4).
 //
-// Row r of rows_i is rows_i[Width*r +: Width]; the last ones may arrive late. Rows from 2.
+// Row r of rows_i is rows_i[Width*r +: Width]; the last rows may arrive late. Rows: 2 or more.
 // Combinational; about log(Rows / 2) / log(1.5) full-adder delays.
 module carry_save_tree #(
   parameter int unsigned Width = 48,
@@ -17,7 +17,7 @@ module carry_save_tree #(
 
   localparam int unsigned Adders = Rows - 2;
 
-  // Its rows feed each other, but never in a loop: which Verilator sees when they are signals of their own.
+  // Rows feed later rows, never in a loop; Verilator sees this only if each row is a signal of its own (split_var).
   logic [Width*(Rows+2*Adders)-1:0] queue  /*verilator split_var*/;
 
   assign queue[Width*Rows-1:0] = rows_i;

@@ -6,8 +6,8 @@
 //
 // GroupWidths: see arith_pkg; the widths must add up to Width.
 // LookAhead: the groups add by carry look-ahead (1, as the paper's do) or by two ripple-carry adders each (0).
-// Combinational: the delay of the groups, NumGroups - 2 carry multiplexers, one sum multiplexer. That of the groups is
-// ceil(log2(widest group)) steps, or as many full adders as the widest group has bits.
+// Combinational: the delay of the groups, NumGroups - 2 carry multiplexers, one sum multiplexer. The groups take
+// ceil(log2(widest group)) steps, or without LookAhead as many full adders as the widest group has bits.
 module carry_select_adder #(
   parameter int unsigned Width = 48,
   parameter bit [8*arith_pkg::MaxGroups-1:0] GroupWidths = arith_pkg::graded_groups(Width),
@@ -27,19 +27,19 @@ module carry_select_adder #(
     $error("carry_select_adder: expected GroupWidths that add up to Width, without a 0 between");
   end
 
-  // Both sums of each group, without a carry into it and with one. The lowest knows its carry: carry_i
+  // Both sums of each group, without and with a carry in. The lowest group's carry in is known: carry_i
 
   logic [Width-1:0] sum_0, sum_1;
   logic [NumGroups-1:0] carry_0, carry_1;
 
   if (LookAhead) begin : gen_look_ahead
-    // All groups are worked on at once, as words: a prefix scan of (generate, propagate) pairs that doubles its reach with
-    // every step and never looks past the start of a group. A group's carries are then "generate" if no carry enters it
-    // and "generate or propagate" if one does, so that one scan serves both sums. carry_i counts as generated.
+    // All groups are computed at once, as words: a prefix scan of (generate, propagate) pairs that doubles its reach in
+    // every step and stops at the start of a group. A group's carries are then "generate" if no carry enters it and
+    // "generate or propagate" if one does, so that one scan serves both sums. carry_i counts as generated.
     localparam int unsigned Widest = arith_pkg::widest_group(GroupWidths);
     localparam logic [Width-1:0] Starts = Width'(arith_pkg::group_starts(GroupWidths));
 
-    logic [Width-1:0] half_sum;   // a bit's sum before its carry: it propagates
+    logic [Width-1:0] half_sum;   // a bit's sum without its carry in; 1: it propagates
     logic [Width-1:0] generated;  // over all bits from the start of the group to this one
     logic [Width-1:0] propagated;
 
@@ -106,7 +106,7 @@ module carry_select_adder #(
     localparam int unsigned Size = 32'(GroupWidths[8*k+:8]);
     logic carry_in, carry_out;
     if (k == 0) begin : gen_known
-      assign carry_in = 1'b0;  // both of its sums count carry_i already
+      assign carry_in = 1'b0;  // both sums of group 0 include carry_i
     end else begin : gen_unknown
       assign carry_in = gen_group[k-1].carry_out;
     end

@@ -1,7 +1,7 @@
-// Counts the zeros above the highest one of a word.
+// Counts the zeros above the highest 1 of a word.
 //
-// The highest one is smeared over all places below it, which leaves a mark where the ones begin; bit j of the count is
-// the OR of all places whose number of zeros above has that bit.
+// The highest 1 is spread over all places below it; the top of these ones marks its place. Bit j of the count is the OR
+// of the mark over all places whose number of zeros above has bit j.
 //
 // Combinational, $clog2(Width) levels, one AND, and an OR of half the places. For a_i = 0, zero_o is 1 and count_o is
 // all ones.

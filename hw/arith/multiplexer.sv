@@ -1,8 +1,8 @@
 // Word-wide multiplexer with a select line of its own for every bit:
 // out_o[i] = select_i[i] ? when_1_i[i] : when_0_i[i]. Combinational.
 //
-// Ordered: promises that when_0_i[i] implies when_1_i[i] (as a carry out of a group that comes even without a carry
-// into it), so that AND-OR without the inverted select is enough.
+// Ordered: a promise that when_0_i[i] implies when_1_i[i] (a group's carry out without a carry in implies the carry out
+// with one), so that AND-OR without the inverted select is enough.
 module multiplexer #(
   parameter int unsigned Width = 1,
   parameter bit Ordered = 1'b0
@@ -13,7 +13,7 @@ module multiplexer #(
   output logic [Width-1:0] out_o
 );
 
-  // Written as gates: from `?:` the C++ compiler makes branches, which random data mispredicts.
+  // Written as gates: C++ compilers turn `?:` into branches, which random data mispredict.
   if (Ordered) begin : gen_ordered
     assign out_o = when_0_i | (when_1_i & select_i);
   end else begin : gen_any

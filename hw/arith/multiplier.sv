@@ -1,6 +1,6 @@
 // Unsigned multiplier of a chosen kind: product_o = a_i * b_i. Combinational; any Width from 2.
 //
-// Arith: Behavioural is `*`; the others are booth_multiplier, whose the other parameters are.
+// Arith: Behavioural is `*`; all others are a booth_multiplier, see there for ConstantRow.
 module multiplier #(
   parameter int unsigned Width = 24,
   parameter int unsigned Arith = arith_pkg::Graded,

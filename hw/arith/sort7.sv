@@ -1,6 +1,6 @@
 // Sorts seven unsigned words, the smallest lowest: 16 comparators in six steps.
-// Latency: 2 clocks: a register behind every two steps but the last.
-// Source: Batcher's network for eight, less one input.
+// Latency: 2 clocks: registers after the second and the fourth step.
+// Source: Batcher's network for eight words, without one of them.
 module sort7 #(
   parameter int unsigned Width = 27
 ) (
@@ -9,7 +9,7 @@ module sort7 #(
   output logic [7*Width-1:0] sorted_o
 );
 
-  // Whom each word is compared with, a step a line, word 6 first: itself where it overflows
+  // Each word's partner in a comparison, or itself if it rests; a number for each step, last step first, word 6 first
   localparam logic [6*21-1:0] Partners = {
     21'o5634120, 21'o6452310, 21'o4563120, 21'o6234501, 21'o3516042, 21'o0452316
   };

@@ -1,15 +1,15 @@
-// Divides significands by radix-4 SRT: floor(2 * x / d * 4**Rows), and whether anything is left.
+// Divides significands by radix-4 SRT: floor(2 * x / d * 4**Rows), and whether there is a remainder.
 //
-// Radix-4 SRT, a row for each digit: digits -2 .. 2, residual in carry-save form, so that no row waits for a carry but
-// that of its seven-bit estimate. A first digit of 1 .. 4, taken from the operands themselves, brings the quotient's 2
-// x / d in (1, 4) to its place; Rows digits follow.
+// Each digit has a row. Digits are -2 .. 2 and residuals in carry-save form, so a row waits only for the carries of its
+// seven-bit estimate. The quotient 2 x / d is in (1, 4): a first digit, 1 .. 4, chosen without an estimate, then Rows
+// digits.
 //
 // dividend_i and divisor_i: normalised, one integer bit which must be 1 (else the outputs are invalid). quotient_o: two
-// integer bits and 2 * Rows fraction bits, exact and cut off. side_i comes out as side_o with its quotient.
+// integer bits and 2 * Rows fraction bits, truncated. side_o is the side_i of the same division.
 //
-// Pipelined: registers behind the first digit, each row, the remainder and the quotient. Latency: 0 or, Pipelined, Rows
-// + 3 clocks. Throughput: a division a clock. Registers load only what is valid: valid_o is valid_i, as much later, and
-// while it is low the outputs of a pipelined divider are invalid. Nothing is reset, so valid_o is undefined at first.
+// Pipelined: registers after the first digit, each row, remainder and quotient. Latency: 0 or, Pipelined, Rows + 3
+// clocks. Throughput: one division a clock. Registers load valid data only: valid_o is valid_i after the latency,
+// and while it is low the outputs of a pipelined divider are invalid. Nothing is reset: valid_o is undefined at first.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection constants: srt_pkg.
 module srt_divider #(
   parameter int unsigned Width = 24,  // of both operands
@@ -29,7 +29,7 @@ module srt_divider #(
   output logic                 valid_o
 );
 
-  // Fraction bits of the residual: the divisor's, and no fewer than the selection looks at.
+  // Fraction bits of the residual: the divisor's, but at least as many as digit selection reads.
   localparam int unsigned FracWidth = (Width < 6) ? 5 : Width - 1;
   localparam int unsigned ResWidth = 2 + FracWidth;
   localparam int unsigned PadWidth = FracWidth + 1 - Width;
@@ -104,7 +104,7 @@ module srt_divider #(
     );
   end
 
-  // ---- Remainder: a negative one takes a unit off the quotient. (Then it is d - |w|, never zero.)
+  // ---- Remainder: if it is negative, the quotient is one unit less. (The remainder is then d - |w|, never zero.)
 
   localparam int unsigned QuotientWidth = 2 * Rows + 2;
   logic [ResWidth-1:0] remainder, unused_divisor;
@@ -144,7 +144,7 @@ module srt_divider #(
     .data_o({plus, minus, remainder_side, remainder_negative, remainder_left})
   );
 
-  // ---- Quotient: positive less negative digits, less that unit
+  // ---- Quotient: positive minus negative digits, minus one unit if the remainder is negative
 
   adder #(
     .Width(QuotientWidth),

@@ -1,6 +1,6 @@
-// First row of the radix-4 SRT divider: a digit of 1 .. 4. w = 2 x - digit * d. Combinational.
+// First row of the radix-4 SRT divider: chooses a digit of 1 .. 4. w = 2 x - digit * d. Combinational.
 //
-// Residuals and divisor as in srt_row; 2 x and d are in [2, 4) and [1, 2), and nothing is estimated. digit_o is the
+// Residual and divisor have srt_row's formats; 2 x is in [2, 4), d in [1, 2). Nothing is estimated. digit_o is the
 // digit modulo 4.
 module srt_first_row #(
   parameter int unsigned Width = 25
@@ -19,8 +19,8 @@ module srt_first_row #(
   localparam bit [8*16-1:0] First4 = srt_pkg::first_thresholds(4);
 
   logic [5:0] y;  // 2 x in eighths
-  logic [6:0] sixteenth;  // in bits of the thresholds
-  logic from_2, from_3, from_4;  // the digit is that or more
+  logic [6:0] sixteenth;  // bit index into the thresholds
+  logic from_2, from_3, from_4;  // the digit is at least 2, 3, 4
 
   assign y = {1'b0, dividend_doubled_i[Width-1-:5]};
   assign sixteenth = {divisor_i[Width-3-:4], 3'b000};
@@ -29,7 +29,7 @@ module srt_first_row #(
   assign from_4 = y >= First4[sixteenth+:6];
   assign digit_o = {from_2 & ~from_4, ~from_2 | (from_3 & ~from_4)};
 
-  // ---- Subtract nothing or d, and nothing, 2 d or 4 d: a one for each complement goes to two free last places
+  // ---- Subtract 0 or d, and 0, 2 d or 4 d; the ones that complete both complements go to free last places
 
   logic [Width-1:0] upper, carry;
 

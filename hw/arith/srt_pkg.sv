@@ -1,11 +1,11 @@
 // Quotient-digit selection of the radix-4 SRT divider: where each digit begins.
 //
 // With the divisor d in [1, 2) and the shifted residual y = 4 w, |w| <= 2/3 d, digit k of -2 .. 2 keeps |y - k d| <=
-// 2/3 d for y in [(k - 2/3) d, (k + 2/3) d]. Intervals of neighbours overlap by d/3, so a look at the divisor's first
-// bits and at an estimate of y, too low by less than two of its units, suffices: digit k or more is taken where the
-// estimate is at least m_k, with
-//   m_k >= (k - 2/3) d               for every d of the interval (k isn't taken too early), and
-//   m_k <= (k - 1 + 2/3) d - 1 unit  (k - 1 isn't kept too long).
+// 2/3 d for y in [(k - 2/3) d, (k + 2/3) d]. Intervals of neighbours overlap by d/3, so the divisor's first bits and an
+// estimate of y, too low by less than two of its units, suffice. The digit is k or more if the estimate is at least
+// m_k, where
+//   m_k >= (k - 2/3) d               for every d with these first bits (k is not chosen too early), and
+//   m_k <= (k - 1 + 2/3) d - 1 unit  (k - 1 is not kept too long).
 // The functions give the smallest such m_k; sound() and first_sound() check the second condition, and srt_divider
 // refuses to elaborate without it.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3.
@@ -16,7 +16,7 @@ package srt_pkg;
     ceiling = (n > 0) ? (n + d - 1) / d : n / d;
   endfunction
 
-  // (k - 2/3) d for the d of interval i where it is largest, in eighths, rounded up.
+  // The largest (k - 2/3) d for d in interval i, in eighths, rounded up.
   function automatic int threshold(int k, int i);
     threshold = ceiling((3 * k - 2) * ((k > 0) ? i + 9 : i + 8), 3);
   endfunction
@@ -36,8 +36,8 @@ package srt_pkg;
     end
   endfunction
 
-  // The first digit, 1 .. 4, is of the doubled dividend y = 2 x in [2, 4) itself, cut off to eighths, by sixteenths of the
-  // divisor. Nothing is estimated, so the second condition loses its unit; nor need it hold above 4, where no y is.
+  // The first digit, 1 .. 4, is chosen by y = 2 x in [2, 4), truncated to eighths, and by sixteenths of the divisor. y
+  // is not an estimate, so the second condition has no unit; nor need it hold above 4, where there is no y.
   function automatic int first_threshold(int k, int i);
     first_threshold = ceiling((3 * k - 2) * (i + 17), 6);
     if (first_threshold > 32) first_threshold = 32;

@@ -1,4 +1,4 @@
-// Shifts a word right, and says whether a one was lost. Combinational. Amounts from Width on lose all there is.
+// Shifts a word right; lost_o: a 1 was shifted out. Combinational. An amount of Width or more shifts out all bits.
 module sticky_right_shift #(
   parameter int unsigned Width = 26,
   parameter int unsigned AmountWidth = 8

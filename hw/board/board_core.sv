@@ -1,7 +1,7 @@
 // Ray core for a board, with an SDRAM and a host link. Rays, lines and results are words on the link.
 //
-// core_link's header has the words; sdram_controller's says what the SDRAM is and what clk_i may be. Memory has no errors: a
-// host sends no tree that names lines which it has not sent.
+// core_link's header defines the words, sdram_controller's the SDRAM and the limits of clk_i. Memory has no errors: a
+// host must send all lines that a tree names.
 module board_core
   import ray_core_pkg::*;
 #(

@@ -1,13 +1,13 @@
-// Link to a host: words to lines and rays, results to words.
+// Link to a host: lines and rays from words, words from results.
 //
-// A message's first word says what it is in bits 31:28, and in bits 27:0 a number:
-//   1     a line of that number; its 16 words follow
-//   2     memory has changed: it has so many lines, and the caches are emptied
+// Bits 31:28 of a message's first word are its kind, bits 27:0 a number:
+//   1     the line of that number; its 16 words follow
+//   2     memory has changed: it now has that number of lines, and the caches are emptied
 //   4-7   a ray: any_hit in bit 28; its tag, source_id, skip_id, t_max, and x, y, z of direction and origin follow
-// Others are ignored. A result is 8 words, result_t from bit 0 on, zeros above it.
+// Other messages are ignored. A result is 8 words, result_t from bit 0 on, zeros above it.
 //
-// The host sends lines, and says that memory has changed, while no ray is in the core; both wait until no line is in
-// flight to it. Words: valid/ready.
+// The host must send messages 1 and 2 while no ray is in the core; they wait until no line is in flight to the core.
+// Words: valid/ready.
 //
 // A break (break_i, for a clock) ends the host's session: the next word is a message's first, and the rays in the core
 // are aborted. Of their results only the one that is being sent goes out. Words are accepted again when no ray is left.
@@ -51,10 +51,10 @@ module core_link
 
   // ---- Messages: the first word, then the others from the top of a shift register
 
-  logic outstanding_q;  // no ray is here, so that none can begin it
-  logic first_q, full_q, done, is_ray;  // the next word is a message's first; a message is here
+  logic outstanding_q;  // a clock late, but without rays in the core it cannot rise
+  logic first_q, full_q, done, is_ray;  // first_q: a message's first word is next; full_q: all are here
   logic [3:0] kind_q;
-  logic [4:0] left_q;  // words of the message that are to come
+  logic [4:0] left_q;  // words of the message still to come
   logic [AddressWidth-1:0] number_q;
   logic [LineWords*32-1:0] words_q;
   logic [15:0] rays_q;  // in the core
@@ -64,7 +64,7 @@ module core_link
   assign is_ray       = kind_q[3:2] == 2'b01;
 
   always_comb begin
-    done = 1'b1;  // what says nothing is over at once
+    done = 1'b1;  // an unknown message is done at once
     if (kind_q == KindLine) done = write_ready_i & ~outstanding_q;
     if (kind_q == KindLines) done = ~outstanding_q;
     if (is_ray) done = ray_ready_i;
@@ -111,7 +111,7 @@ module core_link
   assign write_data_o  = words_q;
   assign invalidate_o  = full_q & (kind_q == KindLines) & ~outstanding_q;
 
-  localparam int unsigned Ray = (LineWords - RayWords) * 32;  // its first bit
+  localparam int unsigned Ray = (LineWords - RayWords) * 32;  // first bit of the ray's words
   assign ray_valid_o     = full_q & is_ray;
   assign ray_fire        = ray_valid_o & ray_ready_i;
   assign ray_o.tag       = words_q[Ray+:32];
@@ -125,7 +125,7 @@ module core_link
   // ---- Results
 
   logic [ResultWords*32-1:0] result_q;
-  logic [ResultWords-1:0] result_left_q;  // ones: words that are left
+  logic [ResultWords-1:0] result_left_q;  // a 1 for each word still to go
 
   assign word_valid_o   = result_left_q[0];
   assign word_o         = result_q[31:0];

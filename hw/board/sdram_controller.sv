@@ -1,11 +1,11 @@
-// Memory of lines in one SDRAM of 16 bits: reads and writes of 64 bytes by number, valid/ready.
+// Memory of lines in one SDRAM of 16 bits: reads and writes of 64 bytes by line number, valid/ready.
 //
-// A line is 32 neighbouring words of a row; a row has 16 lines, and neighbouring rows of lines are in the next bank.
-// All commands come out of registers. The SDRAM's clock is the inverse of clk_i: it takes a command half a clock after
-// it left, and the word of a read (CAS latency 2) is taken two clocks after its command left. So clk_i's half period
-// must hold the delays out and back and the SDRAM's access time: 6 ns and some 6 of pads, 40 MHz. Writes have priority
-// over reads, refreshes over both. A line comes with its request's id and stays until it is taken. A line to be written
-// stays at the port until its last word leaves.
+// A line is 32 neighbouring words of a row, and a row has 16 lines. Successive groups of 16 lines are in successive
+// banks. Commands leave from registers. The SDRAM's clock is the inverse of clk_i: the SDRAM takes a command half a
+// clock after it left, and the word of a read (CAS latency 2) is sampled two clocks after its command left. So half a
+// period of clk_i must cover the SDRAM's access time, 6 ns, and the delays of pads out and back, some 6 ns: 40 MHz.
+// Writes have priority over reads, refreshes over both. A line comes with its request's id and stays until it is taken.
+// A line to be written stays at the port until its last word leaves.
 //
 // Latency: 36 clocks (at 40 MHz, from the clock that takes a read to line_valid_o). Throughput: a line in 37 clocks.
 // Source: data sheets of MT48LC16M16A2 (Micron) and AS4C16M16 (Alliance): 4 banks, 8,192 rows, 512 columns, 256 Mbit.
@@ -18,11 +18,11 @@ module sdram_controller
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
-  // lines: of the numbers the low 19 bits count
+  // lines; only the low 19 bits of a number count
   input  logic                   read_valid_i,
   output logic                   read_ready_o,
   // verilator lint_off UNUSEDSIGNAL
-  // Memory has no more lines.
+  // The memory has no more than 2**19 lines.
   input  logic [NumberWidth-1:0] read_line_i,
   input  logic [IdWidth-1:0]     read_id_i,
   output logic                   line_valid_o,
@@ -40,7 +40,7 @@ module sdram_controller
   output logic                   sdram_we_no,
   output logic [1:0]             sdram_bank_o,
   output logic [12:0]            sdram_address_o,
-  output logic                   sdram_drive_o,  // data_o goes out
+  output logic                   sdram_drive_o,  // sdram_data_o is driven
   output logic [15:0]            sdram_data_o,
   input  logic [15:0]            sdram_data_i
 );
@@ -48,13 +48,13 @@ module sdram_controller
   // ---- Times in clocks, rounded up
 
   localparam int unsigned Start = 200 * ClockMhz;  // 200 us
-  localparam int unsigned Refresh = 6 * ClockMhz;  // 6 us of the 7.8: a line may go before
+  localparam int unsigned Refresh = 6 * ClockMhz;  // 6 us; at most 7.8 if a line goes first
   localparam int unsigned CycleClocks = (70 * ClockMhz + 999) / 1000;  // tRFC
   localparam int unsigned RowClocks = (20 * ClockMhz + 999) / 1000;  // tRCD and tRP
   localparam int unsigned Words = 32;
   localparam int unsigned WaitWidth = $clog2(Start + 1);
 
-  // {RAS, CAS, WE}, low where they are meant
+  // {RAS, CAS, WE}, active low
   localparam logic [2:0] CommandNone = 3'b111;
   localparam logic [2:0] CommandActivate = 3'b011;
   localparam logic [2:0] CommandRead = 3'b101;
@@ -63,7 +63,7 @@ module sdram_controller
   localparam logic [2:0] CommandRefresh = 3'b001;
   localparam logic [2:0] CommandMode = 3'b000;
   localparam logic [12:0] Mode = 13'h020;  // single words, CAS latency 2
-  // Of precharge: all banks; of a read or a write: then precharge
+  // For a precharge: of all banks; for a read or a write: with auto-precharge
   localparam logic [12:0] All = 13'h400;
 
   typedef enum logic [2:0] {
@@ -80,7 +80,7 @@ module sdram_controller
   logic go, word_goes, refresh_due_q, writing_q, last_word, idle, read_fire;
   logic [2:0] command, reading_q;  // reading_q: clocks since a read left
   logic [4:0] word_q;
-  logic [5:0] left_q;  // words of a line that are to come
+  logic [5:0] left_q;  // words of a line still to come
   logic [3:0] columns_q;  // the line's place in its row
   logic [18:0] number;
   logic [15:0] word_i_q;
@@ -130,7 +130,7 @@ module sdram_controller
         CommandRefresh:   wait_q <= WaitWidth'(CycleClocks);
         CommandMode:      wait_q <= WaitWidth'(2);
         CommandActivate:  wait_q <= WaitWidth'(RowClocks - 1);
-        // after the last word: writing recovers, the row is closed
+        // after the last word: write recovery, then precharge
         CommandRead, CommandWrite: wait_q <= last_word ? WaitWidth'(2 + RowClocks) : '0;
         default: if (!go) wait_q <= wait_q - 1'b1;
       endcase
@@ -148,7 +148,7 @@ module sdram_controller
   end
 
   always_ff @(posedge clk_i) begin
-    // Whether a line goes is known late: what it would be is taken all the time.
+    // Whether a line is taken is known late, so its number is registered in every clock.
     if (state_q == StateIdle) begin
       word_q       <= '0;
       writing_q    <= write_valid_i;
@@ -166,7 +166,7 @@ module sdram_controller
     endcase
   end
 
-  // ---- Words that come
+  // ---- Words from the SDRAM
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

@@ -1,13 +1,13 @@
 // Serial line to words of 32 bits: 8N1, four bytes a word, lowest byte and bit first.
 //
 // Throughput: a word in 40 ClocksPerBit clocks; a bit is sampled in its middle. A low stop bit is a break: break_o is
-// high for a clock, and the next byte is the first of a word. A word is at word_o in the clock of valid_o only.
+// high for a clock, and the next byte is the first of a word. word_o is valid only in the clock of valid_o.
 module uart_receiver #(
   parameter int unsigned ClocksPerBit = 20
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
-  input  logic        serial_i,  // from the pin, of no clock
+  input  logic        serial_i,  // from the pin, asynchronous
   output logic        valid_o,
   output logic [31:0] word_o,
   output logic        break_o
@@ -19,7 +19,7 @@ module uart_receiver #(
 
   localparam int unsigned CountWidth = $clog2(ClocksPerBit);
 
-  logic [2:0] serial_q;  // two against metastability, and the bit before
+  logic [2:0] serial_q;  // two stages against metastability, and the bit before
   logic [CountWidth-1:0] count_q;
   logic [3:0] bit_q;  // 0: no byte; 1 its start bit, ... 10 its stop bit
   logic [1:0] byte_q;
@@ -44,7 +44,7 @@ module uart_receiver #(
         if (serial_q[2:1] == 2'b10) bit_q <= 4'd1;
       end else begin
         count_q <= sample ? CountWidth'(ClocksPerBit - 1) : count_q - 1'b1;
-        // a start bit that is none, or the stop bit
+        // a false start bit, or the stop bit
         if (stop || (sample && bit_q == 4'd1 && serial_q[1])) bit_q <= '0;
         else if (sample) bit_q <= bit_q + 1'b1;
       end

@@ -18,7 +18,7 @@ module uart_transmitter #(
     $error("uart_transmitter: expected ClocksPerBit to be 2 or more");
   end
 
-  logic [Bits-1:0] bits_q;  // the one that is out lowest; ones behind the last
+  logic [Bits-1:0] bits_q;  // lowest: the bit on the line; ones follow the last bit
   logic [$clog2(Bits+1)-1:0] left_q;
   logic [CountWidth-1:0] count_q;
 

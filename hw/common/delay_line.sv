@@ -1,5 +1,5 @@
 // Delay line: a word, Depth clocks later.
-// Latency: Depth clocks with enable_i; 0 is a wire. No reset: what comes out first is undefined.
+// Latency: Depth clocks with enable_i; a Depth of 0 is a wire. Without reset: data_o is undefined at first.
 module delay_line #(
   parameter int unsigned Width = 32,
   parameter int unsigned Depth = 1

@@ -1,9 +1,8 @@
 // Queue of Depth words, in registers or, with Memory, in a ram.
 //
-// Latency: 1 clock, 2 with Memory; the first word waits at the memory's output, the others in it. Throughput: one word
-// a clock. push_i is the writer's promise that a word is free, pop_i the reader's that valid_o is high. space_o says
-// that more than Reserve words are free: with a Reserve of as many words as a writer may still push after it has seen
-// space_o fall, it is the writer's leave to begin. space_o and valid_o are registers.
+// Latency: 1 clock, or 2 with Memory (the first word moves to the memory's output). Throughput: one word a clock.
+// push_i requires a free word, pop_i that valid_o is high. space_o: more than Reserve words are free. If a writer can
+// still push some words after space_o has fallen, Reserve is their number. space_o and valid_o are registers.
 module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 2,
@@ -29,7 +28,7 @@ module fifo #(
   end
 
   logic [IndexWidth-1:0] write_q, read_q;
-  logic [CountWidth-1:0] count_q, count_d;  // with the one at the memory's output
+  logic [CountWidth-1:0] count_q, count_d;  // including the word at the memory's output
   logic read, valid_d;
 
   always_comb begin

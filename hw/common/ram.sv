@@ -1,8 +1,8 @@
-// Memory with a clock, one port to write and one to read: what block RAM and SRAM macros are.
+// Synchronous memory, one write port and one read port: as block RAM and SRAM macros.
 //
-// Latency: 1 clock; the word stays at data_o until the next is read. Throughput: a read and a write a clock. Where one
-// is read and written at the same edge, it is the one before. Its contents have no reset. A word has Parts of equal
-// width, each with its own write_i.
+// Latency: 1 clock; the word stays at data_o until the next read. Throughput: one read and one write a clock. A word
+// read and written at the same edge is read with its old value (read first). The memory has no reset. A word has Parts
+// of equal width, each with its own write_i.
 module ram #(
   parameter int unsigned Width = 32,  // a multiple of Parts
   parameter int unsigned Depth = 64,

@@ -20,7 +20,7 @@ module rr_arbiter #(
   assign picked = among & -among;  // its lowest bit
   assign valid_o = requests_i != '0;
 
-  // The numbers with bit b
+  // Marks the indices whose bit b is 1
   function automatic bit [Width-1:0] numbers(int unsigned b);
     for (int unsigned i = 0; i < Width; i++) numbers[i] = ((i >> b) % 2) == 1;
   endfunction

@@ -1,17 +1,17 @@
 // Accumulator of the exact unit: sums of digit products, without rounding.
 //
-// Product scanning (Comba, "Exponentiation cryptosystems on the IBM PC", IBM Systems Journal 29, 1990): column k has all
-// products of a digit i and a digit k - i. What Kulisch's long accumulator (Computer Arithmetic and Validity, 2013)
-// holds in a memory as wide as the exponents' range, this one passes through in one register, a column at a time:
+// Product scanning (Comba, "Exponentiation cryptosystems on the IBM PC", IBM Systems Journal 29, 1990): column k has
+// all products of a digit i and a digit k - i. Kulisch's long accumulator (Computer Arithmetic and Validity, 2013) is a
+// memory as wide as the exponents' range; this is one register, which holds one column at a time:
 //
-//   upwards    a column's sum leaves its low DigitWidth bits, a balanced digit of the result, and carries what is left
-//              into the next one;
-//   downwards  the sum so far, times 2**DigitWidth, and the next column's. Columns below can take away less than
-//              2**SureBit of it: they have Products products at most, each 2**(2 DigitWidth - 2) at most, so below
-//              Products 2**(DigitWidth - 2) (1 + 2**(1 - DigitWidth)) together. A sum beyond is sure of its sign, and one that
-//              is not has room for another column: |sum| < 2**(2 DigitWidth + log2 Products).
+//   upwards    the low DigitWidth bits of a column's sum are a balanced digit of the result; the rest is carried into
+//              the next column;
+//   downwards  the sum is multiplied by 2**DigitWidth before the next column is added. A column has at most Products
+//              products of at most 2**(2 DigitWidth - 2), so all columns below together change the sum by less than
+//              Products 2**(DigitWidth - 2) (1 + 2**(1 - DigitWidth)) < 2**SureBit: the sign of a larger sum is final.
+//              Any other sum leaves room for another column: |sum| < 2**(2 DigitWidth + log2 Products).
 //
-// Latency: 2 clocks. Throughput: a term a clock, in two words, sum_i + carry_i modulo 2**Width.
+// Latency: 2 clocks. Throughput: one term a clock (as two words, sum_i + carry_i modulo 2**Width).
 module exact_accumulator
   import exact_pkg::*;
 #(
@@ -21,15 +21,15 @@ module exact_accumulator
   localparam int unsigned Width = sum_width(DigitWidth, Products)
 ) (
   input  logic                  clk_i,
-  input  logic                  opens_i,  // a column
-  input  logic                  first_i,  // of them
+  input  logic                  opens_i,  // first term of a column
+  input  logic                  first_i,  // first term of a sum
   input  logic                  down_i,
   input  logic [Width-1:0]      sum_i,
   input  logic [Width-1:0]      carry_i,
   output logic [DigitWidth-1:0] digit_o,
   output logic                  negative_o,
   output logic                  zero_o,
-  output logic                  sure_o  // of its sign, whatever the columns below
+  output logic                  sure_o  // the sign is final, whatever the columns below
 );
 
   localparam int unsigned SureBit = DigitWidth - 1 + $clog2(Products);
@@ -39,7 +39,7 @@ module exact_accumulator
 
   assign stays = first_i ? '0 : !opens_i ? sum_q
                : down_i ? sum_q << DigitWidth : Width'($signed(sum_q) >>> DigitWidth);
-  // The digit that left was balanced: where it was negative, the columns above have one more.
+  // The digit is balanced: if it is negative, the columns above get one more.
   assign round = opens_i & ~first_i & ~down_i & sum_q[DigitWidth-1];
 
   carry_save_adder #(

@@ -1,11 +1,11 @@
-// Units and digits of a request's numbers, from its floats' exponents: as few digits as they ask for.
+// Units and digits of a request's numbers: as few digits as the exponents of its floats need.
 //
-// Coordinates are in units of the smallest exponent of those that are not 0, and so are differences of them; a direction has
-// a unit of its own. A hit's t = D / S, with D in units of b**3 and S of b**2 c, so t < limit compares D times b with
-// S times (limit c): these two factors, `one` and `limit`, are in units of the smaller exponent. D, S and the others keep
-// theirs below exact_pkg's bound: see digits_of.
+// The unit of coordinates and of their differences, b, is the smallest exponent of coordinates that are not 0; the
+// direction has its own, c. t = D / S of a hit, with D in units of b**3 and S in units of b**2 c, is below the limit if
+// D times b is below S times (limit c). These two factors, `one` and `limit`, are in units of the smaller of their
+// exponents. D, S and the other numbers stay below exact_pkg's bound: see digits_of.
 //
-// Latency: 2 to 4 clocks: 2 for the exponents, 3 for their digits, 4 for the rest.
+// Latency: 2 to 4 clocks (2 for the exponents, 3 for their digits, 4 for the rest).
 module exact_exponents
   import exact_pkg::*;
 #(
@@ -35,7 +35,7 @@ module exact_exponents
   localparam int unsigned Unit = (1 << (ExpWidth - 1)) - 1 + FracWidth;
   localparam int unsigned Vectors = PlaceLimit / 3;
 
-  // Of numbers of `bits` bits, shifted by up to `spread`: digits_of, for what is not known before.
+  // digits_of for numbers of `bits` bits and a `spread` that is a signal.
   function automatic logic [CountWidth-1:0] count(logic [ShiftWidth-1:0] spread, int unsigned bits);
     count = CountWidth'(Least);
     for (int unsigned k = Least; k < PairDigits; k++) begin
@@ -43,7 +43,7 @@ module exact_exponents
     end
   endfunction
 
-  // ---- The least and the largest exponent of each vector; of a zero, none
+  // ---- The least and the largest exponent of each vector, without its zeros
 
   logic [ExpWidth-1:0] lows_d[Vectors], highs_d[Vectors], lows_q[Vectors], highs_q[Vectors];
 
@@ -73,12 +73,12 @@ module exact_exponents
     end
   end
 
-  // ---- Of all coordinates, and of the direction
+  // ---- Exponents and digits of all coordinates, and of the direction
 
   localparam int unsigned Direction = PlaceDirection / 3;
   localparam int unsigned Other = PlaceOther / 3;
 
-  logic [ExpWidth-1:0] lows[2*Vectors], highs[2*Vectors];  // trees: 2 n and 2 n + 1 below n
+  logic [ExpWidth-1:0] lows[2*Vectors], highs[2*Vectors];  // trees: nodes 2 n and 2 n + 1 are below n
   logic [ExpWidth-1:0] coordinate_high_q, direction_high_q;
 
   always_comb begin
@@ -98,7 +98,7 @@ module exact_exponents
   end
 
   always_ff @(posedge clk_i) begin
-    // Zeros alone: any unit will do.
+    // If all are zero, any unit will do.
     coordinate_exponent_o <= (highs[1] == '0) ? ExpWidth'(1) : lows[1];
     coordinate_high_q     <= (highs[1] == '0) ? ExpWidth'(1) : highs[1];
     direction_exponent_o  <= lows_q[Direction];
@@ -109,7 +109,7 @@ module exact_exponents
         ShiftWidth'(direction_high_q) - ShiftWidth'(direction_exponent_o), Significand);
   end
 
-  // ---- Of a limit: b against c times the limit's unit
+  // ---- Exponents and digits of `one` (b) and `limit` (c times the limit's unit)
 
   logic [ShiftWidth:0] one_exponent, limit_exponent;
   logic [ShiftWidth-1:0] gap_q;

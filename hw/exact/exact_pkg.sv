@@ -1,16 +1,16 @@
-// What the parts of the exact unit share: requests, answers, numbers, instructions, steps.
+// Shared by the parts of the exact unit: requests, answers, numbers, instructions, steps.
 //
-// A number is a sum of d_k 2**(Width k), k from 0 on, in units of a power of two that its kind has in common. Its digits
-// are balanced, -2**(Width-1) <= d_k < 2**(Width-1), in two's complement, so the highest that is not 0 has the number's sign.
-// n digits hold any number below 2**(Width n - 2).
+// A number is the sum of d_k 2**(Width k), k from 0 on, in a power of two as the unit, common to all numbers of its
+// kind. Its digits are balanced, -2**(Width-1) <= d_k < 2**(Width-1), in two's complement, so the highest digit that is
+// not 0 has the number's sign. n digits hold any number below 2**(Width n - 2).
 package exact_pkg;
 
   // verilator lint_off UNUSEDPARAM
-  // No top uses everything.
+  // No top module uses everything.
 
   // ---- A request
 
-  // Places of the floats: a vector's x, its y and z behind it; a triangle's A, B and C. The words of a request, x lowest.
+  // Places (word numbers) of a request's floats: that of a vector's x, which y and z follow; of A, then B and C.
   localparam int unsigned PlaceWidth = 5;
   localparam int unsigned PlaceOrigin = 0;
   localparam int unsigned PlaceDirection = 3;
@@ -18,13 +18,13 @@ package exact_pkg;
   localparam int unsigned PlaceOther = 15;
   localparam int unsigned PlaceLimit = 24;
   localparam int unsigned Floats = 25;
-  localparam int unsigned PlaceOne = 25;  // 1, in the units of a limit
+  localparam int unsigned PlaceOne = 25;  // the constant 1, in the units of a limit
 
   // What a hit is compared with.
   typedef enum logic [1:0] {
     AgainstNothing = 2'd0,
     AgainstLimit   = 2'd1,
-    AgainstOther   = 2'd2  // triangle
+    AgainstOther   = 2'd2  // another triangle's hit
   } against_e;
 
   // The sign of a number.
@@ -35,8 +35,8 @@ package exact_pkg;
 
   // ---- Numbers in memory
   //
-  // Three of the direction, nine of corners or edges, three and three of normals (twice as many digits), four of fractions
-  // (three times as many).
+  // Direction: 3 numbers; corners or edges: 9; two normals: 3 each, of twice as many digits; fractions: 4, of three
+  // times as many.
 
   localparam int unsigned NumberWidth = 5;
   localparam int unsigned Normal = 12;
@@ -45,32 +45,32 @@ package exact_pkg;
   localparam int unsigned OtherDistance = 20;
   localparam int unsigned Numbers = 22;
 
-  localparam int unsigned CountWidth = 6;  // of a number's digits
+  localparam int unsigned CountWidth = 6;  // of the number of a number's digits
 
-  // Digits that a memory of them has, for `digits` of a difference.
+  // Words of the memory of digits, if a difference has `digits` digits.
   function automatic int unsigned memory_depth(int unsigned digits);
     memory_depth = (12 + 6 * 2 + 4 * 3) * digits;
   endfunction
 
-  // Where a number's digit 0 is.
+  // Address of a number's digit 0.
   function automatic int unsigned number_base(int unsigned number, int unsigned digits);
     number_base = (number < Normal) ? number * digits
                 : (number < Distance) ? (Normal + 2 * (number - Normal)) * digits
                 : (24 + 3 * (number - Distance)) * digits;
   endfunction
 
-  // ---- Digits that exponents ask for
+  // ---- Digits that a range of exponents needs
   //
-  // With e the exponent field (1 for subnormals), a float is a whole number of significand_width bits in units of
-  // 2**(e - Bias - FracWidth). Of a difference of two such numbers, in units of the smallest exponent, `spread` above which
-  // the largest is, the magnitude is below 2**(spread + significand_width + 1).
+  // With e the exponent field (1 for subnormals), a float is a whole number of significand_width bits in units of 2**(e
+  // - Bias - FracWidth). In units of the smallest exponent, with the largest `spread` above it, the difference of two
+  // such numbers is below 2**(spread + significand_width + 1) in magnitude.
 
   function automatic int unsigned digits_of(int unsigned spread, int unsigned significand_width,
                                             int unsigned width);
     digits_of = (spread + significand_width + 3 + width - 1) / width;
   endfunction
 
-  // The most digits: of a difference; of limit and one, whose exponents are at most largest_gap apart.
+  // The most digits of a difference; and the largest gap between the exponents of `limit` and `one`.
   function automatic int unsigned difference_digits(
     int unsigned exp_width, int unsigned significand_width, int unsigned width);
     difference_digits = digits_of((1 << exp_width) - 3, significand_width, width);
@@ -80,7 +80,7 @@ package exact_pkg;
     largest_gap = (1 << exp_width) - 2 + (1 << (exp_width - 1)) - 1 + significand_width;
   endfunction
 
-  // Bits of the accumulator, for `products` of digits in a column: see exact_accumulator.
+  // Bits of the accumulator for columns of at most `products` products: see exact_accumulator.
   function automatic int unsigned sum_width(int unsigned width, int unsigned products);
     sum_width = 2 * width + $clog2(products) + 1;
   endfunction
@@ -88,20 +88,20 @@ package exact_pkg;
   // ---- Instructions, see exact_program_pkg
 
   typedef enum logic [2:0] {
-    KindCoordinate = 3'd0,  // a number: a coordinate minus another
+    KindCoordinate = 3'd0,  // a number: one coordinate minus another
     KindRay        = 3'd1,  // a direction's component
-    KindPair       = 3'd2,  // a limit, or one
+    KindPair       = 3'd2,  // the limit, or the constant 1
     KindCross      = 3'd3,  // x0 y0 - x1 y1: a component of a normal
-    KindPlane      = 3'd4,  // x0 y0 + x1 y1 + x2 y2: of a corner and a normal
-    KindEdge       = 3'd5,  // the same of the direction and a normal
-    KindCompare    = 3'd6   // x0 y0 - x1 y1: of fractions
+    KindPlane      = 3'd4,  // x0 y0 + x1 y1 + x2 y2: a corner times a normal
+    KindEdge       = 3'd5,  // likewise, the direction times a normal
+    KindCompare    = 3'd6   // x0 y0 - x1 y1: fractions
   } kind_e;
 
   typedef struct packed {
     kind_e kind;
-    logic decide;  // the sign of the sum; else the number `result`
-    logic fence;  // begins when all before it is written
-    logic last;  // of the program Hit
+    logic decide;  // 1: takes the sign of the sum; 0: makes the number `result`
+    logic fence;  // begins when all earlier results are written
+    logic last;  // the last of the program Hit
     logic [NumberWidth-1:0] result;
     logic [NumberWidth-1:0] y2;
     logic [NumberWidth-1:0] x2;
@@ -111,21 +111,21 @@ package exact_pkg;
     logic [NumberWidth-1:0] x0;
   } instruction_t;
 
-  // ---- A step: a product of two digits, or a digit of a difference of floats, for the accumulator
+  // ---- A step: a product of two digits, or a digit of a difference of floats; each adds to the accumulator
 
   typedef struct packed {
     kind_e kind;
-    logic down;  // columns from the top: a sign is wanted
-    logic last;  // instruction_t's
+    logic down;  // columns go downwards, for a sign
+    logic last;  // as in instruction_t
     logic second;  // the instruction has a component of SecondNormal
     logic [NumberWidth-1:0] result;
     logic negate;
     logic empty;  // nothing is added
-    logic first;  // step of the instruction
+    logic first;  // first step of the instruction
     logic opens;  // first step of a column
     logic closes;  // last step of a column
-    logic ends;  // in the instruction's last column
-    logic low;  // in column 0
+    logic ends;  // the column is the instruction's last
+    logic low;  // the column is column 0
   } step_t;
 
   // verilator lint_on UNUSEDPARAM

@@ -3,7 +3,7 @@
 // a_i and b_i are in two's complement. Structural arithmetic is radix-4 Booth recoding of b_i (without a digit above
 // the sign, which only an unsigned operand needs) and a carry-save tree; the accumulator has the only adder. A row of
 // DigitWidth + 1 bits in two's complement equals the row with its top bit inverted, less 2**DigitWidth. Together these
-// corrections are a constant, which shares a row with the ones that complete the complements. Combinational.
+// corrections are a constant, which shares a row with the ones that complete negative rows. Combinational.
 module exact_product #(
   parameter int unsigned DigitWidth = 48,
   parameter int unsigned Width = 103,
@@ -29,7 +29,7 @@ module exact_product #(
     localparam logic [Width-1:0] Signs = (~Ones + 1'b1) << DigitWidth;
 
     // verilator lint_off UNUSEDSIGNAL
-    // The odd bits belong to no digit, and the last digit is an unsigned number's.
+    // Odd bits belong to no digit; the last digit is for unsigned numbers only.
     logic [DigitWidth+1:0] one, two, negative;
     // verilator lint_on UNUSEDSIGNAL
     logic [DigitWidth-1:0] turned;

@@ -1,13 +1,13 @@
 // Micro-programs of the exact unit: the polynomials whose signs it takes, instruction by instruction.
 //
-// An instruction makes a number out of floats or of numbers made before, or takes the sign of one. It may read a digit
-// WriteDelay clocks after the digit's last product (sim/checks/exact_checks.sv watches that), so vectors that do not need
-// each other alternate; where that is not enough an instruction waits until all before it is written (its fence).
+// An instruction computes a number from floats or earlier numbers, or the sign of a number. A digit cannot be read
+// before its last product has passed the pipeline (sim/checks/exact_checks.sv checks that), so independent vectors
+// alternate; where that is not enough, an instruction has a fence: it waits until all earlier results are written.
 //
-// Limit and Order are of hits, and follow Hit where a request asks for both.
+// Limit and Order compare hits; they follow Hit if a request asks for both.
 package exact_program_pkg;
 
-  // Programs are read from left to right; no top enters everywhere.
+  // Programs are indexed from left to right; no top module uses everything.
   // verilator lint_off LITENDIAN
   // verilator lint_off UNUSEDPARAM
   // verilog_lint: waive-start packed-dimensions-range-ordering
@@ -17,7 +17,7 @@ package exact_program_pkg;
   typedef instruction_t [0:2] vector_t;  // of x, y, z
   typedef logic [NumberWidth-1:0] place_t;  // of a float in a request, or of a number in memory
 
-  // ---- Places: of vectors those of x
+  // ---- Places; a vector's is that of its x
 
   localparam place_t Origin = place_t'(PlaceOrigin);
   localparam place_t Triangle = place_t'(PlaceTriangle);  // its corners A, B, C
@@ -37,14 +37,14 @@ package exact_program_pkg;
 
   // ---- Instructions
 
-  // The number `result`: x0 y0, minus or plus the other products as its kind says (x0 - y0 of floats).
+  // Makes the number `result`: x0 y0, minus or plus the other products as its kind says (x0 - y0 for floats).
   function automatic instruction_t number(kind_e kind, place_t result, place_t x0, place_t y0,
                                           place_t x1 = '0, place_t y1 = '0, place_t x2 = '0,
                                           place_t y2 = '0);
     number = '{kind, 1'b0, 1'b0, 1'b0, result, y2, x2, y1, x1, y0, x0};
   endfunction
 
-  // Floats minus floats.
+  // A vector of differences of floats.
   function automatic vector_t difference(place_t result, place_t minuend, place_t subtrahend);
     for (logic [4:0] k = 0; k < 3; k++) begin
       difference[k] = number(KindCoordinate, result + k, minuend + k, subtrahend + k);
@@ -75,14 +75,14 @@ package exact_program_pkg;
     dot_product = number(kind, result, x, y, x + 5'd1, y + 5'd1, x + 5'd2, y + 5'd2);
   endfunction
 
-  // The sign of x . y; `last`: of the program.
+  // Takes the sign of x . y; `last`: it ends the program.
   function automatic instruction_t sign(kind_e kind, place_t x, place_t y, logic last = 1'b0);
     sign = dot_product(kind, '0, x, y);
     sign.decide = 1'b1;
     sign.last = last;
   endfunction
 
-  // The sign of t - t' times those of both slopes.
+  // Takes the sign of (t - t') S S', with t = T / S.
   function automatic instruction_t compare();
     compare = number(KindCompare, '0, T, OtherS, S, OtherT);
     compare.decide = 1'b1;
@@ -98,7 +98,7 @@ package exact_program_pkg;
 
   // verilog_format: off
   localparam instruction_t [0:Length-1] Program = {
-    // Hit: the sides on which the ray passes the edges; A, B and C minus the origin
+    // Hit: the sides on which the ray passes the edges; here A, B and C are relative to the origin
     difference(B, Triangle + 5'd3, Origin),
     difference(C, Triangle + 5'd6, Origin),
     difference(A, Triangle, Origin),
@@ -121,7 +121,7 @@ package exact_program_pkg;
     dot_product(KindPlane, T, A, N),
     dot_product(KindEdge, S, I, N),
     compare(),
-    // Order: t against that of the other triangle
+    // Order: t against t' of the other triangle
     difference(B, Triangle + 5'd3, Triangle),
     difference(C, Triangle + 5'd6, Triangle),
     difference(A, Triangle, Origin),

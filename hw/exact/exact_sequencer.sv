@@ -1,13 +1,13 @@
 // Sequencer of the exact unit: steps of programs, a product a clock.
 //
-// Columns go upwards where a number is wanted, from column 0 to its last digit; downwards from the highest where a sign
-// is. In a column all pairs of digits, of each pair every term. An instruction with a fence begins when written_i is high.
-// stop_i: the sign that the instruction at stop_address_i is after is known; where its steps still go out the next
-// instruction follows. After Hit the program goes on with what the hit is compared with, before it is known whether
-// there is one: abort_i ends that.
+// The columns of a number go upwards, from column 0 to its last digit; those of a sign downwards, from the highest. A
+// column has all its pairs of digits, and for each pair every term. An instruction with a fence begins when written_i
+// is high. stop_i: the instruction at stop_address_i has its sign; if its steps are still being issued, the next
+// instruction follows. After Hit, the program goes on with the comparison before it is known whether there is a hit;
+// abort_i ends it.
 //
-// start_i: the digits' counts are there, but pair_digits_i, which has another clock; the first step goes out in the
-// clock after.
+// start_i: the counts of digits are valid, except pair_digits_i, which is valid a clock later. The first step is issued
+// in the clock after start_i.
 module exact_sequencer
   import exact_pkg::*;
 #(
@@ -24,11 +24,11 @@ module exact_sequencer
   input  logic [CountWidth-1:0]   coordinate_digits_i,
   input  logic [CountWidth-1:0]   direction_digits_i,
   input  logic [CountWidth-1:0]   pair_digits_i,
-  // what is known meanwhile
+  // results so far
   input  logic                    written_i,
   input  logic                    stop_i,
   input  logic [6:0]              stop_address_i,
-  output logic                    stopped_o,  // all steps on their way are of that instruction
+  output logic                    stopped_o,  // the steps in flight are all of that instruction
   input  logic                    abort_i,
   // a step
   output logic                    valid_o,
@@ -42,7 +42,7 @@ module exact_sequencer
   output logic [AddressWidth-1:0] result_address_o
 );
 
-  // ---- Fetch: the next instruction, and how far its digits go
+  // ---- Fetch: the next instruction, and its last digits
 
   instruction_t fetched, instruction_q;
   logic [6:0] compares, next_q, address_q;
@@ -86,7 +86,7 @@ module exact_sequencer
     endcase
   end
 
-  // What follows the instruction that is fetched.
+  // The program after Hit; `finishes`: no instruction follows the fetched one.
   assign compares = (against_i == AgainstLimit) ? exact_program_pkg::Limit
                                                 : exact_program_pkg::Order;
   assign finishes = (fetched.kind == KindCompare)
@@ -111,7 +111,7 @@ module exact_sequencer
     end
   end
 
-  // ---- Steps: term, digits i of x and j of y, and those that the column began with
+  // ---- Steps: the term, digit i of x and digit j of y, and the first i and j of the column
 
   logic [1:0] term_q, terms_last;
   logic [CountWidth-1:0] i_q, j_q, from_i_q, from_j_q, from_i_d, from_j_d, column_q;
@@ -141,7 +141,7 @@ module exact_sequencer
     end else if (from_i_q != x_last_q) begin
       from_i_d = from_i_q + 1'b1;
     end else begin
-      beyond_d = 1'b1;  // no products: what was carried
+      beyond_d = 1'b1;  // no products, only the carry
     end
   end
 

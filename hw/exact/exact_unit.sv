@@ -1,21 +1,20 @@
 // Exact unit: decides hits, limits and which of two hits is nearer.
 //
-// What host/exact says, ties included, from the binary32 words (or another format's) of the ray and the corners. With
-// A, B, C the corners minus the origin and N = (B - A) x (C - A):
+// Decides as host/exact does, ties included, from the floats (binary32 or another format) of the ray and the corners.
+// With A, B, C the corners minus the origin and N = (B - A) x (C - A):
 //
-//   hit    A . (B x C) is not 0, and I . (B x C), I . (C x A), I . (A x B) have its sign; the sign of one that is 0 is that
-//          of the first component of its cross product that is not (the ray tilted towards +x, less towards +y, then +z)
-//   order  the sign of t - limit or t - t', for t = D / S, D = A . N, S = I . N: that of D S' - D' S, by those of D and D'
+//   hit    A . (B x C) is not 0, and I . (B x C), I . (C x A), I . (A x B) have its sign. One that is 0 has the sign of
+//          the first non-zero component of its cross product (the ray tilts towards +x, less towards +y, then +z)
+//   order  the sign of t - limit or t - t', with t = D / S, D = A . N, S = I . N: that of (D S' - D' S) D D'
 //
-// All are sums of products of floats, so whole numbers in units that the exponents give: exact_exponents has the units,
-// exact_program_pkg the programs; exact_product and exact_accumulator sum without rounding. Latency: up to 161 clocks,
-// or 3,686: with digits of 48 bits, hit 72, limit 56, order 98, hit and order 161, if the exponents are at most 21
-// apart (a difference is one digit); 3,686 whatever the words.
+// All are sums of products of floats, so whole numbers in units that the exponents give (exact_exponents), summed
+// without rounding. exact_program_pkg has the programs. Latency: up to 161 clocks, at worst 3,686 (with digits of 48
+// bits; at exponents at most 21 apart a difference is one digit: hit 72, limit 56, order 98, hit and order 161).
 //
-// Coordinates are of magnitude 2**126 at most, the direction is not 0, all are finite; a limit is positive and finite.
-// An order is of hits: for others it is the sign of that formula. hit_i and against_i say what is asked. hit_o is high
-// if it was not asked; order_o is 0 then, and for what is not hit. One request at a time: ready_o is high between an
-// answer and the next request.
+// Coordinates are of magnitude 2**126 at most, the direction is not 0, the limit is positive; all are finite. hit_i and
+// against_i select the questions. hit_o is high if no hit was asked for; order_o is 0 for a miss or if no order was
+// asked for. For other than hits, the order is just the formula's sign. One request at a time:
+// ready_o is high between an answer and the next request.
 module exact_unit
   import exact_pkg::*;
 #(
@@ -97,14 +96,14 @@ module exact_unit
 
   typedef struct packed {
     step_t step;
-    logic [6:0] address;  // of its instruction
-    logic [AddressWidth-1:0] result;  // where the digit that it completes goes
+    logic [6:0] address;  // of the step's instruction
+    logic [AddressWidth-1:0] result;  // address of the digit that the step completes
   } stage_t;
 
   logic [Stages:1] valid_q;
   stage_t issue;
   // verilator lint_off UNUSEDSIGNAL
-  // Each stage asks for some of it.
+  // Each stage uses some of the fields.
   stage_t [Stages:1] stage_q;
   // verilator lint_on UNUSEDSIGNAL
   logic [AddressWidth-1:0] x_address, y_address;
@@ -148,7 +147,7 @@ module exact_unit
     end
   endfunction
 
-  logic [1:0][Width-1:0] words_q;  // of x, of y
+  logic [1:0][Width-1:0] words_q;  // of x ([0]) and y
   logic one_q, limit_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -163,7 +162,8 @@ module exact_unit
     limit_q     <= 32'(x_place) == PlaceLimit;
   end
 
-  // ---- Stage 1: digits of numbers, from memory; digits of floats; x of a limit or one has a shift of its own
+  // ---- Stage 1: digits of numbers, from memory, or of floats; the limit and 1, which only x can be, have their own
+  // shifts
 
   logic write, loads;
   logic [DigitWidth-1:0] digit;
@@ -301,7 +301,7 @@ module exact_unit
     if (valid_q[4]) decided_q <= was_decided | stop;
   end
 
-  // Of an edge that the ray meets, the first component of its normal.
+  // For an edge that the ray meets, the sign of the first non-zero component of the edge's normal.
   always_comb begin
     tie_sign = '0;
     for (int unsigned k = 3; k > 0; k--) begin

@@ -5,7 +5,7 @@
 //   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least the leading bit:
 //         exact, so only a leading-zero count and a left shift
 //
-// Pipelined: registers between ordering and adding, between adding and rounding, and behind the result. Latency: 0 or,
+// Pipelined: registers between ordering and adding, between adding and rounding, and after the result. Latency: 0 or,
 // Pipelined, 3 clocks. Throughput: one operation a clock. The rounding mode is used in several stages and should stay
 // the same.
 //
@@ -30,11 +30,11 @@ module fp_adder #(
 );
 
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
-  localparam int unsigned NearWidth = FracWidth + 2;  // one place more, for a neighbour exponent
+  localparam int unsigned NearWidth = FracWidth + 2;  // one bit more, for exponents that differ by one
   localparam int unsigned FarWidth = FracWidth + 3;  // two integer bits, fraction, guard
   localparam int unsigned CountWidth = $clog2(NearWidth);
 
-  // ---- Unpack; subtracting is adding with the other sign
+  // ---- Unpack; subtraction inverts b's sign
 
   logic a_sign, b_sign_packed, b_sign, subtract;
   logic [ExpWidth-1:0] a_exp, b_exp;
@@ -67,7 +67,7 @@ module fp_adder #(
   assign small_sig = swap ? a_sig : b_sig;
   assign sign = (equal & subtract) ? rounding_mode_i == fp_pkg::RoundDown : swap ? b_sign : a_sign;
 
-  // ---- Distance of the exponents, both ways at once beside the ordering
+  // ---- Distance of the exponents: both differences, in parallel with the ordering
 
   logic [1:0][ExpWidth-1:0] exps, differences;  // of a and b; a - b and b - a
   logic [ExpWidth-1:0] distance;
@@ -120,8 +120,8 @@ module fp_adder #(
              big_sig_1, small_sig_1})
   );
 
-  // ---- Far path: align. A difference is taken one place further left: its value, doubled, is in [1, 4) like that of a
-  // sum (but for those that the near path gives), and its exponent one less.
+  // ---- Far path: align. Subtraction uses operands shifted left by one and an exponent less by one. So a difference is
+  // in [1, 4), like a sum, unless the near path computes it.
 
   logic [FarWidth-1:0] far_big, far_small, far_aligned;
   logic far_sticky;
@@ -138,8 +138,8 @@ module fp_adder #(
     .lost_o(far_sticky)
   );
 
-  // ---- Far path: add. A lost part of the subtrahend takes the place of the one that completes its complement: the
-  // difference is then too low by less than a place, which the sticky bit tells.
+  // ---- Far path: add. If bits of the subtrahend are lost, the 1 that completes its complement is left out: the
+  // difference is then too low by less than a unit in the last place, which the sticky bit makes up for.
 
   logic [FarWidth-1:0] far_sum;
 
@@ -154,13 +154,13 @@ module fp_adder #(
     .carry_o()
   );
 
-  // ---- Far path: exponent for the rounder, less one for a sum and less two for a difference
+  // ---- Far path: exponent for the rounder, minus one for a sum and minus two for a difference
 
   logic [ExpWidth-1:0] far_exp;
 
   assign far_exp = big_exp_1 - (subtract_1 ? ExpWidth'(2) : ExpWidth'(1));
 
-  // ---- Near path: subtract, the distance known from the exponents' lowest bits
+  // ---- Near path: subtract; the exponents' lowest bits give their distance, 0 or 1
 
   logic [NearWidth-1:0] near_small, near_difference;
 
@@ -177,7 +177,7 @@ module fp_adder #(
     .carry_o()
   );
 
-  // A mark at the place where the exponent becomes the smallest one, for normalising.
+  // A 1 at the place where the exponent becomes the smallest one, for normalising.
   logic [NearWidth-1:0] near_mark;
   logic near;
 
@@ -204,8 +204,8 @@ module fp_adder #(
              near_difference_2, near_mark_2})
   );
 
-  // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one: what is left is
-  // subnormal, or zero, and has the exponent field 0. Nothing is counted where this path isn't taken.
+  // ---- Near path: normalise. The mark stops the count where the exponent becomes the smallest one: the result is then
+  // subnormal, or zero, with an exponent field of 0. The count is 0 if this path is not taken.
 
   logic [NearWidth-1:0] near_normal;
   logic [CountWidth-1:0] near_count;
@@ -274,7 +274,7 @@ module fp_adder #(
   delay_line #(
     .Width($bits(flags)),
     .Depth(32'(Pipelined))
-  ) u_flags (  // by themselves: where they are unused, Verilator leaves them out
+  ) u_flags (  // separate: Verilator drops them where they are unused
     .clk_i,
     .enable_i(1'b1),
     .data_i(flags),

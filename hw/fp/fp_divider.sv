@@ -4,13 +4,13 @@
 //
 // QuotientBits = 0 is IEEE 754: correctly rounded. Other values reproduce a divider whose significand is cut off after
 // that many bits, counting the leading one (21 gives the quotients printed in the paper's worked example, up to 5 ulp
-// low in binary32). Only a subnormal result is then still rounded, from what the cut has left; what was cut off raises
-// no flag.
+// low in binary32). Then only a subnormal result is rounded, from the bits that are kept; the bits cut off raise no
+// flag.
 //
-// Pipelined: registers behind normalising, each stage of the significands' division (Rows + 3, see srt_divider; Rows:
-// two bits of the quotient each, 12 in binary32) and the result. Latency: 0 or, Pipelined, Rows + 5 clocks. Throughput:
-// a division a clock. Registers load only what came with valid_i; in other clocks the outputs of a pipelined divider
-// are invalid. The rounding mode is the last stage's.
+// Pipelined: registers after normalising, after each of the Rows + 3 stages of srt_divider (a row gives two bits of the
+// quotient; binary32 has 12 rows) and after the result. Latency: 0 or, Pipelined, Rows + 5 clocks. Throughput: one
+// division a clock. Registers load only what came with valid_i; in other clocks the outputs of a pipelined divider are
+// invalid. The last stage uses the rounding mode.
 //
 // A finite number by zero is infinity and raises divide_by_zero; 0/0 and inf/inf are invalid.
 // Source: IEEE 754-2019, clauses 5.4.1 and 7; Choi and Chung, Trans. KIEE 48A-5-21, section 4.2.
@@ -34,8 +34,8 @@ module fp_divider #(
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
   localparam int unsigned CountWidth = $clog2(FracWidth + 1);
   localparam int unsigned RoundExpWidth = ExpWidth + 2;  // the rounder's exponent
-  // Fraction bits of a quotient in [1, 4): where it is below 2, all of the significand's and the
-  // guard bit, or as many as are not cut off. Two a row.
+  // Fraction bits of a quotient in [1, 4). If it is below 2, they hold the significand's and the guard bit, or those
+  // that are not cut off. Two per row.
   localparam int unsigned QuotientFrac = (QuotientBits == 0) ? FracWidth + 1 : QuotientBits - 1;
   localparam int unsigned Rows = (QuotientFrac + 1) / 2;
   localparam int unsigned QuotientWidth = 2 * Rows + 2;
@@ -45,7 +45,7 @@ module fp_divider #(
     $error("fp_divider: expected at most FracWidth + 1 QuotientBits and 27 rows");
   end
 
-  // ---- Unpack: of each pair [0] is a's, [1] b's
+  // ---- Unpack; [0] is a's, [1] is b's
 
   logic [1:0] sign;
   logic [1:0][ExpWidth-1:0] exp;
@@ -77,8 +77,8 @@ module fp_divider #(
     assign norm[n] = sig[n] << count[n];
   end
 
-  // ---- Exponent for the rounder: that of a/b, less one because the quotient comes doubled, less one
-  // because the rounder wants it so: (a_exp - a_count) - (b_exp - b_count) + bias - 2
+  // ---- Exponent for the rounder: that of a/b, minus one because the quotient is doubled, minus one because the
+  // rounder expects it: (a_exp - a_count) - (b_exp - b_count) + bias - 2
 
   localparam logic [RoundExpWidth-1:0] Offset = RoundExpWidth'(2 ** (ExpWidth - 1) - 3);
   logic [RoundExpWidth-1:0] a_exp_offset, exp_difference, count_difference;
@@ -132,7 +132,7 @@ module fp_divider #(
     end
   end
 
-  // ---- First cut, and what goes beside the division
+  // ---- First cut; exponent, sign and specials pass beside the division
 
   logic [RoundExpWidth-1:0] exp_difference_1, count_difference_1, exponent, exponent_2;
   logic sign_1, sign_2, valid_1, divided;
@@ -191,7 +191,7 @@ module fp_divider #(
     .valid_o(divided)
   );
 
-  // ---- Place it for the rounder; or cut it off, one place further down where it is below 2
+  // ---- Place the quotient for the rounder, or cut it off, one place further down if it is below 2
 
   logic [RoundSigWidth-1:0] significand;
 

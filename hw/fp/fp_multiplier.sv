@@ -1,12 +1,12 @@
 // Floating-point multiply: a_i * b_i.
 //
-// The significands are multiplied as they are, a subnormal one with its leading zeros. How far the product must be
-// shifted is found from the operands, beside the multiplication: to the left by the leading zeros, but not beyond the
-// smallest exponent, or to the right for a subnormal result. One shift and the shared rounder follow the product.
+// Significands are multiplied without normalising: a subnormal one has leading zeros. The shift of the product is found
+// from the operands, in parallel with the multiplication: to the left by the leading zeros, but not beyond the smallest
+// exponent, or to the right for a subnormal result. One shift and the shared rounder follow the product.
 //
 // Arith: see arith_pkg. ConstantRow: 1 for the paper's carry-save tree, see booth_multiplier.
-// Pipelined: registers before the product, behind it, and behind the result. Latency: 0 or, Pipelined, 3 clocks.
-// Throughput: one operation a clock. The rounding mode is the last stage's.
+// Pipelined: registers before the product, after it, and after the result. Latency: 0 or, Pipelined, 3 clocks.
+// Throughput: one operation a clock. The last stage uses the rounding mode.
 //
 // Takes every bit pattern. Correctly rounded; the sign is the exclusive OR of the operands' signs, also that of zeros
 // and infinities. Zero times infinity is invalid.
@@ -49,8 +49,8 @@ module fp_multiplier #(
     .class_o({b_class, a_class})
   );
 
-  // ---- Add the exponents: the biased exponent of the product less one, as the rounder wants it, is
-  // a_exp + b_exp - bias - 1 = a_exp + b_exp - 2**(ExpWidth-1), which leaves the low bits alone.
+  // ---- Add the exponents: the product's biased exponent minus one, as the rounder expects it, is a_exp + b_exp - bias
+  // - 1 = a_exp + b_exp - 2**(ExpWidth-1), which keeps the low bits.
 
   logic [ExpWidth:0] exp_sum, exp;
   logic exp_negative;
@@ -131,7 +131,7 @@ module fp_multiplier #(
     .zero_o()
   );
 
-  // ---- Cut behind the product
+  // ---- Cut after the product
 
   logic [ProdWidth-1:0] product_1;
   logic [ExpWidth:0] exp_1;
@@ -158,11 +158,11 @@ module fp_multiplier #(
     .data_o({exp_1, left_1, exp_negative_1, sign_1, special_1})
   );
 
-  // ---- Shift: to the left, or by -exp = ~exp + 1 to the right, where exp is negative
+  // ---- Shift: to the left or, if exp is negative, by -exp = ~exp + 1 to the right
 
   logic [ProdWidth-2:0] shifted;
   logic lost;
-  logic [ProdWidth:0] placed;  // with a place for all that is lost to the right
+  logic [ProdWidth:0] placed;  // the lowest bit: a 1 was lost to the right
 
   sticky_right_shift #(
     .Width(ProdWidth - 1),
@@ -176,7 +176,7 @@ module fp_multiplier #(
   assign placed = exp_negative_1 ? {1'b0, shifted, lost | product_1[0]}
                                  : {product_1 << left_1, 1'b0};
 
-  // ---- Exponent after the shift to the left, beside it
+  // ---- Exponent after the shift to the left, in parallel with it
 
   logic [ExpWidth:0] exp_less_left, left_extended;
 
@@ -227,7 +227,7 @@ module fp_multiplier #(
   delay_line #(
     .Width($bits(flags)),
     .Depth(32'(Pipelined))
-  ) u_flags (  // by themselves: where they are unused, Verilator leaves them out
+  ) u_flags (  // separate: Verilator drops them where they are unused
     .clk_i,
     .enable_i(1'b1),
     .data_i(flags),

@@ -1,18 +1,18 @@
-// What all floating-point cores share: rounding modes and exception flags.
+// Shared by all floating-point cores: rounding modes and exception flags.
 //
 // Every core takes a format as two parameters, ExpWidth and FracWidth (binary32: 8 and 23, binary16: 5 and 10,
-// bfloat16: 8 and 7), packed as in IEEE 754: sign, biased exponent, fraction. Subnormals are read and given; every NaN
-// result is the one quiet NaN with sign 0 and only the top fraction bit set (0x7fc00000 in binary32). Formats need 3 <=
-// ExpWidth and 2 <= FracWidth <= 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2 signed bits;
-// the divider needs FracWidth <= 53, the multiplier, with arith_pkg's groups, FracWidth <= 75.
+// bfloat16: 8 and 7), packed as in IEEE 754: sign, biased exponent, fraction. Operands and results may be subnormal;
+// every NaN result is the one quiet NaN with sign 0 and only the top fraction bit set (0x7fc00000 in binary32). Formats
+// need 3 <= ExpWidth and 2 <= FracWidth <= 2**(ExpWidth-1), so that a subnormal's exponent stays within ExpWidth + 2
+// signed bits; the divider needs FracWidth <= 53, the multiplier, with arith_pkg's groups, FracWidth <= 75.
 //
 // Sums and differences of significands and exponents are instances of hw/arith's adder (of kind Arith), products and
-// quotients of its multiplier and divider. Steps by one or two and comparisons are the language's operators, which
+// quotients of its multiplier and divider. Steps by one or two and comparisons are the language's operators, for which
 // synthesis makes no slower than structures of ours.
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
 package fp_pkg;
 
-  // RISC-V's encoding. The three values left over round towards zero.
+  // RISC-V's encoding. The other three values round towards zero.
   typedef enum logic [2:0] {
     RoundNearestEven         = 3'd0,
     RoundTowardZero          = 3'd1,
@@ -21,7 +21,7 @@ package fp_pkg;
     RoundNearestMaxMagnitude = 3'd4
   } rounding_mode_e;
 
-  // What an operand is, see fp_unpack
+  // Class of an operand, see fp_unpack
   typedef struct packed {
     logic special;  // one of the next three
     logic zero;
@@ -30,7 +30,7 @@ package fp_pkg;
     logic signaling_nan;
   } class_t;
 
-  // What stands in place of a rounded value, and flags that no rounding raises: see fp_round
+  // A result in place of the rounded value, and the flags that rounding does not raise: see fp_round
   typedef struct packed {
     logic nan;
     logic infinity;
@@ -39,7 +39,7 @@ package fp_pkg;
     logic divide_by_zero;
   } special_t;
 
-  // Inexact is bit 0: the order in which RISC-V and TestFloat write them.
+  // Inexact is bit 0: the order of RISC-V and TestFloat.
   typedef struct packed {
     logic invalid;
     logic divide_by_zero;

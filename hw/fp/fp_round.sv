@@ -3,15 +3,15 @@
 // The value is (-1)**sign_i * significand_i / 2**(FracWidth+3) * 2**(exponent_i + 1 - bias), with
 //   significand_i  two integer bits, FracWidth fraction bits, guard, round, sticky (the OR of all bits further down).
 //                  In [1, 4): a product or a quotient need not be normalised.
-//   exponent_i     the biased exponent *less one*, signed. The packed word is exponent_i plus the integer bits; below 0,
-//                  the result may be subnormal, and the complement of exponent_i is how far to shift right.
+//   exponent_i     the biased exponent *less one*, signed. The packed word is exponent_i plus the integer bits; if
+//                  exponent_i is below 0, the significand is first shifted right by -exponent_i.
 //
-// SubnormalShift = 0 takes the right shift out, for a core that has its significand in place already: exponent_i is
-// then never negative, and where it is 0 significand_i may be anything in [0, 4), zero included. (A sum's subnormal
-// results are exact and come out in place.)
+// SubnormalShift = 0 omits the right shift, for a core whose significand is in place already: exponent_i is then never
+// negative, and if it is 0, significand_i may be anything in [0, 4), zero included. (Subnormal sums are exact and need
+// no shift.)
 //
 // Priority: special_i's nan (the canonical NaN), infinity, zero, then overflow, then the rounded value. Any of the
-// first three silences overflow, underflow and inexact; invalid and divide_by_zero go straight to the flags. sign_i is
+// first three suppresses overflow, underflow, inexact; invalid and divide_by_zero go straight to the flags. sign_i is
 // the sign of every result but NaN.
 //
 // rounding_mode_i: fp_pkg::rounding_mode_e; the reserved values 5, 6 and 7 round towards zero.
@@ -54,7 +54,7 @@ module fp_round #(
   // ---- Subnormal results: shift right until the exponent is the smallest one
 
   logic [SigWidth-1:0] placed;
-  logic [FieldWidth-1:0] base;  // exponent_i, or 0 where that is negative
+  logic [FieldWidth-1:0] base;  // exponent_i, or 0 if that is negative
   logic negative;
 
   assign negative = exponent_i[ExpWidth+1];
@@ -80,9 +80,9 @@ module fp_round #(
     assign placed = significand_i;
   end
 
-  // ---- Normalise: the integer bits say which of the three possible exponents it is
+  // ---- Normalise: the integer bits select one of three exponents
 
-  logic [SigWidth-2:0] normal;  // with one integer bit; below the guard bit all is sticky
+  logic [SigWidth-2:0] normal;  // with one integer bit; all bits below the guard bit are sticky
   logic [FracWidth-1:0] fraction;
   logic guard, sticky;
 
@@ -91,10 +91,10 @@ module fp_round #(
   assign guard = normal[2];
   assign sticky = |normal[1:0];
 
-  // ---- Round: a carry out of the fraction makes the next exponent by itself
+  // ---- Round: a carry out of the fraction increments the exponent field
 
   logic inexact, overflow;
-  logic [WordWidth-1:0] rounded;  // right unless there is overflow
+  logic [WordWidth-1:0] rounded;  // valid unless there is overflow
 
   assign inexact = guard | sticky;
 
@@ -109,11 +109,11 @@ module fp_round #(
   assign field = placed[SigWidth-1] ? base_plus_2 : placed[SigWidth-2] ? base_plus_1 : base;
 
   assign rounded = {field[ExpWidth-1:0], fraction} + WordWidth'(increment);
-  // Found beside the increment and not after it.
+  // In parallel with the increment, not after it.
   assign overflow = (field >= InfField) | ((field == InfField - 1'b1) & (&fraction) & increment);
 
-  // ---- Tininess: a leading bit below the smallest exponent. After rounding, it is not tiny if the unbounded rounding,
-  // one bit further down, carries into that bit: all ones, and an increment.
+  // ---- Tininess: the leading bit is below the integer bit. After rounding, the value is not tiny if rounding with
+  // unbounded exponent, one bit further down, carries into the integer bit: all ones, and an increment.
 
   logic tiny, increment_below;
   assign increment_below = (nearest & placed[1]) | (away & |placed[1:0]);

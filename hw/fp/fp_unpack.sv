@@ -1,7 +1,7 @@
-// Takes the two operands of an operation apart, IEEE numbers: fields, hidden bits, classes.
+// Unpacks the two operands of an operation: fields, hidden bits, classes.
 //
 // A finite number is (-1)**sign_o * significand_o / 2**FracWidth * 2**(exponent_o - bias): a subnormal or zero has
-// hidden bit 0 and the exponent of the smallest normal one, and is not normalised here. Infinities and NaNs keep their
+// hidden bit 0 and the smallest normal exponent, and is not normalised here. Infinities and NaNs keep their
 // exponent field; their value is invalid.
 // Combinational; takes every bit pattern. Source: IEEE 754-2019, clause 3.4.
 module fp_unpack #(

@@ -1,9 +1,9 @@
 // Adds, subtracts or multiplies vectors word by word: result[n] = a[n] op b[n].
 //
-// Latency: 3 clocks, or a step. Clocks = 1: a core for each word, a vector a clock; step_i is not looked at. Else few
-// cores that take turns: step_i is high in one of Clocks clocks; with it words come in, and the results of those that
-// came in with the step before go out. A core has Clocks - 3 words in a step. Multiply: a product, else a sum, or a
-// difference where Subtract has the word's bit. Takes every bit pattern; no flags.
+// Latency: 3 clocks, or one step. Clocks = 1: a core for each word, a vector a clock; step_i is ignored. Else words
+// share cores, Clocks - 3 words a core: step_i is high in one of Clocks clocks. At that clock edge words are taken, and
+// result_o has the results of the words taken at the step before. Multiply: products; else sums, or differences for
+// words with a 1 in Subtract. Accepts every bit pattern; no flags.
 module fp_vector #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
@@ -22,7 +22,7 @@ module fp_vector #(
   output logic [Words*Width-1:0] result_o
 );
 
-  localparam int unsigned Share = (Clocks == 1) ? 1 : Clocks - 3;  // of words a core
+  localparam int unsigned Share = (Clocks == 1) ? 1 : Clocks - 3;  // words of a core
   localparam int unsigned Units = (Words + Share - 1) / Share;
 
   if (Clocks != 1 && Clocks < 5) begin : gen_check
@@ -42,9 +42,9 @@ module fp_vector #(
       assign subtract = Subtract[u];
       assign result_o[Width*u+:Width] = result;
     end else begin : gen_turns
-      logic [Own*Width-1:0] a_q, b_q;  // the word whose turn it is lowest
+      logic [Own*Width-1:0] a_q, b_q;  // the word that enters the core lowest
       logic [Own-1:0] subtract_q;
-      logic [(Share-1)*Width-1:0] results_q;  // the latest highest
+      logic [(Share-1)*Width-1:0] results_q;  // the latest result highest
       logic [Share*Width-1:0] results;
 
       always_ff @(posedge clk_i) begin

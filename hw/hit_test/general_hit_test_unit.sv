@@ -1,5 +1,5 @@
 // The general form of the hit test, for comparison: t = -(d + N . O) / (N . I), P = O + t I, for a ray from any origin
-// O, with one multiplier, one adder and one divider of the same cores.
+// O, with one multiplier, one adder and one divider: the cores of hit_test_unit.
 //
 // N = (a, b, c) and d are the plane N . P + d = 0 (so d has the other sign than hit_test_unit's), I is the ray's
 // direction. Ten words come in, three go out:
@@ -8,7 +8,7 @@
 //   1       d           into the accumulator
 //   2-4     a b c       shift into N-3, N-2, N-1
 //   5-7     Ox Oy Oz    shift into V-6 ... V-1
-//   6-8                 accumulator + N-1 * V-6 into it, at edge 8 into the numerator; N rotates
+//   6-8                 accumulator + N-1 * V-6 into the accumulator, at edge 8 into the numerator; N rotates
 //   8-10    Ix Iy Iz    shift into V-6 ... V-1, which then hold I and O
 //   9-11                N-1 * V-6 into the accumulator, then added to it, at edge 11 into the divisor; N rotates
 //   12                  -numerator / divisor into t
@@ -17,7 +17,7 @@
 // valid_i comes with the first word while ready_o; the other nine words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in the clock after each of edges 13, 14 and 15.
 // Throughput: a test every 10 clocks: ten words on one bus; the multiplier works in 9 of them.
-// Latency: 15 clocks; the least where a clock holds a multiplication and an addition or a division.
+// Latency: 15 clocks; the least if one clock holds a multiplication and an addition, or a division.
 //
 // Operations: 9 multiplications, 8 additions, 1 division, rounded as in hit_test_unit.
 // Source: the paper's equations 4 and 5; the timetable is this project's.

@@ -1,13 +1,13 @@
 // Verdict of a test, hit, miss or doubt, from its dot products.
 //
-// U_k = I . E_k is sure where bound_k < |U_k| < infinity; then its sign is the exact one. d's sign is exact, and that
-// of the exact I . N for every ray that hits ahead of its origin. A NaN for d says that its sign is unknown: then two
-// edges of opposite signs still are a miss.
-//   miss   d = 0, or a sure U_k of the other sign than d, or than another sure U_k
+// U_k = I . E_k is sure if bound_k < |U_k| < infinity; its sign is then exact. d's sign is exact; the exact I . N has
+// this sign for every ray that hits ahead of its origin. A NaN for d means that its sign is unknown; two sure U_k of
+// opposite signs are then still a miss.
+//   miss   d = 0, or a sure U_k whose sign differs from d's, or from that of another sure U_k
 //   hit    all U_k sure with d's sign, and V = I . N good for a division: a normal number of d's sign whose exponent is
 //          at most max_grazing below the largest of N's
 //   doubt  everything else
-// Exactly one is true. A NaN is never sure. All comparisons are of words as integers.
+// Exactly one is true. A NaN is never sure. Words are compared as integers.
 //
 // t_error_o: see hit_test_pkg; valid for a hit only. Combinational.
 module hit_decision
@@ -18,7 +18,7 @@ module hit_decision
   localparam int unsigned Width = 1 + ExpWidth + FracWidth
 ) (
   input  logic [Width-1:0]       d_i,
-  input  logic [ExpWidth-1:0]    normal_exponent_i,  // largest field of N's three
+  input  logic [ExpWidth-1:0]    normal_exponent_i,  // largest exponent field of N's words
   input  logic [Width-1:0]       v_i,
   input  logic [3*Width-1:0]     u_i,
   input  logic [3*Width-1:0]     bounds_i,

@@ -1,10 +1,10 @@
 // Dot products of a hit test: V = N . I and U_k = E_k . I of a polygon record, and d I_k, the dividends of its P.
 //
 // A dot product is (x + y) + z, rounded after each operation. Clocks: see fp_vector. Latency: DotLatency clocks, or
-// three steps. Throughput: a test a clock, or a step. Takes every bit pattern.
+// three steps. Throughput: a test a clock, or a step. Accepts every bit pattern.
 //
-// Of the 15 products a coordinate of I is a factor of five, and the word that the multipliers recode: tools keep one recoder
-// for those.
+// Each coordinate of I is a factor of five of the 15 products, the factor that the multipliers recode: tools merge the
+// five equal recoders.
 module hit_dots
   import hit_test_pkg::*;
 #(
@@ -26,9 +26,9 @@ module hit_dots
   output logic [3*Width-1:0] dividends_o
 );
 
-  // Of an operation: clocks, or steps
+  // Latency of an operation, in clocks or steps
   localparam int unsigned Operation = (Clocks == 1) ? AdderLatency : 1;
-  localparam int unsigned Scaled = 5;  // words of a coordinate: N's, E_k's, d
+  localparam int unsigned Scaled = 5;  // words that a coordinate of I multiplies: N's, E_k's, d
   logic [3*Scaled*Width-1:0] words, factors, scaled;
   logic [4*Width-1:0] thirds, sums, first;
 

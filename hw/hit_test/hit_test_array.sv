@@ -1,11 +1,11 @@
 // Several pipelined hit-test units side by side, and their counters.
 //
-// One wide word of tests in, one wide word of results out, with a slot for each lane and a valid/ready of its own, so
+// Tests come in one wide word, results leave in another. Each lane has a slot in both and a valid/ready of its own, so
 // that no lane waits for another. All tests of a burst go to one lane, and its results come from that lane's slot, in
-// order. What a slot holds: see hit_test_pipeline; slot n of every port is the n-th from the bottom.
+// order. For a slot's contents see hit_test_pipeline; slot n of every port is the n-th from the bottom.
 //
-// counter_o is counter count_select_i of count_e, summed over the lanes since reset, modulo 2**CounterWidth, three
-// clocks late; other numbers give 0. Clocks are counted per lane: with 4 lanes, 4 a clock.
+// counter_o is counter count_select_i of count_e, summed over the lanes since reset, modulo 2**CounterWidth, up to
+// three clocks late; other numbers give 0. Counters of clocks count each lane: with 4 lanes, 4 a clock.
 module hit_test_array
   import hit_test_pkg::*;
 #(

@@ -8,14 +8,14 @@
 // Source: the paper's figures 4 and 9, where a counter drives enables and selects.
 module hit_test_control #(
   parameter int unsigned NumWords = 7,
-  parameter int unsigned NumSteps = 3,  // two tests' steps never meet
+  parameter int unsigned NumSteps = 3,  // fewer than NumWords: steps of two tests never overlap
   localparam int unsigned WordWidth = $clog2(NumWords),
   localparam int unsigned StepWidth = $clog2(NumSteps + 1)
 ) (
   input  logic                 clk_i,
   input  logic                 rst_ni,
   input  logic                 valid_i,  // the first word of a test is on the bus
-  output logic                 ready_o,  // it would be taken
+  output logic                 ready_o,  // a first word would be taken
   output logic [WordWidth-1:0] word_o,
   output logic [StepWidth-1:0] step_o
 );

@@ -6,26 +6,25 @@
 //   decide   hit, miss or doubt               see hit_decision
 //   divide   t = d / V                        a divider
 //   nearest  the nearest hit of the burst     see nearest_hit
-//   point    P_k = (d I_k) / V, equation 10   3 dividers: nearly every other test may be a nearest hit
+//   point    P_k = (d I_k) / V, equation 10   3 dividers, as bursts may be as short as a test
 //
 // Throughput: one test a clock. Latency: DotLatency + divide_latency + 3 clocks (see hit_test_pkg): from the clock edge
-// that takes a test to the one after which its report, or its burst's end, is there. All tests of a burst must have the
-// same I.
+// that takes a test to the edge after which its report, or the end of its burst, is at the output. All tests of a burst
+// must have the same I.
 //
-// Input: valid/ready; first_i and last_i mark the ends of a burst, tag_i is the user's and comes back.
+// Input: valid/ready; first_i and last_i mark the ends of a burst, tag_i is returned with results.
 // Output: valid/ready; one word carries up to three things:
 //   report_o         not ReportNone: the test report_tag_o is in doubt or in a near tie
 //   closed_o         a burst is over; bursts end in the order in which they came. If found_o, its nearest hit is test
 //                    tag_o, at t_o (error: see hit_test_pkg), and its P follows. If neither found_o nor a report,
 //                    report_tag_o is the tag of the last test.
-//   point_valid_o    point_o is the P of a burst that was closed (and found) earlier; in their order
+//   point_valid_o    point_o is the P of a burst that was closed with found_o earlier; bursts keep their order
 //
 // ready_o and valid_o are registers. The pipeline never stalls: a test is taken only while the queue of results has
-// room for all that may be in flight, a word from every clock of the latency. So ready_o is low only where results are
-// not taken.
+// room for a word from every clock of the latency. So ready_o is low only if results are not taken.
 //
 // All words are IEEE numbers of the format ExpWidth, FracWidth; dot products are (x + y) + z, rounded after each
-// operation. RoundingMode: one for all, RoundNearestEven for verdicts that are never wrong.
+// operation. RoundingMode applies to all operations; verdicts are never wrong with RoundNearestEven.
 module hit_test_pipeline
   import hit_test_pkg::*;
 #(
@@ -56,14 +55,14 @@ module hit_test_pipeline
   output logic [TErrorWidth-1:0]       t_error_o,
   output logic                         point_valid_o,
   output logic [3*Width-1:0]           point_o,
-  output logic [NumCounts-1:0]         events_o  // this clock's, see count_e
+  output logic [NumCounts-1:0]         events_o  // in this clock, see count_e
 );
 
   localparam int unsigned DivideLatency = divide_latency(FracWidth);
 
   // ---- Take
 
-  logic [DotLatency-1:0] test_q;  // in the stages of the dot products
+  logic [DotLatency-1:0] test_q;  // a test is in this stage of the dot products
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) test_q <= '0;
@@ -92,7 +91,7 @@ module hit_test_pipeline
     .dividends_o(dot_dividends)
   );
 
-  // What goes beside: the largest exponent of N instead of N itself.
+  // The rest of the record passes beside the dot products, with the largest exponent of N instead of N.
   logic [ExpWidth-1:0] nx_exponent, ny_exponent, nz_exponent, nxy_exponent, normal_exponent;
 
   assign nx_exponent     = record_i[Width*RecordNormal+FracWidth +: ExpWidth];
@@ -156,7 +155,7 @@ module hit_test_pipeline
     {decided_dividends_q, decided_d_q, decided_v_q} <= {dot_dividends, dot_d, v};
   end
 
-  // ---- Divide: t, of which a sure hit makes use
+  // ---- Divide: t of sure hits
 
   logic [Width-1:0] quotient;
 
@@ -270,7 +269,7 @@ module hit_test_pipeline
     );
   end
 
-  // ---- Results: the queue keeps a word free for each clock edge at which what is on its way may end
+  // ---- Results: the queue keeps a word free for each clock edge at which a result in flight may arrive
 
   localparam int unsigned ResultWidth = 2 + 2 * TagWidth + 2 + Width + TErrorWidth + 1 + 3 * Width;
   logic push;
@@ -301,7 +300,7 @@ module hit_test_pipeline
 
   // ---- Events
 
-  logic stalled_q;  // in the clock before
+  logic stalled_q;  // ready_o was low in the clock before
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) stalled_q <= 1'b0;

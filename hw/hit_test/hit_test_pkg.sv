@@ -1,10 +1,10 @@
-// What the pipelined hit-test units share: the layout of a record and of a result.
+// Shared by the pipelined hit-test units: the layout of a record and of a result.
 //
 // Words are IEEE numbers of one format, packed into flat vectors with word 0 lowest.
 package hit_test_pkg;
 
   // verilator lint_off UNUSEDPARAM
-  // No top uses everything.
+  // No top module uses everything.
 
   // ---- Polygon record: 16 words, one triangle seen from one origin (A, B, C: vertices - origin)
 
@@ -14,21 +14,21 @@ package hit_test_pkg;
   localparam int unsigned RecordEdges = 4;  // 4-12: the edge planes A x B, B x C, C x A
   localparam int unsigned RecordBounds = 13;  // 13-15: error bounds of the edge tests
 
-  // ---- Reports: what a unit says of a single test
+  // ---- Reports on a single test
 
   typedef enum logic [1:0] {
     ReportNone    = 2'd0,
     ReportDoubt   = 2'd1,  // neither surely hit nor surely missed, or t out of range
-    ReportNearTie = 2'd2   // surely hit, and as near as the nearest as far as rounding can tell
+    ReportNearTie = 2'd2   // a sure hit, but rounding cannot tell its t from that of the nearest
   } report_e;
 
-  // ---- How far off t may be: at most 2**(TErrorUnit + t_error) units in its last place
+  // ---- Error of t: at most 2**(TErrorUnit + t_error) units in its last place
   //
   // With u = 2**-(FracWidth+1), V = fl(N . I), e(x) the exponent of x and g = max e(N_k) - e(V): the components of I
-  // are below 2 and the record's words are the exact ones within 1.01 u, so |V - exact| <= 4.04 u * 2 |N|_1 <
-  // 48.5 u 2**max e(N_k), at most r = 48.5 u 2**g of V. d adds 2 u and the division u. Between t and the exact value
-  // lie then at most (48.5 * 2**g + 3.2) / (1 - r) numbers, which is below 2**(6 + max(g, 0)) while r <= 0.2: for every
-  // g up to max_grazing, in formats with FracWidth >= 7. Rays that graze the plane more than that are doubts.
+  // are below 2 and the record's words are the exact ones within 1.01 u, so |V - exact| <= 4.04 u * 2 |N|_1 < 48.5 u
+  // 2**max e(N_k), relative to V at most r = 48.5 u 2**g. d adds 2 u and the division u. So at most (48.5 * 2**g + 3.2)
+  // / (1 - r) numbers lie between t and the exact value, which is below 2**(6 + max(g, 0)) while r <= 0.2: for every g
+  // up to max_grazing, in formats with FracWidth >= 7. Rays that graze the plane more than that are doubts.
   // Holds for RoundNearestEven; the other modes have twice the error.
   localparam int unsigned TErrorUnit = 6;
   localparam int unsigned TErrorWidth = 4;
@@ -37,7 +37,7 @@ package hit_test_pkg;
     max_grazing = (frac_width > 11) ? frac_width - 11 : 0;
   endfunction
 
-  // ---- Clocks of the pipelined cores
+  // ---- Latencies of the pipelined cores
 
   localparam int unsigned MultiplierLatency = 3;
   localparam int unsigned AdderLatency = 3;
@@ -48,7 +48,7 @@ package hit_test_pkg;
     divide_latency = (frac_width + 2) / 2 + 5;
   endfunction
 
-  // From the clock edge that takes a test to that after which its P is there, if it has one.
+  // From the clock edge that takes a test to the edge after which its P, if it has one, leaves the dividers.
   function automatic int unsigned point_latency(int unsigned frac_width);
     point_latency = DotLatency + 2 * divide_latency(frac_width) + 3;
   endfunction
@@ -56,14 +56,14 @@ package hit_test_pkg;
   // ---- Counters of hit_test_array, by the number that selects them
 
   typedef enum logic [3:0] {
-    CountTests          = 4'd0,  // taken in
+    CountTests          = 4'd0,  // taken
     CountMisses         = 4'd1,
     CountHits           = 4'd2,  // sure ones, near ties included
     CountDoubts         = 4'd3,
     CountNearTies       = 4'd4,
     CountDistances      = 4'd5,  // divisions for t
     CountPoints         = 4'd6,  // three divisions each
-    CountIdleClocks     = 4'd7,  // a lane could have taken a test, and none was there
+    CountIdleClocks     = 4'd7,  // a lane could have taken a test, but none came
     CountOutputStalls   = 4'd8   // a lane took no test because too few of its results were taken
   } count_e;
 

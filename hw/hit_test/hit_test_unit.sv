@@ -1,27 +1,27 @@
-// The paper's hit-test unit: where a ray meets a polygon's plane. P = d I / (I . N), seen from the ray's origin, with
+// The paper's hit-test unit: where a ray meets a polygon's plane. P = d I / (I . N), relative to the ray's origin, with
 // one multiplier, one adder, one divider, eight registers and two multiplexers.
 //
 // I = (Ix, Iy, Iz) is the ray's direction, N = (a, b, c) the plane's normal (the paper's H), and d = N . V for a vertex
-// V of the polygon. Seven words come in, three go out. As in figure 4, the bus leads to N and d alone, and N to I-3 or
-// to the multiplier:
+// V of the polygon. Seven words come in, three go out. As in figure 4, the bus feeds only N and d, and N feeds I-3 or
+// the multiplier:
 //
 //   edge   bus in       what happens at this clock edge
 //   1-3    Ix Iy Iz     each into N
-//   2-4                 N into I-3, whence I-2 and I-1: after edge 4 they hold Iz, Iy, Ix
+//   2-4                 N into I-3, then I-2 and I-1: after edge 4, I-3 to I-1 hold Iz, Iy, Ix
 //   4-6    a b c        each into N; the accumulator is cleared at edge 4
-//   5-7                 N * I-1 into the accumulator, at edge 7 into the divisor; I-1 into I-3
+//   5-7                 N * I-1 added to the accumulator; at edge 7 the sum into the divisor; I-1 into I-3
 //   7      d            into d
 //   8-10   the next I   (d * I-1) / divisor into Output: Px Py Pz; the next I follows through N
 //
-// I-3, I-2 and I-1 shift at every edge. When Iz reaches I-3, at edge 4, the first factor a reaches N, so the way
+// I-3, I-2 and I-1 shift at every edge. When Iz reaches I-3, at edge 4, the first factor a reaches N, so the path
 // through N costs no clock. The 8 clocks of the paper's section 4.2 are those until Px.
 //
 // valid_i comes with the first word while ready_o; the other six words follow in consecutive clocks.
 // valid_o is high, with a component on bus_o, in the clock after each of edges 8, 9 and 10.
 // Throughput: a test every 7 clocks. Latency: 10 clocks (from first word to last component).
 //
-// Each operation is rounded once, in RoundingMode, in the order of the table; the accumulator starts from +0. All of
-// IEEE 754 holds. A ray parallel to the plane gives infinities, or NaN where d I is zero too. QuotientBits = 21 cuts
+// Each operation is rounded once, in RoundingMode, in the order of the table, and conforms to IEEE 754; the accumulator
+// starts from +0. A ray parallel to the plane gives infinities, or NaN if d I is zero too. QuotientBits = 21 cuts
 // quotients off as the paper's divider did; 0 rounds them.
 // Source: the paper's equation 10, figures 4 and 9.
 module hit_test_unit #(

@@ -1,15 +1,15 @@
-// The paper's hit-test unit with a short clock: where a ray meets a polygon's plane, P = d I / (I . N), with its words,
-// its period and its bits (see hit_test_unit), of pipelined cores.
+// The paper's hit-test unit with a short clock: where a ray meets a polygon's plane, P = d I / (I . N). Its words, its
+// period and its results are hit_test_unit's; its cores are pipelined.
 //
 // Six products go through one multiplier, two sums through one adder, three quotients by the one divisor I . N through
-// one divider. With M = 3, A = 3 and D = divide_latency the clocks of these, counted from the first word's clock edge:
+// one divider. Their latencies are M = 3, A = 3 and D = divide_latency. Clocks count from the first word's clock edge:
 //
-//   clock      what is there
-//   1-3        Ix Iy Iz shift into I-3, I-2, I-1, which turn while they are multiplied
+//   clock      event
+//   1-3        Ix Iy Iz shift into I-3, I-2, I-1, which rotate while they are multiplied
 //   4-7        a, b, c, d in the factor
 //   M+4..M+9   the products a Ix, b Iy, c Iz, d Ix, d Iy, d Iz; the third and the last three are kept
 //   M+A+5      (+0 + a Ix) + b Iy: the paper's sum from +0 turns a first product of -0 to +0, unless rounding down
-//   M+2A+5     I . N, the divisor; in the clocks after it the last three products follow it
+//   M+2A+5     I . N, the divisor; the last three products are divided in the clocks after it
 //   M+2A+D+6.. Px Py Pz
 //
 // valid_i comes with the first word while ready_o; the other six words follow in consecutive clocks.
@@ -36,13 +36,13 @@ module iterative_hit_test_unit
 
   localparam int unsigned NumWords = 7;
 
-  // The adder's two turns must not meet in the period; kept products wait for longer than three arrive, and no longer than
-  // until the next ones do.
+  // The adder's two sums must not collide in the period; the last of the three kept products must arrive before the
+  // first is divided, and the last be divided before those of the next test arrive.
   if (AdderLatency < 2 || 2 * AdderLatency - 1 > NumWords) begin : gen_check
     $error("iterative_hit_test_unit: expected an AdderLatency of 2 to (NumWords + 1) / 2");
   end
 
-  // ---- Control: word k is taken at edge k + 1; since_q[n] is n + 1 clocks after the last word's
+  // ---- Control: word k is taken at edge k + 1; since_q[n] is high n + 1 clocks after the last word
 
   localparam int unsigned ThirdProduct = MultiplierLatency - 1;
   localparam int unsigned FirstSum = MultiplierLatency + AdderLatency - 2;

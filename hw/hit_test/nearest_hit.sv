@@ -1,19 +1,19 @@
 // Keeps the nearest sure hit of each burst. Latency: 1 clock. Throughput: one test a clock.
 //
-// Distances are compared as integers, which orders positive floats. Two that differ by no more than the sum of their
-// errors (2**(TErrorUnit + t_error) units in the last place each) are a near tie: either may be the nearer one. The
-// smaller number is kept (of equal ones the first), the other one is reported. So a hit that is dropped without a
-// report is certainly farther than the one kept then, which is itself kept, reported, or certainly farther than
-// another.
+// Distances are compared as integers, which orders positive floats. Two distances that differ by no more than the sum
+// of their errors (2**(TErrorUnit + t_error) units in the last place each) are a near tie: either hit may be nearer.
+// The hit with the smaller t is kept (of equal ones the first), the other hit is reported. So a hit that is dropped
+// without a report is certainly farther than the hit kept at that time. That one is kept, reported, or certainly
+// farther than a later one.
 //
 // A sure hit whose t is no positive normal number is reported as a doubt.
 //
-// Outputs but sure_hit_o are registers. With the last test of a burst come:
-//   closed_o  for this clock; then found_o says whether the burst has a nearest hit, and tag, t, t_error and payload_o
+// All outputs except sure_hit_o are registers. With the last test of a burst come:
+//   closed_o  for one clock; then found_o says whether the burst has a nearest hit, and tag, t, t_error and payload_o
 //             are that hit's. closed_o and found_o are reset.
-//   report_o, report_tag_o may come with it, and concern this test or the one it ousted. Without a report, report_tag_o
-//             is the test's own tag.
-// payload_i is whatever else is wanted of the nearest hit.
+//   report_o, report_tag_o may come with any test, and concern that test or the hit that it replaces. Without a report,
+//             report_tag_o is the test's own tag.
+// payload_i is any other data to keep of the nearest hit.
 module nearest_hit
   import hit_test_pkg::*;
 #(
@@ -25,7 +25,7 @@ module nearest_hit
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
-  input  logic                    valid_i,  // a test; else nothing below matters
+  input  logic                    valid_i,  // a test; else the inputs below are ignored
   input  logic                    first_i,  // of its burst
   input  logic                    last_i,  // of its burst
   input  logic                    hit_i,
@@ -34,7 +34,7 @@ module nearest_hit
   input  logic [Width-1:0]        t_i,
   input  logic [TErrorWidth-1:0]  t_error_i,
   input  logic [PayloadWidth-1:0] payload_i,
-  output logic                    sure_hit_o,  // combinational: the test is a sure hit, t and all
+  output logic                    sure_hit_o,  // combinational: the test is a sure hit, with a valid t
   output report_e                 report_o,
   output logic [TagWidth-1:0]     report_tag_o,
   output logic                    closed_o,
@@ -57,7 +57,7 @@ module nearest_hit
 
   // ---- Nearer or farther than the nearest so far, and by more than the errors?
 
-  // Margins stay below 2**(FracWidth+3) and distances below 2**(Width-1): Width + 1 bits do.
+  // Margins stay below 2**(FracWidth+3) and distances below 2**(Width-1): Width + 1 bits suffice.
   logic [Width:0] t, best, margin, farther, nearer;
   logic have, near, smaller, replace;
 

@@ -1,23 +1,23 @@
 // AXI4 read manager: the core's memory port, a burst for each line.
 //
-// A line's burst begins at a multiple of 64 bytes: none crosses 4 KiB. Each burst in flight has an AXI ID of its own,
-// so bursts may be answered in any order, and their beats come mixed. base_i is the address of line 0.
+// A line's burst begins at a multiple of 64 bytes: none crosses 4 KiB. Each burst in flight has its own AXI ID, so
+// bursts may be answered in any order, with their beats interleaved. base_i is the address of line 0.
 //
 // At most 2**IdWidth lines are outstanding; more wait. Latency: 1 clock (from a line's last beat until it is offered).
-// bus_error_o: a beat of line error_number_o has come with an error, or with a wrong RLAST; the line is then offered
-// with line_error_o. No output of AXI depends on an input in the same clock.
+// bus_error_o: a beat of line error_number_o came with an error, or with a wrong RLAST; the line is then offered with
+// line_error_o. No output of AXI depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.3 on handshakes, A5 on IDs.
 module axi_read_manager
   import ray_core_pkg::*;
 #(
   parameter int unsigned DataWidth = 128,  // 32 to 512, a power of two
   parameter int unsigned IdWidth   = 6,
-  parameter int unsigned ReadIdWidth = 9  // ray_core's
+  parameter int unsigned ReadIdWidth = 9  // as in ray_core
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
-  input  logic [63:0]             base_i,  // bits below 64 do not count
-  // the core's
+  input  logic [63:0]             base_i,  // a multiple of 64: the lower bits are ignored
+  // the core's side
   input  logic                    read_valid_i,
   output logic                    read_ready_o,
   input  logic [AddressWidth-1:0] read_line_i,
@@ -26,7 +26,7 @@ module axi_read_manager
   input  logic                    line_ready_i,
   output logic [ReadIdWidth-1:0]  line_id_o,
   output logic [LineWidth-1:0]    line_o,
-  output logic                    line_error_o,  // it must not be believed
+  output logic                    line_error_o,  // line_o is invalid
   // AXI4, read address
   output logic                    axi_arvalid_o,
   input  logic                    axi_arready_i,
@@ -64,7 +64,7 @@ module axi_read_manager
   logic [IdWidth-1:0] beat_id;
   logic [ReadIdWidth-1:0] read_ids[Ids];
   logic [AddressWidth-1:0] numbers[Ids];
-  logic [Ids-1:0] errors_q;  // of beats that came
+  logic [Ids-1:0] errors_q;  // a beat came with an error
 
   rr_arbiter #(
     .Width(Ids)
@@ -100,7 +100,7 @@ module axi_read_manager
   assign axi_arsize_o  = 3'($clog2(DataWidth / 8));
   assign axi_arburst_o = BurstIncrement;
 
-  // ---- Beats: all but a line's last one wait for it, each in a memory of its own
+  // ---- Beats: all but a line's last beat wait for the last one, each in its own memory
 
   logic [DataWidth-1:0] beat, last_beat_q;
 
@@ -118,7 +118,7 @@ module axi_read_manager
     .data_o({beat_error, beat_last, beat_id, beat})
   );
 
-  logic [BeatWidth-1:0] counts[Ids];  // beats that have come; 0 when the ID is given
+  logic [BeatWidth-1:0] counts[Ids];  // beats received; 0 when the ID is allocated
   assign last = counts[beat_id] == BeatWidth'(Beats - 1);
   assign line_o[LineWidth-1-:DataWidth] = last_beat_q;
   for (genvar b = 0; b + 1 < Beats; b++) begin : gen_beat
@@ -160,7 +160,7 @@ module axi_read_manager
     end
   end
 
-  logic unused;  // EXOKAY is never answered
+  logic unused;  // no access is exclusive, so no answer is EXOKAY
   assign unused = ^{axi_rresp_i[0], base_i[5:0]};
 
 endmodule

@@ -1,10 +1,10 @@
 // AXI4 write manager: records of 32 bytes to memory, a burst each.
 //
-// Record n goes to base_i + 32 n, n from 0 on, while n is below length_i; those that come then wait until rewind_i,
-// after which n is 0 again. written_o: records whose writes have been answered, in order, as all have the same AXI ID.
+// Record n goes to base_i + 32 n, n from 0 on, while n is below length_i; further records wait until rewind_i, after
+// which n is 0 again. written_o: records whose writes have been answered, in order, as all have the same AXI ID.
 //
-// Throughput: a record in 256 / DataWidth clocks, or one (the beats of its burst). Of a wider port a beat uses the half
-// that its address says. No output of AXI depends on an input in the same clock.
+// Throughput: a record in 256 / DataWidth clocks, at least 1 (a clock for each beat). On a port of 512 bits a beat uses
+// the half that its address selects. No output of AXI depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.
 module axi_write_manager #(
   parameter int unsigned DataWidth = 128,  // 32 to 512, a power of two
@@ -12,12 +12,12 @@ module axi_write_manager #(
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
-  input  logic [63:0]            base_i,  // bits below 64 do not count
-  input  logic [31:0]            length_i,  // records that there is room for
+  input  logic [63:0]            base_i,  // a multiple of 64: the lower bits are ignored
+  input  logic [31:0]            length_i,  // capacity in records
   input  logic                   rewind_i,  // only while not busy_o
-  output logic                   busy_o,  // a record is on its way
-  output logic                   full_o,  // a record waits, and all others are in memory
-  output logic                   bus_error_o,  // this clock's answer
+  output logic                   busy_o,  // a record's write has not been answered
+  output logic                   full_o,  // a record waits for capacity, and all others are in memory
+  output logic                   bus_error_o,  // an answer in this clock has an error
   output logic [31:0]            written_o,
   input  logic                   record_valid_i,
   output logic                   record_ready_o,
@@ -100,7 +100,7 @@ module axi_write_manager #(
   assign axi_bready_o  = 1'b1;
   assign bus_error_o   = axi_bvalid_i & axi_bresp_i[1];
 
-  logic unused;  // EXOKAY is never answered
+  logic unused;  // no access is exclusive, so no answer is EXOKAY
   assign unused = ^{axi_bresp_i[0], base_i[5:0]};
 
 endmodule

@@ -3,41 +3,41 @@
 //
 //   take        node, then node and ray                                     registers
 //   subtract    D_k = origin_k - O_k                                        3 adders
-//   scale       2**E, how far the ray may go in this node; caps of 1 / I_k  see ray_scale
+//   scale       2**E, a bound of t in this node; caps of 1 / I_k            see ray_scale
 //   multiply    a_k = D_k / I_k                                             3 multipliers
 //   align       a_k and the grid's step s_k in units of 2**(E - 22),        see slab_setup
-//               room r_k for errors
+//               error margin r_k
 //   step        a_k -+ r_k +- q s_k for the planes of all boxes             42 products, 8 x 33, see plane_offset
 //   enter       largest near plane, smallest far plane                      49 comparisons, see slab_test
 //   sort        near first; the group                                       see child_sort, sort7
 //
-// With Clocks a child is stepped and entered in each clock, and the latency is Children clocks more. The ray comes a clock
-// after its node, out of a memory.
+// If Clocks is not 1, one child is stepped and entered in each clock, and the latency is Children clocks more. The ray
+// comes a clock after its node, from a memory.
 //
-// In:  ctx_i        the ray's context; node_i: its node, see ray_core_pkg; one with an error has no children
+// In:  ctx_i        the ray's context; node_i: its node, see ray_core_pkg; a node with an error has no children
 //      origin_i     O, binary32; word x lowest, here and below
 //      inverse_i    1 / I_k, rounded to nearest (infinite where I_k is zero); the largest I_k is in [1, 2)
-//      t_max_i      a positive binary32 number without its sign, or infinity: a hit farther than it is
-//                   not wanted
-// Out: ctx_o, boxes_o  the group; entries that are in neither mask mean nothing
+//      t_max_i      a positive binary32 number without its sign, or infinity: farther hits are not
+//                   wanted
+// Out: ctx_o, boxes_o  the group; entries that are in neither mask are invalid
 //
-// No box is left out in which the ray has a point O + t I with 0 < t <= t_max, in exact arithmetic:
+// Every box is entered in which the ray has a point O + t I with 0 < t <= t_max, in exact arithmetic:
 //
 //  1. E. Such a t is at most (|origin_k - O_k| + 255 * 2**e_k) / |I_k| for each k (e_k without its bias), and
-//     at most the t_max. With D_k and 1 / I_k as computed the first is below 2**(M + exponent(1 / I_k) + 2),
-//     where 2**M is above |D_k| and 2**(e_k + 8): the rounding of D_k is less than 2**e_k to spare. E is the
-//     least of these exponents, but at least -100, so that what underflows is less than a unit.
+//     at most t_max. With D_k and 1 / I_k as computed the first bound is below 2**(M + exponent(1 / I_k) + 2),
+//     where 2**M is above |D_k| and 2**(e_k + 8), which leaves more than the rounding of D_k. E is the least of
+//     these exponents, but at least -100, so that underflow changes less than a unit.
 //  2. A plane of the grid is met at t = (D_k + q 2**e_k) / I_k = a_k +- q s_k, with s_k = 2**e_k / |I_k|.
-//     a_k is off by three roundings, 3.01 * 2**-24 of itself, and 1 unit by being cut off; q s_k by one
-//     rounding, 2**-24 of itself, and 2 units by being cut off twice. r_k is |a_k| 2**-22 + 256 s_k 2**-24
-//     + 6 units, each cut off, which is more.
-//  3. Where s_k is above 2**(E + 2), or infinite, the ray moves less than a quarter of a cell along k as
-//     long as t < 2**E. A ray with s_k = 2**(E + 2) in its place moves less than that, too: the two are less
-//     than a quarter of a cell apart, which that ray makes in 2**E. So 2**E is added to r_k.
-//  4. |a_k| of 2**(E + 11) and more is given as 2**(E + 11): 255 s_k is less than 2**(E + 10), so that all planes
-//     are beyond 2**E, or all behind the ray, either way. An axis along which the numbers would
-//     overflow says nothing: all its planes are met.
-//  5. So near planes are computed too near, far ones too far, and comparing them leaves nothing out.
+//     a_k is off by three roundings, 3.01 * 2**-24 of itself, and 1 unit by truncation; q s_k by one
+//     rounding, 2**-24 of itself, and 2 units by two truncations. r_k is |a_k| 2**-22 + 256 s_k 2**-24
+//     + 6 units, each term truncated, which is more.
+//  3. If s_k is above 2**(E + 2), or infinite, the ray moves less than a quarter of a cell along k while
+//     t < 2**E. It is replaced by a ray with s_k = 2**(E + 2), the cap, which moves a quarter of a cell in 2**E:
+//     the two are less than a quarter of a cell apart. So 2**E is added to r_k.
+//  4. |a_k| is limited to 2**(E + 11). As 255 s_k is less than 2**(E + 10), all planes are then beyond 2**E, or all
+//     behind the ray, as without the limit. An axis along which the numbers would overflow is ignored: all its
+//     planes count as met.
+//  5. So near planes are computed too near, far planes too far, and no box is left out.
 //
 // Source: quantised boxes: Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through
 // compressed wide BVHs", 2017.
@@ -45,7 +45,7 @@ module box_unit
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays = 64,
-  parameter int unsigned Clocks = 1,  // of a node: 1, or Children or more
+  parameter int unsigned Clocks = 1,  // per node: 1, or Children or more
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
@@ -82,7 +82,7 @@ module box_unit
   logic [LineWidth-1:0] first_q, node_q;
   logic [95:0] origin_q, inverse_q;
   logic [30:0] t_max_q;
-  logic [Latency:1] valid_q;  // so many clocks ago it came
+  logic [Latency:1] valid_q;  // [n]: a node came n clocks ago
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= '0;
@@ -106,7 +106,7 @@ module box_unit
     {origin_q, inverse_q, t_max_q} <= {origin_i, inverse_i, t_max_i};
   end
 
-  // What goes along: base, kinds and boxes, and of the ray what the planes need
+  // Passes beside the arithmetic: base, kinds and boxes of the node, and the ray's t_max
   localparam int unsigned Base = NodeBase;
   localparam int unsigned ChildrenWidth = LineWidth - Base;
   localparam int unsigned Kinds = NodeKinds - Base;
@@ -264,7 +264,7 @@ module box_unit
   logic [Children*KeyWidth-1:0] keys;
   logic [Tests*KeyWidth-1:0] tested;
 
-  // What the tests take: as it comes, or kept for all children
+  // Inputs of the tests: as they come, or kept for all children
   logic [Children*BoxWidth-1:0] boxes;
   logic [2:0] step_back, next_back;
   logic [3*StepWidth-1:0] step;
@@ -325,7 +325,7 @@ module box_unit
     assign keys  = tested;
   end else begin : gen_turns
     localparam int unsigned Aligned = Take + Subtract + Scale + Multiply + Align;
-    logic [(Children-1)*KeyWidth-1:0] keys_q;  // the latest highest
+    logic [(Children-1)*KeyWidth-1:0] keys_q;  // the latest is highest
 
     always_ff @(posedge clk_i) begin
       boxes <= valid_q[Aligned] ? children[Boxes +: Children*BoxWidth] : boxes >> BoxWidth;

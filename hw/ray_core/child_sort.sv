@@ -1,5 +1,5 @@
 // Sort of a node's children: those that the ray enters, near first.
-// Latency: 4 clocks: two registers in the sort, one behind it and one behind the group. keys_i are slab_test's.
+// Latency: 4 clocks: two registers in the sort, one after it and one after the group. keys_i come from slab_test.
 module child_sort
   import ray_core_pkg::*;
 #(
@@ -17,7 +17,7 @@ module child_sort
 
   localparam int unsigned NumberWidth = 3;
   localparam int unsigned WordWidth = KeyWidth + NumberWidth;
-  localparam int unsigned UnitsWidth = 12;  // of a distance that is kept
+  localparam int unsigned UnitsWidth = 12;  // bits kept of a distance
   localparam int unsigned ZerosWidth = $clog2(UnitsWidth);
 
   // ---- Sort: {key, number of the child}
@@ -27,7 +27,7 @@ module child_sort
   logic [Children-1:0][KindWidth-1:0] kinds;
   logic [Children-1:0][OffsetWidth-1:0] next_offsets, offsets;
   logic [AddressWidth-1:0] base;
-  logic [8:0] last_field;  // of numbers that begin with the highest bit of 12 below 2**E
+  logic [8:0] last_field;  // exponent field of distances in [2**(E - 1), 2**E)
 
   for (genvar i = 0; i < Children; i++) begin : gen_word
     assign words[WordWidth*i+:WordWidth] = {keys_i[KeyWidth*i+:KeyWidth], NumberWidth'(i)};
@@ -83,7 +83,7 @@ module child_sort
     assign inner[n] = ~left_out & is_inner;
     assign leaf[n]  = ~left_out & ~is_inner;
 
-    // As an ordered word
+    // The distance as an ordered word
     leading_zero_counter #(
       .Width(UnitsWidth)
     ) u_zeros (
@@ -98,7 +98,7 @@ module child_sort
     assign entries[ChildWidth*n +: ChildWidth] = {
         enter, offsets[number],
         is_inner ? LeafWidth'(0) : kind[LeafWidth-1:0]};
-    logic unused;  // what is less than an entry's unit
+    logic unused;  // bits below an entry's precision
     assign unused = ^{key[UnitBits-UnitsWidth-1:0], fraction[UnitsWidth-1]};
   end
 

@@ -2,18 +2,18 @@
 //
 // A hit's t may be off by 2**t_error units (set_up_pkg), so it has an upper and a lower bound. Of a ray's certain hits
 // the one with the smallest upper bound is kept, and that bound becomes the ray's t_max; a hit whose lower bound is
-// beyond it is dropped. If the bounds overlap, neither hit is known to be nearer: the other one leaves as a doubt, as
-// does a test without a verdict. Distances are positive floats, which are ordered as integers. At first t_max is the
-// user's, so a hit that may lie beyond it is a doubt. A ray that wants any hit ends with its first certain one.
+// beyond t_max is dropped. If the bounds of two hits overlap, neither is known to be nearer: the hit that is not kept
+// leaves as a doubt, as does a test without a verdict. Distances are positive floats, ordered as integers. At first
+// t_max is the user's: a hit that may lie beyond it is a doubt. A ray with any_hit ends with its first certain hit.
 //
-// Credits count tests in flight, from test_i on, and doubts that wait: tests_allowed_o is low while all Queue are used.
+// Credits count tests in flight, from test_i on, and waiting doubts: tests_allowed_o is low while all Queue are used.
 // So neither a test nor a line from memory ever waits for a doubt to leave.
 //
-// With Exact no doubt leaves: open_o passes each to exact_resolver in the clock in which its test ends. If one is the
-// ray's nearest hit, it is tested again with settle_i and kept whatever that test says, with t and P if it is a certain
-// hit, else with NoT. It is the ray's last test.
+// With Exact no doubt leaves: open_o passes each to exact_resolver in the clock in which its test ends. If a doubt is
+// the ray's nearest hit, its triangle is tested again with settle_i, as the ray's last test, and kept whatever the
+// verdict: with t and P if it is a certain hit, else with NoT.
 //
-// Throughput: a result a clock; it is compared in the next one. A ray's tests are over when as many results have been
+// Throughput: a result a clock; it is compared in the next clock. A ray's tests are over when as many results have been
 // compared as there were clocks with test_i.
 module closest_hit
   import ray_core_pkg::*;
@@ -30,7 +30,7 @@ module closest_hit
   input  logic [RayWidth-1:0]     load_ray_i,
   input  logic [30:0]             load_t_max_i,
   input  logic                    load_any_hit_i,
-  // a test sets out, a ray's triangle was asked for
+  // a test begins: a ray's triangle was requested
   input  logic                    test_i,
   input  logic [RayWidth-1:0]     test_ray_i,
   input  logic                    settle_i,  // with test_i
@@ -39,7 +39,7 @@ module closest_hit
   input  logic [RayWidth-1:0]     result_ray_i,
   input  logic [31:0]             result_tag_i,  // the ray's, for doubts
   input  verdict_t                result_i,
-  // t_max, by ray, in the clock after; exact_ray_i's in the same one. A ray ends by any hit, or as it has failed
+  // t_max, by ray, a clock after its number; exact_o in the same clock. ended: by any_hit, or the ray has failed
   input  logic [Rays-1:0]         failed_i,
   input  logic [RayWidth-1:0]     traversal_ray_i,
   output logic [30:0]             traversal_t_max_o,
@@ -54,28 +54,28 @@ module closest_hit
   output logic [Rays-1:0]         testing_o,
   // doubts
   output doubt_t                  doubt_o,
-  input  logic                    doubt_fire_i,  // or exact_resolver takes one up
+  input  logic                    doubt_fire_i,  // doubt_o leaves, or exact_resolver takes a doubt
   output logic [RayWidth-1:0]     open_ray_o,
   output open_t                   open_o,
   // the nearest hit of a ray, in the same clock
   input  logic [RayWidth-1:0]     end_ray_i,
   output hit_t                    end_o,
-  // the P of a ray's last hit that was kept, in the clock after
+  // the P of the hit that was kept last, in the clock after point_ray_i
   input  logic [RayWidth-1:0]     point_ray_i,
   output logic [95:0]             point_o,
-  // this clock's, for counters
+  // event of this clock, for counters
   output logic                    near_tie_o
 );
 
-  localparam int unsigned CountWidth = $clog2(Queue + 2);  // with a test of settle_i
+  localparam int unsigned CountWidth = $clog2(Queue + 2);  // up to Queue + 1, with a test of settle_i
 
   logic [30:0] t_max[Rays];
   logic [31:0] nearest_t[Rays];
-  logic [31:0] nearest_low[Rays];  // the least that it may be
+  logic [31:0] nearest_low[Rays];  // lower bound of nearest_t
   logic [TErrorWidth-1:0] nearest_error[Rays];
   logic [31:0] nearest_triangle[Rays];
   logic [TestsWidth-1:0] tests[Rays];
-  logic [CountWidth-1:0] counts[Rays];  // tests on their way
+  logic [CountWidth-1:0] counts[Rays];  // tests in flight
   logic [Rays-1:0] found_q, any_hit_q, ended;
   logic [RayWidth-1:0] traversal_ray_q, leaf_ray_q, box_ray_q;
 
@@ -178,7 +178,7 @@ module closest_hit
 
   // ---- Doubts
 
-  logic [CountWidth-1:0] here_q;  // tests in flight and doubts, but tests of settle_i
+  logic [CountWidth-1:0] here_q;  // tests in flight and doubts, without tests of settle_i
   logic taken, returned;  // credits
 
   assign taken    = test_i & ~settle_i;
@@ -223,7 +223,7 @@ module closest_hit
     .data_o(point_o)
   );
 
-  // ---- Tests on their way
+  // ---- Tests in flight
 
   logic [RayWidth-1:0] test_ray_q;
   logic test_q, same;

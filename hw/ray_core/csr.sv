@@ -1,7 +1,7 @@
 // Control and status registers of the ray core, on AXI4-Lite: what to draw, from which memory, counters, flags.
 //
-// Words, bits, and what is refused while the core is busy: registers.md, from which csr_pkg is made. One write and one
-// read at a time; no output of AXI depends on an input in the same clock. interrupt_o is high while an enabled flag is.
+// registers.md has the words, bits, and what is refused while the core is busy; csr_pkg is made from it. One write and
+// one read at a time; no output of AXI depends on an input in the same clock. interrupt_o: an enabled flag is high.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
 module csr
   import ray_core_pkg::*, csr_pkg::*;
@@ -29,10 +29,10 @@ module csr
   output logic [31:0]             axi_rdata_o,
   output logic [1:0]              axi_rresp_o,
   // the core's side
-  output logic                    start_o,  // this clock's commands
+  output logic                    start_o,  // commands, for this clock
   output logic                    invalidate_o,
-  output logic                    abort_o,  // until no ray is left
-  output logic                    drawing_o,  // a rectangle's rays are on their way
+  output logic                    abort_o,  // high until no ray is left
+  output logic                    drawing_o,  // a rectangle's rays are being traced
   output logic [63:0]             base_o,
   output logic [AddressWidth-1:0] lines_o,
   output logic [31:0]             corner_o,
@@ -40,13 +40,13 @@ module csr
   output logic [4*96-1:0]         camera_o,  // eye lowest, then first, right, down
   output logic [63:0]             results_o,
   output logic [31:0]             length_o,
-  output logic                    rewind_o,  // this clock's command
+  output logic                    rewind_o,  // command, for this clock
   input  logic                    camera_busy_i,
-  input  logic                    core_busy_i,  // has rays
+  input  logic                    core_busy_i,  // rays are in the core
   input  logic                    outstanding_i,
   input  logic                    writing_i,
   input  logic [31:0]             written_i,
-  input  logic                    doubt_i,  // this clock's
+  input  logic                    doubt_i,  // events of this clock
   input  logic                    ray_error_i,
   input  logic                    full_i,
   input  logic                    write_error_i,
@@ -65,7 +65,7 @@ module csr
 
   // ---- Writes: address and data are taken, each into a register; then the word is written
 
-  logic write, refused, address_q, data_q;  // here
+  logic write, refused, address_q, data_q;  // address_q, data_q: here
   logic [9:0] write_word_q, read_word;
   logic [3:0] strobes_q;
   logic [31:0] write_data_q, mask;  // the bits to write
@@ -192,7 +192,7 @@ module csr
     assign counters[n] = count_q;
   end
 
-  // ---- Reads: with a counter's low word its high one is held for the next read
+  // ---- Reads: a read of a counter's low word keeps its high word for the next read
 
   logic read;
   logic [31:0] value;

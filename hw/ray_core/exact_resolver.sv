@@ -1,24 +1,24 @@
 // Resolver of doubts: asks exact_unit what closest_hit leaves open. So no doubt leaves the core.
 //
-// Of a ray's doubts it keeps the nearest that is hit, the candidate:
+// For each ray it keeps the candidate: the nearest of its doubts that is hit.
 //
-//   a doubt   Does the ray hit it, unless that is certain, and is it nearer than the candidate, if there is one? Then it
-//             becomes the candidate.
-//   settling  When nothing else of the ray is left to do: is the candidate nearer than closest_hit's certain hit or, if
-//             there is none, than the user's t_max? Then its triangle is tested once more, for t and P.
+//   a doubt   Does the ray hit it (asked unless it is certain), and is it nearer than the candidate, if there is one?
+//             Then it becomes the candidate.
+//   settling  When nothing else is left to do for the ray: is the candidate nearer than closest_hit's certain hit or,
+//             without one, than the user's t_max? Then its triangle is tested once more, for t and P.
 //
-// Of hits at the same t the one of lower rank is nearer. Corners are read by line, as for tests. Latency: exact_unit's
-// and 8 clocks (for a question), and up to two reads through the triangle cache. A ray's questions follow each other;
+// Of hits at the same t that of lower rank is nearer. Corners are read by line, as for tests. Latency: exact_unit's
+// plus 8 clocks (for a question), plus up to two reads through the triangle cache. A ray's questions come one by one;
 // those of different rays are spread over Units exact_units. Doubts of a ray that has ended are dropped.
 //
-// closest_hit's credits give every doubt room here, so that tests never wait for the resolver, which waits for lines
-// that come behind them.
+// closest_hit's credits reserve a place for every doubt here. So no test waits for the resolver, which may wait for
+// lines that come after the test's.
 module exact_resolver
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Units = 1,
-  parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be on its way
+  parameter int unsigned Queue = 2 * Rays + 128,  // for every test that can be in flight
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
@@ -29,17 +29,17 @@ module exact_resolver
   input  logic [RayWidth-1:0]     load_ctx_i,
   input  logic [95:0]             load_origin_i,
   input  logic [95:0]             load_direction_i,
-  // a test leaves a doubt; one is taken up
+  // a test leaves a doubt; taken_o: a doubt leaves the queue
   input  logic [RayWidth-1:0]     open_ctx_i,
   input  open_t                   open_i,
   output logic                    taken_o,
-  // rays of which nothing else is to be done, and those that have doubts or a candidate
+  // rays with nothing else to do, and rays that have doubts or a candidate
   input  logic [Rays-1:0]         idle_i,
   output logic [Rays-1:0]         busy_o,
-  // the ray whose turn it is; what is known of it, in the same clock
+  // the ray in work; what is known of it, in the same clock
   output logic [RayWidth-1:0]     ctx_o,
   input  known_t                  known_i,
-  // its lines: for here, or (not exact) to be tested, kept whatever the test says
+  // requests for its lines: exact ones for here, others for the test whose hit is kept
   output triangle_request_t       request_o,
   input  logic                    request_ready_i,
   input  triangle_line_t          line_i,
@@ -55,19 +55,19 @@ module exact_resolver
   end
 
   typedef enum logic [2:0] {
-    StateIdle   = 3'd0,  // an answer is taken, or, where a unit is free, a question begins
-    StateLook   = 3'd1,  // what is known of its ray
-    StateChoose = 3'd2,  // what is to be asked
-    StateFetch  = 3'd3,  // a line is asked for
-    StateWait   = 3'd4,  // it is on its way
+    StateIdle   = 3'd0,  // takes an answer or, if a unit is free, begins a question
+    StateLook   = 3'd1,  // reads what is known of the ray
+    StateChoose = 3'd2,  // chooses what to ask
+    StateFetch  = 3'd3,  // requests a line
+    StateWait   = 3'd4,  // waits for the line
     StateAsk    = 3'd5,
-    StateAnswer = 3'd6,  // what it means; the end
-    StateTest   = 3'd7   // the candidate is the hit
+    StateAnswer = 3'd6,  // evaluates the answer; the end
+    StateTest   = 3'd7   // requests the test of the candidate, which is the hit
   } state_e;
 
   state_e state_q, state_d;
 
-  // ---- Doubts that wait
+  // ---- Queue of doubts
 
   logic queued, queued_hit;
   logic [RayWidth-1:0] queued_ctx;
@@ -88,17 +88,17 @@ module exact_resolver
     .data_o({queued_ctx, queued_hit, queued_line})
   );
 
-  // ---- Of each ray: whether doubts of it wait, its candidate, and whether a question of it is open
+  // ---- For each ray: whether its doubts wait, its candidate, and whether a question of it is open
 
-  // Doubts are numbered as they come, and go in that order: when its last one goes, no other of a ray waits. There
-  // are more numbers than doubts that wait.
-  logic [CountWidth-1:0] pushed_q, popped_q;  // how many
-  logic [CountWidth-1:0] lasts[Rays];  // the number of its last doubt
+  // Doubts are numbered as they come, and leave in that order: when a ray's last doubt leaves, none of its doubts
+  // waits. There are more numbers than doubts can wait.
+  logic [CountWidth-1:0] pushed_q, popped_q;  // doubts that came and left
+  logic [CountWidth-1:0] lasts[Rays];  // number of the ray's last doubt
   logic [AddressWidth-1:0] candidates[Rays];  // lines
   logic [Rays-1:0] doubtful_q, candidate_q, open_q, ready_q;
   logic [RayWidth-1:0] ready_ctx, next_ctx;
   logic settle, begin_any, done, doubt_done, is_last, keep, drop;
-  logic settling_q, is_hit_q;  // what is asked; of the doubt that it is surely hit
+  logic settling_q, is_hit_q;  // the question settles; the doubt is surely a hit
   logic [AddressWidth-1:0] line_q;  // of the doubt, or the candidate
 
   assign busy_o  = doubtful_q | open_q | candidate_q;
@@ -141,16 +141,16 @@ module exact_resolver
   // ---- The question
 
   logic has_candidate, simple, lacks_q, nearer_q;
-  logic ended_q, found_q;  // of the ray whose turn it is
+  logic ended_q, found_q;  // of the ray in work
   logic [1:0] against, against_q;  // exact_pkg::against_e
   logic [AddressWidth-1:0] other_line_q, candidate;
   logic [CornersWidth-1:0] corners_q, other_q;
   logic [31:0] rank_q, other_rank_q;
   logic [95:0] origin, direction;
   logic fetch, line_here;
-  logic [Units-1:0] unit_ready, free, unit_valid, answered, nearer;  // free, answered: the first
+  logic [Units-1:0] unit_ready, free, unit_valid, answered, nearer;  // free, answered: one-hot, the first
   logic [Units*AboutWidth-1:0] abouts;
-  logic [AboutWidth-1:0] about;  // of the one that has answered
+  logic [AboutWidth-1:0] about;  // of the unit that has answered
 
   assign candidate     = candidates[ctx_o];
   assign has_candidate = candidate_q[ctx_o];
@@ -160,7 +160,7 @@ module exact_resolver
     if (settling_q ? found_q : has_candidate) against = exact_pkg::AgainstOther;
     else if (settling_q && known_i.t_max != Infinity) against = exact_pkg::AgainstLimit;
   end
-  // Nothing is to be asked.
+  // No question is needed.
   assign simple = (against == exact_pkg::AgainstNothing) & (settling_q | is_hit_q);
 
   assign line_here = line_i.valid & line_i.exact;
@@ -216,8 +216,8 @@ module exact_resolver
       is_hit_q   <= settle | queued_hit;
       line_q     <= settle ? candidates[ready_ctx] : queued_line;
     end
-    // A line with an error, and a candidate that is tested, end in StateAnswer a clock later: what the cache says
-    // is taken into state_q, and goes no further in its clock.
+    // A line with an error, and a candidate that is tested, end in StateAnswer a clock later, so that the cache's
+    // outputs, which come late in a clock, reach only state_q in that clock.
     if (state_q == StateWait || state_q == StateTest) nearer_q <= 1'b0;
     if (state_q == StateLook) begin
       ended_q      <= known_i.ended;
@@ -226,9 +226,9 @@ module exact_resolver
     end
     if (state_q == StateChoose) begin
       against_q <= against;
-      lacks_q   <= against == exact_pkg::AgainstOther;  // the other's line comes first
+      lacks_q   <= against == exact_pkg::AgainstOther;  // the other triangle's line comes first
     end
-    // Whether a line is here says the cache late in its clock: too late to let so many registers change.
+    // The cache's outputs come late in a clock: too late to enable so many registers.
     if (state_q == StateFetch) {other_q, other_rank_q} <= {corners_q, rank_q};
     if (state_q == StateWait) begin
       corners_q <= line_i.line[TriangleCorners+:CornersWidth];

@@ -1,21 +1,21 @@
 // Non-blocking cache of memory lines of one kind, nodes or triangles: eight ways, read only.
 //
-// The lowest bits of a line's number are its set. A miss takes a way of its set, the one after the way that was used
+// The lowest bits of a line's number select its set. A miss takes a way of its set, the one after the way that was used
 // last, and asks memory for the line. Until the line comes, further requests for it join the miss as its targets. If
 // all ways of the set wait for other lines, the request waits.
 //
 //   ask      a request is taken; the tags of its set are read
-//   compare  which of them are the line's
+//   compare  the tags of its set are compared with the line's
 //   look up  a hit's line is read, a miss asks memory
 //   queue    hits wait for a clock in which no line from memory leaves
 //
-// A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken, and is forgotten
+// A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken, and is dropped
 // if its set has no way for it or memory takes no request. outstanding_o: a prefetch is being looked up.
 //
-// A line from memory is taken when the one before has left or leaves: it is written, and its latest target looked up.
-// From the next clock on it goes to its targets, one a clock, the latest first. Throughput: a line a clock; lines leave
-// in any order, each with the ray that asked; meanwhile hits wait in their queue, and requests are looked up as before.
-// A line with an error goes to its targets with error_o, and is not kept.
+// A line from memory is taken when the previous one has left or leaves: it is written, and its latest target is looked
+// up. From the next clock on it goes to its targets, one a clock, the latest first. Throughput: a line a clock; lines
+// leave in any order, each with the ray that asked. While a line from memory leaves, hits wait in their queue; requests
+// are still looked up. A line with an error goes to its targets with error_o, and is not kept.
 //
 // invalidate_i empties the cache; no request and no line may be in flight then.
 module line_cache
@@ -24,7 +24,7 @@ module line_cache
   parameter int unsigned Lines    = 256,
   parameter int unsigned Targets  = 64,   // requests that may wait for lines
   parameter int unsigned RayWidth = 6,
-  parameter int unsigned Width    = LineWidth,  // of what is kept of a line
+  parameter int unsigned Width    = LineWidth,  // bits kept of a line
   localparam int unsigned EntryWidth = $clog2(Lines),
   localparam int unsigned TargetWidth = $clog2(Targets)
 ) (
@@ -67,18 +67,18 @@ module line_cache
     $error("line_cache: expected Lines of 16 or more, a power of two, and Targets of 2 or more");
   end
 
-  logic [Lines-1:0] valid_q, pending_q;  // the line is here, or on its way
-  logic [Sets-1:0][WayWidth-1:0] victims_q;  // of each set the way after the one that was used last
+  logic [Lines-1:0] valid_q, pending_q;  // the entry's line is here; it is on its way
+  logic [Sets-1:0][WayWidth-1:0] victims_q;  // by set: the way after the one that was used last
 
   // ---- Ask
 
   logic ask, compare_q, compare_demand_q, request_q, demand_q, go;
-  logic done;  // the request looked up leaves
+  logic done;  // the request that is looked up leaves
   logic allocate, changed_q;
   logic [RayWidth-1:0] compare_ray_q, ray_q;
   logic [SetWidth-1:0] asked_set, compare_set_q, set;
   logic [TagWidth-1:0] asked_tag, compare_tag_q, changed_tag_q, tag;
-  logic [Ways-1:0][TagWidth-1:0] set_tags;  // the other bits of numbers, by way
+  logic [Ways-1:0][TagWidth-1:0] set_tags;  // by way: the other bits of the line's number
   logic [WayWidth-1:0] changed_way_q, way, start_q, victim_way;
   logic [Ways-1:0] same, same_q, valid_ways_q, pending_ways_q, hits, follows;
   logic hit, follow, some_way;
@@ -99,7 +99,7 @@ module line_cache
       compare_ray_q    <= ray_i;
       compare_tag_q    <= asked_tag;
       compare_set_q    <= asked_set;
-      // The tag that is written at this edge is read as it was.
+      // A tag that is written at this edge is read with its old value.
       changed_q     <= allocate & (asked_set == set);
       changed_way_q <= way;
       changed_tag_q <= tag;
@@ -175,7 +175,7 @@ module line_cache
   assign follows = same_q & pending_ways_q;
   assign hit    = hits != '0;
   assign follow = follows != '0;
-  assign entry  = {way, set};  // so that memories are selected by what is known early, first
+  assign entry  = {way, set};  // the set is known earlier; as the low bits it selects in memories first
 
   always_comb begin
     way = (hit | follow) ? '0 : victim_way;
@@ -193,14 +193,14 @@ module line_cache
 
   logic [Targets-1:0] free_q;
   logic [TargetWidth-1:0] target, current_q;
-  logic [TargetWidth:0] nexts[Targets];  // {another came before that one, the one before}
-  logic [TargetWidth:0] heads[Lines];  // {there is one, the latest}
-  logic [Lines-1:0] mores_q;  // another came before that one
+  logic [TargetWidth:0] nexts[Targets];  // {an earlier target exists, that target}
+  logic [TargetWidth:0] heads[Lines];  // {a target exists, the latest}
+  logic [Lines-1:0] mores_q;  // a target earlier than the head exists
   logic [TargetWidth:0] head, fill_head;
   logic [RayWidth-1:0] rays[Targets];
   logic some_free, add_target, draining_q, more_q, give, error_q;
   logic [Width-1:0] line_q;
-  logic room;  // for one more hit, below
+  logic room;  // for one more hit in the queue below
 
   rr_arbiter #(
     .Width(Targets)

@@ -3,9 +3,9 @@
 // A read has an id, {is a triangle's, cache entry}; its line may come back at any time and in any order. Both caches
 // can give a line in the same clock. A line with an error goes to the rays that wait for it and is not kept.
 //
-// A node to be prefetched (prefetch_i) is looked up in a clock in which no node is asked for, and forgotten if too many
-// wait. Its line may come after the last ray has ended: while outstanding_o is high, memory must not change and the
-// caches must not be emptied.
+// A node to be prefetched (prefetch_i) is looked up in a clock in which no node is asked for, and dropped if the queue
+// of prefetches is full. Its line may come after the last ray has ended: while outstanding_o is high, memory must not
+// change and the caches must not be emptied.
 //
 // Lines leave with step_o, which is high in one of Clocks clocks, and wait for nothing else: line_ready_o does not
 // depend on results.
@@ -22,7 +22,7 @@ module memory_subsystem
 ) (
   input  logic                    clk_i,
   input  logic                    rst_ni,
-  input  logic                    invalidate_i,  // the caches: memory has changed
+  input  logic                    invalidate_i,  // empties the caches: memory has changed
   output logic                    outstanding_o,  // a line is on its way, or will be
   // nodes asked for: one for each ray at most
   input  logic [RayWidth-1:0]     node_ctx_i,
@@ -212,14 +212,14 @@ module memory_subsystem
   assign {triangle_o.rank, triangle_o.line} =
       (RankWidth + TriangleWidth)'(triangle_kept);
 
-  // ---- Misses, in turn
+  // ---- Misses, of both caches in turn
 
   localparam int unsigned CountWidth = $clog2(NodeLines + TriangleLines + 1);
 
   logic [MissWidth:0] out;
   logic out_ready, ask, ask_node, node_last_q;  // the last request was a node's
   logic ask_q, done_q;  // counted a clock late
-  logic [CountWidth-1:0] lines_q;  // asked for, and not in the caches
+  logic [CountWidth-1:0] lines_q;  // requested, and not in the caches yet
 
   assign node_miss_ready     = out_ready & (~triangle_miss_valid | ~node_last_q);
   assign ask_node            = node_miss_valid & node_miss_ready;

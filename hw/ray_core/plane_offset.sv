@@ -1,9 +1,9 @@
 // A plane of a node's grid: plane_o = from_i + floor(q s / 256), or from_i - floor(q s / 256), for q of eight bits.
-// Latency: 1 clock from q_i and step_i: a register behind the product; from_i and back_i come a clock later, and
-// plane_o with them.
+// Latency: 1 clock from q_i and step_i: a register after the product; from_i and back_i come a clock later, and plane_o
+// with them.
 //
-// Structural arithmetic is a carry-save tree of s shifted, a row for each bit of q, a register for its two words, and
-// one adder for all: the difference is floor((256 from + 255 - q s) / 256). Behavioural is `*`.
+// Structural arithmetic is a carry-save tree of shifted s, a row for each bit of q, a register for its two words, and
+// one adder for all: the difference is computed as floor((256 from + 255 - q s) / 256). Behavioural is `*`.
 module plane_offset #(
   parameter int unsigned Width = 33,  // of s
   parameter int unsigned PlaneWidth = 36,
@@ -21,7 +21,7 @@ module plane_offset #(
 
   if (Arith == arith_pkg::Behavioural) begin : gen_behavioural
     logic [SumWidth-1:0] product_q;
-    logic unused;  // fractions of a unit
+    logic unused;  // the product's fraction of a unit
     assign unused = ^product_q[7:0];
 
     always_ff @(posedge clk_i) product_q <= SumWidth'(q_i) * SumWidth'(step_i);

@@ -16,15 +16,15 @@ module primitive_fetch
   input  logic [Children-1:0] box_leaf_i,
   output logic [RayWidth-1:0] t_max_ray_o,
   input  logic [30:0]         t_max_i,  // of t_max_ray_o of the clock before
-  input  logic                ended_i,  // of that ray: it needs nothing any more
-  output logic [Rays-1:0]     leaf_pending_o,  // has a group here
-  // triangles asked for
+  input  logic                ended_i,  // the same ray needs no more tests
+  output logic [Rays-1:0]     leaf_pending_o,  // rays with a group here
+  // requests for triangles
   output logic [RayWidth-1:0] triangle_ray_o,
   output request_t            triangle_o,
   input  logic                triangle_ready_i
 );
 
-  // ---- Groups that wait
+  // ---- Waiting groups
 
   logic push, queued, load;
   logic [RayWidth-1:0] queued_ray;

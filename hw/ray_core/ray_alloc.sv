@@ -1,11 +1,11 @@
 // Entry of rays: reciprocals of a ray's direction, and a context.
 //
 // A ray waits in a queue until its reciprocals have come, a division's latency later, and a context is free: the
-// lowest free one is start_ctx_o. So no context is held by a division. Reciprocals are rounded to nearest.
+// lowest free one is start_ctx_o. So no context is held during a division. Reciprocals are rounded to nearest.
 // Throughput: a ray in Clocks clocks; with Clocks = 1 by three dividers, else (7 or more) by one.
 module ray_alloc #(
   parameter int unsigned Rays  = 64,  // contexts
-  parameter int unsigned Width = 32,  // of what else there is of a ray
+  parameter int unsigned Width = 32,  // of a ray's data, without the reciprocals
   parameter int unsigned Clocks = 1,
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
@@ -120,7 +120,7 @@ module ray_alloc #(
     end
   end
 
-  // ---- Wait: as many inverses at most as there are rays
+  // ---- Wait: never more inverses than rays
 
   logic inverse_valid;
 

@@ -9,24 +9,24 @@
 //
 // Rays and results: valid/ready. A ray's direction must be scaled so that its largest component is in [1, 2). Hits at
 // t >= t_max (compared exactly), on triangle skip_id and on source_id, the triangle that the ray leaves, do not count.
-// With any_hit a ray ends at its first certain hit. Results of different rays come interleaved, each with its ray's tag,
-// and rays end in any order: see result_e. The end of a ray with an error says nothing else: see error_e.
+// With any_hit a ray ends at its first certain hit. Results of different rays interleave, each with its ray's tag,
+// and rays end in any order: see result_e. A ray's end with an error has no other data: see error_e.
 //
-// Memory: reads of lines by number, valid/ready, each with an id; lines come back with it in any order, valid/ready.
-// One with line_error_i fails the rays that wait for it, and is read again for the next ray. Nodes are also prefetched,
-// so outstanding_o may be high when the last ray has ended. Memory may change, and invalidate_i be high, only while no
-// ray is in the core and outstanding_o is low.
+// Memory: reads of lines by number, valid/ready, each with an id; lines return with their id in any order, valid/ready.
+// A line with line_error_i fails the rays that wait for it, and is read again for the next ray. As nodes are
+// prefetched, outstanding_o may be high when the last ray has ended. Memory may change, and invalidate_i be high, only
+// while no ray is in the core and outstanding_o is low.
 //
-// Throughput: a node and a triangle in Clocks clocks; if they are not in the caches, a line a clock.
+// Throughput: a node and a triangle in Clocks clocks; if they are not in the caches, one line a clock.
 module ray_core
   import ray_core_pkg::*;
 #(
-  parameter int unsigned Rays  = 64,  // of the table; a power of two
+  parameter int unsigned Rays  = 64,  // contexts; a power of two
   parameter int unsigned Depth = 8,   // groups on a ray's own stack
   parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
-  parameter int unsigned Clocks = 1,  // of a node and a triangle: pipelines; or 7 or more, in turns
-  parameter int unsigned Exact = 0,  // exact_units, for which triangles have ranks; 0: doubts leave
+  parameter int unsigned Clocks = 1,  // per node and triangle: 1, pipelined; or 7 or more, with shared cores
+  parameter int unsigned Exact = 0,  // number of exact_units, for which triangles have ranks; 0: doubts leave
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned ReadIdWidth = read_id_width(NodeLines, TriangleLines)
@@ -35,7 +35,7 @@ module ray_core
   input  logic                    rst_ni,
   input  logic                    invalidate_i,  // memory has changed: see above
   output logic                    outstanding_o,
-  input  logic                    abort_i,  // the rays that are here
+  input  logic                    abort_i,  // ends the rays in the core
   input  logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
   input  logic                    ray_valid_i,
   output logic                    ray_ready_o,
@@ -55,8 +55,8 @@ module ray_core
   output logic [NumEvents-1:0]    events_o  // of the clock before, see event_e
 );
 
-  // ---- Rays that begin, and their contexts: what a node, a triangle or a test needs is there in the clock after it was
-  // asked for
+  // ---- Rays that start, and their contexts: a ray's data for a node, a triangle or a test come a clock after they
+  // were asked for
 
   logic start_valid, start_fire, ending, step;
   logic [RayWidth-1:0]
@@ -177,7 +177,7 @@ module ray_core
     .boxes_o(boxes)
   );
 
-  // ---- Triangles asked for, for doubts first; tests of those that come
+  // ---- Requests for triangles, first for doubts; tests of the lines that come
 
   logic [RayWidth-1:0] fetch_ctx, leaf_ctx, exact_ctx, triangle_ctx, verdict_ctx;
   logic [30:0] leaf_t_max;
@@ -331,8 +331,8 @@ module ray_core
     .result_o
   );
 
-  // ---- Errors: the first of each ray. It has failed from the second clock after its error on, no later than its end is
-  // told, until another begins in its context. While abort_i is high, all rays in the core fail.
+  // ---- Errors: the first of each ray. A ray has failed from the second clock after its error on, at the latest when
+  // its end is reported, until another ray starts in its context. While abort_i is high, all rays in the core fail.
 
   logic [Rays-1:0][2:0] errors_q;
   logic node_error_q, triangle_error_q, cycle_q;

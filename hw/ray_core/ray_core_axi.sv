@@ -86,7 +86,7 @@ module ray_core_axi
   input  logic [IdWidth-1:0]     m_axi_bid,  // 0
   // verilator lint_on UNUSEDSIGNAL
   input  logic [1:0]             m_axi_bresp,
-  // results: AXI4-Stream, a record a transfer, see registers.md
+  // results: AXI4-Stream, one record per transfer, see registers.md
   output logic                   m_axis_tvalid,
   input  logic                   m_axis_tready,
   output logic [255:0]           m_axis_tdata,
@@ -116,7 +116,7 @@ module ray_core_axi
   logic [31:0] corner, size;
   logic [4*96-1:0] camera;
   logic [NumEvents-1:0] events;
-  logic [31:0] in_flight_q;  // rays ray_fire whose end has not been given
+  logic [31:0] in_flight_q;  // rays taken whose end has not left
 
   assign result_fire = result_valid & result_ready;
   assign is_doubt    = result_fire & (result.kind == ResultDoubt);
@@ -198,11 +198,11 @@ module ray_core_axi
     .pixel_o(pixel)
   );
 
-  // ---- Rays: the camera's first
+  // ---- Rays: the generator's first
 
   ray_t generated;
   logic core_ready, core_valid, ray_fire;
-  logic closed_q;  // to the user's; but one that waits goes in before
+  logic closed_q;  // to the user's rays, except one that is already offered
   assign core_valid   = camera_valid | (ray_valid_i & ~closed_q);
   assign camera_ready = core_ready;
   assign generated = {

@@ -1,18 +1,18 @@
-// What the parts of the ray core share: the lines of its memory, rays, results.
+// Shared by the parts of the ray core: the lines of its memory, rays, results.
 //
 // Memory is read in lines of 64 bytes, by number: line n is at byte 64 n. Bit fields are given from bit 0,
 // the lowest bit of a line's first byte.
 package ray_core_pkg;
 
   // verilator lint_off UNUSEDPARAM
-  // No top uses everything.
+  // No top module uses everything.
 
   localparam int unsigned LineWidth = 512;
   localparam int unsigned AddressWidth = 28;  // of a line: 16 GiB
 
   // ---- Node line: up to seven children and their boxes
   //
-  // A box is given on a grid of the node's own: along axis k, q stands for origin_k + q 2**(e_k - 127),
+  // A box is given on the node's own grid: along axis k, q is the coordinate origin_k + q 2**(e_k - 127),
   // exactly, with q from 0 to 255. A box holds all of its child's triangles (closed: they may touch it).
   // The children's lines follow each other from line `base` on, child 0's first: one line of an inner node,
   // or as many triangle lines as the leaf has.
@@ -27,21 +27,21 @@ package ray_core_pkg;
   localparam int unsigned BoxWidth = 48;
   localparam logic [KindWidth-1:0] KindAbsent = 4'd0;  // 1 to 7: a leaf of so many triangles
   localparam logic [KindWidth-1:0] KindInner = 4'd8;
-  localparam int unsigned MaxLevels = 48;  // nodes at most on a way from the root to a leaf
+  localparam int unsigned MaxLevels = 48;  // nodes on a path from the root to a leaf, at most
 
   // ---- Triangle line
 
   localparam int unsigned TriangleCorners = 0;  // nine binary32: A.x, A.y, A.z, B.x, ... C.z
-  localparam int unsigned TriangleIndex = 288;  // 32 bits, its name; with Exact this line's number
-  localparam int unsigned TriangleRank = 320;  // 32 bits, with Exact: at equal t lowest is nearest
+  localparam int unsigned TriangleIndex = 288;  // 32 bits, the triangle's id; with Exact this line's number
+  localparam int unsigned TriangleRank = 320;  // 32 bits, with Exact: at equal t the lowest is nearest
 
-  localparam int unsigned TriangleWidth = 320;  // what is used of the line without the rank
+  localparam int unsigned TriangleWidth = 320;  // bits used of the line, without the rank
   localparam int unsigned RankWidth = 32;
 
-  // ---- What box_unit says of a node: a group of children
+  // ---- box_unit's result for a node: a group of children
   //
-  // Children that the ray enters, near first: entry 0 is the nearest. An entry's `enter` is a t that is not above the
-  // one where the ray enters the box: the upper bits of a binary32 number without its sign; all ones: any t above.
+  // Children that the ray enters, near first: entry 0 is the nearest. An entry's `enter` is a lower bound of the t
+  // where the ray enters the box: the upper bits of a binary32 number without its sign; all ones if t overflows.
 
   localparam int unsigned EnterWidth = 19;
   localparam int unsigned OffsetWidth = 6;  // of a child's first line from `base`: below 7 * 7
@@ -55,16 +55,16 @@ package ray_core_pkg;
     logic [Children*ChildWidth-1:0] entries;
   } group_t;
 
-  // Whether a child begins surely beyond the t_max, a binary32 number without its sign: such numbers are ordered as
-  // their bits are.
+  // Whether a child surely begins beyond t_max, a binary32 number without its sign. Such numbers have the order of
+  // their bits.
   function automatic logic is_beyond(logic [EnterWidth-1:0] enter, logic [30:0] t_max);
     is_beyond = t_max < {enter, {31 - EnterWidth{1'b0}}};
   endfunction
 
-  // From the clock edge that takes a node to the one after which its group is there, see box_unit.
+  // Clocks from the edge that takes a node to the edge after which its group is there, see box_unit.
   localparam int unsigned BoxLatency = 21;
 
-  // ---- Numbers inside box_unit, in units of 2**(E - UnitBits): E is how far the ray may go in the node
+  // ---- Numbers inside box_unit, in units of 2**(E - UnitBits); the ray ends, or leaves the node, before t = 2**E
 
   localparam int unsigned UnitBits = 22;
   localparam int unsigned StepWidth = 33;  // of s, up to 2**32, in 256ths of a unit
@@ -74,11 +74,11 @@ package ray_core_pkg;
     logic [8:0]  exponent;   // E
     logic [95:0] inverse;    // 1 / I_k, but at most the cap 2**(E + 2 - e_k); with its sign
     logic [32:0] caps;       // the exponents of the caps, 11 signed bits each
-    logic [2:0]  is_capped;  // the cap is given
-    logic [2:0]  is_open;    // the cap is not a binary32 number: the axis says nothing
+    logic [2:0]  is_capped;  // the inverse is the cap
+    logic [2:0]  is_open;    // binary32 cannot represent the cap: the axis is ignored
   } scale_t;
 
-  // ---- A ray, as it comes
+  // ---- A ray, as the user gives it
 
   localparam logic [30:0] Infinity = 31'h7f80_0000;  // a t_max: no limit
 
@@ -92,22 +92,22 @@ package ray_core_pkg;
     logic [31:0]             tag;
   } ray_t;
 
-  // ---- Results: what the core says of a ray
+  // ---- Results of a ray
 
   typedef enum logic {
-    ResultEnd   = 1'd0,  // the ray's last word: the nearest sure hit, if there is one
-    ResultDoubt = 1'd1   // a triangle that may be the nearest hit: exact arithmetic must say
+    ResultEnd   = 1'd0,  // the ray's last result: the nearest sure hit, if there is one
+    ResultDoubt = 1'd1   // a triangle that may be the nearest hit: exact arithmetic must decide
   } result_e;
 
   localparam int unsigned TestsWidth = AddressWidth;  // a ray tests each triangle line once
 
-  // Why a ray's hits must not be believed
+  // Why a ray's hits are invalid
   typedef enum logic [2:0] {
     ErrorNone      = 3'd0,
-    ErrorMemory    = 3'd1,  // a line for it came with an error
-    ErrorCycle     = 3'd2,  // it meets a node again, or is below Levels others: see traversal
+    ErrorMemory    = 3'd1,  // one of its lines came with an error
+    ErrorCycle     = 3'd2,  // it meets a node again, or a node below Levels others: see traversal
     ErrorDirection = 3'd3,  // its direction is not scaled
-    ErrorAbort     = 3'd4   // the user gave it up
+    ErrorAbort     = 3'd4   // the user aborted it
   } error_e;
 
   // Whether the largest component of a direction is in [1, 2).
@@ -125,8 +125,8 @@ package ray_core_pkg;
   typedef struct packed {
     logic                    kind;      // result_e
     logic [31:0]             tag;
-    logic                    found;     // ResultEnd: a sure hit, and so on to tests
-    logic [31:0]             triangle;  // ResultDoubt: that one
+    logic                    found;     // ResultEnd, as all fields down to tests: there is a sure hit
+    logic [31:0]             triangle;  // ResultDoubt: the triangle in doubt
     logic [31:0]             t;
     logic [TErrorWidth-1:0]  t_error;   // t is off by fewer than 2**t_error numbers, see NoT
     logic [95:0]             point;
@@ -140,14 +140,14 @@ package ray_core_pkg;
     read_id_width = 1 + $clog2((node_lines > triangle_lines) ? node_lines : triangle_lines);
   endfunction
 
-  // ---- Links between the parts of the core; beside each goes the number of a ray's context
+  // ---- Links between the parts of the core; each comes with the number of a ray's context
 
-  typedef struct packed {  // a line is asked for
+  typedef struct packed {  // a request for a line
     logic                    valid;
     logic [AddressWidth-1:0] line;
   } request_t;
 
-  typedef struct packed {  // a triangle's line is asked for
+  typedef struct packed {  // a request for a triangle's line
     logic                    valid;
     logic                    exact;  // for exact_resolver; else for a test
     logic [AddressWidth-1:0] line;
@@ -159,9 +159,9 @@ package ray_core_pkg;
     logic [LineWidth-1:0] line;
   } node_line_t;
 
-  typedef struct packed {  // a triangle's
+  typedef struct packed {  // a triangle's line for a ray
     logic                     valid;
-    logic                     exact;  // triangle_request_t's
+    logic                     exact;  // as in triangle_request_t
     logic                     error;
     logic [RankWidth-1:0]     rank;
     logic [TriangleWidth-1:0] line;
@@ -174,15 +174,15 @@ package ray_core_pkg;
     logic [Children-1:0] leaf;   // and leaves
   } boxes_t;
 
-  // A test is over: a doubt, a sure hit (found) or a miss
+  // The result of a test: a doubt, a sure hit (found) or a miss
   typedef struct packed {
     logic                                   valid;
-    logic                                   is_skipped;  // it counts for nothing
+    logic                                   is_skipped;  // the test does not count
     logic                                   doubt;
     logic                                   found;
     logic [31:0]                            triangle;
     logic [31:0]                            t;
-    logic [hit_test_pkg::TErrorWidth-1:0]   t_error;  // beside the plane's, see set_up_pkg
+    logic [hit_test_pkg::TErrorWidth-1:0]   t_error;  // without the plane's errors, see set_up_pkg
     logic [set_up_pkg::PlaneErrorWidth-1:0] normal_error;
     logic [set_up_pkg::PlaneErrorWidth-1:0] distance_error;
     logic [95:0]                            point;
@@ -193,7 +193,7 @@ package ray_core_pkg;
     logic [31:0]            triangle;
     logic [31:0]            t;
     logic [TErrorWidth-1:0] t_error;
-    logic [TestsWidth-1:0]  tests;  // that it had
+    logic [TestsWidth-1:0]  tests;  // number of the ray's tests
   } hit_t;
 
   typedef struct packed {  // what is known of a ray when it ends
@@ -208,17 +208,17 @@ package ray_core_pkg;
     logic [31:0] triangle;
   } doubt_t;
 
-  typedef struct packed {  // a doubt, as closest_hit meets it, for exact_resolver
+  typedef struct packed {  // a doubt that closest_hit passes to exact_resolver
     logic                    valid;
     logic                    is_hit;  // surely; else the ray may miss it
     logic [AddressWidth-1:0] line;
   } open_t;
 
-  typedef struct packed {  // what exact_resolver is told of a ray
-    logic                    ended;  // it needs no hit, or no other
-    logic                    found;  // a sure hit, and its line
+  typedef struct packed {  // what closest_hit tells exact_resolver of a ray
+    logic                    ended;  // the ray needs no further hit
+    logic                    found;  // there is a sure hit, in `line`
     logic [AddressWidth-1:0] line;
-    logic [30:0]             t_max;  // without one: the user's
+    logic [30:0]             t_max;  // without a sure hit: the user's
   } known_t;
 
   // ---- Events of a clock, for counters
@@ -227,13 +227,13 @@ package ray_core_pkg;
     EventRay      = 4'd0,  // a ray has ended
     EventNode     = 4'd1,  // box_unit takes a node
     EventTriangle = 4'd2,  // triangle_test takes a triangle
-    EventHit      = 4'd3,  // a test is over: surely hit,
-    EventMiss     = 4'd4,  // surely missed, or the triangle that the ray ignores,
+    EventHit      = 4'd3,  // a test ends: a sure hit,
+    EventMiss     = 4'd4,  // a sure miss, or a triangle that the ray ignores,
     EventDoubt    = 4'd5,  // or neither
     EventNearTie  = 4'd6,  // a sure hit leaves as a doubt
     EventOverflow = 4'd7,  // a ray's own stack is full: it takes the shared groups
     EventRead     = 4'd8,  // a line is asked for
-    EventWait     = 4'd9,  // memory does not take what is asked for
+    EventWait     = 4'd9,  // memory does not take a read
     EventExact    = 4'd10  // exact_unit has a question
   } event_e;
 

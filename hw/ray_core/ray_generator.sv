@@ -1,18 +1,18 @@
 // Generator of camera rays: a rectangle of pixels, row by row. The paper's equation 1.
 //
 // The direction through pixel (x, y) is (first + y down) + x right, binary32, each operation rounded to nearest: first
-// goes through the pixel (0, 0), right and down lead from a pixel to the next. It is then scaled by a power of two, so
-// that the largest component is in [1, 2); a component that becomes smaller than 2**-126 is zero. What cannot be
-// scaled, zero or not finite, stays so: the core refuses it. Vectors are three words, x lowest.
+// is the direction through pixel (0, 0), right and down lead from a pixel to the next. The direction is then scaled by
+// a power of two, so that the largest component is in [1, 2); a component that becomes smaller than 2**-126 is zero. A
+// direction that is zero or not finite cannot be scaled: the core refuses it. Vectors are three words, x lowest.
 //
-// start_i, while not busy_o, takes the rectangle; a width or height of zero gives nothing. stop_i: no further pixel is
+// start_i, while not busy_o, takes the rectangle; a width or height of zero gives no ray. stop_i: no further pixel is
 // begun. Throughput: a ray a clock.
 module ray_generator #(
   parameter int unsigned Arith = arith_pkg::Graded
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
-  // the picture; must not change while busy_o
+  // the camera; must not change while busy_o
   input  logic [95:0] first_i,
   input  logic [95:0] right_i,
   input  logic [95:0] down_i,
@@ -66,12 +66,12 @@ module ray_generator #(
     end
   end
 
-  // ---- Their numbers as binary32, exactly
+  // ---- The pixel's numbers as binary32, exactly
 
   logic [31:0] number_q[2];  // x, y
 
   for (genvar n = 0; n < 2; n++) begin : gen_number
-    logic [15:0] count, normalised;  // the highest bit counts for the exponent
+    logic [15:0] count, normalised;  // the highest bit only adds to the exponent
     logic [3:0] zeros;
     logic zero;
     logic [7:0] field;
@@ -137,7 +137,7 @@ module ray_generator #(
     .result_o(direction)
   );
 
-  // ---- Scale: exponents alone
+  // ---- Scale: only exponents change
 
   logic [7:0] largest, unit;
   logic [95:0] scaled;
@@ -150,15 +150,15 @@ module ray_generator #(
   end
   assign unit = (largest == 8'd255) ? 8'd255 : 8'd127;
   for (genvar k = 0; k < 3; k++) begin : gen_scaled
-    logic [7:0] below;  // so many orders below the largest
+    logic [7:0] below;  // binary orders below the largest
     assign below = largest - direction[32*k+23 +: 8];
     assign scaled[32*k +: 32] = ((direction[32*k+23 +: 8] == '0) | (below > 8'd126))
         ? {direction[32*k+31], 31'd0} : {direction[32*k+31], unit - below, direction[32*k +: 23]};
   end
 
-  // ---- Rays on their direction, and those that wait
+  // ---- Rays in the pipeline, and waiting rays
 
-  logic [Latency:0] valid_q;  // the last: those that came into the queue
+  logic [Latency:0] valid_q;  // the last: a ray entered the queue in the clock before
   logic [31:0] pixel;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin

@@ -13,8 +13,8 @@ module ray_retire
   input  logic                rst_ni,
   input  logic                start_i,  // a ray is in a context
   input  logic [RayWidth-1:0] start_ctx_i,
-  input  logic [Rays-1:0]     busy_i,  // something is to be done for a context's ray
-  // a ray ends, its context is free; in the clock after what is known of it
+  input  logic [Rays-1:0]     busy_i,  // contexts whose ray has work left
+  // a ray ends and its context is free; its data come in the next clock
   output logic                ending_o,
   output logic [RayWidth-1:0] ending_ctx_o,
   output logic [RayWidth-1:0] end_ctx_o,
@@ -33,7 +33,7 @@ module ray_retire
 
   // ---- The end of a ray
 
-  logic [Rays-1:0] active_q;  // in its context, and its end not noticed
+  logic [Rays-1:0] active_q;  // contexts with a ray whose end is not detected yet
   logic some, space;
 
   rr_arbiter #(
@@ -55,7 +55,7 @@ module ray_retire
     end
   end
 
-  // ---- What is known of it waits
+  // ---- The ray's data wait
 
   logic known_q, end_valid, end_fire;
   end_t ended;

@@ -1,6 +1,6 @@
-// Scale of a ray in a node: how far it may go there, 2**E, and a cap of 1 / I_k where planes are too far apart.
-// Latency: 2 clocks: a register behind the reach along each axis and one behind E; inverse_i and cells_i come with the
-// rest. Steps 1 and 3 of box_unit's header say why. An exponent is binary32's, with its bias.
+// Scale of a ray in a node: 2**E, a bound of t there, and a cap of 1 / I_k if planes are too far apart.
+// Latency: 2 clocks: registers after the reach along each axis and after E. All inputs come in the same clock. For the
+// reasons see steps 1 and 3 of box_unit's header. Exponents have binary32's bias.
 //
 // In:  distances_i  exponents of D_k = origin_k - O_k, eight bits an axis, x lowest
 //      inverse_i    1 / I_k, binary32, x lowest

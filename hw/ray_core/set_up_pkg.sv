@@ -1,22 +1,22 @@
-// What triangle_test and those who use its records share: the format, and how far off its planes are.
+// Shared by triangle_test and the users of its records: the format, and the errors of its planes.
 package set_up_pkg;
 
   // verilator lint_off UNUSEDPARAM
-  // No top uses everything.
+  // No top module uses everything.
 
   localparam int unsigned ExpWidth = 8;  // binary32, for which the bounds are proven
   localparam int unsigned FracWidth = 23;
   localparam int unsigned Width = 1 + ExpWidth + FracWidth;
 
-  // ---- How far off N and d are: see triangle_test
+  // ---- Errors of N and d: see triangle_test
 
   localparam int unsigned PlaneErrorWidth = 4;
 
-  // The largest that gives a plane that is good enough, alone or with the unit's t_error added.
+  // The largest error of a plane that is good enough, alone or with the test's t_error added.
   localparam int unsigned MostPlaneError = 14;
 
-  // Between a hit's t and the exact one lie fewer than 2**t_error_exponent numbers, where
-  // is_good_hit: t_error is hit_test_pipeline's, the others are those of its planes.
+  // If is_good_hit, fewer than 2**t_error_exponent numbers lie between a hit's t and the exact t. t_error is
+  // hit_decision's, the other errors are the plane's.
   localparam int unsigned TErrorUnit = 8;
   localparam int unsigned TErrorExponentWidth = 5;
 
@@ -34,13 +34,13 @@ package set_up_pkg;
     t_error_exponent = TErrorExponentWidth'(TErrorUnit) + ((plane > distance) ? plane : distance);
   endfunction
 
-  // ---- What the header of triangle_test derives, from its sums and exponents
+  // ---- Derived in the header of triangle_test, from sums and exponents
 
   localparam int unsigned LeastField = 27;  // of an exponent that counts: 2**-100
   localparam int unsigned BoundShift = 20;  // 16 u = 2**-20
   localparam logic [Width-1:0] NaN = {1'b0, {ExpWidth{1'b1}}, 1'b1, {(FracWidth - 1) {1'b0}}};
 
-  // An edge's bound: 16 u T' where T', the sum of its terms, is neither tiny nor infinite.
+  // An edge's bound: 16 u T' if T', the sum of its terms, is neither tiny nor infinite; else infinity.
   function automatic logic [Width-1:0] bound(logic [Width-1:0] sum);
     logic [ExpWidth-1:0] field;
     field = sum[FracWidth+:ExpWidth];
@@ -62,12 +62,12 @@ package set_up_pkg;
   endfunction
 
   typedef struct packed {
-    logic                       good;  // d is near enough
+    logic                       good;  // the errors are small enough
     logic [PlaneErrorWidth-1:0] normal_error;
     logic [PlaneErrorWidth-1:0] distance_error;
   } plane_t;
 
-  // Of the largest exponents of A, N and N's terms, and d's.
+  // From the largest exponents of A, N and N's terms, and from d's exponent.
   function automatic plane_t plane_of(logic [ExpWidth-1:0] vertex, logic [ExpWidth-1:0] normal,
                                       logic [ExpWidth-1:0] terms, logic [ExpWidth-1:0] d);
     localparam logic [ExpWidth+1:0] Bias = (ExpWidth + 2)'(2 ** (ExpWidth - 1) - 1);

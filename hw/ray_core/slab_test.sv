@@ -1,9 +1,9 @@
-// Slab test: whether and where the ray enters one child's box. From the planes of its three axes, x lowest.
-// Latency: 4 clocks: a register behind products, planes, the largest and smallest of them, and the key.
+// Slab test: whether and where the ray enters one child's box. Vectors have x lowest.
+// Latency: 4 clocks: registers after products, planes, the largest and smallest of them, and the key.
 //
 // In:  box_i         low x, y, z, high x, y, z: a byte each; step_i: s; back_i: along which axes the ray goes towards
 //                    smaller q
-//      next_planes_i, next_back_i  in the next clock: near planes, far planes; and back_i
+//      next_planes_i, next_back_i  a clock later: near planes, far planes; and back_i
 //      t_max_i       in units, two clocks later; no box is entered beyond it
 //      kind_i        ray_core_pkg's, three clocks later
 // Out: key_o         {left out, enter}: enter in units, up to 2**22

@@ -5,27 +5,27 @@
 // nearest child lies beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for.
 // Rays without tests in flight come first, as their t_max is final for now; among these is a ray that starts.
 //
-// Each ray has Depth groups of its own. Levels - Depth more are shared by all rays. One ray at a time holds them, on
-// top of its own, from when it asks for a node with its own stack full until there is room in its own again; overflow_o
-// tells of each ray that takes them. Others that need them wait; their holder needs no other ray to go on, so each gets
-// its turn. Only the topmost shared group is examined. It is never dropped for t_max, as box_unit culls what lies
-// beyond.
+// Each ray has Depth groups of its own. Levels - Depth more are shared by all rays. One ray at a time holds the shared
+// groups, on top of its own, from when it asks for a node with its own stack full until its own stack has room again;
+// overflow_o is high when a ray takes them. Other rays that need them wait; the holder depends on no other ray, so each
+// gets its turn. Only the topmost shared group is examined. It is never dropped for t_max, as box_unit culls boxes
+// beyond t_max.
 //
 // In a tree a ray enters each node once, and has at most one group for each level. A ray that is about to enter more
-// than lines_i nodes, or has Levels groups, is in a cycle: its stack is dropped, and cycle_o says so.
+// than lines_i nodes, or has Levels groups, is in a cycle: its stack is dropped, and cycle_o is high.
 //
 //   gather   the rays that may be picked
 //   pick     one of them
 //   read     its groups and its t_max
 //   choose   the group
 //   fetch    the group from memory
-//   ask      for the line of its nearest child; or, in a clock without one, for the root, for a ray that starts
+//   ask      for the line of its nearest child or, in a clock without one, for the root, on behalf of a ray that starts
 module traversal
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,  // groups on a ray's own stack
-  parameter int unsigned Levels = MaxLevels,  // with the shared ones
+  parameter int unsigned Levels = MaxLevels,  // including the shared groups
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                    clk_i,
@@ -34,25 +34,25 @@ module traversal
   input  logic                    start_valid_i,
   input  logic [RayWidth-1:0]     start_ray_i,
   output logic                    start_fire_o,
-  // what box_unit says of a node
+  // box_unit's result for a node
   input  logic                    box_valid_i,
   input  logic [RayWidth-1:0]     box_ray_i,
   input  group_t                  box_group_i,
   input  logic [Children-1:0]     box_inner_i,
   // what is known of rays
   input  logic [Rays-1:0]         leaf_pending_i,  // has leaves to be asked for
-  input  logic [Rays-1:0]         testing_i,  // has tests on their way
+  input  logic [Rays-1:0]         testing_i,  // has tests in flight
   output logic [RayWidth-1:0]     t_max_ray_o,
   input  logic [30:0]             t_max_i,  // of t_max_ray_o of the clock before
-  input  logic                    ended_i,  // of that ray: it needs nothing any more
+  input  logic                    ended_i,  // the same ray needs no more nodes
   output logic                    cycle_o,  // cycle_ray_o meets a node again
   output logic [RayWidth-1:0]     cycle_ray_o,
   input  logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
   output logic [Rays-1:0]         traversing_o,  // waits for a node, or has some on its stack
-  // nodes asked for; as many as there are rays at most
+  // requests for nodes; at most one for each ray
   output logic [RayWidth-1:0]     node_ray_o,
   output request_t                node_o,
-  output request_t                prefetch_o,  // the next of the same group, where there is one
+  output request_t                prefetch_o,  // the next child of the same group, if there is one
   output logic                    overflow_o  // a ray takes the shared groups
 );
 
@@ -75,7 +75,7 @@ module traversal
 
   assign traversing_o = busy_q | waiting_q;
 
-  // Of a group of a ray, and of a shared one by itself.
+  // Address of a ray's group in u_groups; then, of a shared group in shared_masks.
   function automatic logic [StackWidth-1:0] stack_address(logic [RayWidth-1:0] ctx,
                                                           logic [LevelWidth-1:0] level);
     stack_address = StackWidth'(level) + ((level < LevelWidth'(Depth))
@@ -85,7 +85,7 @@ module traversal
     shared_address = SharedWidth'(level - LevelWidth'(Depth));
   endfunction
 
-  // The nearest of the entries that are among `which`, 0 for none: {enter, offset}.
+  // The nearest of the entries in `which`, as {enter, offset}; 0 for none.
   function automatic logic [EnterWidth+OffsetWidth-1:0] nearest(
     logic [Children*ChildWidth-1:0] entries, logic [Children-1:0] which);
     nearest = '0;
@@ -96,7 +96,7 @@ module traversal
     end
   endfunction
 
-  // ---- Gather: none that is picked in this clock or was in the last one
+  // ---- Gather: without the rays picked in this clock or the last
 
   logic [Rays-1:0] ready, sure, ready_q;
 
@@ -132,7 +132,7 @@ module traversal
     end
   end
 
-  // ---- Read: of each level of the stack is known which entries wait, and where the first begins
+  // ---- Read: for each level of the stack, which entries wait, and the `enter` of the first
 
   logic push, asked_q, choosing_q, ended_q, next_valid_q;
   logic [LevelWidth-1:0] box_level, level_q, chosen, left, asked_level_q, next_level_q;
@@ -214,7 +214,7 @@ module traversal
                      & ((entered_q == lines_i) | (level_q == LevelWidth'(Levels)));
   assign cycle_ray_o = choosing_ray_q;
   assign left        = (~some | cycle_o) ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
-  // That is: left is Depth or more. It is known before.
+  // That is: left is Depth or more. This form is known earlier.
   assign full        = ~cycle_o & (is_shared ? ~ended_q
                      : open[Depth-1] & ((own_top & (own_top - 1'b1)) != '0));
   assign free        = ~shared_q | (shared_ray_q == choosing_ray_q);
@@ -257,7 +257,7 @@ module traversal
     next_ray_q       <= asked_q ? asking_ray_q : start_ray_i;
     next_level_q     <= asked_level_q;
     next_remaining_q <= remaining_q;
-    base_q           <= asked_q ? group.base : '0;  // of the root
+    base_q           <= asked_q ? group.base : '0;  // 0 for the root
     {unused_enter, offset_q}        <= nearest(group.entries, mask_q);
     {next_enter_q, prefetch_offset_q} <= nearest(group.entries, remaining_q);
   end
@@ -289,7 +289,7 @@ module traversal
     .data_o(group)
   );
 
-  // ---- State; a ray is picked, starts, or hears of a node, never two of these at once
+  // ---- State; of picking, start and a node's result, a ray has only one in a clock
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

@@ -1,44 +1,44 @@
-// Triangle test: polygon record of a triangle, and a ray's verdict. The record is seen from the origin; binary32.
+// Triangle test: polygon record of a triangle, and a ray's verdict. The record is relative to the origin; binary32.
 //
-// Throughput: a triangle in Clocks clocks. Clocks = 1: pipelined cores. Else (7 or more) few cores that take turns: a
-// step is from one step_i to the next, and all registers go on with it. The words are the same. Nothing is stalled.
+// Throughput: a triangle in Clocks clocks. Clocks = 1: pipelined cores. Else (7 or more) words share few cores: a step
+// lasts from one step_i to the next, and all registers advance with it. Results are the same. Nothing is stalled.
 //
 //   operation   cores                                                     sums and products
-//   1           vertices A, B, C less O; the edges B-A, C-B, A-C          18
+//   1           vertices A, B, C minus O; the edges B-A, C-B, A-C         18
 //   2, 3        N = (A-C) x (B-A); A x (B-A), B x (C-B), C x (A-C);       24, 24
-//               the size of each one's terms
+//               the sizes of their terms
 //   4-6         d = N . A; the sums of the edges' terms, for bounds       3, 8
 //   7-9         V = N . I, U_k = E_k . I, d I_k                           see hit_dots
 //   then        the decision, and t = d / V, P_k = (d I_k) / V            see hit_decision; 4 dividers, or one
 //
-// An operation takes 3 clocks, or a step. A triangle comes with step_i. The ray is given by its context: origin_i and both
-// ids in the clock after, until the next step_i; its direction likewise after the step_i with direction_ctx_o. A verdict
-// is there for a clock, with its P.
+// An operation takes 3 clocks, or a step. A triangle comes with step_i. The ray is given by its context: origin_i and
+// both ids come in the next clock and stay until the next step_i; so does the direction after the step_i with
+// direction_ctx_o. A verdict and its P are valid for a clock.
 //
 // The record is hit_test_pkg's, with two differences from one that a host makes in double:
-//   * bounds are those of words computed here, below, about twice as large;
-//   * d is NaN where its sign is not sure, or where N or d are too far off: the plane then gives no hit,
+//   * bounds are those of words computed here, derived below, and about twice as large;
+//   * d is NaN if its sign is not sure, or if the errors of N or d are too large: the plane then gives no hit,
 //     only misses that the edges decide, and doubts (see hit_decision).
-// The verdict's normal_error and distance_error say how far off N and d are, where d is a number. For a hit,
-// set_up_pkg makes of them and of t_error how far off t is.
+// The verdict's normal_error and distance_error bound the errors of N and d, if d is a number. For a hit,
+// set_up_pkg computes the error of t from these and t_error.
 //
 // Why sure answers are sure. Let u = 2**-24, primes mark computed words, e(x) be exponents.
 //   Subtracting rounds once: A' = A (1 + u), D' = D (1 + u), with |u| standing for any error up to it.
 //   An edge E = A x D.  Its terms p = A'_i D'_j are off by three roundings, their difference by one more:
 //     |E'_k - E_k| <= 3.02 u T_k + 1.01 u |E'_k|, where T_k = |p| + |p'| >= |E'_k| are its terms.
 //     I has components below 2, so |I . E' - I . E| <= (6.04 + 2.02) u T for T = T_x + T_y + T_z, and the
-//     dot product's three roundings add 6.001 u T. The sum, 14.07 u T, and what T' is off by, are below
-//     bound = 16 u T', a change of the exponent alone.
-//   The plane.  With M_k = N's terms as T_k are E's:  |N'_k - N_k| <= 3.02 u M_k + 1.01 u |N'_k|, and V = I . N'
-//     is off by at most 14.07 u (M_x + M_y + M_z) < 84.5 u 2**e(M), the largest of the M_k meant.
+//     dot product's three roundings add 6.001 u T. The sum, 14.07 u T, plus the error of T', is below
+//     bound = 16 u T', which changes only the exponent.
+//   The plane.  With M_k the terms of N_k, as T_k those of E_k:  |N'_k - N_k| <= 3.02 u M_k + 1.01 u |N'_k|, and
+//     V = I . N' is off by at most 14.07 u (M_x + M_y + M_z) < 84.5 u 2**e(M), with M the largest M_k.
 //     d = N . A:  |d' - d| <= u sum |A_k| (5.04 |N_k| + 3.02 M_k) <= 8.06 u sum |A_k| M_k < 96.8 u 2**(e(A) + e(M)).
 //     With normal_error = m = e(M) - e(N'), distance_error = q = max(e(A) + e(M) - e(d), 0), and the decision's
-//     g = max(e(N') - e(V), 0), that is at most 84.5 u 2**(m + g) of V and 96.8 u 2**q of d. So d has the right
+//     g = max(e(N') - e(V), 0), these are at most 84.5 u 2**(m + g) of V and 96.8 u 2**q of d. So d has the right
 //     sign while q <= 14; and while m + g <= 14, V is off by at most 0.083 of itself, and t by
 //     (181.3 + 1) u 2**x / (1 - 0.083) < 199 u 2**x of itself, with x = max(m + g, q). Numbers are no closer
 //     than u of their size, so fewer than 2**(8 + x) of them lie between t' and t.
-//   Underflow adds at most 2**-150 to each product. Bounds are infinite, or d NaN, where a size that counts is
-//   below 2**-100: else that is far below the room that the constants leave.
+//   Underflow adds at most 2**-150 to each product. Bounds are infinite, or d NaN, if a relevant size is
+//   below 2**-100: otherwise underflow is far below the margin of the constants.
 //   Overflow gives an infinity or NaN, which is never sure.
 //
 // Source: the paper's section 2.2 (what is computed once for an origin); the bounds are this project's.
@@ -55,11 +55,11 @@ module triangle_test
   input  logic                step_i,
   input  logic [RayWidth-1:0] ctx_i,
   // verilator lint_off UNUSEDSIGNAL
-  // Ranks are exact_resolver's, and so are lines that are `exact`.
-  input  triangle_line_t      triangle_i,  // with an error it counts for nothing
+  // Ranks, and lines that are `exact`, are for exact_resolver.
+  input  triangle_line_t      triangle_i,  // skipped if it has an error
   // verilator lint_on UNUSEDSIGNAL
   input  logic [95:0]         origin_i,
-  input  logic [31:0]         skip_id_i,  // triangles that count for nothing
+  input  logic [31:0]         skip_id_i,  // triangles to skip
   input  logic [31:0]         source_id_i,
   output logic [RayWidth-1:0] direction_ctx_o,
   input  logic [95:0]         direction_i,
@@ -73,22 +73,22 @@ module triangle_test
     $error("triangle_test: expected Clocks of 1, or 7 or more");
   end
 
-  // Steps, which are clocks where Clocks is 1
+  // In steps, which are clocks if Clocks is 1
   localparam int unsigned Operation = (Clocks == 1) ? hit_test_pkg::AdderLatency : 1;
-  localparam int unsigned Take = (Clocks == 1) ? 2 : 1;  // a memory's word gets a register
+  localparam int unsigned Take = (Clocks == 1) ? 2 : 1;  // a register for a memory's output
   localparam int unsigned Decide = Take + 9 * Operation;
   localparam int unsigned Divide = hit_test_pkg::divide_latency(set_up_pkg::FracWidth);  // clocks
   localparam int unsigned DivideSteps = (Clocks == 1) ? Divide + 1 : (Divide + 3) / Clocks + 1;
   localparam int unsigned Last = Decide + 1 + DivideSteps;
 
-  // ---- Take; which test is where
+  // ---- Take; tests in flight
 
   logic [TriangleWidth-1:0] line_q;
   logic [RayWidth-1:0] ctx_q, ctx;
   logic [9*32-1:0] corners;
   logic [95:0] origin;
   logic [31:0] index, taken_index, early_index;
-  logic [Last:1] valid_q;  // so many steps ago it came
+  logic [Last:1] valid_q;  // [n]: a triangle came n steps ago
   logic error_q, skipped, taken_skipped, early_skipped;
 
   assign index   = line_q[TriangleIndex+:32];
@@ -146,8 +146,8 @@ module triangle_test
     .result_o({edge_vector, corner})
   );
 
-  // ---- Cross: the edges' planes, then N. A product's word k is a_i b_j - a_j b_i for (i, j, k) = (1, 2, 0) and so on, the
-  // size of its terms |a_i b_j| + |a_j b_i|: what cancels in a word shows in how much larger its terms are
+  // ---- Cross: the edges' planes, then N. A product's word k is a_i b_j - a_j b_i for (i, j, k) = (1, 2, 0) and so on,
+  // the size of its terms |a_i b_j| + |a_j b_i|: the more cancels in a word, the larger its terms are in comparison
 
   logic [4*192-1:0] lefts, rights, cross_terms, minuends, others, differences;
   logic [12*32-1:0] product, terms;
@@ -348,10 +348,10 @@ module triangle_test
     assign divide          = valid_q[Decide+1] & hit_q;
     assign verdict_o.valid = valid_q[Last];
   end else begin : gen_turns
-    localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // from t to the step
-    logic [3:0] since_q;  // the clock after the step, and those after it
+    localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // clocks from t's quotient to the step
+    logic [3:0] since_q;  // [n]: n + 1 clocks after the step
     logic [Wait*32-1:0] waiting_q;
-    logic [(Wait+1)*32-1:0] waiting;  // the latest highest
+    logic [(Wait+1)*32-1:0] waiting;  // the latest is highest
 
     assign waiting = {quotients, waiting_q};
 
@@ -369,7 +369,7 @@ module triangle_test
     assign verdict_o.valid = valid_q[Last] & since_q[0];
   end
 
-  // ---- The verdict: a t that is no positive normal number is none
+  // ---- The verdict: a hit whose t is not a positive normal number is a doubt
 
   logic is_normal;
   assign {verdict_o.point, verdict_o.t} = quotients_q;

@@ -23,7 +23,7 @@ def unit(a):
 
 
 def place_in_picture(setting, aspect, point):
-    """As raygate's camera has it: x and y from -1 (left, lower edge) to 1."""
+    """Projects as raygate's camera does: returns x and y from -1 (left or lower edge) to 1."""
     way = [p - e for p, e in zip(point, setting["eye"])]
     forward = unit([t - e for t, e in zip(setting["target"], setting["eye"])])
     right = unit(cross(forward, setting["up"]))
@@ -34,8 +34,8 @@ def place_in_picture(setting, aspect, point):
 
 
 def blender_place(world, lens, sensor, fit, size, point):
-    """As Blender's projection matrix has it (BKE_camera_params_compute_viewplane): the sensor's side is as long as
-    the picture's side that it fits."""
+    """Projects as Blender's projection matrix does (BKE_camera_params_compute_viewplane): the sensor's side is as
+    long as the picture's side that it fits."""
     axes = [[row[column] for row in world[:3]] for column in range(4)]
     way = [p - e for p, e in zip(point, axes[3])]
     x, y, z = (dot(way, axis) for axis in axes[:3])
@@ -48,7 +48,7 @@ def blender_place(world, lens, sensor, fit, size, point):
 
 
 def rotation(random_numbers):
-    """The rows of a random one."""
+    """Returns the rows of a random rotation."""
     first = unit([random_numbers.gauss(0, 1) for _ in range(3)])
     second = unit(cross(first, [random_numbers.gauss(0, 1) for _ in range(3)]))
     return [list(row) for row in zip(first, second, cross(first, second))]

@@ -1,8 +1,8 @@
-"""Prints what the board's core (hw/board) takes for three frames of a sample a pixel, and whether their pictures are the cpu engine's.
+"""Prints clocks of the board's core (hw/board) for three frames at a sample per pixel, and whether the pictures are the cpu engine's.
 
-Clocks are simulated, with the SDRAM at its pins and a host that is as fast as the clock; the scene is in memory before.
-Frames a second are these clocks at CLOCK_MHZ. A serial line of BAUD carries 44 bytes of a ray and brings 32 of a result,
-both ways at once: its seconds are the longer way's.
+Clocks are simulated, with the SDRAM at its pins and a host as fast as the clock; loading the scene is not counted.
+Frames per second are at CLOCK_MHZ. A serial line of BAUD sends 44 bytes per ray while it receives 32 per result, so its
+seconds are those of the 44 bytes.
 
 usage: board_frames.py RENDER SCENES [SIZE]
 """
@@ -18,7 +18,7 @@ FRAMES = {"paper": ["--view", "0,8.0625"], "cornell": [], "teapot": []}
 
 
 def simulate(render, scene, size, options, folder):
-    """The picture's file and the statistics of a frame."""
+    """Renders a frame; returns the picture's file and the statistics."""
     out = pathlib.Path(folder) / options[-1]
     stats = out.with_suffix(".json")
     subprocess.run([render, scene, "--size", size, "--spp", "1", "--threads", "1", "--quiet", "--stats", stats, "--output", out,

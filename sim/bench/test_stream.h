@@ -1,5 +1,4 @@
-// Tests for timing the hit-test units: random triangles, so that about a wanted share of them is
-// hit.
+// Tests for timing the hit-test units: random triangles, of which about a given fraction is hit.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +15,10 @@ struct TestStream {
   std::vector<PlaneTest> plane_tests;
 };
 
-/// `bursts` random rays with `tests` triangles each, whose corners are anywhere in a box of 4 x 4 x
-/// 4 in front of the origin. A ray is aimed at a point of the box; with the chance `aimed` (0 to
-/// 1), anew for each test, the triangle is made around a point of the ray instead. Without aiming
-/// some 8 % are hit.
+/// Returns `bursts` random rays with `tests` triangles each, whose corners are anywhere in a box of
+/// 4 x 4 x 4 in front of the origin. A ray is aimed at a point of the box; with probability `aimed`
+/// (0 to 1), independently for each test, the triangle is moved until its middle is on the ray.
+/// Without aiming some 8 % are hit.
 [[nodiscard]] TestStream random_stream(int bursts, int tests, double aimed);
 
 }  // namespace raygate

@@ -1,9 +1,8 @@
-// How fast the units are simulated: tests a second on one thread, the median of several runs, and,
-// where valgrind is installed, the instructions that a test takes. Nothing passes or fails here.
+// Measures how fast the units are simulated: tests a second on one thread, the median of several
+// runs, and, if valgrind is installed, the instructions of a test. Nothing passes or fails here.
 //
 //   unit_bench                           the table
-//   unit_bench ARITH LANES AIMED ROUNDS  only that: so many rounds of the stream (valgrind counts
-//   them)
+//   unit_bench ARITH LANES AIMED ROUNDS  only ROUNDS rounds of the stream, for valgrind
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -31,7 +30,7 @@ struct Kind {
 constexpr Kind kKinds[] = {{"structural", Arith::kStructural},
                            {"behavioural", Arith::kBehavioural}};
 
-/// Tests a second, the median of kRuns runs.
+/// Returns tests a second, the median of kRuns runs.
 template <class Round>
 double tests_per_second(const Round& round) {
   round();  // for the caches
@@ -46,7 +45,7 @@ double tests_per_second(const Round& round) {
   return rates[kRuns / 2];
 }
 
-/// What valgrind counts while `command` runs; 0 without valgrind.
+/// Returns the instructions of `command` that valgrind counts; 0 without valgrind.
 double instructions(const std::string& command) {
   const std::string counted =
       "valgrind --tool=callgrind --callgrind-out-file=/dev/null " + command + " 2>&1";
@@ -61,7 +60,8 @@ double instructions(const std::string& command) {
   return count;
 }
 
-/// The difference of a long run and a short one: without what is done once.
+/// Returns the instructions of a test, from the difference of a long run and a short one: without
+/// the start.
 double instructions_per_test(const char* program, const Kind& kind, int lanes, double aimed) {
   const std::string command = std::string(program) + " " + kind.name + " " + std::to_string(lanes) +
                               " " + std::to_string(aimed) + " ";

@@ -1,7 +1,7 @@
-// What AXI4-Lite promises at a subordinate's port: each channel's payload stays, with VALID, until READY; no VALID in
-// reset; a write is answered once, after its address and its data were taken, a read once, after its address.
+// The rules of AXI4-Lite at a subordinate's port: each channel's VALID and payload hold until READY; no VALID in reset;
+// a write is answered once, after its address and its data were taken, a read once, after its address.
 //
-// Inputs: whether the manager is watched, too. Proofs assume nothing of it.
+// Inputs: the manager is checked, too. Proofs assume nothing of it.
 // Source: AMBA AXI protocol specification, issue E, A3.2, A3.3, B1.
 module axi_lite_checks #(
   parameter int unsigned AddressWidth = 12,

@@ -1,8 +1,8 @@
-// What AXI4 promises of a manager's reads: each channel's payload stays, with VALID, until READY; no VALID in reset;
-// bursts increment, are no wider than the port and stay within 4 KiB; a beat comes for a burst that was asked for, and
-// RLAST with the last of as many as ARLEN says. Here an ID has one burst at a time.
+// The rules of AXI4 for a manager's reads: each channel's VALID and payload hold until READY; no VALID in reset; bursts
+// increment, are no wider than the port and stay within 4 KiB; a beat comes only for a requested burst, and RLAST with
+// the last beat, by ARLEN. Here an ID has one burst at a time.
 //
-// Inputs: whether the subordinate is watched, too; Last: its RLAST.
+// Inputs: the subordinate is checked, too; Last: its RLAST, too.
 // Source: AMBA AXI protocol specification, issue E, A3.2 to A3.4, A5.
 module axi_read_checks #(
   parameter int unsigned IdWidth   = 6,
@@ -24,8 +24,8 @@ module axi_read_checks #(
   input logic [IdWidth-1:0]   rid,
   input logic [DataWidth+1:0] r,  // RRESP, RDATA
   input logic                 rlast,
-  output logic [2**IdWidth-1:0]   open_q,  // of each ID: a burst is on its way; for proofs
-  output logic [8*2**IdWidth-1:0] left_q   // and how many beats come after the next
+  output logic [2**IdWidth-1:0]   open_q,  // for each ID: a burst is in flight; for proofs
+  output logic [8*2**IdWidth-1:0] left_q   // and how many beats follow the next one
 );
 
   stream_checks #(

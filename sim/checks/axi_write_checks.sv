@@ -1,8 +1,8 @@
-// What AXI4 promises of a manager's writes: each channel's payload stays, with VALID, until READY; no VALID in reset;
-// bursts increment, are no wider than the port and stay within 4 KiB; WLAST is with the last of as many beats as AWLEN says;
-// an answer comes after its burst's address and last beat. Here all bursts have the same length and the same ID.
+// The rules of AXI4 for a manager's writes: each channel's VALID and payload hold until READY; no VALID in reset;
+// bursts increment, are no wider than the port and stay within 4 KiB; WLAST comes with the last beat, by AWLEN; an
+// answer comes after its burst's address and last beat. Here all bursts have the same length and the same ID.
 //
-// Inputs: whether the subordinate is watched, too.
+// Inputs: the subordinate is checked, too.
 // Source: AMBA AXI protocol specification, issue E, A3.2 to A3.4.
 module axi_write_checks #(
   parameter int unsigned DataWidth = 128,

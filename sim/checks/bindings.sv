@@ -1,5 +1,5 @@
-// Which checks watch which module of hw/, in every Verilated model (sim/verilate.cmake). A module that a
-// model lacks is passed over. Widths are those of ports: netlists have no parameters.
+// Binds checks to modules of hw/, in every Verilated model (sim/verilate.cmake). Modules that a model lacks are
+// skipped. Widths are those of ports, as netlists have no parameters.
 
 // Some outputs of checks are for proofs alone.
 // verilator lint_off PINCONNECTEMPTY
@@ -58,7 +58,7 @@ bind ray_generator stream_checks #(
   .ready(ready_i),
   .data ({direction_o, pixel_o})
 );
-// Its test answers with RLAST in the wrong place; the whole core's does not.
+// Without Last: this module's test answers with RLAST in the wrong place; that of the whole core does not.
 bind axi_read_manager axi_read_checks #(
   .IdWidth($bits(axi_arid_o)),
   .DataWidth($bits(axi_rdata_i)),

@@ -1,4 +1,4 @@
-// The exact unit reads no digit of a number before it is written: none that a step on its way is going to write.
+// The exact unit reads no digit that a step in flight is still going to write.
 module exact_checks #(
   parameter int unsigned AddressWidth = 8
 ) (

@@ -1,8 +1,8 @@
-// A FIFO's user pushes only where a word is free and pops only where there is one; the FIFO counts right.
+// A FIFO's user pushes only if a word is free and pops only if there is a word; valid_o and space_o are right.
 module fifo_checks #(
   parameter int unsigned Depth   = 2,
   parameter int unsigned Reserve = 0,
-  parameter bit          Late    = 1'b0  // a word is there a clock after it was counted
+  parameter bit          Late    = 1'b0  // a word is valid a clock after it was counted
 ) (
   input logic clk_i,
   input logic rst_ni,

@@ -1,8 +1,7 @@
-// What every valid/ready port promises: valid is low in reset; once high it holds, with its data, until
-// ready.
+// The rules of every valid/ready port: valid is low in reset; once high, it holds, with its data, until ready.
 //
-// Assertions stand in clocked processes: a driver that changes inputs together with the clock edge is
-// then seen rightly (Verilator samples for concurrent ones before inputs have spread).
+// Assertions are immediate, in clocked processes: Verilator samples for concurrent assertions too early, before inputs
+// that change together with the clock edge have settled.
 module stream_checks #(
   parameter int unsigned Width = 1
 ) (
@@ -13,7 +12,7 @@ module stream_checks #(
   input logic [Width-1:0] data
 );
 
-  logic waiting_q;  // it was valid and not ready
+  logic waiting_q;  // valid was high and ready low
   logic [Width-1:0] data_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin

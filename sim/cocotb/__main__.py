@@ -1,6 +1,6 @@
 """Simulates ray_core_axi, as `make synth VERILOG=1` writes it, in Icarus Verilog with cocotb and cocotbext-axi: `make test LONG=cocotb`.
 
-Exit status 1 where a test of axi_frames.py fails."""
+Exit status 1 if a test of axi_frames.py fails."""
 
 import pathlib
 import sys
@@ -16,7 +16,7 @@ PARAMETERS = {"Arith": "1", "Rays": "4", "Depth": "2", "NodeLines": "16", "Trian
 
 
 def main() -> int:
-    """The netlist, then the tests."""
+    """Writes the netlist and runs the tests."""
     out = ROOT / "build" / "cocotb" / "sim"
     netlist = out / "ray_core_axi.v"
     verilog.write(catalogue.design("ray_core_axi", **PARAMETERS), netlist)

@@ -1,6 +1,6 @@
-"""Frames by ray_core_axi between an AXI memory, a driver of registers and a sink of a stream, all of cocotbext-axi.
+"""Tests frames of ray_core_axi with an AXI memory, a driver of registers and a sink of a stream, all of cocotbext-axi.
 
-The memory has two nodes and three triangles across the x axis; what each pixel should hit is calculated here.
+The memory has two nodes and three triangles across the x axis; the expected hit of each pixel is calculated here.
 """
 
 import itertools
@@ -24,17 +24,17 @@ SIZE = 12  # pixels a side
 STEP = 0.15
 EYE = (-1.0, 1.0, 1.0)
 BASE, RESULTS, ROOM = 0x1000, 0x8000, 400  # addresses, records
-TRIANGLES = {10: (3.0, 0.0, 4.0), 11: (2.0, 0.0, 4.0), 12: (5.0, 4.0, 7.0)}  # x, and where the right angle's legs go
+TRIANGLES = {10: (3.0, 0.0, 4.0), 11: (2.0, 0.0, 4.0), 12: (5.0, 4.0, 7.0)}  # x; y and z of the right angle; where its legs end
 
 
 def node(base, kinds, *boxes):
-    """A node line on a grid of 1/32 from zero on."""
+    """Returns a node line on a grid of 1/32 from zero on."""
     bits = 0x7A7A7A << 96 | base << 120 | kinds << 148
     return (bits | sum(box << (176 + 48 * n) for n, box in enumerate(boxes))).to_bytes(64, "little")
 
 
 def triangle(name):
-    """A triangle line."""
+    """Returns a triangle line."""
     x, low, high = TRIANGLES[name]
     return struct.pack("<9fI", x, low, low, x, high, low, x, low, high, name).ljust(64, b"\0")
 
@@ -44,7 +44,7 @@ IMAGE = b"".join((node(1, 0x18, 0xFFFFFF000000, 0x808060000060), node(3, 0x02, 0
 
 
 def expected(x, y):
-    """Triangle and t of a pixel's nearest hit, or None; and whether it is near no edge."""
+    """Returns triangle and t of a pixel's nearest hit, or None; and whether the ray passes no edge closely."""
     a, b = -0.8 + STEP * x, -0.8 + STEP * y
     sure = True
     for name, (plane, low, high) in sorted(TRIANGLES.items(), key=lambda item: item[1][0]):
@@ -58,7 +58,7 @@ def expected(x, y):
 
 
 def check(records):
-    """That each pixel has ended once, with the hit that it should have."""
+    """Checks that each pixel has ended once, with the expected hit."""
     ends = {}
     for words in records:
         kind, error, found = words[0] & 1, words[0] >> 2 & 7, words[0] >> 1 & 1
@@ -81,7 +81,7 @@ def check(records):
 
 
 class Memory(axi.MemoryRegion):
-    """Memory of which a part answers with SLVERR."""
+    """Memory of which a part, `broken`, answers with SLVERR."""
 
     broken = range(0)
 
@@ -97,13 +97,13 @@ class Memory(axi.MemoryRegion):
 
 
 def pauses(seed):
-    """Whether to pause, clock by clock."""
+    """Returns an endless iterator: whether to pause, clock by clock."""
     chance = random.Random(seed)
     return (chance.random() < 0.4 for _ in itertools.count())
 
 
 class Bench:
-    """The core and what is around it."""
+    """The core with its memory, registers' driver and sink."""
 
     def __init__(self, dut, seed):
         self.dut = dut
@@ -125,17 +125,17 @@ class Bench:
         self.memory.mem[BASE:BASE + len(IMAGE)] = IMAGE
 
     async def write(self, name, *values):
-        """Words to a register; what is answered must be OKAY."""
+        """Writes words to a register; each answer must be OKAY."""
         for number, value in enumerate(values):
             word = struct.pack("<f", value) if isinstance(value, float) else value.to_bytes(4, "little")
             assert (await self.registers.write(REGISTERS[name] + 4 * number, word)).resp == axi.AxiResp.OKAY
 
     async def read(self, name):
-        """A register's word."""
+        """Reads a register's word."""
         return int.from_bytes((await self.registers.read(REGISTERS[name], 4)).data, "little")
 
     async def draw(self, length):
-        """A frame, to the buffer or, without length, by the stream; its flags."""
+        """Draws a frame, to the buffer or, if `length` is 0, by the stream; returns its flags."""
         await self.write("size", SIZE << 16 | SIZE)
         await self.write("length", length)
         await self.write("flags", 63)
@@ -146,7 +146,7 @@ class Bench:
 
 
 async def begin(dut, seed):
-    """A bench out of reset, its camera set."""
+    """Returns a bench out of reset, with its camera set."""
     cocotb.start_soon(Clock(dut.clk_i, 10, unit="ns").start())
     bench = Bench(dut, seed)
     for _ in range(3):
@@ -165,13 +165,13 @@ async def begin(dut, seed):
 
 
 def in_buffer(bench, count):
-    """Records of the buffer."""
+    """Returns records of the buffer."""
     return [struct.unpack_from("<8I", bench.memory.mem, RESULTS + 32 * n) for n in range(count)]
 
 
 @cocotb.test()
 async def results_go_to_memory(dut):
-    """Records in the buffer, of a memory with pauses."""
+    """Results are records in the buffer, also of a memory with pauses."""
     bench = await begin(dut, 1)
     assert await bench.draw(ROOM) & ~1 == DONE
     check(in_buffer(bench, await bench.read("written")))
@@ -179,7 +179,7 @@ async def results_go_to_memory(dut):
 
 @cocotb.test()
 async def results_go_by_the_stream(dut):
-    """The same by AXI4-Stream; TLAST is with each end."""
+    """The same results come by AXI4-Stream; TLAST is with each end."""
     bench = await begin(dut, 2)
     assert await bench.draw(0) & ~1 == DONE
     records = []
@@ -193,7 +193,7 @@ async def results_go_by_the_stream(dut):
 
 @cocotb.test()
 async def errors_of_memory_are_told(dut):
-    """SLVERR for a line: its number, errors of the rays that need it, and a whole frame when memory is mended."""
+    """SLVERR for a line sets its number and fails the rays that need it; when memory works again, a whole frame comes."""
     bench = await begin(dut, 3)
     bench.memory.broken = range(BASE + 3 * 64, BASE + 4 * 64)
     assert await bench.draw(ROOM) & ~1 == DONE | BUS_ERROR | RAY_ERROR

@@ -1,4 +1,4 @@
-// What runs one floating-point operation at a time, and the Verilated cores behind that interface.
+// Interface for one floating-point operation at a time, and the Verilated cores behind it.
 #pragma once
 
 #include <memory>
@@ -14,14 +14,14 @@ class FloatCores {
 
   [[nodiscard]] virtual FloatFormat format() const = 0;
 
-  /// a `op` b; bits of a and b above the format's width must be 0. Comparisons heed neither the
-  /// rounding mode nor the tininess.
+  /// Returns a `op` b; bits of a and b above the format's width must be 0. Comparisons ignore the
+  /// rounding mode and the tininess.
   virtual FloatResult run(FloatOp op, std::uint32_t a, std::uint32_t b, RoundingMode rounding,
                           Tininess tininess) = 0;
 };
 
-/// fp_multiplier, fp_adder, fp_divider and fp_compare, Verilated: kBinary32, kBinary16, kBfloat16
-/// or kFloat8. Null for another format.
+/// Makes fp_multiplier, fp_adder, fp_divider and fp_compare, Verilated, for kBinary32, kBinary16,
+/// kBfloat16 or kFloat8. Returns null for another format.
 std::unique_ptr<FloatCores> rtl_float_cores(FloatFormat format);
 
 }  // namespace raygate

@@ -47,7 +47,7 @@ enum class RoundingMode : std::uint8_t {
   kNearestMaxMagnitude = 4
 };
 
-/// What rounding_mode_i = `encoding` (0 to 7) does: 5 to 7, reserved, round towards zero.
+/// Returns the mode of rounding_mode_i = `encoding` (0 to 7): 5 to 7, reserved, round towards zero.
 constexpr RoundingMode rounding_of(int encoding) {
   return encoding <= 4 ? static_cast<RoundingMode>(encoding) : RoundingMode::kTowardZero;
 }

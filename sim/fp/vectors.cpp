@@ -94,8 +94,8 @@ OperandPair PairSource::cancelling() {
 }
 
 OperandPair PairSource::near_boundary() {
-  // A boundary is a significand of one bit more than the format's. Choose it and one operand; the
-  // other is what comes nearest.
+  // A boundary is a significand of one bit more than the format's. Chooses it and one operand; the
+  // other operand is the one that comes nearest.
   const int f = format_.frac_bits;
   const double boundary = std::ldexp(1.0 + std::ldexp(fraction() + 0.5 * below(2), -f), 0);
   const double other = 1.0 + std::ldexp(fraction(), -f);
@@ -112,7 +112,7 @@ OperandPair PairSource::near_boundary() {
 }
 
 OperandPair PairSource::near_range_end() {
-  // Field of the result, about: a product's is the sum of the fields less the bias, and so on.
+  // About the field of the result: a product's is the sum of the fields less the bias, and so on.
   const int top =
       below(2) != 0 ? format_.max_field() : -static_cast<int>(below(format_.frac_bits + 3));
   const int result = top + static_cast<int>(below(5)) - 2;
@@ -123,7 +123,7 @@ OperandPair PairSource::near_range_end() {
 
 namespace {
 
-/// A division whose quotient lies as close to a rounding boundary as one can: significands
+/// Returns a division whose quotient is as close to a rounding boundary as it can be: significands
 /// a, b in [2^F, 2^(F+1)), F = frac_bits, with a * 2^k = m * b + r, |r| small, where m is odd with
 /// F+2 bits (a midpoint) or even. Given b odd and r, m is r / -b modulo a power of two (after
 /// Matula and McFearin, 2001). `k` is F+1, or F+2 for quotients below 1. Returns {0, 0} where there
@@ -132,8 +132,8 @@ OperandPair hard_division(FloatFormat format, std::uint32_t b, int r, int k, boo
   const int f = format.frac_bits;
   std::uint64_t inverse = b;  // of odd b, modulo 2^64: each step doubles the bits that are right
   for (int i = 0; i < 5; ++i) inverse *= 2 - b * inverse;
-  // A midpoint has F+2 bits and its product with b ends in k zeros; an even one has F+1, one zero
-  // less.
+  // A midpoint has F+2 bits and its product with b ends in k zeros; an even m has F+1 bits, and the
+  // product one zero less.
   const int zeros = midpoint ? k : k - 1;
   const int bits = midpoint ? f + 2 : f + 1;
   const std::uint64_t m =

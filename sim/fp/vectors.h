@@ -1,4 +1,4 @@
-// Operand pairs for the tests of the float cores: where such cores go wrong, then at random.
+// Operand pairs for the tests of the float cores: pairs of edge cases, then random ones.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ struct OperandPair {
   std::uint32_t b = 0;
 };
 
-/// Every edge crossed with every edge: zeros, infinities, NaNs of both kinds, the exponents next to
-/// the ends, to 1 and to the distances at which alignment changes, with fractions of no, one, all
-/// but one and all bits, both signs.
+/// Returns all pairs of edge cases: zeros, infinities, NaNs of both kinds, exponents next to the
+/// ends, to 1 and to the distances at which alignment changes, with fractions of no, one, all but
+/// one and all bits, both signs.
 std::vector<OperandPair> crossed_edges(FloatFormat format);
 
 /// An endless stream of pairs aimed at `op`, from one seed.
@@ -31,7 +31,7 @@ class PairSource {
   std::uint32_t below(std::uint32_t n);  // uniform in [0, n)
   std::uint32_t fraction();              // uniform, or runs of ones and zeros
   std::uint32_t any();                   // every class of number
-  std::uint32_t number(int field);       // random sign and fraction; field put into range
+  std::uint32_t number(int field);       // random sign and fraction; field is clamped
   OperandPair aligned();                 // exponents as far apart as significands overlap
   OperandPair cancelling();              // magnitudes a few units apart, signs opposite
   OperandPair near_boundary();           // product or quotient next to a rounding boundary

@@ -25,30 +25,30 @@ YOSYS = (sys.executable, "-m", "synth.yosys")  # takes commands
 
 @dataclasses.dataclass
 class Outcome:
-    """What became of a core's faults."""
+    """The fate of a core's faults."""
 
     core: str
     faults: int
     equivalent: int = 0
-    survivors: list[str] = dataclasses.field(default_factory=list)  # as the list has them
+    survivors: list[str] = dataclasses.field(default_factory=list)  # lines of the netlist's list
 
     @property
     def caught(self) -> int:
-        """By the tests."""
+        """Number of faults caught by the tests."""
         return self.faults - self.equivalent - len(self.survivors)
 
 
 def run(command: list[object], **options: object) -> str:
-    """The output of `command`; raises CalledProcessError, with stderr shown, where it fails."""
+    """Returns the output of `command`; raises CalledProcessError, with stderr shown, if it fails."""
     return subprocess.run([str(word) for word in command], check=True, text=True,
                           stdout=subprocess.PIPE, **options).stdout
 
 
 def equivalent(netlist: pathlib.Path, fault: str) -> bool:
-    """Whether the module in NETLIST.il gives the same outputs with this fault as without, by Yosys and ABC. False
-    where that is not known."""
-    # Registers and the modules that the netlist is around are cut open: what goes into them must be the same, whatever
-    # comes out. Only what the fault's mux leads to is compared.
+    """Returns whether the module in NETLIST.il gives the same outputs with this fault as without, by Yosys and ABC. False if that is not
+    known."""
+    # Registers and black-boxed modules are cut open: their inputs must be equal for any outputs. Only what the fault's mux leads to is
+    # compared.
     number, module = re.search(r"-ctrl mutant \d+ (\d+) .*-module (\S+)", fault).groups()
     gates = (f"memory_map; async2sync; dffunmap; expose -evert-dff -evert c:*; cd {module}; "
              "select -set reached w:mutant %co*; delete -output o:* @reached %d; opt_clean; techmap; "
@@ -62,7 +62,7 @@ def equivalent(netlist: pathlib.Path, fault: str) -> bool:
             if error.returncode != -signal.SIGXCPU:
                 raise
             return False
-        # The first decides most faults at once, or never; the second takes seconds.
+        # The first check decides most faults at once, or never; the second takes seconds.
         for seconds, check in ((1, f"&r {folder}/sound.aig; &cec {folder}/broken.aig"), (10, f"cec {folder}/sound.aig {folder}/broken.aig")):
             said = subprocess.run(["prlimit", f"--cpu={seconds}", *YOSYS, "--abc", check], check=False, text=True,
                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
@@ -72,29 +72,29 @@ def equivalent(netlist: pathlib.Path, fault: str) -> bool:
 
 
 def place(fault: str) -> str:
-    """The line of hw/, mode, port and bit."""
+    """Returns the fault's line in hw/, mode, port and bit."""
     words = dict(re.findall(r"-(mode|port|portbit) (\S+)", fault))
     return f"{source(fault) or '?'} {words['mode']} {words['port']}[{words['portbit']}]"
 
 
 def test_passes(program: pathlib.Path, fault: int, limit: int) -> bool:
-    """Whether a unit's test passes with this fault, within `limit` seconds of a processor; 0: without one."""
+    """Returns whether a unit's test passes with this fault (0: no fault) within `limit` seconds of processor time."""
     return subprocess.run(["prlimit", f"--cpu={limit}", program, "--gtest_fail_fast", "--gtest_throw_on_failure"],
                           env=os.environ | {"RAYGATE_MUTANT": str(fault)}, check=False,
                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
 
 
 def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
-    """Those of so many faults with which a unit's test passes."""
+    """Returns those of a unit's faults, numbered from 1, with which its test passes."""
     begin = time.monotonic()
     if not test_passes(program, 0, 3600):
         raise ValueError(f"{program}: fails without a fault")
-    limit = round(2 + 1.5 * (time.monotonic() - begin))  # a fault that stops a unit is caught by it
+    limit = round(2 + 1.5 * (time.monotonic() - begin))  # a test that hangs has caught its fault
     return [fault for fault in range(1, faults + 1) if test_passes(program, fault, limit)]
 
 
 def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, at_most: float) -> Outcome:
-    """Runs a core's faults. Those that survive are proven until no more than `at_most` percent are left, or none."""
+    """Runs a core's faults. Survivors are checked for equivalence until at most `at_most` percent are left, or all are checked."""
     netlist = netlists / core
     faults = (netlists / f"{core}.list").read_text().splitlines()
     survived = test_survivors(programs / f"{core}_mutants", len(faults))
@@ -110,7 +110,7 @@ def judge(core: str, programs: pathlib.Path, netlists: pathlib.Path, at_most: fl
 
 
 def main() -> int:
-    """1 where too many faults survive or a program fails, 2 for what the user can mend."""
+    """Runs the command line. Returns 1 if too many faults survive or a program fails, 2 for errors that the user can correct."""
     parser = argparse.ArgumentParser(prog="sim.mutate", description=__doc__)
     parser.add_argument("build", type=pathlib.Path, help="CMake's build folder")
     parser.add_argument("cores", nargs="*", help="all if none")

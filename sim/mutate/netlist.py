@@ -13,18 +13,18 @@ import sys
 
 from synth import cores, tools, yosys
 
-# Yosys's other modes invert a bit where a neighbour is 0 or 1: two of those in one netlist make a loop.
+# Yosys's other modes invert a bit where a neighbour is 0 or 1; two such faults in one netlist make a loop.
 MODES = ("inv", "const0", "const1")
-# Nobody reads such a wire.
+# Nothing reads such a wire.
 UNUSED = re.compile(r"-wire \S*\bunused_")
-# Ports of memories that faults may be at: those whose ports have clocks of their own, or asynchronous reads an enable, are not
-# written as Verilog; nor are tables whose words come from elsewhere.
+# Ports of memory cells that may have faults. Yosys writes no Verilog for memories whose ports differ in their clocks or whose asynchronous
+# reads have an enable, nor for tables with computed contents.
 MEMORIES = {"memrd": ("ADDR", "DATA"), "memwr": ("ADDR", "DATA", "EN"), "meminit": ()}
 
 
 def source(fault: str) -> str:
-    """FILE:LINE in hw/ of a line of OUT.list: the expression that the fault is in, whose source is a range, or else what the
-    wire or the instance is declared at; "" where there is none."""
+    """Returns FILE:LINE in hw/ for a line of OUT.list: the faulty expression (its source is a range), or else the declaration of the wire
+    or the instance; "" if there is neither."""
     found = re.search(r"-src \S*?(hw/\S+?:\d+)\.\d+-", fault) or re.search(r"-src \S*?(hw/\S+?:\d+)", fault)
     return found[1] if found else ""
 
@@ -34,12 +34,12 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     """Writes OUT.v, OUT.list and OUT.il; returns the number of faults. Raises ToolFailed and MissingTool."""
     files = dict.fromkeys(file for core in cores.names() for file in cores.files(core))
     kept = " ".join(f"--blackboxed-module {module}" for module in around)
-    # Yosys writes what a module derives from its parameters, and variables of its loops, as parameters, too.
+    # Yosys also writes localparams and the variables of generate loops as parameters.
     derived = [f"setparam {' '.join(f'-unset {name}' for name in names)} t:{file.stem}" for file in files if file.stem in around
                if (names := re.findall(r"\b(?:localparam [^=;]*?|genvar +)(\w+) *=", file.read_text()))]
     faults = out.with_suffix(".list")
-    chosen_from = 2 * count + 20  # of the modes that Yosys chooses from three in five are of use here
-    # Shifts as such: as parts of a word they begin outside of it, where Verilator reads other bits.
+    chosen_from = 2 * count + 20  # three in five of the modes that Yosys chooses from are in MODES
+    # $shiftx becomes $shift: written as a part of a word, it would begin outside the word, where Verilator reads other bits.
     yosys.run(f"{yosys.read(files, top, (text.split('=', 1) for text in parameters), kept)}\n"
               "flatten -noscopeinfo\nbwmuxmap\nopt -full\nopt_clean\nchtype -set $shift t:$shiftx\n"
               + "\n".join(derived) + f"\nwrite_rtlil {out}.il\n" + "\n".join(f"tee -q -o {out}.{kind} select -list t:${kind}*" for kind in MEMORIES) +
@@ -52,14 +52,14 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     lines = [line.replace("mutate ", f"mutate -ctrl mutant 16 {number} ", 1)
              for number, line in enumerate(lines, 1)]
     faults.write_text("\n".join(lines) + "\n")
-    # Wires bit by bit: Verilator takes a word of which one bit depends on another for a loop.
+    # Wires are split into bits: Verilator takes a word of which one bit depends on another for a loop.
     yosys.run(f"read_rtlil {out}.il\nscript {faults}\nsplitnets -driver\nopt_clean\nwrite_verilog -noattr {out}.v",
               out.with_suffix(".faults.log"))
     return len(lines)
 
 
 def main() -> int:
-    """Exit status 2 where Yosys fails."""
+    """Runs the command line. Returns 2 if Yosys fails."""
     parser = argparse.ArgumentParser(prog="sim.mutate.netlist", description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="path and NAME of the files to write")
     parser.add_argument("top", help="the module")

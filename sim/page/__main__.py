@@ -22,7 +22,7 @@ MODES = {"inv": "inverted", "const0": "held at 0", "const1": "held at 1"}
 
 
 def described(line: str) -> str:
-    """A fault in words, from its line in the netlist's list."""
+    """Describes a fault in words, from its line in the netlist's list."""
     mode = MODES[re.search(r"-mode (\w+)", line)[1]]
     wire = re.search(r"-wire (\S+) -wirebit (\d+)", line)
     where = netlist.source(line)
@@ -31,7 +31,7 @@ def described(line: str) -> str:
 
 
 def example() -> list[float]:
-    """I, N and d of the worked example, whose one place is sim/worked_example.cpp."""
+    """Returns I, N and d of the worked example, which is defined only in sim/worked_example.cpp."""
     text = (ROOT / "sim" / "worked_example.cpp").read_text()
     return [float(word.rstrip("f")) for word in re.search(r"kWords = \{([^}]*)\}", text)[1].replace("\n", " ").split(", ")]
 
@@ -53,10 +53,10 @@ def verilate(folder: pathlib.Path) -> list[str]:
 
 
 def compile_unit(folder: pathlib.Path) -> str:
-    """The unit as JavaScript, its WebAssembly in it."""
+    """Returns the unit as JavaScript that contains its WebAssembly."""
     sources = [VERILATOR / "verilated.cpp", VERILATOR / "verilated_threads.cpp", *sorted((folder / "unit").glob("*.cpp")),
                HERE / "unit_page.cpp"]
-    # Debian's Emscripten finds its own parts only where Node.js is Debian's, or is told.
+    # Debian's Emscripten finds its own parts only with Debian's Node.js or with NODE_PATH.
     environment = {"NODE_PATH": "/usr/share/nodejs", **os.environ}
     subprocess.run(
         ["em++", "-O2", "-std=c++20", "-w", "-include", "cstdint", "-DVL_IGNORE_UNKNOWN_ARCH", "-DVM_TRACE=0", "-iquote", str(ROOT),
@@ -68,7 +68,7 @@ def compile_unit(folder: pathlib.Path) -> str:
 
 
 def main() -> int:
-    """Exit status 2 where a tool is missing or fails."""
+    """Runs the command line. Returns 2 if a tool is missing or fails."""
     parser = argparse.ArgumentParser(prog="sim.page", description=__doc__)
     parser.add_argument("out", type=pathlib.Path, metavar="OUT.html")
     out = parser.parse_args().out

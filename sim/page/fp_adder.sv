@@ -1,7 +1,7 @@
-// The unit's adder as gates of which one may be broken: what `make page` puts in place of hw/fp/fp_adder.
+// Gate-level adder, one gate of which may be broken: `make page` puts it in place of hw/fp/fp_adder.
 //
 // fp_adder_gates is Yosys's netlist of fp_adder in binary32 with single faults (sim/mutate/netlist.py). `mutant`
-// is the page's to write: 0 for the sound adder, k for fault k of the netlist's list.
+// is set by the page: 0 for the sound adder, k for fault k of the netlist's list.
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kWords = 7;   // I, N, d
 constexpr std::size_t kEdges = 10;  // until the last component is out
 
-/// What the unit holds after a clock edge, as binary32 words.
+/// Registers of the unit after a clock edge, as binary32 words.
 struct Row {
   std::uint32_t direction_3, direction_2, direction_1, normal, d, accumulator, divisor, output;
   std::uint32_t is_out;  ///< 1: `output` is a component of P
@@ -22,8 +22,8 @@ struct Row {
 }  // namespace
 
 /// Sends I, N and d (seven binary32 words) through the unit; `fault` is 0, or the number of a fault
-/// in its adder (the netlist's list). Returns ten rows of nine words, one for each clock edge,
-/// valid until the next call.
+/// in the list made with the adder's netlist. Returns ten rows of nine words, one row per clock
+/// edge, valid until the next call.
 extern "C" const std::uint32_t* run_unit(const std::uint32_t* words, std::uint32_t fault) {
   static std::array<Row, kEdges> rows;
   raygate::Model<Vhit_test_unit_page> unit;

@@ -1,6 +1,6 @@
-"""Modules of hw/ refuse parameters that their headers rule out, when they are elaborated.
+"""Checks that modules of hw/ refuse, at elaboration, the parameters that their headers rule out.
 
-Prints the module, the parameter and what Verilator said, and exits 1, where one is taken."""
+Prints the module, the parameter and what Verilator said, and exits 1, if one is accepted."""
 
 import pathlib
 import re
@@ -40,14 +40,14 @@ REFUSED = {
 
 
 def elaborated(top: str, *parameters: str) -> subprocess.CompletedProcess:
-    """What Verilator makes of `top`."""
+    """Returns Verilator's result for `top` with these parameters."""
     files = cores.used(top, cores.files("board"))
     return subprocess.run(["verilator_bin", "--lint-only", "-Wno-lint", "--top-module", top, *(f"-G{one}" for one in parameters), *files],
                           capture_output=True, text=True, check=False)
 
 
 def main() -> int:
-    """Each as it is, then with each parameter."""
+    """Elaborates each module with its defaults, then with each parameter. Returns 1 if a result is wrong."""
     wrong = [f"{top}: {said.stderr}" for top in REFUSED if (said := elaborated(top)).returncode]
     for top, parameters in REFUSED.items():
         for parameter in parameters:

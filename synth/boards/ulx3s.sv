@@ -1,7 +1,7 @@
 // ULX3S with an ECP5 85k: board_core behind the board's USB serial port, with its SDRAM.
 //
-// The PLL makes 40 MHz of the oscillator's 25; a bit of the serial line takes 20 clocks, 2 Mbaud. Button FIRE1 resets.
-// led[0]: out of reset; led[1]: a bit comes in, led[2]: goes out, for as long as it takes.
+// The PLL makes 40 MHz from the oscillator's 25; a bit of the serial line takes 20 clocks, 2 Mbaud. Button FIRE1
+// resets. led[0]: not in reset; led[1]: the serial input is low; led[2]: the serial output is low.
 module ulx3s (
   input  wire         clk_25mhz,
   input  wire         btn_fire1,
@@ -51,7 +51,7 @@ module ulx3s (
     .ENCLKOP(1'b0)
   );
 
-  // ---- Reset: ends in step with the clock
+  // ---- Reset: released in step with the clock
 
   logic [2:0] reset_q;
   wire rst_n;
@@ -143,7 +143,7 @@ module ulx3s (
 
 endmodule
 
-// Cells of the ECP5, as far as they are used here: Yosys replaces them by its own.
+// The ECP5's cells that are used here, as black boxes: Yosys replaces them by its own.
 (* blackbox *)
 module EHXPLLL #(
   parameter CLKI_DIV = 1,

@@ -1,5 +1,5 @@
-// a > b is b < a, and a <= b is b >= a. Yosys's alumacc would make !(a < b | a == b) and a < b | a == b of them, which take an
-// equality more.
+// a > b becomes b < a, and a <= b becomes b >= a. Yosys's alumacc would make !(a < b | a == b) and a < b | a == b of
+// them, each with an additional equality.
 (* techmap_celltype = "$gt $le" *)
 module swapped #(
   parameter A_SIGNED = 0,

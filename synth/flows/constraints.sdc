@@ -1,4 +1,4 @@
-# What every design is timed under, before and after layout. CLOCK: its port, or "" for a design without one;
+# The constraints under which every design is timed, before and after layout. CLOCK: its port, or "" without one;
 # DRIVER: the cell at its inputs; LOAD: pF at its outputs; ACCESS: ns from the clock edge at which a kept memory
 # (kept_memories.v) takes an address to its word. The clock is the paper's, 10 MHz.
 if {$::env(CLOCK) ne ""} {
@@ -11,7 +11,7 @@ foreach input [all_inputs] {
   set name [get_property $input full_name]
   set arrival [expr {[string match *read_data_o* $name] ? $::env(ACCESS) : 0}]
   if {$name ne $::env(CLOCK)} { set_input_delay $arrival -clock clock $input }
-  # Many registers hang on a reset: it gets buffers of its own, which synthesis does not make.
+  # A reset drives many registers: it needs a tree of buffers, which synthesis does not make.
   if {$name eq "rst_ni"} { set_false_path -from $input }
 }
 set_output_delay 0 -clock clock [all_outputs]

@@ -1,9 +1,9 @@
-// Other people's float cores and ours, in binary32, behind the same ports: for synth/float_peers.py.
+// Other projects' float cores and ours, in binary32, behind the same ports: for synth/float_peers.py.
 //
 // An operation begins in each clock with valid_i and ready_o; its result comes with valid_o, in order. Rounding modes and
-// flags are those of RISC-V (fp_pkg). HardFloat's cores compute in its own recoding, of 33 bits: numbers are converted on
-// the way in and out, as IEEE operands need it. Theirs multiply and add in one rounding: they add with a factor of one, and
-// multiply with a sum of zero, and mapping removes the gates that such a constant makes useless.
+// flags are those of RISC-V (fp_pkg). HardFloat's cores compute in its own recoding, of 33 bits: operands and results
+// are converted. The cores of others are fused multiply-adds: they add with a factor of one, and multiply with an
+// addend of zero, and mapping removes the gates that such a constant makes redundant.
 
 `define FLOAT_PEER_PORTS \
   input logic clk_i, rst_ni, valid_i, input logic [31:0] a_i, b_i, input logic [2:0] rounding_mode_i, \
@@ -25,7 +25,7 @@ package float_peers_pkg;
     return {bits[31], exponent, fraction};
   endfunction
 
-  // And back.
+  // HardFloat's recoding to IEEE binary32.
   function automatic logic [31:0] decoded(logic [32:0] bits);
     logic [8:0]  exponent = bits[31:23];
     logic        is_special = exponent[8:7] == 2'b11, is_zero = exponent[8:6] == '0;

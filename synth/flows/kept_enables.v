@@ -1,4 +1,4 @@
-// The enables of a kept memory: bits of a word that are written together, which ABC has made one net, are one pin.
+// The enables of a kept memory: bits of a word that are written together are one net after ABC, and become one pin.
 (* techmap_celltype = "kept_enables" *)
 module one_pin_a_net #(
   parameter WIDTH = 1

@@ -1,5 +1,5 @@
 // Arrays of more than 2,048 bits stay memories, with the registers at their read ports. Their ports become the
-// design's: nobody here has SRAM to map them to. Smaller ones become registers; tables that nothing writes, gates.
+// design's, as there is no SRAM to map them to. Smaller arrays become registers; tables that nothing writes, gates.
 // Each bit of a port is a cell, for Yosys's `expose -evert` makes ports as wide as a black box's default. Enables: see
 // kept_enables.v.
 (* techmap_celltype = "$mem_v2" *)

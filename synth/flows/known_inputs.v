@@ -6,7 +6,7 @@ module MULTIPLEXER (input WHEN_0, input WHEN_1, input SELECT, output OUT);
   assign OUT = _TECHMAP_CONSTVAL_SELECT_ ? WHEN_1 : WHEN_0;
 endmodule
 
-// Where a word of a carry-save adder has no bit, two gates do; elsewhere it takes a full adder.
+// A full adder with a constant input becomes gates; other bits of a carry-save adder take a full adder.
 module CARRY_SAVE (input A, input B, input C, output SUM, output CARRY);
   parameter _TECHMAP_CONSTMSK_A_ = 1'b0;
   parameter _TECHMAP_CONSTMSK_B_ = 1'b0;

@@ -6,5 +6,5 @@ read_verilog $::env(NETLIST)
 link_design $::env(TOP)
 read_sdc $::env(SDC)
 if {$::env(SPEF) ne "" && ![read_spef $::env(SPEF)]} { error "no wires: $::env(SPEF)" }
-# The clock's paths alone: how long a reset is held is not the clock rate's affair.
+# Only the clock's paths: how long a reset is held does not limit the clock rate.
 report_checks -path_delay max -path_group clock -digits 3 -fields {capacitance slew input_pins}

@@ -17,12 +17,12 @@ SECTIONS = ("adders", "multipliers", "cores", "unit")
 
 
 def of_seeds(job: flow.Job, seeds: int) -> list[flow.Job]:
-    """A row of the table: a job for each seed, of which the median counts."""
+    """Returns a row of the table: a job for each seed, of which the median counts."""
     return [dataclasses.replace(job, seed=seed) for seed in range(1, seeds + 1)]
 
 
 def section_rows(section: str, library: Library, seeds: int = 3) -> list[list[flow.Job]]:
-    """The rows of one of SECTIONS. `seeds`: of each adder; the others are large."""
+    """Returns the rows of one of SECTIONS. `seeds`: for each adder; the other designs are large and get one."""
     reported = catalogue.report_rows()
     designs = {row.design.name: row.design for row in reported}
     if section == "adders":
@@ -43,7 +43,7 @@ def section_rows(section: str, library: Library, seeds: int = 3) -> list[list[fl
 
 
 def arguments() -> argparse.Namespace:
-    """The command line."""
+    """Returns the parsed command line."""
     parser = argparse.ArgumentParser(prog="synth.layout", description=(
         "Places and routes netlists of make synth in OSU 0.35 um, or 0.18, times them with their wires and draws "
         "them; the report is build/synth/layouts/report-*.md."))
@@ -60,9 +60,9 @@ def arguments() -> argparse.Namespace:
 
 
 def wanted(given: argparse.Namespace) -> list[list[flow.Job]]:
-    """The rows that the command line asks for."""
+    """Returns the rows that the command line asks for."""
     library = catalogue.library(given.targets)
-    _ = library.lef, library.liberty  # before anything is made, and first what only some libraries have
+    _ = library.lef, library.liberty  # raises before anything is made; first the file that only some libraries have
     if not 0 < given.density <= 1 or not 0 < given.aspect:
         raise ValueError(f"density {given.density:g} and aspect {given.aspect:g}, expected 0 < density <= 1 and 0 < aspect")
     if given.top is None or given.top in SECTIONS:
@@ -71,7 +71,7 @@ def wanted(given: argparse.Namespace) -> list[list[flow.Job]]:
 
 
 def measure(rows: list[list[flow.Job]], workers: int) -> tuple[list[dict], list[str]]:
-    """Makes all layouts; one record for each row whose layouts were made, of the median seed."""
+    """Makes all layouts. Returns a record of each row's median seed, without rows whose layouts all failed, and the failures."""
     failures: list[str] = []
     results = runner.run([runner.Job(f"{job.design.name} {job.flow} seed {job.seed}", functools.partial(flow.make, job), told)
                           for row in rows for job in row], workers, failures)
@@ -86,7 +86,7 @@ def measure(rows: list[list[flow.Job]], workers: int) -> tuple[list[dict], list[
 
 
 def told(result: dict) -> str:
-    """A few words of a result."""
+    """Describes a result in a few words."""
     if "wires_ns" in result:
         return f"{result['cells_ns']:.2f} ns, {result['wires_ns']:.2f} ns with wires"
     failed = "" if result["failed"] is None else f", {result['failed']} nets failed"
@@ -98,7 +98,7 @@ HEADS = ["design", "flow", "cells", "cells, um2", "core, um2", "density", "wires
 
 
 def table(records: list[dict]) -> list[list[object]]:
-    """Cells alone, with wires, their ratio, areas and wires; the wires are the estimate's where not all are routed."""
+    """Returns the rows of the table, with columns HEADS; wires are estimated if not all are routed."""
     rows = []
     for got in records:
         spread = got["spread"]
@@ -112,7 +112,7 @@ def table(records: list[dict]) -> list[list[object]]:
 
 
 def draw(got: dict) -> str:
-    """Draws a layout; the picture's name."""
+    """Draws a layout; returns the picture's name."""
     job = got["job"]
     placement, wires = flow.load(job)
     name = f"{job.design.name}-{job.library.name}-{job.flow}"
@@ -123,7 +123,7 @@ def draw(got: dict) -> str:
 
 @tools.command("layout")
 def main() -> int:
-    """1 where a layout fails, 2 for what the user can mend."""
+    """Runs the command line. Returns 1 if a layout fails, 2 for errors that the user can correct."""
     given = arguments()
     if given.publish and (given.top or given.targets != "osu035"):
         raise ValueError("PUBLISH=1: expected all layouts, without TOP and TARGETS")
@@ -143,7 +143,7 @@ def main() -> int:
             tables.publish(f"layout-{name}.csv", tables.comma_separated(mine, HEADS), "make layout PUBLISH=1")
         for name in pictures:
             published = tables.RESULTS / f"layout-{name.replace('-osu035', '')}.png"
-            if published.exists():  # of the others none is shown
+            if published.exists():  # the other layouts have no published picture
                 shutil.copy(OUT / f"{name}.png", published)
     print(f"{text}\nReport: {report.relative_to(tools.ROOT)}")
     return runner.status(failures) or any(any(got["failed"]) for got in records)

@@ -1,7 +1,7 @@
-"""The wires of a placement before it is routed: each net as the shortest tree of straight lines between its pins.
+"""Estimates the wires of a placement before routing: each net is the shortest tree of straight lines between its pins.
 
-A line goes upwards in the first metal that does, then across in the next that does. Nothing is in its way, so
-what routing adds is not in it; but the tree may not branch between pins, which makes it longer than it need be.
+A line goes upwards in the lowest vertical metal, then across in the next horizontal metal above. Detours of
+routing are not included; but a tree branches only at pins, which makes it longer than necessary.
 """
 
 import numpy as np
@@ -10,13 +10,13 @@ from synth.layout.parasitics import taps
 from synth.layout.place import Placement
 from synth.layout.route import RAILS, Wire, Wires
 
-# pF a um of these trees: what magic extracted of the adders' layouts.
+# pF per um of these trees, as magic extracted from the adders' layouts.
 FARADS = {"osu035": 6.4e-5, "osu018": 8e-5}
 TREES = 200  # pins: clock and reset have more; they get trees of buffers, which synthesis does not make
 
 
 def wires(placement: Placement) -> Wires:
-    """Of each net but the rails and those of more than TREES pins; as route.wires gives them, vias included."""
+    """Returns the wires, with vias, of each net except rails and nets of more than TREES pins, in the form of route.wires."""
     technology = placement.technology
     found = {}
     for net, ends in placement.netlist.nets().items():
@@ -29,7 +29,7 @@ def wires(placement: Placement) -> Wires:
 
 
 def tree(points: list[tuple[float, float]]) -> list[tuple[int, int]]:
-    """The edges of the shortest tree between points by the distance across plus that upwards (Prim)."""
+    """Returns the edges of the shortest tree between points, by horizontal plus vertical distance (Prim)."""
     at = np.array(points, float)
     nearest = np.zeros(len(at), int)
     far = np.abs(at - at[0]).sum(axis=1)
@@ -47,7 +47,7 @@ def tree(points: list[tuple[float, float]]) -> list[tuple[int, int]]:
 
 
 def _line(one: tuple, other: tuple, up: str, across: str, layers: list[str]) -> list[Wire]:
-    """From pin to pin: layer, x, y each."""
+    """Returns the pieces from pin to pin; a pin is layer, x, y."""
     (first, x0, y0), (last, x1, y1) = one, other
     pieces = [*_contacts(first, up, x0, y0, layers)]
     if y0 != y1:
@@ -61,6 +61,6 @@ def _line(one: tuple, other: tuple, up: str, across: str, layers: list[str]) -> 
 
 
 def _contacts(low: str, high: str, x: float, y: float, layers: list[str]) -> list[Wire]:
-    """The vias between two metals, one on another."""
+    """Returns the vias between two metals, one on another."""
     low, high = sorted((layers.index(low), layers.index(high)))
     return [Wire(layers[place], x, y, x, y, layers[place + 1]) for place in range(low, high)]

@@ -1,4 +1,4 @@
-"""One design from its netlist to a layout that is timed with its wires; kept in build/synth/layouts."""
+"""Takes one design from its netlist to a layout that is timed with its wires; results are kept in build/synth/layouts."""
 
 import dataclasses
 import json
@@ -9,15 +9,15 @@ from synth.catalogue import Design, Library
 from synth.layout import estimate, lef, netlist, parasitics, place, route
 
 HERE = pathlib.Path(__file__).resolve().parent
-SPARSE = 0.45, 1.3  # density and aspect with which a multiplier's nets all find their way,
-SPARSER = 0.42, 1.3  # and binary32's
-TIDIED = 1000  # cells: so many nets are routed again in seconds
+SPARSE = 0.45, 1.3  # density and aspect at which all nets of a multiplier can be routed,
+SPARSER = 0.42, 1.3  # and of the binary32 multiplier
+TIDIED = 1000  # cells: so many nets are rerouted in seconds
 
 
 @dataclasses.dataclass(frozen=True)
 class Job:
-    """A layout to make. `density`: the share of the core's rows that cells take; `aspect`: its height by its
-    width. Wires run across in one metal alone and upwards in two, so what has many is better tall.
+    """A layout to make. `density`: the fraction of the core's rows that cells take; `aspect`: the core's height by its width.
+    Horizontal wires have one metal, vertical wires two, so designs with many wires are better tall.
     `routed`: whether routing is tried; without it the wires are those of estimate.py."""
 
     design: Design
@@ -30,13 +30,13 @@ class Job:
 
     @property
     def folder(self) -> pathlib.Path:
-        """Where it is kept."""
+        """The folder of its results."""
         name = f"{self.design.name}.{self.library.name}.{self.flow}"
         return store.OUT / "layouts" / f"{name}.{self.density:g}.{self.aspect:g}" / f"seed-{self.seed}"
 
 
 def key(job: Job) -> str:
-    """Of all that a layout depends on."""
+    """Returns a hash of all that a layout depends on."""
     files = [*job.design.sources(job.flow == "cells"), job.library.liberty, job.library.lef,
              *job.library.magic, *mapping.files(),
              *(HERE / name for name in ("lef.py", "netlist.py", "place.py", "estimate.py", "route.py", "parasitics.py"))]
@@ -45,9 +45,8 @@ def key(job: Job) -> str:
 
 
 def make(job: Job) -> tuple[dict, bool]:
-    """Delay of the cells alone, with estimated wires and with routed ones (ns), areas (um2), wires (um, pF),
-    failed nets (None where no routing was tried); and whether it was kept. Where nets failed the wires are the
-    estimate's, and there is no routed delay."""
+    """Returns the delay of the cells alone, with estimated wires and with routed wires (ns), areas (um2), wires (um, pF), failed nets (None
+    if routing was not tried); and whether the result was kept. If nets failed, wires are estimated and there is no routed delay."""
     return store.cached(job.folder, key(job), tools.measured(lambda: _make(job)))
 
 
@@ -55,7 +54,7 @@ def _make(job: Job) -> dict:
     mapped, _ = mapping.synthesise(job.design, job.library, job.flow)
     run = store.OUT / "runs" / f"{job.design.name}.{job.library.name}.{job.flow}"
     folder = job.folder
-    (folder / "wires.spef").unlink(missing_ok=True)  # load takes it for a sign that all nets are routed
+    (folder / "wires.spef").unlink(missing_ok=True)  # `load` takes this file as the sign that all nets are routed
     (folder / "netlist.json").write_text((run / "netlist.json").read_text())
     nets = netlist.parse(mapping.top_module(folder / "netlist.json"), job.design.top)
     placement = place.place(nets, lef.read(job.library.lef), job.seed, job.density, job.aspect, folder)
@@ -90,7 +89,7 @@ def _make(job: Job) -> dict:
 
 
 def _time(job: Job, nets: netlist.Netlist, name: str) -> str:
-    """OpenSTA's report with the wires of NAME.spef; of cells alone where there is none."""
+    """Returns OpenSTA's report with the wires of NAME.spef; of the cells alone if there is no such file."""
     clock = next((short for short, port in nets.ports.items() if port.name == job.design.clock), "")
     wires = job.folder / f"{name}.spef"
     return mapping.sta(job.design, job.library, job.folder / "placed.v", job.folder / f"{name}.txt",
@@ -98,13 +97,13 @@ def _time(job: Job, nets: netlist.Netlist, name: str) -> str:
 
 
 def outputs(library: Library) -> dict[str, set[str]]:
-    """The output pins of each type of cell, as Liberty says."""
+    """Returns the output pins of each type of cell, according to Liberty."""
     return {cell.name: {pin.name for pin in cell.of("pin") if pin.attributes.get("direction") == "output"}
             for cell in liberty.read(library.liberty).of("cell")}
 
 
 def load(job: Job) -> tuple[place.Placement, route.Wires]:
-    """A layout that was made: with its routed wires, or where they are not whole with estimated ones."""
+    """Returns a layout that was made, with its routed wires or, if nets failed, with estimated ones."""
     kept = json.loads((job.folder / "placement.json").read_text())
     placement = place.Placement(netlist.parse(mapping.top_module(job.folder / "netlist.json"), job.design.top),
                                 lef.read(job.library.lef), {name: place.Site(*site) for name, site in kept["cells"].items()},

@@ -66,7 +66,7 @@ class Technology:
 
 
 def read(file: pathlib.Path) -> Technology:
-    """Raises ValueError where the file has no routing layers or no cells."""
+    """Reads a LEF file. Raises ValueError if it has no routing layers or no cells."""
     text = file.read_text()
     layers = {name: _layer(body) for name, body in
               re.findall(r"^LAYER (\w+)\n(.*?)^END \1", text, re.M | re.S) if "ROUTING" in body}
@@ -95,7 +95,7 @@ def _macro(body: str) -> Macro:
 
 
 def rects(body: str) -> list[Rect]:
-    """All RECTs, each on the LAYER named last before it."""
+    """Returns all RECTs, each on the LAYER named last before it."""
     layer, found = "", []
     for name, box in re.findall(r"^\s*(?:LAYER\s+(\w+)|RECT\s+([-\d. ]+?))\s*;", body, re.M):
         if name:

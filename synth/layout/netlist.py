@@ -16,7 +16,7 @@ class Cell:
 
 @dataclasses.dataclass(frozen=True)
 class Port:
-    """A port of one bit. `net` is a rail where it is held at a constant."""
+    """A port of one bit. `net` is a rail if the port is held at a constant."""
 
     name: str
     output: bool
@@ -27,8 +27,8 @@ class Port:
 class Netlist:
     """Cells by their short names (c0, c1, ...), and ports by theirs (p0, p1, ...).
 
-    A net is named n1, n2, ..., but after its first port where it has one: qrouter looks for a port by
-    the name of its net. Further ports of one net are not routed.
+    A net is named n1, n2, ..., or after its first port if it has one: qrouter looks for a port by the name of its net. Further ports of one
+    net are not routed.
     """
 
     top: str
@@ -36,7 +36,7 @@ class Netlist:
     ports: dict[str, Port]
 
     def nets(self) -> dict[str, list[tuple[str, str]]]:
-        """What hangs on each net: (cell, pin), and ("PIN", port)."""
+        """Returns the ends of each net: (cell, pin), and ("PIN", port)."""
         found: dict[str, list[tuple[str, str]]] = {}
         for name, port in self.ports.items():
             if port.net == name:
@@ -47,7 +47,7 @@ class Netlist:
         return found
 
     def verilog(self) -> str:
-        """With these names: what is timed is what was placed."""
+        """Returns Verilog with these names: what is timed is what was placed."""
         constant = {rail: f"1'b{bit}" for bit, rail in CONSTANTS.items() if bit != "x"}
         lines = [f"module {self.top} ({', '.join(self.ports)});"]
         wires = {net for cell in self.cells.values() for net in cell.pins.values()}
@@ -63,7 +63,7 @@ class Netlist:
 
 
 def parse(module: dict, top: str) -> Netlist:
-    """A module of Yosys's JSON."""
+    """Returns the netlist of a module in Yosys's JSON."""
     first: dict[int, str] = {}  # bit -> its first port
     bits = [(port["direction"] == "output", name if len(port["bits"]) == 1 else f"{name}[{place}]", bit)
             for name, port in module["ports"].items() for place, bit in enumerate(port["bits"])]

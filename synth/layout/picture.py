@@ -19,10 +19,10 @@ REST = "the rest"
 
 
 def parts_of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, str]:
-    """The part of each cell, in the order of the legend.
+    """Returns the part of each cell, in the order of the legend.
 
-    Of an adder the band of the highest operand bit that the cell depends on, which holds in any mapping; else the instance in
-    the top that the cell's name begins with, where it has one.
+    In an adder it is the band of the highest operand bit that the cell depends on, which holds in any mapping; else it is the
+    top's instance with which the cell's name begins, if there is one.
     """
     if design.top == "adder":
         bits = highest_bits(netlist, outputs)
@@ -34,7 +34,7 @@ def parts_of(design: Design, netlist: Netlist, outputs: dict[str, set[str]]) -> 
 
 
 def highest_bits(netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, int]:
-    """The highest bit of an operand that each cell of a combinational netlist depends on; 0 of none."""
+    """Returns the highest bit of an operand that each cell of a combinational netlist depends on; 0 if it depends on none."""
     drivers = {net: name for name, cell in netlist.cells.items() for pin, net in cell.pins.items()
                if pin in outputs[cell.kind]}
     found = {name: int((re.findall(r"\[(\d+)\]", port.name) or [0])[0]) for name, port in netlist.ports.items() if not port.output}
@@ -47,7 +47,7 @@ def highest_bits(netlist: Netlist, outputs: dict[str, set[str]]) -> dict[str, in
 
 
 def draw(placement: Placement, wires: Wires, parts: dict[str, str], path: list[dict], title: str, out: pathlib.Path) -> None:
-    """Writes OUT.png. `path`: the steps of the slowest path; none are drawn where it is empty."""
+    """Writes OUT.png. `path`: the steps of the slowest path; if it is empty, no path is drawn."""
     left, bottom, right, top = placement.die
     scale = INCHES / max(right - left, top - bottom)
     figure, axes = plt.subplots(figsize=((right - left) * scale + 2.8, (top - bottom) * scale + 0.6),
@@ -87,13 +87,13 @@ def _colours(count: int) -> list:
 
 
 def _box(placement: Placement, cell: str) -> list[tuple[float, float]]:
-    """The corners of a cell."""
+    """Returns the corners of a cell."""
     (x, y), macro = placement.corner(placement.cells[cell]), placement.macro(cell)
     return [(x, y), (x + macro.width, y), (x + macro.width, y + macro.height), (x, y + macro.height)]
 
 
 def _path(axes: plt.Axes, placement: Placement, wires: Wires, path: list[dict], width: float) -> None:
-    """The nets of the path as they are routed, and its cells outlined."""
+    """Draws the nets of the path as they are routed, and outlines its cells."""
     pins = [(cell, pin) for cell, _, pin in (step["pin"].partition("/") for step in path) if cell in placement.cells]
     nets = dict.fromkeys(placement.netlist.cells[cell].pins[pin] for cell, pin in pins)
     lines = [[(wire.x0, wire.y0), (wire.x1, wire.y1)] for net in nets for wire in wires.get(net, [])]

@@ -1,8 +1,8 @@
 """Places a netlist in rows with Coloquinte, in seconds.
 
-Coloquinte reads and writes the files of the placement contests (bookshelf): .nodes, .nets, .pl, .scl. It
-counts in whole numbers: here x in tracks, y in STEPS of a row's height. Those are longer than a track, so
-wires across, which have one metal, cost more than those upwards, which have two.
+Coloquinte reads and writes the files of the placement contests (bookshelf): .nodes, .nets, .pl, .scl. Its coordinates are whole numbers:
+here x in tracks, y in steps of a row's height by STEPS. A step is longer than a track, so wires across, which have one metal, cost more
+than wires upwards, which have two.
 """
 
 import dataclasses
@@ -14,7 +14,7 @@ from synth import tools
 from synth.layout.lef import Macro, Technology
 from synth.layout.netlist import CONSTANTS, Netlist
 
-FULL = 0.97  # of each row, gaps included: cells need some room to be put into rows
+FULL = 0.97  # of each row, gaps included: the placer needs some room to put cells into rows
 STEPS = 9
 EFFORT = 3  # of 9; more takes longer and shortens no wire
 
@@ -40,11 +40,11 @@ class Placement:
     height: float
 
     def macro(self, cell: str) -> Macro:
-        """The outline of a cell."""
+        """Returns the outline of a cell."""
         return self.technology.macros[self.netlist.cells[cell].kind]
 
     def corner(self, site: Site) -> tuple[float, float]:
-        """A cell's lower left corner in DEF, um, so that its pins are on tracks, which are multiples of a pitch."""
+        """Returns a cell's lower left corner in DEF, um, so that its pins are on tracks, which are at multiples of a pitch."""
         across, up = self.technology.tracks
         return site.x + across.offset, site.y + up.offset
 
@@ -59,7 +59,7 @@ class Placement:
         """Each port on a track of its own, at the side where its cells are: x, y, layer."""
         across, up = (layer.pitch for layer in self.technology.tracks)
         left, bottom, right, top = self.die
-        # How far beyond each side; the side that it is furthest beyond is its own.
+        # How far a port is beyond each side; its side is the one with the largest distance.
         sides: dict[str, list[tuple[float, str]]] = {"left": [], "right": [], "bottom": [], "top": []}
         for name, (x, y) in self.ports.items():
             beyond = {"left": -x, "right": x - self.width, "bottom": -y, "top": y - self.height}
@@ -81,7 +81,7 @@ class Placement:
 
 
 def _spread(wanted: list[tuple[float, str]], last: int) -> list[tuple[int, str]]:
-    """Whole places of 1 to `last`, one for each, in order, near those wanted."""
+    """Returns whole places from 1 to `last`, all different, in order, near those wanted."""
     places, low = [], 1
     for count, (at, name) in enumerate(wanted):
         room = last - (len(wanted) - 1 - count)  # so that those that follow find theirs
@@ -93,9 +93,9 @@ def _spread(wanted: list[tuple[float, str]], last: int) -> list[tuple[int, str]]
 
 def place(netlist: Netlist, technology: Technology, seed: int, density: float, aspect: float,
           folder: pathlib.Path) -> Placement:
-    """`density`: the share of the rows that cells take; `aspect`: the core's height by its width.
+    """Places the cells twice: without ports, then with ports around the core, near their nets in the first placement.
 
-    Twice: without ports, which are then put around the core where their nets pull them, and with them.
+    `density`: the fraction of the rows that cells take; `aspect`: the core's height by its width.
     """
     pitch = technology.tracks[0].pitch
     macros = {name: technology.macros[cell.kind] for name, cell in netlist.cells.items()}
@@ -128,7 +128,7 @@ def place(netlist: Netlist, technology: Technology, seed: int, density: float, a
 
 def _run(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
          core: tuple[int, int], seed: int, stem: pathlib.Path) -> tuple[dict, dict[str, str]]:
-    """Where each cell's lower left corner is and how it is turned; without `ports` not yet in rows."""
+    """Returns each cell's lower left corner and how it is turned; without `ports`, cells are not in rows yet."""
     for suffix, text in bookshelf(netlist, technology, widths, ports, core).items():
         stem.with_suffix(suffix).write_text(text.format(stem=stem.name))
     solution = stem.with_suffix(".sol")
@@ -145,7 +145,7 @@ def _run(netlist: Netlist, technology: Technology, widths: dict[str, int], ports
 
 def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], ports: dict[str, tuple[int, int]],
               core: tuple[int, int]) -> dict[str, str]:
-    """The files by their suffixes. `widths` of the cells, tracks; `core`: its tracks across, its rows."""
+    """Returns the files by their suffixes. `widths`: of the cells, in tracks; `core`: its tracks across and its rows."""
     sites, rows = core
     pitch = technology.tracks[0].pitch
     nodes = [f"{name} {widths[name]} {STEPS}" for name in netlist.cells] + [f"{name} terminal" for name in ports]
@@ -173,7 +173,7 @@ def bookshelf(netlist: Netlist, technology: Technology, widths: dict[str, int], 
 
 
 def around(netlist: Netlist, cells: dict[str, tuple[int, int]], core: tuple[int, int]) -> dict[str, tuple[int, int]]:
-    """The ports at equal distances around the core, in the order in which their nets' cells lie around its middle."""
+    """Returns the ports at equal distances around the core, in the order in which their nets' cells lie around its middle."""
     width, height = core
     angles = {}
     for ends in netlist.nets().values():
@@ -187,7 +187,7 @@ def around(netlist: Netlist, cells: dict[str, tuple[int, int]], core: tuple[int,
 
 
 def _edge(far: float, width: int, height: int) -> tuple[int, int]:
-    """The point that far along the core's edge, from the middle of its left side downwards."""
+    """Returns the point at distance `far` along the core's edge, from the middle of its left side downwards."""
     for x, y, dx, dy, length in ((0, height / 2, 0, -1, height / 2), (0, 0, 1, 0, width), (width, 0, 0, 1, height),
                                  (width, height, -1, 0, width), (0, height, 0, -1, height / 2)):
         if far <= length:
@@ -197,9 +197,9 @@ def _edge(far: float, width: int, height: int) -> tuple[int, int]:
 
 
 def gaps(netlist: Netlist, technology: Technology, density: float, pitch: float) -> dict[str, float]:
-    """The room to leave beside each cell, um, whole pitches: the more, the more pins it has for its width.
+    """Returns the gap beside each cell, um, in whole pitches: the larger, the more pins the cell has for its width.
 
-    Wires crowd where pins do. Every cell gets what it lacks of a width that is the same for each of its pins.
+    Wires crowd where pins do. A gap makes up a cell's width to a width per pin that is the same for all cells.
     """
     widths = {name: technology.macros[cell.kind].width for name, cell in netlist.cells.items()}
     room = sum(widths.values()) * (1 / density - 1)

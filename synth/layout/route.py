@@ -14,7 +14,7 @@ FILLER = "FILL"
 
 @dataclasses.dataclass(frozen=True)
 class Wire:
-    """A straight piece of a net, um; `layer` is that of its metal, or of both metals of a via."""
+    """A straight piece of a net, um; `layer` is its metal, or the metal from which a via leads."""
 
     layer: str
     x0: float
@@ -33,8 +33,8 @@ Wires = dict[str, list[Wire]]  # of each net
 
 
 def route(placement: Placement, lef: pathlib.Path, folder: pathlib.Path, tidy: bool = True) -> tuple[Wires, list[str]]:
-    """The wires, and the nets that failed. Leaves placed.def and routed.def in `folder`. `tidy`: qrouter routes every net once
-    more, twice: wires of a 48-bit adder become 5 % shorter, and it takes as long again."""
+    """Routes a placement. Returns the wires, and the nets that failed. Leaves placed.def and routed.def in `folder`. `tidy`: qrouter
+    reroutes every net twice: wires of a 48-bit adder become 5 % shorter, in twice the time."""
     (folder / "placed.def").write_text(definition(placement))
     fence = "\n".join(f"obstruction {left} {bottom} {right} {top} {layer}"
                       for layer, left, bottom, right, top in fences(placement))
@@ -50,7 +50,7 @@ def route(placement: Placement, lef: pathlib.Path, folder: pathlib.Path, tidy: b
 
 
 def fences(placement: Placement) -> list[tuple]:
-    """Around the core no wires but those that lead straight to ports: obstructions, um."""
+    """Returns obstructions around the core, um, which only wires that lead straight to ports can pass."""
     left, bottom, right, top = placement.die
     across, up = (layer.pitch / 2 for layer in placement.technology.tracks)
     found = []
@@ -64,7 +64,7 @@ def fences(placement: Placement) -> list[tuple]:
 
 
 def fillers(placement: Placement) -> list[Site]:
-    """Where a row has no cell, for rails and wells must not end."""
+    """Returns the places in rows without a cell, for fillers: rails and wells must not be interrupted."""
     filler = placement.technology.macros[FILLER].width
     rows: dict[float, list] = {}
     for name, site in placement.cells.items():
@@ -85,7 +85,7 @@ def _units(value: float) -> int:
 
 
 def definition(placement: Placement) -> str:
-    """DEF before routing."""
+    """Returns the DEF before routing."""
     netlist, technology = placement.netlist, placement.technology
     left, bottom, right, top = placement.die
     lines = ["VERSION 5.6 ;", "NAMESCASESENSITIVE ON ;", 'DIVIDERCHAR "/" ;', 'BUSBITCHARS "<>" ;',
@@ -115,7 +115,7 @@ def definition(placement: Placement) -> str:
 
 
 def wires(text: str, layers: list[str]) -> Wires:
-    """The ROUTED pieces of each net of a DEF of these UNITS."""
+    """Returns the ROUTED pieces of each net of a DEF."""
     found: Wires = {}
     body = re.search(r"^NETS \d+ ;\n(.*?)^END NETS", text, re.M | re.S).group(1)
     units = int(re.search(r"^UNITS DISTANCE MICRONS (\d+)", text, re.M).group(1))

@@ -1,11 +1,11 @@
-// The rotating pick takes a request where there is one: the first from `from` on, around the end.
+// rr_arbiter picks a request if there is one: the first from `from` on, around the end.
 module arbiter_is_fair #(
   parameter int unsigned Width = 64,
   localparam int unsigned IndexWidth = $clog2(Width)
 ) (
   input logic [Width-1:0]      requests,
   input logic [IndexWidth-1:0] from,
-  input logic [IndexWidth-1:0] other  // any place
+  input logic [IndexWidth-1:0] other  // any index
 );
 
   logic valid;

@@ -1,6 +1,6 @@
-// An array of four lanes: each lane is given what is in its slot of every port and nothing else, each slot
-// has what its lane says, and counter_o is the sum of the lanes' events since reset, two clocks later.
-// opened_hit_test_array is the array with what its lanes are given and say, and its counters, as outputs.
+// An array of four lanes: each lane gets its slot of every input and nothing else, each slot of an output is its
+// lane's, and counter_o is the sum of the lanes' events since reset, two clocks later.
+// opened_hit_test_array is the array with its lanes' inputs and outputs, and its counters, as outputs.
 module array_is_its_lanes #(
   localparam int unsigned Lanes       = 4,
   localparam int unsigned TagWidth    = 2,
@@ -93,7 +93,7 @@ module array_is_its_lanes #(
     end
   end
 
-  // ---- The counters' sums, of one event that is any of the nine and stays so
+  // ---- The counters' sums, for one event: any of the nine, always the same
 
   (* anyconst *) logic [3:0] counted;
   logic [5:0] total;

@@ -1,5 +1,5 @@
-// is_beyond compares the numbers that its words stand for: binary32's, in whole 2**-149; where the exponent is all ones it counts on
-// from the largest, so that infinity, a t_max that leaves nothing out, stands for 2**128, which no hit's t reaches.
+// is_beyond compares the numbers that its words stand for, here in units of 2**-149. An exponent of all ones continues
+// the numbers, so that infinity, a t_max without limit, stands for 2**128, which no hit's t reaches.
 module beyond_orders_numbers #(
   localparam int unsigned EnterWidth = ray_core_pkg::EnterWidth,
   localparam int unsigned NumberWidth = 24 + 254

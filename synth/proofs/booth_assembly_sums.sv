@@ -1,14 +1,14 @@
-// Composition, step 3: what goes into the tree is the rows' values and nothing else:
+// Composition, step 3: the tree's words are the rows' values and nothing else:
 //   the sum of the tree's words = the sum over k of (row[k] + n[k] - n[k] * 2**25) * 4**k, mod 2**48.
-// Shown in two parts, for a sum of so many words is beyond a SAT solver: each word is that of rows
-// that are 0, plus the row in its place; and the words of rows that are 0 are what signs need.
+// Shown in two parts, as a sum of so many words is beyond a SAT solver: each word is that for rows of 0
+// plus the row in its place; and the words for rows of 0 add up to the terms of n.
 // With 14 words the row of constants comes first.
-// "assembly" is made of the multiplier itself by booth_assembly.tcl.
+// booth_assembly in synth/prove.py makes "assembly" of the multiplier itself.
 module booth_assembly_sums #(
   parameter int unsigned Words = 13
 ) (
   input logic [13*25-1:0] row_values,
-  input logic [11:0]      n           // of digits 0 to 11; the last is not negative (step 1)
+  input logic [11:0]      n           // bit k: digit k is negative; digit 12 never is (step 1)
 );
 
   logic [48*Words-1:0] words, bare;
@@ -41,7 +41,7 @@ module booth_assembly_sums #(
 
 endmodule
 
-// The assembly with its loose ends as vectors.
+// The assembly with its ports as vectors.
 module assembly_words #(
   parameter int unsigned Words = 13
 ) (

@@ -1,5 +1,5 @@
 // Composition, step 1: the recoded digits, from -2 to 2, add up to the multiplier operand:
-// the sum over k of digit[k] * 4**k is b. And: a digit is not both 1 and 2, the last is not negative.
+// the sum over k of digit[k] * 4**k is b. Also, no digit is both 1 and 2, and the last is not negative.
 module booth_digits #(
   parameter int unsigned Width = 24,
   localparam int unsigned Digits = Width / 2 + 1
@@ -18,7 +18,7 @@ module booth_digits #(
     .negative_o(negative)
   );
 
-  // Modulo 4**Digits, which is above every value that counts
+  // Modulo 4**Digits, which is above every value here
   logic [2*Digits-1:0] magnitude, sum;
   always_comb begin
     sum = '0;

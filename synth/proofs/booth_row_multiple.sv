@@ -1,5 +1,5 @@
 // Composition, step 2: a row is its digit's multiple of a:
-// row + negative - negative * 2**(Width+1) = digit * a, modulo 2**(Width+3), which tells all apart.
+// row + negative - negative * 2**(Width+1) = digit * a, modulo 2**(Width+3), which keeps all values distinct.
 module booth_row_multiple #(
   parameter int unsigned Width = 24
 ) (

@@ -1,9 +1,8 @@
-// The cache of lines, whatever is asked for and in whichever order memory answers, from reset and for ever: a request
-// that is demand and taken is compared and looked up, once, and answered once, with its ray, by the line of its number in memory, or by its error; it waits in the queue of hits, or is
-// enlisted for an entry whose line is on its way, and that line does not go before it is answered. No line is asked for
-// while it is here or on its way.
-// opened_line_cache is line_cache of two sets and two waiters with its registers and memories as outputs. Of memory is said
-// what the line `number` holds; which one that is, is free.
+// The cache of lines, for any requests and any order of memory's answers, from reset on: a demand request that is taken
+// is compared and looked up once, and answered once, with its ray, by memory's line of its number or by an error. Until
+// then it waits in the queue of hits, or is a target of an entry whose line is pending; that line does not leave
+// before. No line is read while it is here or pending. opened_line_cache is line_cache of two sets and two targets with
+// its registers and memories as outputs. Of memory only the line `number`, any number, is known.
 module cache_answers_once #(
   localparam int unsigned Lines = 16,
   localparam int unsigned Ways  = 8,
@@ -23,7 +22,7 @@ module cache_answers_once #(
   input logic [Width-1:0] fill_line,
   input logic             fill_error,
   input logic             ready,
-  input logic             choose  // the request taken now is the one that is watched
+  input logic             choose  // watch the request taken now
 );
 
   logic reset_n;  // low for the first clock
@@ -31,7 +30,7 @@ module cache_answers_once #(
   always_ff @(posedge clk) reset_n <= 1'b1;
 
   (* anyseq *) logic [AddressWidth-1:0] line_number;
-  (* anyconst *) logic [AddressWidth-1:0] number;  // of a line, and what it holds
+  (* anyconst *) logic [AddressWidth-1:0] number;  // of a line, and its content
   (* anyconst *) logic [Width-1:0] content;
 
   logic taken, request_q, demand_q, ray_q, done, set, hit_q, hit_ray, looking;
@@ -44,7 +43,7 @@ module cache_answers_once #(
   logic miss, fill_ready, answer, answer_ray, answer_error, error;
   logic [3:0] miss_entry;
   logic [AddressWidth-1:0] miss_number;
-  logic [Width-1:0] answer_line, line;  // line: that is given away
+  logic [Width-1:0] answer_line, line;  // line: that leaves
   logic [Lines-1:0] line_valid, pending, mores;
   logic [1:0] free, rays;
   logic [3:0] nexts;
@@ -134,25 +133,25 @@ module cache_answers_once #(
   end
 
   logic [AddressWidth-1:0] looked_up;
-  logic request, asked, adds_target, hits;  // this clock's: a request is looked up to its end
+  logic request, asked, adds_target, hits;  // in this clock; request: a look-up ends
   assign looked_up   = {tag, set};
   assign request     = request_q && done && demand_q;
   assign asked       = miss && miss_ready;
   assign hits        = line_valid[entry] && tags[TagWidth*entry+:TagWidth] == tag;
   assign adds_target = request && !hits;
 
-  // ---- Which places wait for the line `number`; whether the line that comes is that one
+  // ---- The entries that wait for the line `number`; whether the line that comes is that line
 
   logic [Lines-1:0] is_number;
-  logic came_q;  // of the line that is being given away
-  logic [3:0] entry_q;  // likewise
+  logic came_q;  // the line that leaves is `number`
+  logic [3:0] entry_q;  // of the line that leaves
 
   always_ff @(posedge clk) begin
     if (asked) is_number[miss_entry] <= miss_number == number;
     if (fill_ready) {came_q, entry_q} <= {is_number[fill_entry], fill_entry};
   end
 
-  // ---- What the user promises
+  // ---- Assumptions about the user
 
   always_comb begin
     if (reset_n) begin
@@ -164,14 +163,14 @@ module cache_answers_once #(
     end
   end
 
-  // ---- The waiters: for which entry each is enlisted, and whether its line has come and is being given away
+  // ---- The targets: the entry that each waits for, and whether its line has come and leaves
 
   logic [3:0] entry_0, entry_1;
   always_ff @(posedge clk) begin
     if (adds_target && !target) entry_0 <= entry;
     if (adds_target && target) entry_1 <= entry;
   end
-  logic [1:0] coming;  // its line is being given away: it is no longer in its entry's list
+  logic [1:0] coming;  // its line leaves: it is no longer in its entry's list
   assign coming = {2{draining}} & {draining_target || draining_more, !draining_target || draining_more};
 
   // ---- The watched request
@@ -226,7 +225,7 @@ module cache_answers_once #(
       if (answer) assert (outstanding != '0 && ready);
       assert (outstanding == count + 5'(hit_q) + 5'(request_q && demand_q)
                              + 5'(compare_q && compare_demand_q) + 5'(!free[0]) + 5'(!free[1]));
-      // Its line does not go without it
+      // The request's line does not leave without it
       if (state == Pending && coming[w_target] && fill_ready) assert (answered);
       if (state == Pending) assert (pending[w_entry] || coming[w_target]);
       if (asked) begin
@@ -254,7 +253,7 @@ module cache_answers_once #(
       end
       if (state == LookedUp) assert (request_q && demand_q && looked_up == number && ray_q == w_ray);
 
-      // Invariants: a line is in one entry, that of `number` is its content
+      // Invariants: a line is in one entry only; the line `number` has its content
       assert ((line_valid & pending) == '0);
       for (int unsigned p = 0; p < Lines; p++) begin
         for (int unsigned q = p + 2; q < Lines; q += 2) begin
@@ -268,7 +267,7 @@ module cache_answers_once #(
         if (pending[p]) begin
           assert (is_number[p] == (tags[TagWidth*p+:TagWidth] == number[AddressWidth-1:1]
                                    && 1'(p % 2) == number[0]));
-          // The list of a entry that waits: who enlisted last, and before
+          // The list of a pending entry: the latest target, and the target before
           assert (heads[2*p+1] == ((!free[0] && !coming[0] && entry_0 == 4'(p))
                                    || (!free[1] && !coming[1] && entry_1 == 4'(p))));
           if (!heads[2*p+1]) assert (!mores[p]);

@@ -1,15 +1,15 @@
-// Rays that come into a ray core and leave it, whatever is done for them and however long it takes, from reset
-// and for ever: a context of the table is given to one ray at a time; what ends is a ray that began and had not ended;
-// every ray that came in is in one place, and leaves as one end. No queue overflows: a ray that was marked, any one, leaves
-// with its mark, once, and with the P that was there when it ended, for that is in the same word of the queue.
+// Rays that enter and leave a ray core, whatever is done for them and however long it takes, from reset on: a context
+// is given to one ray at a time; only a ray that began and has not ended ends; every ray is in one place, and leaves as
+// one end. No queue overflows. A marked ray, which may be any, leaves with its mark, once, and with the P that was
+// there when it ended, as P is in the same word of the queue.
 // opened_ray_contexts is contracts/ray_contexts.sv with its registers as outputs.
 module contexts_answer_once #(
   parameter int unsigned Rays = 4,
   localparam int unsigned CtxWidth = $clog2(Rays)
 ) (
   input logic            clk,
-  input logic            ray,    // one is offered
-  input logic            choose,  // it is the one that is marked
+  input logic            ray,    // a ray is offered
+  input logic            choose,  // the offered ray is the marked one
   input logic            begin_walk,
   input logic [Rays-1:0] busy,
   input logic            doubt,
@@ -86,7 +86,7 @@ module contexts_answer_once #(
 
   // ---- What the user sees: rays that came, and ends that left
 
-  logic ended, end_offered, offered;  // the last: the marked one's end
+  logic ended, end_offered, offered;  // offered: the marked ray's end
   assign offered  = end_offered && answer_mark;
   logic [TotalWidth-1:0] in_flight;  // rays that came and have not left
   logic [Rays-1:0] used;          // contexts whose ray began and has not ended
@@ -130,7 +130,7 @@ module contexts_answer_once #(
       assert (free_q == ~used && active_q == used);
       assert (TotalWidth'(rays_count) == TotalWidth'(inverses_count) + ones(32'(dividing_q)));
       assert (inverses_valid == (inverses_count != '0));
-      // In memories a word is there a clock later; one alone may be that of the clock before
+      // A memory gives a word a clock later, so that a single word may not be valid yet
       if (rays_count != InCountWidth'(dividing_q[0])) assert (rays_valid);
       if (ends_count > EndCountWidth'(1)) assert (ends_valid);
       if (rays_valid) assert (rays_count != '0);

@@ -1,7 +1,7 @@
-// The registers' port, whatever a manager does, from reset and for ever: it keeps AXI4-Lite (sim/checks/axi_lite_checks);
-// a plain register changes by a write to it alone, by the bytes and bits that it should, as the answer says OKAY; it
-// is refused while rays are made or traced, and `base` while lines are on their way; a read gives what the register held.
-// Which register is watched is free. opened_csr is csr with some registers as outputs.
+// The registers' port, for any manager, from reset on: it keeps AXI4-Lite (sim/checks/axi_lite_checks). A plain
+// register changes only by a write to it that is answered OKAY, in the bytes and bits that can be written. A write is
+// refused while rays are generated or traced, and to `base` while lines are read. A read gives the register's value.
+// The watched register may be any. opened_csr is csr with some registers as outputs.
 module csr_keeps_protocol (
   input logic clk
 );

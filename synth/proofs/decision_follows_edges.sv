@@ -1,8 +1,7 @@
-// hit_decision, in one format, given what a bound promises: an edge product beyond its bound has the sign of
-// the exact one. Then a hit has all three exact edge products on d's side, so the ray, aimed ahead,
-// meets the triangle; a miss has d = 0 or one of them on the other side, or, where d is a NaN, two on
-// different sides; and one verdict is given. A hit's V is a normal number of d's sign, whose error is stated.
-// Exact arithmetic is any: three signs, of which a zero is neither.
+// hit_decision, in one format, if an edge product beyond its bound has the sign of the exact product. Then a hit has
+// all three exact edge products on d's side, so the ray, aimed ahead, meets the triangle. A miss has d = 0, or an exact
+// product on the other side or, if d is a NaN, two on different sides. One verdict is given. A hit's V is a normal
+// number of d's sign, whose error is stated. Exact products are any three signs; a zero has neither.
 module decision_follows_edges #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,
@@ -37,7 +36,7 @@ module decision_follows_edges #(
 
   localparam logic [Width-2:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
 
-  // Words of one sign order as their values do
+  // Words of equal sign have the order of their values
   always_comb begin
     for (int unsigned k = 0; k < 3; k++) begin
       assume (!(exact_positive[k] && exact_negative[k]));
@@ -46,7 +45,7 @@ module decision_follows_edges #(
           && u[Width*k+:Width-1] < Infinity) begin
         assume (u[Width*k+Width-1] ? exact_negative[k] : exact_positive[k]);
       end
-      // Bounds are no NaN and not negative
+      // Bounds are neither NaN nor negative
       assume (!bounds[Width*k+Width-1] && bounds[Width*k+:Width-1] <= Infinity);
     end
   end

@@ -1,6 +1,6 @@
-// exact_accumulator, whatever terms come: what it holds is the exact sum of a column's terms and of what came into it (upwards
-// what the digits so far left over, downwards the sum above times 2**DigitWidth), which never outgrows it; a digit is that sum
-// modulo 2**DigitWidth, balanced; a sum that it calls sure is larger than all columns below can be together.
+// exact_accumulator, for any terms: its register is the exact sum of a column's terms and of what enters the column
+// (upwards the carry out of the digits so far, downwards the sum above times 2**DigitWidth), and does not overflow. A
+// digit is that sum modulo 2**DigitWidth, balanced. A sum with sure_o is larger than all columns below together can be.
 // opened_exact_accumulator is exact_accumulator with its register as an output.
 module exact_accumulator_sums #(
   parameter int unsigned DigitWidth = 48,
@@ -41,7 +41,7 @@ module exact_accumulator_sums #(
   assign term      = $signed(term_word);
   assign largest   = Wide'(1) << (2 * DigitWidth - 2);
 
-  // What the unit asks of it
+  // What the unit promises
   logic begun, was_down;
   logic [7:0] terms;  // of the column
   initial {begun, was_down, terms} = '0;
@@ -59,7 +59,7 @@ module exact_accumulator_sums #(
     assume (!(opens && !first && down && sure));  // it stops there
   end
 
-  // The sum, with room for everything
+  // The sum, in enough bits
   logic signed [Wide-1:0] digit, left, over, above, sum, size;
   assign digit = $signed(digit_word);
   assign left  = sum - digit;
@@ -69,7 +69,7 @@ module exact_accumulator_sums #(
   initial sum = '0;
   always_ff @(posedge clk) sum <= first ? term : !opens ? sum + term : down ? above + term : over + term;
 
-  // So large at most: the column's terms, and what came into it
+  // Largest magnitude: the column's terms, and what entered the column
   localparam int unsigned SureBit = DigitWidth - 1 + $clog2(Products);
   logic [Wide-1:0] most, bound, tail;
   assign most  = was_down ? Wide'(1) << (SureBit + DigitWidth) : Wide'(Products) << (DigitWidth - 1);

@@ -1,6 +1,6 @@
-// exact_exponents, of any words that stay: each coordinate and each component of the direction that is not 0 is a whole number of
-// the unit, and with it in that place (a difference of two, too) fits in the digits; the unit is one of theirs, and a digit fewer
-// would not do. one and limit have the shifts that make D one against S limit the question whether t < limit, and fit.
+// exact_exponents, for any words that stay: each coordinate and each component of the direction that is not 0 is a
+// whole number of units, and with a difference of two fits in the digits. The unit is one of their exponents, and a
+// digit fewer is not enough. `one` and `limit` have shifts with which D one < S limit is t < limit, and fit.
 module exact_exponents_fit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,
@@ -60,7 +60,7 @@ module exact_exponents_fit #(
     assume (clocks == '0 || (nonzero[5:3] != '0 && nonzero[24] && !floats[Words-1]));
   end
 
-  // ---- What the unit makes of them
+  // ---- What the unit does with them
 
   logic [15:0] coordinate_room, direction_room, pair_room;
   assign coordinate_room = DigitWidth * 16'(coordinate_digits);

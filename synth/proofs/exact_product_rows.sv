@@ -1,6 +1,6 @@
-// The words that exact_product's tree adds up are its digits' multiples of a, and what their signs need: with d[k] = -2 b[2k+1] +
-// b[2k] + b[2k-1], negated where it is asked for, word k is (d[k] a - n[k] + 2**DigitWidth) 4**k, and the last the sum of
-// (n[k] - 2**DigitWidth) 4**k; the sum of d[k] 4**k is b or -b. All modulo 2**Width; opened_exact_product shows the words.
+// The words of exact_product's tree are the digits' multiples of a, and a correction for signs. With d[k] = -2 b[2k+1]
+// + b[2k] + b[2k-1], negated if `negate`, word k is (d[k] a - n[k] + 2**DigitWidth) 4**k, and the last the sum of (n[k]
+// - 2**DigitWidth) 4**k. The sum of d[k] 4**k is +-b. All modulo 2**Width. opened_exact_product shows them.
 module exact_product_rows #(
   parameter int unsigned DigitWidth = 48,
   parameter int unsigned Width = 103,

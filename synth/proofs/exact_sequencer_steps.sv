@@ -1,7 +1,7 @@
-// The steps of exact_sequencer, whatever signs are known meanwhile and whenever: of each instruction's products, digit i of x and
-// digit j of y in a term, each goes out in column i + j and once, if its columns are not left off because the sign is known;
-// columns come in order, one after another; digits stay within their numbers' places.
-// opened_exact_sequencer shows its registers. The watched product is any of an instruction.
+// The steps of exact_sequencer, whatever signs become known and whenever: each product of an instruction, digit i of x
+// and digit j of y in a term, is issued once, in column i + j, unless the sign is known before. Columns come in order;
+// digits stay within their numbers. opened_exact_sequencer shows its registers. The watched product may be any of an
+// instruction.
 module exact_sequencer_steps #(
   parameter int unsigned Digits = 6,
   localparam int unsigned AddressWidth = $clog2(48 * Digits)
@@ -83,7 +83,7 @@ module exact_sequencer_steps #(
     .advance(advance)
   );
 
-  // ---- What the unit asks of it: counts that stay while it is busy
+  // ---- What the unit promises: counts that stay while the sequencer is busy
 
   logic [19:0] counts, counts_before;
   assign counts = {against, coordinate_digits, direction_digits, pair_digits};
@@ -96,7 +96,7 @@ module exact_sequencer_steps #(
     assume (pair_digits != '0 && pair_digits <= 6'd9);
   end
 
-  // ---- Of the instruction: its kind, whether it goes down, how many digits its numbers have
+  // ---- The instruction's kind, whether it goes down, and the digits of its numbers
 
   logic [2:0] kind;
   logic down, product;
@@ -122,7 +122,7 @@ module exact_sequencer_steps #(
       3'd5: {x_digits, y_digits, terms} = {direction_digits, n, 2'd3};
       default: {x_digits, y_digits, terms} = {fraction, (against == 2'd2) ? fraction : pair_digits, 2'd2};
     endcase
-    // Of a number that is loaded digit i itself goes out, in column i
+    // For a number that is loaded, digit i itself is issued, in column i
     if (!product) x_digits = result_digits;
   end
 
@@ -161,7 +161,7 @@ module exact_sequencer_steps #(
       assert (!beyond || term == '0);
       assert (!first || (!beyond && term == '0 && i == from_i && (down ? i == x_last && j == y_last : i == '0 && j == '0)));
       assert (x_digits + y_digits <= 6'd37 && result_digits != '0);
-      assert (product || !down);  // so the programs are
+      assert (product || !down);  // the programs are like that
       assert (kind != 3'd7 && (kind != 3'd6 || down));
       // Each product once, in its column
       assert (!in_range || seen == 2'((passed || past) ? 1 : 0));

@@ -1,4 +1,4 @@
-// exact_slice gives word digit of significand 2**shift.
+// exact_slice gives digit `number` of significand * 2**shift.
 module exact_slice_cuts #(
   parameter int unsigned SignificandWidth = 24,
   parameter int unsigned MaxShift = 405,

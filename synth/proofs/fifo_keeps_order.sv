@@ -1,8 +1,8 @@
-// The FIFO, whatever is pushed and popped where that is allowed, from reset and for ever: it gives the words
-// in the order in which they came, each once, with Memory from the second clock on after they came; it never holds more than
-// Depth words, says rightly whether there are words and whether more than Reserve are free; its output, once valid, holds until
-// it is taken.
-// opened_fifo is the FIFO with its registers as outputs, which the induction needs to know.
+// The FIFO, for any pushes and pops that are allowed, from reset on: it gives the words in the order in which they
+// came, each once, with Memory from the second clock after they came. It never holds more than Depth words; valid_o and
+// space_o tell whether there are words and whether more than Reserve are free; an output that is valid holds until it
+// is taken.
+// opened_fifo is the FIFO with its registers as outputs, for the induction.
 module fifo_keeps_order #(
   parameter int unsigned Depth   = 5,
   parameter int unsigned Reserve = 2,
@@ -15,7 +15,7 @@ module fifo_keeps_order #(
   input logic             push,
   input logic             pop,
   input logic [Width-1:0] data,
-  input logic             choose  // the word pushed now is the one that is watched
+  input logic             choose  // watch the word pushed now
 );
 
   logic reset_n;  // low for the first clock

@@ -1,4 +1,4 @@
-// A word that is declared (* anyseq *), and with CONSTANT one that is (* anyconst *): free, where Yosys's reader has it unknown.
+// Makes a word free that is declared (* anyseq *), or with CONSTANT (* anyconst *): Yosys's reader makes it unknown.
 (* techmap_celltype = "$buf" *)
 module free_word #(
   parameter WIDTH = 1

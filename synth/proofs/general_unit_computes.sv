@@ -1,7 +1,6 @@
-// What the general unit makes of a test's words, whatever functions its cores compute: whenever it takes
-// a test, and whatever it did before and is given after, the components that leave it 13, 14 and 15
-// clocks later are O_k + t I_k with t = -(((d + a Ox) + b Oy) + c Oz) / ((a Ix + b Iy) + c Iz); the next
-// test may come 10 clocks after this one.
+// What the general unit computes from a test's words, whatever functions its cores compute: whenever it takes a test,
+// and whatever it did before and gets afterwards, the components that leave it 13, 14 and 15 clocks later are O_k + t
+// I_k with t = -(((d + a Ox) + b Oy) + c Oz) / ((a Ix + b Iy) + c Iz). The next test may come 10 clocks after this one.
 module general_unit_computes #(
   localparam int unsigned Width = 32
 ) (
@@ -17,7 +16,7 @@ module general_unit_computes #(
   logic ready, output_valid;
   logic [Width-1:0] out;
 
-  general_hit_test_unit dut (  // in any state, but for this: a test is there, and is taken
+  general_hit_test_unit dut (  // in any state in which a test is offered and taken
     .clk_i(clk),
     .rst_ni(1'b1),
     .valid_i(valid),

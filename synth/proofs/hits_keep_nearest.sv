@@ -1,8 +1,8 @@
-// What tests say of a ray, whatever they say and whenever, from reset and for ever: no sure hit is lost in silence. A hit is
-// kept, or was told as a doubt, once, or it is farther, by both its error and the kept one's, than the t_max, which
-// is the least upper bound of all hits so far and the user's t_max. What has no verdict is told as a doubt, once. P and t
-// are the kept hit's. Tests in flight are counted rightly, and there is room for the doubts of all of them.
-// opened_closest_hit is closest_hit of two rays with its registers and memories as outputs; that its queues keep order is fifo_keeps_order's.
+// closest_hit, for any results of tests at any time, from reset on: no sure hit is lost silently. A hit is kept, or has
+// been reported once as a doubt, or its lower bound is above t_max, the least of the user's t_max and the upper bounds
+// of all hits so far. A test without a verdict is reported once as a doubt. P and t are the kept hit's. Tests in flight
+// are counted correctly, and there is room for the doubts of all of them. opened_closest_hit is closest_hit of two rays
+// with its registers and memories as outputs; fifo_keeps_order proves that its queues keep order.
 module hits_keep_nearest #(
   localparam int unsigned Rays     = 2,
   localparam int unsigned Queue    = 18,
@@ -16,7 +16,7 @@ module hits_keep_nearest #(
   input logic        load_any_hit,
   input logic        test,
   input logic        test_ray,
-  input logic        read,  // a result comes; what the unit is given in this clock it compares in the next one
+  input logic        read,  // a result comes; the unit compares it in the next clock
   input logic        read_ray,
   input logic [31:0] read_triangle,
   input logic        read_skipped,
@@ -33,7 +33,7 @@ module hits_keep_nearest #(
   input logic        doubt_fire,
   input logic        end_ray,
   input logic        point_ray,
-  input logic        choose  // the hit told now is the one that is watched
+  input logic        choose  // watch the hit that comes now
 );
 
   localparam logic [31:0] Infinity = 32'h7f80_0000;
@@ -139,7 +139,7 @@ module hits_keep_nearest #(
     .counts(counts)
   );
 
-  // ---- The result that is compared: as it came
+  // ---- The result that is compared, as it came
   logic result, result_ray, result_skipped, result_doubt, result_hit;
   logic [31:0] result_triangle, result_t;
   logic [3:0] result_t_error, result_normal_error, result_distance_error;
@@ -152,10 +152,10 @@ module hits_keep_nearest #(
   end
   initial result = 1'b0;
 
-  // ---- What the user promises
+  // ---- Assumptions about the user
 
   logic [Rays-1:0] loaded, any_hit;
-  logic [11:0] flight_0, flight_1;  // a ray's tests on their way
+  logic [11:0] flight_0, flight_1;  // a ray's tests in flight
   logic [TestsWidth-1:0] made_0, made_1;  // its tests
   logic [30:0] user_0, user_1;  // its t_max at first
 
@@ -201,7 +201,7 @@ module hits_keep_nearest #(
 
   // ---- This clock's result
 
-  logic good, sure, vague;  // a hit within an error, or neither hit nor miss
+  logic good, sure, vague;  // good: of bounded error; vague: neither a sure hit nor a miss
   logic [TErrorWidth-1:0] t_error;
   assign good = set_up_pkg::is_good_hit(TErrorWidth'(result_t_error), result_normal_error);
   assign t_error = set_up_pkg::t_error_exponent(TErrorWidth'(result_t_error), result_normal_error,

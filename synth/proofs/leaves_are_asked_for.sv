@@ -1,7 +1,7 @@
-// The triangles of leaves that a ray enters, whatever groups come and whichever rays wait, from reset and for ever:
-// those of a group are asked for in order, near leaves first, each once, by the lines that the group gives; of those
-// that are not, the leaf was beyond the ray's t_max or the ray had ended in the clock in which they were dropped. Until
-// then the ray counts as leaf_pending. No more groups wait than there is room for.
+// The triangles of leaves that a ray enters, for any groups and any waiting rays, from reset on: a group's triangles
+// are requested in order, near leaves first, each once, by the lines that the group gives. If one is not requested, its
+// leaf was beyond the ray's t_max, or the ray had ended, in the clock in which it was dropped. Until then the ray
+// counts as leaf_pending. No more groups wait than there is room for.
 // opened_primitive_fetch is primitive_fetch of two rays with its registers and its queue as outputs.
 module leaves_are_asked_for #(
   localparam int unsigned Rays = 2,
@@ -22,7 +22,7 @@ module leaves_are_asked_for #(
   input logic [30:0]           t_max,
   input logic                  ended,
   input logic                  ready,
-  input logic                  choose,  // triangle `number` of leaf `which` of the group that comes now is watched
+  input logic                  choose,  // watch triangle `number` of leaf `which` of the group that comes now
   input logic [2:0]            which,
   input logic [CountWidth-1:0] number
 );
@@ -97,14 +97,14 @@ module leaves_are_asked_for #(
     end
   endfunction
 
-  // ---- What the user promises: groups are sorted, and a ray that is leaf_pending has no other
+  // ---- Assumptions about the user: groups are sorted, and a ray that is leaf_pending has no other
 
   always_comb begin
     if (reset_n) assume (!box || box_leaf == '0 || (!leaf_pending[box_ray] && is_group(box_group, box_leaf)));
     else assume (!box);
   end
 
-  // The group that is walked ends: its last triangle is given, or it is dropped.
+  // The group in work ends: its last triangle is given, or it is dropped.
   logic leaves, dropped;
   logic [2:0] nearest;
   always_comb begin
@@ -117,7 +117,7 @@ module leaves_are_asked_for #(
   assign leaves = valid_q && (dropped || (triangle && ready && (mask_q & (mask_q - 1'b1)) == '0
                                           && number_q + 1'b1 == count_of(group_q, nearest)));
 
-  // ---- The watched triangle, and how many of its group were asked for
+  // ---- The watched triangle, and how many of its group's were requested
 
   localparam logic [1:0] Nowhere = 2'd0, Queued = 2'd1, Walked = 2'd2;
   logic [1:0] state;

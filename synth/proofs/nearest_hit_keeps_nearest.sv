@@ -1,6 +1,6 @@
-// nearest_hit, whatever tests come: after any sure hit of a burst, chosen freely, the hit kept is no farther;
-// a burst has a nearest hit if it had a sure hit; and a hit is dropped or ousted in silence only where the
-// two are apart by more than their errors; else the one that is not kept is reported.
+// nearest_hit, for any tests: after any sure hit of a burst, chosen freely, the hit kept is no farther. A burst has a
+// nearest hit if it had a sure hit. A hit is dropped or replaced silently only if the two are apart by more than their
+// errors; else the hit that is not kept is reported.
 module nearest_hit_keeps_nearest #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -12,7 +12,7 @@ module nearest_hit_keeps_nearest #(
   input logic             last,
   input logic             hit,
   input logic             doubt,
-  input logic             choose,   // this test is the one that is watched
+  input logic             choose,   // watch this test
   input logic [3:0]       tag,
   input logic [Width-1:0] t,
   input logic [3:0]       t_error
@@ -55,7 +55,7 @@ module nearest_hit_keeps_nearest #(
     .payload_o(payload)
   );
 
-  // Bursts are framed as the header of hit_test_pipeline asks
+  // Bursts are framed as the header of hit_test_pipeline demands
   logic in_burst;
   initial in_burst = 1'b0;
   always_ff @(posedge clk) begin
@@ -63,11 +63,11 @@ module nearest_hit_keeps_nearest #(
     else if (valid) in_burst <= !last;
   end
   always_comb assume (!valid || first == !in_burst);
-  // What hit_decision promises, see decision_follows_edges
+  // What hit_decision guarantees, see decision_follows_edges
   localparam logic [3:0] MaxError = 4'(hit_test_pkg::max_grazing(FracWidth));
   always_comb assume (!hit || (!doubt && t_error <= MaxError));
 
-  // A burst's hits so far; the watched one; the last test and what was kept before it
+  // The burst's hits so far; the watched hit; the last test and the hit that was kept before it
   logic any, watched, taken, was_sure, was_have, was_doubt, was_hit, was_last;
   logic [3:0] was_tag, was_best_tag;
   logic [Width-1:0] watched_t, was_t, was_best;

@@ -1,9 +1,9 @@
-// Feeds a Verilated netlist ("Vnetlist") and the RTL it was made of ("Vrtl") the same inputs and
-// compares every output bit. The bench module "twins" (made by synth/netlists.py) holds both, and
-// says by `differ_o` whether any output of theirs does.
+// Feeds a netlist and the RTL it was made of the same inputs and compares every output bit. The
+// Verilated module "twins" (made by synth/netlists.py) holds both; differ_o is high if any of their
+// outputs differ.
 //
-// Inputs: uniform random bits, and words that float cores find hard: all-ones and all-zeros runs,
-// few bits set, exponents at their ends.
+// Inputs: uniform random bits, and words that are hard for float cores: all-ones and all-zeros
+// runs, few bits set, exponents at their ends.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

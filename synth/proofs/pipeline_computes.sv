@@ -1,9 +1,8 @@
-// What the pipelined unit makes of its words, whatever functions its cores compute: V and U_k are
-// (x + y) + z of products of the record's words and the direction's, the verdict is hit_decision's of them,
-// t = d / V, and P_k = (d I_k) / V of what came for it. The same words, all at once, are compared
-// with those that enter nearest_hit, and those of P, after the unit's latency.
-// opened_hit_test_pipeline is the unit with these as outputs. That tests come there once and in order, with
-// their tags: pipeline_keeps_tags.
+// What the pipelined unit computes from its words, whatever functions its cores compute: V and U_k are (x + y) + z of
+// products of the record's words and the direction's, the verdict is hit_decision's for them, t = d / V, and P_k = (d
+// I_k) / V for a nearest hit. The same words, all at once, are compared with those that enter nearest_hit, and those of
+// P, after the unit's latency. opened_hit_test_pipeline is the unit with these as outputs. pipeline_keeps_tags proves
+// that tests come there once and in order, with their tags.
 module pipeline_computes #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -55,7 +54,7 @@ module pipeline_computes #(
     .point(point)
   );
 
-  // ---- The words of Latency clocks ago, and those of the nearest hit that P was asked for
+  // ---- The words of Latency clocks ago, and those of the nearest hit whose P was asked for
 
   logic [3*Width-1:0] direction, old_dividends;
   logic [RecordWidth-1:0] record;
@@ -67,13 +66,13 @@ module pipeline_computes #(
     .clk_i(clk), .enable_i(1'b1), .data_i({dividends, divisor}),
     .data_o({old_dividends, old_divisor}));
 
-  logic [Latency-1:0] clocks;  // that were, in unary: before so many the words are undefined
+  logic [Latency-1:0] clocks;  // so far, in unary: the words of earlier clocks are undefined
   initial clocks = '0;
   always_ff @(posedge clk) clocks <= {clocks[Latency-2:0], 1'b1};
 
   always_comb assume (clocks[0] || !reset_n);
 
-  // ---- What should come of them
+  // ---- The expected results
 
   localparam int unsigned Normal = hit_test_pkg::RecordNormal;
   localparam int unsigned D = hit_test_pkg::RecordD;

@@ -1,6 +1,6 @@
-// The pipelined unit, whatever its arithmetic gives, whenever tests come and results are taken, from
-// reset and for ever: no result is pushed into a full queue; what it offers stays, with its data, until it
-// is taken. opened_hit_test_pipeline is the unit with its valid bits and its queue's registers as outputs.
+// The pipelined unit, for any arithmetic, any tests and any taking of results, from reset on: no result is pushed into
+// a full queue; an offered result stays, with its data, until it is taken. opened_hit_test_pipeline is the unit with
+// its valid bits and its queue's registers as outputs.
 module pipeline_keeps_credits #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -76,7 +76,7 @@ module pipeline_keeps_credits #(
   logic [Latency-1:1] on_its_way;
   assign on_its_way = {point_q, report != 2'd0 || closed, dividing_q, decided_q, test_q};
 
-  // Clocks since a test was taken last, or as many as nothing is on its way after
+  // Clocks since a test was taken last, up to the number after which nothing is in flight
   logic [CountWidth-1:0] since;
   always_ff @(posedge clk) begin
     if (!reset_n) since <= CountWidth'(Latency);
@@ -100,7 +100,7 @@ module pipeline_keeps_credits #(
       assert (!push || count_q < CountWidth'(Depth));
       if (waiting) assert (offered && out == out_before);
 
-      // Invariants: the queue holds no more words than two, and one for each clock since a test was taken
+      // Invariants: the queue holds at most two words, and one for each clock since a test was taken
       assert (since != '0 && since <= CountWidth'(Latency));
       for (int unsigned k = 1; k < Latency; k++) begin
         assert (!on_its_way[k] || since <= CountWidth'(k));

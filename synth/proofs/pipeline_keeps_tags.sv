@@ -1,6 +1,6 @@
-// The pipelined unit, whatever its arithmetic gives: the tests that come to their distances are those taken
-// in, each once and in order, with its tag and its ends of a burst. opened_hit_test_pipeline is the
-// unit with what enters nearest_hit as outputs. From there on: nearest_hit_keeps_nearest, fifo_keeps_order.
+// The pipelined unit, for any arithmetic: the tests that enter nearest_hit are those taken, each once and in order,
+// with its tag and its ends of a burst. opened_hit_test_pipeline is the unit with what enters nearest_hit as outputs.
+// nearest_hit_keeps_nearest and fifo_keeps_order prove the rest.
 module pipeline_keeps_tags #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -45,7 +45,7 @@ module pipeline_keeps_tags #(
     .\u_nearest.tag_i (nearest_tag)
   );
 
-  logic [Latency:1] taken;  // so many clocks ago
+  logic [Latency:1] taken;  // [n]: n clocks ago
   logic [Latency*(TagWidth+2)-1:0] what;
   initial taken = '0;
   always_ff @(posedge clk) begin

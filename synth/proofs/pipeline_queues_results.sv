@@ -1,6 +1,6 @@
-// What the pipelined unit puts into its queue it takes out as it put it in: with a wire for a queue each
-// port of the results is what nearest_hit and the dividers of P say, and there is a result exactly when one of
-// them says something. That a queue keeps words and their order: fifo_keeps_order.
+// The pipelined unit takes words out of its queue as it put them in: with a wire for a queue, each port of the results
+// is what nearest_hit and the dividers of P give, and there is a result exactly when one of them gives something.
+// fifo_keeps_order proves that a queue keeps words and their order.
 module pipeline_queues_results #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,
@@ -25,7 +25,7 @@ module pipeline_queues_results #(
   logic [TErrorWidth-1:0] t_error_out, nearest_t_error;
   logic [3*Width-1:0] point_out, point;
 
-  opened_hit_test_pipeline dut (  // with what these say as outputs, from any state
+  opened_hit_test_pipeline dut (  // with these results as outputs, from any state
     .clk_i(clk),
     .rst_ni(reset_n),
     .valid_i(valid_in),

@@ -1,5 +1,5 @@
-// A plane of a node's grid is from +- q s / 256, the product cut off: rows and adder give what `*` does. Of steps of few
-// bits: the tree is that of 33, but for its width.
+// plane_offset is from +- q s / 256, the product truncated: rows and adder give the same as `*`. For steps of few bits:
+// the tree differs from that of 33 bits only in width.
 module plane_offset_multiplies #(
   parameter int unsigned Width = 8,
   parameter int unsigned PlaneWidth = 11

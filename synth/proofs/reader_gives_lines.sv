@@ -1,11 +1,11 @@
-// The core's memory port, around any memory that answers in any order, with beats mixed and any errors, from reset and
-// for ever: it keeps AXI4 (sim/checks/axi_read_checks); a read is asked for at its line's address and given one line,
-// with its id, of the beats that came for it in their order, with an error where one of them had one or RLAST was not
-// at its burst's last; there are never more lines than reads. Of memory it is assumed that no beat comes which was not asked for.
+// The core's memory port, for any memory that answers in any order, with interleaved beats and any errors, from reset
+// on: it keeps AXI4 (sim/checks/axi_read_checks). A read is requested at its line's address and gets one line, with its
+// id: its burst's beats in order, with an error if a beat had one or RLAST did not come with the last beat.
+// There are never more lines than reads. Memory is assumed to send no beat that was not requested.
 // opened_axi_read_manager is the manager of two IDs, two beats a line, with its registers as outputs.
 module reader_gives_lines (
   input logic clk,
-  input logic choose  // the read taken now is the one that is watched
+  input logic choose  // watch the read taken now
 );
 
   (* anyseq *) logic [63:0] base;
@@ -106,7 +106,7 @@ module reader_gives_lines (
   assign given = line_valid && line_ready;
   always_ff @(posedge clk) reads <= reset_n ? reads + 3'(read) - 3'(given) : '0;
 
-  // ---- The watched read: asked for, its beats, its line at the output
+  // ---- The watched read: its request, its beats, its line at the output
 
   logic watching, asked, answering, its_id, first_last, second_last, first_error, second_error, error;
   logic [1:0] its_read_id;

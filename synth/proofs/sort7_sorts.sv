@@ -1,5 +1,5 @@
-// The sorting network puts any seven words in order and loses none: each word is as often among what comes out as
-// among what went in, two clocks earlier.
+// The sorting network puts any seven words in order and loses none: each word is as often in the output as it was in
+// the input two clocks before.
 module sort7_sorts #(
   localparam int unsigned Width = 4
 ) (

@@ -1,9 +1,9 @@
-// A ray's stack, whatever box_unit says, whichever rays wait, from reset and for ever: a node that was pushed is
-// asked for, once, by the line that its group gives, unless it was beyond the ray's t_max, or the ray had ended or met a node again, in
-// a clock in which its stack was looked at; until then the ray counts as traversing. No group is pushed without room for it, on
-// the ray's own stack or on the shared one, which one ray at a time has, as long as it needs it; a ray that is refused it
-// waits for another that has it and traverses, and is no longer refused when that one gives it back.
-// opened_traversal is traversal of two rays, with stacks of two groups and two shared ones, with its registers and memories as outputs.
+// A ray's stack, for any results of box_unit and any waiting rays, from reset on: a node that was pushed is requested,
+// once, by the line that its group gives, unless in a clock in which its stack was examined it was beyond the ray's
+// t_max, or the ray had ended or met a node again. Until then the ray counts as traversing. No group is pushed without
+// room on the ray's own stack or on the shared one, which one ray at a time has, as long as it needs it. A refused ray
+// waits for a ray that has it and traverses, until that ray gives it back. opened_traversal is traversal of two rays,
+// with stacks of two groups and two shared ones, with its state as outputs.
 module stack_keeps_nodes #(
   localparam int unsigned Rays  = 2,
   localparam int unsigned Depth = 2,
@@ -27,7 +27,7 @@ module stack_keeps_nodes #(
   input logic [Rays-1:0]       testing,
   input logic [30:0]           t_max,
   input logic                  ended,
-  input logic                  choose,  // the child `which` of the group pushed now is the one that is watched
+  input logic                  choose,  // watch the child `which` of the group pushed now
   input logic [2:0]            which
 );
 
@@ -43,7 +43,7 @@ module stack_keeps_nodes #(
   logic t_max_ray;
   logic [AddressWidth-1:0] node_line;
   logic [Rays-1:0] traversing, busy_q, waiting_q;
-  // Of each stage whether it has a ray that was picked, or one that starts, and which
+  // For each stage: whether it has a picked ray, or a ray that starts; and the ray's number
   logic picked_q, ray_q, choosing_q, choosing_ray_q, asked_q, asking_ray_q;
   logic next_valid_q, next_started_q, next_ray_q;
   logic [Rays-1:0] ready_q;
@@ -59,7 +59,7 @@ module stack_keeps_nodes #(
   logic [Rays*NextWidth-1:0] nexts_0, nexts_1;
   logic [(Levels-Depth)*Children-1:0] shared_masks;
   logic [(Rays*Depth+Levels-Depth)*GroupWidth-1:0] groups;
-  logic [GroupWidth-1:0] group_q;  // of the level that is asked
+  logic [GroupWidth-1:0] group_q;  // of the requested level
 
   opened_traversal dut (
     .clk_i(clk),
@@ -130,9 +130,9 @@ module stack_keeps_nodes #(
     line_of = group[GroupWidth-1-:AddressWidth] + AddressWidth'(group[EntryWidth*n+CountWidth+:OffsetWidth]);
   endfunction
 
-  // ---- What the user promises: rays begin that do not walk, nodes come that were asked for, near ones first
+  // ---- Assumptions about the user: rays start that do not traverse, nodes come that were requested, near ones first
 
-  logic [Rays-1:0] wanted;  // nodes asked for that have not come
+  logic [Rays-1:0] wanted;  // requested nodes that have not come
 
   function automatic logic is_sorted(logic [GroupWidth-1:0] group);
     is_sorted = 1'b1;
@@ -182,7 +182,7 @@ module stack_keeps_nodes #(
                                 : nexts_0[NextWidth*w_ray+EnterWidth+:Children];
   assign kept = groups[GroupWidth*(w_own ? {1'b0, w_ray, w_level[0]} : {2'b10, w_level[0]})+:GroupWidth];
 
-  logic asking, leaving;  // its group's level is being asked, and its node leaves
+  logic asking, leaving;  // its group's level is being requested, and its node leaves
   logic [Children-1:0] leaving_mask;
   always_ff @(posedge clk) leaving_mask <= mask_q;
   assign asking  = asked_q && asking_ray_q == w_ray && asked_level_q == {1'b0, w_level};
@@ -215,7 +215,7 @@ module stack_keeps_nodes #(
     end
   end
 
-  // Of each ray that it has been asked for a node, which has not come
+  // For each ray: a node was requested for it, which has not come
   logic [Rays-1:0] away, was_refused;
   logic was_released;
   always_comb begin

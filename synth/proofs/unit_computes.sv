@@ -1,6 +1,6 @@
-// What the paper's unit makes of a test's words, whatever functions its cores compute: whenever it takes
-// a test, and whatever it did before and is given after, the components that leave it 8, 9 and 10
-// clocks later are d I_k / (((0 + a Ix) + b Iy) + c Iz). That it takes tests when it should: timetable.
+// What the paper's unit computes from a test's words, whatever functions its cores compute: whenever it takes a test,
+// and whatever it did before and gets afterwards, the components that leave it 8, 9 and 10 clocks later are d I_k /
+// (((0 + a Ix) + b Iy) + c Iz). timetable proves that it takes tests when it should.
 module unit_computes #(
   localparam int unsigned Width = 32
 ) (
@@ -16,7 +16,7 @@ module unit_computes #(
   logic ready, output_valid;
   logic [Width-1:0] out;
 
-  hit_test_unit dut (  // in any state, but for this: a test is there, and is taken
+  hit_test_unit dut (  // in any state in which a test is offered and taken
     .clk_i(clk),
     .rst_ni(1'b1),
     .valid_i(valid),

@@ -1,6 +1,6 @@
-// The port that writes results, around any memory, from reset and for ever: it keeps AXI4 (sim/checks/axi_write_checks); the n-th
-// record since the last rewind is offered once, at base + 32 n, in order, while n is below the length; as many are told as
-// written as were answered. Of memory it is assumed that it answers no burst that it has not taken.
+// The port that writes results, for any memory, from reset on: it keeps AXI4 (sim/checks/axi_write_checks). The n-th
+// record since the last rewind is offered once, at base + 32 n, in order, while n is below the length. written_o counts
+// the records that were answered. Memory is assumed to answer no burst that it has not taken.
 // opened_axi_write_manager is the manager with its registers as outputs.
 module writer_puts_records #(
   parameter int unsigned DataWidth = 128,
@@ -8,7 +8,7 @@ module writer_puts_records #(
   localparam int unsigned Beats = 256 / BeatWidth
 ) (
   input logic clk,
-  input logic choose  // the record taken now is the one that is watched
+  input logic choose  // watch the record taken now
 );
 
   (* anyseq *) logic [63:0] base;

@@ -18,7 +18,7 @@ class Cores(unittest.TestCase):
         self.write("arith", ["adder.sv"], [])
 
     def write(self, core, files, depends):
-        """A core, and its files."""
+        """Writes a core and its files."""
         (self.hw / core).mkdir()
         lines = ["CAPI=2:", *(f"      - {name}" for name in files),
                  *(f"      - raygate:hw:{name}" for name in depends)]
@@ -27,13 +27,13 @@ class Cores(unittest.TestCase):
             (self.hw / core / name).touch()
 
     def test_order(self):
-        """What is used comes first, in a core its packages."""
+        """The cores that a core uses come first, and in a core its packages."""
         self.assertEqual([file.name for file in cores.files("fp", self.hw)],
                          ["adder.sv", "fp_pkg.sv", "fp_adder.sv"])
         self.assertEqual(cores.names(self.hw), ["arith", "fp"])
 
     def test_used(self):
-        """What a module names, outside comments, and what that names in turn."""
+        """Finds the modules that a module names outside comments, and the modules that those name."""
         (self.hw / "fp" / "fp_adder.sv").write_text("module fp_adder; fp_pkg::x; // adder\n")
         among = cores.files("fp", self.hw)
         self.assertEqual([file.stem for file in cores.used("fp_adder", among)], ["fp_pkg", "fp_adder"])
@@ -41,7 +41,7 @@ class Cores(unittest.TestCase):
         self.assertEqual(cores.used("fp_adder", among), among)
 
     def test_list_and_folder_disagree(self):
-        """A file too many, a file too few, no list at all: each is said."""
+        """Reports a file too many, a file too few, and no list at all."""
         for change, said in [(lambda: (self.hw / "arith" / "new.sv").touch(),
                               r"arith\.core: new\.sv is unlisted, expected a line"),
                              (lambda: (self.hw / "fp" / "fp_pkg.sv").unlink(),
@@ -55,7 +55,7 @@ class Cores(unittest.TestCase):
                 (self.hw / "arith" / "new.sv").unlink()
 
     def test_plain_verilog_takes_parameters_of_any_module(self) -> None:
-        """Also of modules with an unsized constant at a cell's port, and a run that fails leaves no file."""
+        """Writes modules with an unsized constant at a cell's port, too; a run that fails leaves no file."""
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "exact_unit.v"
             verilog.write(catalogue.design("exact_unit", DigitWidth=24), out)
@@ -65,7 +65,7 @@ class Cores(unittest.TestCase):
             self.assertFalse(out.exists())
 
     def test_boards_elaborate(self) -> None:
-        """With the cells of their FPGA."""
+        """Elaborates each board with the cells of its FPGA."""
         for each in board.BOARDS:
             with self.subTest(each.name), tempfile.TemporaryDirectory() as folder:
                 yosys.run(scripts.elaborated(each), pathlib.Path(folder) / "yosys.log")

@@ -1,4 +1,4 @@
-"""The table of modules, and what is made of the registers' page."""
+"""The table of modules, and the files that are made of the registers' page."""
 
 import csv
 import unittest
@@ -7,7 +7,7 @@ from synth import cores, datasheet, registers, tables
 
 
 class Datasheet(unittest.TestCase):
-    """Pieces of headers, tables, and marks."""
+    """Tests the reading of headers, and the pages' tables and figures."""
 
     HEADER = """// What it is, I . N being
 // a product. Combinational;
@@ -23,7 +23,7 @@ module m;
                          ["What it is, I . N being a product", "Combinational; one level", "Latency 2 clocks"])
 
     def test_a_row_says_what_a_module_is(self):
-        """Its description in few words, latency and throughput; and its figures are found again."""
+        """A row has a description in few words, latency and throughput; and its figures can be read back."""
         text = datasheet.page({"adder": ["64,000", "2.27", ""]})
         self.assertIn("\n|full_adder|Full adder: one bit of sum and carry|0|||||\n", text)
         self.assertIn("|fp_adder|Floating-point add and subtract|0 or, Pipelined, 3|one operation a clock||||\n", text)
@@ -47,7 +47,7 @@ module m;
             self.assertIn(claim, text)
 
     def test_every_folder_is_listed(self):
-        """The page of all names each core, with its page where it has one, and the table of modules."""
+        """hw/README.md names each core, with its page if it has one, and the table of modules."""
         text = (cores.HW / "README.md").read_text()
         self.assertIn("(modules.md)", text)
         for core in cores.names():
@@ -56,7 +56,7 @@ module m;
 
 
 class Registers(unittest.TestCase):
-    """hw/ray_core/registers.md. That the made files are up to date: `synth.datasheet --check`."""
+    """Tests the reading of hw/ray_core/registers.md. (`synth.datasheet --check` checks the generated files.)"""
 
     def setUp(self):
         self.text = registers.PAGE.read_text()

@@ -1,4 +1,4 @@
-"""Other people's float cores: what is taken from their files, and the processor's results."""
+"""Other projects' float cores: the parts taken from their files, and the processor's results."""
 
 import unittest
 

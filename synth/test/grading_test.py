@@ -8,7 +8,7 @@ from synth.structure import COUNTINGS, Counting
 
 
 def delay(groups: tuple[int, ...], counting: Counting) -> float:
-    """The last sum bit of a carry-select adder, straight from its definition."""
+    """Returns the delay of a carry-select adder's last sum bit, straight from its definition."""
     carry, slowest = None, 0.0
     for size in groups:
         ready = 0.0
@@ -21,7 +21,7 @@ def delay(groups: tuple[int, ...], counting: Counting) -> float:
 
 
 def compositions(total: int) -> list[tuple[int, ...]]:
-    """All ways to cut `total` bits into groups."""
+    """Returns all ways to cut `total` bits into groups."""
     found = []
     for cuts in itertools.product((0, 1), repeat=total - 1):
         groups, size = [], 1
@@ -35,17 +35,17 @@ def compositions(total: int) -> list[tuple[int, ...]]:
 
 
 class Grading(unittest.TestCase):
-    """best_by_model."""
+    """Tests best_by_model."""
 
     def test_optimum_of_10_bits(self):
-        """The dynamic programme finds what trying all 512 groupings finds."""
+        """The dynamic programme finds the optimum of all 512 groupings."""
         for counting in COUNTINGS:
             found, groups = grading.best_by_model(10, counting)
             self.assertEqual(found, min(delay(g, counting) for g in compositions(10)))
             self.assertEqual(found, delay(groups, counting))
 
     def test_paper(self):
-        """10 delays for 48 bits where the multiplexer of the sum bit isn't counted, else 11."""
+        """10 delays for 48 bits if the multiplexer of the sum bit is not counted, else 11."""
         self.assertEqual(grading.best_by_model(48, COUNTINGS[1])[0], 10)
         self.assertEqual(grading.best_by_model(48, COUNTINGS[0])[0], 11)
 
@@ -57,7 +57,7 @@ class Grading(unittest.TestCase):
 
 
 def cell(kind: str, inputs: dict[str, int], outputs: dict[str, int]) -> dict:
-    """A cell as Yosys's JSON has it, all ports of one bit."""
+    """Returns a cell in the form of Yosys's JSON, with ports of one bit."""
     return {"type": kind, "connections": {port: [bit] for port, bit in {**inputs, **outputs}.items()},
             "directions": {**dict.fromkeys(inputs, "input"), **dict.fromkeys(outputs, "output")}}
 
@@ -74,14 +74,14 @@ MODULE = {
 
 
 class Count(unittest.TestCase):
-    """structure.delay."""
+    """Tests structure.delay."""
 
     def test_countings(self):
-        """The last multiplexer counts as the counting says."""
+        """Each counting has its own delay of the last multiplexer."""
         every, carries = COUNTINGS[:2]
         self.assertEqual(structure.delay(MODULE, every), 3)
         self.assertEqual(structure.delay(MODULE, carries), 2)
 
     def test_cells(self):
-        """Each kind's number."""
+        """Counts the cells of each kind."""
         self.assertEqual(structure.hardware(MODULE), {"full_adder": 2, "multiplexer": 1, "gate": 0})

@@ -1,4 +1,4 @@
-"""Layouts: what is read from LEF, DEF and magic, and one adder from netlist to delay with wires."""
+"""Layouts: the readers of LEF, DEF and magic's files, and one adder from netlist to delay with wires."""
 
 import pathlib
 import tempfile
@@ -62,10 +62,10 @@ END NETS
 
 
 class Reading(unittest.TestCase):
-    """What the tools' files say."""
+    """Readers of the tools' files."""
 
     def test_lef(self):
-        """A cell's size and signal pins; the rails are none."""
+        """Reads a cell's size and signal pins, without rails."""
         with tempfile.TemporaryDirectory() as name:
             file = pathlib.Path(name) / "tiny.lef"
             file.write_text(LEF)
@@ -78,13 +78,13 @@ class Reading(unittest.TestCase):
                 lef.read(file)
 
     def test_routed(self):
-        """Wires with vias, in um; a net without wires has none."""
+        """Reads wires with vias, in um; a net without wires has none."""
         self.assertEqual(route.wires(ROUTED, list(LAYERS)), {"n2": [], "n1": [
             Wire("metal1", 1.6, 4, 1.6, 4, "metal2"), Wire("metal2", 1.6, 4, 1.6, 8),
             Wire("metal2", 1.6, 8, 1.6, 8, "metal3"), Wire("metal3", 1.6, 8, 4.8, 8)]})
 
     def test_capacitances(self):
-        """To ground and to neighbours; what belongs to a cell's pin is left out."""
+        """Counts capacitance to ground and to neighbours; that of a cell's pin is left out."""
         text = ('scale 1000 1 5\nnode "n1" 2 1000 0 0 m2\nnode "c0/A" 2 9 0 0 m1\n'
                 'cap "n1" "n2" 500\nmerge "c0/A" "n1" -70\n')
         found = parasitics.capacitances(text, {"n1", "n2"})
@@ -92,7 +92,7 @@ class Reading(unittest.TestCase):
         self.assertAlmostEqual(found["n2"], 0.0005)
 
     def test_gaps(self):
-        """Room by pins: none in full rows; else what is asked for, most beside the narrow cell of many pins."""
+        """There are no gaps in full rows; else gaps have the room asked for, most beside the narrow cell of many pins."""
         wide = {"c0": Cell("a", "WIDE", {"A": "p0", "Y": "n1"})}
         narrow = {f"c{place}": Cell("b", "NARROW", dict.fromkeys("ABCY", "n1")) for place in range(1, 9)}
         technology = Technology(LAYERS, {"WIDE": lef.Macro(48, 20, {}), "NARROW": lef.Macro(8, 20, {})})
@@ -109,32 +109,32 @@ class Trees(unittest.TestCase):
     TAPS = {"c0:Y": [Rect("metal1", 1.4, 3.8, 1.8, 4.2)], "c1:A": [Rect("metal3", 4.6, 7.8, 5, 8.2)]}
 
     def ohms(self, wires: list[Wire]) -> float:
-        """All resistors of a net in series."""
+        """Returns the sum of a net's resistors, which are in series."""
         found = parasitics.tree(wires, self.TAPS, TECHNOLOGY, {"metal1": 1.3, "metal2": 1.2})
         return sum(value for _, _, value in found.resistors if value > 0.01)
 
     def test_series(self):
-        """Sheets by length over width, and contacts."""
+        """Adds up sheets by length over width, and contacts."""
         wires = route.wires(ROUTED, list(LAYERS))["n1"]
         self.assertAlmostEqual(self.ohms(wires), 1.3 + 1.2 + 0.07 * 7.2 / 0.6)
         with self.assertRaisesRegex(tools.ToolFailed, "2 pieces"):
             self.ohms([wire for wire in wires if wire.to != "metal3"])
 
     def test_turned(self):
-        """A cell's metal where the cell is turned both ways."""
+        """Turns the metal of a cell about both axes."""
         self.assertEqual(parasitics.turned(Rect("metal1", 1, 2, 3, 4), (10, 20), (100, 200), "S"),
                          Rect("metal1", 107, 216, 109, 218))
 
 
 class Estimate(unittest.TestCase):
-    """Wires before routing."""
+    """Tests estimated wires."""
 
     def test_tree(self):
-        """The nearest of those joined, not the first."""
+        """A new point joins the nearest point of the tree, not the first."""
         self.assertEqual(estimate.tree([(0, 0), (10, 0), (12, 1), (0, 3)]), [(0, 3), (0, 1), (1, 2)])
 
     def test_wires(self):
-        """From pin to pin upwards in metal 2 and across in metal 3, in one piece; none of a net of one pin."""
+        """Wires lead from pin to pin, upwards in metal 2 and across in metal 3, in one piece; a net of one pin has none."""
         technology = Technology(LAYERS, {"INVX1": lef.Macro(4.8, 20, {
             "A": [Rect("metal1", 0.4, 6, 1.2, 8)], "Y": [Rect("metal1", 2, 6, 2.8, 8)]})})
         nets = Netlist("top", {"c0": Cell("a", "INVX1", {"A": "p0", "Y": "n1"}),
@@ -152,10 +152,10 @@ class Estimate(unittest.TestCase):
 
 
 class Parts(unittest.TestCase):
-    """picture.parts_of."""
+    """Tests picture.parts_of."""
 
     def test_bits(self):
-        """A cell of an adder is of the highest operand bit before it."""
+        """A cell of an adder belongs to the highest operand bit that it depends on."""
         nets = Netlist("adder", {"c0": Cell("x", "INVX1", {"A": "p2", "Y": "n1"}),
                                  "c1": Cell("y", "NAND2X1", {"A": "n1", "B": "p0", "Y": "p3"}),
                                  "c2": Cell("z", "INVX1", {"A": "p0", "Y": "n2"})},
@@ -165,7 +165,7 @@ class Parts(unittest.TestCase):
         self.assertEqual(found, {"c2": "bits 0 to 7", "c0": "bits 8 to 15", "c1": "bits 8 to 15"})
 
     def test_names(self):
-        """Another design's cells are of the instance that they are in."""
+        """Another design's cells belong to the instance that they are in."""
         names = ["u_tree.gen_adder[0].u_adder.u_cell", "$flatten\\u_last_adder.\\u_adder.$1", "$abc$1$auto$2"]
         nets = Netlist("top", {f"c{place}": Cell(name, "INVX1", {}) for place, name in enumerate(names)}, {})
         self.assertEqual(picture.parts_of(catalogue.design("booth_multiplier"), nets, {}), {
@@ -179,7 +179,7 @@ class Report(unittest.TestCase):
               "cells_ns": 2.0, "guess_ns": 2.8}
 
     def test_table(self):
-        """The median with its spread and the ratio; nets that failed, and no delay then."""
+        """Shows the median with its spread and the ratio; or the nets that failed, and then no delay."""
         routed = {**self.RECORD, "wires_ns": 3.0, "spread": [2.9, 3.0, 3.2], "failed": [0, 0, 0]}
         failed = {**self.RECORD, "spread": [], "failed": [7]}
         placed = {**failed, "failed": [None]}
@@ -195,7 +195,7 @@ class Adder(unittest.TestCase):
     """An 8-bit ripple adder, from RTL to its delay with wires."""
 
     def test_laid_out(self):
-        """All nets are routed; wires add to the delay of the cells, and not much in so small an adder."""
+        """All nets are routed; wires add to the delay of the cells, but little in so small an adder."""
         design = catalogue.design("adder", adder="ripple", Width=8)
         with (tempfile.TemporaryDirectory() as name,
               mock.patch.object(store, "OUT", pathlib.Path(name))):
@@ -216,7 +216,7 @@ class Placement(unittest.TestCase):
     """Coloquinte's placement of a 16-bit adder."""
 
     def test_placed(self):
-        """Rows in which no cell overlaps another's place, ports around them, the density asked for."""
+        """No cells overlap in the rows, ports lie around them, the density is the one asked for."""
         library = catalogue.library("osu035")
         design = catalogue.design("adder", adder="prefix", Width=16)
         with (tempfile.TemporaryDirectory() as name,

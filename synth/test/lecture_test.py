@@ -13,13 +13,13 @@ from synth import catalogue, lecture, structure, tools
 
 
 def given(**changed: object) -> argparse.Namespace:
-    """The options of a page of eight bits."""
+    """Returns the options of a page of eight bits."""
     return argparse.Namespace(**{"width": 8, "groups": None, "a": 181, "b": 90, "carry": 1, "x": 1.5, "y": -0.3} | changed)
 
 
 class Values(unittest.TestCase):
     def test_adders_add(self) -> None:
-        """Each kind, as elaborated and without what constants decide; that has fewer gates where there are constants."""
+        """Each kind adds, as elaborated and without constants; removing them saves gates only in kinds that have some."""
         numbers = random.Random(1)
         for kind, look_ahead in (("ripple", None), ("uniform", False), ("graded", True), ("graded", False), ("prefix", None)):
             whole = structure.netlist(catalogue.design("adder", adder=kind, look_ahead=look_ahead, Width=9))

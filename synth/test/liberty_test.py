@@ -1,4 +1,4 @@
-"""Liberty files: what is read of them, and a user's library in the flows."""
+"""Liberty files: the parser, and a user's library in the flows."""
 
 import contextlib
 import io
@@ -10,13 +10,13 @@ from unittest import mock
 from synth import __main__ as program
 from synth import catalogue, liberty, mapping, store
 
-# A library in femtofarads and picoseconds: as many cells as ABC and a register need.
+# A library in femtofarads and picoseconds: only the cells that ABC and a register need.
 TABLE = 'values ("10, 100", "20, 110");'
 SLEWS = 'index_1 ("10, 100"); index_2 ("1, 100");'
 
 
 def cell(name: str, area: float, farads: float, function: str, inputs: str) -> str:
-    """A gate all of whose arcs have the same table."""
+    """Returns a gate all of whose arcs have the same table."""
     arcs = "".join(f"timing () {{ related_pin : {pin}; timing_sense : {'negative' if function[0] in '!(' else 'positive'}_unate; " + "".join(
         f"{kind} (t) {{ {SLEWS} {TABLE} }} " for kind in ("cell_rise", "cell_fall", "rise_transition", "fall_transition")) + "}\n"
         for pin in inputs)
@@ -34,7 +34,7 @@ LIBRARY = ("library (small) { /* of a test */\n  time_unit : \"1ps\"\n  capaciti
 
 
 class Reading(unittest.TestCase):
-    """liberty.parse."""
+    """Tests liberty.parse."""
 
     def test_units_without_semicolons_comments_and_tables(self):
         found = liberty.parse(LIBRARY, "small.lib")
@@ -56,10 +56,10 @@ class Reading(unittest.TestCase):
 
 
 class OfUser(unittest.TestCase):
-    """LIBERTY=FILE."""
+    """Tests LIBERTY=FILE."""
 
     def measured(self, text: str, flow: str) -> tuple[catalogue.Library, dict]:
-        """A ripple adder of 4 bits with such a library."""
+        """Returns the library in `text`, and a ripple adder of 4 bits that is mapped to it."""
         with tempfile.TemporaryDirectory() as name, mock.patch.object(store, "OUT", pathlib.Path(name)):
             file = pathlib.Path(name) / "my cells.lib"
             file.write_text(text)
@@ -88,7 +88,7 @@ class OfUser(unittest.TestCase):
                 self.assertAlmostEqual(got["delay_ns"] / same["delay_ns"], 1, delta=0.02)
 
     def test_the_command_line(self):
-        """One design, and of the report's rows the flows of OSU's cells."""
+        """Measures one design; the report's rows have only the flows for which the library has the cells."""
         said, libraries = io.StringIO(), list(catalogue.LIBRARIES)
         with (tempfile.TemporaryDirectory() as name, mock.patch.object(store, "OUT", pathlib.Path(name)),
               mock.patch.object(catalogue, "LIBRARIES", libraries), contextlib.redirect_stdout(said)):

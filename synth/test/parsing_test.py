@@ -1,4 +1,4 @@
-"""What is read from command lines and from the tools' reports."""
+"""Parsers of command lines and of the tools' reports."""
 
 import argparse
 import contextlib
@@ -29,10 +29,10 @@ OPENSTA = """\
 
 
 class Options(unittest.TestCase):
-    """chosen.whole and chosen.whole_numbers."""
+    """Tests chosen.whole and chosen.whole_numbers."""
 
     def test_whole(self):
-        """All is looked at before anything runs."""
+        """Options are checked before anything runs."""
         for check, right, wrong in ((chosen.whole(1, 9), {"1": 1, "9": 9}, ("", "0", "10", "nan", "2.5", "x", "-1")),
                                     (chosen.whole_numbers, {"4": [4], "4,5,7": [4, 5, 7]}, ("", "abc", "4,,5", "0", "1,-1", "256"))):
             for text, value in right.items():
@@ -43,7 +43,7 @@ class Options(unittest.TestCase):
 
 
 class Parsing(unittest.TestCase):
-    """mapping's readers."""
+    """Tests mapping's readers."""
 
     def test_critical_path(self):
         """Arrival and set-up time add up; steps are pins with their cells."""
@@ -54,7 +54,7 @@ class Parsing(unittest.TestCase):
         self.assertEqual(steps[2]["delay"], 0.12)
 
     def test_registers(self):
-        """A path's ends by what its registers hold; a port as itself."""
+        """A path's end is the signal in its register, or its port."""
         netlist = "DFFPOSX1 _2_ (\n .CLK(clk_i),\n .D(n1),\n .Q(\\u_core.sum_q[3] )\n);\n"
         self.assertEqual(mapping.registers(netlist, [{"pin": "bus_i[0]"}, {"pin": "_2_/D"}]),
                          {"from": "bus_i[0]", "to": "u_core.sum_q[3]"})
@@ -65,7 +65,7 @@ class Parsing(unittest.TestCase):
             mapping.critical_path("Error: netlist.v, line 3 syntax error\nNo paths found.\n")
 
 
-# As Yosys states it: a module's area is that of all in it.
+# As Yosys states it: a module's area includes its submodules.
 STAT = {
     "line_cache$ray_core.u_memory.u_cache": {"area": 100.0, "num_cells_by_type": {"DFFPOSX1": 10}},
     "memory_subsystem$ray_core.u_memory": {
@@ -92,7 +92,7 @@ end
 
 
 class Blocks(unittest.TestCase):
-    """mapping.block_costs and mapping.kept_memories."""
+    """Tests mapping.block_costs and mapping.kept_memories."""
 
     def test_blocks_count_what_is_in_them(self):
         memories = mapping.kept_memories(DUMP)
@@ -108,7 +108,7 @@ class Blocks(unittest.TestCase):
 
 
 class Wrappers(unittest.TestCase):
-    """The Verilog that is written around a design."""
+    """The Verilog wrapper of a design."""
 
     PORTS = {"a_i": {"direction": "input", "bits": [2, 3]}, "b_o": {"direction": "output", "bits": [4]}}
 
@@ -125,24 +125,24 @@ class Wrappers(unittest.TestCase):
                          [7, 10, 1])
 
     def test_registered(self):
-        """All inputs and outputs between registers, as many as there are."""
+        """All inputs and outputs get registers."""
         ports = fpga.port_widths("d", {"modules": {"d": {"ports": self.PORTS}}})
         self.assertEqual(ports, [("input", "a_i", 2), ("output", "b_o", 1)])
-        text = fpga.registered(Design("d", "d", "fp", clock="clk_i"), [("input", "clk_i", 1), *ports])  # the design's clock is the registers'
+        text = fpga.registered(Design("d", "d", "fp", clock="clk_i"), [("input", "clk_i", 1), *ports])  # its clock is the registers'
         self.assertIn(".clk_i(clk_i)", text)
         self.assertIn("reg [1:0] in;", text)
         self.assertIn(".a_i(in[0 +: 2])", text)
         self.assertIn(".b_o(result[0 +: 1])", text)
 
     def test_twins(self):
-        """One vector for both."""
+        """RTL and netlist get the same vector of inputs."""
         text = netlists.twins(Design("d", "d", "arith"), self.PORTS)
         self.assertIn("d #() u_rtl (.a_i(in_i[0 +: 2]), .b_o(rtl_b_o));", text)
         self.assertIn("netlist u_netlist (.a_i(in_i[0 +: 2]), .b_o(netlist_b_o));", text)
 
 
 def design(*words: str) -> catalogue.Design:
-    """What `make synth TOP=... ...` describes."""
+    """Returns the design that `make synth TOP=... ...` describes."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--top")
     chosen.add_arguments(parser)

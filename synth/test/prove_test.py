@@ -1,5 +1,5 @@
-"""A proof refuses what is broken: a wrong wire in an array's lane, a counter that misses events, two
-results' places exchanged, a hit that is forgotten."""
+"""Proofs refuse faults: a wrong wire in an array's lane, a counter that misses events, two results' places exchanged, a hit that is
+forgotten."""
 
 import pathlib
 import tempfile
@@ -8,7 +8,7 @@ import unittest.mock
 
 from synth import catalogue, cores, prove, store, tools, unit_proofs
 
-# By the proof that refuses them: faults of a module, as a text of it and what stands in its place.
+# Faults of modules, by the proof that refuses them: a text of the module and its replacement.
 FAULTS = {
     "array": ("hit_test_array", [
         (".tag_i(tag_i[TagWidth*n +: TagWidth])", ".tag_i(tag_i[0 +: TagWidth])"),
@@ -115,7 +115,7 @@ class Netlists(unittest.TestCase):
     """Which netlists are compared with their RTL."""
 
     def test_none_that_can_only_fail(self):
-        """Without registers by ABC, units by simulation; those whose memories are ports by neither."""
+        """Netlists without registers are compared by ABC, units by simulation, netlists whose memories are ports not at all."""
         names = {proof.name: proof.how for proof in prove.all_proofs() if proof.name.startswith("netlist.")}
         self.assertEqual([name for name in names if name.endswith(".blocks")], [])
         clocked = {f"netlist.{row.design.name}." for row in catalogue.report_rows() if row.design.clock}

@@ -1,4 +1,4 @@
-"""Tables of the report, and what is measured for them."""
+"""Tables of the report, and the measurements for them."""
 
 import contextlib
 import io
@@ -29,7 +29,7 @@ class Others(unittest.TestCase):
 
 
 class Measured(unittest.TestCase):
-    """measured_tables."""
+    """Tests measured_tables."""
 
     def test_a_row_is_printed_when_it_is_measured(self) -> None:
         rows = [catalogue.Row("adders", catalogue.Design(name, "adder", "arith"), {"osu035": ("cells", "fast"), "ice40": ("placed",)})
@@ -56,7 +56,7 @@ class Measured(unittest.TestCase):
 
 
 class Targets(unittest.TestCase):
-    """measure.available and catalogue.first_rows."""
+    """Tests measure.available and catalogue.first_rows."""
 
     def test_the_main_designs_are_designs_of_the_report(self) -> None:
         rows = catalogue.first_rows()
@@ -74,7 +74,7 @@ class Targets(unittest.TestCase):
 
 
 class Tables(unittest.TestCase):
-    """tables' two forms."""
+    """Tests the two forms of tables."""
 
     def test_markdown(self):
         """Columns line up, numbers to the right."""
@@ -82,5 +82,5 @@ class Tables(unittest.TestCase):
                          "| what |   ns |\n|------|-----:|\n| a    |  9.5 |\n| b    | 10.5 |\n")
 
     def test_comma_separated(self):
-        """What a row has not is left empty; what is not asked for is left out."""
+        """Missing values are left empty; columns that are not asked for are left out."""
         self.assertEqual(tables.comma_separated([{"a": 1, "c": 2}], ["a", "b"]), "a,b\n1,\n")

@@ -14,7 +14,7 @@ from synth import store, tools
 
 
 class Cached(unittest.TestCase):
-    """store.cached."""
+    """Tests store.cached."""
 
     def test_jobs_that_want_the_same_wait_for_one(self):
         made = []

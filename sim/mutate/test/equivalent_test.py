@@ -1,4 +1,4 @@
-"""sim.mutate: faults that change nothing are told from those that do, also behind registers."""
+"""Tests sim.mutate: it tells faults that change nothing from those that do, also behind registers."""
 
 import pathlib
 import re
@@ -25,7 +25,7 @@ endmodule
 
 
 class Equivalent(unittest.TestCase):
-    """equivalent."""
+    """Tests `equivalent`."""
 
     def test_tells_faults_from_none(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -42,7 +42,7 @@ class Equivalent(unittest.TestCase):
 
 
 class Place(unittest.TestCase):
-    """place."""
+    """Tests `place`."""
 
     def test_is_the_expression_and_not_where_its_instance_is(self):
         fault = "mutate -mode inv -cell $1 -port A -portbit 2 -src /r/hw/fp/fp_adder.sv:24.5 -src /r/hw/fp/fp_round.sv:112.23-112.38"

@@ -37,7 +37,7 @@ class Page(unittest.TestCase):
         self.browser.execute_script("document.getElementById(arguments[0]).click()", name)
 
     def rows(self):
-        """The table's cells, by clock edge."""
+        """Returns the table's cells, by clock edge."""
         return self.browser.execute_script(
             "return [...document.querySelectorAll('#table tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
 
@@ -51,7 +51,7 @@ class Page(unittest.TestCase):
         for row, expected in zip(self.rows(), edges):
             edge, *rest = expected
             name = rest.pop(0) if int(edge) <= 7 else ""
-            # The program prints I-1, I-2, I-3 and then as here; after the seventh word its bus carries noise, which they take.
+            # The program prints I-1, I-2, I-3, then the page's other columns. After edge 7 noise of its bus enters N, I-3, I-2.
             first, second, third, normal, *others = rest[:7]
             is_noisy = int(edge) > 7
             expected = [first, *others] if is_noisy else [third, second, first, normal, *others]

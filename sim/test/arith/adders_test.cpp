@@ -16,7 +16,7 @@ constexpr std::uint32_t kAllKinds = 0x1ff;
 
 class AddersTest : public testing::Test {
  protected:
-  /// Adds, and holds all adders against a + b + carry + error.
+  /// Adds, and expects a + b + carry + error of all adders.
   void add(std::uint64_t a, std::uint64_t b, bool carry, unsigned __int128 error = 0) {
     const unsigned __int128 sum = static_cast<unsigned __int128>(a) + b + carry + error;
     model_->a_i = a;
@@ -48,7 +48,7 @@ TEST_F(AddersTest, WrongSumIsSeenInEveryAdder) {
   EXPECT_EQ(model_->wrong_kind_o, kAllKinds);
 }
 
-// The bits above the lowest eight are random, for wider adders.
+// Exhaustive in the lowest eight bits; those above are random, for wider adders.
 TEST_F(AddersTest, ExhaustiveUpToEightBits) {
   std::mt19937_64 random(1);
   for (std::uint64_t low = 0; low < 1 << 17; ++low) {
@@ -58,7 +58,7 @@ TEST_F(AddersTest, ExhaustiveUpToEightBits) {
   }
 }
 
-// A carry born at every bit that runs to every other bit, through ones in either operand.
+// A carry from every bit to every higher one, propagated through ones in either operand.
 TEST_F(AddersTest, CarryChains) {
   std::mt19937_64 random(2);
   for (int first = 0; first < 64; ++first) {
@@ -75,7 +75,7 @@ TEST_F(AddersTest, CarryChains) {
   }
 }
 
-// Runs of zeros and ones of random lengths, where carries are born, run and die.
+// Runs of zeros and ones of random lengths, which generate, propagate and kill carries.
 TEST_F(AddersTest, RandomRuns) {
   std::mt19937_64 random(3);
   const auto runs = [&random] {

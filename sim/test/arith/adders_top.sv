@@ -1,5 +1,5 @@
-// All kinds of adder at many widths on the same operands, held against one 65-bit sum from outside;
-// leading-zero counters, held against shifts.
+// All kinds of adder at many widths on the same operands, checked against one 65-bit sum from the test; leading-zero
+// counters, checked against shifts.
 //
 // The low bits of a sum do not depend on the width, and the carry out of W bits is
 // a[W] ^ b[W] ^ sum[W]: expected_i = a_i + b_i + carry_i serves every width.
@@ -20,7 +20,7 @@ module adders_top (
   };
   localparam int unsigned NumKinds = 9;
 
-  // Groups of other shapes than the kinds' own: growing and shrinking, with single bits.
+  // Groups that no kind has: growing, shrinking, of single bits.
   function automatic bit [8*arith_pkg::MaxGroups-1:0] odd_groups(int unsigned width);
     int unsigned left, size;
     left = width;
@@ -44,14 +44,14 @@ module adders_top (
     expected <= expected_i;
   end
 
-  assign carries = expected ^ {1'b0, a} ^ {1'b0, b};  // into each bit
+  assign carries = expected ^ {1'b0, a} ^ {1'b0, b};  // carry into each bit
 
   for (genvar w = 0; w < NumWidths; w++) begin : gen_width
     localparam int unsigned Width = 32'(Widths[8*w+:8]);
     logic [NumKinds-1:0] wrong, wrong_so_far;
 
-    // The five kinds of arithmetic; both carry-select ones with groups cut also where one would do, and with
-    // ripple groups; odd groups of both sorts.
+    // The five kinds of arithmetic; graded groups even where one group is the default; uniform ripple groups; odd
+    // groups with look-ahead and with ripple.
     for (genvar k = 0; k < NumKinds; k++) begin : gen_kind
       localparam int unsigned Arith = (k < 5) ? k : (k == 6) ? arith_pkg::Uniform : arith_pkg::Graded;
       localparam bit LookAhead = (k < 6) || (k == 7);

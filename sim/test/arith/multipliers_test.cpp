@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr std::array kWidths = {2, 3, 4, 5, 6, 7, 8, 9, 11, 16, 23, 32};  // as multipliers_top.sv
+constexpr std::array kWidths = {2, 3, 4, 5, 6, 7, 8, 9, 11, 16, 23, 32};  // of multipliers_top.sv
 
 class MultipliersTest : public testing::Test {
  protected:
@@ -46,7 +46,7 @@ class MultipliersTest : public testing::Test {
   Model<Vmultipliers_top> model_;
 };
 
-// The bits above the lowest eight are random, for wider multipliers.
+// Exhaustive in the lowest eight bits; those above are random, for wider multipliers.
 TEST_F(MultipliersTest, ExhaustiveUpToEightBits) {
   std::mt19937 random(1);
   for (std::uint32_t low = 0; low < 1 << 16; ++low) {
@@ -56,7 +56,7 @@ TEST_F(MultipliersTest, ExhaustiveUpToEightBits) {
   }
 }
 
-// Every Booth digit at every place, alone and among others; single bits, runs, their neighbours.
+// Every Booth digit in every position, alone and among others; single bits, runs, neighbours.
 TEST_F(MultipliersTest, Structured) {
   std::vector<std::uint32_t> words = {0,          ~0u,        0x55555555, 0xaaaaaaaa,
                                       0x33333333, 0xcccccccc, 0x92492492, 0x6db6db6d};

@@ -1,4 +1,4 @@
-// A board's small core finds, behind its link and its SDRAM, what CpuIntersector finds.
+// A board's small core, behind its link and SDRAM, finds the hits that CpuIntersector finds.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -24,12 +24,12 @@
 
 namespace {
 
-std::atomic<bool> is_broken{false};  // a break was sent and not received
+std::atomic<bool> is_broken{false};  // a break was sent, but not yet received
 
 }  // namespace
 
-/// A pseudoterminal carries no breaks: in place of the C library's function, this one has
-/// BoardAtAPort receive them.
+/// Replaces the C library's function: pseudoterminals carry no breaks, so this one has BoardAtAPort
+/// receive them.
 extern "C" int tcsendbreak(int /*file*/, int /*duration*/) {
   is_broken = true;
   while (is_broken) std::this_thread::yield();
@@ -69,7 +69,7 @@ TEST(BoardCore, HitsAreTheCpuIntersectors) {
   EXPECT_GT(unit.counters().clocks, 11 * unit.counters().tests);
 }
 
-/// Scenes of other images, one after the other: a board keeps no line of an earlier one.
+/// Different scenes, one after the other: a board keeps no line of an earlier one.
 TEST(BoardCore, ScenesFollowEachOther) {
   const Bvh one{test::scene_of(bodies())};
   const Bvh other{test::scene_of(test::box(glm::vec3(-0.7f), glm::vec3(0.6f)))};
@@ -105,8 +105,8 @@ TEST(BoardCore, ScenesFollowEachOther) {
   }
 }
 
-/// A board whose words come all at once, when it has no more of them: as a serial port's do to a
-/// busy host, which then must not wait for another.
+/// A board whose words arrive all at once, after its last one: as from a serial port to a busy
+/// host, which then must not wait for another word.
 class BurstLink : public WordLink {
  public:
   bool send(std::uint32_t word) override {
@@ -159,8 +159,8 @@ TEST(BoardCore, AHostThatHasAllResultsSendsTheNextRays) {
   check.nearest(rays, {}, hits);
 }
 
-/// A simulated board behind a pseudoterminal, as behind a serial port: its bytes are those of
-/// uart_receiver and uart_transmitter.
+/// A simulated board behind a pseudoterminal, as behind a serial port: its bytes are those that
+/// uart_receiver takes and uart_transmitter sends.
 class BoardAtAPort {
  public:
   BoardAtAPort() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
@@ -193,7 +193,7 @@ class BoardAtAPort {
         link->restart();
         is_broken = false;
       }
-      // It asks for bytes now and then, and always when it has nothing to do.
+      // Takes the bytes that have come, up to a word.
       while (in.size() < 4 && read(master_, &byte, 1) == 1) in.push_back(byte);
       if (in.size() >= 4 && link->send(in[0] | in[1] << 8 | in[2] << 16 | unsigned{in[3]} << 24)) {
         in.erase(in.begin(), in.begin() + 4);
@@ -220,8 +220,8 @@ class BoardAtAPort {
   std::thread board_;
 };
 
-/// A host that ends in the middle of a message, by bytes or words, and whose rays are in the core:
-/// the next host is none the wiser.
+/// Leaves as a host that stops in mid-message, between words and within one, with rays in the core;
+/// the next host must not notice.
 void leave_a_mess(const std::string& port, std::span<const Ray> rays) {
   const std::unique_ptr<WordLink> link = open_serial_link(port);
   const auto send = [&](const Ray& ray, std::size_t words) {
@@ -233,7 +233,7 @@ void leave_a_mess(const std::string& port, std::span<const Ray> rays) {
   while (!link->receive()) link->wait();
   const int file = open(port.c_str(), O_RDWR | O_NOCTTY);
   EXPECT_EQ(write(file, "x", 1), 1);
-  usleep(50'000);  // the board takes the byte
+  usleep(50'000);  // until the board has taken the byte
   close(file);
 }
 

@@ -18,7 +18,7 @@ namespace raygate {
 namespace {
 
 using Line = std::array<std::uint32_t, 16>;
-constexpr int kStart = 200 * 40 + 20;  // clocks until it takes the first line
+constexpr int kStart = 200 * 40 + 20;  // clocks until the controller takes the first line
 
 class SdramControllerTest : public testing::Test {
  protected:
@@ -55,7 +55,7 @@ TEST_F(SdramControllerTest, LinesComeAsTheyWent) {
   Line data{};
   for (int now = 0; now < 120'000; ++now) {
     if (model_->write_valid_i == 0 && chance(8)) {
-      // neighbours, far ones, and numbers beyond memory, which wrap
+      // neighbouring and distant lines, and numbers beyond memory, which wrap
       number = chance(128) ? random() % 64 : random() % (1u << 28);
       for (std::uint32_t& word : data) word = random();
       model_->write_valid_i = 1;
@@ -98,7 +98,7 @@ TEST_F(SdramControllerTest, LinesComeAsTheyWent) {
   EXPECT_GT(written, 500);
 }
 
-/// The header's clocks, where no refresh comes between.
+/// The header's latency and period, without refreshes in between.
 TEST_F(SdramControllerTest, ALineTakesItsTime) {
   for (int i = 0; i < kStart; ++i) clock();
   int latency = 1'000, period = 1'000;

@@ -1,4 +1,4 @@
-// A transmitter whose line goes to a receiver, and may be broken.
+// A transmitter connected to a receiver by a line that low_i can hold low.
 module uart_pair #(
   parameter int unsigned ClocksPerBit = 5
 ) (

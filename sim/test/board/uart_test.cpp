@@ -1,4 +1,4 @@
-// Words go through a serial line of 8N1 as they are, at its rate.
+// Words pass an 8N1 serial line unchanged, at its rate.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-constexpr int kClocksPerBit = 5;  // as the model has it
+constexpr int kClocksPerBit = 5;  // of the model
 
 class UartTest : public testing::Test {
  protected:
@@ -57,7 +57,7 @@ TEST_F(UartTest, WordsArrive) {
   EXPECT_GE(model_.clocks() - begin, 40 * kClocksPerBit * sent.size());
 }
 
-/// 8N1 by its own bits: a start bit, eight data bits, lowest first, a stop bit; four bytes a word.
+/// 8N1 bit by bit: a start bit, eight data bits, lowest first, a stop bit; four bytes a word.
 TEST_F(UartTest, BitsAreTheStandards) {
   send(0x0180FF53);
   std::vector<bool> expected;
@@ -75,10 +75,10 @@ TEST_F(UartTest, BitsAreTheStandards) {
   EXPECT_EQ(got, expected);
 }
 
-/// A line that is held low gives no word and one break, and the next words are whole.
+/// A line held low gives no word and one break; the next words are complete.
 TEST_F(UartTest, ABreakStartsAWordAnew) {
   send(0x12345678);
-  wait(15 * kClocksPerBit);  // in its second byte
+  wait(15 * kClocksPerBit);  // in the word's second byte
   model_->low_i = 1;
   wait(60 * kClocksPerBit);
   model_->low_i = 0;

@@ -1,5 +1,5 @@
 // The checks of sim/checks stop a simulation, and registers start with random contents. `make
-// prove` holds the FIFOs and the arbiter; every core has memories and delay lines.
+// prove` proves the FIFOs and the arbiter; every core uses memories and delay lines.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -19,7 +19,7 @@ class CommonDeathTest : public testing::Test {
     model_.reset();
   }
 
-  /// Clocks with these pushes and pops; Verilator says on standard output what stopped it.
+  /// Runs clocks with these pushes and pops. Verilator's report on stdout goes to stderr.
   void run(bool push, bool pop, int clocks) {
     dup2(STDERR_FILENO, STDOUT_FILENO);
     model_->push_i = push;
@@ -38,7 +38,7 @@ TEST_F(CommonDeathTest, PopOfAnEmptyFifoStopsTheSimulation) {
   EXPECT_DEATH(run(false, true, 1), "a_no_underflow");
 }
 
-// What RAYGATE_RANDOM_RESET promises, and without it zeros.
+// Registers start as RAYGATE_RANDOM_RESET promises; without it, as zeros.
 TEST(RandomResetTest, RegistersWithoutResetStartAsTheSeedSays) {
   const auto contents = [](const char* seed) {
     if (seed != nullptr) {

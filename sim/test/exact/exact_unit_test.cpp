@@ -1,4 +1,4 @@
-// The exact unit against its reference model, answers and clocks, and both against exact numbers.
+// The exact unit against its reference model (answers and clocks), and both against exact numbers.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace {
 
 using lab::ExactCase;
 
-/// Of each suite and model; RAYGATE_STRESS asks for another number in all.
+/// Returns the cases of each suite and model; RAYGATE_STRESS sets the total of a model's suites.
 std::size_t cases_of_a_suite() {
   const char* wanted = std::getenv("RAYGATE_STRESS");
   return wanted == nullptr ? 300 : std::strtoul(wanted, nullptr, 10) / lab::all_suites().size() + 1;
@@ -23,7 +23,7 @@ std::size_t cases_of_a_suite() {
 
 template <class Top>
 void put(const ExactRequest& request, Top& top) {
-  constexpr std::size_t kDirection = 3, kTriangle = 6, kOther = 15, kLimit = 24;  // exact_pkg's
+  constexpr std::size_t kDirection = 3, kTriangle = 6, kOther = 15, kLimit = 24;  // as in exact_pkg
   float floats[25];
   const auto vector = [&](std::size_t place, const glm::vec3& v) {
     std::memcpy(&floats[place], &v, sizeof v);
@@ -50,7 +50,7 @@ struct Narrow {
   static constexpr int kWidth = 24;
 };
 
-/// The most clocks of a request with digits of 48 bits, as hw/exact/README.md states them.
+/// Returns the most clocks that hw/exact/README.md states for a request, with 48-bit digits.
 int most_clocks(const ExactRequest& request) {
   if (request.asks_hit) return request.against == ExactRequest::Against::kNothing ? 1602 : 3686;
   return request.against == ExactRequest::Against::kLimit ? 1080 : 2093;

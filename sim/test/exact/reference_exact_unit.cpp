@@ -43,7 +43,7 @@ struct Range {
   }
 };
 
-/// Digits of a number, least significant first, balanced.
+/// Balanced digits of a number, least significant first.
 using Number = std::vector<std::int64_t>;
 using Vector = std::array<Number, 3>;
 

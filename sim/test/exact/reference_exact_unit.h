@@ -5,7 +5,7 @@
 
 namespace raygate {
 
-/// A request to the exact unit: does a ray hit `triangle`, how does that hit compare, or both.
+/// A request to the exact unit: whether a ray hits `triangle`, how that hit's t compares, or both.
 /// Values have the ranges of exact.h.
 struct ExactRequest {
   enum class Against { kNothing, kLimit, kOther };  ///< as in exact_pkg::against_e
@@ -21,7 +21,7 @@ struct ExactRequest {
 struct ExactAnswer {
   bool hit = false;
   int order = 0;   ///< sign of t - limit or t - t(other) of a hit; 0 without comparison
-  int clocks = 0;  ///< from the clock that accepts the request to the first with the answer
+  int clocks = 0;  ///< from the clock that accepts the request to the first clock with the answer
 };
 
 /// Returns the answer of a unit with digits of `width` bits, 24 to 60.

@@ -17,7 +17,7 @@ constexpr std::uint64_t kSeed = 20261128;
 
 class FloatCoresTest : public testing::TestWithParam<std::tuple<FloatFormat, FloatOp>> {
  protected:
-  /// One pair in all five rounding modes and both kinds of tininess (a comparison: once).
+  /// Checks one pair in all five rounding modes and both kinds of tininess (a comparison: once).
   void pair(OperandPair operands) {
     const auto [a, b] = operands;
     const auto [format, op] = GetParam();

@@ -20,7 +20,7 @@ double to_double(FloatFormat format, std::uint32_t bits) {
   return sign * std::ldexp(significand, exponent);
 }
 
-// Of MPFR's numbers: more than twice the significand of binary32, and still a machine word.
+// Precision in MPFR: more than two significands of binary32, and still a machine word.
 constexpr mpfr_prec_t kPrecision = 62;
 
 struct Scratch {
@@ -59,7 +59,7 @@ ExactValue exact_result(FloatFormat format, FloatOp op, std::uint32_t a, std::ui
       ternary = mpfr_div(mp.result, mp.a, mp.b, MPFR_RNDZ);
       break;
   }
-  if (mpfr_nan_p(mp.result)) {  // of no NaN operand
+  if (mpfr_nan_p(mp.result)) {  // though no operand is a NaN
     out.kind = ExactValue::Kind::kNan;
     out.flags |= kInvalid;
     return out;
@@ -93,7 +93,7 @@ struct Rounded {
   bool inexact = false;
 };
 
-// |value| as a multiple of 2^quantum, which must be more than value.exponent.
+// Returns |value| as a multiple of 2^quantum; requires quantum > value.exponent.
 Rounded round_to(const ExactValue& value, int quantum, RoundingMode rounding) {
   const int shift = quantum - value.exponent;
   if (shift > 63) {  // below a quarter of a unit
@@ -137,7 +137,7 @@ FloatResult round_exact(FloatFormat format, const ExactValue& value, RoundingMod
   const int lead =
       value.exponent + static_cast<int>(std::bit_width(value.significand)) - 1;  // floor(log2)
   const int min_exponent = 1 - format.bias();
-  const int free_quantum = lead - format.frac_bits;  // of a format of unbounded exponent
+  const int free_quantum = lead - format.frac_bits;  // of a format with unbounded exponents
   const int min_quantum = min_exponent - format.frac_bits;
   const int quantum = free_quantum > min_quantum ? free_quantum : min_quantum;
 

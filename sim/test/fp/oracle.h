@@ -1,4 +1,4 @@
-// What IEEE 754 says an operation gives, from MPFR and integers; shares nothing with the hardware.
+// Results of operations according to IEEE 754, from MPFR and integers; independent of the hardware.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace raygate {
 
-/// The exact result of an operation, cut off towards zero to 64 bits or less:
-/// (-1)^negative * (significand + something in [0, 1), above 0 if `inexact`) * 2^exponent.
+/// Exact result of an operation, truncated to 64 bits or less: (-1)^negative * (significand + f) *
+/// 2^exponent, where f is in [0, 1), and not 0 if `inexact`.
 struct ExactValue {
   enum class Kind { kFinite, kInfinity, kNan };
   Kind kind = Kind::kFinite;
@@ -20,14 +20,14 @@ struct ExactValue {
   std::uint8_t flags = 0;  // invalid, divide by zero: known before any rounding
 };
 
-/// a `op` b for an arithmetic op, before rounding.
+/// Returns a `op` b for an arithmetic op, before rounding.
 ExactValue exact_result(FloatFormat format, FloatOp op, std::uint32_t a, std::uint32_t b);
 
-/// Rounds to the format. IEEE 754-2019, clauses 4.3 and 7.
+/// Rounds to the format, by IEEE 754-2019, clauses 4.3 and 7.
 FloatResult round_exact(FloatFormat format, const ExactValue& value, RoundingMode rounding,
                         Tininess tininess);
 
-/// a `op` b for a comparison.
+/// Returns a `op` b for a comparison.
 FloatResult oracle_compare(FloatFormat format, FloatOp op, std::uint32_t a, std::uint32_t b);
 
 }  // namespace raygate

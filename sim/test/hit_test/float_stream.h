@@ -1,4 +1,4 @@
-// Random input for the hit-test units, and how their results are compared.
+// Random input for the hit-test units, and expected results.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 
 namespace raygate {
 
-/// The bits of `value`, any NaN as the one the hardware gives.
+/// Returns the bits of `value`; for any NaN, those of the hardware's NaN.
 inline std::uint32_t bits(float value) {
   return std::isnan(value) ? 0x7FC00000u : std::bit_cast<std::uint32_t>(value);
 }
 
 inline float from_bits(std::uint32_t word) { return std::bit_cast<float>(word); }
 
-/// P = d I / (I . N) of I, N and d, in the order of the units that take these seven words.
+/// Returns P = d I / (I . N) of words I, N and d, rounded in the units' order of operations.
 inline std::array<std::uint32_t, 3> point_of(const std::array<std::uint32_t, 7>& words) {
   float dot = 0.0f;
   for (int k = 0; k < 3; ++k) dot += from_bits(words[3 + k]) * from_bits(words[k]);
@@ -25,14 +25,14 @@ inline std::array<std::uint32_t, 3> point_of(const std::array<std::uint32_t, 7>&
   return point;
 }
 
-/// Floats of three kinds, so that whole tests in the ordinary range are as frequent as odd ones:
-/// ordinary numbers around 1; any bit pattern; and zeros, subnormals, the largest and smallest
-/// normal numbers, infinities and NaN of either sign.
+/// Random floats for tests of one of three kinds or mixed, all equally frequent: ordinary numbers
+/// around 1; any bit pattern; and zeros, subnormals, the largest and smallest normal numbers,
+/// infinities and NaN of either sign.
 class FloatStream {
  public:
   explicit FloatStream(std::uint32_t seed) : random_(seed) {}
 
-  /// A new test begins: its numbers are of one kind, or mixed.
+  /// Begins a test, whose numbers are of one kind, or mixed.
   void next_test() { kind_ = random_() % 4; }
 
   float operator()() {
@@ -46,7 +46,7 @@ class FloatStream {
     return from_bits(kSpecial[random_() % std::size(kSpecial)] | (word & 0x80000000));
   }
 
-  /// Clocks to wait before a test: none in every other one, else up to 20.
+  /// Returns the clocks to wait before a test: none before half of the tests, else up to 20.
   unsigned gap() { return random_() % 2 == 0 ? 0 : random_() % 21; }
 
  private:

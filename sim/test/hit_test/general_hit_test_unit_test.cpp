@@ -11,7 +11,7 @@ namespace {
 
 using Point = std::array<std::uint32_t, 3>;
 
-// d, N, O, I to P = O + t I with t = -(d + N . O) / (N . I), in the unit's order.
+// P = O + t I with t = -(d + N . O) / (N . I), rounded in the unit's order of operations.
 Point expected(const BusTest<10>& test) {
   const auto word = [&](int k) { return from_bits(test.words[k]); };
   float numerator = word(0);

@@ -1,5 +1,5 @@
-// An array is its lanes side by side: Verilated as a whole, it has the results, clocks and counters
-// of as many models of one lane, which is how RtlBurstUnit makes arrays.
+// An array equals its lanes side by side: Verilated as a whole, it gives the same results, clocks
+// and counters as models of one lane, of which RtlBurstUnit makes arrays.
 #include <gtest/gtest.h>
 
 #include <array>

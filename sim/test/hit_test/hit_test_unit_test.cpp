@@ -22,7 +22,7 @@ const BusTest<7> kWorkedExample{{bits(3.3125f), bits(5.875f), bits(2.921875f), b
 TEST(HitTestUnit, WorkedExampleWithItsIntermediateValues) {
   Model<Vhit_test_unit_open> unit;
   unit.reset();
-  std::vector<std::uint32_t> products;  // those that go into the divider
+  std::vector<std::uint32_t> products;  // those that enter the divider
   std::uint32_t dot = 0;
   const auto* inside = unit->rootp;
   const auto results = stream_tests(unit, std::vector{kWorkedExample}, [&] {
@@ -35,14 +35,14 @@ TEST(HitTestUnit, WorkedExampleWithItsIntermediateValues) {
   EXPECT_EQ(results.at(0).point, (Point{0x3DC873FD, 0x3E31C2A2, 0x3DB0D093}));
 }
 
-// Which word of the stream I-1, I-2, I-3, N and d hold after each edge, two tests one after the
-// other: 0 to 6 are the first one's Ix to d, 7 to 13 the second's, a dot is anything.
+// The word of the stream that I-1, I-2, I-3, N and d hold after each edge, for two tests in a row:
+// 0 to 6 are the first test's Ix to d, 7 to 13 the second's; kAny is not checked.
 TEST(HitTestUnit, RegistersAsFigure4DrawsThem) {
   constexpr int kAny = -1;
   constexpr int kHeld[14][5] = {
       {kAny, kAny, kAny, 0, kAny}, {kAny, kAny, 0, 1, kAny},  // Ix, Iy, Iz through N
-      {kAny, 0, 1, 2, kAny},       {0, 1, 2, 3, kAny},        // a in N: I in its place
-      {1, 2, 0, 4, kAny},          {2, 0, 1, 5, kAny},        // I goes round
+      {kAny, 0, 1, 2, kAny},       {0, 1, 2, 3, kAny},        // a in N; I in its place
+      {1, 2, 0, 4, kAny},          {2, 0, 1, 5, kAny},        // I rotates
       {0, 1, 2, kAny, 6},                                     // d in d
       {1, 2, kAny, 7, 6},          {2, kAny, 7, 8, 6},        // the next I follows
       {kAny, 7, 8, 9, 6},          {7, 8, 9, 10, 6},         {8, 9, 7, 11, 6}, {9, 7, 8, 12, 6},
@@ -87,7 +87,7 @@ TEST(HitTestUnit, TakesATestEvery7ClocksAndAnswersIn10) {
     EXPECT_EQ(results[i].first_word, 1 + 7 * i);
     EXPECT_EQ(results[i].last_component, 10 + 7 * i);
   }
-  for (int clock = 0; clock < 30; ++clock) {  // and then falls silent
+  for (int clock = 0; clock < 30; ++clock) {  // then the unit is silent
     unit->valid_i = 0;
     unit.clock();
     EXPECT_FALSE(unit->valid_o);

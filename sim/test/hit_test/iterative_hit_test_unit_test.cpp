@@ -41,7 +41,7 @@ TYPED_TEST(IterativeHitTestUnit, TakesATestEvery7Clocks) {
     EXPECT_EQ(results[i].first_word, 1 + 7 * i);
     EXPECT_EQ(results[i].last_component, kClocks + 7 * i);
   }
-  for (int clock = 0; clock < 60; ++clock) {  // and then falls silent
+  for (int clock = 0; clock < 60; ++clock) {  // then the unit is silent
     this->unit_->valid_i = 0;
     this->unit_.clock();
     EXPECT_FALSE(this->unit_->valid_o);
@@ -62,7 +62,7 @@ TYPED_TEST(IterativeHitTestUnit, RandomStreamsEqualFloatArithmetic) {
   }
 }
 
-// Tests that a reset ends, whatever stage they have reached, leave nothing behind.
+// A reset ends tests at any stage, and leaves nothing of them behind.
 TYPED_TEST(IterativeHitTestUnit, ResetEndsAllTestsThatHaveBegun) {
   const auto tests = random_tests(1, 20);
   for (int clocks = 1; clocks < 60; ++clocks) {

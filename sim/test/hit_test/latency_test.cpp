@@ -1,4 +1,4 @@
-// The latency that hit_test_pipeline promises, counted.
+// The latencies that hit_test_pipeline promises, counted.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -14,8 +14,8 @@ constexpr int kDotLatency = 9, kDivideLatency = 17;
 constexpr int kClosedLatency = kDotLatency + kDivideLatency + 3;
 constexpr int kPointLatency = kClosedLatency + kDivideLatency;
 
-/// Puts a burst of one test in and counts the clocks, that which takes it included, until its end
-/// and its point are there; 0 for what never came.
+/// Clocks from a burst of one test, including the one that takes it, to its end and to its point; 0
+/// if that never comes.
 struct Latencies {
   int closed = 0, point = 0;
 };

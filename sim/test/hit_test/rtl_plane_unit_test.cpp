@@ -1,4 +1,4 @@
-// The simulated unit as the renderer sees it.
+// The simulated unit behind the renderer's interface.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,5 +1,5 @@
-// The paper's unit and the iterative one side by side, in other formats and roundings than the default: they have the same
-// words in, so the same three come out, the iterative one's later.
+// The paper's unit and the iterative one side by side, in formats and rounding modes other than the default: from the
+// same input words both give the same three words, the iterative one later.
 //
 // bfloat16 reads the upper half of bus_i, binary16 the lower one.
 module siblings_top (
@@ -14,7 +14,7 @@ module siblings_top (
   output logic [191:0] bus_o
 );
 
-  // Of each kind: exponent and fraction bits, rounding mode; a byte each
+  // Of each kind, a byte each: exponent bits, fraction bits, rounding mode
   localparam bit [6*24-1:0] Kinds = {
     24'h08_17_02,  // binary32, down
     24'h08_17_03,  // binary32, up

@@ -1,4 +1,4 @@
-"""What `make lecture EXAMPLE=1` shows: the worked example's words, and a waveform that GTKWave's save file fits.
+"""Checks what `make lecture EXAMPLE=1` shows: the worked example's words, and a waveform that fits GTKWave's save file.
 
 usage: worked_example_test.py WORKED_EXAMPLE SAVE_FILE
 """
@@ -14,26 +14,26 @@ PROGRAM, SAVE_FILE = sys.argv[1:]
 
 
 def lines(*options):
-    """What the program prints."""
+    """Returns the program's output."""
     return subprocess.run([PROGRAM, *options], check=True, capture_output=True,
                           text=True).stdout.splitlines()
 
 
 def last_line(*options):
-    """What it prints last."""
+    """Returns the last line of the output."""
     return lines(*options)[-1]
 
 
 class WorkedExample(unittest.TestCase):
-    """The program, run with and without the paper's divider."""
+    """Runs the program with and without the paper's divider."""
 
     def test_words(self):
-        """The paper's words, and those that are rounded correctly."""
+        """P is the paper's words with the paper's divider, and correctly rounded without."""
         self.assertRegex(last_line(), "^P = 3DC873FD 3E31C2A2 3DB0D093 .* 10 clocks ")
         self.assertRegex(last_line("--paper-divider"), "^P = 3DC873F8 3E31C2A0 3DB0D090 .* 10 clocks ")
 
     def test_inputs_in_decimal(self):
-        """The numbers that go in, as the paper has them."""
+        """The inputs are the paper's numbers."""
         self.assertEqual(lines()[0], "I = (3.3125, 5.875, 2.921875), N = (15.1875, 0.46875, 2.109375), "
                          "d = 1.75: the words 1 to 7")
 

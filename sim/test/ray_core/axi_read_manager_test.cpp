@@ -24,7 +24,7 @@ std::uint32_t word_of(std::uint32_t line, unsigned n) {
   return static_cast<std::uint32_t>((std::uint64_t{line} * 16 + n) * 0x9E37'79B9'7F4A'7C15 >> 32);
 }
 
-/// The bytes of a port, whatever type Verilator gave it.
+/// Sets a port's bytes, whatever its type in Verilator's class.
 template <class Port>
 void set_words(Port& port, const std::vector<std::uint32_t>& words) {
   ASSERT_EQ(sizeof port, 4 * words.size());
@@ -52,11 +52,11 @@ TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
   std::map<std::uint64_t, std::uint32_t> waiting;  // lines by tag
   std::set<std::uint32_t> failing_lines;
   std::uint64_t next_tag = 0, address = 0;
-  std::uint32_t line = 0;  // the one asked for last, and its address
+  std::uint32_t line = 0;  // the last one requested, at `address`
   unsigned answering = 0, given = 0, mixed = 0, full = 0, failing = 0, failed = 0, last_id = 0;
   bool fails = false;
   for (int clock = 0; clock < 60'000; ++clock) {
-    const unsigned eager = 1 + clock / 4'000 % 7;  // of 8
+    const unsigned eager = 1 + clock / 4'000 % 7;  // chances in 8
     if (clock % 5'000 == 4'999) {                  // a reset in mid-run
       model->read_valid_i = model->axi_rvalid_i = 0;
       model.reset();
@@ -68,16 +68,16 @@ TYPED_TEST(AxiReadManagerTest, EveryTagGetsItsLineOnce) {
     }
     if (model->read_valid_i == 0 && random() % 8 < 6) {
       model->read_valid_i = 1;
-      model->base_i = std::uint64_t{random()} << 32 | random();  // bits below 64 do not count
+      model->base_i = std::uint64_t{random()} << 32 | random();  // the lowest six bits are ignored
       model->read_line_i = random() % (1u << 28);
       model->read_id_i = next_tag++ % 512;
     }
-    // Every other while it takes nothing that is not there yet.
+    // In every other period, ARREADY waits for ARVALID.
     model->axi_arready_i =
         random() % 8 < eager && (clock / 2'000 % 2 == 0 || model->axi_arvalid_o != 0);
-    // Long enough, now and then, that the next lines come, whatever the port's width.
+    // Now and then not ready long enough for more lines to arrive, at any port width.
     model->line_ready_i = random() % 8 < 8 - eager / 2 && clock / 300 % 4 != 3;
-    // A beat of any burst that is open; what is offered stays.
+    // Offers a beat of any open burst; an offered beat stays until it is taken.
     if (model->axi_rvalid_i == 0 && random() % 8 < eager) {
       const unsigned id = random() % kIds;
       if (bursts[id].open) {

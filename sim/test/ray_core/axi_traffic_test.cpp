@@ -1,8 +1,8 @@
-// The ray core on AXI by random traffic, against a small model of it: registers read and written
-// with pauses while it draws and traces; memory that answers in any order, with errors and, now and
-// then, with nonsense; results by either way; rays given up; resets in mid-run. Every ray ends
-// once, by the reference's answer or with an error that has a cause. RAYGATE_TRAFFIC=<epochs> makes
-// it long (make test LONG=traffic).
+// Random traffic at the AXI ports of the ray core, checked against a small model of it: registers
+// are read and written with pauses while it draws and traces; memory answers in any order, with
+// errors and, now and then, with noise; results go to the stream or the buffer; there are aborts
+// and resets in mid-run. Every ray ends once, with the reference's answer or with an error that has
+// a cause. RAYGATE_TRAFFIC=<epochs> makes the test long (make test LONG=traffic).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace {
 constexpr std::uint32_t kSeed = 20261123;
 constexpr std::uint64_t kResults = 0xFEDC'BA98'7654'3FC0;
 constexpr std::uint32_t kUsers = 0x8000'0000;       // in the tags of the user's rays
-constexpr std::uint32_t kCapability = 0x7013'0401;  // of 16 rays and 64 bits: registers.md
+constexpr std::uint32_t kCapability = 0x7013'0401;  // of 16 rays and 64-bit data: registers.md
 constexpr glm::vec3 kEye{0.25f, 0.3f, 2.5f};
 
 class AxiTrafficTest : public testing::Test {
@@ -49,7 +49,7 @@ class AxiTrafficTest : public testing::Test {
 
   bool one_in(unsigned n) { return random_() % n == 0; }
 
-  /// In mid-run or not: whatever was on its way is gone.
+  /// Resets the core, perhaps in mid-run: everything in flight is lost.
   void reset() {
     model_->s_axil_awvalid = model_->s_axil_wvalid = model_->s_axil_arvalid = 0;
     model_->s_axil_bready = model_->s_axil_rready = 0;
@@ -75,8 +75,8 @@ class AxiTrafficTest : public testing::Test {
   [[nodiscard]] std::size_t unanswered() const {
     return std::min<std::size_t>(addresses_, written_.size() / 8) - answered_;
   }
-  /// Whether the core is surely busy; whether it may be: how many rays of a rectangle an abort has
-  /// left out is not seen.
+  /// Whether the core is certainly busy, and whether it may be: after an abort the number of rays
+  /// left out of a rectangle is unknown.
   [[nodiscard]] bool is_busy() const {
     return in_flight_ != 0 || addresses_ != answered_ || (pixels_left_ != 0 && !aborted_);
   }
@@ -142,7 +142,7 @@ class AxiTrafficTest : public testing::Test {
     ++clocks_;
   }
 
-  /// The next beat of any burst; with an error its data are noise, and so are all of a wild memory.
+  /// Offers the next beat of any burst; its data are noise if it has an error or memory is wild.
   void offer_beat() {
     const std::size_t n = random_() % bursts_.size();
     Burst& burst = bursts_[n];
@@ -163,7 +163,7 @@ class AxiTrafficTest : public testing::Test {
     if (++burst.beat == 8) bursts_.erase(bursts_.begin() + static_cast<std::ptrdiff_t>(n));
   }
 
-  /// A result: of a ray that is on its way.
+  /// Takes a result, which must belong to a ray in flight.
   void take(const CoreResult& result) {
     doubts_ += result.kind == CoreResult::Kind::kDoubt;
     const bool generated = (result.tag & kUsers) == 0;
@@ -187,7 +187,7 @@ class AxiTrafficTest : public testing::Test {
     check(sent->second);
   }
 
-  /// What its end says is what the reference says, or has a reason not to be.
+  /// Checks a ray's end: the reference's, or an error that has a cause.
   void check(const Sent& sent) {
     const CoreResult& end = sent.words.back();
     if (end.error == CoreResult::Error::kAbort) {
@@ -258,7 +258,7 @@ class AxiTrafficTest : public testing::Test {
     model_->s_axil_rready = 0;
     return data;
   }
-  /// A plain register, of which `bits` can be written: refused where the core is busy.
+  /// Writes a plain register with writable `bits`. Returns false if refused as the core is busy.
   bool set(std::uint32_t address, std::uint32_t data, std::uint32_t bits = ~0u) {
     const unsigned response = write(address, data);
     EXPECT_TRUE(response == 0 ? !all_busy_ : any_busy_) << std::hex << address;
@@ -277,7 +277,7 @@ class AxiTrafficTest : public testing::Test {
   const MemoryImage* image_ = images_;
   PixelGrid grid_{};
   bool wild_ = false;     // memory is noise
-  unsigned failing_ = 0;  // one in so many beats has an error
+  unsigned failing_ = 0;  // one beat in this many has an error; 0: none
   unsigned eager_ = 4, pause_ = 2;
   std::mt19937 random_{kSeed};
   test::Random rays_random_;
@@ -287,19 +287,19 @@ class AxiTrafficTest : public testing::Test {
   std::vector<CoreRay> to_send_;
   std::array<std::uint32_t, 32> words_{};  // plain registers
   std::uint32_t enable_ = 0, next_tag_ = 0;
-  std::size_t addresses_ = 0, answered_ = 0;  // of records
+  std::size_t addresses_ = 0, answered_ = 0;  // numbers of records
   std::vector<std::uint32_t> written_;
   long in_flight_ = 0, pixels_left_ = 0;
   bool any_busy_ = false, all_busy_ = false, aborted_ = false, drawn_ = false;
   std::set<std::uint32_t> failed_lines_;
-  std::uint32_t answering_ = 0;  // the line of the beat that is offered
+  std::uint32_t answering_ = 0;  // the line of the beat on offer
   unsigned doubts_ = 0, ray_errors_ = 0, bad_beats_ = 0, bad_answers_ = 0;
-  unsigned ends_ = 0;  // since the counters were cleared
+  unsigned ends_ = 0;  // ends since the counters were cleared
   unsigned compared_ = 0, refused_ = 0, resets_ = 0, aborts_ = 0, wild_ends_ = 0, failures_ = 0;
   std::uint64_t clocks_ = 0;
 };
 
-/// Another memory, camera and buffer, while nothing is traced.
+/// Sets another memory, camera and buffer, while nothing is traced.
 void AxiTrafficTest::configure() {
   image_ = &images_[random_() % 2];
   wild_ = one_in(6);
@@ -335,11 +335,11 @@ void AxiTrafficTest::configure() {
   ASSERT_EQ(write(RAYGATE_FLAGS, 63), 0u);
 }
 
-/// A rectangle, if it is allowed to begin.
+/// Starts a rectangle, unless the core refuses.
 void AxiTrafficTest::start() {
   const long pixels = (words_[9] & 0xFFFF) * (words_[9] >> 16);
   look_at_busy(true);
-  pixels_left_ += pixels;  // before the first can end
+  pixels_left_ += pixels;  // before its first ray can end
   drawn_ = true;
   const long before = in_flight_;
   if (write(RAYGATE_COMMAND, RAYGATE_COMMAND_START) != 0) {
@@ -350,11 +350,11 @@ void AxiTrafficTest::start() {
   }
 }
 
-/// Any access, while the core works or not; what it answers is what the page says.
+/// Makes a random access, whether the core is busy or not; it must answer as registers.md says.
 void AxiTrafficTest::disturb() {
   const std::uint32_t word = random_() % 32, data = random_();
   switch (random_() % 8) {
-    case 0:  // a plain register, if it may be written, as it is
+    case 0:  // writes a plain register's value back
       if (word >= 7 && word < 31 && word != 10 && word != 11 && (word < 12 || word % 4 != 3)) {
         refused_ += !set(4 * word, words_[word]);
       }
@@ -363,7 +363,7 @@ void AxiTrafficTest::disturb() {
       ASSERT_EQ(write(RAYGATE_ENABLE, data, 1), 0u);
       enable_ = data & 63;
       break;
-    case 2:  // nothing is there
+    case 2:  // addresses without registers
       ASSERT_EQ(write(0x200 + 4 * (data % 100), data), 0u);
       ASSERT_EQ(read(0x200 + 4 * (data % 100)), 0u);
       break;
@@ -397,7 +397,7 @@ void AxiTrafficTest::disturb() {
   }
 }
 
-/// Until nothing is traced; records that fill their buffer are taken from it.
+/// Waits until nothing is traced, emptying the buffer whenever it is full; checks the end state.
 void AxiTrafficTest::settle() {
   for (int n = 0; !to_send_.empty() || model_->ray_valid_i != 0 ||
                   (read(RAYGATE_STATUS) & ~RAYGATE_STATUS_READING) != 0;

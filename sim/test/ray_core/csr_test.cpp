@@ -1,5 +1,5 @@
-// csr by AXI4-Lite with random pauses on every channel, against a model of what the header says:
-// every word read and every output of every clock.
+// csr on AXI4-Lite with random pauses on every channel, against a model of its header: every word
+// read and every output in every clock.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t kSeed = 20261122;
 constexpr unsigned kEvents = 11;  // ray_core_pkg::NumEvents
 
-/// Whether word `n` is a plain register, and which of its bits can be written.
+/// Whether word `n` is a plain register, and its writable bits.
 bool is_plain(unsigned n) {
   return (n >= 5 && n <= 9) || (n >= 12 && n < 27 && n % 4 != 3) || (n >= 28 && n <= 30);
 }
@@ -36,8 +36,8 @@ class CsrTest : public testing::Test {
   std::mt19937 random_{kSeed};
 };
 
-/// Reads and writes of any word, close upon each other, while the core works: each word and each
-/// output as the header says.
+/// Reads and writes any word in close succession while the core works: each word and each output is
+/// as the header says.
 TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::array<std::uint32_t, 32> words{};
@@ -129,7 +129,7 @@ TEST_F(CsrTest, AnyTrafficIsAsTheHeaderSays) {
     }
     ASSERT_EQ(model_->interrupt_o, (enable & flags) != 0);
 
-    // What this clock does.
+    // What the model does in this clock.
     const bool takes_address = model_->axi_awvalid_i != 0 && !has_address;
     const bool takes_data = model_->axi_wvalid_i != 0 && !has_data;
     const bool write = has_address && has_data && !written;

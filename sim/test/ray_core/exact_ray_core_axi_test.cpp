@@ -1,5 +1,5 @@
-// The ray core behind AXI with exact units, an interval of 11 clocks and the default data width:
-// it resolves all doubts of a picture itself.
+// The ray core behind AXI with exact units, Clocks = 11 and the default data width: it resolves all
+// doubts of a picture itself.
 #include "Vray_core_axi_exact.h"
 #include "sim/test/ray_core/axi_bench.h"
 

@@ -1,5 +1,5 @@
-// The exact core in simulation gives the words of its reference model, bit for bit, whatever makes
-// it wait. Tests: exact_resolver
+// The exact core in simulation gives the words of its reference model, bit for bit, whatever delays
+// it. Tests: exact_resolver
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,10 +28,10 @@ using Core = CoreModel<Vray_core_small_exact>;
 
 constexpr CoreSet kExact{.exact = true};
 
-/// Four rays at a time, stacks of a group, caches of 16 lines.
+/// The core has four rays, stacks of one group and caches of 16 lines.
 class ExactResolverTest : public testing::Test {
  protected:
-  /// The bodies, each triangle twice, its corners in another order: every hit is a tie.
+  /// Returns the bodies, each triangle a second time with rotated corners: every hit is a tie.
   static std::vector<Corners> doubled() {
     std::vector<Corners> mesh = test::bodies();
     const std::size_t count = mesh.size();
@@ -39,7 +39,7 @@ class ExactResolverTest : public testing::Test {
     return mesh;
   }
 
-  /// By ray.
+  /// Returns the results by ray; all must be ends.
   static std::vector<CoreResult> words(CoreUnit& unit, std::span<const MemoryLine> lines,
                                        std::span<const CoreRay> rays) {
     std::vector<CoreResult> results, words(rays.size());
@@ -51,7 +51,7 @@ class ExactResolverTest : public testing::Test {
     return words;
   }
 
-  /// Triangle, t, its bound and P.
+  /// Compares triangle, t, its bound and P with the reference's.
   void compare(Core& core, std::vector<CoreRay> rays) {
     for (std::uint32_t i = 0; i < rays.size(); ++i) rays[i].tag = i;
     ReferenceCore reference(ReferenceCore::kStackDepth, true);
@@ -109,7 +109,7 @@ TEST_F(ExactResolverTest, LimitsAndFirstHitsAreTheReferences) {
     if (is_hit && random_.below(2) == 0) sent.t_max = std::nextafter(sent.t_max, 1e9f);
   }
   std::vector<NearestHit> nearest(rays.size());
-  // Half of the limits are within a float of the nearest hit.
+  // Half of the limits are next to the distance of the nearest hit.
   for (std::size_t i = 0; i < rays.size(); i += 2) {
     CpuIntersector(bvh_).nearest({&rays[i].ray, 1}, {}, {&nearest[i], 1});
     if (nearest[i].primitive == NearestHit::kNone) continue;
@@ -136,8 +136,8 @@ TEST_F(ExactResolverTest, NearestHitsAreTheCpuIntersectors) {
   EXPECT_EQ(intersector.counters().exact_inside, 0u);
 }
 
-/// Many doubts a ray: all triangles of fans are met at their common corner, so that doubts wait for
-/// room.
+/// Many doubts per ray: all triangles of a fan are met at their common corner, so that doubts wait
+/// for room.
 TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
   std::vector<Corners> fan;
   for (int n = 0; n < 600; ++n) {
@@ -169,7 +169,7 @@ TEST_F(ExactResolverTest, ManyDoubtsOfARayFindRoom) {
   EXPECT_GT(found, 0);
 }
 
-/// Many long questions about few lines: for a long time no ray ends and nothing is read.
+/// Many long exact decisions about few lines: for a long time no ray ends and nothing is read.
 TEST_F(ExactResolverTest, LongWorkIsWaitedFor) {
   std::vector<Corners> fan;
   for (int n = 0; n < 14; ++n) {
@@ -186,8 +186,8 @@ TEST_F(ExactResolverTest, LongWorkIsWaitedFor) {
                     40, {.ray = {glm::vec3(0x1.1p-100f), scaled_direction({1, 1, 1.5})}}));
 }
 
-/// One read in 32 comes back with an error, a line that was there before among them, and now and
-/// then rays are given up: those say so, all others have the reference's hit.
+/// One read in 32 returns an error, even for lines read before, and now and then rays are aborted:
+/// these rays report it, all others have the reference's hit.
 TEST_F(ExactResolverTest, FailedRaysSayWhyAndLeaveNothing) {
   std::vector<CoreRay> rays;
   for (const Ray& ray : some_rays(mesh_, random_, 1'000)) {

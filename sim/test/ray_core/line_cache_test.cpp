@@ -1,6 +1,5 @@
-// line_cache before a memory that answers in any order, with random pauses: each request that is
-// wanted gets its line, once, or its error, which is not kept; no line is asked for while it is on
-// its way.
+// line_cache before a memory that answers in any order, with random pauses: each wanted request
+// gets its line once, or its error, which is not cached; a line in flight is not requested again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,14 +34,15 @@ class LineCacheTest : public testing::Test {
     model_.reset();
   }
 
-  /// The n-th line: those from kLines on differ from the first in a high bit, which `part_` moves.
+  /// Returns the n-th line: from kLines on, lines differ from the first only in bits that `part_`
+  /// moves.
   [[nodiscard]] std::uint32_t line(unsigned n) const {
     const unsigned high = n / kLines;
     return n % kLines + (high == 0 ? 0 : kLines << (high + part_) % 24);
   }
 
-  /// A clock: a request of `of_8` chances, among `range` lines, wanted or not. One that is not may
-  /// be withdrawn.
+  /// Simulates a clock, with a chance of `of_8` in 8 of a new request for one of `range` lines,
+  /// wanted or not. An unwanted request may be withdrawn.
   void clock(unsigned of_8, unsigned range, bool all_wanted = true) {
     if (model_->demand_i == 0 && random_() % 4 == 0) model_->valid_i = 0;
     if (model_->valid_i == 0 && random_() % 8 < of_8) {
@@ -103,7 +103,7 @@ class LineCacheTest : public testing::Test {
     if (taken) model_->valid_i = 0;
   }
 
-  /// Whatever waits and is on its way is gone.
+  /// Resets the cache: waiting requests and lines in flight are lost.
   void reset() {
     model_->valid_i = model_->fill_i = 0;
     filling_ = false;
@@ -146,7 +146,7 @@ TEST_F(LineCacheTest, EveryRequestGetsItsLineOnce) {
   EXPECT_LT(misses_, requests_ * 3 / 4);
 }
 
-/// A line that came with an error is read again; one without is not.
+/// A line with an error is read again; one without is not.
 TEST_F(LineCacheTest, ErrorsAreNotKept) {
   fails_of_256_ = 64;
   for (; part_ < 20; ++part_) {
@@ -181,7 +181,7 @@ TEST_F(LineCacheTest, LinesOnTheirWayAreReadOnce) {
   }
 }
 
-/// What was asked for before it was wanted is not asked for again, on its way or here.
+/// A line requested before it was wanted is not requested again, neither in flight nor cached.
 TEST_F(LineCacheTest, LinesThatWereNotWantedAreRead) {
   for (int part = 0; part < 200; ++part) {
     drain();

@@ -1,5 +1,5 @@
-"""The memories of the ray core, as Yosys elaborates them, have a clock: whatever has more than 2,048 bits is a ram of
-hw/common, or a part of one, whose read port is a register."""
+"""Checks that the ray core's memories of more than 2,048 bits, as Yosys elaborates them, have clocked read ports, as
+hw/common's ram has."""
 
 import json
 import pathlib
@@ -14,8 +14,7 @@ LIMIT = 2048
 
 
 def memories(top: str) -> dict:
-    """Each memory above LIMIT of a top and of what is in it: by module and name its bits, and whether its read port has a
-    clock."""
+    """Returns the memories above LIMIT of a top and its submodules: by module and name, the bits and whether the read port has a clock."""
     with tempfile.TemporaryDirectory() as folder:
         netlist = pathlib.Path(folder) / "netlist.json"
         yosys.run(f"{yosys.read(cores.used(top, cores.files('ray_core')), top)}\n"
@@ -34,7 +33,7 @@ def memories(top: str) -> dict:
 
 
 def main() -> int:
-    """Says which memories there are; the exit status is 1 where one has no clock or there is none."""
+    """Reports the memories. Returns 1 if one has no clock or there is none."""
     found = memories("ray_core_axi")
     without = {name: bits for name, (bits, clocked) in found.items() if not clocked}
     for name, bits in without.items():

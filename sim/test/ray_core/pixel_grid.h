@@ -1,4 +1,4 @@
-// Pixel grid: the ray core's ray generator in C++, bit for bit.
+// Pixel grid: reference model of the ray core's ray generator, bit for bit.
 #pragma once
 
 #include <algorithm>
@@ -8,15 +8,14 @@
 
 namespace raygate {
 
-/// The paper's equation 1: where the pixels of a picture lie, seen from the eye. Any length;
-/// finite.
+/// Pixels of a picture relative to the eye: the paper's equation 1. Vectors of any finite length.
 struct PixelGrid {
-  glm::vec3 first{0.0f};  ///< through the middle of pixel (0, 0)
-  glm::vec3 right{0.0f};  ///< from a pixel to the next of its row
+  glm::vec3 first{0.0f};  ///< to the middle of pixel (0, 0)
+  glm::vec3 right{0.0f};  ///< from a pixel to the next in its row
   glm::vec3 down{0.0f};   ///< from a row to the next
 
-  /// Through pixel (x, y): the largest component is in [1, 2), and what became smaller than 2^-126
-  /// is zero. A sum that is zero or not finite stays so.
+  /// Returns the direction through pixel (x, y), scaled so that its largest component is in [1, 2);
+  /// components below 2^-126 become zero. A sum that is zero or not finite stays so.
   [[nodiscard]] glm::vec3 direction(std::uint16_t x, std::uint16_t y) const;
 };
 

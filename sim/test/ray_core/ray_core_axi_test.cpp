@@ -1,5 +1,5 @@
-// The ray core behind AXI: what random traffic (axi_traffic_test) does not show. Rectangles that
-// are done or given up, memory that is read though results are not taken, records that repeat.
+// The ray core behind AXI, in cases beyond random traffic (axi_traffic_test): rectangles that end
+// or are aborted, reads while results are not taken, reproducible records.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ TEST_F(RayCoreAxiTest, ARectangleIsDoneWithItsOwnRays) {
   EXPECT_GT(results_.size(), before) << "they go on";
 }
 
-/// A picture that is given up ends within some clocks, and the next one is whole.
+/// An aborted picture ends within some clocks, and the next one is complete.
 TEST_F(RayCoreAxiTest, RaysAreGivenUp) {
   look();
   for (int round = 0; round < 5; ++round) {
@@ -73,8 +73,8 @@ TEST_F(RayCoreAxiTest, RaysAreGivenUp) {
   }
 }
 
-/// Memory is read whether results are taken or not: where the stream's user or the buffer's takes
-/// none, the core asks for no more tests than it can keep.
+/// Memory is read whether results are taken from the stream and the buffer or not: the core
+/// requests no more tests than it can keep.
 TEST_F(RayCoreAxiTest, ReadsDoNotWaitForResults) {
   look();
   takes_results_ = false;
@@ -89,7 +89,7 @@ TEST_F(RayCoreAxiTest, ReadsDoNotWaitForResults) {
   EXPECT_GT(std::ranges::count_if(results_, is_doubt), 100);
 }
 
-/// A bridge that does one transaction at a time, as AXI to AHB does.
+/// A bridge that handles one transaction at a time, as one from AXI to AHB does.
 TEST_F(RayCoreAxiTest, WritesWaitForReadsAndCome) {
   look();
   is_single_ = true;
@@ -99,7 +99,7 @@ TEST_F(RayCoreAxiTest, WritesWaitForReadsAndCome) {
   EXPECT_GT(answered_, 400u) << "300 ends, and doubts";
 }
 
-/// A full buffer that nobody empties: all lines that were asked for are accepted.
+/// A full buffer that is never emptied: the core still accepts all lines that it requested.
 TEST_F(RayCoreAxiTest, AFullBufferStopsNoRead) {
   look();
   use_buffer(4);
@@ -108,7 +108,7 @@ TEST_F(RayCoreAxiTest, AFullBufferStopsNoRead) {
   EXPECT_EQ(answered_, 4u);
 }
 
-/// A frame whose records go to memory, from the random state that a seed gives.
+/// Records of a frame in memory, from the random power-up state of a seed.
 class Frame : public RayCoreAxiTest {
  public:
   std::vector<std::uint32_t> words() {
@@ -126,7 +126,7 @@ class Frame : public RayCoreAxiTest {
   void TestBody() override {}
 };
 
-/// Results are a function of rays and memory: words that say nothing are zero.
+/// Results depend only on rays and memory: unused words are zero.
 TEST(RayCoreAxi, RecordsAreTheSameFromAnyPowerUpState) {
   const char* before = std::getenv("RAYGATE_RANDOM_RESET");
   const std::string seed = before != nullptr ? before : "";

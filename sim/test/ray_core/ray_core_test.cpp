@@ -1,4 +1,4 @@
-// The ray core in simulation finds what CpuIntersector finds, whatever makes it wait.
+// The ray core in simulation finds what CpuIntersector finds, whatever delays it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using test::some_rays;
 
 class RayCoreTest : public testing::Test {
  protected:
-  /// Throws where the core, with the host's help, and CpuIntersector differ.
+  /// Throws if the core, with the host's help, and CpuIntersector differ.
   void check(const std::vector<Ray>& rays, RayQuery query, std::unique_ptr<CoreUnit> core) {
     const CoreUnit& unit = *core;
     CheckIntersector intersector(bvh_,
@@ -46,7 +46,7 @@ class RayCoreTest : public testing::Test {
   CoreCounters counters_;
 };
 
-/// Of pipelines, and of few floating-point cores that take turns (Clocks).
+/// A core of pipelines, or of few floating-point cores that take turns (Clocks).
 class EachRayCoreTest : public RayCoreTest, public testing::WithParamInterface<bool> {
  protected:
   std::unique_ptr<CoreUnit> core(const MemoryTiming& timing = {}, const CoreStalls& stalls = {}) {
@@ -68,7 +68,7 @@ TEST_F(RayCoreTest, NearestHitsAreTheCpuIntersectors) {
 }
 
 TEST_F(RayCoreTest, ANodeAndATriangleAreTakenInEachOfTheirTurns) {
-  constexpr std::uint64_t kClocks = 11;  // as the model has it
+  constexpr std::uint64_t kClocks = 11;  // of Vray_core_shared
   check(some_rays(bodies(), random_, 3'000), {},
         std::make_unique<CoreModel<Vray_core_shared>>(MemoryTiming{}));
   const std::uint64_t turns = std::max(counters_.nodes, counters_.tests);
@@ -91,7 +91,7 @@ TEST_F(RayCoreTest, CoresShareAMemory) {
   EXPECT_GT(counters_.waits, counters_.lines);
 }
 
-/// Resets in mid-run, at any clock: then the next rays hit what they should.
+/// After resets in mid-run, at any clock, the next rays have the right hits.
 TEST_F(RayCoreTest, ResetsInMidRunLeaveNothing) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 100);
   std::vector<CoreRay> abandoned;
@@ -110,7 +110,7 @@ TEST_F(RayCoreTest, ResetsInMidRunLeaveNothing) {
   }
 }
 
-/// Scenes of other images, one after the other through the same core.
+/// Different scenes, one after the other, through the same core.
 TEST_F(RayCoreTest, ScenesFollowEachOther) {
   const Bvh other{test::scene_of(test::box(glm::vec3(-0.7f), glm::vec3(0.6f)))};
   const MemoryImage image(other);
@@ -180,8 +180,8 @@ TEST_P(EachRayCoreTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
   EXPECT_LT(counters_.tests, triangles);
 }
 
-/// A line that was read ahead may come when the last ray has ended; the core tells, or CoreModel
-/// throws.
+/// A line read ahead may arrive after the last ray has ended; the core must report it outstanding,
+/// or CoreModel throws.
 TEST_F(RayCoreTest, MemoryIsAtRestWhenTheCoreSaysSo) {
   CoreModel<Vray_core_small> core({.latency = 1, .disorder = 1'000, .seed = 4});
   for (const Ray& ray : some_rays(bodies(), random_, 100)) {
@@ -192,9 +192,9 @@ TEST_F(RayCoreTest, MemoryIsAtRestWhenTheCoreSaysSo) {
   }
 }
 
-/// The end of a ray is the reference's, word by word, but for its tests, where neither core left a
-/// doubt (which depends on the order of tests). P has the bits that the reference has for the
-/// core's own records.
+/// Ends equal the reference's word by word, except the number of tests, unless either core left a
+/// doubt (which depends on the order of tests). P, computed from the core's own records, equals the
+/// reference's bit for bit.
 TEST_P(EachRayCoreTest, EndsAreTheReferences) {
   const std::vector<Ray> rays = some_rays(bodies(), random_, 2'000);
   std::vector<CoreRay> sent;
@@ -229,8 +229,8 @@ TEST_P(EachRayCoreTest, EndsAreTheReferences) {
   EXPECT_GT(same, 1'500);
 }
 
-/// The walk of a ray that hits nothing depends on no timing: it enters the nodes that the reference
-/// enters, and tests its triangles.
+/// The traversal of a ray that hits nothing does not depend on timing: it enters the nodes and
+/// tests the triangles that the reference does.
 TEST_P(EachRayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
   std::vector<CoreRay> all, sent;
   for (const Ray& ray : some_rays(bodies(), random_, 3'000)) {
@@ -260,7 +260,7 @@ TEST_P(EachRayCoreTest, RaysThatHitNothingWalkAsTheReferences) {
   EXPECT_EQ(simulated->counters().tests, reference.counters().tests);
 }
 
-/// Counters agree with each other, and with the words that came.
+/// Counters agree with each other and with the results.
 TEST_F(RayCoreTest, EventsAreCounted) {
   std::vector<CoreRay> sent;
   for (const Ray& ray : some_rays(bodies(), random_, 2'000)) {
@@ -293,7 +293,7 @@ TEST_F(RayCoreTest, EventsAreCounted) {
   }
 }
 
-/// A ray through the boxes of more than 2^16 triangles, and past each of them.
+/// A ray through the boxes of more than 2^16 triangles, all of which it misses.
 TEST_F(RayCoreTest, EveryTestIsCounted) {
   std::vector<Corners> mesh;
   for (int n = 0; n < 70'000; ++n) {
@@ -308,7 +308,7 @@ TEST_F(RayCoreTest, EveryTestIsCounted) {
   EXPECT_EQ(results.back().tests, mesh.size());
 }
 
-/// The errors of rays' ends by tag, of `unit` before a memory of these lines.
+/// Returns the ends of rays by tag, as `unit` traces them in a memory of these lines.
 std::map<std::uint32_t, CoreResult> ends_of(CoreUnit& unit, std::span<const MemoryLine> lines,
                                             const std::vector<CoreRay>& rays) {
   std::vector<CoreResult> results;
@@ -327,7 +327,7 @@ std::vector<CoreRay> numbered(const std::vector<Ray>& rays) {
   return sent;
 }
 
-/// Its own child, and that child's: rays that enter it would go round for ever.
+/// The node is its own child: rays that enter it would never end.
 TEST_F(RayCoreTest, ANodeBelowItselfIsAnError) {
   NodeLine node(image_->lines()[MemoryImage::kRoot]);
   node.base = MemoryImage::kRoot;
@@ -351,8 +351,8 @@ TEST_F(RayCoreTest, ANodeBelowItselfIsAnError) {
   }
 }
 
-/// Rays that need a line that memory lacks have an error, all others their hits; and what was an
-/// error is none when memory has the line.
+/// Rays that need a line that memory lacks end in an error, all others with their hits; after an
+/// error the line is read again once memory has it.
 TEST_F(RayCoreTest, LinesThatMemoryLacksAreErrors) {
   const std::vector<CoreRay> rays = numbered(some_rays(bodies(), random_, 2'000));
   const std::span<const MemoryLine> lines = image_->lines();
@@ -430,7 +430,7 @@ TEST_F(RayCoreTest, AShortStackCostsNoHits) {
   EXPECT_EQ(counters_.rays, rays.size());
 }
 
-/// So many nodes one below the other, each with another, empty child, and a triangle at the end.
+/// Returns a chain of nodes, each with another, empty child, and a triangle at the end.
 std::vector<MemoryLine> chain(std::uint32_t nodes) {
   std::vector<MemoryLine> lines;
   for (std::uint32_t n = 0; n < nodes; ++n) {
@@ -451,7 +451,7 @@ std::vector<MemoryLine> chain(std::uint32_t nodes) {
   return lines;
 }
 
-/// Rays that all need the groups that they share get them one after the other.
+/// Rays that all need the shared groups get them one after the other.
 TEST_F(RayCoreTest, TreesAreAsDeepAsTheImagesOrAnError) {
   std::vector<CoreRay> rays;
   for (std::uint32_t n = 0; n < 100; ++n) {

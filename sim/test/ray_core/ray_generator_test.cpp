@@ -27,7 +27,7 @@ TEST(RayGeneratorTest, EqualsItsReference) {
   model.reset();
   long rays = 0, zeros = 0, infinities = 0;
   for (int frame = 0; frame < 60; ++frame) {
-    // Ordinary pictures, and some of all sizes of numbers.
+    // Ordinary pictures, and some with numbers of all magnitudes.
     std::uniform_real_distribution<float> number(-1.0f, 1.0f);
     const auto vector = [&](int spread) {
       glm::vec3 vector;
@@ -48,7 +48,7 @@ TEST(RayGeneratorTest, EqualsItsReference) {
     const unsigned x = far ? 65'000 + random() % 500 : random() % 3;
     const unsigned y = frame % 8 == 1 ? 0 : random() % 25'000;
     unsigned width = frame == 7 ? 0 : 1 + random() % 30, height = 1 + random() % 30;
-    // Long ones, of more than 15 bits.
+    // Widths and heights of more than 15 bits.
     if (frame == 21) std::tie(width, height) = std::pair(40'000, 2);
     if (frame == 22) std::tie(width, height) = std::pair(1, 40'000);
     std::memcpy(&model->first_i, &grid.first, sizeof grid.first);
@@ -66,7 +66,7 @@ TEST(RayGeneratorTest, EqualsItsReference) {
     for (int clock = 0; model->busy_o != 0; ++clock) {
       ASSERT_LT(clock, 20'000 + 16 * static_cast<int>(width * height));
       model->ready_i = random() % 8 < ready_of_8;
-      model->start_i = random() % 8 == 0;  // nothing, while it is busy
+      model->start_i = random() % 8 == 0;  // ignored while busy
       model->x_i = random() % 65'536;
       model->width_i = random() % 16;
       model.eval();
@@ -99,7 +99,7 @@ TEST(RayGeneratorTest, EqualsItsReference) {
   EXPECT_GT(infinities, 0) << "refused by the core, so not to be scaled";
 }
 
-/// Resets in mid-run: nothing of the frame is left, and the next one is whole.
+/// Resets in mid-run leave nothing of the frame, and the next one is complete.
 TEST(RayGeneratorTest, ResetsInMidRunLeaveNothing) {
   Model<Vray_generator> model;
   std::mt19937 random(kSeed);
@@ -142,7 +142,7 @@ TEST(RayGeneratorTest, ResetsInMidRunLeaveNothing) {
   EXPECT_GT(broken_off, 20);
 }
 
-/// A ray in every clock, where it is taken.
+/// One ray per clock, if each is taken at once.
 TEST(RayGeneratorTest, GivesARayAClock) {
   Model<Vray_generator> model;
   model->start_i = model->stop_i = 0;

@@ -1,5 +1,5 @@
-// triangle_test, a triangle in each clock and one in eleven, against its reference model, bit for
-// bit.
+// triangle_test against its reference model, bit for bit, with a triangle in every clock or in
+// every eleventh.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,9 +28,9 @@ struct Triangle {
   bool is_valid = false, is_exact = false, is_error = false, is_ignored = false;
 };
 
-/// Words of all kinds, or an ordinary triangle: flat, thin, far away or near the origin's plane,
-/// also where its products leave the range in which a plane is good. Two in three rays go to a
-/// point of it.
+/// Triangles of any bit patterns, or ordinary ones: flat, thin, far away or in a plane near the
+/// origin, even with products beyond the range of valid planes. Two in three rays go to a point of
+/// their triangle.
 class Triangles {
  public:
   Triangle operator()() {
@@ -65,7 +65,7 @@ class Triangles {
       }
       return next;
     }
-    // At these N or d is as small or as large as it may be.
+    // At these scales N or d is close to its smallest or largest valid size.
     constexpr int kEnds[] = {-50, -33, 43, 63};
     const int scale = one_in(2) ? 0 : kEnds[random_() % 4] + between(-4, 4);
     for (glm::vec3& corner : next.corners) corner = point(scale - smaller(30));
@@ -116,7 +116,7 @@ class TriangleTest : public testing::Test {
     fields.put(triangle.is_valid, 1);
   }
 
-  /// The verdict on this triangle.
+  /// Compares the verdict on this triangle with the reference's.
   void check(const Triangle& triangle, std::uint32_t number) {
     PackedFields fields(model_->verdict_o);  // ray_core_pkg::verdict_t
     glm::vec3 point;

@@ -1,4 +1,4 @@
-// csr with four-state values: registers that nobody wrote are zero, and a counter that carries into its high word
+// csr with four-state values: unwritten registers are zero, and a counter that carries into its high word
 // between the reads of its two words is read as one number.
 module bench;
   reg  clk = 0, reset_n = 0, arvalid = 0, busy = 0;

@@ -1,9 +1,9 @@
-"""`make synth VERILOG=1` writes what Icarus Verilog compiles and runs, with the right words.
+"""Checks that Icarus Verilog compiles and runs what `make synth VERILOG=1` writes, with the right words.
 
 usage: icarus_test.py TOP CASES [ecp5] [bench.Name=value ...] [Name=value ...]
 beside it: TOP_bench.v, with parameters of its own, whose last line counts CASES
 
-With ecp5 the netlist that `make fpga` places runs there, of Yosys' models of that device's cells.
+With ecp5, the netlist that `make fpga` places runs instead, with Yosys's models of that device's cells.
 """
 
 import pathlib
@@ -18,12 +18,12 @@ from synth import catalogue, scripts, tools, yosys  # noqa: E402
 
 
 def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.Path]:
-    """Writes the ECP5's netlist of `top` as `out`; what Icarus is to read."""
+    """Writes the ECP5 netlist of `top` to `out`; returns the files that Icarus reads."""
     design = catalogue.design(top, **dict(word.split("=") for word in words))
     netlist = out.with_suffix(".json")
     yosys.run(scripts.fpga(design, "ecp5", "", netlist), out.with_suffix(".map.log"))
     empty = " ".join(f"-unset INITVAL_{row:02X}" for row in range(64))
-    # Yosys's models of the cells as Yosys reads them: Icarus Verilog refuses their $error.
+    # Yosys writes its cell models out as it reads them: Icarus Verilog refuses their $error.
     yosys.run(f"read_json {netlist}\nchtype -set block_ram t:DP16KD\nsetparam {empty} t:block_ram\n"
               f"delete =$paramod*\nread_verilog -overwrite +/ecp5/cells_sim.v\nhierarchy -top {top}\nproc\n"
               f"setattr -mod -unset lib_whitebox *\nwrite_verilog -noattr {out}", out.with_suffix(".log"))
@@ -31,7 +31,7 @@ def mapped(top: str, words: list[str], out: pathlib.Path) -> list[str | pathlib.
 
 
 def main():
-    """Writes, compiles, runs; the exit status is 1 where a word is wrong or a case is missing."""
+    """Writes, compiles and runs. Returns whether a word is wrong or a case is missing: the exit status."""
     top, cases, *parameters = sys.argv[1:]
     bench = [word for word in parameters if word.startswith("bench.")]
     parameters = [word for word in parameters if word not in bench]

@@ -1,8 +1,8 @@
 // ray_core with four-state values, at power-up and after resets in mid-run: no bit of its outputs is unknown, and rays hit
 // what they should. Its memory has two nodes and three triangles across the x axis. Every eighth ray meets an edge.
 module bench;
-  parameter IdWidth = 5;  // of a line's request
-  parameter Exact = 0;  // dut's
+  parameter IdWidth = 5;  // bits of a line request's ID
+  parameter Exact = 0;  // of dut
   reg clk = 0, reset_n = 0, ray = 0, result_ready = 0, read_ready = 0, line_valid = 0;
   reg [95:0] origin = 0;
   reg [31:0] skip = 0, source = 0, tag = 0;
@@ -28,24 +28,24 @@ module bench;
     .line_ready_o(line_ready), .line_id_i(line_id), .line_i(line), .line_error_i(1'b0), .events_o(events)
   );
 
-  // A node on a grid of 1/32 from zero on, and its first two children: {high, low} of each, words of z, y, x.
+  // A node with a grid of 1/32 from the origin, and its first two children: boxes {high, low}, each of z, y, x.
   function [511:0] node(input [27:0] base, input [7:0] kinds, input [47:0] box_0, input [47:0] box_1);
     node = {240'd0, box_1, box_0, 20'd0, kinds, base, 24'h7a7a7a, 96'd0};
   endfunction
 
-  // A triangle's name by its line: that line with Exact.
+  // Name of the triangle in a line: with Exact the line number, else another index.
   function [31:0] name(input [31:0] line_number);
     name = Exact != 0 ? line_number : line_number + 8;
   endfunction
 
-  // A right angle at (x, from, from), its legs of the length to - from.
+  // A right-angled triangle: its right angle at (x, from, from), its legs to - from long.
   function [511:0] across(input [31:0] index, input [31:0] x, input [31:0] from, input [31:0] to);
     across = {192'd0, index, to, from, x, from, to, x, from, from, x};
   endfunction
 
   reg [511:0] lines[0:4];
   reg [28+IdWidth-1:0] asked[0:63];  // {line, id}
-  integer first, last;     // of those that are to be answered
+  integer first, last;     // of the requests to be answered
 
   task known(input value, input is_known);
     if (value !== 1'b0 && !is_known) failures = failures + 1;
@@ -118,7 +118,7 @@ module bench;
       {ray, line_valid} = 0;
       {sent, ended, first, last} = 0;
       #1 reset_n = 1;
-      most = round % 2 == 0 ? 100 + 40 * round : 3000;  // every other round ends in the middle
+      most = round % 2 == 0 ? 100 + 40 * round : 3000;  // every other round stops early
       for (clocks = 0; clocks < most && ended < 24; clocks = clocks + 1) tick;
       if (round % 2 == 1 && ended != 24) failures = failures + 1;
       if (round % 2 == 0) cases = cases - ended;

@@ -1,5 +1,4 @@
-// What a carry-save adder promises (step 4) and nothing more: two words, whichever they are, with
-// the sum of the three.
+// A carry-save adder of which only step 4 is known: any two words with the sum of the three.
 module carry_save_adder #(
   parameter int unsigned Width = 48
 ) (

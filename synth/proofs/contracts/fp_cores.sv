@@ -1,4 +1,4 @@
-// Float cores that promise nothing: any result, any flags. For what control does, that is enough.
+// Float cores of which nothing is known: any result, any flags. That is enough for proofs of control.
 module fp_multiplier #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,

@@ -1,8 +1,8 @@
-// The float cores as functions of their operands, of which nothing is known but that equal operands give
-// equal results. For what a unit makes of its words: which go through which cores, and where the results go.
+// The float cores as functions of their operands: only known is that equal operands give equal results. For proofs of a
+// unit's data flow: which words go through which cores, and where the results go.
 //
-// induction.py makes each X_result the value of the function X at X_operands. Registers: as the units
-// have them, all or none. What a divider with registers says of operands without valid_i is anything.
+// induction.py makes each X_result the value of the function X at X_operands. Cores have all registers or none, as in
+// the units. A divider with registers gives any result for operands without valid_i.
 module fp_adder #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

@@ -1,4 +1,4 @@
-// A lane of which only is known what it is given; what it says may be anything.
+// A lane whose inputs are visible and whose outputs may be anything.
 module hit_test_pipeline #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

@@ -1,5 +1,5 @@
-// A ray core of which nothing is left but rays that come and go: ray_alloc and ray_retire as ray_core joins them.
-// What is to be done for a ray is anything, and so is when its walk begins. One ray may be marked: its tag is one bit here.
+// A ray core reduced to rays that come and go: ray_alloc and ray_retire, joined as in ray_core. The work for a ray is
+// arbitrary, and so is the start of its traversal. One ray may be marked: its tag is one bit here.
 module ray_contexts #(
   parameter int unsigned Rays = 4,
   localparam int unsigned CtxWidth = $clog2(Rays)
@@ -9,14 +9,14 @@ module ray_contexts #(
   input  logic                 ray_valid_i,
   input  logic                 ray_mark_i,
   output logic                 ray_ready_o,
-  input  logic                 start_i,  // the walk takes a ray that is there
+  input  logic                 start_i,  // traversal takes a waiting ray
   input  logic [Rays-1:0]      busy_i,
   output logic                 started_o,
   output logic [CtxWidth-1:0] started_ctx_o,
   output logic                 ending_o,
   output logic [CtxWidth-1:0] ending_ctx_o,
   output logic [Rays-1:0]      marks_o,      // of contexts
-  output logic                 entering_o,   // the marked ray's end comes into the queue
+  output logic                 entering_o,   // the marked ray's end enters the queue
   input  logic                 doubt_valid_i,
   output logic                 result_valid_o,
   input  logic                 result_ready_i,
@@ -89,7 +89,7 @@ module ray_contexts #(
 
 endmodule
 
-// A queue of which the highest bits of words are kept: unit.fifo has shown that the real one keeps order.
+// A queue that keeps only the highest bit of each word: unit.fifo proves that the real queue keeps order.
 module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 64,
@@ -108,7 +108,7 @@ module fifo #(
 );
   (* anyseq *) logic [Width-1:0] any;
   logic [CountWidth-1:0] count_q, count_d, last;
-  logic [Depth-1:0] bits_q, bits;  // the next to leave lowest, 0 above the last
+  logic [Depth-1:0] bits_q, bits;  // the next to leave is lowest; 0 above the last
   assign data_o  = Width'({bits_q[0], any} >> 1);
   assign last    = count_q - CountWidth'(pop_i);
   assign bits    = pop_i ? bits_q >> 1 : bits_q;
@@ -128,7 +128,7 @@ module fifo #(
   end
 endmodule
 
-// A divider that promises nothing.
+// A divider of which nothing is known.
 module fp_divider #(
   parameter int unsigned ExpWidth     = 8,
   parameter int unsigned FracWidth    = 23,

@@ -1,5 +1,5 @@
-; a / b, given the quotient of the significands, cut off, and whether anything is left of it. IEEE
-; 754-2019, clauses 5.4.1 and 7. To be read behind multiply.smt2.
+; a / b, given the truncated quotient of the significands, and whether there is a remainder. IEEE 754-2019, clauses
+; 5.4.1 and 7. To be read after multiply.smt2.
 ;
 ; wide-a and wide-b are the words of a and b as Wides, in which every number but zero is normal:
 ; the fields of these words are exponents and fractions of the normalised numbers.
@@ -12,13 +12,13 @@
 (define-fun normalized ((w WideWord)) (_ BitVec $S)
   (concat #b1 ((_ extract $WF_TOP $WF_S) w)))
 
-; What the divider of significands promises: quotient is 2 a / b, cut off, left says whether it was.
-; 2 a / b is in (1, 4).
+; The property of the divider of significands: quotient is 2 a / b, truncated; left: there is a remainder. 2 a / b is in
+; (1, 4).
 (define-fun possible-quotient ((quotient Quotient)) Bool
   (bvuge quotient (_ bv$QUOTIENT_ONE $Q)))
 
-; (1 + word / 2^k) * 2^e - 2^e is word * 2^(e - k). What is left counts as half a place, far
-; below every place where rounding could notice how much it is.
+; (1 + word / 2^k) * 2^e - 2^e is word * 2^(e - k). A remainder counts as half a place, far below every place where its
+; size could affect rounding.
 (define-fun quotient-magnitude ((wide-a WideWord) (wide-b WideWord)
                                 (quotient Quotient) (left Bool))
                                Wide

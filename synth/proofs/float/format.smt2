@@ -1,4 +1,4 @@
-; What the specifications share: words, numbers, the five flags. IEEE 754-2019, clauses 3.4, 4.3, 7.
+; Shared by the specifications: words, numbers, the five flags. IEEE 754-2019, clauses 3.4, 4.3, 7.
 ;
 ; Every operation is SMT-LIB's own, of its theory FloatingPoint. $$E and $$S stand for the widths of
 ; the exponent and of the significand with its integer bit (binary16: 5, 11).
@@ -36,12 +36,12 @@
   (ite (= m (ite negative RTN RTP)) (fp.gt most last)
        (fp.geq least power))))
 
-; The flags, invalid leftmost and inexact rightmost, of a result that
-;   rounds         is the rounding of an exact finite value, which
-;   down, up       are the Floats below and above, equal if it is one: else it is inexact (7.6)
-;   below, above   are the Wides below and above
-; Overflow (7.4): it reaches the power of two beyond the largest Float. Underflow (7.5): inexact, and
-; it does not reach the smallest normal Float, rounded in mode m or (before rounding) cut off.
+; The flags, invalid leftmost and inexact rightmost, of a result:
+;   rounds         it is the rounding of an exact finite value
+;   down, up       the Floats below and above that value; equal if it is one, else the result is inexact (7.6)
+;   below, above   the Wides below and above that value
+; Overflow (7.4): the rounded value reaches the power of two beyond the largest Float. Underflow (7.5): inexact, and
+; the value, rounded in mode m or (before rounding) truncated, does not reach the smallest normal Float.
 (define-fun bit ((p Bool)) (_ BitVec 1) (ite p #b1 #b0))
 (define-fun flags ((invalid Bool) (by-zero Bool) (rounds Bool) (m RoundingMode) (after Bool)
                    (down Float) (up Float) (below Wide) (above Wide)) (_ BitVec 5)

@@ -1,4 +1,4 @@
-// Prints COUNT operations and what MPFR says of them: a line of mode, tininess, operands, result and
+// Prints COUNT operations with MPFR's results: a line of mode, tininess, operands, result and
 // flags, in decimal. Arguments: exponent width, fraction width, operation (a FloatOp), COUNT.
 #include <cstdio>
 #include <cstdlib>

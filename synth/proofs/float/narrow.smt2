@@ -1,9 +1,8 @@
-; bfloat16, a format that the solver does not know: its numbers are held as binary32 ones, of which they
-; are the upper half, so no operation of SMT-LIB's rounds to it. A result is right by clause 4.3: its magnitude is the
-; largest that the exact one, rounded, reaches. To be read behind format.smt2.
+; bfloat16, a format that the solver does not know: its numbers are held as binary32 numbers, of which they are the
+; upper half, so that no operation of SMT-LIB rounds to it. By clause 4.3 a result is right if its magnitude is the
+; largest that the rounded exact value reaches. To be read after format.smt2.
 
-; The magnitude k / 2 places after zero, as words of one sign count them; behind the largest, the next
-; power of two.
+; The magnitude k / 2 places after zero, in the order of words of equal sign; after the largest, the next power of two.
 (define-sort Place () (_ BitVec $W))
 (define-fun at ((k Place)) Wide
   (ite (= k $INFINITY_PLACE) $POWER
@@ -27,8 +26,8 @@
                    (or (= k (_ bv0 $W)) (reaches-place m negative least most k))
                    (not (reaches-place m negative least most (bvadd k (_ bv2 $W)))))))))
 
-; The result and flags of an exact value between `below` and `above`, equal or neighbours, which has the sign
-; of `sign` even if it is zero. `special`: it is not rounded, but `special-result`.
+; The result and flags of an exact value between `below` and `above`, equal or neighbours, which has the sign of `sign`
+; even if it is zero. `special`: the result is `special-result`, not a rounded value.
 (define-fun right ((w Word) (flagged (_ BitVec 5)) (m RoundingMode) (after Bool)
                    (special Bool) (special-result Float) (sign Wide) (below Wide) (above Wide)
                    (invalid Bool) (by-zero Bool)) Bool

@@ -1,8 +1,8 @@
 """`solve.py FILE SECONDS [TERM ...]`: Bitwuzla's answer to an SMT-LIB file, as a line of JSON.
 
 {"answer": "sat", "unsat", or "unknown" if SECONDS of processor time (0: no limit) are not enough,
-"seconds": of processor time, "megabytes": at most,
-"values": {TERM: its value in bits, where the answer is "sat"}}
+"seconds": of processor time, "megabytes": peak,
+"values": {TERM: its value in bits, if the answer is "sat"}}
 """
 
 import json
@@ -17,7 +17,7 @@ import bitwuzla
 
 
 def bits(term: bitwuzla.Term) -> str:
-    """The value of a Boolean, a bit vector or a float, in bits."""
+    """Returns the value of a Boolean, a bit vector or a float, in bits."""
     if term.sort().is_bool():
         return str(int(term.value()))
     if term.sort().is_fp():
@@ -26,7 +26,7 @@ def bits(term: bitwuzla.Term) -> str:
 
 
 def report(answer: str, values: dict[str, str], usage: resource.struct_rusage) -> None:
-    """Prints the line."""
+    """Prints the line of JSON."""
     print(json.dumps({"answer": answer, "seconds": round(usage.ru_utime + usage.ru_stime, 1),
                       "megabytes": usage.ru_maxrss // 1024, "values": values}), flush=True)
 

@@ -1,6 +1,5 @@
-; What a row of the radix-4 divider does. Residuals and divisors are words of $N bits, two of them
-; integer ones; a residual is the sum of two words, modulo 4, and signed. Here they are integers of
-; four bits more, so that nothing overflows.
+; Rows of the radix-4 divider. Residuals and divisors are words of $N bits, two of them integer bits; a residual is the
+; sum of two words, modulo 4, and signed. Here they have four bits more, so that nothing overflows.
 
 (define-sort Residual () (_ BitVec $N))
 (define-sort Exact () (_ BitVec $N4))

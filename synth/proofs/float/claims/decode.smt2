@@ -1,4 +1,4 @@
-; A finite number is its significand by a power of two: in the form in which exact-product has the product.
+; A finite number is its significand times a power of two, written in the form of exact-product.
 (declare-const a Word)
 (define-fun assumed () Bool (is-finite a))
 (define-fun claimed () Bool

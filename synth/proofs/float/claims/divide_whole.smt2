@@ -1,4 +1,4 @@
-; fp_divider as it is. For counterexamples: no solver comes to the end of it.
+; The whole fp_divider. Only for counterexamples: no solver ends with a proof.
 (declare-const wide-a WideWord)
 (declare-const wide-b WideWord)
 (define-fun m () RoundingMode (mode rounding_mode_i))

@@ -1,5 +1,5 @@
-; fp_multiplier around a multiplier of significands that may give any possible product: it is asked for
-; the right product, and what is made of that is right. Every pair of words, every mode.
+; fp_multiplier around a multiplier of significands that may give any possible product: the multiplier gets the
+; significands, and the result for its product is right. Every pair of words, every mode.
 (define-fun m () RoundingMode (mode rounding_mode_i))
 (define-fun right-result () Float (multiply-result m a_i b_i free_product))
 (define-fun right-flags () (_ BitVec 5) (multiply-flags m tininess_after_i a_i b_i free_product))

@@ -1,6 +1,6 @@
-; srt_divider around rows that may do anything that keeps |w| <= 2/3 d: the first gets 2 x and d,
-; each other what the row before it gave, and d; the quotient is the positive digits less the negative
-; ones, less one if w is negative in the end.
+; srt_divider around rows that may do anything that keeps |w| <= 2/3 d: the first row gets 2 x and d, every other row
+; the outputs of the row before it, and d; the quotient is the positive digits minus the negative digits, minus one if w
+; is negative in the end.
 (define-fun divisor () Residual (concat #b0 divisor_i))
 (define-fun last () Exact (residual free_sum_o_$ROWS free_carry_o_$ROWS))
 (define-fun negative () Bool (bvslt last (_ bv0 $N4)))

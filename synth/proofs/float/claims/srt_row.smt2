@@ -1,5 +1,5 @@
-; srt_row: from |w| <= 2/3 d it goes to w' = 4 w - digit d, and |w'| <= 2/3 d again. The digit is the
-; positive one less the negative one, of which one is 0 and none is 3.
+; srt_row makes w' = 4 w - digit d from |w| <= 2/3 d, and |w'| <= 2/3 d again. The digit is the positive digit minus the
+; negative digit; one of them is 0, and neither is 3.
 (define-fun w () Exact (residual sum_i carry_i))
 (define-fun next () Exact (residual sum_o carry_o))
 (define-fun digit () Exact (bvsub (small positive_o) (small negative_o)))

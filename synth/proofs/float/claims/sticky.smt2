@@ -1,5 +1,5 @@
-; What is left of a quotient may count as half a place: eight more of its bits, or half a place in their
-; stead, make no difference to result or flags, whatever the exponent.
+; A remainder may count as half a place: eight more bits of the quotient, or half a place instead, give the same result
+; and flags for every exponent.
 (declare-const quotient Quotient)
 (declare-const more (_ BitVec 8))
 (declare-const e (_ BitVec $WE))

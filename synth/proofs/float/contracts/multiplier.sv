@@ -1,4 +1,4 @@
-// A multiplier that promises nothing: the query says what its product is.
+// A multiplier whose product may be anything: the query defines it.
 module multiplier #(
   parameter int unsigned Width = 24,
   parameter int unsigned Arith = 0,

@@ -1,4 +1,4 @@
-// A divider of significands that promises nothing: the query says what its quotient is.
+// A divider of significands whose quotient may be anything: the query defines it.
 module srt_divider #(
   parameter int unsigned Width = 24,
   parameter int unsigned Rows  = 12,

@@ -1,4 +1,4 @@
-// A first row that promises nothing: the query says what it does.
+// A first row whose outputs may be anything: the query defines them.
 module srt_first_row #(
   parameter int unsigned Width = 25
 ) (

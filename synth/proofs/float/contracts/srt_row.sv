@@ -1,4 +1,4 @@
-// A row that promises nothing: the query says what it does.
+// A row whose outputs may be anything: the query defines them.
 module srt_row #(
   parameter int unsigned Width = 25,
   parameter int unsigned Arith = 0

@@ -1,10 +1,10 @@
-; Two steps of hit_test_pkg, "How far off t may be". For z3: "sat" where a question says so, for its
-; assumptions can be; else "unsat".
+; Two steps of hit_test_pkg, "Error of t". z3 must answer "sat" where a question says so, as its assumptions are
+; possible; else "unsat".
 ;
 ; Real numbers. M = 2^(the largest exponent of N), G = 2^g.
 
-; V = I . N in binary32 is off by less than 48.5 u M. n is the magnitude of a word of N, within 1.01 u of
-; the exact one; |I_i| <= 2; x and y stand for I_i N_i and for I_i by what N_i lacks.
+; V = I . N in binary32 is off by less than 48.5 u M. n is the magnitude of a word of N, within 1.01 u of the exact one;
+; |I_i| <= 2; x stands for I_i N_i, y for I_i times the error of N_i.
 (push)
 (define-fun u () Real (/ 1.0 16777216.0))
 (define-fun within ((x Real) (bound Real)) Bool (and (<= x bound) (<= (- bound) x)))
@@ -28,8 +28,8 @@
 (check-sat)
 (pop)
 
-; (48.5 G + 3.2) / (1 - r), with r = 48.5 u G, is below 2^6 max(G, 1) where rays are not doubts for
-; grazing: G at most 1, or, with FracWidth above 11, 2^(FracWidth - 11) = 1 / (4096 u). Any format.
+; (48.5 G + 3.2) / (1 - r), with r = 48.5 u G, is below 2^6 max(G, 1) for rays that do not graze too much: G is at most
+; 1, or, with FracWidth above 11, 2^(FracWidth - 11) = 1 / (4096 u). Any format.
 (push)
 (declare-const u Real)
 (declare-const G Real)

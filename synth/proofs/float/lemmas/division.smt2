@@ -15,8 +15,7 @@
 (check-sat)
 (pop)
 
-; In the end D, less one where w is negative, is 2 x p / d cut off, and something is left of it
-; where w is not zero.
+; In the end D, minus one if w is negative, is 2 x p / d truncated, and there is a remainder if w is not zero.
 (push)
 (define-fun Q () Int (ite (< w 0) (- D 1) D))
 (assert (and (> d 0) (<= (* -2 d) (* 3 w)) (<= (* 3 w) (* 2 d))))

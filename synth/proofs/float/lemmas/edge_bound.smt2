@@ -1,11 +1,11 @@
-; Hit or miss, binary32: an edge product U = I . E beyond its bound has the sign of the exact one. The steps
-; are those of host/intersect/polygon_record.cpp. For z3: "sat" where a question says so, for its
-; assumptions can be; else "unsat".
+; Hit or miss, binary32: an edge product U = I . E beyond its bound has the sign of the exact product. The steps
+; are those of host/intersect/polygon_record.cpp. z3 must answer "sat" where a question says so, as its
+; assumptions are possible; else "unsat".
 ;
-; Real numbers. An operation to nearest is off by at most u of its exact result, and by 2^-150 more where
+; Real numbers. An operation to nearest is off by at most u of its exact result, and by 2^-150 more if
 ; a product underflows (a sum does not). f is the magnitude of F_i, a float word, which differs by g
 ; from D_i, a double, which differs by h from the exact E_i. |I_i| <= 2; x, y, z stand for I_i F_i,
-; I_i (D_i - F_i), I_i (E_i - D_i), of which nothing but the magnitude counts: no question multiplies.
+; I_i (D_i - F_i), I_i (E_i - D_i), of which only bounds are known: no question multiplies.
 (set-logic QF_LRA)
 (define-fun u () Real (/ 1.0 16777216.0))
 (define-fun tiny () Real (/ 1.0 1427247692705959881058285969449495136382746624.0)) ; 2^-150
@@ -31,7 +31,7 @@
 (assert (and (within z1 (* 2.0 h1)) (within z2 (* 2.0 h2)) (within z3 (* 2.0 h3))))
 (define-fun exact () Real (+ x1 x2 x3 y1 y2 y3 z1 z2 z3))
 
-; What the unit calculates, three products and two sums, and how large they are at most.
+; The unit's three products and two sums, and their largest magnitudes.
 (declare-const p1 Real) (declare-const p2 Real) (declare-const p3 Real)
 (declare-const s Real) (declare-const U Real)
 (define-fun product-error ((f Real)) Real (+ (* u 2.0 f) tiny))
@@ -53,7 +53,7 @@
 (check-sat)
 (pop)
 
-; So a sure U decides as the exact one does.
+; So a sure U has the sign of the exact product.
 (push)
 (assert (or (and (> U bound) (<= exact 0.0)) (and (< U (- bound)) (>= exact 0.0))))
 (check-sat)
