@@ -130,7 +130,7 @@ module stack_keeps_nodes #(
     line_of = group[GroupWidth-1-:AddressWidth] + AddressWidth'(group[EntryWidth*n+CountWidth+:OffsetWidth]);
   endfunction
 
-  // ---- Assumptions about the user: rays start that do not traverse, nodes come that were requested, near ones first
+  // ---- Assumptions about the user: no ray starts twice, nodes come if requested, near children first
 
   logic [Rays-1:0] wanted;  // requested nodes that have not come
 
