@@ -84,7 +84,7 @@ def _spread(wanted: list[tuple[float, str]], last: int) -> list[tuple[int, str]]
     """Returns whole places from 1 to `last`, all different, in order, near those wanted."""
     places, low = [], 1
     for count, (at, name) in enumerate(wanted):
-        room = last - (len(wanted) - 1 - count)  # so that those that follow find theirs
+        room = last - (len(wanted) - 1 - count)  # so that the remaining ones find places
         place = min(max(round(at), low), room)
         places.append((place, name))
         low = place + 1
