@@ -199,7 +199,7 @@ def _edge(far: float, width: int, height: int) -> tuple[int, int]:
 def gaps(netlist: Netlist, technology: Technology, density: float, pitch: float) -> dict[str, float]:
     """Returns the gap beside each cell, um, in whole pitches: the larger, the more pins the cell has for its width.
 
-    Wires crowd where pins do. A gap makes up a cell's width to a width per pin that is the same for all cells.
+    Wires crowd where pins do. With their gaps, narrow cells have the same width per pin.
     """
     widths = {name: technology.macros[cell.kind].width for name, cell in netlist.cells.items()}
     room = sum(widths.values()) * (1 / density - 1)
