@@ -182,7 +182,7 @@ module stack_keeps_nodes #(
                                 : nexts_0[NextWidth*w_ray+EnterWidth+:Children];
   assign kept = groups[GroupWidth*(w_own ? {1'b0, w_ray, w_level[0]} : {2'b10, w_level[0]})+:GroupWidth];
 
-  logic asking, leaving;  // its group's level is being requested, and its node leaves
+  logic asking, leaving;  // asking: the level of its group is requested; leaving: a node of that level leaves
   logic [Children-1:0] leaving_mask;
   always_ff @(posedge clk) leaving_mask <= mask_q;
   assign asking  = asked_q && asking_ray_q == w_ray && asked_level_q == {1'b0, w_level};
