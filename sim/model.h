@@ -79,7 +79,7 @@ class Model {
     clocks_ += level;
   }
 
-  /// Pulls the reset low without a clock edge (it is asynchronous) and lets go of it.
+  /// Pulls the reset, which is asynchronous, low without a clock edge, and releases it.
   void reset() {
     top_->clk_i = 0;
     top_->rst_ni = 1;

@@ -63,7 +63,7 @@ void build(const ModelFile& file) {
   const std::string command = quoted(RAYGATE_CMAKE) + " --build " + quoted(kBuildFolder) +
                               " --target " + file.name + ".so >" + quoted(log) + " 2>&1";
   const int status = std::system(command.c_str());  // NOLINT(bugprone-command-processor): ours
-  if (WIFSIGNALED(status)) std::raise(WTERMSIG(status));  // Ctrl-C: the program's, too
+  if (WIFSIGNALED(status)) std::raise(WTERMSIG(status));  // Ctrl-C ends this program, too
   if (status != 0) fail(file, "building it failed (" + log + ")");
 }
 

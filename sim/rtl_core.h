@@ -22,7 +22,7 @@ inline constexpr int kTableRays = 64, kBoardRays = 16;
 /// Cores behind one port to memory.
 struct CoreSet {
   int cores = 1;
-  bool exact = false;                 ///< they resolve doubts themselves
+  bool exact = false;                 ///< the cores resolve doubts themselves
   Arith arith = Arith::kBehavioural;  ///< structural: exact cores only
 };
 

@@ -39,7 +39,7 @@ class WaveModel : public Model<Top> {
   }
 
  private:
-  std::unique_ptr<VerilatedVcdC> wave_;  // closes its file when it goes
+  std::unique_ptr<VerilatedVcdC> wave_;  // closes its file when destroyed
 };
 
 }  // namespace raygate

@@ -112,7 +112,7 @@ def bring(files: dict[str, str]) -> pathlib.Path:
 
 @dataclasses.dataclass(frozen=True)
 class _Module:
-    """A user's file: its text, with modules renamed that have a name of hw/'s, and its top module with the line of its name."""
+    """A user's file: its text, in which modules with names of hw/ are renamed, and its top module with the line of its name."""
     file: str
     text: str
     top: str

@@ -17,7 +17,7 @@ class Cut:
 
     name: str
     top: str
-    uncut: str  # of OPERATIONS, for its contracts
+    uncut: str  # its proof in OPERATIONS, whose contracts are used
     latency: dict[str, int]  # by format
     product: int = 0  # the clock in which the multiplier's contract gives the product
 

@@ -30,7 +30,7 @@ setattr -unset anyseq -unset anyconst w:*"""
 def state(model: str, top: str, name: str, before: str = "",
           given: dict[str, str] | None = None) -> str:
     """Declares a state of a module: the successor of `before`, or any state. Registers are terms of the previous state, inputs in `given`
-    the terms there, without equations: what two states compute alike is then one term for the solver."""
+    those terms; there are no equations, so that what two states compute alike is one term for the solver."""
     width = int(re.search(rf"\(define-sort \|{re.escape(top)}_s\| \(\) \(_ BitVec (\d+)\)\)", model)[1])
     fields = re.findall(r"^\(define-fun \|(\S+#\d+)\| .*\(\(_ extract (\d+) (\d+)\) state\).* ; (.*)$",
                         model, re.M)
@@ -60,7 +60,7 @@ def state(model: str, top: str, name: str, before: str = "",
 def ports(model: str, top: str, suffix: str = "", before: str = "",
           given: dict[str, str] | None = None) -> tuple[str, list[str]]:
     """Returns a state (see `state`) with names, ending in `suffix`, for the module's ports and for wires that contracts leave free
-    ("free_...", in a row with its number); and these names without `suffix`."""
+    ("free_...", numbered if there is a row of them); and these names without `suffix`."""
     text = [state(model, top, f"state{suffix}", before, given)]
     names = []
     pattern = re.compile(rf"\(define-fun \|({top}_n (\S+))\| \(\(state \|{top}_s\|\)\) "
@@ -79,8 +79,8 @@ def ports(model: str, top: str, suffix: str = "", before: str = "",
 
 def write_model(sources: list[pathlib.Path], top: str, parameters: str, folder: pathlib.Path,
                 keep: pathlib.Path | None = None) -> str:
-    """Returns a module with parameters ("Name value ...") as functions of SMT-LIB, one of the state for every wire; the state includes
-    inputs and wires that contracts leave free. Its netlist goes to `keep`, for faults to be put into."""
+    """Returns a module with parameters ("Name value ...") as SMT-LIB: for every wire, a function of the state, which includes inputs and
+    wires that contracts leave free. Writes its netlist to `keep`, so that faults can be put into it."""
     smt2, words = folder / "model.smt2", parameters.split()
     yosys.run("\n".join([read(sources, top, zip(words[::2], words[1::2])), FLAT,
                          *([f"write_rtlil {keep}"] if keep else []), f"dffunmap\nwrite_smt2 -stbv -wires {smt2}"]),

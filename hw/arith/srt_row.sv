@@ -53,7 +53,7 @@ module srt_row #(
   assign from[1] = y >= M0[eighth+:EstimateWidth];
   assign from[2] = y >= M1[eighth+:EstimateWidth];
   assign from[3] = y >= M2[eighth+:EstimateWidth];
-  // At most one of their four bits is 1
+  // At most one of the next four bits is 1
   assign positive_o = {from[3], from[2] & ~from[3]};
   assign negative_o = {~from[0], from[0] & ~from[1]};
   assign multiple = {Width{from[2]}}

@@ -17,7 +17,7 @@ module rr_arbiter #(
 
   assign above  = requests_i & ({Width{1'b1}} << start_i);
   assign among  = (above != '0) ? above : requests_i;
-  assign picked = among & -among;  // its lowest bit
+  assign picked = among & -among;  // the lowest 1 of `among`
   assign valid_o = requests_i != '0;
 
   // Marks the indices whose bit b is 1

@@ -10,7 +10,7 @@ package exact_pkg;
 
   // ---- A request
 
-  // Places (word numbers) of a request's floats: that of a vector's x, which y and z follow; of A, then B and C.
+  // Places (word numbers) of a request's floats: of a vector's x, which y and z follow; of a triangle's A, then B, C.
   localparam int unsigned PlaceWidth = 5;
   localparam int unsigned PlaceOrigin = 0;
   localparam int unsigned PlaceDirection = 3;

@@ -28,7 +28,7 @@ module exact_sequencer
   input  logic                    written_i,
   input  logic                    stop_i,
   input  logic [6:0]              stop_address_i,
-  output logic                    stopped_o,  // the steps in flight are all of that instruction
+  output logic                    stopped_o,  // all steps in flight are of that instruction
   input  logic                    abort_i,
   // a step
   output logic                    valid_o,

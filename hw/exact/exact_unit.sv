@@ -162,7 +162,7 @@ module exact_unit
     limit_q     <= 32'(x_place) == PlaceLimit;
   end
 
-  // ---- Stage 1: digits of numbers, from memory, or of floats; the limit and 1, which only x can be, have their own
+  // ---- Stage 1: digits of numbers, from memory, or of floats. Only x can be the limit or 1, which have their own
   // shifts
 
   logic write, loads;

@@ -34,8 +34,8 @@ module fp_divider #(
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
   localparam int unsigned CountWidth = $clog2(FracWidth + 1);
   localparam int unsigned RoundExpWidth = ExpWidth + 2;  // the rounder's exponent
-  // Fraction bits of a quotient in [1, 4). If it is below 2, they hold the significand's and the guard bit, or those
-  // that are not cut off. Two per row.
+  // Fraction bits of a quotient in [1, 4), two per row: enough, if it is below 2, for the significand's bits and the
+  // guard bit, or for the bits that are not cut off.
   localparam int unsigned QuotientFrac = (QuotientBits == 0) ? FracWidth + 1 : QuotientBits - 1;
   localparam int unsigned Rows = (QuotientFrac + 1) / 2;
   localparam int unsigned QuotientWidth = 2 * Rows + 2;

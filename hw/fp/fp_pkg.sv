@@ -8,7 +8,7 @@
 //
 // Sums and differences of significands and exponents are instances of hw/arith's adder (of kind Arith), products and
 // quotients of its multiplier and divider. Steps by one or two and comparisons are the language's operators, for which
-// synthesis makes no slower than structures of ours.
+// synthesis makes structures no slower than ours.
 // Source: IEEE 754-2019, clauses 3.4 (formats), 4.3 (rounding), 7 (exceptions).
 package fp_pkg;
 

@@ -65,7 +65,7 @@ module csr
 
   // ---- Writes: address and data are taken, each into a register; then the word is written
 
-  logic write, refused, address_q, data_q;  // address_q, data_q: here
+  logic write, refused, address_q, data_q;  // address_q, data_q: it has been taken
   logic [9:0] write_word_q, read_word;
   logic [3:0] strobes_q;
   logic [31:0] write_data_q, mask;  // the bits to write

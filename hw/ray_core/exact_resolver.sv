@@ -7,7 +7,7 @@
 //   settling  When nothing else is left to do for the ray: is the candidate nearer than closest_hit's certain hit or,
 //             without one, than the user's t_max? Then its triangle is tested once more, for t and P.
 //
-// Of hits at the same t that of lower rank is nearer. Corners are read by line, as for tests. Latency: exact_unit's
+// Of hits at the same t, the one of lower rank is nearer. Corners are read by line, as for tests. Latency: exact_unit's
 // plus 8 clocks (for a question), plus up to two reads through the triangle cache. A ray's questions come one by one;
 // those of different rays are spread over Units exact_units. Doubts of a ray that has ended are dropped.
 //

@@ -125,8 +125,8 @@ package ray_core_pkg;
   typedef struct packed {
     logic                    kind;      // result_e
     logic [31:0]             tag;
-    logic                    found;     // ResultEnd, as all fields down to tests: there is a sure hit
-    logic [31:0]             triangle;  // ResultDoubt: the triangle in doubt
+    logic                    found;     // for ResultEnd, like all fields down to tests: a sure hit exists
+    logic [31:0]             triangle;  // for ResultDoubt: the triangle in doubt
     logic [31:0]             t;
     logic [TErrorWidth-1:0]  t_error;   // t is off by fewer than 2**t_error numbers, see NoT
     logic [95:0]             point;

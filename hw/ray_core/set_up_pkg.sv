@@ -36,7 +36,7 @@ package set_up_pkg;
 
   // ---- Derived in the header of triangle_test, from sums and exponents
 
-  localparam int unsigned LeastField = 27;  // of an exponent that counts: 2**-100
+  localparam int unsigned LeastField = 27;  // smallest exponent field that is not tiny: 2**-100
   localparam int unsigned BoundShift = 20;  // 16 u = 2**-20
   localparam logic [Width-1:0] NaN = {1'b0, {ExpWidth{1'b1}}, 1'b1, {(FracWidth - 1) {1'b0}}};
 
@@ -67,7 +67,7 @@ package set_up_pkg;
     logic [PlaneErrorWidth-1:0] distance_error;
   } plane_t;
 
-  // From the largest exponents of A, N and N's terms, and from d's exponent.
+  // The plane's errors, from the largest exponents of A, N and N's terms, and from d's exponent.
   function automatic plane_t plane_of(logic [ExpWidth-1:0] vertex, logic [ExpWidth-1:0] normal,
                                       logic [ExpWidth-1:0] terms, logic [ExpWidth-1:0] d);
     localparam logic [ExpWidth+1:0] Bias = (ExpWidth + 2)'(2 ** (ExpWidth - 1) - 1);

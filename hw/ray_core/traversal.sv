@@ -214,7 +214,7 @@ module traversal
                      & ((entered_q == lines_i) | (level_q == LevelWidth'(Levels)));
   assign cycle_ray_o = choosing_ray_q;
   assign left        = (~some | cycle_o) ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
-  // That is: left is Depth or more. This form is known earlier.
+  // Equivalent to "left is Depth or more", but known earlier.
   assign full        = ~cycle_o & (is_shared ? ~ended_q
                      : open[Depth-1] & ((own_top & (own_top - 1'b1)) != '0));
   assign free        = ~shared_q | (shared_ray_q == choosing_ray_q);

@@ -60,8 +60,8 @@ double instructions(const std::string& command) {
   return count;
 }
 
-/// Returns the instructions of a test, from the difference of a long run and a short one: without
-/// the start.
+/// Returns the instructions per test, without start-up, from the difference between a long run and
+/// a short one.
 double instructions_per_test(const char* program, const Kind& kind, int lanes, double aimed) {
   const std::string command = std::string(program) + " " + kind.name + " " + std::to_string(lanes) +
                               " " + std::to_string(aimed) + " ";

@@ -58,7 +58,7 @@ bind ray_generator stream_checks #(
   .ready(ready_i),
   .data ({direction_o, pixel_o})
 );
-// Without Last: this module's test answers with RLAST in the wrong place; that of the whole core does not.
+// Without Last: this module's test, unlike the whole core's, answers with RLAST in wrong places.
 bind axi_read_manager axi_read_checks #(
   .IdWidth($bits(axi_arid_o)),
   .DataWidth($bits(axi_rdata_i)),

@@ -94,8 +94,8 @@ OperandPair PairSource::cancelling() {
 }
 
 OperandPair PairSource::near_boundary() {
-  // A boundary is a significand of one bit more than the format's. Chooses it and one operand; the
-  // other operand is the one that comes nearest.
+  // A boundary is a significand of one bit more than the format's. Chooses one, and an operand; the
+  // other operand is the one that comes nearest to it, or a neighbour.
   const int f = format_.frac_bits;
   const double boundary = std::ldexp(1.0 + std::ldexp(fraction() + 0.5 * below(2), -f), 0);
   const double other = 1.0 + std::ldexp(fraction(), -f);
@@ -112,7 +112,7 @@ OperandPair PairSource::near_boundary() {
 }
 
 OperandPair PairSource::near_range_end() {
-  // About the field of the result: a product's is the sum of the fields less the bias, and so on.
+  // Aims at an exponent field of the result: a product's is the sum of the fields less the bias.
   const int top =
       below(2) != 0 ? format_.max_field() : -static_cast<int>(below(format_.frac_bits + 3));
   const int result = top + static_cast<int>(below(5)) - 2;

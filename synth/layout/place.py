@@ -84,7 +84,7 @@ def _spread(wanted: list[tuple[float, str]], last: int) -> list[tuple[int, str]]
     """Returns whole places from 1 to `last`, all different, in order, near those wanted."""
     places, low = [], 1
     for count, (at, name) in enumerate(wanted):
-        room = last - (len(wanted) - 1 - count)  # so that those that follow find theirs
+        room = last - (len(wanted) - 1 - count)  # so that the remaining ones find places
         place = min(max(round(at), low), room)
         places.append((place, name))
         low = place + 1
@@ -199,7 +199,7 @@ def _edge(far: float, width: int, height: int) -> tuple[int, int]:
 def gaps(netlist: Netlist, technology: Technology, density: float, pitch: float) -> dict[str, float]:
     """Returns the gap beside each cell, um, in whole pitches: the larger, the more pins the cell has for its width.
 
-    Wires crowd where pins do. A gap makes up a cell's width to a width per pin that is the same for all cells.
+    Wires crowd where pins do. With their gaps, narrow cells have the same width per pin.
     """
     widths = {name: technology.macros[cell.kind].width for name, cell in netlist.cells.items()}
     room = sum(widths.values()) * (1 / density - 1)

@@ -1,4 +1,4 @@
-// rr_arbiter picks a request if there is one: the first from `from` on, around the end.
+// rr_arbiter picks a request if there is one: the first from `from` on, wrapping around at the end.
 module arbiter_is_fair #(
   parameter int unsigned Width = 64,
   localparam int unsigned IndexWidth = $clog2(Width)

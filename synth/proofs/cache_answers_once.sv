@@ -43,7 +43,7 @@ module cache_answers_once #(
   logic miss, fill_ready, answer, answer_ray, answer_error, error;
   logic [3:0] miss_entry;
   logic [AddressWidth-1:0] miss_number;
-  logic [Width-1:0] answer_line, line;  // line: that leaves
+  logic [Width-1:0] answer_line, line;  // line: the one that leaves
   logic [Lines-1:0] line_valid, pending, mores;
   logic [1:0] free, rays;
   logic [3:0] nexts;
@@ -170,7 +170,7 @@ module cache_answers_once #(
     if (adds_target && !target) entry_0 <= entry;
     if (adds_target && target) entry_1 <= entry;
   end
-  logic [1:0] coming;  // its line leaves: it is no longer in its entry's list
+  logic [1:0] coming;  // for each target: its line leaves, and its entry's list has lost it
   assign coming = {2{draining}} & {draining_target || draining_more, !draining_target || draining_more};
 
   // ---- The watched request

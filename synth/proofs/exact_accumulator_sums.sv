@@ -56,7 +56,7 @@ module exact_accumulator_sums #(
     assume (first || down == was_down);
     assume (opens || terms < Products);
     assume (-largest <= term && term <= largest);
-    assume (!(opens && !first && down && sure));  // it stops there
+    assume (!(opens && !first && down && sure));  // the unit stops at a sure sign
   end
 
   // The sum, in enough bits

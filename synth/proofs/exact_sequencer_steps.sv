@@ -161,7 +161,7 @@ module exact_sequencer_steps #(
       assert (!beyond || term == '0);
       assert (!first || (!beyond && term == '0 && i == from_i && (down ? i == x_last && j == y_last : i == '0 && j == '0)));
       assert (x_digits + y_digits <= 6'd37 && result_digits != '0);
-      assert (product || !down);  // the programs are like that
+      assert (product || !down);  // as in all programs
       assert (kind != 3'd7 && (kind != 3'd6 || down));
       // Each product once, in its column
       assert (!in_range || seen == 2'((passed || past) ? 1 : 0));

@@ -97,7 +97,7 @@ module leaves_are_asked_for #(
     end
   endfunction
 
-  // ---- Assumptions about the user: groups are sorted, and a ray that is leaf_pending has no other
+  // ---- Assumptions about the user: groups are sorted, and a ray that is leaf_pending gets no other
 
   always_comb begin
     if (reset_n) assume (!box || box_leaf == '0 || (!leaf_pending[box_ray] && is_group(box_group, box_leaf)));
@@ -117,7 +117,7 @@ module leaves_are_asked_for #(
   assign leaves = valid_q && (dropped || (triangle && ready && (mask_q & (mask_q - 1'b1)) == '0
                                           && number_q + 1'b1 == count_of(group_q, nearest)));
 
-  // ---- The watched triangle, and how many of its group's were requested
+  // ---- The watched triangle, and how many triangles of its group were requested
 
   localparam logic [1:0] Nowhere = 2'd0, Queued = 2'd1, Walked = 2'd2;
   logic [1:0] state;

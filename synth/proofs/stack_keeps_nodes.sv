@@ -130,7 +130,7 @@ module stack_keeps_nodes #(
     line_of = group[GroupWidth-1-:AddressWidth] + AddressWidth'(group[EntryWidth*n+CountWidth+:OffsetWidth]);
   endfunction
 
-  // ---- Assumptions about the user: rays start that do not traverse, nodes come that were requested, near ones first
+  // ---- Assumptions about the user: no ray starts twice, nodes come if requested, near children first
 
   logic [Rays-1:0] wanted;  // requested nodes that have not come
 
@@ -182,7 +182,7 @@ module stack_keeps_nodes #(
                                 : nexts_0[NextWidth*w_ray+EnterWidth+:Children];
   assign kept = groups[GroupWidth*(w_own ? {1'b0, w_ray, w_level[0]} : {2'b10, w_level[0]})+:GroupWidth];
 
-  logic asking, leaving;  // its group's level is being requested, and its node leaves
+  logic asking, leaving;  // asking: the level of its group is requested; leaving: a node of that level leaves
   logic [Children-1:0] leaving_mask;
   always_ff @(posedge clk) leaving_mask <= mask_q;
   assign asking  = asked_q && asking_ray_q == w_ray && asked_level_q == {1'b0, w_level};

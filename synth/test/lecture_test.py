@@ -58,7 +58,7 @@ class Page(unittest.TestCase):
         self.assertIn("near_difference", lecture.page(given(x=1.0, y=-0.99)))
 
     def test_booth_rows_add_up(self) -> None:
-        """The rows as they are shown, and the two that the last adder takes."""
+        """Checks the displayed rows, and the two that the last adder takes."""
         numbers = random.Random(3)
         for a, b in [(181, 90), (0, 7), *((numbers.getrandbits(8), numbers.getrandbits(8)) for _ in range(5))]:
             page = re.sub(r"</?(?:b|code)>|\u2009", "", lecture.booth_section(given(a=a, b=b)))

@@ -108,7 +108,7 @@ class Blocks(unittest.TestCase):
 
 
 class Wrappers(unittest.TestCase):
-    """The Verilog wrapper of a design."""
+    """Tests the Verilog wrapper of a design."""
 
     PORTS = {"a_i": {"direction": "input", "bits": [2, 3]}, "b_o": {"direction": "output", "bits": [4]}}
 

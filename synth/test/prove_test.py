@@ -112,7 +112,7 @@ for _proof, (_module, _faults) in FAULTS.items():
 
 
 class Netlists(unittest.TestCase):
-    """Which netlists are compared with their RTL."""
+    """Tests which netlists are compared with their RTL."""
 
     def test_none_that_can_only_fail(self):
         """Netlists without registers are compared by ABC, units by simulation, netlists whose memories are ports not at all."""

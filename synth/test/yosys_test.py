@@ -1,4 +1,4 @@
-"""Yosys as this package runs it."""
+"""Tests Yosys as this package runs it."""
 
 import collections
 import contextlib

@@ -105,7 +105,7 @@ TEST(BoardCore, ScenesFollowEachOther) {
   }
 }
 
-/// A board whose words arrive all at once, after its last one: as from a serial port to a busy
+/// A board whose words arrive all at once, after the last one: as from a serial port to a busy
 /// host, which then must not wait for another word.
 class BurstLink : public WordLink {
  public:

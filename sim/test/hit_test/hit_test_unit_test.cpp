@@ -43,7 +43,7 @@ TEST(HitTestUnit, RegistersAsFigure4DrawsThem) {
       {kAny, kAny, kAny, 0, kAny}, {kAny, kAny, 0, 1, kAny},  // Ix, Iy, Iz through N
       {kAny, 0, 1, 2, kAny},       {0, 1, 2, 3, kAny},        // a in N; I in its place
       {1, 2, 0, 4, kAny},          {2, 0, 1, 5, kAny},        // I rotates
-      {0, 1, 2, kAny, 6},                                     // d in d
+      {0, 1, 2, kAny, 6},                                     // word d in d
       {1, 2, kAny, 7, 6},          {2, kAny, 7, 8, 6},        // the next I follows
       {kAny, 7, 8, 9, 6},          {7, 8, 9, 10, 6},         {8, 9, 7, 11, 6}, {9, 7, 8, 12, 6},
       {7, 8, 9, kAny, 13}};
