@@ -52,7 +52,7 @@ percentage of clocks in which `box_unit` and `triangle_test` are busy.
 
 ## Doubts settled by the core
 
-These are all rays of a path-traced picture with one sample per pixel, at latency 50. Doubts sent out are resolved by the host, whose time is not counted; settled doubts by the core.
+These are all rays of a path-traced picture with one sample per pixel, at latency 50. Doubts sent out are resolved by the host, whose time is not counted. Settled doubts are resolved by the core.
 
 {{ table(exact|selectattr("rays", "equalto", "path")|list, "scene", "clocks/ray, doubts sent out = at[False].clocks_per_ray :.2f",
          "settled = at[True].clocks_per_ray :.2f") }}
