@@ -40,7 +40,7 @@ module m;
         ripple, less, more, graded = (float(rows[f"adder-{name}", "osu035", "cells"]["delay_ns"])
                                       for name in ("ripple", "uniform-12x4", "uniform-6x8", "graded"))
         text = (tables.RESULTS / "README.md").read_text()
-        for claim in (f"{1 - less / ripple:.0%} (12 x 4), {1 - more / ripple:.0%} (6 x 8), graded {1 - graded / ripple:.0%}".replace("%", " %"),
+        for claim in (f"{1 - less / ripple:.0%} (12 x 4), {1 - more / ripple:.0%} (6 x 8); graded {1 - graded / ripple:.0%}".replace("%", " %"),
                       f"{float(rows['hit_test_unit', 'osu035', 'parts']['delay_ns']):.2f} ns",
                       *(f"{name} {float(rows[f'adder-{design}', 'ice40', 'placed']['mhz']):.0f}" for name, design in (
                           ("ripple", "ripple"), ("graded", "graded"), ("uniform", "uniform-6x8"), ("`+` wins:", "behavioural")))):

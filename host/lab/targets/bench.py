@@ -141,12 +141,12 @@ PAGE = """# Run time against error, from the adder to the picture
 ## Arithmetic
 
 {% set first = scenes.values()|first %}
-Pictures of {{ first[0].width }} x {{ first[0].height }} pixels, each by its variant's reference model. Those called raw ignore doubts, the others resolve them.
+Pictures of {{ first[0].width }} x {{ first[0].height }} pixels, rendered by the reference model of each variant. Variants named raw ignore doubts, the others resolve them.
 
-* **wrong tests**: camera ray and triangle, decided otherwise than exactly. **P**: error in binary32's ulp, of the rays that are not wrong.
-* **FLIP**: mean difference from binary32's picture; a dash: equal pictures. Raw variants shade their own P, the others where it is within `--point-error`.
-* **area**, **period**: `make synth`, OSU 0.35 um, cells alone; variants without are in the file. **clocks** in the file: tests times the clocks per test of the
-  variant's simulation; a star: no hardware takes its parameters, so binary32's rate is used.
+* **wrong tests**: tests of camera rays decided differently from exact arithmetic. **P**: error in binary32 ulps, of correctly decided rays.
+* **FLIP**: mean perceptual difference from binary32's picture; a dash means equal pictures. Raw variants shade their own P, the others only if its error is within `--point-error`.
+* **area**, **period**: by `make synth`, OSU 0.35 um, cells alone; variants without these figures are only in the file. **clocks**, in the file:
+tests times simulated clocks per test; a star marks variants without hardware, for which binary32's rate is used.
 
 Scene {{ first[0].scene }} ({{ first[0].integrator }}, samples per pixel: {{ first[0].samples }}):
 
@@ -160,15 +160,15 @@ Scene {{ first[0].scene }} ({{ first[0].integrator }}, samples per pixel: {{ fir
          "ms per frame = frame_ms :.3f", "area x ms = area_time :.3g") }}: all scenes ({{ scenes|join(", ") }}), all measures.
 
 {% if plot %}
-{{ figure(plot, "Scene %s: what accuracy costs." % first[0].scene) }}
+{{ figure(plot, "Scene %s: error of P against time per frame." % first[0].scene) }}
 {% endif %}
 {% endif %}
 {% if of("engines") %}
 
 ## Engines
 
-One thread, processor seconds: the median of the repeats, and the median distance from it as their spread. The repeats of all rows
-were interleaved.
+Rates are of one thread, by the median processor time of interleaved
+repeats. The spread is the median distance from that median.
 
 {{ table(engines, "scene = scene_name(row)", "triangles :,", each(ways, "rays/s, {} = at['{}'].rays / at['{}'].seconds :,.0f")) }}
 {{ saved("bench-engines", of("engines"), "scene = scene_name(row)", "triangles :d", "unit", "engine",
@@ -179,9 +179,9 @@ were interleaved.
 
 ## Lanes
 
-`scenes/paper.obj`, 320 x 200 pixels, with shadows and reflections. The paper counts 5.12 million tests for such a picture (320 x 200
-rays, 20 polygons, 4 reflections), one clock each; its unit takes seven. Its scene is not known, and here rays skip the boxes that they miss, so
-these are other figures. Lane clocks per test: clocks times lanes over tests.
+`scenes/paper.obj`, 320 x 200 pixels, with shadows and reflections. For such a picture, the paper counts 5.12 million tests (320 x 200 rays, 20 polygons, 4 reflections) of one
+clock each; its unit takes seven. The figures here differ: the paper's scene is unknown, and here rays skip
+boxes that they miss. Lane clocks per test are clocks times lanes, divided by tests.
 
 {{ table(of("lanes"), "unit", "lanes :d", "clocks per frame = clocks :,.0f", "lane clocks per test = clocks * lanes / unit_tests :.3f",
          "simulation, s = seconds :.3g") }}

@@ -33,8 +33,8 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
 
 PAGE = """# The ray core in simulation
 
-Clocks of `hw/ray_core`, 128x128 pixels, a line of 64 bytes a clock at the port to memory. Latency: clocks from a request to its line.
-Each answer was compared with the cpu engine's.
+Clocks of the simulated `hw/ray_core` for 128x128 pixels. Memory delivers one 64-byte line per clock; latency is the
+number of clocks from a request to its line. Each answer was compared with the cpu engine's.
 {% if scenes %}
 
 ## Rays of a picture
@@ -45,20 +45,20 @@ Clocks per ray, by kind of ray, at latency {{ middle }}:
 {{ saved("core-scenes", scenes, "scene", "rays", each(latencies, "clocks/ray, latency {} = at[{}].clocks_per_ray :.2f"),
          each([middle], "lines/ray = at[{}].lines_per_ray :.2f", "bytes/ray = at[{}].bytes_per_ray :.0f",
               "boxes busy, % = at[{}].nodes_percent :.1f", "triangles busy, % = at[{}].triangles_percent :.1f",
-              "doubts/1000 rays = at[{}].doubts_per_1000 :.2f")) }} has all latencies, and at {{ middle }} lines, bytes and doubts per ray, and
-the clocks in which `box_unit` takes a node, or `triangle_test` a triangle.
+              "doubts/1000 rays = at[{}].doubts_per_1000 :.2f")) }} has all latencies; for latency {{ middle }} also lines, bytes and doubts per ray, and the
+percentage of clocks in which `box_unit` and `triangle_test` are busy.
 {% endif %}
 {% if exact %}
 
 ## Doubts settled by the core
 
-All rays of a path-traced picture, a sample a pixel, latency 50. Doubts sent out: the host settles them, and its time is not counted.
+These are all rays of a path-traced picture with one sample per pixel, at latency 50. Doubts sent out are resolved by the host, whose time is not counted. Settled doubts are resolved by the core.
 
 {{ table(exact|selectattr("rays", "equalto", "path")|list, "scene", "clocks/ray, doubts sent out = at[False].clocks_per_ray :.2f",
          "settled = at[True].clocks_per_ray :.2f") }}
 {{ saved("core-exact", exact, "scene", "rays", "clocks/ray, doubts sent out = at[False].clocks_per_ray :.2f",
          "clocks/ray, settled = at[True].clocks_per_ray :.2f", "doubts/1000 rays = at[True].doubts_per_1000 :.2f",
-         "near ties/1000 rays = at[True].near_ties_per_1000 :.2f", "exact unit busy, % = at[True].exact_percent :.2f") }} has Whitted
-pictures, too, doubts, and the clocks in which `exact_unit` has a question.
+         "near ties/1000 rays = at[True].near_ties_per_1000 :.2f", "exact unit busy, % = at[True].exact_percent :.2f") }} also has Whitted pictures, doubts per ray, and the percentage
+of clocks in which `exact_unit` is busy.
 {% endif %}
 """

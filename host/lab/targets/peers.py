@@ -87,28 +87,28 @@ def values(rows: list[dict], folder: pathlib.Path) -> dict:
 
 PAGE = """# Pictures next to Mitsuba 3
 
-{{ machine.compiler }}; Mitsuba 3 from PyPI with Debian's libllvm19.
+raygate is compiled by {{ machine.compiler }}; Mitsuba 3 is PyPI's, with Debian's libllvm19.
 {% if scenes %}
 
-Both render the same scene, read by `host/lab/peers/convert.py`: the same film, a box filter, `path` with at most 64
-reflections and refractions in a row, Russian roulette after three surfaces. Seconds are of rendering alone, after
-loading and compiling; with one thread, processor seconds. They are medians of ten seeds, taken in turn. Errors are
-against the renderer's own long run, by two measures: the mean square of scene-linear light, which a few bright pixels
-decide, and that of what an 8-bit display shows.
+Both renderers get the same scene (`host/lab/peers/convert.py`), film and box filter, and integrator `path` with
+at most 64 reflections and refractions in a row and Russian roulette after three surfaces. Seconds are medians
+of ten interleaved seeds, without loading and compiling; with one thread, of processor time. Errors are relative
+to the renderer's own long run. MSE is the mean square error of scene-linear light, which few bright pixels
+dominate; MSE on a display is that of 8-bit display values.
 
-The algorithms differ. raygate finds caustics by light paths, which the last two columns leave out, and sends eight more
-rays a sample to pixels in which an emitter begins or ends. All scenes are of this repository, and of materials that
-both renderers have.
+The algorithms differ. raygate finds caustics by light paths; the last two columns are
+without them. It traces eight more rays per sample in pixels with an edge of an emitter. All
+scenes are raygate's, with materials that both renderers have.
 
-raygate over Mitsuba (`llvm_ad_rgb`) with its best sampler, one thread, 32 samples per pixel (mean ± standard error of ten seeds); below 1 raygate has less:
+Ratios of raygate to Mitsuba (`llvm_ad_rgb`) with its best sampler, one thread, 32 samples per pixel (mean ± standard error of ten seeds); below 1, raygate is better:
 
 {{ table(summary, "scene", "seconds :.2f", "MSE = mse", "MSE on a display = shown", "time x MSE = time_mse", "time x MSE on a display = time_shown",
          "time x MSE without light paths = plain_time_mse", "on a display = plain_time_shown") }}
 
 ## Do they compute the same picture?
 
-{{ saved("peers-references", of("references"), "scene", "samples :d", "mean, raygate = mean_raygate :.5f", "mean, Mitsuba = mean_mitsuba :.5f", "RMSE = rmse :.6f", "of which noise = noise :.6f") }}: means of both, the RMSE between them, and
-the noise that two long runs of each let expect. The most beyond noise is an RMSE of {{ "%.6f"|format(beyond) }}.
+{{ saved("peers-references", of("references"), "scene", "samples :d", "mean, raygate = mean_raygate :.5f", "mean, Mitsuba = mean_mitsuba :.5f", "RMSE = rmse :.6f", "of which noise = noise :.6f") }}: means of both, the RMSE between them, and the RMSE to expect
+from noise. The largest RMSE beyond noise is {{ "%.6f"|format(beyond) }}.
 
 ## Error against time
 
@@ -116,7 +116,7 @@ the noise that two long runs of each let expect. The most beyond noise is an RMS
 {{ saved("peers-samplers", each_row, "scene", "threads :d", "renderer, sampler = by", "samples :d", "seconds = median_seconds :.3f",
          "million samples/s = 1e-6 * pixels * samples / median_seconds :.2f",
          "RMSE = mse ** 0.5 :.5f", "RMSE on a display = display_rmse :.3f",
-         "time x MSE, 1e-6 = 1e6 * time_mse :.2f", "over raygate's = time_mse / ours.time_mse :.2f") }}: every sampler, with one thread and all.
+         "time x MSE, 1e-6 = 1e6 * time_mse :.2f", "over raygate's = time_mse / ours.time_mse :.2f") }}: all samplers, with one thread and with all.
 
 {% for scene in scenes %}
 ![{{ scene.plot.stem }}]({{ scene.plot.name }})

@@ -42,15 +42,15 @@ def values(rows: list[dict], _: pathlib.Path) -> dict:
 
 PAGE = """# Rays per second next to Embree's
 
-Rays per second of raygate, whose decisions are exact, over those of Embree's fastest mode: of all modes, and of the robust ones. One thread,
-processor time; compare rows of one run. Embree3 is Debian's 3.13, Embree4 PyPI's 4.4 (embreex); -1 is single rays, -8 and -16 packets, -stream 1,024
-rays. BVHs are of high build quality, and rays of one origin have the coherent flag. Embree also computes u, v and the normal of a hit; raygate P and an
-interval that holds t. The cpu engine uses {{ of("rays")[0].engine_vectors }} of {{ of("rays")[0].machine_vectors }} vectors, Embree the widest that it knows.
+Columns "over" are raygate's rays per second divided by those of Embree's fastest mode and fastest robust mode; only raygate's decisions are exact.
+Rates are of one thread, by processor time; compare only rows of one run. Embree3 is Debian's 3.13, Embree4 PyPI's 4.4 (embreex). Modes -1 trace
+single rays, -8 and -16 packets, -stream 1,024 rays. Embree builds BVHs of high quality and gets the coherent flag for rays of one origin. For a
+hit, Embree also computes u, v and the normal, raygate P and an interval that contains t. The cpu engine uses {{ of("rays")[0].engine_vectors }} vectors (the machine has {{ of("rays")[0].machine_vectors }}), Embree the widest that it supports.
 
-±: the spreads of the middle halves of the runs, added.
+± is the sum of both interquartile ranges of the runs.
 
 {{ table(over_best, "scene", "rays", "raygate, Mrays/s = mrays :.1f", "over the fastest = fast", "mode = fast_mode",
          "over the fastest robust = robust", "mode = robust_mode") }}
 {{ saved("speed-rays", of("rays"), "scene", "rays", "by", "Mrays/s = mrays_per_second :.2f", "spread, % = spread_percent :.1f",
-"raygate over it = raygate_over_peer :.2f", "agreed, % = agreed_percent :.5f") }} has all modes, and the share of rays of which both say the same.
+"raygate over it = raygate_over_peer :.2f", "agreed, % = agreed_percent :.5f") }} has all modes, and the percentage of rays for which both report the same.
 """

@@ -75,31 +75,31 @@ def failures(rows: list[dict]) -> list[str]:
 PAGE = """# Stress test
 
 **{{ "Passed" if passed else "FAILED" }}**: {{ suites|length }} suites, {{ "{:,}".format(cases.exact) }} cases, {{ "{:,}".format(cases.binary64) }} of them with binary64 vertices, {{ "{:,}".format(cases.simulated) }} by the simulated hardware, by `{{ machine.command }}`,
-{{ "{:,.0f}".format(suites|sum("seconds")) }} s of processor time. Rays from inside a mesh that are not inside (broken claims of a suite): {{ suites|sum("broken_claims") }}.
+{{ "{:,.0f}".format(suites|sum("seconds")) }} s of processor time. Rays that a suite wrongly claims to start inside a mesh: {{ suites|sum("broken_claims") }}.
 
-A case is a ray and a triangle. All subjects see the same cases, slow ones only the first of each suite; cases are counted once.
-Suites named 64 have binary64 vertices, and in half of the shots binary64 rays, which `trace` takes; the other engines refuse those rays, ray cores and
-variants these suites. Tests in float32 and Embree get the same vertices and rays, rounded.
+A case is a ray and a triangle; a subject is an engine, a variant or another hit test. All subjects see the same cases, slow subjects only the first ones
+of each suite; cases are counted once. Suites named 64 have binary64 vertices and, for half of the origins, binary64 rays. Ray cores and variants skip
+these suites; of the engines, only `trace` takes binary64 rays. Float32 tests and Embree get rounded vertices and rays.
 
 ## Subjects that promise to be exact
 
 {{ totals|selectattr("exact")|map(attribute="subject")|join(", ") }}: {{ faults }} wrong decisions, escapes, double hits, wrong nearest hits or wrong orders, in {{ "{:,}".format(totals|selectattr("exact")|map(attribute="tests")|min) }} to
 {{ "{:,}".format(totals|selectattr("exact")|map(attribute="tests")|max) }} cases each.
 
-* **wrong**: a decision that is not the exact one, or a hit whose interval does not hold the exact t. Where a ray meets an edge exactly, exact
-  subjects must follow their own rule; for others, any decision is right.
-* **escape**: a ray from inside a closed mesh without a hit. **Double hits**: more hits than there are. **Wrong nearest**: another triangle, ties apart.
+* **wrong**: a decision that differs from the exact one, or a hit whose interval does not contain the exact t. If a ray meets
+an edge exactly (a tie), exact subjects must follow their tie rule; for others, any decision is right.
+* **escape**: a ray from inside a closed mesh that hits nothing. **double hit**: a ray from inside with too many hits. **wrong nearest**: the nearest triangle is wrong, except for ties.
 
 {{ saved("stress-subjects", totals, "subject", "what it is = subject_is", "cases = tests :d", "doubts, % = 100 * doubts / tests :.2f", "rays out of its range = refused :d", "delivered t, ulp = delivered_t_ulp or none :.3g",
          "delivered P, ulp = delivered_point_ulp or none :.3g", "largest t over bound = t_of_bound or none :.3f",
-         "largest P over bound = point_of_bound or none :.3f", "largest P over what the hit says = point_of_said or none :.3f") }} says what each subject is, and has doubts and the largest errors, in ulp and over their bounds.
+         "largest P over bound = point_of_bound or none :.3f", "largest P over what the hit says = point_of_said or none :.3f") }} describes each subject, and has doubts and the largest errors, in ulps and relative to their bounds.
 
 {% if watertight %}
 ## Public tests of watertightness
 
-Rays that must hit a mesh of so many triangles exactly once; tests named 64 have binary64 vertices. `nomiss` and `singlehit` are as the Vulkan conformance tests describe them
-(`ray_tracing_pipeline.watertightness`), `sphere` as Embree's `verify`; `edges` and `vertices` aim from inside a sphere at those, as Woop, Benthin
-and Wald argue. Meshes and random numbers are made here. `model` and the simulated hardware find the nearest hit only.
+Each ray must hit the mesh exactly once. Tests named 64 have binary64 vertices. `nomiss` and `singlehit` follow the Vulkan conformance tests
+(`ray_tracing_pipeline.watertightness`), `sphere` follows Embree's `verify`. `edges` and `vertices` aim rays from inside a sphere at its edges and vertices, as
+Woop, Benthin and Wald did. Meshes and random numbers differ from the originals. `model` and the simulated hardware find only the nearest hit.
 
 {{ watertight[0].at.values()|selectattr("exact")|map(attribute="by")|join(", ") }}: {{ leaks }} escapes and double hits. Embree, in binary32:
 
@@ -108,9 +108,9 @@ and Wald argue. Meshes and random numbers are made here. `model` and the simulat
 {% endif %}
 ## Other subjects, by suite
 
-The suites are chosen to be hard, so a mean over them is no rate of anything. Watertight tests and Embree's robust mode accept both triangles at an
-edge, which is not wrong for what they promise: double hits, no escapes. Rays and triangles out of a subject's range are left out.
+The suites are chosen to be hard, so a mean over suites is meaningless. Watertight tests and Embree's robust mode accept both triangles at
+an edge; they promise no escapes, but allow double hits. Rays and triangles outside a subject's range are not counted.
 
 {{ saved("stress-wrong", suites, "suite", "what it is = suite_is", each(names, "{} = rate(at['{}'].wrong, at['{}'].tests)|replace(',', '')")) }}: wrong decisions per million cases.
-{{ saved("stress-rays", kinds, "suite", "per million rays = key|replace('_', ' ')", each(names, "{} = rate(at['{}'][key], at['{}'].rays)|replace(',', '')")) }}: escapes, double hits and wrong nearest hits, apart.
+{{ saved("stress-rays", kinds, "suite", "per million rays = key|replace('_', ' ')", each(names, "{} = rate(at['{}'][key], at['{}'].rays)|replace(',', '')")) }}: escapes, double hits and wrong nearest hits per million rays.
 """

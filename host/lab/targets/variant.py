@@ -162,7 +162,7 @@ def failures(rows: list[dict]) -> list[str]:
 
 PAGE = """# {{ mine.variant }}
 
-{{ usual.scene|capitalize }}, {{ usual.width }} x {{ usual.height }} pixels, Whitted, one sample a pixel.
+{{ usual.scene|capitalize }}, {{ usual.width }} x {{ usual.height }} pixels, integrator `whitted`, one sample per pixel.
 
 {% if of("proofs") %}
 {{ table(of("proofs"), "module = file", "claim", "by = how", "outcome = 'holds' if holds else 'REFUTED'", "s = seconds :.1f") }}
@@ -172,17 +172,17 @@ PAGE = """# {{ mine.variant }}
 {% endfor %}
 {% endif %}
 {{ table(figures, "figure", usual.variant ~ " = usual :s", mine.variant ~ " = mine :s", "ratio = ratio :.3f") }}
-Area and period: `make synth`, OSU 0.35 um, cells alone, no wires. Clocks: of this unit's simulation. Wrong: camera rays' tests against exact arithmetic.
+Area and period: `make synth`, OSU 0.35 um, cells without wires. Clocks: simulation of this unit. Wrong: tests of camera rays that differ from exact arithmetic.
 {% if mine.engine == "unit" %}
-The picture and its tests are of the Verilated unit with what was brought along.
+Picture and tests are computed by the Verilated unit with your modules.
 {% endif %}
 {% if of("checks")[-1].difference == "none" %}
-Its reference model and its hardware gave the same words in {{ "{:,}".format(of("checks")[-1].tests) }} tests.
+Reference model and hardware returned the same words in {{ "{:,}".format(of("checks")[-1].tests) }} tests.
 {% else %}
-Its reference model and its hardware differ: {{ of("checks")[-1].difference.split("; direction")[0] }}.
+Reference model and hardware differ: {{ of("checks")[-1].difference.split("; direction")[0] }}.
 {% endif %}
 
-{{ figure(pictures, "Its picture beside " ~ usual.variant ~ "'s, and where they differ (FLIP; black: not at all).") }}
+{{ figure(pictures, "The picture by " ~ usual.variant ~ ", by this variant, and their difference (FLIP; black: none).") }}
 {% if path %}
 ## Critical path
 
