@@ -35,8 +35,8 @@ class EngineMismatch : public std::runtime_error {
 
 /// Passes all queries to both intersectors, returns the results and counters of the first, and
 /// throws EngineMismatch at the first ray for which they differ: in the triangle, in any bit of P
-/// or its error, or by disjoint intervals of t. For a ray that may end at any hit, both must find
-/// one.
+/// or its error, or by disjoint intervals of t. With any_hit_before, the triangles may differ if
+/// both hits are nearer than that.
 class CheckIntersector : public Intersector {
  public:
   CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> intersector,
