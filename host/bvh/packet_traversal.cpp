@@ -102,7 +102,7 @@ LeafVisits PacketTraversal::next_leaf() {
         if (child.lanes == 0) continue;
         tree.prefetch(child.child);
         enter = enter <= rays_.cutoff ? enter : FloatLanes{} + kFarthest;
-        // The order of the hardware's batches: entries without their last three bits, then indices.
+        // The hardware's batches have this order: by entry without its last three bits, then index.
         child.entry = std::bit_cast<float>(std::bit_cast<std::int32_t>(-largest_of(-enter)) & ~7);
         int place = depth_++;
         for (; place > bottom && stack_[place - 1].entry <= child.entry; --place) {

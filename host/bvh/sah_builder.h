@@ -51,7 +51,7 @@ RAYGATE_INLINE Box box_around(const glm::vec3& a, const glm::vec3& b, const glm:
   return reinterpret_cast<Box>(zero ? IntLanes{} + static_cast<std::int32_t>(0x80000001u) : below);
 }
 
-/// A primitive of a BinaryBvh: its box, and a number of the user's.
+/// A primitive of a BinaryBvh: its box and a number that the caller assigns.
 struct Primitive {
   float low[3];
   std::uint32_t number;

@@ -1,4 +1,4 @@
-// Numbers and quotes.
+// Parses numbers, and quotes words.
 #include "host/base/input.h"
 
 #include <gtest/gtest.h>
