@@ -273,7 +273,7 @@ class BvhWriter {
   int threads_;
   float unit_ = 0.0f;
   std::vector<Plan> plans_;
-  std::vector<std::uint32_t> first_primitives_;  // index of tree_'s primitives; empty: the same
+  std::vector<std::uint32_t> first_primitives_;  // BVH index by tree_'s index; empty: equal
 };
 
 void Bvh::build(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,

@@ -10,8 +10,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the closest point of a triangle. If `point` is beyond any edges, it is on one of these,
-/// otherwise it is the projection of `point`. An exact normal keeps this accurate for slivers.
+/// Returns the triangle's closest point: on one of the edges beyond which `point` lies or, if there
+/// are none, the projection of `point`. An exact normal keeps the result accurate for slivers.
 glm::dvec3 closest_on(const Corners& t, const glm::dvec3& point) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const glm::dvec3 normal = triangle_normal(t);

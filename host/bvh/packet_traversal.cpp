@@ -43,7 +43,7 @@ constexpr float kFarthest = std::numeric_limits<float>::max();  // larger than a
 }  // namespace
 
 PacketTraversal::PacketTraversal(const Bvh& bvh, int octant) : bvh_(&bvh), octant_(octant) {
-  rays_.cutoff = FloatLanes{} - 1.0f;  // below any entry: no ray
+  rays_.cutoff = FloatLanes{} - 1.0f;  // below any entry, as there is no ray yet
   stack_[0] = {{0, 0}, 0.0f, 0xFF};
 }
 

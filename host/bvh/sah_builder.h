@@ -30,7 +30,7 @@ RAYGATE_INLINE float unit_of(const Box& box) {
 /// Returns half the surface area of a box that is not empty, with all lengths multiplied by `unit`.
 RAYGATE_INLINE float half_area(const Box& box, float unit) {
   const FloatLanes sizes =
-      unit * (box + __builtin_shufflevector(box, box, 4, 5, 6, 7, 0, 1, 2, 3));  // negative
+      unit * (box + __builtin_shufflevector(box, box, 4, 5, 6, 7, 0, 1, 2, 3));  // negated sizes
   return sizes[0] * sizes[1] + sizes[1] * sizes[2] + sizes[2] * sizes[0];
 }
 

@@ -161,7 +161,7 @@ bool is_scaled(const glm::vec3& direction) {
 }
 
 glm::vec3 scaled_direction(const glm::dvec3& direction) {
-  // Scales by a power of two, which is exact: made from bits, or by scalbn for extreme exponents.
+  // Scales by a power of two, exactly: by one made from bits or, for extreme exponents, by scalbn.
   constexpr std::uint64_t kExponent = 0x7FF0000000000000, kOne = 0x3FF0000000000000;
   const double size = largest(direction);
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(size) & kExponent;
@@ -226,8 +226,8 @@ Interval hit_distance(const ExactRay& ray, const Corners& triangle) {
 }
 
 // The weights are I . (B x C), I . (C x A) and I . (A x B) over their sum S. If each has an error
-// of at most e = 2^-37 |S|, that of S is 3 e, and that of a quotient 4 * 2^-37. Clamping only
-// reduces the error.
+// of at most e = 2^-37 |S|, that of S is 3 e, and that of a quotient 4 * 2^-37. Clamping to [0, 1]
+// only reduces the error.
 Barycentric barycentric(const ExactRay& ray, const Corners& triangle) {
   double weights[3], sum = 0.0, error = 0.0;
   const auto corner = [&](int k) -> const glm::dvec3& { return triangle[std::size_t(k) % 3]; };

@@ -42,8 +42,8 @@ class IeeeFloats {
 
  private:
 #if defined(__SSE2__)
-  // Of the x87 state only the rounding mode, which affects how the C library reads numbers. Saving
-  // the rest would take a microsecond, and no arithmetic here uses x87.
+  // Of the x87 state, only the rounding mode is saved, as it affects how the C library reads
+  // numbers. Saving the rest would take a microsecond, and no arithmetic here uses x87.
   unsigned before_;  // MXCSR
   int rounding_;
 #else

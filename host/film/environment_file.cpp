@@ -134,7 +134,7 @@ EnvironmentMap read_hdr(const std::filesystem::path& file) {
 
 void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, Scene& scene) {
   std::error_code ignored;  // reading reports the error
-  // A pipe can be read only once, so it must have a Radiance file.
+  // A pipe can be read only once, so it is read as a Radiance file.
   const bool has_exr =
       std::filesystem::is_regular_file(setting.file, ignored) && is_exr(setting.file);
   EnvironmentMap map = has_exr ? read_exr(setting.file) : read_hdr(setting.file);

@@ -143,7 +143,7 @@ template <class Read>
 auto with_file(const std::filesystem::path& path, const Read& read) {
   require_readable(path);
   require_header(path);
-  // Initialises the library's threads (none) where failure is harmless.
+  // Initialises the library's pool of threads (none) here, where failure is harmless.
   (void)Imf::globalThreadCount();
   try {
     Imf::InputFile file(path.c_str(), 0);

@@ -147,7 +147,7 @@ struct Film {
   std::vector<std::uint32_t> primitive;  ///< triangle index of the scene; kNoPrimitive for a miss
 
   // Optional:
-  std::vector<glm::vec3> position;    ///< of the first surface, in world axes; 0 for a miss
+  std::vector<glm::vec3> position;    ///< point of the first surface in world axes; 0 for a miss
   std::vector<glm::vec3> albedo;      ///< diffuse colour of the first surface; 0 for a miss
   std::vector<std::uint32_t> object;  ///< index into Scene::objects; kNoPrimitive for a miss
   /// Hit tests of all rays of the pixel's paths. They depend on the engine and the window.
@@ -194,7 +194,7 @@ static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
 [[nodiscard]] Film make_film(int width, int height, const PixelRect& window,
                              const ExtraChannels& extra);
 
-/// Adds sums of no samples; with `with_error` also the arrays for adaptive sampling.
+/// Adds arrays of sums, without samples yet; if `with_error`, also those for adaptive sampling.
 void add_sums(Film& film, bool with_error);
 
 /// A channel of a film, as picture files name it. Valid while the film's arrays are.

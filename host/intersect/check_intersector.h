@@ -54,7 +54,7 @@ class CheckIntersector : public Intersector {
     intersector_->nearest(rays, query, hits);
     RayQuery same = query;
     same.work = {};
-    same.source_ids = {};  // do not affect results
+    same.source_ids = {};  // these do not affect results
     expected_.assign(rays.size(), {});
     reference_->nearest(rays, same, expected_);
     for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -161,7 +161,7 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 [[nodiscard]] bool is_before(const Bvh& bvh, const ExactRay& ray, const NearestHit& hit,
                              float t_max);
 
-/// Returns whether hit `a` is nearer than `b`, exactly; for equal t, by the lower triangle index.
+/// Returns, exactly, whether `a` is nearer than `b` or, at equal t, has the lower triangle index.
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a,
                              const NearestHit& b);
 

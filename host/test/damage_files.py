@@ -76,7 +76,7 @@ def command(form: str, name: str, render: str, trace: str) -> list[str]:
 
 
 def run(form: str, name: str, data: bytes, folder: pathlib.Path, programs: tuple[str, str]) -> tuple[str, str]:
-    """Runs a program on one file; returns the outcome in a few words, and a text that is not empty if the outcome is wrong."""
+    """Runs a program on one file; returns the outcome in a few words, and details of a wrong outcome, otherwise ""."""
     (folder / "a.obj").write_bytes(b"mtllib a.mtl\n" + TRIANGLE + b"usemtl m\nf 1/1 2/2 3/3\nusemtl n\nf 3/3 2/2 1/1\n")
     for other, content in (("a.mtl", MATERIAL), ("pic.png", png()), (name, data)):
         (folder / other).write_bytes(content)

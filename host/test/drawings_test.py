@@ -131,7 +131,7 @@ class Drawings(unittest.TestCase):
                     self.assertIn(b, reachable(drawn, a), f"{a} includes {b}, which is not drawn")
 
     def test_no_circle_among_folders(self) -> None:
-        """No folders of host/ and sim/ include each other, through headers or sources."""
+        """No folders of host/ and sim/ include each other, directly or indirectly, through headers or sources."""
         self.assertEqual(circles({("a/", "b/"), ("b/", "c/"), ("c/", "a/"), ("c/", "d/")}), {"a/ b/ c/"})
         self.assertEqual(circles({(folder(a), folder(b)) for a, targets in self.includes.items() for b in targets}), set())
 

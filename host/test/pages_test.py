@@ -26,7 +26,7 @@ def anchors(text: str) -> set[str]:
 
 
 def recipe(words: str) -> str:
-    """Returns the commands that `make` would run, without the flags of a make that runs this test."""
+    """Returns the commands that `make` would run. Flags of a make that runs this test have no effect."""
     return subprocess.run(["make", "--no-print-directory", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True,
                           check=False, env={name: value for name, value in os.environ.items() if name != "MAKEFLAGS"}).stdout
 

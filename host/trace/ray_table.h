@@ -18,7 +18,7 @@ namespace raygate {
 struct RayTable {
   std::uint64_t first = 0;           ///< index of the first ray
   std::vector<Ray> rays;             ///< relative to the scene's origin, scaled, in binary32
-  std::vector<ExactRay> exact_rays;  ///< the same in binary64; empty: `rays` are exact
+  std::vector<ExactRay> exact_rays;  ///< the same rays in binary64; empty: `rays` are exact
   std::vector<float> limits;         ///< limits of t of the scaled rays; +infinity: no limit
   std::vector<int> exponents;        ///< t of the given ray is 2^exponent times t of the scaled ray
   std::uint64_t rounded = 0;         ///< number of rays that were rounded

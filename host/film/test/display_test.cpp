@@ -48,7 +48,7 @@ TEST(Display, FilmicToneIsMonotoneAndBounded) {
     EXPECT_LE(now, 1.0f);
     last = now;
   }
-  EXPECT_NEAR(tone_map(0.18f, Tone::kFilmic), 0.26689f, 1e-4f);  // the formula by hand
+  EXPECT_NEAR(tone_map(0.18f, Tone::kFilmic), 0.26689f, 1e-4f);  // computed by hand
   EXPECT_LT(tone_map(1.0f, Tone::kFilmic), 0.9f) << "room is left for brighter light";
   EXPECT_EQ(tone_map(kInfinity, Tone::kFilmic), 1.0f);
   EXPECT_EQ(tone_map(-1.0f, Tone::kFilmic), 0.0f);
@@ -84,7 +84,7 @@ std::string chunk(const std::string& bytes, const std::string& type) {
   return "(none)";
 }
 
-/// Returns a picture with different pixels.
+/// Returns a picture in which all pixels differ.
 Image8 sample(int width, int height, PixelRect window) {
   Image8 picture{width, height, window, {}, {}};
   for (int i = 0; i < window.width() * window.height(); ++i) {

@@ -23,7 +23,7 @@ class ExrReader {
 
   [[nodiscard]] const Imf::Header& header() const { return file_.header(); }
 
-  /// Returns the pixels of one channel, row-major; none if the file has it not, or of another type.
+  /// Returns the pixels of one channel, row-major; none if it is missing or of another type.
   template <typename T>
   std::vector<T> read(const char* channel, Imf::PixelType type) {
     const Imf::Channel* found = header().channels().findChannel(channel);

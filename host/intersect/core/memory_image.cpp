@@ -144,7 +144,7 @@ class ImageWriter {
   /// Sets the grid, on which the box extends from 0 to at most 255. An axis without extent has much
   /// smaller cells than the others.
   static void set_grid(const Bounds& bounds, NodeLine& node) {
-    constexpr int kFinest = 24;  // in binary orders of magnitude below the coarsest axis
+    constexpr int kFinest = 24;  // cells are at most 2^24 times smaller than on the coarsest axis
     node.origin = bounds.low;
     int coarsest = 1;
     for (int k = 0; k < 3; ++k) {

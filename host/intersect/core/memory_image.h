@@ -101,7 +101,7 @@ class MemoryImage {
   static constexpr std::uint32_t kRoot = 0;
   static constexpr int kMostDepth = Bvh::kMaxDepth;  ///< ray_core_pkg::MaxLevels
 
-  /// Throws std::invalid_argument for a BVH with instances, which must be flattened.
+  /// Throws std::invalid_argument for a BVH with instances or with binary64 vertices.
   explicit MemoryImage(const Bvh& bvh, int threads = 1);
 
   [[nodiscard]] std::span<const MemoryLine> lines() const { return lines_; }

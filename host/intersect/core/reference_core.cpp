@@ -22,7 +22,7 @@ std::int64_t significand(float x) {
   return (std::bit_cast<std::uint32_t>(x) & 0x7FFFFF) | 0x800000;
 }
 
-/// Returns x >> amount for any amount: 0 beyond the word size, x if negative.
+/// Returns x >> amount for any amount: 0 beyond the word size, x for a negative amount.
 std::int64_t shift_right(std::int64_t x, int amount) {
   if (amount <= 0) return x;
   return amount > 63 ? 0 : x >> amount;
@@ -213,7 +213,7 @@ struct RayTrace {
   std::vector<CoreResult>& results;
 
   CoreResult result{.tag = ray.tag};
-  float limit = ray.t_max;  // hits at or beyond it are irrelevant
+  float limit = ray.t_max;  // hits at or beyond this distance are irrelevant
   bool ended = false;
   std::uint32_t candidate = CoreRay::kNoTriangle;  // the nearest hit among the doubts, if exact
 
@@ -228,7 +228,7 @@ struct RayTrace {
     results.push_back(result);
   }
 
-  /// Children of a node to visit: leaves at once, inner nodes one by one.
+  /// The inner nodes still to visit among the children of a node.
   struct OpenGroup {
     BoxGroup group;
     std::vector<BoxGroup::Entry> entries;  // in reverse: the last is visited first

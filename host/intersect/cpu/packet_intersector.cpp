@@ -68,7 +68,7 @@ RAYGATE_INLINE bool several(std::uint64_t set) { return (set & (set - 1)) != 0; 
 struct ConeTraversal {
   static constexpr int kGroups = RayPacket::kGroups;
 
-  /// A subtree to visit. Of the children of a node, the nearest one is pushed last.
+  /// A subtree to visit. Of one node's children, the nearest is on top of the stack.
   struct StackEntry {
     Bvh::Child child;
     float entry;
@@ -310,7 +310,7 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const BvhView& tree, co
 template <Vectors kCode>
 RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::uint32_t index,
                                  std::uint64_t rays, LaneMask groups) {
-  constexpr int kFew = 1;  // children
+  constexpr int kFew = 1;  // up to this number of met children, groups and rays are not separated
   Bvh::Node room;
   const Bvh::Node& node = tree.node(index, room);
   if (several(groups) && std::popcount(rays) <= kFewRays) {
@@ -753,7 +753,7 @@ class PacketIntersector {
   const RayQuery query_;
   const std::span<NearestHit> hits_;
   PointWriter points_;
-  CachedLeaf leaves_[1 << kCacheBits];  // by hash
+  CachedLeaf leaves_[1 << kCacheBits];  // indexed by a hash of the leaf
 };
 
 }  // namespace

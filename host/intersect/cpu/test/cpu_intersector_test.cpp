@@ -1,6 +1,6 @@
-// CpuIntersector finds the hits of the unit's reference model, with the same bits of P, at ties and
-// limits the exact ones, and the same with all vectors, in packets and ray by ray. all_hits() finds
-// the hits of rational arithmetic.
+// CpuIntersector finds the hits of the unit's reference model, with the same bits of P, in packets
+// and ray by ray, with all vectors. Ties and limits are exact. all_hits() finds the hits of
+// rational arithmetic.
 #include "host/intersect/cpu/cpu_intersector.h"
 
 #include <gtest/gtest.h>
