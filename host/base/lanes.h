@@ -82,7 +82,7 @@ inline constexpr int kLanesOf = 1;
 template <class T>
 requires requires(const T& x) { x[0]; }
 inline constexpr int kLanesOf<T> = sizeof(T) / sizeof(std::declval<T&>()[0]);
-/// Vector with the same number of lanes of another element type.
+/// Vector of another element type with the same number of lanes.
 template <class T, class Element>
 using Like = typename detail::VecOf<Element, kLanesOf<T>>::Type;
 template <class T>

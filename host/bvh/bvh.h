@@ -242,8 +242,8 @@ class Bvh {
   std::vector<Bvh> meshes_;
 };
 
-/// The nodes and leaves of a Bvh, which must outlive the view and not move. Hold it by value:
-/// through a reference, compilers load the pointers again after each store.
+/// A view of the nodes and leaves of a Bvh, which must outlive the view and not move. Hold a view
+/// by value: through a reference, compilers load its pointers again after each store.
 class BvhView {
  public:
   explicit BvhView(const Bvh& bvh)

@@ -22,7 +22,7 @@ struct LeafVisit {
 /// The primitives of a leaf whose boxes any ray meets, grouped by the rays that meet them.
 struct LeafVisits {
   std::array<LeafVisit, Bvh::kMaxLeafSize> visits;
-  std::size_t count = 0;  ///< 0: the traversal has ended
+  std::size_t count = 0;  ///< number of visits; 0: the traversal has ended
 
   [[nodiscard]] const LeafVisit* begin() const { return visits.data(); }
   [[nodiscard]] const LeafVisit* end() const { return visits.data() + count; }

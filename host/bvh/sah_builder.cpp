@@ -36,7 +36,7 @@ RAYGATE_INLINE Box middle_of(const Box& box) {
 /// Bins of equal size along each axis of the box around all centres.
 struct Slices {
   int count;
-  FloatLanes low, scale;  ///< lanes 0 to 2
+  FloatLanes low, scale;  ///< by axis, in lanes 0 to 2
 
   RAYGATE_INLINE Slices(const Box& middles, std::uint32_t size)
       : count(size < kMany ? kBins / 2 : kBins), low(middles), scale{} {

@@ -88,8 +88,8 @@ struct PacketBounds {
 };
 
 /// Sets the origins of a ray's entries and exits so that rounding the ray to binary32 culls no box.
-/// A rounded direction adds a relative error of 2.1 u to entries and exits. The growth of
-/// cutoff_beyond covers that of entries; `inverse_far` grows once more to cover that of exits.
+/// A rounded direction adds a relative error of 2.1 u to entries and exits. For entries, the growth
+/// in cutoff_beyond covers this error; for exits, `inverse_far` grows once more.
 RAYGATE_INLINE void spread(const ExactRay& ray, float (&entry)[3], float (&exit)[3],
                            float (&inverse_far)[3]) {
   const float growth = is_binary32(ray.direction) ? 1.0f : kExitGrowth;

@@ -153,7 +153,7 @@ struct ExactRay {
 [[nodiscard]] Interval hit_distance(const ExactRay& ray, const Corners& triangle);
 
 /// The position of a hit on its triangle: P = (1 - u - v) A + u B + v C. The error of u and of v is
-/// at most 2^-34; none of the three weights is negative, nor -0.
+/// at most 2^-34; none of the three weights is negative or -0.
 struct Barycentric {
   double u, v;
 };

@@ -116,7 +116,7 @@ struct FilmSums {
   std::vector<float> shown;  ///< display steps at the last check
 };
 
-/// Returns the mean of `samples` samples, clamped to 0 where rounding leaves it negative.
+/// Returns the mean of `samples` samples, clamped to 0 if rounding makes it negative.
 template <std::size_t N>
 [[nodiscard]] glm::vec<N, float> mean_of(const std::array<ExactAccumulator, N>& sums,
                                          double samples) {
@@ -197,7 +197,7 @@ static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
 /// Adds arrays of sums, without samples yet; if `with_error`, also those for adaptive sampling.
 void add_sums(Film& film, bool with_error);
 
-/// A channel of a film, as picture files name it. Valid while the film's arrays are.
+/// A channel of a film, with its name in picture files. Valid while the film's arrays exist.
 struct Channel {
   enum class Type { kFloat, kUint };  ///< float or std::uint32_t
 

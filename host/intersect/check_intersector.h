@@ -15,8 +15,8 @@
 
 namespace raygate {
 
-/// Thrown where two implementations differ. The text is one line with the inputs in hexadecimal,
-/// ready to replay, and both results.
+/// An exception for results that differ between two implementations. The text is one line with the
+/// inputs in hexadecimal, ready to replay, and both results.
 class EngineMismatch : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -67,12 +67,12 @@ struct IntersectCounters {
   }
 };
 
-/// The nearest hit of a ray; without one, only `primitive` is valid.
+/// The nearest hit of a ray. If the ray hits nothing, only `primitive` is valid.
 struct NearestHit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   std::uint32_t primitive = kNone;  ///< primitive index; kNone: a miss
-  glm::vec3 point{0.0f};  ///< P = d I / (I . N), relative to the ray's origin, in the unit's bits
+  glm::vec3 point{0.0f};  ///< P = d I / (I . N), relative to the ray's origin, with the unit's bits
   /// Relative error bound of each coordinate of P, in addition to 2^-46 of the largest coordinate
   /// for underflow; +infinity if the unit has no usable P. Every intersector gives the same bits.
   float point_error = std::numeric_limits<float>::infinity();
@@ -90,8 +90,8 @@ struct RayWork {
   }
 };
 
-/// Options of a search for many rays. Spans must outlive it, and are empty or have one element per
-/// ray.
+/// Options of a search for many rays. Spans must outlive the search, and are empty or have one
+/// element per ray.
 struct RayQuery {
   /// Whether all rays start at one point (the camera, a light), which makes some engines faster.
   /// Does not change results.
@@ -165,7 +165,7 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a,
                              const NearestHit& b);
 
-/// Replaces `best` by `hit` if `hit` is nearer and has t < t_max. Returns whether it was replaced.
+/// Replaces `best` by `hit` if `hit` is nearer and has t < t_max. Returns whether it replaced it.
 /// The order of calls does not matter. If not `is_sure`, `hit` may be a miss, which is decided
 /// exactly, and hit.t is not read. Counts the use of exact arithmetic.
 bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHit hit, bool is_sure,

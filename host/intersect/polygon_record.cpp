@@ -103,7 +103,7 @@ RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const Fl
   for (int i = 0; i < kQuad; ++i) std::memcpy(&words[i][first], &record[i], 16);
 }
 
-/// Returns the bound of an edge: its sum of magnitudes times a constant, rounded up.
+/// Returns the bound of an edge: a constant times the sum of its magnitudes, rounded up.
 RAYGATE_INLINE FloatQuad edge_bound(const Triple<FloatQuad>& words) {
   const Points e = absolute(wide(words));
   const DoubleQuad exact = kEdgeBound * 0x1p-24 * (e.x + e.y + e.z);
@@ -122,8 +122,8 @@ RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
   }
 }
 
-/// Computes N and d from the corners and the first corner relative to the origin; clears `good` in
-/// lanes in which they are not accurate.
+/// Computes N and d from the corners and the first corner relative to the origin. Clears `good` in
+/// lanes in which N or d is not accurate.
 RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal,
                                 DoubleQuad& d, LongQuad& good) {
   Points size;

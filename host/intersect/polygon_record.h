@@ -24,7 +24,7 @@ namespace raygate {
 /// edge is then always in doubt.
 struct alignas(64) PolygonRecord {
   glm::vec3 normal{0.0f};            ///< words 0-2: N = (B-A) x (C-A), the paper's H
-  float d = 0.0f;                    ///< word 3: N . A; its sign is exact, and 0 is exactly 0
+  float d = 0.0f;                    ///< word 3: N . A, with its exact sign; 0 only if exactly 0
   std::array<glm::vec3, 3> edges{};  ///< words 4-12: A x B, B x C, C x A; for a shared edge the
                                      ///< two triangles hold exactly opposite numbers
   std::array<float, 3> bounds{};     ///< words 13-15: |float32(I . E) - exact| < bound, for every
@@ -94,7 +94,7 @@ RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
   return std::max({field(n.x), field(n.y), field(n.z)});
 }
 
-/// Returns the bits of NearestHit::point_error from those of d and V: 2^(grazing - 18), or
+/// Returns the bits of NearestHit::point_error from the bits of d and V: 2^(grazing - 18), or
 /// +infinity if V is not finite or too small for the unit.
 template <class Bits>
 RAYGATE_INLINE Bits point_error_of(const Bits& d, const Bits& v, const Bits& grazing) {

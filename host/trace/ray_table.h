@@ -47,8 +47,8 @@ struct RayTable {
 };
 
 /// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or
-/// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add), separated by commas; if it has none, by semicolons;
-/// if it has neither, by spaces and tabs. Spaces and quotes around numbers, a byte order mark,
+/// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add), separated by commas; if there are none, by
+/// semicolons, or else by spaces and tabs. Spaces and quotes around numbers, a byte order mark,
 /// empty lines, lines that begin with # and one header line without a number are allowed.
 class RayTableReader {
  public:

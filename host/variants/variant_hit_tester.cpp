@@ -31,7 +31,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Returns the format with the host's rounding direction.
+/// Returns the format with rounding to nearest even, in which the host converts numbers.
 Arithmetic to_nearest(Arithmetic math) {
   math.rounding = Rounding::kNearestEven;
   return math;

@@ -1,5 +1,5 @@
 // Reads attributes and channels of OpenEXR files in tests. This reader does not use
-// host/film/exr.h, whose reader could have a fault that hides one of its writer.
+// host/film/exr.h, so that no fault there can hide a fault of the writer.
 #pragma once
 
 #include <ImathBox.h>

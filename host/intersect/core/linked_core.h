@@ -44,7 +44,7 @@ class WordLink {
   virtual std::optional<std::uint32_t> receive() = 0;
   /// Waits: one clock in simulation. Throws if the board is silent for too long.
   virtual void wait() = 0;
-  /// Sends a break, which aborts the board's message and rays; drops input until none arrives.
+  /// Sends a break, which aborts the board's message and rays; drops input until the link is quiet.
   virtual void restart() = 0;
   /// Returns simulated clocks since construction; 0 without simulation.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
@@ -77,7 +77,7 @@ class LinkedCore : public CoreUnit {
 };
 
 /// Opens a serial port: four bytes per word, lowest first, 8N1, 2 Mbaud. Throws InputError with the
-/// port's name if the port cannot be opened; wait() throws it if the board is silent for 30 s.
+/// port's name if the port cannot be opened; so does wait() if the board is silent for 30 s.
 [[nodiscard]] std::unique_ptr<WordLink> open_serial_link(const std::filesystem::path& port);
 
 }  // namespace raygate

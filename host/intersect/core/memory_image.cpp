@@ -107,7 +107,7 @@ class ImageWriter {
 
   [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || leaf_[ref]; }
 
-  /// Returns the exact bounds of a node's triangles. The binary tree's are one float wider.
+  /// Returns the exact bounds of a node's triangles; the binary tree's boxes are one float wider.
   [[nodiscard]] Bounds bounds(Ref ref) const {
     const Box box = tree_.box(ref);
     Bounds bounds;

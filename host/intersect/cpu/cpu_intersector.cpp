@@ -42,8 +42,8 @@ void PointWriter::write() {
     using Floats = NativeFloats<code()>;
     constexpr std::size_t kHits = kLanesOf<Floats>;
     for (std::size_t first = 0; first < count_; first += kHits) {
-      // Each row holds a hit; after transposing, one word of four hits. A ray's load starts one
-      // word before the direction.
+      // Each row holds one hit, and after transposing one word of four hits. A ray's load starts
+      // one word before the direction.
       FloatQuad rays[kHits / kQuad][kQuad], planes[kHits / kQuad][kQuad];
       std::uint32_t number[kHits];
       for (std::size_t i = 0; i < kHits; ++i) {

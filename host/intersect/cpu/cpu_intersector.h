@@ -113,11 +113,11 @@ class PointWriter {
   const bool is_common_;
   const std::span<NearestHit> hits_;
   std::uint64_t written_ = 0;
-  std::size_t planes_ = 0, computed_ = 0;  // number of planes, and of those with words
+  std::size_t planes_ = 0, computed_ = 0;  // number of planes, and of planes with words
   std::size_t count_ = 0;
-  std::uint32_t primitives_[kPlanes + 1] = {};  // by plane; firsts_: a ray that hits it
-  std::uint32_t firsts_[kPlanes + 1];
-  // Numbers of planes have 16 bits, as bytes might alias any other variable.
+  std::uint32_t primitives_[kPlanes + 1] = {};  // primitive of each plane
+  std::uint32_t firsts_[kPlanes + 1];           // a ray that hits each plane
+  // Numbers of planes have 16 bits, as 8-bit numbers might alias any other variable.
   std::uint16_t last_[kPlanes] = {};  // by hash of a primitive: its last plane
   std::uint32_t numbers_[kMost];      // hits to write: their rays and planes
   std::uint16_t plane_of_[kMost];
@@ -126,11 +126,11 @@ class PointWriter {
 
 // The two searches of CpuIntersector. `hits` are initialised to misses; misses are not counted.
 
-/// Intersects rays of one origin in packets.
+/// Intersects rays with a common origin in packets.
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                    std::span<NearestHit> hits, IntersectCounters& counters);
 
-/// Intersects rays of any origins one by one.
+/// Intersects rays with any origins one by one.
 void trace_single_rays(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                        std::span<NearestHit> hits, IntersectCounters& counters);
 

@@ -360,9 +360,9 @@ RAYGATE_INLINE FloatLanes side_of(const FloatLanes (&direction)[3], const QuadRe
          direction[2] * record.word(plane, 2, triangle);
 }
 
-/// Computes bounds of t = |d| / (I . N) from those of |d|, in `low` and `high`, and of I . N, which
-/// is positive, though `least` may not be. Each bound has four roundings; a quotient that
-/// underflows is between 0 and the smallest normal float.
+/// Replaces bounds of |d|, in `low` and `high`, by bounds of t = |d| / (I . N). I . N is positive
+/// and between `least`, which may be negative, and `most`. Each bound has four roundings; a
+/// quotient that underflows is between 0 and the smallest normal float.
 template <class Lanes>
 RAYGATE_INLINE void bound_distance(Lanes& low, Lanes& high, const Lanes& least, const Lanes& most) {
   constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;

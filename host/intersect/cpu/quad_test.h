@@ -93,7 +93,7 @@ struct ShearedRay {
   /// The direction must be usable (see is_usable).
   RAYGATE_INLINE explicit ShearedRay(const Ray& ray);
 
-  /// Returns the sign bit of (O-p)_z for points p in front of the origin: that of -I_z.
+  /// Returns the sign bit of -I_z, which is that of (O-p)_z for points p in front of the origin.
   [[nodiscard]] RAYGATE_INLINE std::int32_t sign_ahead() const {
     return std::bit_cast<std::int32_t>(-way) & std::numeric_limits<std::int32_t>::min();
   }

@@ -245,7 +245,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   const auto push = [&](int first, int last) __attribute__((always_inline)) {
     for (int i = first; i < last; ++i) to_children[i] = met.children[to_keys[i] & kNumber];
   };
-  // Handles two children one by one, as no register holds all eight keys.
+  // Handles up to two children one by one, as no register holds all eight keys.
   if (kCode == Vectors::kBaseline && count <= 2) {
     const auto key = [&](int i) __attribute__((always_inline)) {
       return (met.keys[numbers[i] & kNumber] & ~kNumber) | numbers[i];
@@ -349,7 +349,7 @@ class SingleRayIntersector {
   }
 
   /// Resolves a doubt about a triangle that the ray may hit or, if `sure`, does hit. Returns
-  /// whether it is the nearest hit now.
+  /// whether the triangle is the nearest hit now.
   bool resolve(RayTraversal& walk, std::uint32_t primitive, bool sure) {
     const ExactRay ray = exact_ray(walk.number);
     NearestHit best;

@@ -154,7 +154,7 @@ inline void count(UnitVerdict verdict, HitCounters& counters) {
   counters.edge_doubts += verdict == UnitVerdict::kDoubt;
 }
 
-/// The distance of a hit. At most 2^(6 + error) numbers of the format separate it from the exact t.
+/// The distance of a hit. At most 2^(6 + error) numbers of the format lie between it and exact t.
 struct HitDistance {
   float t = 0.0f;
   std::uint32_t error = 0;
@@ -198,9 +198,9 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return math_.is_normal(distance.t) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// Returns the verdict of the edges alone; kHit if the triangle is hit provided that it is in
-  /// front of the origin (on the side of d's sign). If d is NaN, edges of opposite signs are a miss
-  /// and everything else is in doubt.
+  /// Returns the verdict of the edges alone. kHit: the triangle is hit, if it is in front of the
+  /// origin (on the side of d's sign). If d is NaN, edges of opposite signs are a miss and
+  /// everything else is in doubt.
   [[nodiscard]] UnitVerdict edges_verdict(const PolygonRecord& record,
                                           const glm::vec3& direction) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();

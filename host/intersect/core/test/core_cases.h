@@ -7,7 +7,7 @@
 
 namespace raygate::test {
 
-/// Returns a sphere, a large box around it, a flat box and a far one.
+/// Returns a sphere, a large box around it, a flat box and a far box.
 inline std::vector<Corners> bodies() {
   std::vector<Corners> mesh = sphere(2);
   for (const auto& part :

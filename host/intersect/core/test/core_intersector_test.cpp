@@ -137,7 +137,7 @@ class ExactCoreTest : public CoreIntersectorTest {
  protected:
   ExactCoreTest() : CoreIntersectorTest(doubled()) {}
 
-  /// Returns the bodies and each of their triangles again, with its corners in another order.
+  /// Returns the bodies, then all of their triangles again with the corners in another order.
   static std::vector<Corners> doubled() {
     std::vector<Corners> mesh = test::bodies();
     const std::size_t count = mesh.size();
@@ -217,7 +217,7 @@ TEST_F(ExactCoreTest, DistancesHoldTheirBounds) {
   EXPECT_GT(with, 3'000);
 }
 
-/// A core whose memory lacks its last line and, if `cyclic`, has the root below itself.
+/// A core whose memory lacks its last line; if `cyclic`, the root is also below itself.
 class BrokenMemory : public ReferenceCore {
  public:
   explicit BrokenMemory(bool cyclic) : cyclic_(cyclic) {}

@@ -199,7 +199,7 @@ TEST(CpuIntersector, LimitsAndTiesAreExact) {
 
 class AllHits : public testing::Test {
  protected:
-  /// Compares some rays' hits in a mesh of about that size; returns the number of hits.
+  /// Compares some rays' hits in a mesh of about this `size`; returns the number of hits.
   std::size_t compare(const std::vector<Corners>& mesh, float size, int rays) {
     const Bvh bvh(test::scene_of(mesh));
     std::size_t count = 0;
