@@ -1,5 +1,5 @@
 // Sines, logarithms and powers with the same bits on every machine: IEEE 754 additions,
-// multiplications and divisions in a fixed order, without the C library. The sRGB curve (IEC
+// multiplications and divisions in a fixed order, without the C library. Also the sRGB curve (IEC
 // 61966-2-1), which converts between scene-linear light and 8-bit codes.
 #pragma once
 

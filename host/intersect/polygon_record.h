@@ -24,7 +24,7 @@ namespace raygate {
 /// edge is then always in doubt.
 struct alignas(64) PolygonRecord {
   glm::vec3 normal{0.0f};            ///< words 0-2: N = (B-A) x (C-A), the paper's H
-  float d = 0.0f;                    ///< word 3: N . A, with its exact sign; 0 only if exactly 0
+  float d = 0.0f;                    ///< word 3: N . A; its sign (-1, 0 or 1) is exact
   std::array<glm::vec3, 3> edges{};  ///< words 4-12: A x B, B x C, C x A; for a shared edge the
                                      ///< two triangles hold exactly opposite numbers
   std::array<float, 3> bounds{};     ///< words 13-15: |float32(I . E) - exact| < bound, for every

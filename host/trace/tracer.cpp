@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-// Size of rows, in bytes, at which a thread makes no more until these are written.
+// Number of bytes of rows at which a thread stops until its rows are written.
 constexpr std::size_t kManyRows = std::size_t{1} << 20;
 
 /// State of one thread: a block of rays, and its rows until they are written.

@@ -42,7 +42,7 @@ class WordLink {
   virtual bool send(std::uint32_t word) = 0;
   /// Returns the next received word, or none.
   virtual std::optional<std::uint32_t> receive() = 0;
-  /// Waits: one clock in simulation. Throws if the board is silent for too long.
+  /// Waits for the board; in simulation, one clock. Throws if the board is silent for too long.
   virtual void wait() = 0;
   /// Sends a break, which aborts the board's message and rays; drops input until the link is quiet.
   virtual void restart() = 0;

@@ -105,7 +105,7 @@ class MemoryImage {
   explicit MemoryImage(const Bvh& bvh, int threads = 1);
 
   [[nodiscard]] std::span<const MemoryLine> lines() const { return lines_; }
-  /// Result of line_of (primitive to triangle's line) and primitive_at (inverse) if there is none.
+  /// Returned by line_of and primitive_at (its inverse) if there is no such line or primitive.
   static constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
   [[nodiscard]] std::uint32_t line_of(std::uint32_t primitive) const {
     return primitive < primitive_lines_.size() ? primitive_lines_[primitive] : kNoTriangle;

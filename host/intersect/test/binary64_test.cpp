@@ -157,7 +157,7 @@ TEST_F(Binary64, AllSearchesFindWhatThePredicatesSay) {
   EXPECT_GT(hits_, 20'000);
 }
 
-// Rays that are exact in binary32 have as few doubts in all_hits() and in queries with exact rays.
+// In queries with exact rays and in all_hits(), rays in binary32 have no more doubts than alone.
 TEST_F(Binary64, RaysInBinary32HaveTheNarrowBounds) {
   int doubts = 0;
   for (int round = 0; round < 300; ++round) {

@@ -154,7 +154,7 @@ inline void count(UnitVerdict verdict, HitCounters& counters) {
   counters.edge_doubts += verdict == UnitVerdict::kDoubt;
 }
 
-/// The distance of a hit. At most 2^(6 + error) numbers of the format lie between it and exact t.
+/// A hit's distance: at most 2^(6 + error) numbers of the format lie between t and the exact t.
 struct HitDistance {
   float t = 0.0f;
   std::uint32_t error = 0;
