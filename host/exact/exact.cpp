@@ -83,8 +83,7 @@ struct Fraction {
   }
 };
 
-/// Returns a * b. Its error includes those of a and b, and 2 u for rounding the value and the
-/// bound.
+/// Returns a * b. Its error includes those of a and b, and 2 u for rounding value and bound.
 Estimate product(const Estimate& a, const Estimate& b) {
   const double value = a.value * b.value;
   return {value, 1.000001 * (a.error * std::abs(b.value) + std::abs(a.value) * b.error +

@@ -117,8 +117,8 @@ RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
 
 constexpr std::size_t kRayWords = 6;
 
-/// Loads the directions of four rays, from their words, transposed. Each load includes the word
-/// before the direction.
+/// Loads the directions of four rays, by component, from the rays' words. Each load includes the
+/// word before the direction.
 RAYGATE_INLINE void load_directions(const float* words, FloatQuad (&components)[3]) {
   static_assert(sizeof(Ray) == kRayWords * sizeof(float) &&
                 offsetof(Ray, direction) == 3 * sizeof(float));
@@ -273,7 +273,7 @@ RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
   walk.stack[place] = next;
 }
 
-/// At most this many rays, if in several groups, are tested against a node one by one. Without,
+/// At most this many rays, if in several groups, are tested against a node one by one. If not,
 /// light rays of `build/lab rays` trace at 0.7 times the rate on sphereflake, 0.85 on landscape.
 constexpr int kFewRays = 8;
 

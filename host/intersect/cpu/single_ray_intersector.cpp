@@ -39,7 +39,7 @@ struct alignas(64) RayTraversal {
   // are byte offsets in a node of the planes that the ray meets first and last.
   float origin[3], minus_inverse_near[3], minus_inverse_far[3];
   std::uint32_t near_at[3], far_at[3];
-  float cutoff;  ///< cutoff_beyond the nearest hit
+  float cutoff;  ///< cutoff_beyond() of the nearest hit
 
   ShearedRay sheared;                ///< for triangle tests
   float low, high;                   ///< bounds of the depth of the nearest hit or the limit
@@ -280,7 +280,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
 
 /// Pops the next subtree that is not beyond the cutoff.
 RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
-  // Non-negative floats have the order of their bits.
+  // The bits of non-negative floats have the order of the floats.
   const std::int32_t last_key = std::bit_cast<std::int32_t>(walk.cutoff) | (Bvh::kWidth - 1);
   do {
     --walk.depth;

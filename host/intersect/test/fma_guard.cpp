@@ -60,8 +60,8 @@ void check_plane() {
 }
 
 void check_exact() {
-  // The ray lies exactly in the edge's plane. The exact sums of exact.cpp must find that, so that
-  // the tilt (towards +x) decides the sign.
+  // The ray lies exactly in the edge's plane. exact.cpp must find a sum of exactly 0, so that the
+  // tilt (towards +x) decides the sign.
   const Ray ray = {glm::vec3(0.0f), glm::vec3(1.0f, 1.0f, 1.0f / 3.0f)};
   const glm::vec3 a(1.0f, 1.0f, 0.1f), b(kA, kA, 0.7f);
   expect(edge_side(ray, a, b) == -edge_side(ray, b, a) && edge_side(ray, a, b) != 0, "edge_side");

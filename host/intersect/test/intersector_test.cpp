@@ -136,7 +136,7 @@ TEST(NearestHit, EveryOrderOfReportsGivesTheSame) {
   } while (std::ranges::next_permutation(primitives).found);
   // A doubt is not resolved if it is surely farther than a hit. In the 120 orders, the two nearest
   // always are resolved, the two an ulp farther if they come before both of these (a third), and
-  // the last one if it comes first.
+  // the farthest if it comes first.
   EXPECT_EQ(counters.exact_inside, 2u * 120 + 2u * 40 + 24);
   EXPECT_GT(counters.exact_depth, 0u);
 }

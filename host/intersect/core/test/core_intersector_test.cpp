@@ -319,7 +319,7 @@ TEST_F(CoreIntersectorTest, RefusesWordsAboutWhatItDidNotGive) {
 
 /// Returns whether the ray, for 0 <= t <= limit, meets the child's box; `first` is the smallest t.
 bool enters(const BoxCase& box, const NodeLine::Child& child, mpq_class& first) {
-  mpq_class low = 0, high = -1;  // -1: no end
+  mpq_class low = 0, high = -1;  // -1: no limit
   if (std::isfinite(box.limit)) high = mpq_class(box.limit);
   for (int k = 0; k < 3; ++k) {
     const auto at = static_cast<std::size_t>(k);
