@@ -273,7 +273,7 @@ class BvhWriter {
   int threads_;
   float unit_ = 0.0f;
   std::vector<Plan> plans_;
-  std::vector<std::uint32_t> first_primitives_;  // BVH index by tree_'s index; empty: equal
+  std::vector<std::uint32_t> first_primitives_;  // index in the BVH by index in tree_; empty: same
 };
 
 void Bvh::build(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,

@@ -62,7 +62,7 @@ struct InstanceBvh {
   float low[3], high[3];  ///< bounds of the translation, widened for all rounding
   std::uint32_t mesh;     ///< index of the mesh's BVH
   std::uint32_t first = 0;
-  std::uint32_t first_triangle = 0;  ///< index of the first triangle in the scene
+  std::uint32_t first_triangle = 0;  ///< index in the scene of the instance's first triangle
 
   /// `size`: the largest magnitudes of the bounds of the mesh's BVH, by axis.
   InstanceBvh(const Instance& instance, const glm::dvec3& size);

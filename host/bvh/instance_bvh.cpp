@@ -51,7 +51,7 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Nod
   for (int end = 0; end < 2; ++end) {
     for (int k = 0; k < 3; ++k) bounds[end][k] = load<FloatLanes>(from.bounds[end][k]);
   }
-  // Boxes of absent children are set apart, as their infinite bounds times 0 are NaN.
+  // Boxes of absent children are set separately, as their infinite bounds times 0 are NaN.
   const IntLanes absent = bounds[0][0] > bounds[1][0];
   for (int k = 0; k < 3; ++k) {
     FloatLanes low = FloatLanes{} + at.low[k], high = FloatLanes{} + at.high[k];

@@ -56,7 +56,7 @@ struct Slices {
 
 /// A split of a range: bins below `part` go left or, of up to kFew primitives, the first `part`.
 struct Cut {
-  float cost = kNever;  ///< sum of area times count
+  float cost = kNever;  ///< area times count, summed over both sides
   int axis = 0;
   int part = 0;
 };

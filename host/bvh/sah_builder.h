@@ -1,5 +1,5 @@
-// SAH builder: splits primitives into a binary tree by the surface area heuristic; boxes in
-// registers.
+// SAH builder: splits primitives into a binary tree by the surface area heuristic, with boxes in
+// vector registers.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ RAYGATE_INLINE Box box_around(const glm::vec3& a, const glm::vec3& b, const glm:
   grow(box, corners[1]);
   grow(box, corners[2]);
   // The next float below: smaller bits for a positive float, larger bits for a negative one, and
-  // the smallest negative number for both zeros.
+  // the negative number of least magnitude for both zeros.
   const IntLanes bits = reinterpret_cast<IntLanes>(box);
   const IntLanes zero = (bits & 0x7FFFFFFF) == 0;
   const IntLanes below = bits + ((bits > 0) | 1);  // -1 where positive: no lane overflows

@@ -60,7 +60,7 @@ inline constexpr double kMostCoordinate = 0x1p126;
 [[nodiscard]] inline std::int32_t rest_of(double x, float nearest) {
   return static_cast<std::int32_t>((x - double{nearest}) / unit_of_rest(nearest));
 }
-/// Returns x from the results of rest_of().
+/// Returns the x whose nearest float is `nearest` and whose rest_of() is `rest`.
 [[nodiscard]] inline double with_rest(float nearest, std::int32_t rest) {
   return double{nearest} + rest * unit_of_rest(nearest);
 }

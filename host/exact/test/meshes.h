@@ -60,7 +60,7 @@ inline std::vector<Corners> box(const glm::vec3& low, const glm::vec3& high) {
   return triangles;
 }
 
-/// Returns 20 * 4^level triangles. Each vertex is rounded once to float and shared bit for bit.
+/// Returns a sphere of 20 * 4^level triangles. Vertices are rounded to float once, then shared.
 inline std::vector<Corners> sphere(int level, float radius = 1.0f,
                                    const glm::vec3& center = glm::vec3(0.0f)) {
   const double g = (1.0 + std::sqrt(5.0)) / 2.0;

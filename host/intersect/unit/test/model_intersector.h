@@ -1,4 +1,4 @@
-// An intersector for tests, with the pipelined unit's reference model, and searches in tests.
+// An intersector with the pipelined unit's reference model, and a search function, for tests.
 #pragma once
 
 #include <memory>
