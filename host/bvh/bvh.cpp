@@ -68,7 +68,7 @@ class BvhWriter {
   }
 
  private:
-  /// Sets first_primitives_ if the tree has instances, which are not numbered as primitives.
+  /// Sets first_primitives_ if the tree has instances, which get no primitive indices.
   void number_primitives() {
     if (!bvh_.has_instances()) return;
     first_primitives_.reserve(tree_.size());

@@ -30,8 +30,8 @@
 namespace raygate {
 namespace {
 
-/// State of one ray. Many rays are interleaved, so each step uses few cache lines: the first for a
-/// node, the second for a leaf, and for both the third, with the bottom of `keys`, and the one with
+/// State of one ray. Many rays are interleaved, so each step uses few cache lines. A node needs the
+/// first, a leaf the second; both need the third, which has the bottom of `keys`, and the line with
 /// the bottom of `children`.
 struct alignas(64) RayTraversal {
   // Box tests, by axis. The inverses are those of PacketBounds with reversed sign, as the
