@@ -1,5 +1,5 @@
 // Sines, logarithms and powers with the same bits on every machine: IEEE 754 additions,
-// multiplications and divisions in a fixed order, without the C library. The sRGB curve (IEC
+// multiplications and divisions in a fixed order, without the C library. Also the sRGB curve (IEC
 // 61966-2-1), which converts between scene-linear light and 8-bit codes.
 #pragma once
 
@@ -43,7 +43,7 @@ template <class T>
 RAYGATE_INLINE WideOf<T> turns_of(const T& y, const T& x) {
   using D = WideOf<T>;
   constexpr double kTurnsOfRadian = 0.15915494309189533576888376337251;
-  constexpr float kHalf = 0.41421356f;  // the tangent of an eighth of half a turn
+  constexpr float kHalf = 0.41421356f;  // the tangent of 1/16 turn
   const T across = absolute(x), along = absolute(y);
   const auto is_steep = along > across;
   const T larger = choose(is_steep, along, across), smaller = choose(is_steep, across, along);
@@ -99,7 +99,7 @@ RAYGATE_INLINE D power(const D& base, const D& exponent) {
   return value <= 0.04045 ? value / 12.92 : power((value + 0.055) / 1.055, 2.4);
 }
 
-/// Returns the continuous sRGB curve of light from 0 on; above 1 for light above white.
+/// Returns the sRGB value, neither rounded nor clamped, of a linear value of at least 0.
 [[nodiscard]] inline double srgb_curve_above(double linear) {
   const double x = linear;
   return x <= 0.0031308 ? 12.92 * x : 1.055 * power(x, 1.0 / 2.4) - 0.055;

@@ -36,8 +36,8 @@ enum class NumberType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat,
 /// \xHH.
 [[nodiscard]] std::string in_quotes(std::string_view word);
 
-/// Returns a decimal number as the nearest double, in any locale, or nullopt if the whole word is
-/// not a number. "nan" and "inf" are numbers; a magnitude too large gives infinity, too small 0.
+/// Returns the double nearest to a decimal number, in any locale; nullopt unless the whole word is
+/// a number. "nan" and "inf" are numbers. Overflow gives infinity, underflow 0.
 [[nodiscard]] std::optional<double> to_number(std::string_view word);
 
 }  // namespace raygate

@@ -45,8 +45,8 @@ class SetBits {
 };
 
 /// GCC's and Clang's vector types: element-wise arithmetic, comparisons giving 0 or -1, and
-/// `mask ? a : b`. Functions that are not inlined must not take or return them, because the calling
-/// convention depends on the machine, as would the alignment.
+/// `mask ? a : b`. Functions that are not inlined must not take or return vectors, because calling
+/// convention and alignment would depend on the machine.
 template <class Element, int kCount>
 using Vec [[gnu::vector_size(sizeof(Element) * kCount), gnu::aligned(sizeof(Element) * kCount)]] =
     Element;
@@ -82,7 +82,7 @@ inline constexpr int kLanesOf = 1;
 template <class T>
 requires requires(const T& x) { x[0]; }
 inline constexpr int kLanesOf<T> = sizeof(T) / sizeof(std::declval<T&>()[0]);
-/// Vector with the same number of lanes of another element type.
+/// Vector of another element type with the same number of lanes.
 template <class T, class Element>
 using Like = typename detail::VecOf<Element, kLanesOf<T>>::Type;
 template <class T>
@@ -193,7 +193,7 @@ RAYGATE_INLINE T root(const T& x) {
   }
 }
 
-/// Converts a random word to a number in [0, 1): its upper 24 bits.
+/// Converts the upper 24 bits of a random word to a number in [0, 1).
 template <class W>
 RAYGATE_INLINE Like<W, float> unit_interval(const W& word) {
   return narrow(__builtin_bit_cast(IntOf<W>, word >> 8)) * 0x1p-24f;
@@ -314,8 +314,8 @@ RAYGATE_INLINE void transpose(FloatLanes (&rows)[kLanes]) {
   }
 }
 
-/// Load records, one per lane, so that words[i] has word i of each, and store the first `count`
-/// records. A record is kWords consecutive floats or 32-bit words.
+/// Load records, one per lane, so that words[i] has word i of each record, or store the first
+/// `count` records. A record is kWords consecutive floats or 32-bit words.
 template <class T, std::size_t kWords, class Record>
 RAYGATE_INLINE void load_records(const Record* const (&records)[kLanesOf<T>], T (&words)[kWords]) {
   static_assert(sizeof(Record) == 4 * kWords && kWords % kLanes == 0);

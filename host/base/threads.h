@@ -36,8 +36,8 @@ inline void checkpoint() {
 }
 
 /// Calls work(i) once for each i below `count`, in any order, on up to `threads` threads including
-/// the caller's, and waits for all. Uses fewer if the system cannot start as many. An exception
-/// ends the others early; rethrows the first one.
+/// the caller's, and waits for all. Uses fewer threads if the system cannot start as many. An
+/// exception ends the work of all threads early; rethrows the first exception.
 template <class Work>
 void for_each_on_threads(int threads, std::size_t count, const Work& work) {
   std::atomic<std::size_t> next = 0;

@@ -85,8 +85,8 @@ RAYGATE_INLINE Triple<WideOf<T>> wide(const Triple<T>& a) {
   return {wide(a.x), wide(a.y), wide(a.z)};
 }
 
-/// Gathers of(k) for each lane k into numbers, words, masks, triples or wide triples, if it returns
-/// a float, a std::uint32_t, a bool, a glm::vec3 or a glm::dvec3.
+/// Gathers of(k) for each lane k. If of() returns a float, std::uint32_t, bool, glm::vec3 or
+/// glm::dvec3, the result is numbers, words, a mask, a triple or a wide triple, respectively.
 template <class T, class Of>
 RAYGATE_INLINE auto gather(const Of& of) {
   constexpr int kCount = kLanesOf<T>;

@@ -31,7 +31,7 @@ constexpr float kLeafCost[Bvh::kMaxLeafSize + 1] = {0.0f, 0.95f, 1.0f, 1.05f, 1.
 struct Plan {
   float cost[Bvh::kWidth];  ///< [i]: C(n, i + 1); [0]: cost as one child
   std::uint8_t
-      left[Bvh::kWidth];  ///< [i]: number of the left side's children, of i + 1; 0: use i children
+      left[Bvh::kWidth];  ///< [i]: how many of i + 1 children are from the left; 0: use i children
   bool is_leaf;
 };
 
@@ -68,7 +68,7 @@ class BvhWriter {
   }
 
  private:
-  /// Numbers the primitives if instances, which have no primitives, are among the triangles.
+  /// Sets first_primitives_ if the tree has instances, which get no primitive indices.
   void number_primitives() {
     if (!bvh_.has_instances()) return;
     first_primitives_.reserve(tree_.size());
@@ -91,7 +91,7 @@ class BvhWriter {
   /// A task for one thread: a binary node of limited size.
   struct Task {
     Ref ref;
-    std::uint32_t parent;  ///< its parent in the BVH
+    std::uint32_t parent;  ///< index of the parent in the BVH
     int child;
     std::vector<Bvh::Node> nodes;
     std::uint32_t offset;
@@ -164,7 +164,7 @@ class BvhWriter {
     for (const Ref child : tree_.nodes[ref].child) collect_tasks(child, large, tasks);
   }
 
-  /// Collects the children of a wide node if `ref` becomes at most `most` of them.
+  /// Appends the at most `most` nodes that replace `ref` among the children of a wide node.
   void collect_children(Ref ref, int most, Ref (&children)[Bvh::kWidth], int& count) const {
     if (most > 1 && !tree_.is_leaf(ref)) {
       const Plan& plan = plans_[ref];
@@ -180,7 +180,7 @@ class BvhWriter {
     children[count++] = ref;
   }
 
-  /// Stores a leaf or an inner node, whose index the caller sets, in a node.
+  /// Stores `ref` as child i of a node. If `ref` is an inner node, the caller sets its index.
   RAYGATE_INLINE void put_child(Bvh::Node& node, int i, Ref ref) {
     const Box box = tree_.box(ref);
     for (int k = 0; k < 3; ++k) {
@@ -218,7 +218,7 @@ class BvhWriter {
     }
   }
 
-  /// Writes the node `ref` to nodes[index], and its descendants behind; large ones become `tasks`.
+  /// Writes `ref` to nodes[index] and appends its descendants. If `tasks`, it gets small subtrees.
   void write_below(std::vector<Bvh::Node>& nodes, std::uint32_t index, Ref ref,
                    std::vector<Task>* tasks) {
     Ref children[Bvh::kWidth];
@@ -273,7 +273,7 @@ class BvhWriter {
   int threads_;
   float unit_ = 0.0f;
   std::vector<Plan> plans_;
-  std::vector<std::uint32_t> first_primitives_;  // index of each primitive; empty: the identity
+  std::vector<std::uint32_t> first_primitives_;  // index in the BVH by index in tree_; empty: same
 };
 
 void Bvh::build(std::span<const glm::vec3> positions, std::span<const Triangle> triangles,

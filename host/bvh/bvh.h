@@ -49,7 +49,7 @@ class RangeMap {
 
  private:
   std::vector<std::uint32_t> begins_{0};  // start of each range, and the end
-  // Range of the first number of each chunk of 2^shift_, and the last range.
+  // Index of the range in which each chunk of 2^shift_ numbers begins, then that of the last range.
   std::vector<std::uint32_t> first_;
   int shift_ = 0;
 };
@@ -58,11 +58,11 @@ class RangeMap {
 /// `first` on.
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance
-  float matrix[3][3];     ///< its linear part, rounded
-  float low[3], high[3];  ///< bounds of its translation, widened for all rounding
+  float matrix[3][3];     ///< linear part of the transform, rounded
+  float low[3], high[3];  ///< bounds of the translation, widened for all rounding
   std::uint32_t mesh;     ///< index of the mesh's BVH
   std::uint32_t first = 0;
-  std::uint32_t first_triangle = 0;  ///< index in the scene
+  std::uint32_t first_triangle = 0;  ///< index in the scene of the instance's first triangle
 
   /// `size`: the largest magnitudes of the bounds of the mesh's BVH, by axis.
   InstanceBvh(const Instance& instance, const glm::dvec3& size);
@@ -70,8 +70,8 @@ struct InstanceBvh {
 
 /// A BVH with eight children per node. A leaf holds a range of primitives; primitive i is triangle
 /// `triangle_of(i)` of the scene. The BVH is the same, byte for byte, for any number of building
-/// threads. It refers to the scene's triangles and rests, if there are rests. Memory: 320 bytes per
-/// node, one node for about five primitives, and 41 bytes per primitive.
+/// threads. If the scene has rests (see rest_of), the BVH refers to these and to the triangles.
+/// Memory: 320 bytes per node, one node for about five primitives, and 41 bytes per primitive.
 ///
 /// A mesh with several instances has one BVH. The nodes and primitives below an instance have
 /// indices of their own but are not stored: BvhView and corners_of() compute them from the mesh's
@@ -124,9 +124,8 @@ class Bvh {
   };
 
   /// Builds the BVH of fewer than 2^31 triangles. All positions are finite with a magnitude of at
-  /// most 2^126, also after instances' transforms, whose sums of magnitudes are bounded likewise.
-  /// No ray enters the BVH of a scene without triangles. The scene must outlive the BVH if it
-  /// has rests.
+  /// most 2^126, also after instances' transforms, even if terms are summed by magnitude. No ray
+  /// enters the BVH of a scene without triangles. A scene with rests must outlive the BVH.
   explicit Bvh(const Scene& scene, int threads = 1);
 
   /// Returns the stored nodes, without those of instances; nodes()[0] is the root.
@@ -150,7 +149,7 @@ class Bvh {
   [[nodiscard]] std::uint32_t triangle_of(std::uint32_t primitive) const {
     return is_instanced(primitive) ? instance_triangle(primitive) : triangles_[primitive];
   }
-  /// Returns a reference to the scene's face of a primitive.
+  /// Returns the scene's reference to a primitive's triangle.
   [[nodiscard]] RAYGATE_INLINE FaceRef face_of(std::uint32_t primitive) const {
     if (is_instanced(primitive)) [[unlikely]]
       return instance_face(primitive);
@@ -165,13 +164,13 @@ class Bvh {
       return instance_corners(primitive);
     return stored_corners(primitive);
   }
-  /// Returns the vertices as the scene has them.
+  /// Returns the vertices of a primitive's triangle as in the scene, including rests.
   [[nodiscard]] Corners corners_of(std::uint32_t primitive) const {
     Corners corners = widened(float_corners_of(primitive));
     if (!is_binary32() && !is_instanced(primitive)) add_rests(triangles_[primitive], corners);
     return corners;
   }
-  /// Prefetches the memory that corners_of() reads beside binary32 corners, in steps 0, 1, 2.
+  /// Prefetches what corners_of() reads beside binary32 corners, by three calls with step 0, 1, 2.
   RAYGATE_INLINE void prefetch_rests(std::uint32_t primitive, int step) const {
     if (is_binary32() || is_instanced(primitive)) return;
     const std::uint32_t& triangle = triangles_[primitive];
@@ -229,22 +228,22 @@ class Bvh {
   };
 
   std::vector<Node> nodes_;
-  std::vector<float> corners_;            // of all primitives, leaf by leaf
+  std::vector<float> corners_;            // corners of all primitives, leaf by leaf
   std::vector<std::uint32_t> triangles_;  // index in the scene, by primitive
   std::vector<Place> places_;
-  std::span<const glm::ivec3> rests_;  // of the scene, or none
-  std::span<const Triangle> faces_;    // of the scene
+  std::span<const glm::ivec3> rests_;  // the scene's rests, or none
+  std::span<const Triangle> faces_;    // the scene's triangles
 
-  // Nodes and primitives from this number on belong to instances. Each has a range of numbers, as
-  // many as its mesh has primitives, which are at least as many as its nodes.
+  // Nodes and primitives from this number on belong to instances. Each instance has as many numbers
+  // as its mesh has primitives, and a mesh has no more nodes than primitives.
   std::uint32_t first_instanced_ = 0xFFFFFFFF;
   RangeMap instance_numbers_;
   std::vector<InstanceBvh> instances_;
   std::vector<Bvh> meshes_;
 };
 
-/// The nodes and leaves of a Bvh, which must outlive the view and not move. Hold it by value:
-/// through a reference, compilers load the pointers again after each store.
+/// A view of the nodes and leaves of a Bvh, which must outlive the view and not move. Hold a view
+/// by value: through a reference, compilers load its pointers again after each store.
 class BvhView {
  public:
   explicit BvhView(const Bvh& bvh)
@@ -269,7 +268,7 @@ class BvhView {
   [[nodiscard]] RAYGATE_INLINE const float* corners_of(const Bvh::Child& leaf,
                                                        Bvh::LeafRoom& room) const {
     if (leaf.first >= first_instanced_) [[unlikely]] {
-      const Bvh::Child copy = leaf;  // lets callers keep theirs in a register
+      const Bvh::Child copy = leaf;  // lets callers keep `leaf` in a register
       bvh_->make_instance_corners(copy, room);
       return room.corners;
     }

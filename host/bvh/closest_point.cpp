@@ -10,8 +10,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the closest point of a triangle: that of the edges beyond which `point` is, or else its
-/// projection. An exact normal keeps this accurate for slivers.
+/// Returns the triangle's closest point: on one of the edges beyond which `point` lies or, if there
+/// are none, the projection of `point`. An exact normal keeps the result accurate for slivers.
 glm::dvec3 closest_on(const Corners& t, const glm::dvec3& point) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const glm::dvec3 normal = triangle_normal(t);
@@ -30,9 +30,9 @@ glm::dvec3 closest_on(const Corners& t, const glm::dvec3& point) {
   return t[0] + (way - normal * (glm::dot(way, normal) / glm::dot(normal, normal)));
 }
 
-constexpr double kRounding = 1.0 - 0x1p-40;  // of distances in double
+constexpr double kRounding = 1.0 - 0x1p-40;  // covers rounding errors of distances in double
 
-/// Improves `best` by the triangles below a child, nearest boxes first.
+/// Updates `best` with the triangles below a child, nearest boxes first.
 void search(const Bvh& bvh, const Bvh::Child& child, const glm::dvec3& point, ClosestPoint& best) {
   for (std::uint32_t primitive = child.first; primitive < child.first + child.count; ++primitive) {
     const glm::dvec3 at = closest_on(bvh.corners_of(primitive), point);

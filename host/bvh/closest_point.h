@@ -23,7 +23,7 @@ struct ClosestPoint {
 [[nodiscard]] ClosestPoint closest_point(const Bvh& bvh, const glm::dvec3& point);
 
 /// Calls visit(leaf) for the leaves whose boxes touch the closed box from `low` to `high`, in any
-/// order, until a call returns true. Returns whether a call did. For bodies of in_vectors.
+/// order, until a call returns true. Returns whether a call did. To be called within in_vectors.
 template <Vectors kCode, class Visit>
 RAYGATE_INLINE bool any_leaf_near(const Bvh& bvh, const glm::vec3& low, const glm::vec3& high,
                                   const Visit& visit) {

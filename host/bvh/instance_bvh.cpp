@@ -16,10 +16,10 @@
 // float32(double(m.v + m3)), so c differs from m.v + m3 by at most 1.01 u S + 2^-150, where S is
 // the sum of |m_k| V_k and |m3|, and V_k the largest magnitude of a bound of the mesh along axis k.
 //
-// The low bound is computed in float from low <= m3 - e and, for each axis, m'_k x_k, where x_k is
-// the end of [l, h] at which it is least: so m'.v >= m'.x. Three products and three sums have an
-// error of 4.1 u (S + e) + 3 2^-150 in all, and m'.v differs from m.v by at most D = sum |m_k -
-// m'_k| V_k. The float below c is 2.02 u S + 2^-149 away. So the bound is at or below it if
+// The low bound is computed in float as the sum of low <= m3 - e and, for each axis, m'_k x_k; x_k
+// is the end of [l, h] with the lesser product, so m'.v >= m'.x. Three products and three sums have
+// an error of 4.1 u (S + e) + 3 2^-150 in all, and m'.v differs from m.v by at most D = sum |m_k -
+// m'_k| V_k. The next float below c is 2.02 u S + 2^-149 away. The bound is not above that float if
 //   e >= D + (4.1 + 1.01 + 2.02) u S + 4.1 u e + 2^-147,
 // which holds for e = D + 12 u S + 2^-140: D <= u S except for numbers that underflow, and D <= S
 // for those. By symmetry the same holds for the high bound. All operations are monotonic, so nested
@@ -51,7 +51,7 @@ RAYGATE_INLINE void place(const InstanceBvh& at, const Bvh::Node& from, Bvh::Nod
   for (int end = 0; end < 2; ++end) {
     for (int k = 0; k < 3; ++k) bounds[end][k] = load<FloatLanes>(from.bounds[end][k]);
   }
-  // Infinite bounds times 0 are NaN.
+  // Boxes of absent children are set separately, as their infinite bounds times 0 are NaN.
   const IntLanes absent = bounds[0][0] > bounds[1][0];
   for (int k = 0; k < 3; ++k) {
     FloatLanes low = FloatLanes{} + at.low[k], high = FloatLanes{} + at.high[k];
@@ -94,7 +94,7 @@ int Bvh::add_instances(const Scene& scene, int threads) {
   for (const Mesh& mesh : scene.meshes) {
     Bvh& tree = meshes_.emplace_back(Bvh());
     tree.build(mesh.positions, mesh.triangles, kMaxDepth, threads);
-    // Rarely needed: half of the levels are for the BVH above the instances.
+    // Rarely needed: leaves half of the levels to the BVH above the instances.
     if (tree.levels() > kMaxDepth / 2) {
       tree.build(mesh.positions, mesh.triangles, kMaxDepth / 2, threads);
     }

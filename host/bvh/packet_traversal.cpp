@@ -43,7 +43,7 @@ constexpr float kFarthest = std::numeric_limits<float>::max();  // larger than a
 }  // namespace
 
 PacketTraversal::PacketTraversal(const Bvh& bvh, int octant) : bvh_(&bvh), octant_(octant) {
-  rays_.cutoff = FloatLanes{} - 1.0f;  // below any entry: no ray
+  rays_.cutoff = FloatLanes{} - 1.0f;  // below any entry, as there is no ray yet
   stack_[0] = {{0, 0}, 0.0f, 0xFF};
 }
 
@@ -102,7 +102,7 @@ LeafVisits PacketTraversal::next_leaf() {
         if (child.lanes == 0) continue;
         tree.prefetch(child.child);
         enter = enter <= rays_.cutoff ? enter : FloatLanes{} + kFarthest;
-        // The order of the hardware's batches: entries without their last three bits, then indices.
+        // Sorts as the hardware's batches are: by entry without its last three bits, then by index.
         child.entry = std::bit_cast<float>(std::bit_cast<std::int32_t>(-largest_of(-enter)) & ~7);
         int place = depth_++;
         for (; place > bottom && stack_[place - 1].entry <= child.entry; --place) {

@@ -22,14 +22,14 @@ struct LeafVisit {
 /// The primitives of a leaf whose boxes any ray meets, grouped by the rays that meet them.
 struct LeafVisits {
   std::array<LeafVisit, Bvh::kMaxLeafSize> visits;
-  std::size_t count = 0;  ///< 0: the traversal has ended
+  std::size_t count = 0;  ///< number of visits; 0: the traversal has ended
 
   [[nodiscard]] const LeafVisit* begin() const { return visits.data(); }
   [[nodiscard]] const LeafVisit* end() const { return visits.data() + count; }
 };
 
-/// A traversal that stops at every leaf and can be resumed, front to back along the octant of its
-/// rays. Many packets in flight keep a hit-test unit busy while each waits for its own results.
+/// A traversal, roughly front to back, that stops at every leaf and can be resumed. All its rays
+/// have one octant. Many packets in flight keep a hit-test unit busy while each awaits its results.
 ///
 /// Box tests are conservative: no ray misses a triangle that it hits in exact arithmetic at a
 /// distance up to its cutoff (proof in packet_traversal.cpp). A ray also visits other triangles
@@ -64,7 +64,7 @@ class PacketTraversal {
   int octant_;
   FloatLanes origin_[3] = {};
   PacketBounds8 rays_ = {};
-  int depth_ = 1;  // of the stack; the nearest child of a node is on top of its siblings
+  int depth_ = 1;  // number of stack entries; the nearest child of a node is on top
   StackEntry stack_[Bvh::kStackSize];
 };
 

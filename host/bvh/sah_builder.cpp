@@ -11,10 +11,10 @@ namespace raygate {
 namespace {
 
 constexpr std::uint32_t kTaskSize = 4096;  // ranges up to this size are built by one thread
-constexpr int kRunsOfThread = 64;          // ranges for each thread that balance the work
-// Up to this size all splits are tried, otherwise those between bins.
+constexpr int kRunsOfThread = 64;          // ranges per thread, to balance the load
+// In ranges up to this size all splits are tried, in larger ones only splits between bins.
 constexpr std::uint32_t kFew = 4;
-constexpr int kBins = 16;  // maximum number of bins per axis; half as many for small ranges
+constexpr int kBins = 16;  // number of bins per axis; half of it for ranges smaller than kMany
 constexpr std::uint32_t kMany = 64;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
@@ -33,10 +33,10 @@ RAYGATE_INLINE Box middle_of(const Box& box) {
   return half - __builtin_shufflevector(half, half, 4, 5, 6, 7, 0, 1, 2, 3);
 }
 
-/// Equal bins of the centres' box on each axis.
+/// Bins of equal size along each axis of the box around all centres.
 struct Slices {
   int count;
-  FloatLanes low, scale;  ///< lanes 0 to 2
+  FloatLanes low, scale;  ///< by axis, in lanes 0 to 2
 
   RAYGATE_INLINE Slices(const Box& middles, std::uint32_t size)
       : count(size < kMany ? kBins / 2 : kBins), low(middles), scale{} {
@@ -54,14 +54,14 @@ struct Slices {
   }
 };
 
-/// A split of a range: bins below `part` go left, or the first `part` of a few primitives.
+/// A split of a range: bins below `part` go left or, of up to kFew primitives, the first `part`.
 struct Cut {
-  float cost = kNever;  ///< sum of area times count
+  float cost = kNever;  ///< area times count, summed over both sides
   int axis = 0;
   int part = 0;
 };
 
-/// Finds the cheapest split between parts with these boxes and counts.
+/// Replaces `best` if a split between parts with these boxes and counts is cheaper.
 RAYGATE_INLINE void find_cut(const Box* boxes, const std::uint32_t* counts, int parts, int axis,
                              float unit, Cut& best) {
   float right_cost[kBins];
@@ -122,7 +122,7 @@ RAYGATE_INLINE std::uint32_t part_at(const Cut& cut, const Slices& slices, std::
   for (const Primitive& primitive : run) {
     const bool is_left = (primitive.middle(cut.axis) - low) * scale < limit;
     room[right] = primitive;
-    run[left] = primitive;  // itself, or one that has been moved
+    run[left] = primitive;  // replaces itself, or a primitive that has been copied
     left += is_left;
     right += !is_left;
   }
@@ -154,11 +154,11 @@ RAYGATE_INLINE void cut_few(std::span<Primitive> run, float unit, Cut& best) {
 }
 
 /// Splits a range in two, and returns the size of the first part. `room` is as large as the range.
-/// Splits in halves near the maximum depth, `depths_left` away, and if no split is found.
+/// Splits in halves if no split is found, or near the maximum depth (`depths_left` levels away).
 std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left, Box& box) {
   return in_vectors([&](auto) RAYGATE_BODY -> std::uint32_t {
     const auto size = static_cast<std::uint32_t>(run.size());
-    Box bounds = empty_box(), middles = empty_box();  // of the primitives, and of their centres
+    Box bounds = empty_box(), middles = empty_box();  // around primitives, around their centres
     for (const Primitive& primitive : run) {
       grow(bounds, primitive.box());
       grow(middles, middle_of(primitive.box()));
@@ -182,7 +182,7 @@ std::uint32_t cut_run(std::span<Primitive> run, Primitive* room, int depths_left
   });
 }
 
-/// Splits ranges until there are none left.
+/// Splits ranges until each has one primitive.
 class SahBuilder {
  public:
   SahBuilder(BinaryBvh& tree, int max_depth)
@@ -190,8 +190,8 @@ class SahBuilder {
         max_depth_(max_depth),
         room_(std::make_unique_for_overwrite<Primitive[]>(tree.size())) {}
 
-  /// Splits large ranges level by level until there are enough for all threads, then each of the
-  /// rest on one thread, depth first.
+  /// Splits large ranges level by level until there are enough for all threads. Then each range is
+  /// split by one thread, depth first.
   void build(int threads) {
     const auto enough = static_cast<std::size_t>(kRunsOfThread) * static_cast<std::size_t>(threads);
     std::vector<Run> large = {{0, tree_.size(), 0, 0, 0}}, small;
@@ -209,7 +209,7 @@ class SahBuilder {
   }
 
  private:
-  /// Splits a range in two. One with a single primitive has no parts.
+  /// Splits a range in two, or makes it a leaf, without `parts`, if it has a single primitive.
   void split(const Run& run, Run* parts) {
     if (run.size() == 1) {
       tree_.nodes[run.parent].child[run.side] = tree_.size() + run.begin;

@@ -1,5 +1,5 @@
-// SAH builder: splits primitives into a binary tree by the surface area heuristic; boxes in
-// registers.
+// SAH builder: splits primitives into a binary tree by the surface area heuristic, with boxes in
+// vector registers.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ RAYGATE_INLINE float unit_of(const Box& box) {
 /// Returns half the surface area of a box that is not empty, with all lengths multiplied by `unit`.
 RAYGATE_INLINE float half_area(const Box& box, float unit) {
   const FloatLanes sizes =
-      unit * (box + __builtin_shufflevector(box, box, 4, 5, 6, 7, 0, 1, 2, 3));  // negative
+      unit * (box + __builtin_shufflevector(box, box, 4, 5, 6, 7, 0, 1, 2, 3));  // negated sizes
   return sizes[0] * sizes[1] + sizes[1] * sizes[2] + sizes[2] * sizes[0];
 }
 
@@ -44,14 +44,14 @@ RAYGATE_INLINE Box box_around(const glm::vec3& a, const glm::vec3& b, const glm:
   grow(box, corners[1]);
   grow(box, corners[2]);
   // The next float below: smaller bits for a positive float, larger bits for a negative one, and
-  // the smallest negative number for both zeros.
+  // the negative number of least magnitude for both zeros.
   const IntLanes bits = reinterpret_cast<IntLanes>(box);
   const IntLanes zero = (bits & 0x7FFFFFFF) == 0;
   const IntLanes below = bits + ((bits > 0) | 1);  // -1 where positive: no lane overflows
   return reinterpret_cast<Box>(zero ? IntLanes{} + static_cast<std::int32_t>(0x80000001u) : below);
 }
 
-/// A primitive of a BinaryBvh: its box, and a number of the user's.
+/// A primitive of a BinaryBvh: its box and a number that the caller assigns.
 struct Primitive {
   float low[3];
   std::uint32_t number;

@@ -88,8 +88,8 @@ struct PacketBounds {
 };
 
 /// Sets the origins of a ray's entries and exits so that rounding the ray to binary32 culls no box.
-/// A rounded direction adds a relative error of 2.1 u to entries and exits. The growth of
-/// cutoff_beyond exceeds it for entries; exits grow once more.
+/// A rounded direction adds a relative error of 2.1 u to entries and exits. For entries, the growth
+/// in cutoff_beyond covers this error; for exits, `inverse_far` grows once more.
 RAYGATE_INLINE void spread(const ExactRay& ray, float (&entry)[3], float (&exit)[3],
                            float (&inverse_far)[3]) {
   const float growth = is_binary32(ray.direction) ? 1.0f : kExitGrowth;
@@ -151,7 +151,7 @@ struct PacketBounds8 {
   }
 };
 
-/// Returns one of the eight packets as bounds for intersect_children.
+/// Returns the bounds of packet `which`, for intersect_children; `like` has its origin and octant.
 RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
                                       const PacketBounds& like) {
   PacketBounds bounds = like;
@@ -163,7 +163,7 @@ RAYGATE_INLINE PacketBounds bounds_of(const PacketBounds8& bounds8, int which,
 }
 
 /// Returns a mask of the packets that meet a box before their cutoffs; sets their entry distances.
-/// `near` and `far` are the planes of the box that their octant meets first and last.
+/// `near` and `far` are the planes of the box that rays of their octant meet first and last.
 template <Vectors kCode = Vectors::kBaseline, class Origin>
 RAYGATE_INLINE LaneMask intersect_box(const PacketBounds8& bounds8, const Origin (&origin)[3],
                                       const float (&near)[3], const float (&far)[3],

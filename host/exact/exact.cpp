@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kU = 0x1p-53;  // half an ulp of 1 in double
 
-/// A value computed in double and a bound of its error; 0 only if all its terms are exactly 0, as
-/// in planes that are parallel to an axis.
+/// A value computed in double and a bound of its error. The bound is 0 only if all terms of the
+/// value are exactly 0, as in planes that are parallel to an axis.
 struct Estimate {
   double value, error;
   [[nodiscard]] bool sure() const { return std::abs(value) > error || error == 0.0; }
@@ -83,7 +83,7 @@ struct Fraction {
   }
 };
 
-/// Returns a * b with the errors of both and of the product (2 u, including that of the bound).
+/// Returns a * b. Its error includes those of a and b, and 2 u for rounding value and bound.
 Estimate product(const Estimate& a, const Estimate& b) {
   const double value = a.value * b.value;
   return {value, 1.000001 * (a.error * std::abs(b.value) + std::abs(a.value) * b.error +
@@ -105,7 +105,7 @@ int exact_order_of_planes(const ExactRay& ray, const Corners& first, const Corne
   return result->sign();
 }
 
-/// Returns the sign of D1 (I . N2) - D2 (I . N1): that of t1 - t2, times the signs of both I . N.
+/// Returns the sign of D1 (I . N2) - D2 (I . N1): the signs of t1 - t2 and both I . N, multiplied.
 int order_of_planes(const ExactRay& ray, const Corners& first, const Corners& second) {
   const Fraction t1(ray, first), t2(ray, second);
   const Estimate left = product(t1.numerator, t2.denominator);
@@ -161,7 +161,7 @@ bool is_scaled(const glm::vec3& direction) {
 }
 
 glm::vec3 scaled_direction(const glm::dvec3& direction) {
-  // Scales by a power of two, which is exact: from the bits, or in steps for extreme exponents.
+  // Scales by a power of two, exactly: by one made from bits or, for extreme exponents, by scalbn.
   constexpr std::uint64_t kExponent = 0x7FF0000000000000, kOne = 0x3FF0000000000000;
   const double size = largest(direction);
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(size) & kExponent;
@@ -188,10 +188,10 @@ int orient3d(const glm::dvec3& origin, const Corners& t) {
   return is_corner ? 0 : exact_plane(origin, t).sign();
 }
 
-// If A, B, C are independent, the tilted I is a combination of them with three non-zero weights,
-// which have the signs of I . (B x C) and so on over det(A, B, C). It points into the triangle if
-// all three are positive. So all edges must have the sign of the plane, and then t = det / (I . N)
-// > 0, as I . N is the sum of the three.
+// If A, B, C are independent, the tilted I is a combination of them with three non-zero weights:
+// I . (B x C) / det(A, B, C), and so on cyclically. I points into the triangle if all three are
+// positive. So all edges must have the sign of the plane, and then t = det / (I . N) > 0, as I . N
+// is the sum of the three products.
 bool hits_triangle(const ExactRay& ray, const Corners& t) {
   if (!is_usable(ray.direction)) return false;
   const int side = orient3d(ray.origin, t);
@@ -210,8 +210,8 @@ bool is_ahead(const ExactRay& ray, const Corners& t) {
   return orient3d(ray.origin, t) * direction_side(ray.direction, t) > 0;
 }
 
-// If doubles cancel too much, D and I . N are computed exactly up to their last rounding to double
-// (an error of at most an ulp), as is the quotient.
+// If doubles cancel too much, D and I . N are computed exactly and then rounded to double, with an
+// error of at most an ulp each.
 Interval hit_distance(const ExactRay& ray, const Corners& triangle) {
   const auto& [n, d] = Fraction(ray, triangle);
   if (n.error <= 0x1p-37 * std::abs(n.value) && d.error <= 0x1p-37 * std::abs(d.value)) {
@@ -226,8 +226,8 @@ Interval hit_distance(const ExactRay& ray, const Corners& triangle) {
 }
 
 // The weights are I . (B x C), I . (C x A) and I . (A x B) over their sum S. If each has an error
-// of at most e = 2^-37 |S|, S has one of 3 e, and a quotient 4 * 2^-37. Clamping to [0, 1] only
-// reduces the error.
+// of at most e = 2^-37 |S|, that of S is 3 e, and that of a quotient 4 * 2^-37. Clamping to [0, 1]
+// only reduces the error.
 Barycentric barycentric(const ExactRay& ray, const Corners& triangle) {
   double weights[3], sum = 0.0, error = 0.0;
   const auto corner = [&](int k) -> const glm::dvec3& { return triangle[std::size_t(k) % 3]; };

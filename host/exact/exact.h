@@ -16,7 +16,7 @@ namespace raygate {
 
 /// The vertices of a triangle, in its order. Coordinates are multiples of 2^-149, as floats are.
 using Corners = std::array<glm::dvec3, 3>;
-/// The same in binary32.
+/// Corners in binary32.
 using FloatCorners = std::array<glm::vec3, 3>;
 [[nodiscard]] inline Corners widened(const FloatCorners& t) {
   return {glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
@@ -60,7 +60,7 @@ inline constexpr double kMostCoordinate = 0x1p126;
 [[nodiscard]] inline std::int32_t rest_of(double x, float nearest) {
   return static_cast<std::int32_t>((x - double{nearest}) / unit_of_rest(nearest));
 }
-/// Returns the x of rest_of().
+/// Returns the x whose nearest float is `nearest` and whose rest_of() is `rest`.
 [[nodiscard]] inline double with_rest(float nearest, std::int32_t rest) {
   return double{nearest} + rest * unit_of_rest(nearest);
 }
@@ -97,7 +97,7 @@ template <class T>
 /// require. Scaling by a power of two changes neither rounding nor hits.
 [[nodiscard]] bool is_scaled(const glm::vec3& direction);
 
-/// Returns `direction`, not 0 and finite, scaled and rounded to float.
+/// Returns `direction`, which is finite and not 0, scaled (see is_scaled) and rounded to float.
 [[nodiscard]] glm::vec3 scaled_direction(const glm::dvec3& direction);
 
 /// A ray origin + t direction. The range t > 0 is open: surfaces that contain the origin, or are
@@ -143,22 +143,22 @@ struct ExactRay {
 
 /// Returns whether the ray, tilted as above, hits the triangle. Neighbours in a closed mesh agree
 /// about their shared edge because both use the same tilted ray: exactly one triangle of a fan is
-/// hit. A triangle whose plane contains the origin, or that is behind it, is never hit.
+/// hit. A triangle behind the origin, or whose plane contains the origin, is never hit.
 [[nodiscard]] bool hits_triangle(const ExactRay& ray, const Corners& triangle);
 
 /// Returns whether the ray's line meets the triangle's plane in front of the origin, at t > 0.
 [[nodiscard]] bool is_ahead(const ExactRay& ray, const Corners& triangle);
 
-/// Returns bounds of t for a triangle with hits_triangle(). high <= low (1 + 2^-34).
+/// Returns bounds of t for a triangle that the ray hits (hits_triangle()). high <= low (1 + 2^-34).
 [[nodiscard]] Interval hit_distance(const ExactRay& ray, const Corners& triangle);
 
 /// The position of a hit on its triangle: P = (1 - u - v) A + u B + v C. The error of u and of v is
-/// at most 2^-34; none of the three weights is negative, nor -0.
+/// at most 2^-34; none of the three weights is negative or -0.
 struct Barycentric {
   double u, v;
 };
 
-/// Returns the position for a triangle with hits_triangle().
+/// Returns the position of a hit on a triangle that the ray hits (hits_triangle()).
 [[nodiscard]] Barycentric barycentric(const ExactRay& ray, const Corners& triangle);
 
 /// Returns t and P of a hit, computed from the corners. The error of each word is at most (1 +
@@ -171,7 +171,7 @@ struct Barycentric {
 /// Returns the exact sign of t - limit. The triangle must be hit; 2^-149 <= limit < 2^128.
 [[nodiscard]] int compare_hit_to_limit(const ExactRay& ray, const Corners& triangle, double limit);
 
-/// Returns orient3d of `other` for the exact point in which the ray hits `hit`.
+/// Returns orient3d of `other` for the exact point at which the ray hits `hit`.
 [[nodiscard]] int plane_side_at_hit(const ExactRay& ray, const Corners& hit, const Corners& other);
 
 /// Returns the exact sign of I . N. A direction with the sign of orient3d(origin, triangle) goes

@@ -10,7 +10,7 @@
 namespace raygate {
 
 /// An exact real number: the sum of `size` non-zero doubles that do not overlap, of increasing
-/// magnitude; 0 has none. `Capacity` bounds the size and follows from the operations.
+/// magnitude; 0 has no parts. `Capacity` bounds the size and follows from the operations.
 ///
 /// Every operation is exact as long as no product of two components underflows or overflows in
 /// double. Here all numbers are polynomials of degree at most 6 in multiples of 2^-149, so
@@ -167,7 +167,7 @@ using ExactVector = std::array<Expansion<N>, 3>;
   return v[0] * u.x + v[1] * u.y + v[2] * u.z;
 }
 
-/// A sum of doubles without rounding: an Expansion without a bound of its size (Shewchuk's
+/// A sum of doubles without rounding: an Expansion of unbounded size (Shewchuk's
 /// GROW-EXPANSION with zero elimination). Terms and sums must not overflow.
 class ExactSum {
  public:

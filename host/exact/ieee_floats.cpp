@@ -29,7 +29,7 @@ bool keeps_subnormals() {
 
 }  // namespace
 
-// Not inline, so that compilers do not move arithmetic across these.
+// These functions are not inline, so that compilers do not move arithmetic across calls.
 #if defined(__SSE2__)
 IeeeFloats::IeeeFloats() : before_(_mm_getcsr()), rounding_(std::fegetround()) {
   if (rounding_ != FE_TONEAREST) std::fesetround(FE_TONEAREST);

@@ -1,5 +1,5 @@
-// IEEE 754 arithmetic with rounding to nearest, which exactness requires: checks, and the
-// operations of the hardware in it.
+// IEEE 754 arithmetic with rounding to nearest, which exact decisions require: checks that it is in
+// use, and the hardware's operations.
 #pragma once
 
 #include <bit>
@@ -42,8 +42,8 @@ class IeeeFloats {
 
  private:
 #if defined(__SSE2__)
-  // Only the rounding mode of x87, which affects how the C library reads numbers. Saving its other
-  // state would take a microsecond, and no arithmetic here uses it.
+  // Of the x87 state, only the rounding mode is saved, as it affects how the C library reads
+  // numbers. Saving the rest would take a microsecond, and no arithmetic here uses x87.
   unsigned before_;  // MXCSR
   int rounding_;
 #else
@@ -51,15 +51,15 @@ class IeeeFloats {
 #endif
 };
 
-/// Throws std::runtime_error, one line, if this thread's arithmetic differs: another rounding mode,
-/// subnormals flushed to zero (a side effect of other code linked with -ffast-math), or fused
+/// Throws std::runtime_error with one line if this thread's arithmetic differs: another rounding
+/// mode, subnormals flushed to zero (a side effect of other code linked with -ffast-math), or fused
 /// multiply-adds. Threads inherit the state of the thread that starts them, so one call is enough.
 void require_ieee_floats();
 
 /// The operations of the hardware's float cores, bit for bit. Requires the machine's default
 /// floating-point environment (subnormals kept) and no fused multiply-adds.
 struct Binary32 {
-  /// Returns the number or vector, as all its bits fit the format.
+  /// Returns a number or vector unchanged, since this format holds every float.
   template <class T>
   static T read(const T& x) {
     return x;

@@ -16,8 +16,8 @@ namespace raygate {
 ///
 /// Symbolic links are followed, also to missing targets; the permissions of an old file are kept.
 /// Other hard links of the old file keep its contents. Bytes for a device, a pipe or standard
-/// output (/dev/stdout) are written at once; a pipe without a reader is an error. All errors are
-/// InputError, "path: cannot write: reason".
+/// output (/dev/stdout) are written immediately; a pipe without a reader is an error. All errors
+/// are InputError, "path: cannot write: reason".
 class AtomicFile {
  public:
   /// Starts an empty file for `path`.
@@ -33,7 +33,7 @@ class AtomicFile {
   void finish();
   /// Finishes the file, renames it to the target and syncs the folder. At most once.
   void commit();
-  /// Returns the temporary name, for code that writes the file itself.
+  /// Returns the temporary name, or a stream's own name, for code that writes the file itself.
   [[nodiscard]] const std::filesystem::path& unnamed() const {
     return is_stream() ? name_ : temporary_;
   }
@@ -48,7 +48,7 @@ class AtomicFile {
   std::filesystem::path name_;         ///< as the user wrote it, for messages
   std::filesystem::path target_;       ///< symbolic links resolved
   std::filesystem::path temporary_;    ///< empty: none
-  std::optional<mode_t> permissions_;  ///< of the old file
+  std::optional<mode_t> permissions_;  ///< permissions of the old file
   int descriptor_ = -1;                ///< -1: closed
 };
 
@@ -60,8 +60,8 @@ void require_distinct(std::span<const std::filesystem::path> outputs,
 /// Returns whether `file` is standard output.
 [[nodiscard]] bool is_standard_output(const std::filesystem::path& file);
 
-/// Throws the InputError that an AtomicFile for `path` would throw now, before hours of work whose
-/// result goes there. Changes nothing.
+/// Throws the InputError that an AtomicFile for `path` would throw now. To be called before a long
+/// computation of the file's contents. Changes nothing.
 void require_writable(const std::filesystem::path& path);
 
 }  // namespace raygate

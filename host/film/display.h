@@ -38,27 +38,27 @@ struct DisplayOptions {
 [[nodiscard]] float tone_map(float light, Tone tone);
 
 /// Returns the luminance after `exposure` stops in steps of an 8-bit sRGB display: 255 is white.
-/// The curve continues above white, which another exposure can show. Unit of pixel errors.
+/// Not clamped, as another exposure can show values above white. Pixel errors are in these steps.
 [[nodiscard]] float display_steps(const glm::vec3& light, double exposure);
 
-/// Returns the film over black. Each code is the nearest to the exact value.
+/// Returns sRGB codes of the film over black. Each code is the nearest to the exact value.
 [[nodiscard]] Image8 to_display(const Film& film, const DisplayOptions& options = {});
 
 /// Returns a PNG file, 24-bit sRGB, with the offset of a crop in the oFFs chunk and texts in tEXt
 /// chunks. Equal pictures give equal bytes. Throws std::runtime_error if libpng fails.
 [[nodiscard]] std::string encode_png(const Image8& picture);
 
-/// Returns the colour at `fraction`, clamped to [0, 1], of viridis, by S. van der Walt and N. Smith
-/// for matplotlib (CC0), which is perceptually uniform, interpolated from 17 of its 256 colours.
+/// Returns the colour at `fraction`, clamped to [0, 1], of viridis, the perceptually uniform map by
+/// S. van der Walt and N. Smith for matplotlib (CC0). Interpolates 17 of its 256 colours.
 [[nodiscard]] Rgb8 viridis(double fraction);
 
 /// Returns a colour for an id; neighbouring ids have very different colours.
 [[nodiscard]] Rgb8 label_color(std::uint32_t label);
 
-/// Returns a channel of the film in viridis colours of the range of its finite values, where ranges
-/// of counts (tests, doubts, samples) and errors start at 0. Values that are not finite are black.
+/// Returns a channel of the film in viridis colours over the range of its finite values. Ranges of
+/// counts (tests, doubts, samples) and errors start at 0. Values that are not finite are black.
 /// Channels id and objectId have label colours, and misses are black. The picture's text "Scale" is
-/// a legend: "tests: 0 (dark violet) to 132 (yellow)". Throws InputError for a film without it.
+/// a legend: "tests: 0 (dark violet) to 132 (yellow)". Throws InputError if the channel is missing.
 [[nodiscard]] Image8 false_color(const Film& film, const std::string& channel);
 
 }  // namespace raygate

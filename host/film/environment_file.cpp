@@ -31,7 +31,7 @@ class Reader {
     if (std::int64_t{picture.width} * picture.height > kMaxPixels) {
       fail("more than " + std::to_string(kMaxPixels) + " pixels");
     }
-    // With the longest runs, a pixel takes 1/16 byte.
+    // With the longest runs, a pixel takes 1/16 byte; a file this short cannot be complete.
     if (rest_.size() < static_cast<std::size_t>(picture.height)) fail("it ends too early");
     std::vector<Rgbe> row(static_cast<std::size_t>(picture.width));
     for (int y = 0; y < picture.height; ++y) {
@@ -134,7 +134,7 @@ EnvironmentMap read_hdr(const std::filesystem::path& file) {
 
 void load_environment(const EnvironmentSetting& setting, const glm::dvec3& up, Scene& scene) {
   std::error_code ignored;  // reading reports the error
-  // A pipe, which can be read only once, is a Radiance file.
+  // A pipe can be read only once, so it is read as a Radiance file.
   const bool has_exr =
       std::filesystem::is_regular_file(setting.file, ignored) && is_exr(setting.file);
   EnvironmentMap map = has_exr ? read_exr(setting.file) : read_hdr(setting.file);

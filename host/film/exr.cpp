@@ -72,7 +72,7 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const Pix
   for (const auto& [name, text] : metadata.attributes) {
     header.insert(name, Imf::StringAttribute(text));
   }
-  // A matrix for column vectors, stored by columns, is one for row vectors, stored by rows.
+  // A matrix for column vectors, stored by columns, equals that for row vectors, stored by rows.
   Imath::M44f matrix;
   std::memcpy(matrix.x, glm::value_ptr(metadata.world_to_camera), sizeof matrix.x);
   Imf::addWorldToCamera(header, matrix);
@@ -119,10 +119,10 @@ void require_readable(const std::filesystem::path& file) {
   if (!is_exr(file)) throw InputError(file.string() + ": not an OpenEXR file");
 }
 
-/// Throws InputError for any error in the header, such as an attribute that is longer than the file
-/// or of a wrong length for its type: only the library's C functions check before they allocate.
+/// Throws InputError for any error in the header, such as an attribute longer than the file or of a
+/// wrong length for its type. Only the library's C functions check lengths before they allocate.
 void require_header(const std::filesystem::path& path) {
-  thread_local exr_result_t problem;  // the C functions recover from some
+  thread_local exr_result_t problem;  // a function may recover from an error and report success
   problem = EXR_ERR_SUCCESS;
   exr_context_initializer_t options = EXR_DEFAULT_CONTEXT_INITIALIZER;
   options.error_handler_fn = [](exr_const_context_t, exr_result_t code, const char*) {
@@ -143,7 +143,7 @@ template <class Read>
 auto with_file(const std::filesystem::path& path, const Read& read) {
   require_readable(path);
   require_header(path);
-  // Initialises the library's threads (none) where failure is harmless.
+  // Initialises the library's pool of threads (none) here, where failure is harmless.
   (void)Imf::globalThreadCount();
   try {
     Imf::InputFile file(path.c_str(), 0);

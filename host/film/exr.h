@@ -12,14 +12,14 @@
 namespace raygate {
 
 /// Attributes of an EXR file. They describe the scene, camera and options of the picture only.
-/// Times, engine and threads belong into `render --stats`, so that equal pictures are equal files.
+/// Times, engine and threads belong in `render --stats`, so that equal pictures have equal files.
 struct ExrMetadata {
   /// Texts: "software" (name and version), "scene" (file name without folders), "seed", and the
   /// options of `render` that the picture depends on. kPartialAttribute if the render is
   /// unfinished: pixels without a sample are misses, others may have too few samples.
   std::map<std::string, std::string> attributes{};
   /// Attribute "worldToCamera", as OpenEXR defines it: +x to the right of the picture, +y up,
-  /// +z along the view. Here for column vectors; the file has it for row vectors.
+  /// +z along the view. The matrix here is for column vectors, that of the file for row vectors.
   glm::mat4 world_to_camera{1.0f};
   /// Attribute "screenWindowWidth": width of the frame in the plane at distance 1.
   float screen_window_width = 1.0f;
@@ -35,9 +35,9 @@ inline constexpr const char *kPartialAttribute = "partial",
 [[nodiscard]] std::string encode_exr(const Film& film, const ExrMetadata& metadata,
                                      int threads = 1);
 
-/// Reads the channels R, G and B of the first part of a scan-line or tiled file: the texels of the
-/// data window, as the file has them. Throws InputError if the file cannot be read, is not OpenEXR,
-/// is damaged, lacks a channel, or has more than 2^26 pixels.
+/// Reads the channels R, G and B of the first part of a scan-line or tiled file: the unchanged
+/// texels of the data window. Throws InputError if the file cannot be read, is not OpenEXR, is
+/// damaged, lacks a channel, or has more than 2^26 pixels.
 [[nodiscard]] EnvironmentMap read_exr(const std::filesystem::path& file);
 
 /// A film with its attributes, as read from a file.

@@ -32,7 +32,7 @@ class ExactAccumulator {
       significand >>= -shift;
       shift = 0;
     }
-    // The shift is at most 107 (of kMost), so the last 64 bits hold what exceeds the first 128.
+    // The shift is at most 107 (for kMost), so all bits above the lowest 128 fit the last word.
     const Wide low = Wide{significand} << shift;
     const std::uint64_t high = shift > 64 ? significand >> (128 - shift) : 0;
     if (number < 0.0) {
@@ -116,7 +116,7 @@ struct FilmSums {
   std::vector<float> shown;  ///< display steps at the last check
 };
 
-/// Returns the mean of `samples` samples, clamped to 0 where rounding leaves it negative.
+/// Returns the mean of `samples` samples, clamped to 0 if rounding makes it negative.
 template <std::size_t N>
 [[nodiscard]] glm::vec<N, float> mean_of(const std::array<ExactAccumulator, N>& sums,
                                          double samples) {
@@ -147,7 +147,7 @@ struct Film {
   std::vector<std::uint32_t> primitive;  ///< triangle index of the scene; kNoPrimitive for a miss
 
   // Optional:
-  std::vector<glm::vec3> position;    ///< of the first surface, in world axes; 0 for a miss
+  std::vector<glm::vec3> position;    ///< point of the first surface in world axes; 0 for a miss
   std::vector<glm::vec3> albedo;      ///< diffuse colour of the first surface; 0 for a miss
   std::vector<std::uint32_t> object;  ///< index into Scene::objects; kNoPrimitive for a miss
   /// Hit tests of all rays of the pixel's paths. They depend on the engine and the window.
@@ -161,7 +161,7 @@ struct Film {
   [[nodiscard]] std::size_t index_of(int x, int y) const { return window.index_of(x, y); }
 };
 
-/// An array of a film and its name in files: "N" with the parts "XYZ" has channels N.X, N.Y, N.Z.
+/// The name of a film's array in files: "N" with the parts "XYZ" has channels N.X, N.Y, N.Z.
 struct FilmField {
   std::string_view layer, parts = {};
   bool is_sum = false;  ///< written to files only if the film keeps its sums
@@ -194,20 +194,20 @@ static_assert(sizeof(FilmSums) == 5 * sizeof(std::vector<int>) &&
 [[nodiscard]] Film make_film(int width, int height, const PixelRect& window,
                              const ExtraChannels& extra);
 
-/// Adds sums of no samples; with `with_error` also the arrays for adaptive sampling.
+/// Adds arrays of sums, without samples yet; if `with_error`, also those for adaptive sampling.
 void add_sums(Film& film, bool with_error);
 
-/// A channel of a film, as picture files name it. Valid while the film's arrays are.
+/// A channel of a film, with its name in picture files. Valid while the film's arrays exist.
 struct Channel {
   enum class Type { kFloat, kUint };  ///< float or std::uint32_t
 
   std::string name;  ///< as in OpenEXR: "R", "Z", "N.X", "id"
   Type type;
-  const void* first;   ///< of the window's first pixel
+  const void* first;   ///< address of the window's first pixel
   std::size_t stride;  ///< bytes from one pixel to the next; rows follow without a gap
 };
 
-/// Returns the channels of all arrays; sums only if it keeps them, `samples` also with an error.
+/// Returns the channels of all arrays, but sums only if `keeps_sums`, `samples` also with `error`.
 [[nodiscard]] std::vector<Channel> channels_of(const Film& film);
 
 /// Returns the channel's value at array index `index`; exact.
@@ -219,7 +219,7 @@ void copy_region(const Film& from, const PixelRect& rect, Film& to);
 /// Filters around a pixel's centre; all are non-negative and separable.
 enum class ReconstructionFilter {
   kBox,             ///< 1 within the pixel: radius 0.5
-  kBlackmanHarris,  ///< four-term window of radius 1.5: sharper than Gauss, and it ends smoothly
+  kBlackmanHarris,  ///< four-term window of radius 1.5: sharper than Gauss, with smooth ends
 };
 
 /// Returns the position of a sample in pixels from the pixel's centre, for a point of the unit

@@ -37,8 +37,8 @@ void add(std::array<ExactAccumulator, N>& sums, const std::array<ExactAccumulato
 }
 void add(std::uint32_t& count, std::uint32_t more) { add_count(count, more); }
 
-/// Adds pixel `k` of `part` to pixel `i`: sums and counts; the first samples of a pixel bring all
-/// fields. Does not update the means.
+/// Adds sums and counts of pixel `k` of `part` to pixel `i`; copies all fields if these are the
+/// pixel's first samples. Does not update the means.
 void add_pixel(Film& film, std::size_t i, const Film& part, std::size_t k, bool is_first) {
   if (is_first) {
     for_each_field(
@@ -124,7 +124,7 @@ FilmFile merge(std::vector<NamedFilm> parts) {
               std::max(window.y1, w.y1)};
     all.end = std::max(all.end, samples_of(file.metadata).end);
   }
-  std::vector<int> ends(window.pixels(), all.first);  // of each pixel's samples so far
+  std::vector<int> ends(window.pixels(), all.first);  // end of each pixel's samples so far
   FilmFile whole{{}, parts.front().second.metadata};
   Film& film = whole.film;
   if (like.color.size() == ends.size()) {  // the first part has all pixels: the others add to it
@@ -152,7 +152,7 @@ FilmFile merge(std::vector<NamedFilm> parts) {
         ends[i] = samples.end;
       }
     }
-    file.film = {};  // the memory is needed no more
+    file.film = {};  // frees memory
   }
   const auto lacking = std::ranges::find_if(ends, [&](int end) { return end != all.end; });
   if (lacking != ends.end()) {

@@ -31,8 +31,8 @@ inline constexpr const char* kSceneAttribute = "sceneDigest";
 /// Sets kSamplesAttribute, or removes it if `range` is all of "spp".
 void set_samples(ExrMetadata& metadata, const SampleRange& range);
 
-/// Returns why a file is no part of an image of `width` x `height` pixels with the attributes
-/// `expected`: "spp 8, expected spp 16" or "another camera, expected that"; nullopt if it is.
+/// Returns why a file is not part of a picture of `width` x `height` pixels with the metadata
+/// `expected`: "spp 8, expected spp 16" or "another camera, expected that"; nullopt if it matches.
 [[nodiscard]] std::optional<std::string> different_picture(const FilmFile& found,
                                                            const ExrMetadata& expected, int width,
                                                            int height);
@@ -40,10 +40,10 @@ void set_samples(ExrMetadata& metadata, const SampleRange& range);
 /// The name of a file, for messages, and its film.
 using NamedFilm = std::pair<std::string, FilmFile>;
 
-/// Merges parts of a picture: ranges of samples, crops or both; the result is bit for bit that of
-/// one render, and keeps its sums if it lacks samples. The parts must give all pixels of a
-/// rectangle the same consecutive samples. Throws InputError, one line, for parts of different
-/// pictures, unfinished parts, gaps and overlaps.
+/// Merges parts of a picture: ranges of samples, crops or both. The result has the bits of a single
+/// render, and keeps its sums if samples are missing. Together, the parts must have the same
+/// consecutive samples of all pixels of a rectangle. Throws InputError, one line, for parts of
+/// different pictures, unfinished parts, gaps and overlaps.
 [[nodiscard]] FilmFile merge(std::vector<NamedFilm> parts);
 
 }  // namespace raygate

@@ -15,8 +15,8 @@
 
 namespace raygate {
 
-/// Thrown where two implementations differ. The text is one line with the inputs in hexadecimal,
-/// ready to replay, and both results.
+/// An exception for results that differ between two implementations. The text is one line with the
+/// inputs in hexadecimal, ready to replay, and both results.
 class EngineMismatch : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -35,8 +35,8 @@ class EngineMismatch : public std::runtime_error {
 
 /// Passes all queries to both intersectors, returns the results and counters of the first, and
 /// throws EngineMismatch at the first ray for which they differ: in the triangle, in any bit of P
-/// or its error, or by disjoint intervals of t. For a ray that may end at any hit, both must find
-/// one.
+/// or its error, or by disjoint intervals of t. With any_hit_before, the triangles may differ if
+/// both hits are nearer than that.
 class CheckIntersector : public Intersector {
  public:
   CheckIntersector(const Bvh& bvh, std::unique_ptr<Intersector> intersector,
@@ -54,7 +54,7 @@ class CheckIntersector : public Intersector {
     intersector_->nearest(rays, query, hits);
     RayQuery same = query;
     same.work = {};
-    same.source_ids = {};  // do not affect results
+    same.source_ids = {};  // these do not affect results
     expected_.assign(rays.size(), {});
     reference_->nearest(rays, same, expected_);
     for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -37,8 +37,8 @@ struct HitCounters {
   // The fields below are 0 without a unit.
   std::uint64_t unit_tests = 0;     ///< tests done by the unit
   std::uint64_t clocks = 0;         ///< simulated clock cycles
-  std::uint64_t idle_clocks = 0;    ///< clocks of the pipelined unit's lanes without a test
-  std::uint64_t output_stalls = 0;  ///< clocks of the lanes stalled by the consumer
+  std::uint64_t idle_clocks = 0;    ///< clocks without a test, summed over the pipeline's lanes
+  std::uint64_t output_stalls = 0;  ///< clocks stalled by the consumer, summed likewise
   std::uint64_t exact_clocks = 0;   ///< busy clocks of the exact units of ray cores
 
   HitCounters& operator+=(const HitCounters& other) {
@@ -67,12 +67,12 @@ struct IntersectCounters {
   }
 };
 
-/// The nearest hit of a ray; without one, only `primitive` is valid.
+/// The nearest hit of a ray. If the ray hits nothing, only `primitive` is valid.
 struct NearestHit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   std::uint32_t primitive = kNone;  ///< primitive index; kNone: a miss
-  glm::vec3 point{0.0f};  ///< P = d I / (I . N), relative to the ray's origin, in the unit's bits
+  glm::vec3 point{0.0f};  ///< P = d I / (I . N), relative to the ray's origin, with the unit's bits
   /// Relative error bound of each coordinate of P, in addition to 2^-46 of the largest coordinate
   /// for underflow; +infinity if the unit has no usable P. Every intersector gives the same bits.
   float point_error = std::numeric_limits<float>::infinity();
@@ -90,17 +90,17 @@ struct RayWork {
   }
 };
 
-/// Options of a search for many rays. Spans must outlive it, and are empty or have one element per
-/// ray.
+/// Options of a search for many rays. Spans must outlive the search, and are empty or have one
+/// element per ray.
 struct RayQuery {
-  /// All rays start at one point (the camera, a light). Some engines are faster then. Does not
-  /// change results.
+  /// Whether all rays start at one point (the camera, a light), which makes some engines faster.
+  /// Does not change results.
   bool common_origin = false;
   /// Positive. Only hits with exact t < t_max[i] count; +infinity: no limit.
   std::span<const float> t_max{};
-  /// The rays in binary64, of which `rays` are the nearest ones in binary32; empty: `rays` are
-  /// exact. Only CpuIntersector accepts them, and not of a common origin. NearestHit::point is that
-  /// of the rounded ray.
+  /// The rays in binary64, which `rays` round to binary32; empty: `rays` are exact. Only
+  /// CpuIntersector accepts them, and then makes no use of a common origin. NearestHit::point
+  /// belongs to the rounded ray.
   std::span<const ExactRay> exact_rays{};
   /// The primitive that the ray leaves and surely does not hit, or NearestHit::kNone. Does not
   /// change results, but saves the test that is hardest to decide.
@@ -109,9 +109,9 @@ struct RayQuery {
   std::span<RayWork> work{};
   /// A primitive whose hits are ignored, or NearestHit::kNone.
   std::span<const std::uint32_t> skip_ids{};
-  /// A ray ends at the first hit found with t < any_hit_before[i], and reports it as its nearest.
+  /// A ray ends at the first hit found with t < any_hit_before[i], which becomes its nearest hit.
   std::span<const float> any_hit_before{};
-  bool with_points = true;  ///< NearestHit::point is computed
+  bool with_points = true;  ///< whether to compute NearestHit::point
 
   /// Returns t_max[i], or +infinity if t_max is empty.
   [[nodiscard]] float t_max_of(std::size_t i) const {
@@ -121,10 +121,10 @@ struct RayQuery {
 
 /// Properties of an engine, for callers that prepare its queries.
 struct EngineTraits {
-  /// Best number of rays per query: about 16,384 for each test done at the same time.
+  /// Best number of rays per query: about 16,384 for each test done in parallel.
   std::size_t batch = std::size_t{1} << 14;
   bool takes_exact_rays = false;  ///< RayQuery::exact_rays
-  bool wants_sources = false;     ///< benefits from RayQuery::source_ids that need exact arithmetic
+  bool wants_sources = false;     ///< faster with source_ids, though these need exact arithmetic
 };
 
 /// Finds nearest hits with exact decisions: results depend only on ray and scene, not on the
@@ -161,13 +161,13 @@ using IntersectorFactory = std::function<std::unique_ptr<Intersector>()>;
 [[nodiscard]] bool is_before(const Bvh& bvh, const ExactRay& ray, const NearestHit& hit,
                              double t_max);
 
-/// Returns whether hit `a` is nearer than `b`, exactly; for equal t, by the lower triangle index.
+/// Returns, exactly, whether `a` is nearer than `b` or, at equal t, has the lower triangle index.
 [[nodiscard]] bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a,
                              const NearestHit& b);
 
-/// Replaces `best` by `hit` if that is a hit with t < t_max and nearer; returns whether it did. The
-/// order of calls does not matter. If not `is_sure`, the triangle may be missed, and hit.t is not
-/// read. Counts the use of exact arithmetic.
+/// Replaces `best` by `hit` if `hit` is nearer and has t < t_max. Returns whether it replaced it.
+/// The order of calls does not matter. If not `is_sure`, `hit` may be a miss, which is decided
+/// exactly, and hit.t is not read. Counts the use of exact arithmetic.
 bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHit hit, bool is_sure,
                      NearestHit& best, IntersectCounters& counters);
 

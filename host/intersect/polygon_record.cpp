@@ -52,8 +52,8 @@ float edge_bound(const glm::vec3& edge) {
   return float_above(kEdgeBound * 0x1p-24 * (e.x + e.y + e.z));
 }
 
-/// Sets the plane of a record. Returns whether d is 0 or in the range of normal floats; otherwise
-/// only its sign is right.
+/// Sets the plane of a record. Returns whether d is 0 or in the range of normal floats; if not,
+/// only the sign of d is right.
 bool set_plane(const glm::dvec3& origin, const Corners& t, PolygonRecord& record) {
   glm::dvec3 normal = triangle_normal(t);
   double d = plane_distance(origin, t);
@@ -71,9 +71,9 @@ bool set_plane(const glm::dvec3& origin, const Corners& t, PolygonRecord& record
   return false;
 }
 
-// Operations and their order are those of exact.cpp and of the functions above, so all bits are
-// equal, as long as double is accurate enough and all exponents are ordinary. make_record computes
-// the others.
+// The functions below do the operations of exact.cpp and of the functions above, in the same order.
+// So all bits are equal if double is accurate enough and all exponents are ordinary; other records
+// are left to make_record.
 
 constexpr double kU = 0x1p-53;  // as in exact.cpp
 
@@ -84,7 +84,7 @@ RAYGATE_INLINE void require_ordinary(const DoubleQuad& size, LongQuad& good) {
   good &= ((size >= 0x1p-60) & (size < 0x1p61)) | (size == 0.0);
 }
 
-/// Computes u x v; clears `good` in lanes in which it is not accurate enough or not ordinary.
+/// Computes u x v; clears `good` in lanes whose product is not accurate enough or not ordinary.
 RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& value, Points& size,
                                    LongQuad& good) {
   value = cross(u, v, size);
@@ -93,7 +93,7 @@ RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& val
   require_ordinary(largest(s), good);
 }
 
-/// Stores four words of each of four records, from `first` on; words[i] are those of record i.
+/// Stores four words of each of four records: those of record i from words[i][first] on.
 template <std::size_t kWords>
 RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const FloatQuad& c,
                                 const FloatQuad& d, float (&words)[kQuad][kWords],
@@ -103,7 +103,7 @@ RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const Fl
   for (int i = 0; i < kQuad; ++i) std::memcpy(&words[i][first], &record[i], 16);
 }
 
-/// Returns the bound of an edge: its sum of magnitudes times a constant, rounded up.
+/// Returns the bound of an edge: a constant times the sum of its magnitudes, rounded up.
 RAYGATE_INLINE FloatQuad edge_bound(const Triple<FloatQuad>& words) {
   const Points e = absolute(wide(words));
   const DoubleQuad exact = kEdgeBound * 0x1p-24 * (e.x + e.y + e.z);
@@ -122,8 +122,8 @@ RAYGATE_INLINE void load_corners(const PlaneViews& views, Points (&t)[3]) {
   }
 }
 
-/// Computes N and d from the corners and the first corner relative to the origin; clears `good` in
-/// lanes in which they are not accurate.
+/// Computes N and d from the corners and the first corner relative to the origin. Clears `good` in
+/// lanes in which N or d is not accurate.
 RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& normal,
                                 DoubleQuad& d, LongQuad& good) {
   Points size;
@@ -135,7 +135,7 @@ RAYGATE_INLINE void find_planes(const Points (&t)[3], const Points& a, Points& n
   require_ordinary(distance, good);
 }
 
-/// Computes the 16 words of four records. Bit i of the result is set if record i is valid.
+/// Computes the 16 words of four records. Returns a mask: bit i is set if record i is valid.
 LaneMask make_four(const glm::vec3& origin, const PlaneViews& views, float (&words)[kQuad][16]) {
   return in_vectors([&](auto) RAYGATE_BODY {
     Points t[3];
@@ -183,7 +183,7 @@ PolygonRecord make_record(const glm::dvec3& origin, const Corners& t) {
     record.edges[k] = edge_words(origin, t[k], t[(k + 1) % 3]);
     record.bounds[k] = edge_bound(record.edges[k]);
   }
-  // Exact arithmetic then decides.
+  // Exact arithmetic decides if d is out of range.
   if (!is_in_range) record.bounds.fill(std::numeric_limits<float>::infinity());
   return record;
 }

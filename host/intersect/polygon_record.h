@@ -24,7 +24,7 @@ namespace raygate {
 /// edge is then always in doubt.
 struct alignas(64) PolygonRecord {
   glm::vec3 normal{0.0f};            ///< words 0-2: N = (B-A) x (C-A), the paper's H
-  float d = 0.0f;                    ///< word 3: N . A; its sign is exact, and 0 is exactly 0
+  float d = 0.0f;                    ///< word 3: N . A; its sign (-1, 0 or 1) is exact
   std::array<glm::vec3, 3> edges{};  ///< words 4-12: A x B, B x C, C x A; for a shared edge the
                                      ///< two triangles hold exactly opposite numbers
   std::array<float, 3> bounds{};     ///< words 13-15: |float32(I . E) - exact| < bound, for every
@@ -54,7 +54,7 @@ inline constexpr double kEdgeBound = 8.0 + 0x1p-7;
 /// area, d is 0 and no ray hits it.
 [[nodiscard]] PolygonRecord make_record(const glm::dvec3& origin, const Corners& triangle);
 
-/// Returns only the plane: words 0-3 of that record; the others are 0.
+/// Returns words 0-3 (the plane) of make_record's result; the other words are 0.
 [[nodiscard]] PolygonRecord make_plane(const glm::dvec3& origin, const Corners& triangle);
 
 /// Sets records[i] to make_record(origin, triangles[i]), bit for bit. The spans have the same size.
@@ -73,17 +73,16 @@ void make_planes(const PlaneViews& views, float (&words)[4][kQuad]);
 // Derivation of the error bound of P
 //
 // Let u = 2^-24 and g be how far V's exponent is below the largest of N's, or 0. By hit_test_pkg.sv
-// the relative error of V is at most r = 48.5 u 2^g, and that of t, with 2 u of d and u of its
-// division, at most (48.5 * 2^g + 3.2) u / (1 - r). A coordinate of P has one more rounding, of d
-// I_k: (48.5 * 2^g + 4.3) u / (1 - r) of t I_k < 2^(6 + g) u = 2^(g - 18) while r <= 0.1, which
-// holds up to g = 12. A product d I_k that underflows has an error of 2^-150, which is less than
-// 2^-48 of d if d is at least 2^-102; nothing overflows if d, t < 2^104. So the error is 2^-48 t in
-// P, and 2^-150 for a coordinate that underflows, less than 2^-47 t if t is at least 2^-103. These
-// two are not small relative to a small coordinate: together they are less than 2^-46 of the
-// largest.
+// the relative error of V is at most r = 48.5 u 2^g. With 2 u for d and u for the division, that of
+// t is at most (48.5 * 2^g + 3.2) u / (1 - r). With one more rounding, of d I_k, that of P_k is at
+// most (48.5 * 2^g + 4.3) u / (1 - r) < 2^(6 + g) u = 2^(g - 18) while r <= 0.1, which holds up to
+// g = 12. A product d I_k that underflows has an error of 2^-150, less than 2^-48 d if d is at
+// least 2^-102, so less than 2^-48 t in P. A P_k that underflows has an error of 2^-150, less than
+// 2^-47 t if t is at least 2^-103. Nothing overflows if d, t < 2^104. The last two errors can
+// exceed a small coordinate, but their sum is less than 2^-46 of the largest coordinate.
 
-/// Returns the grazing that the unit reports with a hit (BurstResult::t_error), from the largest
-/// exponent field of N and the bits of V (finite). `Bits` is std::int32_t or a vector of it.
+/// Returns BurstResult::t_error: how far V's exponent is below the largest of N's, or 0. `largest`
+/// is N's largest exponent field; `v`, a finite V. `Bits` is std::int32_t or a vector of it.
 template <class Bits>
 RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
   return maximum(Bits(largest - (v >> 23 & 0xFF)), Bits{});
@@ -95,7 +94,7 @@ RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
   return std::max({field(n.x), field(n.y), field(n.z)});
 }
 
-/// Returns the bits of NearestHit::point_error from those of d and V: 2^(grazing - 18), or
+/// Returns the bits of NearestHit::point_error from the bits of d and V: 2^(grazing - 18), or
 /// +infinity if V is not finite or too small for the unit.
 template <class Bits>
 RAYGATE_INLINE Bits point_error_of(const Bits& d, const Bits& v, const Bits& grazing) {

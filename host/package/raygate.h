@@ -26,7 +26,7 @@ class Tracer {
 
   /// A ray. Its hits are P = origin + t direction with 0 < t < limit.
   struct Ray {
-    Point origin{}, direction{};  ///< of any length; a zero direction hits nothing
+    Point origin{}, direction{};  ///< direction of any length; a zero direction hits nothing
     double limit = std::numeric_limits<double>::infinity();  ///< positive
   };
   struct Hit {
@@ -48,11 +48,10 @@ class Tracer {
   // All queries throw std::invalid_argument, "ray 3: found ..., expected ...", for a ray that is
   // not finite, starts farther away than 2^126, or has a limit that is not positive.
   //
-  // Rays are traced with the direction scaled by a power of two, so that the largest component is
-  // in [1, 2), and the limit divided by it. All coordinates are rounded to multiples of 2^-149:
-  // those of at least 2^-97 are exact. If the triangles' coordinates are not
-  // all floats, origins are rounded to binary64 relative to a point near the middle of the
-  // triangles.
+  // Rays are traced with the direction scaled by a power of two, so that its largest component is
+  // in [1, 2), and with the limit divided by that power. All coordinates are rounded to multiples
+  // of 2^-149; those of at least 2^-97 stay exact. If the triangles' coordinates are not all
+  // floats, origins are rounded to binary64 relative to a point near the middle of the triangles.
 
   /// Sets hits[i] to the nearest hit of rays[i]. Both spans must have the same size.
   void nearest(std::span<const Ray> rays, std::span<Hit> hits) const;

@@ -100,7 +100,7 @@ def quick(name: str, text: str, folder: pathlib.Path) -> list[str]:
 
 
 def main() -> int:
-    """Runs the pages."""
+    """Runs the commands of the pages; returns the exit status."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("pages", nargs="*", default=PAGES)

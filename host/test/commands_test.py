@@ -1,4 +1,4 @@
-"""The commands of a page: which they are, and that one that fails is told."""
+"""Finds the commands of a page, and reports a command that fails."""
 
 import contextlib
 import io

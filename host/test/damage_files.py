@@ -1,8 +1,8 @@
-"""Runs ./render and ./trace on damaged files of every format, and counts what they answer.
+"""Runs ./render and ./trace on damaged files of every format, and counts their outcomes.
 
-`python3 -B host/test/damage_files.py RENDER TRACE [--count 300] [--seed 1] [--only obj,png]`: exits 1, and keeps the file, where a
-program crashes, takes over ten seconds, has another status than 0 and 2, tells an error in more than one line, or touches a
-picture that was there before a failed run. Seeds are those of `make test LONG=fuzz`, and small files made here.
+`python3 -B host/test/damage_files.py RENDER TRACE [--count 300] [--seed 1] [--only obj,png]`: exits with 1, and keeps the file, if a
+program crashes, takes over ten seconds, has a status other than 0 and 2, reports an error in more than one line, or changes an
+existing picture although the run fails. Seed files are those of `make test LONG=fuzz`, and small files made here.
 """
 
 import argparse
@@ -31,7 +31,7 @@ def png() -> bytes:
 
 
 def seeds() -> dict[str, list[tuple[str, bytes]]]:
-    """By format: names of files, and their bytes."""
+    """Returns the names and contents of seed files, by format."""
     def stored(folder: str, *names: str) -> list[tuple[str, bytes]]:
         return [(name, (HOST / folder / name).read_bytes()) for name in names]
     scenes, films, rays = "render/fuzz/seeds", "film/fuzz/seeds", "trace/fuzz/rays"
@@ -45,7 +45,7 @@ def seeds() -> dict[str, list[tuple[str, bytes]]]:
 
 
 def damaged(data: bytes, chance: random.Random) -> bytes:
-    """Up to four changes: bits, cut or repeated pieces, words and numbers, an end that is missing."""
+    """Returns `data` with up to four changes: flipped bits, cut, repeated or random pieces, inserted words, a cut end."""
     result = bytearray(data)
     for _ in range(chance.choice((1, 1, 1, 2, 4))):
         at = chance.randrange(len(result) + 1)
@@ -76,7 +76,7 @@ def command(form: str, name: str, render: str, trace: str) -> list[str]:
 
 
 def run(form: str, name: str, data: bytes, folder: pathlib.Path, programs: tuple[str, str]) -> tuple[str, str]:
-    """A word for what came of one file, and what is wrong about it."""
+    """Runs a program on one file; returns the outcome in a few words, and details of a wrong outcome, otherwise ""."""
     (folder / "a.obj").write_bytes(b"mtllib a.mtl\n" + TRIANGLE + b"usemtl m\nf 1/1 2/2 3/3\nusemtl n\nf 3/3 2/2 1/1\n")
     for other, content in (("a.mtl", MATERIAL), ("pic.png", png()), (name, data)):
         (folder / other).write_bytes(content)
@@ -90,7 +90,7 @@ def run(form: str, name: str, data: bytes, folder: pathlib.Path, programs: tuple
         return "too slow", "takes more than ten seconds"
     errors = [line for line in done.stderr.splitlines() if not line.startswith(b"warning: ")]
     if done.returncode not in (0, 2):
-        return f"status {done.returncode}", done.stderr.decode(errors="replace")[-2000:]
+        return f"status {done.returncode}", done.stderr.decode(errors="replace")[-2000:] or "printed nothing"
     if b"runtime error" in done.stderr or (done.returncode == 2 and (len(errors) != 1 or not errors[0].startswith(b"error: "))):
         return "other words", done.stderr.decode(errors="replace")[-2000:]
     if (output.read_bytes() == b"before") != (done.returncode == 2):

@@ -1,16 +1,16 @@
-"""The drawings of host/README.md and its rooms' pages against the includes of the code; and no circle among those.
+"""Compares the drawings of host/README.md and of its rooms' pages with the includes of the code, which have no circles.
 
-A drawing is a mermaid graph. Its nodes are rooms (folders of host/, or `sim`) or, with a path as
-their label, sources: `a["intersect/intersector"]`. An arrow says that one includes the other. Every arrow
-(`a --> b & c` is two) must be such an include, and where all nodes are rooms, every include must be an arrow or follow
-from several.
+A drawing is a mermaid graph. Its nodes are rooms (folders of host/, or `sim`) or, if they have a path as a label, folders
+or sources: `a["intersect/intersector"]`. An arrow (`a --> b & c` is two) says that its first node includes the second,
+which must be true. Every include between two nodes must be an arrow or follow from several. The drawing of rooms must
+have all rooms.
 """
 
 import pathlib
 import re
 import unittest
 
-# Sources that may include each other, a .h and a .cpp of one name counted as one, and why.
+# Sources that may include each other, and the reason. A .h and a .cpp of one name count as one.
 CIRCLES = {
     "sim/array_model sim/rtl_units": "the Verilated array and the unit that it is, which names the array's stalls",
 }
@@ -20,18 +20,18 @@ INCLUDE = re.compile(r'^#include "((?:host|sim)/[^"]+)"', re.MULTILINE)
 
 
 def room(path: str) -> str:
-    """host/intersect/unit/x.h -> intersect; sim/x.h -> sim."""
+    """Returns a file's room: host/intersect/unit/x.h -> intersect; sim/x.h -> sim."""
     parts = path.split("/")
     return "sim" if parts[0] == "sim" else parts[1]
 
 
 def folder(path: str) -> str:
-    """host/scene/io/x.h -> scene/io/"""
+    """Returns a file's folder: host/scene/io/x.h -> scene/io/"""
     return path.removeprefix("host/").rpartition("/")[0] + "/"
 
 
 def includes() -> dict[str, set[str]]:
-    """Each source without tests and fuzz targets, and what it includes; paths from the root."""
+    """Returns the includes of each source, without tests and fuzz targets. Paths are relative to the root."""
     sources = [path for folder in ("host", "sim") for path in (ROOT / folder).rglob("*")
                if path.suffix in (".h", ".cpp") and not {"test", "fuzz"} & set(path.parts)]
     return {str(path.relative_to(ROOT)): set(INCLUDE.findall(path.read_text()))
@@ -39,7 +39,7 @@ def includes() -> dict[str, set[str]]:
 
 
 def drawings() -> list[tuple[dict[str, str], list[tuple[str, str]]]]:
-    """Of each graph: names of nodes and the sources that they stand for, and the arrows."""
+    """Returns, for each graph, the labels of nodes that have a label, by name, and the arrows as pairs of names."""
     pages = [ROOT / "host/README.md", *sorted(ROOT.glob("host/*/README.md"))]
     text = "".join(page.read_text() for page in pages)
     graphs = []
@@ -64,14 +64,14 @@ def reachable(arrows: set[tuple[str, str]], start: str) -> set[str]:
 
 
 def circles(arrows: set[tuple[str, str]]) -> set[str]:
-    """Groups of nodes that are reached from each other, their names in order."""
+    """Returns the groups of nodes that reach each other, each as a text of sorted names."""
     arrows = {(a, b) for a, b in arrows if a != b}
     reached = {node: reachable(arrows, node) for arrow in arrows for node in arrow}
     return {" ".join(sorted(b for b in reached[a] if a in reached[b])) for a in reached if a in reached[a]}
 
 
 def stem(path: str) -> str:
-    """host/intersect/intersector.cpp -> intersect/intersector."""
+    """Returns a source's name in drawings: host/intersect/intersector.cpp -> intersect/intersector."""
     return re.sub(r"^host/|\.(h|cpp)$", "", path)
 
 
@@ -99,7 +99,7 @@ class Drawings(unittest.TestCase):
             self.assertNotIn(name, reachable(drawn, name), f"{name} is part of a circle")
 
     def test_folders(self) -> None:
-        """The second drawing: folders within rooms, by the rules of the first."""
+        """The second drawing has folders within rooms, and follows the rules of the first."""
         labels, arrows = self.graphs[1]
         self.assertTrue(arrows)
         nodes = set(labels.values())
@@ -131,12 +131,12 @@ class Drawings(unittest.TestCase):
                     self.assertIn(b, reachable(drawn, a), f"{a} includes {b}, which is not drawn")
 
     def test_no_circle_among_folders(self) -> None:
-        """Rooms and the folders in them, of host/ and sim/, through headers and sources alike."""
+        """No folders of host/ and sim/ include each other, directly or indirectly, through headers or sources."""
         self.assertEqual(circles({("a/", "b/"), ("b/", "c/"), ("c/", "a/"), ("c/", "d/")}), {"a/ b/ c/"})
         self.assertEqual(circles({(folder(a), folder(b)) for a, targets in self.includes.items() for b in targets}), set())
 
     def test_no_circle_among_sources(self) -> None:
-        """A header and its source are one; CIRCLES has those that stay, and no others."""
+        """Only the sources in CIRCLES include each other. A header and its source count as one."""
         pairs = {(stem(a), stem(b)) for a, targets in self.includes.items() for b in targets}
         self.assertEqual(circles(pairs), set(CIRCLES))
 

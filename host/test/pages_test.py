@@ -1,5 +1,5 @@
-"""The Markdown pages: links lead to files and headings that are there, and `make` targets that they name exist. And `make`
-refuses variables that it does not know, reads an empty one as none, and builds one thing at a time."""
+"""Tests the Markdown pages: links lead to existing files and headings, and `make` targets in them exist. Tests `make`: it
+refuses unknown variables, treats empty variables as not given, and runs one build at a time."""
 
 import fcntl
 import os
@@ -14,19 +14,19 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def pages() -> list[pathlib.Path]:
-    """All pages of the repository, without what was built."""
+    """Returns all pages of the repository, except those in build folders."""
     folders = [folder for folder in ROOT.iterdir() if folder.is_dir() and not folder.name.startswith((".", "build"))]
     return [*ROOT.glob("*.md"), *(page for folder in folders for page in folder.rglob("*.md"))]
 
 
 def anchors(text: str) -> set[str]:
-    """What GitHub makes of the headings."""
+    """Returns the anchors that GitHub makes of the headings."""
     heads = re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", re.sub(r"\[(.*?)\]\(.*?\)", r"\1", head).lower()).replace(" ", "-") for head in heads}
 
 
 def recipe(words: str) -> str:
-    """What `make` would run, also where another make runs this test."""
+    """Returns the commands that `make` would run. Flags of a make that runs this test have no effect."""
     return subprocess.run(["make", "--no-print-directory", "-n", "SETUP=true", *words.split()], cwd=ROOT, capture_output=True, text=True,
                           check=False, env={name: value for name, value in os.environ.items() if name != "MAKEFLAGS"}).stdout
 

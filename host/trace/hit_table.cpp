@@ -26,7 +26,7 @@ struct Row {
   std::int64_t triangle = -1;
   FaceRef stored{};
   Corners corners{};                                                    // if a column needs them
-  HitPoint place{std::numeric_limits<double>::infinity(), kNan, kNan};  // for t of the scaled ray
+  HitPoint place{std::numeric_limits<double>::infinity(), kNan, kNan};  // t of the scaled ray
 
   /// Appends a decimal number and a comma (CSV), or a little-endian 64-bit word.
   template <class T>
@@ -164,7 +164,7 @@ void HitTable::append(const RayTable& rays, const RayHit& found, std::string& by
 
 void HitTable::append(const RayTable& rays, std::span<const RayHit> hits,
                       std::string& bytes) const {
-  constexpr std::size_t kAhead = 8;  // rows between steps
+  constexpr std::size_t kAhead = 8;  // rows between steps of prefetch_rests
   for (std::size_t i = 0; i < hits.size(); ++i) {
     for (int step = 0; step < 3 && needs_corners_; ++step) {
       const std::size_t later = i + kAhead * static_cast<std::size_t>(3 - step);

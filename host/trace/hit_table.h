@@ -20,15 +20,15 @@ enum class HitColumn {
   kRay,       ///< index of the ray, from 0
   kHit,       ///< 1: a hit; 0: a miss, and the other columns are -1, inf or nan
   kTriangle,  ///< index of the triangle, from 0: the file's faces in order, cut into triangles
-  kObject,    ///< index of its `o` or `g`, from 0, in the order of the file
-  kMaterial,  ///< index of its material, from 0
+  kObject,    ///< index of the triangle's `o` or `g`, from 0, in the order of the file
+  kMaterial,  ///< index of the triangle's material, from 0
   // From kT to kSide: columns that need the corners of the triangle.
   kT,       ///< P = O + t D
   kPoint,   ///< x, y, z: P in the file's coordinates
   kUv,      ///< u, v: P = (1 - u - v) A + u B + v C; 0 <= u, 0 <= v, u + v <= 1
   kNormal,  ///< nx, ny, nz: (B - A) x (C - A) normalised; not flipped towards the ray
   kSide,    ///< exact sign of D . N: -1 for the front, 1 for the back
-  kDoubts,  ///< tests of this ray that binary32 left in doubt, resolved exactly
+  kDoubts,  ///< number of the ray's tests that binary32 left in doubt; these are resolved exactly
 };
 
 /// Hits to report for each ray.
@@ -38,7 +38,7 @@ enum class Hits {
   kAll,      ///< one row per hit, nearest first, in exact order; none for a miss
 };
 
-/// Returns the columns of these names ("ray", "t" ...), or the default ones without names.
+/// Returns the columns of these names ("ray", "t" ...), or the default ones if `names` is empty.
 /// Throws InputError "--columns: found ..., expected ..." (`dashes` replaces "--") for a name that
 /// is unknown, repeated or not available with `hits`.
 [[nodiscard]] std::vector<HitColumn> columns_of(std::span<const std::string> names, Hits hits,
@@ -47,7 +47,7 @@ enum class Hits {
 /// The position of a hit on its triangle.
 struct HitPoint {
   double t;     ///< relative error at most 2^-33
-  double u, v;  ///< as Barycentric
+  double u, v;  ///< as in Barycentric
 };
 
 /// Returns the position of the hit; the ray must hit the triangle.
@@ -76,7 +76,7 @@ class HitTable {
   /// Returns the names and NumPy types of the fields of a row: {"t", "<f8"}.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> fields() const;
 
-  /// Appends the rows for `hits`, of `rays`, to `bytes`.
+  /// Appends to `bytes` the rows for `hits`, which are hits of `rays`.
   void append(const RayTable& rays, std::span<const RayHit> hits, std::string& bytes) const;
 
  private:

@@ -34,7 +34,7 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
   if (largest(origin - scene_origin) > kMostCoordinate) {
     return "found an origin farther than 2^126 from the scene, expected a nearer one";
   }
-  // As in scaled_direction(): 2 is scaled to 1.
+  // As in scaled_direction(): a component that rounds to 2 is scaled to 1.
   const double size = largest(direction);
   int exponent = size == 0.0 ? 0 : -std::ilogb(size);
   if (static_cast<float>(std::ldexp(size, exponent)) == 2.0f) --exponent;
@@ -60,7 +60,7 @@ const char* RayTable::add(const glm::dvec3& origin, const glm::dvec3& direction,
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // of a line
+constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // maximum length of a line
 constexpr const char* kWanted = "expected OX,OY,OZ,DX,DY,DZ or OX,OY,OZ,DX,DY,DZ,LIMIT";
 constexpr std::string_view kNames[] = {"ox", "oy", "oz", "dx", "dy", "dz", "limit"};
 
@@ -83,7 +83,7 @@ RayTableReader::RayTableReader(const std::filesystem::path& file, const glm::dve
       stream_(file == "-" ? std::cin : file_),
       text_(kMostBytes) {
   if (file == "-") {
-    std::ios::sync_with_stdio(false);  // which buffers std::cin
+    std::ios::sync_with_stdio(false);  // makes std::cin buffered
   } else {
     file_.open(file, std::ios::binary);
     if (!file_.is_open()) fail_reading();

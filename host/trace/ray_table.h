@@ -18,8 +18,8 @@ namespace raygate {
 struct RayTable {
   std::uint64_t first = 0;           ///< index of the first ray
   std::vector<Ray> rays;             ///< relative to the scene's origin, scaled, in binary32
-  std::vector<ExactRay> exact_rays;  ///< the same in binary64; empty: `rays` are exact
-  std::vector<double> limits;        ///< of the scaled rays; see is_before()
+  std::vector<ExactRay> exact_rays;  ///< the same rays in binary64; empty: `rays` are exact
+  std::vector<double> limits;        ///< limits of t of the scaled rays; see is_before()
   std::vector<int> exponents;        ///< t of the given ray is 2^exponent times t of the scaled ray
   std::uint64_t rounded = 0;         ///< number of rays that were rounded
 
@@ -27,12 +27,12 @@ struct RayTable {
 
   /// Adds the ray P = origin + t direction with hits 0 < t < limit, in the file's coordinates. The
   /// direction can have any length; a zero direction hits nothing. Origins are rounded to binary64
-  /// after subtracting the scene's origin. Returns null, or, for an invalid ray, which is not
-  /// added, the message "found ..., expected ...".
+  /// after subtracting the scene's origin. Returns null. An invalid ray is not added, and the
+  /// message "found ..., expected ..." is returned.
   const char* add(const glm::dvec3& origin, const glm::dvec3& direction, double limit,
                   const glm::dvec3& scene_origin);
 
-  /// Returns a ray as exactly as it is stored.
+  /// Returns a ray in its most exact stored form.
   [[nodiscard]] ExactRay exact_ray(std::size_t i) const {
     return exact_rays.empty() ? ExactRay(rays[i]) : exact_rays[i];
   }
@@ -47,9 +47,10 @@ struct RayTable {
 };
 
 /// Reads rays block by block; a file can be larger than memory. Each line is OX,OY,OZ,DX,DY,DZ or
-/// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add), between commas, or else semicolons, or else spaces
-/// and tabs. Spaces and quotes around numbers, a byte order mark, empty lines, lines that begin
-/// with # and one header without a number are allowed, but not these names in other columns.
+/// OX,OY,OZ,DX,DY,DZ,LIMIT (see RayTable::add), separated by commas; if there are none, by
+/// semicolons, or else by spaces and tabs. Spaces and quotes around numbers, a byte order mark,
+/// empty lines, lines that begin with # and one header without a number are allowed; a header that
+/// names these columns in another order is not.
 class RayTableReader {
  public:
   /// `file` "-" is standard input. Throws InputError: "rays.csv: cannot read: ...".
@@ -76,7 +77,7 @@ class RayTableReader {
   std::vector<char> text_;  // buffer of a line
   std::size_t line_ = 0;
   bool past_header_ = false;
-  std::uint64_t number_ = 0;  // of rays that were read
+  std::uint64_t number_ = 0;  // number of rays read
 };
 
 }  // namespace raygate

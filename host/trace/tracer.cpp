@@ -12,7 +12,7 @@
 namespace raygate {
 namespace {
 
-// Bytes of rows after which a thread writes.
+// Number of bytes of rows at which a thread stops until its rows are written.
 constexpr std::size_t kManyRows = std::size_t{1} << 20;
 
 /// State of one thread: a block of rays, and its rows until they are written.
@@ -24,7 +24,7 @@ struct Desk {
   std::vector<RayWork> work;
   std::vector<RayHit> found;
   std::string rows;
-  std::uint64_t hits = 0;  ///< of these rows
+  std::uint64_t hits = 0;  ///< number of hits in `rows`
 
   void write_found(const HitTable& answers) {
     answers.append(block, found, rows);
@@ -34,7 +34,7 @@ struct Desk {
   }
 };
 
-/// Finds one row for each ray: its nearest hit, or any hit.
+/// Makes one row for each ray: its nearest hit, or any hit.
 void find_one(Desk& desk, Hits asked, const Bvh& bvh, const HitTable& answers) {
   const std::size_t count = desk.block.rays.size();
   desk.nearest.assign(count, {});
@@ -48,7 +48,7 @@ void find_one(Desk& desk, Hits asked, const Bvh& bvh, const HitTable& answers) {
   desk.next = count;
 }
 
-/// Finds a row for each hit, up to kManyRows bytes: all rows of a block may exceed memory.
+/// Makes a row for each hit, up to about kManyRows bytes, as all rows of a block may exceed memory.
 void find_all(Desk& desk, const Bvh& bvh, const HitTable& answers) {
   for (; desk.next < desk.block.rays.size() && desk.rows.size() < kManyRows; ++desk.next) {
     RayWork work;

@@ -29,7 +29,7 @@ void find_hits(const Bvh& bvh, Intersector& intersector, const RayTable& block, 
 
 /// Reads all rays and passes the rows to `write`, block by block in the order of the rays. At most
 /// `threads` blocks are in memory, with about 1 MB of rows each, plus the rows of one ray.
-/// Exceptions of `read` and `write` end it.
+/// Exceptions of `read` and `write` propagate to the caller.
 [[nodiscard]] TraceCounts trace(const ReadRays& read, Hits asked, const Bvh& bvh,
                                 const HitTable& answers, const IntersectorFactory& make_intersector,
                                 unsigned threads,

@@ -92,8 +92,8 @@ float Arithmetic::divide(float a, float b) const {
 
 float Arithmetic::dot(const glm::vec3& a, const glm::vec3& b) const {
   if (!fused) return add(add(multiply(a.x, b.x), multiply(a.y, b.y)), multiply(a.z, b.z));
-  // Products of floats are exact in double. Their sum is high + low + rest: high is within half an
-  // ulp of it, and low + rest has the sign of the difference.
+  // Products of floats are exact in double. Their sum is high + low + rest, where high is within
+  // half an ulp of the sum, and low + rest has the sign of sum - high.
   const double x = static_cast<double>(a.x) * b.x, y = static_cast<double>(a.y) * b.y,
                z = static_cast<double>(a.z) * b.z;
   const auto [sum_1, error_1] = two_sum(x, y);

@@ -15,23 +15,23 @@
 //    2^-7 u |F|_1 (see polygon_record.cpp).
 // 2. Direction. |(J - I) . E| <= 2 u (1 + u) |F|_1; nothing in float32, where J = I.
 // 3. Dot product. Three roundings for each product at most: 3 u / (1 - 3 u) |J|.|F|, at most
-//    6 u / (1 - 3 u) |F|_1. Rounded once: u |J . F| <= 2 u |F|_1.
-// 4. Where the format is narrower the record's words have been rounded to float32 before:
+//    6 u / (1 - 3 u) |F|_1. If the sum is rounded once: u |J . F| <= 2 u |F|_1.
+// 4. If the format is narrower than float32, the record's words were rounded to float32 before:
 //    2 * 2^-24 (1 + u) |F|_1.
-// 5. Subnormals. With max |F_i| >= 1 (formats of few exponents) or far away from them (float32's):
-//    six words and five operations are off by half a quantum q each, times 2 at most: 11 q.
+// 5. Subnormals. max |F_i| is at least 1 (formats of few exponents) or far above them (float32's).
+//    Six words and five operations are off by half a quantum q each, times 2 at most: 11 q.
 //
 // The error of t: hit_test_pkg has 48.5 u 2^g for V with J = I. In V's sum the first two products
-// have three roundings and the third has two: with N's rounding and J's own that is
-// (2 * 5 + 4) / 3 roundings on average, at most 2 * 2 * (5 + 5 + 4) = 56 u 2^g; with d and the
-// division 59.2 numbers, over (1 - r), r = 56 u below 2^-5 for 11 digits: under 64 = 2^TErrorUnit.
+// have three roundings and the third has two. With the roundings of N and J these are 5, 5 and 4
+// roundings, so the error of V is at most 2 * 2 * (5 + 5 + 4) = 56 u 2^g. With d and the division,
+// that of t is 59.2 / (1 - r), where r = 56 u is below 2^-5 for 11 digits: under 64 = 2^TErrorUnit.
 
 namespace raygate {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Returns the format with the host's rounding direction.
+/// Returns the format with rounding to nearest even, in which the host converts numbers.
 Arithmetic to_nearest(Arithmetic math) {
   math.rounding = Rounding::kNearestEven;
   return math;
@@ -184,7 +184,7 @@ class VariantHitTester : public PipelineHitTester {
         t * (1.0 + std::ldexp(static_cast<double>(report.hit.primitive), -52));
     report.is_sure = true;
     report.hit.t = {told_apart, told_apart};
-    report.hit.point_error = 0.0f;  // without bounds, the unit's P is used as it is
+    report.hit.point_error = 0.0f;  // without bounds, the unit's P counts as exact
     const bool same_burst = !reports.empty() && reports.back().bundle == report.bundle &&
                             reports.back().lane == report.lane;
     if (!same_burst) {
@@ -211,8 +211,8 @@ std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
 std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,
                                                std::unique_ptr<PlaneUnit> unit) {
   if (variant.math == Arithmetic{}) return std::make_unique<SerialHitTester>(std::move(unit));
-  // Scales an error in binary32 to the format: as many ulps. Errors above 1/8 become infinite, as
-  // the bound of V's error does not hold for them.
+  // Scales an error from binary32 to the format, which has the same error in ulps. Errors above 1/8
+  // become infinite, as the bound of V's error does not hold for them.
   const auto adapt = [digits = variant.math.digits, host = to_nearest(variant.math)](
                          const PolygonRecord& record, const glm::vec3& direction, NearestHit& hit) {
     hit.point_error = std::ldexp(hit.point_error, 24 - digits);

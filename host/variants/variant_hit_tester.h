@@ -15,22 +15,22 @@ using VariantBurstUnit = BasicReferenceBurstUnit<Arithmetic>;
 /// its inputs to the format first, as the host does.
 using VariantPlaneUnit = BasicReferencePlaneUnit<Arithmetic>;
 
-/// Converts a record to a variant's format: N with d, and each edge, are scaled by powers of two if
-/// the format has fewer exponents than binary32, and rounded to nearest. The bounds are 0 without
-/// `doubts`. Otherwise |unit's U - exact I . E| < bound for any float32 I with components below 2
-/// (the ray in the format is I rounded to nearest).
+/// Converts a record to a variant's format: scales N with d, and each edge, by powers of two if the
+/// format has fewer exponents than binary32, and rounds to nearest. Without `doubts`, the bounds
+/// are 0. Otherwise |unit's U - exact I . E| < bound for any float32 I with components below 2 (the
+/// unit gets I rounded to nearest in the format).
 [[nodiscard]] PolygonRecord variant_record(const Variant& variant, const PolygonRecord& record);
 
-/// Returns t as the variant's unit computes it for a record of make_record(). The host of the
-/// serial unit computes t in binary32.
+/// Returns t for a record of make_record(), as computed by the variant's unit. For the serial unit,
+/// the host computes t in binary32.
 [[nodiscard]] float variant_t(const Variant& variant, const PolygonRecord& record,
                               const glm::vec3& direction);
 
 /// Returns a tester for a pipelined variant, whose unit computes in the variant's format. Rays and
 /// records are converted to the format. P has the unit's bits.
 ///
-/// With doubts, HitTester's guarantee holds in any format of 11 digits or more. Without, decisions
-/// are those of plain arithmetic: edge values of 0 are inside, a hit has three equal signs and a
+/// With doubts, HitTester's guarantee holds in any format of 11 digits or more. Without doubts, the
+/// format's arithmetic decides: edge values of 0 are inside, a hit has three equal signs and a
 /// positive t, and the hit with the smaller t is nearer (the first of equals). Exact arithmetic is
 /// never used: t is reported as exact, and equal values of t are separated by less than an ulp.
 [[nodiscard]] std::unique_ptr<HitTester> make_variant_tester(const Variant& variant,

@@ -51,7 +51,7 @@ struct Variant {
 [[nodiscard]] const std::vector<Variant>& all_variants_of_arithmetic();
 
 /// Returns the pipelined variant of a format such as e8p15: 8 exponent bits, 15 digits; -raw at the
-/// end ignores doubts. Returns nullopt for other texts. Throws InputError for unsupported ones.
+/// end ignores doubts. Returns nullopt for other texts. Throws InputError for unsupported formats.
 [[nodiscard]] std::optional<Variant> variant_of_format(std::string_view text);
 
 }  // namespace raygate

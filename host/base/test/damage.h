@@ -1,4 +1,4 @@
-// Damage to files, at random: what the tests of all readers do to theirs.
+// Random damage to files, for the tests of all readers.
 #pragma once
 
 #include <algorithm>
@@ -11,17 +11,17 @@
 
 namespace raygate::test {
 
-/// The same seed gives the same damages.
+/// Damages files at random. The same seed gives the same damage.
 class Damage {
  public:
-  /// `splinters` are words of the format; numbers that are hard to read come of themselves.
+  /// Damage includes inserted `splinters`, words of the format, and numbers that are hard to read.
   explicit Damage(std::uint64_t seed, std::span<const char* const> splinters = {})
       : random_(seed), splinters_(std::begin(kNumbers), std::end(kNumbers)) {
     splinters_.insert(splinters_.end(), splinters.begin(), splinters.end());
   }
 
-  /// `bytes` with one to four damages; half of them in the first `front` bytes, if that is not 0:
-  /// where a header is.
+  /// Returns `bytes` with one to four damages. If `front` is not 0, about half of them are in the
+  /// first `front` bytes, such as a header.
   std::string operator()(std::string bytes, std::size_t front = 0) {
     for (std::size_t times = 1 + below(4); times > 0 && !bytes.empty(); --times) {
       const bool is_front = front > 0 && below(2) == 0;

@@ -1,4 +1,4 @@
-// Elementary functions against MPFR, over many arguments and at the ends of their ranges.
+// Compares elementary functions with MPFR, for many arguments and at the ends of their ranges.
 #include "host/base/elementary.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class Exact {
   Exact& operator=(const Exact&) = delete;
   ~Exact() { mpfr_clear(value_); }
   mpfr_ptr get() { return value_; }
-  /// x minus this.
+  /// Returns the magnitude of x minus this number, which is overwritten.
   double error_of(double x) {
     mpfr_d_sub(value_, x, value_, MPFR_RNDN);
     return std::abs(mpfr_get_d(value_, MPFR_RNDN));
@@ -37,7 +37,7 @@ class Exact {
 
 class Elementary : public testing::Test {
  protected:
-  /// Evenly spread, and crowded around `around`.
+  /// Returns numbers of [low, high], some evenly spread, some close to `around`.
   std::vector<double> numbers(double low, double high, double around) {
     std::vector<double> all = {low, high, around};
     std::uniform_real_distribution<double> uniform(low, high), exponent(-60.0, 0.0);
@@ -78,7 +78,7 @@ TEST_F(Elementary, AnglesOfPoints) {
   double worst = 0.0;
   const std::vector<double> all = numbers(-2.0, 2.0, 0.0);
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-    // Some of them near the axes, and near the diagonals.
+    // Some points are near the axes or the diagonals.
     const auto x = static_cast<float>(i % 3 == 0 ? all[i] * 1e-6 : all[i]);
     const auto y = i % 5 == 0 ? std::nextafter(x, 3.0f) : static_cast<float>(all[i + 1]);
     Exact angle(double{y}), other(double{x}), pi(0.0);
@@ -169,13 +169,13 @@ TEST(Srgb, ChangesCodeHalfwayBetweenTwo) {
   }
 }
 
-/// The formula of the standard in its usual direction, in double, over a fine grid.
+/// Compares with the standard's formula, from linear values to codes, in double on a fine grid.
 TEST(Srgb, AgreesWithTheForwardFormula) {
   for (int i = 0; i <= 100000; ++i) {
     const float linear = static_cast<float>(i) / 100000.0f;
     const double x = linear;
     const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-    // Within half a code; the two published halves of the curve meet to 1e-5 of a code only.
+    // Within half a code. The curve's two parts, as published, meet only to 1e-5 of a code.
     EXPECT_LE(std::abs(linear_to_srgb(linear) - 255 * encoded), 0.5 + 1e-4) << linear;
   }
 }

@@ -1,4 +1,4 @@
-// Numbers and quotes.
+// Parses numbers, and quotes words.
 #include "host/base/input.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(Numbers, AreWholeWords) {
 }
 
 TEST(Numbers, DoNotDependOnTheLocale) {
-  // Whichever of these is installed has a decimal comma.
+  // All of these locales have a decimal comma; one of them may be installed.
   const std::string before = std::setlocale(LC_ALL, nullptr);
   for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"}) {
     if (std::setlocale(LC_ALL, name)) break;

@@ -32,9 +32,9 @@ class TempFolder {
  public:
   static std::filesystem::path on_disk() { return std::filesystem::temp_directory_path(); }
 
-  /// A folder in memory, if the system has a place for it.
+  /// Makes a folder in memory (/dev/shm) if possible, otherwise on disk.
   TempFolder() : TempFolder(access("/dev/shm", W_OK) == 0 ? "/dev/shm" : on_disk()) {}
-  /// A folder that other users may read.
+  /// Makes a folder that other users may read.
   explicit TempFolder(const std::filesystem::path& parent) {
     std::string name = (parent / "raygate_test_XXXXXX").string();
     if (!mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);

@@ -1,4 +1,4 @@
-// Work on several threads ends early where one of them throws, or where its caller says so.
+// Work on several threads ends early if one of them throws, or if the caller's check does.
 #include "host/base/threads.h"
 
 #include <gtest/gtest.h>

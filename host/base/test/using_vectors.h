@@ -1,4 +1,4 @@
-// An instruction set for a part of a test.
+// Selects an instruction set for a part of a test.
 #pragma once
 
 #include "host/base/vectors.h"

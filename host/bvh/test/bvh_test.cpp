@@ -1,4 +1,4 @@
-// The tree holds every triangle once, in boxes that hold it, at a bounded depth; also below
+// The BVH holds every triangle once, inside all boxes above it and at a bounded depth, also below
 // instances.
 #include "host/bvh/bvh.h"
 
@@ -21,12 +21,12 @@ namespace {
 
 using test::Random;
 
-/// Walks a whole tree, what is below instances, too; fails on a corner that is not strictly inside
-/// its boxes.
+/// Walks a whole BVH, including instances. Fails if a corner is not strictly inside the boxes above
+/// it.
 struct TreeWalk {
   const Bvh& bvh;
-  std::vector<int> visits;       // of triangles
-  std::vector<int> node_visits;  // of nodes that are stored
+  std::vector<int> visits;       // number of visits, by triangle
+  std::vector<int> node_visits;  // number of visits, by stored node
   int deepest = 0;
 
   explicit TreeWalk(const Bvh& tree)
@@ -124,7 +124,7 @@ TEST(Bvh, HoldsTrianglesOfAnySize) {
   expect_sound(mixed);
 }
 
-// Points, lines, and triangles in one plane: boxes without a size of their own.
+// Points, lines, and triangles in one plane have boxes without volume.
 TEST(Bvh, HoldsTrianglesWithoutAnArea) {
   Random random;
   std::vector<Corners> flat(1, {glm::vec3(0.0f), glm::vec3(-0.0f), glm::vec3(0.0f)});
@@ -150,8 +150,8 @@ int depth_below(const BinaryBvh& tree, BinaryBvh::Ref ref) {
   return 1 + std::max(depth_below(tree, left), depth_below(tree, right));
 }
 
-/// Each triangle is a fraction of the size of the one before: the heuristic splits off one at a
-/// time.
+/// Returns four triangles of each of `sizes` sizes. Each size is half the one before, so the
+/// heuristic splits off one size at a time.
 std::vector<Corners> shrinking(int sizes, int exponent) {
   std::vector<Corners> triangles;
   for (int i = 0; i < sizes; ++i) {
@@ -174,7 +174,7 @@ TEST(Bvh, DepthIsBounded) {
   const BinaryBvh tree(primitives, Bvh::kMaxDepth, 1);
   const int depth = depth_below(tree, tree.root());
   EXPECT_LE(depth, Bvh::kMaxDepth);
-  EXPECT_GT(depth, Bvh::kMaxDepth - 4);  // it would be deeper
+  EXPECT_GT(depth, Bvh::kMaxDepth - 4);  // without the bound, it would be deeper
 }
 
 bool same_bytes(const Bvh& a, const Bvh& b) {
@@ -191,7 +191,7 @@ TEST(Bvh, WhatOneThreadThrowsEndsAll) {
   const Scene scene = test::scene_of(soup(random, 20000));
   const UsingVectors put_back(vectors_in_use());
   ASSERT_EQ(::setenv("RAYGATE_VECTORS", "foo", 1), 0);
-  detail::vectors_in_use = -1;  // as in a process that has not settled them yet
+  detail::vectors_in_use = -1;  // as in a process that has not selected them yet
   EXPECT_THROW(Bvh(scene, 2), std::runtime_error);
   ::unsetenv("RAYGATE_VECTORS");
 }
@@ -293,7 +293,7 @@ TEST(InstanceBvh, HoldsTrianglesOfAnySize) {
   }
 }
 
-// A mesh's tree alone would be as deep as any may be; and so would the one above.
+// The mesh's BVH alone would have the maximum depth, and so would the BVH above the instances.
 TEST(InstanceBvh, DepthIsBounded) {
   Scene scene = test::scene_of(shrinking(200, 100));
   (void)add_mesh(scene, test::scene_of(shrinking(200, 100)));

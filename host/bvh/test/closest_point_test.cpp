@@ -1,4 +1,4 @@
-// Closest points and box queries against a look at every triangle.
+// Compares closest points and box queries with a search of every triangle.
 #include "host/bvh/closest_point.h"
 
 #include <gtest/gtest.h>

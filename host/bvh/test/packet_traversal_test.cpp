@@ -1,4 +1,4 @@
-// No true hit is culled: traversal against every polygon, decided exactly.
+// No true hit is culled: compares the traversal with an exact test of every triangle.
 #include "host/bvh/packet_traversal.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace {
 
 using test::Random;
 
-/// Sends eight rays through the tree and checks that each visits every triangle that it hits; with
-/// `shorten`, every one up to the nearest seen so far. Returns the number of hits.
+/// Sends up to eight rays through the BVH. Expects that each visits every triangle that it hits or,
+/// if hits `shorten` rays, a nearest one. Returns the number of hits.
 int expect_nothing_culled(const Bvh& bvh, const std::vector<Ray>& rays, bool shorten) {
   int found = 0;
   LaneMask left = (1u << rays.size()) - 1;
@@ -77,8 +77,8 @@ int expect_nothing_culled(const Bvh& bvh, const std::vector<Ray>& rays, bool sho
   return found;
 }
 
-/// Rays that are hard on boxes: along axes, with tiny components, from on faces, at vertices and
-/// edges.
+/// Returns a ray that is difficult for box tests: along an axis, with tiny components, from a
+/// vertex or an edge, or aimed at one.
 Ray hard_ray(Random& random, const std::vector<Corners>& mesh, float size) {
   const Corners& t = mesh[random.below(static_cast<int>(mesh.size()))];
   const Corners& other = mesh[random.below(static_cast<int>(mesh.size()))];

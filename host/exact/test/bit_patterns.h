@@ -1,4 +1,4 @@
-// The predicates on any bits whatever, against rationals.
+// Compares the predicates with rationals for arbitrary bits.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace raygate::test {
 
-/// Origin, direction and three corners, as they come.
+/// Origin, direction and three corners, as bits of floats.
 using Patterns = std::array<std::uint32_t, 15>;
 
-/// The first predicate that is wrong about these words; "" if all agree. Coordinates that exact.h
-/// does not take (not finite, or above 2^126) are made ones that it does; directions are not.
+/// Returns the first predicate that is wrong for these words, or "". Coordinates that exact.h does
+/// not accept (not finite, or above 2^126) are replaced by others; directions are not.
 inline std::string disagreement(const Patterns& words) {
   const auto vector = [&](std::size_t i, bool coordinate) {
     glm::vec3 v;

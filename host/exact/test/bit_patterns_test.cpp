@@ -1,4 +1,4 @@
-// Every predicate on every kind of float: subnormals, zeros of both signs, NaN, infinities.
+// Tests every predicate on all kinds of floats: subnormals, zeros of both signs, NaN, infinities.
 #include "host/exact/test/bit_patterns.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace raygate {
 namespace {
 
-/// Words that have something to do with each other: copies, neighbours, few digits, any bits.
+/// Returns words, many related: copies, neighbours, equal exponents; some have few digits.
 test::Patterns patterns(std::mt19937_64& random) {
   test::Patterns words{};
   const auto below = [&](std::size_t n) { return random() % n; };
@@ -31,7 +31,7 @@ test::Patterns patterns(std::mt19937_64& random) {
         break;
       }
       case 3:
-      case 4:  // another's word, or the float next to it
+      case 4:  // an earlier word, or the float next to it
         words[i] = words[below(i + 1)] + static_cast<std::uint32_t>(below(2));
         break;
       case 5:

@@ -1,4 +1,4 @@
-// The exact predicates against rational arithmetic, and what they promise about closed meshes.
+// Compares the exact predicates with rational arithmetic, and tests their hits of closed meshes.
 #include "host/exact/exact.h"
 
 #include <gmpxx.h>
@@ -24,8 +24,8 @@ struct Case {
   Corners triangle;
 };
 
-/// Rays and triangles of every size, most of them made to be hard: aimed at vertices and edges,
-/// slivers, far away, on few bits so that exact ties are common. Half of them are in binary64.
+/// Returns a ray and a triangle of any size, mostly difficult: aimed at a vertex or an edge, a
+/// sliver, far away, or with few bits, so that exact ties are common. Half are in binary64.
 Case hard_case(Random& random) {
   const bool is_binary64 = random.below(2) == 0;
   const float size = std::ldexp(1.0f, random.below(201) - 100);
@@ -70,7 +70,7 @@ Case hard_case(Random& random) {
   return {{origin, direction}, t};
 }
 
-/// `rounded` is off by half the distance of floats around `exact` and 2^-10 of that at most.
+/// Expects an error of `rounded` of at most (1 + 2^-10) / 2 times the distance between floats.
 void expect_near_half_an_ulp(float rounded, const mpq_class& exact) {
   if (!std::isfinite(rounded)) {
     EXPECT_GT(abs(exact), 0x1.fffffep127);
@@ -126,8 +126,6 @@ TEST(Exact, RoundedWordsKeepTheirPromise) {
   }
 }
 
-// Which of two triangles is nearer, among them copies of one in another order of its vertices, and
-// others that share a vertex the ray is aimed at or differ from it by an ulp.
 void expect_barycentric(const ExactRay& ray, const Corners& t) {
   const Oracle oracle(ray, t);
   mpq_class weights[3], sum = 0;
@@ -152,7 +150,7 @@ TEST(Exact, BarycentricsKeepTheirPromise) {
     expect_barycentric(ray, t);
   }
   EXPECT_GT(hits, 1000);
-  // Far away for its size: weights in double are all rounding.
+  // The triangle is so far away for its size that weights in double consist of rounding errors.
   for (const float s : {1e-10f, 1e-16f, 1e-30f}) {
     const Corners t = {glm::vec3(-s, -s, 0), glm::vec3(2 * s, -s, -s / 2),
                        glm::vec3(-s, 3 * s, s / 4)};
@@ -162,6 +160,8 @@ TEST(Exact, BarycentricsKeepTheirPromise) {
   }
 }
 
+// The other triangle is the first one with its vertices in another order. In two thirds of the
+// cases one of its coordinates is an ulp larger, or one of its vertices is another point.
 TEST(Exact, OrdersHitsAsRationalsDo) {
   Random random;
   int compared = 0, equal = 0;
@@ -184,7 +184,7 @@ TEST(Exact, OrdersHitsAsRationalsDo) {
   EXPECT_GT(equal, 100);
 }
 
-// Where the hit lies with respect to another triangle's plane and to a limit, by rationals.
+// Compares the position of a hit with another triangle's plane and with a limit, by rationals.
 TEST(Exact, SidesAndLimitsAtAHitAgreeWithRationals) {
   Random random;
   int hits = 0, on_plane = 0;
@@ -220,7 +220,7 @@ TEST(Exact, SidesAndLimitsAtAHitAgreeWithRationals) {
   EXPECT_GT(on_plane, 100);
 }
 
-/// From a point inside a closed convex mesh, every ray hits exactly one triangle.
+/// Expects that every ray from a point inside a closed convex mesh hits exactly one triangle.
 void expect_one_hit_each(const std::vector<Corners>& mesh, const glm::vec3& inside, Random& random,
                          int rays) {
   int aimed_exactly = 0;

@@ -1,4 +1,4 @@
-// Expansions and exact sums against rational arithmetic.
+// Compares expansions with rational arithmetic, and exact sums with integers.
 #include "host/exact/expansion.h"
 
 #include <gmpxx.h>
@@ -21,7 +21,7 @@ mpq_class exact(const Expansion<N>& e) {
   return sum;
 }
 
-/// Any bits that are finite and no larger than 2^127; near another's exponent half of the time.
+/// Generates floats up to 2^127. In half of them the exponent is near that of the one before.
 class Floats {
  public:
   float operator()() {

@@ -1,4 +1,4 @@
-// The check at the start refuses what would make exact decisions wrong.
+// require_ieee_floats() refuses arithmetic that would make exact decisions wrong.
 #include "host/exact/ieee_floats.h"
 
 #include <gtest/gtest.h>

@@ -18,12 +18,12 @@
 
 namespace raygate::test {
 
-/// I . E as the unit rounds it.
+/// Returns I . E, rounded as the unit does.
 inline float float_dot(const glm::vec3& i, const glm::vec3& e) {
   return (i.x * e.x + i.y * e.y) + i.z * e.z;
 }
 
-/// A generator whose seed is on record: RAYGATE_SEED, or 1.
+/// A generator that prints its seed: RAYGATE_SEED, or 1.
 class Random {
  public:
   Random() {
@@ -60,7 +60,7 @@ inline std::vector<Corners> box(const glm::vec3& low, const glm::vec3& high) {
   return triangles;
 }
 
-/// 20 * 4^level triangles, vertices rounded once to float, so shared bit for bit.
+/// Returns a sphere of 20 * 4^level triangles. Vertices are rounded to float once, then shared.
 inline std::vector<Corners> sphere(int level, float radius = 1.0f,
                                    const glm::vec3& center = glm::vec3(0.0f)) {
   const double g = (1.0 + std::sqrt(5.0)) / 2.0;
@@ -96,7 +96,7 @@ inline std::vector<Corners> sphere(int level, float radius = 1.0f,
   return triangles;
 }
 
-/// A scene of these triangles, one material, with rests if a corner has one.
+/// Returns a scene of these triangles with one material, and with rests if any corner has a rest.
 inline Scene scene_of(const std::vector<Corners>& triangles) {
   Scene scene;
   scene.materials.emplace_back();
@@ -116,7 +116,7 @@ inline Scene scene_of(const std::vector<Corners>& triangles) {
   return scene;
 }
 
-template <std::same_as<FloatCorners> T>  // not of a braced list
+template <std::same_as<FloatCorners> T>  // rejects braced lists
 Scene scene_of(const std::vector<T>& triangles) {
   std::vector<Corners> mesh;
   mesh.reserve(triangles.size());

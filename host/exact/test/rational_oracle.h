@@ -1,4 +1,4 @@
-// What exact.h defines, in GMP's rationals.
+// The definitions of exact.h in GMP's rationals.
 #pragma once
 
 #include <gmpxx.h>
@@ -22,7 +22,7 @@ inline mpq_class dot(const Rational3& a, const Rational3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// -1, 0 or 1.
+/// Returns -1, 0 or 1.
 inline int sign_of(__int128 x) { return (x > 0) - (x < 0); }
 
 /// The definitions of exact.h, spelt out in rationals and sharing nothing with exact.cpp.

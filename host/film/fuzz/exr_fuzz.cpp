@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Calls work(), which may throw InputError.
+/// Calls work(), which may throw an InputError of one line.
 template <class Work>
 void refusable(const Work& work) {
   try {

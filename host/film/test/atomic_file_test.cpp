@@ -1,4 +1,4 @@
-// Whatever goes wrong, the file that was there stays as it was.
+// After any failure, the old file is unchanged.
 #include "host/film/atomic_file.h"
 
 #include <fcntl.h>
@@ -135,14 +135,14 @@ TEST_F(AtomicFileTest, RefusesNamesThatNoFileCanHave) {
     EXPECT_THROW(require_writable(path), InputError);
   }
   EXPECT_EQ(read("file"), "old");
-  // As long as a name can be: the temporary file must not need more.
+  // The longest possible name: the temporary file's name must not be longer.
   replace_file(folder_ / std::string(255, 'n'), "x");
   EXPECT_EQ(read(std::string(255, 'n')), "x");
 }
 
 TEST_F(AtomicFileTest, RefusesWithoutPermission) {
   replace_file(folder_ / "file", "old");
-  const bool is_root = ::geteuid() == 0;  // root may write anywhere: be somebody else
+  const bool is_root = ::geteuid() == 0;  // root may write anywhere, so be another user
   ::chmod((folder_ / "file").c_str(), 0444);
   ::chmod(folder_.c_str(), 0555);
   if (is_root) {
@@ -162,7 +162,7 @@ TEST_F(AtomicFileTest, RefusesWithoutPermission) {
   EXPECT_EQ(file_count(), 1u);
 }
 
-/// The limit on file sizes stands in for a full disk: the write stops half way.
+/// A limit on file sizes simulates a full disk: the write stops half way.
 TEST_F(AtomicFileTest, FullDiskLeavesTheOldFile) {
   replace_file(folder_ / "file", "old");
   const auto old_handler = ::signal(SIGXFSZ, SIG_IGN);
@@ -186,7 +186,7 @@ TEST_F(AtomicFileTest, DevicesAreWrittenToAsTheyAre) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-/// Opening such a pipe would wait for ever.
+/// Opening a pipe without a reader would normally block for ever.
 TEST_F(AtomicFileTest, APipeThatNobodyReadsIsRefused) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -219,7 +219,7 @@ TEST_F(AtomicFileTest, InputsAreNoOutputsUnderWhateverName) {
               (folder_ / name).string() + ": would overwrite " + (folder_ / "in.mtl").string());
   }
   require_distinct(std::vector<fs::path>{folder_ / "new"}, inputs);
-  fs::create_symlink("new", folder_ / "other");  // of a file that is not there yet
+  fs::create_symlink("new", folder_ / "other");  // to a file that does not exist yet
   const fs::path link = folder_ / "other", file = folder_ / "new";
   EXPECT_EQ(input_error_of([&] {
               require_distinct({&link, 1}, {&file, 1});

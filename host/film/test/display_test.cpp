@@ -1,4 +1,4 @@
-// 8-bit pictures: tone curves, PNG files read back with libpng, and false colours.
+// Tests 8-bit pictures: tone curves, PNG files read back with libpng, and false colours.
 #include "host/film/display.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(Display, FilmicToneIsMonotoneAndBounded) {
     EXPECT_LE(now, 1.0f);
     last = now;
   }
-  EXPECT_NEAR(tone_map(0.18f, Tone::kFilmic), 0.26689f, 1e-4f);  // the formula by hand
+  EXPECT_NEAR(tone_map(0.18f, Tone::kFilmic), 0.26689f, 1e-4f);  // computed by hand
   EXPECT_LT(tone_map(1.0f, Tone::kFilmic), 0.9f) << "room is left for brighter light";
   EXPECT_EQ(tone_map(kInfinity, Tone::kFilmic), 1.0f);
   EXPECT_EQ(tone_map(-1.0f, Tone::kFilmic), 0.0f);
@@ -61,7 +61,7 @@ struct Decoded {
   std::vector<std::uint8_t> pixels;
 };
 
-/// Reads the codes as they stand in the file.
+/// Returns the codes of the file without conversion.
 Decoded decode(const std::string& bytes) {
   Decoded decoded;
   decoded.image.version = PNG_IMAGE_VERSION;
@@ -73,7 +73,7 @@ Decoded decode(const std::string& bytes) {
   return decoded;
 }
 
-/// The data of the first chunk of that type; libpng's simple reader does not show them.
+/// Returns the data of the first chunk of this type, which libpng's simple reader does not show.
 std::string chunk(const std::string& bytes, const std::string& type) {
   for (std::size_t at = 8; at + 12 <= bytes.size();) {
     std::size_t size = 0;
@@ -84,7 +84,7 @@ std::string chunk(const std::string& bytes, const std::string& type) {
   return "(none)";
 }
 
-/// A picture whose every pixel is another one.
+/// Returns a picture in which all pixels differ.
 Image8 sample(int width, int height, PixelRect window) {
   Image8 picture{width, height, window, {}, {}};
   for (int i = 0; i < window.width() * window.height(); ++i) {

@@ -1,4 +1,4 @@
-// Environment maps: what their files hold, and files that hold none.
+// Reads environment maps from valid files, and refuses other files.
 #include "host/film/environment_file.h"
 
 #include <ImfArray.h>
@@ -50,7 +50,7 @@ TEST_F(EnvironmentFile, RunsOfComponents) {
   EXPECT_EQ(picture.texels[0], glm::vec3(8, 0.5, 0));
   EXPECT_EQ(picture.texels[2], glm::vec3(8, 1.5, 0));
   EXPECT_EQ(picture.texels[7], glm::vec3(8, 2, 0));
-  // Any part of it is refused, whatever is missing.
+  // A file is refused wherever it is cut.
   const std::string whole = kHeader + "-Y 1 +X 8\n" + row;
   for (std::size_t size = 1; size < whole.size(); ++size) {
     EXPECT_THROW((void)read_hdr(folder_.write("a.hdr", whole.substr(0, size))), InputError);

@@ -1,4 +1,4 @@
-// Sums that do not depend on their order.
+// Sums of ExactAccumulator do not depend on the order of additions.
 #include <gtest/gtest.h>
 
 #include <algorithm>

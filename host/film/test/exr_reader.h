@@ -1,5 +1,5 @@
-// OpenEXR files for tests: attributes, and channels by their types. A reader of its own, so that a
-// fault of host/film/exr.h cannot hide one of the writer.
+// Reads attributes and channels of OpenEXR files in tests. This reader does not use
+// host/film/exr.h, so that no fault there can hide a fault of the writer.
 #pragma once
 
 #include <ImathBox.h>
@@ -23,7 +23,7 @@ class ExrReader {
 
   [[nodiscard]] const Imf::Header& header() const { return file_.header(); }
 
-  /// The pixels of one channel, row-major. Reading as another type than the file's would convert.
+  /// Returns the pixels of one channel, row-major; none if it is missing or of another type.
   template <typename T>
   std::vector<T> read(const char* channel, Imf::PixelType type) {
     const Imf::Channel* found = header().channels().findChannel(channel);

@@ -1,4 +1,4 @@
-// What encode_exr writes, read back with the library.
+// Reads files of encode_exr back with the library.
 #include "host/film/exr.h"
 
 #include <ImfStandardAttributes.h>
@@ -14,7 +14,7 @@
 namespace raygate {
 namespace {
 
-/// Equal bits in every pixel: NaN, infinities and subnormals included.
+/// Expects equal bits in every pixel, including NaN, infinities and subnormals.
 template <typename Get>
 void expect_same_bits(const std::vector<float>& actual, std::size_t count, Get expected) {
   ASSERT_EQ(actual.size(), count);
@@ -92,7 +92,7 @@ TEST(Exr, CarriesSceneAndCamera) {
   EXPECT_EQ(reader.text("spp"), "4");
   ASSERT_TRUE(Imf::hasWorldToCamera(reader.header()));
   EXPECT_EQ(reader.header().screenWindowWidth(), 0.75f);
-  // A point through Imath's row-vector product lands where glm's column-vector product puts it.
+  // Imath's product with a row vector and glm's with a column vector give the same point.
   const glm::vec3 expected = glm::vec3(world_to_camera * glm::vec4(5, 6, 7, 1));
   const Imath::V3f actual = Imath::V3f(5, 6, 7) * Imf::worldToCamera(reader.header());
   EXPECT_NEAR(actual.x, expected.x, 1e-5f);

@@ -11,7 +11,7 @@
 namespace raygate {
 namespace {
 
-/// CIE 1976 lightness of sRGB codes.
+/// Returns the CIE 1976 lightness of sRGB codes.
 double lightness(const Rgb8& color) {
   const double y = 0.2126 * srgb_to_linear(color[0]) + 0.7152 * srgb_to_linear(color[1]) +
                    0.0722 * srgb_to_linear(color[2]);
@@ -21,7 +21,7 @@ double lightness(const Rgb8& color) {
 TEST(FalseColor, ViridisHasItsPublishedColors) {
   EXPECT_EQ(viridis(0.0), (Rgb8{68, 1, 84}));
   EXPECT_EQ(viridis(1.0), (Rgb8{253, 231, 37}));
-  // Entries 37, 93 and 200 of matplotlib's 256; in between the table is a chord.
+  // Entries 37, 93 and 200 of matplotlib's 256 colours, which viridis() interpolates.
   const std::pair<int, Rgb8> published[] = {
       {37, {70, 51, 127}}, {93, {45, 112, 142}}, {200, {112, 207, 87}}};
   for (const auto& [entry, color] : published) {

@@ -1,4 +1,4 @@
-// Copying a rectangle of a film.
+// Copies a rectangle of a film.
 #include "host/film/film.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Reading EXR files, good and bad.
+// Reads valid and invalid EXR files.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -47,7 +47,7 @@ TEST_F(ExrFile, BadFilesAreRefusedInOneLine) {
             "a.exr: no channel R; the file has A, B, G, N.X, N.Y, N.Z, S, Z, id");
 }
 
-/// Before memory is taken for it: fuzzing found a file of 2,634 bytes that took two gigabytes.
+/// Checked before memory is allocated: a file of 2,634 bytes from fuzzing took two gigabytes.
 TEST_F(ExrFile, HeadersAreNoLongerThanTheFile) {
   std::string bytes = encode_exr(make_sample_film(20, 10, {0, 0, 20, 10}),
                                  {.attributes = {{"scene", "cornell.obj"}}});
@@ -58,13 +58,13 @@ TEST_F(ExrFile, HeadersAreNoLongerThanTheFile) {
             "x.exr: damaged: Attribute type vs. size mismatch");
   bytes = encode_exr(make_sample_film(20, 10, {0, 0, 20, 10}), {});
   const std::size_t box = bytes.find(std::string("dataWindow\0box2i\0", 17)) + 17;
-  bytes[box] = 20;  // for 16
+  bytes[box] = 20;  // instead of 16
   bytes.insert(box + 4, 4, '\0');
   EXPECT_EQ(error_of(folder_.write("y.exr", bytes)),
             "y.exr: damaged: Attribute type vs. size mismatch");
 }
 
-/// Files cut or changed anywhere: read, or refused in one line.
+/// Files that are cut or changed anywhere are read, or refused with one line.
 TEST_F(ExrFile, DamagedFilesNeverCrash) {
   const std::string bytes = encode_exr(make_sample_film(20, 10, {0, 0, 20, 10}), {});
   std::mt19937_64 random(11);

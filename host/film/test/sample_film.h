@@ -1,4 +1,4 @@
-// A film whose every value is another one, for the tests of the encoders.
+// A film with different values in all pixels, for the tests of the encoders.
 #pragma once
 
 #include <limits>
@@ -7,8 +7,8 @@
 
 namespace raygate {
 
-/// Window [x0, x1) x [y0, y1) of a `width` x `height` frame; the first pixel is a miss. Channels on
-/// demand only with `all_channels`.
+/// Returns a film of `window` in a `width` x `height` frame, with optional channels if
+/// `all_channels`. The first pixel is a miss.
 inline Film make_sample_film(int width, int height, PixelRect window, bool all_channels = false) {
   Film film;
   film.width = width;

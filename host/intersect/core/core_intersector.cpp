@@ -29,13 +29,13 @@ void CoreIntersector::trace(std::span<const Ray> rays, const RayQuery& query,
     sent.tag = i;
     if (!query.skip_ids.empty()) sent.skip_id = image_->line_of(query.skip_ids[i]);
     if (!query.source_ids.empty()) sent.source_id = image_->line_of(query.source_ids[i]);
-    // Any hit before t_max ends the search if t_max is within any_hit_before.
+    // Any hit before t_max ends the search if t_max <= any_hit_before.
     sent.any_hit = !query.any_hit_before.empty() && query.any_hit_before[i] >= sent.t_max;
   }
   results_.clear();
   core_->trace(image_->lines(), sent_, results_);
   for (const CoreResult& result : results_) {
-    if (result.error != CoreResult::Error::kNone) {  // the core's memory is not that of a BVH
+    if (result.error != CoreResult::Error::kNone) {  // the core's memory holds no valid BVH
       throw InputError(result.error == CoreResult::Error::kMemory
                            ? "ray core's memory: no line " + std::to_string(result.line)
                            : "ray core's memory: a node is below itself, or below more than " +

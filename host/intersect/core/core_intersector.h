@@ -1,5 +1,5 @@
-// Core intersector: sends rays to a ray core, hardware that traverses the BVH, and the interface of
-// such cores. A core takes rays; it returns hits, and doubts if it is not exact.
+// Core intersector, which sends rays to a ray core (hardware that traverses the BVH), and the
+// interface of ray cores. A core returns hits and, if it is not exact, doubts.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct CoreResult {
   enum class Error : std::uint8_t {
     kNone = 0,
     kMemory = 1,     ///< a memory read returned an error
-    kCycle = 2,      ///< a node below itself, or deeper than MemoryImage::kMostDepth
+    kCycle = 2,      ///< a node is below itself, or deeper than MemoryImage::kMostDepth
     kDirection = 3,  ///< the direction is not scaled
     kAbort = 4,      ///< aborted by the user
   };
@@ -47,19 +47,19 @@ struct CoreResult {
   static constexpr std::uint32_t kNoT = 31;
 
   Kind kind = Kind::kEnd;
-  bool found = false;     ///< kEnd: whether there is a sure hit; the fields up to `point` are valid
+  bool found = false;     ///< kEnd: there is a sure hit, so `triangle` to `point` are valid
   std::uint32_t tag = 0;  ///< CoreRay::tag
-  std::uint32_t triangle = CoreRay::kNoTriangle;  ///< kEnd, kDoubt: its line in memory
+  std::uint32_t triangle = CoreRay::kNoTriangle;  ///< the triangle's line in memory
   float t = 0.0f;              ///< kEnd: fewer than 2^t_error floats from the exact t
   std::uint32_t t_error = 0;   ///< kNoT: t and P are unknown and set to 0
   glm::vec3 point{0.0f};       ///< kEnd: P in the core's own bits, relative to the origin
   std::uint32_t tests = 0;     ///< kEnd: triangles tested
   Error error = Error::kNone;  ///< kEnd: if not kNone, only `tag` and `line` are valid
-  std::uint32_t line = 0;      ///< kEnd with kMemory: the line
+  std::uint32_t line = 0;      ///< kEnd with kMemory: the line read
 };
 
-/// Statistics of a core since its construction. A test is a triangle line processed by the triangle
-/// test, a depth doubt a sure hit reported as a doubt. Clocks are 0 without simulation.
+/// Statistics of a core since its construction. A test is one triangle line that the triangle test
+/// processes; a depth doubt is a sure hit reported as a doubt. Clocks are 0 without simulation.
 struct CoreCounters : HitCounters {
   std::uint64_t rays = 0;
   std::uint64_t nodes = 0;      ///< node lines processed by the box unit
@@ -69,14 +69,14 @@ struct CoreCounters : HitCounters {
 };
 
 /// Traces rays through a memory image. The nearest hit of a ray in exact arithmetic is the sure hit
-/// of its kEnd or one of its doubts; with any_hit it can be any hit instead. After an error a ray
-/// has no valid hit. Doubts can differ between cores and, because of memory timing, between runs. A
-/// core that is_exact has no doubts.
+/// of its kEnd or one of its doubts; with any_hit, any hit may be reported instead. After an error
+/// a ray has no valid hit. Doubts can differ between cores and, because of memory timing, between
+/// runs. A core that is_exact has no doubts.
 class CoreUnit {
  public:
   virtual ~CoreUnit() = default;
 
-  /// Traces the rays and appends their results to `results`. `lines` are a MemoryImage's.
+  /// Traces the rays and appends their results to `results`. `lines` is MemoryImage::lines().
   virtual void trace(std::span<const MemoryLine> lines, std::span<const CoreRay> rays,
                      std::vector<CoreResult>& results) = 0;
 
@@ -85,12 +85,12 @@ class CoreUnit {
 };
 
 /// Resolves the core's doubts by exact arithmetic on the host, which also computes P of each
-/// nearest hit, with the same bits as in other intersectors. Throws InputError if the core reads a
-/// line that the memory does not have, or a node below itself.
+/// nearest hit, with the same bits as in other intersectors. Throws InputError if the core reports
+/// Error::kMemory (a line that does not exist) or Error::kCycle.
 class CoreIntersector : public Intersector {
  public:
-  /// `image` is the memory image of `bvh`, which must outlive this object. Intersectors of one
-  /// thread can share a core.
+  /// `bvh` must outlive this object; `image` is its memory image. Intersectors of one thread can
+  /// share a core.
   CoreIntersector(const Bvh& bvh, std::shared_ptr<const MemoryImage> image,
                   std::shared_ptr<CoreUnit> core)
       : Intersector({.wants_sources = true}),

@@ -90,7 +90,7 @@ class SerialLink : public WordLink {
  private:
   static constexpr int kPatience = 30;
   static constexpr int kQuiet = 100;            // ms without input after a break
-  static constexpr std::size_t kBuffer = 4096;  // bytes to be written
+  static constexpr std::size_t kBuffer = 4096;  // capacity of out_ in bytes
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(port_.string() + ": " + what);
@@ -140,7 +140,7 @@ void LinkedCore::load(std::span<const MemoryLine> lines) {
     send_all(*link_, {&head, 1});
     send_all(*link_, lines[number].words);
   }
-  // The memory has changed.
+  // Tells the core that its memory has changed.
   const std::uint32_t changed = 2u << 28 | static_cast<std::uint32_t>(lines.size());
   send_all(*link_, {&changed, 1});
 }
@@ -168,7 +168,7 @@ void LinkedCore::trace(std::span<const MemoryLine> lines, std::span<const CoreRa
   std::size_t sent = 0, ended = 0;
   std::vector<std::uint32_t> out;  // words of the ray being sent, in reverse
   for (;;) {
-    ended += take_results(results);  // first, as they free capacity for rays
+    ended += take_results(results);  // first, as results free capacity for rays
     if (ended == rays.size()) break;
     if (out.empty() && sent < rays.size() && sent - ended < most_) {
       const auto message = ray_message(rays[sent++]);

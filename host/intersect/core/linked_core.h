@@ -42,17 +42,17 @@ class WordLink {
   virtual bool send(std::uint32_t word) = 0;
   /// Returns the next received word, or none.
   virtual std::optional<std::uint32_t> receive() = 0;
-  /// Waits: one clock in simulation. Throws if the board is silent for too long.
+  /// Waits for the board; in simulation, one clock. Throws if the board is silent for too long.
   virtual void wait() = 0;
-  /// Sends a break, which aborts the board's message and rays, and drops input until it is quiet.
+  /// Sends a break, which aborts the board's message and rays; drops input until the link is quiet.
   virtual void restart() = 0;
   /// Returns simulated clocks since construction; 0 without simulation.
   [[nodiscard]] virtual std::uint64_t clocks() const { return 0; }
 };
 
-/// A ray core with its own memory, behind a link. Sends the memory when it has changed, then rays,
-/// at most as many as the core holds, since a link may have no back-pressure. Counts only rays,
-/// triangles, doubts and clocks.
+/// A ray core with its own memory, behind a link. Sends the memory when it has changed, then rays.
+/// At most `rays` (the core's capacity) are in flight, since a link may have no back-pressure.
+/// Counts only rays, tests, doubts and clocks.
 class LinkedCore : public CoreUnit {
  public:
   LinkedCore(std::unique_ptr<WordLink> link, std::size_t rays)
@@ -77,7 +77,7 @@ class LinkedCore : public CoreUnit {
 };
 
 /// Opens a serial port: four bytes per word, lowest first, 8N1, 2 Mbaud. Throws InputError with the
-/// port's name if it cannot be opened; the link does if the board is silent for 30 seconds.
+/// port's name if the port cannot be opened; so does wait() if the board is silent for 30 s.
 [[nodiscard]] std::unique_ptr<WordLink> open_serial_link(const std::filesystem::path& port);
 
 }  // namespace raygate

@@ -100,14 +100,14 @@ class ImageWriter {
   }
 
  private:
-  // Triangles share a leaf if their boxes are hardly smaller than its box: rays that enter one box
-  // usually enter all.
+  // Triangles share a leaf if their boxes are hardly smaller than the leaf's box: rays that enter
+  // one box usually enter all.
   static constexpr std::uint32_t kMostInLeaf = 4;
   static constexpr double kSameBox = 0.8;
 
   [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || leaf_[ref]; }
 
-  /// Returns the exact bounds of a node's triangles. The binary tree's are one float wider.
+  /// Returns the exact bounds of a node's triangles; the binary tree's boxes are one float wider.
   [[nodiscard]] Bounds bounds(Ref ref) const {
     const Box box = tree_.box(ref);
     Bounds bounds;
@@ -144,7 +144,7 @@ class ImageWriter {
   /// Sets the grid, on which the box extends from 0 to at most 255. An axis without extent has much
   /// smaller cells than the others.
   static void set_grid(const Bounds& bounds, NodeLine& node) {
-    constexpr int kFinest = 24;  // in binary orders of magnitude below the coarsest axis
+    constexpr int kFinest = 24;  // cells are at most 2^24 times smaller than on the coarsest axis
     node.origin = bounds.low;
     int coarsest = 1;
     for (int k = 0; k < 3; ++k) {

@@ -13,14 +13,14 @@
 
 namespace raygate {
 
-/// Reads and writes the fields of a packed struct in 32-bit words, lowest bits first: the last
-/// field of the struct comes first. `Words` has an operator [].
+/// Reads or writes the fields of a SystemVerilog packed struct in 32-bit words, from the lowest
+/// bits, which hold the struct's last field. `Words` has an operator [].
 template <class Words>
 class PackedFields {
  public:
   explicit PackedFields(Words& words) : words_(words) {}
 
-  /// Writes the next field of `width` bits, at most 32. The bits must be 0 before.
+  /// Writes the next field of `width` bits, at most 32. The words must be 0 before.
   void put(std::uint32_t value, unsigned width = 32) {
     const std::uint64_t two = std::uint64_t{value} << at_ % 32;
     words_[at_ / 32] |= static_cast<std::uint32_t>(two);
@@ -68,7 +68,7 @@ struct NodeLine {
     std::uint32_t kind = kAbsent;
     std::array<std::uint8_t, 3> low{}, high{};
 
-    /// Returns the number of lines in memory.
+    /// Returns the number of the child's lines in memory.
     [[nodiscard]] std::uint32_t size() const { return kind == kInner ? 1 : kind; }
   };
 
@@ -86,7 +86,7 @@ struct NodeLine {
 struct TriangleLine {
   FloatCorners corners{};
   std::uint32_t index = 0;      ///< index of this line
-  std::uint32_t rank = 0;       ///< of hits at equal t, the lowest rank is the nearest
+  std::uint32_t rank = 0;       ///< of hits at equal t, that with the lowest rank is nearest
   std::uint32_t primitive = 0;  ///< the host's primitive index, not read by the core
 
   TriangleLine() = default;
@@ -101,11 +101,11 @@ class MemoryImage {
   static constexpr std::uint32_t kRoot = 0;
   static constexpr int kMostDepth = Bvh::kMaxDepth;  ///< ray_core_pkg::MaxLevels
 
-  /// Throws std::invalid_argument for a BVH with instances, which must be flattened.
+  /// Throws std::invalid_argument for a BVH with instances or with binary64 vertices.
   explicit MemoryImage(const Bvh& bvh, int threads = 1);
 
   [[nodiscard]] std::span<const MemoryLine> lines() const { return lines_; }
-  /// Convert between a primitive of the BVH and the line of its triangle; kNoTriangle: none.
+  /// Returned by line_of and primitive_at (its inverse) if there is no such line or primitive.
   static constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
   [[nodiscard]] std::uint32_t line_of(std::uint32_t primitive) const {
     return primitive < primitive_lines_.size() ? primitive_lines_[primitive] : kNoTriangle;

@@ -17,21 +17,21 @@ constexpr std::int64_t kWhole = std::int64_t{1} << kFracBits;  // 2^E, in units
 
 int field(float x) { return Binary32::exponent_field(x); }
 
-/// Returns the significand with its integer bit, also for zeros and subnormals (below all units).
+/// Returns the significand with its integer bit, also for (negligible) zeros and subnormals.
 std::int64_t significand(float x) {
   return (std::bit_cast<std::uint32_t>(x) & 0x7FFFFF) | 0x800000;
 }
 
-/// Returns x >> amount for any amount: 0 beyond the word size, x if negative.
+/// Returns x >> amount for any amount: 0 beyond the word size, x for a negative amount.
 std::int64_t shift_right(std::int64_t x, int amount) {
   if (amount <= 0) return x;
   return amount > 63 ? 0 : x >> amount;
 }
 
-/// An axis, seen from the ray. Planes of the grid are at a +- q s / 256, in units.
+/// An axis as seen from the ray: grid plane q is at a + q s / 256, or a - q s / 256 if `back`.
 struct Axis {
   bool back;               // the ray goes towards smaller q
-  std::int64_t near, far;  // a without and with the error margin
+  std::int64_t near, far;  // a minus and plus the error margin, in units
   std::int64_t step;       // s
 };
 
@@ -185,9 +185,9 @@ std::uint32_t t_error_exponent(const SetUpRecord& set_up, std::uint32_t grazing)
 
 namespace {
 
-/// Takes a ray's sure hit. The kept one has the smallest upper bound of t, which becomes the limit.
-/// Returns the triangle that must go to the host: that of the other hit if it is not surely
-/// farther, or kNoTriangle.
+/// Compares a sure hit with the nearest one. Keeps the hit with the smaller upper bound of t, which
+/// becomes the limit. Returns the other hit's triangle, which the host must test, or kNoTriangle if
+/// that hit is surely farther.
 std::uint32_t take(const CoreResult& hit, CoreResult& nearest, float& limit) {
   constexpr std::uint32_t kInfinity = 0x7F800000;
   const auto word = [](float x) { return std::bit_cast<std::uint32_t>(x); };
@@ -213,7 +213,7 @@ struct RayTrace {
   std::vector<CoreResult>& results;
 
   CoreResult result{.tag = ray.tag};
-  float limit = ray.t_max;  // hits at or beyond it are irrelevant
+  float limit = ray.t_max;  // hits at or beyond this distance are irrelevant
   bool ended = false;
   std::uint32_t candidate = CoreRay::kNoTriangle;  // the nearest hit among the doubts, if exact
 
@@ -228,10 +228,10 @@ struct RayTrace {
     results.push_back(result);
   }
 
-  /// Children of a node to visit: leaves at once, inner nodes one by one.
+  /// The inner nodes still to visit among the children of a node.
   struct OpenGroup {
     BoxGroup group;
-    std::vector<BoxGroup::Entry> entries;  // the next one last
+    std::vector<BoxGroup::Entry> entries;  // in reverse: the last is visited first
   };
 
   void fail(CoreResult::Error error) {
@@ -248,7 +248,7 @@ struct RayTrace {
   void traverse() {
     std::vector<OpenGroup> stack;
     std::size_t entered = 0;
-    bool shared = false;  // has groups on the shared stack, see traversal.sv
+    bool shared = false;  // whether the ray has groups on the shared stack, see traversal.sv
     for (std::uint32_t line = MemoryImage::kRoot; is_read(line);) {
       ++counters.nodes;
       ++entered;
@@ -290,8 +290,8 @@ struct RayTrace {
     return inside;
   }
 
-  /// Tests a triangle. If it `settles` the ray, exact arithmetic has found it to be the nearest
-  /// hit.
+  /// Tests a triangle. `settles`: exact arithmetic has found that it is the ray's nearest hit, so
+  /// the result is replaced.
   void test(const TriangleLine& triangle, bool settles) {
     const ReferenceBurstUnit unit;
     const glm::vec3& direction = ray.ray.direction;
@@ -346,8 +346,8 @@ struct RayTrace {
     return widened(TriangleLine(lines[line]).corners);
   }
 
-  /// Returns whether one of two triangles that are hit is nearer or, at equal t, has the lower
-  /// rank.
+  /// Returns whether the ray hits `line` before `other` or, at equal t, `line` has the lower rank.
+  /// Both must be hit.
   [[nodiscard]] bool is_nearer(std::uint32_t line, std::uint32_t other) const {
     const int order = compare_hits(ray.ray, corners_of(line), corners_of(other));
     return order < 0 ||

@@ -14,7 +14,7 @@ namespace raygate {
 struct BoxRay {
   glm::vec3 origin{0.0f};
   glm::vec3 inverse{0.0f};  ///< 1 / I_k, rounded to nearest; infinite if I_k is 0
-  float t_max = 0.0f;       ///< positive or +infinity: hits beyond it do not count
+  float t_max = 0.0f;       ///< positive, or +infinity; hits beyond t_max do not count
 };
 
 /// The children that a ray enters, nearest first (a group in hw/ray_core/ray_core_pkg.sv).
@@ -36,7 +36,7 @@ struct BoxGroup {
 
 [[nodiscard]] BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray);
 
-/// Returns whether the entry is surely beyond `limit`, at least 0; +infinity: no limit.
+/// Returns whether the entry is surely beyond `limit`, which is at least 0; +infinity: no limit.
 [[nodiscard]] bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit);
 
 /// A record computed in binary32, with larger bounds than make_record's. d is NaN if its
@@ -44,7 +44,7 @@ struct BoxGroup {
 struct SetUpRecord {
   PolygonRecord record;
   std::uint32_t normal_error = 0;    ///< number of bits that cancelled in N, unless d is NaN
-  std::uint32_t distance_error = 0;  ///< likewise in d
+  std::uint32_t distance_error = 0;  ///< number of bits that cancelled in d, likewise
 };
 
 /// Returns the record of triangle_test, bit for bit, for any floats including NaN and infinities.
@@ -57,8 +57,8 @@ struct SetUpRecord {
 /// (set_up_pkg::t_error_exponent).
 [[nodiscard]] std::uint32_t t_error_exponent(const SetUpRecord& set_up, std::uint32_t grazing);
 
-/// Boxes, records and tests are bit-exact. Tests are sequential, while the hardware overlaps them,
-/// so it may do more tests and report other doubts. Reading beyond `lines` is a memory error.
+/// A ray core with the hardware's bits in boxes, records and tests. The hardware overlaps tests, so
+/// it may do more tests and report other doubts. Reading beyond `lines` is a memory error.
 class ReferenceCore : public CoreUnit {
  public:
   /// See ray_core.sv for `stack_depth` and `exact`.

@@ -29,13 +29,13 @@ class CpuIntersector : public Intersector {
   IntersectCounters counters_;
 };
 
-/// Computes P and its error with the bits of set_point, and writes them to the hits of a query.
+/// Computes P and its error, bit for bit as set_point does, and writes them to hits of a query.
 class PointWriter {
  public:
   static constexpr std::size_t kMost = 256;  ///< maximum of count()
 
-  /// `is_common`: all rays start at one point, so that hits of one primitive share its plane, which
-  /// is kept for later hits.
+  /// `is_common`: all rays start at one point. Hits of one primitive then share its plane, which is
+  /// cached for later hits.
   PointWriter(const Bvh& bvh, std::span<const Ray> rays, bool is_common, std::span<NearestHit> hits)
       : bvh_(bvh), rays_(rays), is_common_(is_common), hits_(hits) {}
 
@@ -44,7 +44,7 @@ class PointWriter {
   /// Returns the number of all hits that were written.
   [[nodiscard]] std::uint64_t written() const { return written_; }
 
-  /// Adds the hit of a ray with a primitive. At most kMost are added before they are written.
+  /// Adds the hit of a ray with a primitive, for write() to write. count() must be below kMost.
   RAYGATE_INLINE void add(std::uint32_t number, std::uint32_t primitive) {
     std::uint16_t unused = 0xFFFF;
     std::uint16_t& plane = is_common_ ? last_[primitive % kPlanes] : unused;
@@ -61,8 +61,8 @@ class PointWriter {
   /// Writes the points of the hits that were added.
   void write();
 
-  /// Writes the points of eight hits of one primitive, of consecutive rays with these directions,
-  /// if the primitive's plane is known; returns whether it is.
+  /// If the primitive's plane is cached, writes the points of eight consecutive rays, from `number`
+  /// on, that hit the primitive. Returns whether the plane is cached.
   template <Vectors kCode>
   [[nodiscard]] RAYGATE_INLINE bool write_group(std::uint32_t number, std::uint32_t primitive,
                                                 const FloatLanes (&directions)[3]) {
@@ -81,7 +81,7 @@ class PointWriter {
   }
 
  private:
-  /// Computes P for a plane and a direction in each lane, and writes it to hit(lane). `largest`:
+  /// Computes P from the plane and direction of each lane, and writes it to hit(lane). `largest` is
   /// the largest exponent field of N.
   template <class Floats, class Hit>
   static RAYGATE_INLINE void write_lanes(const Floats (&n)[3], const Floats& d,
@@ -113,30 +113,30 @@ class PointWriter {
   const bool is_common_;
   const std::span<NearestHit> hits_;
   std::uint64_t written_ = 0;
-  std::size_t planes_ = 0, computed_ = 0;  // planes, and how many have words
+  std::size_t planes_ = 0, computed_ = 0;  // number of planes, and of planes with words
   std::size_t count_ = 0;
-  std::uint32_t primitives_[kPlanes + 1] = {};  // by plane, with a ray that hits it
-  std::uint32_t firsts_[kPlanes + 1];
-  // Numbers of planes have 16 bits, as bytes might alias any other variable.
-  std::uint16_t last_[kPlanes] = {};  // by hash: the last plane of a primitive
-  std::uint32_t numbers_[kMost];      // of rays, with their planes
+  std::uint32_t primitives_[kPlanes + 1] = {};  // primitive of each plane
+  std::uint32_t firsts_[kPlanes + 1];           // a ray that hits each plane
+  // Numbers of planes have 16 bits, as 8-bit numbers might alias any other variable.
+  std::uint16_t last_[kPlanes] = {};  // by hash of a primitive: its last plane
+  std::uint32_t numbers_[kMost];      // hits to write: their rays and planes
   std::uint16_t plane_of_[kMost];
-  float words_[kPlanes + kQuad][4];  // of planes: N and d; computed by four
+  float words_[kPlanes + kQuad][4];  // N and d of planes, computed four by four
 };
 
 // The two searches of CpuIntersector. `hits` are initialised to misses; misses are not counted.
 
-/// Intersects rays of one origin in packets.
+/// Intersects rays with a common origin in packets.
 void trace_packets(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                    std::span<NearestHit> hits, IntersectCounters& counters);
 
-/// Intersects rays of any origins one by one.
+/// Intersects rays with any origins one by one.
 void trace_single_rays(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
                        std::span<NearestHit> hits, IntersectCounters& counters);
 
 /// Replaces `hits` by all hits of `ray` with t < t_max, nearest first, then by triangle index.
-/// `t_max` is as of is_before(). The direction must be scaled, or is not usable and
-/// hits nothing. `point` and `point_error` of the hits are not valid.
+/// `t_max` is as in is_before(). The direction must be scaled; a direction that is not usable hits
+/// nothing. `point` and `point_error` of the hits are not valid.
 void all_hits(const Bvh& bvh, const ExactRay& ray, double t_max, std::vector<NearestHit>& hits,
               RayWork& work);
 

@@ -68,11 +68,11 @@ RAYGATE_INLINE bool several(std::uint64_t set) { return (set & (set - 1)) != 0; 
 struct ConeTraversal {
   static constexpr int kGroups = RayPacket::kGroups;
 
-  /// A subtree to visit. The nearest one, as far as known from its parent, is on top of the stack.
+  /// A subtree to visit. Of one node's children, the nearest is on top of the stack.
   struct StackEntry {
     Bvh::Child child;
     float entry;
-    std::uint64_t rays;  ///< rays that may meet it
+    std::uint64_t rays;  ///< rays that may meet the subtree
   };
 
   const RayPacket* block;
@@ -80,13 +80,13 @@ struct ConeTraversal {
   Cones cones;
   PacketBounds8 ray_bounds8[kGroups];    ///< bounds of each ray, for groups in `split`
   LaneMask split;                        ///< groups with valid ray_bounds8
-  IntLanes low[kGroups], high[kGroups];  ///< of each ray: bounds of the nearest hit's t
-  IntLanes primitive[kGroups];           ///< of the nearest hit; -1: none
-  IntLanes skip_id[kGroups];             ///< a primitive; -1: none
-  IntLanes enough[kGroups];              ///< a hit that is surely nearer than this ends the ray
+  IntLanes low[kGroups], high[kGroups];  ///< bounds of t of each ray's nearest hit
+  IntLanes primitive[kGroups];           ///< primitive of each ray's nearest hit; -1: none
+  IntLanes skip_id[kGroups];             ///< primitive that each ray ignores; -1: none
+  IntLanes enough[kGroups];              ///< distance; a hit that is surely nearer ends the ray
   std::uint64_t going;                   ///< rays that continue
   float cutoff;                          ///< boxes beyond this are skipped
-  int depth;                             ///< of the stack
+  int depth;                             ///< number of entries of the stack
   StackEntry stack[Bvh::kStackSize];
 
   [[nodiscard]] std::uint32_t number(int group, int lane) const {
@@ -117,8 +117,8 @@ RAYGATE_INLINE void shorten(ConeTraversal& walk, int group) {
 
 constexpr std::size_t kRayWords = 6;
 
-/// Loads the directions of four rays, from their words, transposed. Each load includes the word
-/// before the direction.
+/// Loads the directions of four rays, by component, from the rays' words. Each load includes the
+/// word before the direction.
 RAYGATE_INLINE void load_directions(const float* words, FloatQuad (&components)[3]) {
   static_assert(sizeof(Ray) == kRayWords * sizeof(float) &&
                 offsetof(Ray, direction) == 3 * sizeof(float));
@@ -131,14 +131,14 @@ RAYGATE_INLINE void load_directions(const float* words, FloatQuad (&components)[
 /// Loads up to 64 rays. Returns a mask of the rays that are usable but not scaled.
 std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
   return in_vectors([&](auto) RAYGATE_BODY {
-    LaneMask positive[3] = {}, negative[3] = {};  // whether any ray is
+    LaneMask positive[3] = {}, negative[3] = {};  // not 0 if any ray is
     std::uint64_t unscaled = 0;
     for (int group = 0; group < RayPacket::kGroups; ++group) {
       const std::size_t begin = std::size_t(group) * kLanes;
       const std::size_t count =
           begin < rays.size() ? std::min<std::size_t>(kLanes, rays.size() - begin) : 0;
       auto words = reinterpret_cast<const float*>(rays.data() + begin);
-      float padded[kRayWords * kLanes];  // beyond the end: the last ray
+      float padded[kRayWords * kLanes];  // repeats the last ray beyond the end
       if (count < kLanes) {
         for (std::size_t i = 0; i < kLanes; ++i) {
           std::memcpy(padded + kRayWords * i, &rays[std::min(begin + i, rays.size() - 1)],
@@ -146,7 +146,7 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
         }
         words = padded;
       }
-      for (std::size_t line = 0; line < 3; ++line) {  // of the next packet
+      for (std::size_t line = 0; line < 3; ++line) {  // cache lines of the next packet
         __builtin_prefetch(words + kRayWords * RayPacket::kRays + 16 * line);
       }
       FloatQuad half[2][3];
@@ -182,7 +182,7 @@ std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
   });
 }
 
-/// Computes all members for the packet's rays in `cones.active`, which must be in this octant.
+/// Computes the cones and bounds of the rays in `cones.active`, which must be in this octant.
 void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Cones& cones) {
   in_vectors([&](auto) RAYGATE_BODY {
     // Each rounding changes a value by a factor of at most 1 + 2^-24.
@@ -233,7 +233,7 @@ void make_cones(const RayPacket& block, const glm::vec3& origin, int octant, Con
   });
 }
 
-/// Computes the tightest PacketBounds8 around each ray of a group.
+/// Sets ray_bounds8 of a group: the tightest bounds of each of its rays, one ray per lane.
 RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   PacketBounds8& bounds8 = walk.ray_bounds8[group];
   constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
@@ -245,7 +245,7 @@ RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   walk.split |= 1u << group;
 }
 
-/// Returns the children that any of `rays`, in `groups`, may meet; entry[i] is the distance.
+/// Returns the children that any of `rays`, of these groups, may meet; entry[i] is the distance.
 template <Vectors kCode>
 RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& node,
                                  std::uint64_t rays, LaneMask groups, FloatLanes& entry) {
@@ -262,7 +262,7 @@ RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& nod
                                    bounds8.cutoff[lane], entry);
 }
 
-/// Inserts a child of a node into the stack, sorted by entry distance down to `bottom`.
+/// Inserts a child into the stack, whose entries from `bottom` on are sorted, the nearest last.
 RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
                          const ConeTraversal::StackEntry& next) {
   tree.prefetch(next.child);
@@ -273,8 +273,8 @@ RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
   walk.stack[place] = next;
 }
 
-/// Up to this number of rays in several groups pass a node one by one. Without this, `build/lab
-/// rays` has 0.7 times the light rays per second on sphereflake, 0.85 on landscape.
+/// At most this many rays, if in several groups, are tested against a node one by one. If not,
+/// light rays of `build/lab rays` trace at 0.7 times the rate on sphereflake, 0.85 on landscape.
 constexpr int kFewRays = 8;
 
 /// Does the work of step_through for a few rays.
@@ -305,12 +305,12 @@ RAYGATE_INLINE void step_one_by_one(ConeTraversal& walk, const BvhView& tree, co
   }
 }
 
-/// Pushes the children of a node that the rays meet. If the cone meets several children, its groups
-/// are tested one by one, then the rays of those groups.
+/// Pushes the children of a node that the rays may meet. If the rays' common bounds meet several
+/// children, each group is tested; if a group's cone meets several, each of its rays is tested.
 template <Vectors kCode>
 RAYGATE_INLINE void step_through(ConeTraversal& walk, const BvhView& tree, std::uint32_t index,
                                  std::uint64_t rays, LaneMask groups) {
-  constexpr int kFew = 1;  // children
+  constexpr int kFew = 1;  // up to this number of met children, groups and rays are not separated
   Bvh::Node room;
   const Bvh::Node& node = tree.node(index, room);
   if (several(groups) && std::popcount(rays) <= kFewRays) {
@@ -360,9 +360,9 @@ RAYGATE_INLINE FloatLanes side_of(const FloatLanes (&direction)[3], const QuadRe
          direction[2] * record.word(plane, 2, triangle);
 }
 
-/// Computes bounds of t from those of |d| and of I . N, t being their quotient. Both are positive,
-/// even if I . N is not in float32. There are four roundings each; a quotient that underflows is
-/// between 0 and the smallest normal float.
+/// Replaces bounds of |d|, in `low` and `high`, by bounds of t = |d| / (I . N). I . N is positive
+/// and between `least`, which may be negative, and `most`. Each bound has four roundings; a
+/// quotient that underflows is between 0 and the smallest normal float.
 template <class Lanes>
 RAYGATE_INLINE void bound_distance(Lanes& low, Lanes& high, const Lanes& least, const Lanes& most) {
   constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
@@ -381,7 +381,7 @@ template <class Lanes>
 struct Verdict {
   LaneMask hit;     ///< sure hits, in front of the origin
   LaneMask open;    ///< sure hits and doubts
-  Lanes low, high;  ///< of sure hits: bounds of t, for a group as bits of floats
+  Lanes low, high;  ///< bounds of t of sure hits, for a group as bits of floats
 };
 
 template <Vectors kCode>
@@ -389,7 +389,7 @@ RAYGATE_INLINE void test_group(const ConeTraversal& walk, const QuadRecord& reco
                                int group, LaneMask tested, Verdict<IntLanes>& verdict) {
   const auto& from = walk.block->direction;
   const FloatLanes direction[3] = {from[0][group], from[1][group], from[2][group]};
-  FloatLanes worst = side_of(direction, record, 0, triangle);  // the least value of the edges
+  FloatLanes worst = side_of(direction, record, 0, triangle);  // the least I . E of the edges
   for (int plane = 1; plane < 3; ++plane) {
     worst = minimum(side_of(direction, record, plane, triangle), worst);
   }
@@ -417,7 +417,7 @@ RAYGATE_INLINE bool is_sparse(std::uint64_t rays, LaneMask groups, std::uint32_t
 RAYGATE_INLINE void test_ray(const ConeTraversal& walk, const QuadRecord& record, int group,
                              int lane, LaneMask there, Verdict<FloatQuad>& verdict) {
   const auto& from = walk.block->direction;
-  FloatLanes sides[2] = {};  // of planes 0 and 1, 2 and 3, of four triangles each
+  FloatLanes sides[2] = {};  // for planes 0 and 1, then 2 and 3, four triangles each
   for (int pair = 0; pair < 2; ++pair) {
     const auto& planes = record.planes[pair];
     const FloatLanes x = load<FloatLanes>(planes[0]), y = load<FloatLanes>(planes[1]),
@@ -448,7 +448,7 @@ constexpr int kCacheBits = 5;  ///< log2 of the number of entries
 
 constexpr std::int32_t kFarthest = 0x7F7FFFFF;  // the largest float
 
-/// Loads the query options of a group's rays. Lanes beyond the last ray are undefined.
+/// Loads one query option for a group's rays. Lanes beyond the last ray keep their values.
 template <class Wish>
 RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first, IntLanes& lanes) {
   static_assert(sizeof(Wish) == sizeof(std::int32_t));
@@ -459,9 +459,9 @@ RAYGATE_INLINE void load_group(std::span<const Wish> wishes, std::uint32_t first
   }
 }
 
-/// Traces packets. A packet has eight groups of eight rays, each with a bounding cone. At a leaf
-/// the packet computes a QuadRecord in float32 and tests it against the groups whose cones it
-/// meets. Exact arithmetic resolves doubts of float32.
+/// Traces packets. A packet has eight groups of eight rays, each with a bounding cone. At a leaf, a
+/// QuadRecord of its triangles is computed in float32 and tested against the rays that reach the
+/// leaf. Exact arithmetic resolves doubts of float32.
 class PacketIntersector {
  public:
   PacketIntersector(const Bvh& bvh, std::span<const Ray> rays, const RayQuery& query,
@@ -474,7 +474,7 @@ class PacketIntersector {
         hits_(hits),
         points_(bvh, rays, true, hits) {}
 
-  /// Returns the number of points that were computed.
+  /// Traces all rays. Returns the number of points computed.
   std::uint64_t trace() {
     assert(std::ranges::all_of(rays_, [&](const Ray& ray) { return ray.origin == origin_; }));
     RayPacket block;
@@ -530,8 +530,8 @@ class PacketIntersector {
     });
   }
 
-  /// Tests the leaf's triangles in `there` against the rays, one triangle and group at a time. Sets
-  /// the bits of the groups whose nearest hits change.
+  /// Tests the leaf's triangles in `there` against the rays, one triangle and group at a time. In
+  /// `changed`, sets the bits of the groups whose nearest hits change.
   template <Vectors kCode>
   RAYGATE_INLINE void test_groups(ConeTraversal& walk, const QuadRecord& record,
                                   const Bvh::Child& leaf, LaneMask there, std::uint64_t rays,
@@ -655,7 +655,7 @@ class PacketIntersector {
     });
   }
 
-  /// Returns the leaf's entry in the cache, computed if another leaf has its place.
+  /// Returns the leaf's entry in the cache; computes it, replacing another leaf's, if needed.
   RAYGATE_INLINE const CachedLeaf& cached(const BvhView& tree, const Bvh::Child& leaf) {
     CachedLeaf& cached = leaves_[leaf.first * 0x9E3779B1u >> (32 - kCacheBits)];
     if (cached.first == leaf.first) return cached;
@@ -669,8 +669,8 @@ class PacketIntersector {
     return cached;
   }
 
-  /// Decides exactly on which side of each triangle the origin lies where float32 is not sure. No
-  /// ray hits a triangle whose plane contains the origin: such triangles are removed.
+  /// Decides exactly on which side of a triangle the origin lies if float32 is not sure. Removes
+  /// triangles whose plane contains the origin, since no ray hits them.
   void resolve_sides(const Bvh::Child& leaf, CachedLeaf& cached) const {
     for (const int i : SetBits(cached.record.unsure)) {
       const int side =
@@ -683,8 +683,8 @@ class PacketIntersector {
     }
   }
 
-  /// Resolves a doubt of float32 about a ray and a primitive, that it hits or where, exactly. `t`
-  /// is read if it is a sure hit. Returns whether it is the nearest hit now.
+  /// Decides exactly whether a ray hits a primitive, unless that is `sure`, and whether that hit is
+  /// the nearest. `t` is read only if `sure`. Returns whether the primitive is the nearest hit now.
   bool resolve(ConeTraversal& walk, int group, int lane, std::int32_t primitive, bool sure,
                const Interval& t) {
     const std::uint32_t number = walk.number(group, lane);
@@ -705,7 +705,7 @@ class PacketIntersector {
     return true;
   }
 
-  /// Writes the nearest hits, and adds them to those whose P is to be computed.
+  /// Writes the nearest hits. Computes their P at once, or adds them to `points_`.
   void finish(const ConeTraversal& walk) {
     in_vectors([&](auto code) RAYGATE_BODY {
       const auto& block = walk.block->direction;
@@ -753,7 +753,7 @@ class PacketIntersector {
   const RayQuery query_;
   const std::span<NearestHit> hits_;
   PointWriter points_;
-  CachedLeaf leaves_[1 << kCacheBits];  // by hash
+  CachedLeaf leaves_[1 << kCacheBits];  // indexed by a hash of the leaf
 };
 
 }  // namespace

@@ -28,40 +28,40 @@ namespace raygate {
 // Let u = 2^-24, capitals be the float32 results, m >= |p-O| on each axis, for all three corners,
 // as computed, and S the sum of the six |X_i|, |Y_i|.
 //
-// 1. A difference has an error of u times itself, the quotient u times itself or 2^-150, its
-//    product with Z u times itself or 2^-150, and the difference u |X_i|. All these are at most m,
-//    but |X_i| <= 2.0001 m:  |X_i - x_i| < (1 + 3 + 2.001) u m + 2^-149 (1 + m) < 6.01 u m = e.
+// 1. A difference p-O has an error of u times itself, s_x and s_x Z of u times themselves or
+//    2^-150, and their difference X_i of u |X_i|. All these are at most m, but |X_i| <= 2.0001 m:
+//    |X_i - x_i| < (1 + 3 + 2.001) u m + 2^-149 (1 + m) < 6.01 u m = e.
 // 2. X_i Y_j - x_i y_j = X_i (Y_j - y_j) + y_j (X_i - x_i), so the error of the exact difference of
 //    products is less than e (|X_i| + |Y_j| + |Y_i| + |X_j|) + 2 e^2 <= 6.01 u m S + 72.3 u^2 m^2.
-// 3. The two products have errors of u times themselves or 2^-150, their difference u times itself:
-//    less than 2.001 u (|X_i Y_j| + |Y_i X_j|) + 2^-149 in all, and |X_i Y_j| <= 1.001 m (|X_i| +
-//    |Y_j|) as neither is above 2.0001 m: less than 2.01 u m S + 2^-149.
+// 3. The two products have errors of u times themselves or 2^-150, and their difference has one of
+//    u times itself: less than 2.001 u (|X_i Y_j| + |Y_i X_j|) + 2^-149 in all. |X_i Y_j| <= 1.001
+//    m (|X_i| + |Y_j|), as no factor is above 2.0001 m: less than 2.01 u m S + 2^-149 in all.
 // 4. If 2^-20 <= m <= 2^40, nothing overflows, the 2^-149 (1 + m) of step 1 is less than 2^-60 u m,
 //    and the 2^-149 of step 3 less than 2^-60 u^2 m^2. Otherwise nothing is sure.
 //
 // Sum: less than 8.02 u m S + 72.4 u^2 m^2. The computed bound is b = m (8.5 u S + 2^-41 m), where
-// 2^-41 = 128 u^2: its own rounding is less than 12 u of it. The m computed there is the largest
+// 2^-41 = 128 u^2; the relative error of rounding b is less than 12 u. m is computed as the largest
 // |Z_i| plus S: on the other axes |p-O|_x = |x + s_x (p-O)_z| as computed is at most |X_i| + |Z_i|
-// up to (1 + 3) u m and the like, which the same margin covers.
+// up to (1 + 3) u m, and similarly for y, which the same margin covers.
 //
 // Position on the z axis
 //
 // Let U_i be the three differences, all surely of one sign, say > b; they belong to the corners
 // opposite their edges. z* = (sum u_i z_i) / (sum u_i), from the exact u_i = U_i +- b; let D be the
-// sum of the U_i as computed, D* that of the u_i, and R the z of the farthest corner minus that of
-// the nearest one.
+// sum of the U_i as computed, D' the exact sum, D* that of the u_i, and R the z of the farthest
+// corner minus that of the nearest one.
 //
-// 5. Weights U_i / D' for D' = sum U_i (exact) instead of u_i / D*: each has an error of |U_i (D* -
-//    D') + D' (U_i - u_i)| / (D' D*) <= (3 b U_i / D' + b) / D*, three of them 6 b / D*, and D* >
-//    D' - 3 b. As both sum to 1, z* has an error of less than 6 b R / (D' - 3 b). |U_i| is at most
-//    a product of two of the three |X_j| + |Y_j|, so D' <= S^2 / 3 <= m S / 3, and D, with an error
-//    of 2 u times itself, differs by less than 0.1 b: D' - 3 b > D - 3.2 b. R has an error of 2 u
-//    max |Z_i|, which matters only if the quotient is below 1, as z* is between the corners' z
-//    anyway: 2 u max |Z_i|.
-// 6. Three products, two sums of them, two sums in D, a quotient, the difference that gave Z_i and
-//    that with the bound: less than 9 u of the largest |Z_i|, as weights are positive and sum to 1.
-//    A product that underflows has an error of 2^-150, that is 2^-150 / D' of z, where D' > 3 b >
-//    2^-80: less than 2^-68 in all, and m 2^-45 >= 2^-65.
+// 5. The weights are U_i / D' instead of u_i / D*. Each has an error of |U_i (D* - D') + D' (U_i -
+//    u_i)| / (D' D*) <= (3 b U_i / D' + b) / D*, and three of them one of 6 b / D*. D* > D' - 3 b.
+//    As both sets of weights sum to 1, z* has an error of less than 6 b R / (D' - 3 b). |U_i| is at
+//    most a product of two of the three |X_j| + |Y_j|, so D' <= S^2 / 3 <= m S / 3, and D, with an
+//    error of 2 u times itself, differs from D' by less than 0.1 b: D' - 3 b > D - 3.2 b. R has an
+//    error of 2 u max |Z_i|. Its factor matters only below 1, as z* is between the corners' z
+//    anyway, so z* has another error of at most 2 u max |Z_i|.
+// 6. The roundings of three products, two sums of them, two sums in D, a quotient, the difference
+//    Z_i and that with the bound add less than 9 u of the largest |Z_i|, as weights are positive
+//    and sum to 1. A product that underflows has an error of 2^-150, that is 2^-150 / D' of z,
+//    where D' > 3 b > 2^-80: less than 2^-68 in all, and m 2^-45 >= 2^-65.
 //
 // The code uses O-p instead of p-O, so that the instruction that subtracts a corner also loads it.
 // The magnitudes of all sums, differences and products of steps 1 to 4 are the same.
@@ -71,16 +71,16 @@ namespace raygate {
 //
 // Rounded corners and rays
 //
-// Let the corners, the origin and the direction be those nearest to exact ones, M the largest
-// coordinate of the corners, F that of the origin, each 0 if those are exact, and r = u (M + F),
-// which exceeds the error of a difference. Each component of a rounded direction, and each s, has
-// another relative error of u or 2 u.
+// Let the corners, the origin and the direction be rounded to nearest, M the largest coordinate of
+// the corners, F that of the origin (each 0 if exact), and r = u (M + F), which exceeds the error
+// of a difference. Each component of a rounded direction has another relative error of u, and each
+// s one of 2 u.
 //
 // 1. e grows to 8.02 u m + 2.001 r <= 8.02 u w, for w = m + (M + F) / 4. If the direction is exact,
-//    e = 6.01 u m + 2.001 r <= 6.01 u w, for w = m + (M + F) / 3: the bound above, of w for m.
+//    e = 6.01 u m + 2.001 r <= 6.01 u w, for w = m + (M + F) / 3: the bound above with w as m.
 // 2. The error is less than e S + 2 e^2 <= 8.02 u w S + 128.7 u^2 w^2; with step 3, 10.03 u w S +
 //    128.8 u^2 w^2. The computed bound is b = w (10.6 u S + 2^-40 w).
-// 6. Each z has another error of r, and R of 2 r: 3.2 r are added to 16 u max |Z_i|.
+// 6. Each z has another error of r, and R one of 2 r, so 3.2 r are added to 16 u max |Z_i|.
 
 /// A ray prepared for tests against many quads of triangles.
 struct ShearedRay {
@@ -93,7 +93,7 @@ struct ShearedRay {
   /// The direction must be usable (see is_usable).
   RAYGATE_INLINE explicit ShearedRay(const Ray& ray);
 
-  /// Returns the sign bit of (O-p)_z for points p in front of the origin: that of -I_z.
+  /// Returns the sign bit of -I_z, which is that of (O-p)_z for points p in front of the origin.
   [[nodiscard]] RAYGATE_INLINE std::int32_t sign_ahead() const {
     return std::bit_cast<std::int32_t>(-way) & std::numeric_limits<std::int32_t>::min();
   }
@@ -149,9 +149,9 @@ struct RoundedParts {
 /// Results of a quad test. Bit i of the masks, and lane i, belong to triangle i.
 struct QuadVerdict {
   LaneMask hit;    ///< sure hits, in front of the origin
-  LaneMask level;  ///< the line surely hits, but perhaps behind the origin: see is_ahead
-  LaneMask doubt;  ///< neither of these, nor a sure miss
-  /// Bounds of the hit's position along the ray's longest axis, for all of these.
+  LaneMask level;  ///< the line surely hits, but perhaps behind the origin; is_ahead decides
+  LaneMask doubt;  ///< neither hit, nor level, nor a sure miss
+  /// Bounds of a hit's position along the ray's longest axis, for triangles in any of the masks.
   FloatQuad low, high;
 };
 
@@ -167,7 +167,7 @@ struct QuadSides {
 
 /// Returns which of 1 to 4 triangles the ray does not surely miss by its edges. Coordinate k of
 /// corner v of triangle i is corners[(3 v + k) count + i]; memory up to corners[8 count + 3] must
-/// be readable. Without rounded parts, kIsRounded gives the same results.
+/// be readable. If no part is rounded, kIsRounded makes no difference.
 template <bool kIsRounded = false>
 [[nodiscard]] RAYGATE_INLINE LaneMask find_sides(const ShearedRay& ray, const float* corners,
                                                  std::uint32_t count, QuadSides& sides,
@@ -213,7 +213,7 @@ template <bool kIsRounded = false>
   return ~sign_mask(miss) & ((1u << count) - 1);
 }
 
-/// Computes the results of the second half, for the triangles in `open`.
+/// Computes the verdicts on the triangles in `open` from the results of find_sides().
 template <bool kIsRounded = false>
 RAYGATE_INLINE void judge_sides(const ShearedRay& ray, const QuadSides& sides, LaneMask open,
                                 QuadVerdict& verdict) {
@@ -256,12 +256,12 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
 // |I_i| < 2. Coordinates of A, B and C are at most 2^40.
 //
 // 1. Factors are differences with an error of u times themselves, so a product has an error of 3 u
-//    times itself, or 2^-150 if it underflows, and their difference u more: the error of E is (4 u
-//    L)_1 in all, plus 2^-147, and the magnitudes of its words sum to at most L (1 + 4 u).
+//    times itself, or 2^-150 if it underflows, and their difference u more. The errors of E's words
+//    sum to at most 4 u L + 2^-147, and their magnitudes to at most L (1 + 4 u).
 // 2. I . E in float32, in any order, rounds a word at most three times: its error is 3.0001 u
 //    |I|.|E|, plus 2^-148. So |float32(I . E) - I . (A x B)| < 2 (4 + 3.001) u L + 2^-145 < 14.1 u
-//    L + 2^-145. The computed bound, 14.5 u L + 2^-100 for the largest of three L, covers its own
-//    rounding, 7 u of it.
+//    L + 2^-145. The computed bound, 14.5 u L + 2^-100 for the largest of three L, also covers its
+//    own relative rounding error, 7 u.
 // 3. Likewise N = (B-A) x (C-B), with its own L: I . N has an error of less than 14.5 u L + 2^-100.
 //    A . N has three more factors with errors of u times themselves, of size m at most: its error
 //    is less than m (4 + 3.001 + 1.001) u L + 2^-105 < 8.5 u m L + 2^-100.
@@ -269,26 +269,26 @@ RAYGATE_INLINE void test_quad(const ShearedRay& ray, const float* corners, std::
 // A hit has all three I . E of the sign of d = A . N (see exact.cpp), and t = d / (I . N). All
 // words are stored multiplied by the sign of d, if float32 is sure of it.
 //
-// If the corners are rounded from exact ones, let r = u M, for their largest coordinate M, s the
-// largest coordinate of a side, and m of A, B and C. A, B and C have errors of r, and sides of 2 r.
+// If the corners are rounded from exact ones, let M be their largest coordinate, r = u M, s the
+// largest coordinate of a side, and m that of A, B and C. A, B, C have errors of r, sides of 2 r.
 //
 // 1. A product of A and a side has an error of r |side| + 2 r |A| + 2 r^2, six of them 2 r |side|_1
-//    + 4 r |A|_1 + 12 r^2 <= 6 r s + 12 r m + 12 r^2. I . E has twice that: 26 r (m + s / 2 + r)
-//    are added to its bound.
-// 2. |N|_1 has an error of 4 r (|B-A|_1 + |C-B|_1) + 24 r^2 <= 24 r (s + r), I . N twice that: 50 r
+//    + 4 r |A|_1 + 12 r^2 <= 6 r s + 12 r m + 12 r^2. That of I . E is at most twice as large, so
+//    26 r (m + s / 2 + r) are added to its bound.
+// 2. |N|_1 has an error of 4 r (|B-A|_1 + |C-B|_1) + 24 r^2 <= 24 r (s + r). That of I . N is at
+//    most twice as large, so 50 r (s + r) are added.
+// 3. The error of A . N is r |N|_1, for the exact N, plus m times that of N: 1.1 r L + 26 (m + r) r
 //    (s + r) are added.
-// 3. A . N has one of r |N|_1 and m times that of N, for exact N: 1.1 r L + 26 (m + r) r (s + r)
-//    are added.
 
 /// Four planes of each of four triangles: the planes of the edges, and N.
 struct alignas(sizeof(FloatLanes)) QuadRecord {
   static constexpr int kNormal = 3;
 
-  /// Multiplied by the sign of d. Plane p is [p / 2][axis][p % 2]; word i belongs to triangle i.
+  /// Words times the sign of d. Plane p is [p / 2][axis][p % 2]; word i belongs to triangle i.
   float planes[2][3][2][kQuad];
   float bounds[kQuad];            ///< |float32(I . E) - exact| < bound, for each edge
   float normal_bound[kQuad];      ///< likewise for I . N
-  float low[kQuad], high[kQuad];  ///< bounds of |d|; low = 0 if the sign was unsure
+  float low[kQuad], high[kQuad];  ///< bounds of |d|; low = 0 if the sign of d was unsure
   std::int32_t flip[kQuad];       ///< the sign bit of d as computed
   LaneMask unsure;                ///< triangles whose d may have the other sign
 
@@ -324,7 +324,7 @@ RAYGATE_INLINE void make_quad_record(const glm::vec3& origin, const float* corne
   const auto pair = [](const Triple<FloatQuad>& low, const Triple<FloatQuad>& high) RAYGATE_BODY {
     return Triple<FloatLanes>{join(low.x, high.x), join(low.y, high.y), join(low.z, high.z)};
   };
-  // Side by side: A x (B-A) and B x (C-B); then C x (A-C) and N = (B-A) x (C-B).
+  // Pairs in one vector each: A x (B-A) and B x (C-B); then C x (A-C) and N = (B-A) x (C-B).
   Triple<FloatLanes> terms[2];
   const Triple<FloatLanes> planes[2] = {
       cross(pair(p[0], p[1]), pair(sides[0], sides[1]), terms[0]),

@@ -30,8 +30,8 @@
 namespace raygate {
 namespace {
 
-/// State of one ray. Many rays are interleaved, so a step's data is in few cache lines: the first
-/// for a node, the second for a leaf, the third for either, with the bottom of `keys`, and one with
+/// State of one ray. Many rays are interleaved, so each step uses few cache lines. A node needs the
+/// first, a leaf the second; both need the third, which has the bottom of `keys`, and the line with
 /// the bottom of `children`.
 struct alignas(64) RayTraversal {
   // Box tests, by axis. The inverses are those of PacketBounds with reversed sign, as the
@@ -39,24 +39,24 @@ struct alignas(64) RayTraversal {
   // are byte offsets in a node of the planes that the ray meets first and last.
   float origin[3], minus_inverse_near[3], minus_inverse_far[3];
   std::uint32_t near_at[3], far_at[3];
-  float cutoff;  ///< cutoff_beyond the nearest hit
+  float cutoff;  ///< cutoff_beyond() of the nearest hit
 
   ShearedRay sheared;                ///< for triangle tests
-  float low, high;                   ///< bounds of the nearest hit's depth, or of the limit's
+  float low, high;                   ///< bounds of the depth of the nearest hit or the limit
   float enough;                      ///< a hit whose depth is surely less ends the ray
-  std::uint32_t primitive;           ///< of the nearest hit
-  std::uint32_t skip_id, source_id;  ///< primitives
+  std::uint32_t primitive;           ///< primitive of the nearest hit
+  std::uint32_t skip_id, source_id;  ///< primitives, see RayQuery
   std::uint32_t number;              ///< index of the ray
 
   RayWork work;
-  // Stack of children to visit, the nearest on top as far as known from their parent. The topmost
-  // is the one being visited. A key is a lower bound of the entry distance, with the child's number
-  // in its last bits. The bottom is a sentinel that is never skipped and ends the traversal.
+  // Stack of children to visit. Of one node's children, the nearest is on top. The top entry is the
+  // child being visited. A key is a lower bound of the entry distance, with the child's number in
+  // its last bits. The bottom is a sentinel that is never skipped and ends the traversal.
   std::size_t depth;
   std::int32_t keys[1 + Bvh::kStackSize + Bvh::kWidth];
   Bvh::Child children[1 + Bvh::kStackSize + Bvh::kWidth];
 
-  // Only if corners or the ray are rounded:
+  // Set only if corners or the ray are rounded:
   double exact_scale;    ///< p of the exact direction
   float exit_origin[3];  ///< see spread()
   RoundedParts rounding;
@@ -72,7 +72,7 @@ struct alignas(64) RayTraversal {
   [[nodiscard]] double t_scale() const {
     return kIsRounded ? exact_scale : std::abs(sheared.way);
   }
-  /// Sets the bounds of t, or of the depth, of the nearest hit or the limit.
+  /// Set the bounds of the nearest hit or the limit, given as t or as depth.
   template <bool kIsRounded>
   RAYGATE_INLINE void end_at(const Interval& t) {
     const double scale = t_scale<kIsRounded>();
@@ -90,8 +90,8 @@ struct alignas(64) RayTraversal {
   void end() { depth = 1; }
 };
 
-/// Starts rays at the root, without limits. Bit i of the result is set if ray i is scaled;
-/// otherwise its traversal is undefined.
+/// Starts rays at the root, without limits. Returns a mask: bit i is set if ray i is scaled;
+/// otherwise the ray's traversal is undefined.
 RAYGATE_INLINE LaneMask begin(const Ray* const (&rays)[kQuad],
                               RayTraversal* const (&walks)[kQuad]) {
   static_assert(sizeof(Ray) == 6 * sizeof(float) && offsetof(Ray, direction) == 3 * sizeof(float));
@@ -198,7 +198,7 @@ RAYGATE_INLINE void sort_falling(IntLanes& keys, std::size_t count) {
   of_pairs();
 }
 
-/// The children of a node, and the boxes that a ray meets.
+/// The children of a node, and a mask of those whose boxes a ray meets.
 struct MetChildren {
   IntLanes keys;  ///< entry distances of the met children, as bits of non-negative floats
   const Bvh::Child* children;
@@ -245,7 +245,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
   const auto push = [&](int first, int last) __attribute__((always_inline)) {
     for (int i = first; i < last; ++i) to_children[i] = met.children[to_keys[i] & kNumber];
   };
-  // Two children one by one, if no register holds all eight.
+  // Handles up to two children one by one, as no register holds all eight keys.
   if (kCode == Vectors::kBaseline && count <= 2) {
     const auto key = [&](int i) __attribute__((always_inline)) {
       return (met.keys[numbers[i] & kNumber] & ~kNumber) | numbers[i];
@@ -257,7 +257,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
     push(0, 2);
     return;
   }
-  // Met children come first, or are the only ones that are not negative.
+  // Puts the keys of met children first, or makes all other keys negative.
   IntLanes keys = met.keys & ~kNumber;
 #ifdef RAYGATE_AVX2
   if constexpr (kCode != Vectors::kBaseline) {
@@ -280,7 +280,7 @@ RAYGATE_INLINE void push_children(RayTraversal& walk, const MetChildren& met) {
 
 /// Pops the next subtree that is not beyond the cutoff.
 RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
-  // Non-negative floats have the order of their bits.
+  // The bits of non-negative floats have the order of the floats.
   const std::int32_t last_key = std::bit_cast<std::int32_t>(walk.cutoff) | (Bvh::kWidth - 1);
   do {
     --walk.depth;
@@ -288,9 +288,9 @@ RAYGATE_INLINE void go_on(const BvhView& tree, RayTraversal& walk) {
   tree.prefetch(walk.at());
 }
 
-/// Several rays traverse the BVH interleaved. A leaf's triangles are tested directly from their
-/// corners by quad_test. Exact arithmetic resolves doubts of float32 and orders hits, so decisions
-/// do not depend on the method. `kIsRounded`: corners or rays are.
+/// Traverses the BVH with several rays, interleaved. Tests a leaf's triangles directly from their
+/// corners, by quad_test.h. Exact arithmetic resolves doubts of float32 and orders hits, so
+/// decisions do not depend on the method. `kIsRounded`: whether corners or rays are rounded.
 template <bool kIsRounded>
 class SingleRayIntersector {
  public:
@@ -314,7 +314,7 @@ class SingleRayIntersector {
   // another thread of the core may share.
   static constexpr int kAtOnce = 24;
 
-  /// Does the second half of a leaf's tests. Returns false if the ray can end.
+  /// Completes the tests of a leaf after find_sides(). Returns false if the ray can end.
   RAYGATE_INLINE bool judge(RayTraversal& walk, const Bvh::Child& leaf, const QuadSides& sides,
                             LaneMask open) {
     QuadVerdict verdict;
@@ -349,7 +349,7 @@ class SingleRayIntersector {
   }
 
   /// Resolves a doubt about a triangle that the ray may hit or, if `sure`, does hit. Returns
-  /// whether it is the nearest hit now.
+  /// whether the triangle is the nearest hit now.
   bool resolve(RayTraversal& walk, std::uint32_t primitive, bool sure) {
     const ExactRay ray = exact_ray(walk.number);
     NearestHit best;
@@ -380,7 +380,7 @@ class SingleRayIntersector {
     spread(ray, walk.origin, walk.exit_origin, walk.minus_inverse_far);
   }
 
-  /// Starts the next rays with these walks. Returns a mask of the walks that have a ray.
+  /// Starts the next rays, one in each walk. Returns a mask of the walks with a ray to trace.
   RAYGATE_INLINE LaneMask begin(RayTraversal* const (&walks)[kQuad]) {
     const auto first = static_cast<std::uint32_t>(next_);
     const std::size_t count = std::min<std::size_t>(kQuad, rays_.size() - next_);

@@ -1,5 +1,5 @@
-// Scenes and rays in binary64: all searches against the exact predicates, which exact_test compares
-// with rationals.
+// Compares all searches, for scenes and rays in binary64, with the exact predicates, which
+// exact_test compares with rationals.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -21,7 +21,7 @@ double near(float x, Random& random) {
   return static_cast<float>(exact) == x ? exact : double{x};
 }
 
-/// Moves the corners of a mesh by less than binary32 tells; those that coincide, alike.
+/// Moves the corners of a mesh by less than binary32 resolves. Equal corners stay equal.
 std::vector<Corners> in_binary64(std::vector<Corners> mesh, Random& random) {
   std::map<std::tuple<double, double, double>, glm::dvec3> moved;
   for (Corners& triangle : mesh) {
@@ -36,7 +36,7 @@ std::vector<Corners> in_binary64(std::vector<Corners> mesh, Random& random) {
   return mesh;
 }
 
-/// The rays of a test, and the same in binary32.
+/// Rays, and the same rays rounded to binary32.
 struct Rays {
   std::vector<ExactRay> exact;
   std::vector<Ray> rounded;
@@ -51,8 +51,8 @@ struct Rays {
 
 class Binary64 : public testing::Test {
  protected:
-  /// Rays at corners, edges and insides of the triangles, half of them from nearby, and some from a
-  /// corner.
+  /// Returns rays aimed at corners, edges and insides of the triangles. Half of them start nearby,
+  /// some at a corner.
   Rays some_rays(const std::vector<Corners>& mesh, int count, bool is_binary64, bool is_common) {
     Rays rays;
     const float size = 2.0f * static_cast<float>(largest(mesh[0][0]));
@@ -78,7 +78,7 @@ class Binary64 : public testing::Test {
     return rays;
   }
 
-  /// The nearest hit's triangle by the predicates alone, or -1, and the number of hits.
+  /// Returns the nearest hit's triangle, or -1, and the number of hits, by the predicates alone.
   static std::pair<int, std::size_t> expected(const std::vector<Corners>& mesh,
                                               const ExactRay& ray) {
     int nearest = -1;
@@ -146,7 +146,7 @@ TEST_F(Binary64, AllSearchesFindWhatThePredicatesSay) {
     const glm::vec3 far = (round % 3 == 0 ? 1000.0f : 0.0f) * random_.point(size);
     std::vector<Corners> mesh = test::sphere(1, size, far);
     const int more = random_.below(40);
-    for (int i = 0; i < more; ++i) {  // slivers, and what crosses them
+    for (int i = 0; i < more; ++i) {  // random triangles at a corner of the sphere
       mesh.push_back({far + random_.point(size), far + random_.point(size), mesh[0][0]});
     }
     mesh = in_binary64(std::move(mesh), random_);
@@ -157,7 +157,7 @@ TEST_F(Binary64, AllSearchesFindWhatThePredicatesSay) {
   EXPECT_GT(hits_, 20'000);
 }
 
-// Rays that binary32 holds have few doubts, also beside others in a query, and in all_hits().
+// In queries with exact rays and in all_hits(), rays in binary32 have no more doubts than alone.
 TEST_F(Binary64, RaysInBinary32HaveTheNarrowBounds) {
   int doubts = 0;
   for (int round = 0; round < 300; ++round) {
@@ -181,7 +181,7 @@ TEST_F(Binary64, RaysInBinary32HaveTheNarrowBounds) {
       all_hits(bvh, rays.exact[i], std::numeric_limits<float>::infinity(), every, all);
       ASSERT_EQ(together[i].tests, alone[i].tests);
       ASSERT_EQ(together[i].doubts, alone[i].doubts);
-      // Boxes are tested otherwise.
+      // all_hits() may test other boxes.
       if (all.tests == alone[i].tests) {
         ASSERT_EQ(all.doubts, alone[i].doubts);
       }
@@ -191,7 +191,7 @@ TEST_F(Binary64, RaysInBinary32HaveTheNarrowBounds) {
   EXPECT_GT(doubts, 100);
 }
 
-// The rounding of an origin above 1 exceeds what boxes below 1 are widened by.
+// Rounding moves an origin above 1 by more than boxes below 1 are widened.
 TEST_F(Binary64, SmallTrianglesAreHit) {
   int hits = 0;
   for (int round = 0; round < 2000; ++round) {
@@ -222,7 +222,7 @@ TEST_F(Binary64, SmallTrianglesAreHit) {
   EXPECT_GT(hits, 10'000);
 }
 
-// Rays through the corner in which all triangles meet hit one of them.
+// Rays through the corner that all triangles share hit exactly one triangle.
 TEST_F(Binary64, AFanIsHitOnce) {
   const glm::dvec3 apex(1 + 0x1p-40, 1 - 0x1p-41, 0x1p-42);
   constexpr int kCount = 1000;
@@ -249,7 +249,7 @@ TEST_F(Binary64, AFanIsHitOnce) {
   }
 }
 
-// The rounding of a coordinate moves it over the ray in half of the cases.
+// In half of the cases, rounding to binary32 would move the triangle's edge across the ray.
 TEST_F(Binary64, TellsCornersApartThatBinary32DoesNot) {
   const double step = 0x1p-40;
   const auto wall = [](double x) {

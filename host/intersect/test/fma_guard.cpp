@@ -1,5 +1,5 @@
-// Fails where the compiler was let fuse multiply and add: sums that are 0 when each operation
-// rounds, and 2^-24 when it does not. Built a second time with fusing allowed, it must fail.
+// Fails if the compiler fuses multiplications and additions: computes sums that are 0 only if each
+// operation rounds. The second build of this test allows fusing, and must fail.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -23,8 +23,8 @@ void expect(bool holds, const char* what) {
   failed = true;
 }
 
-/// Along kDirection, an edge or normal of kVector gives (-kA kA + kA kA) + 0: 0 if both products
-/// are rounded, not so if one is not, whichever.
+/// kDirection . kVector is (-kA kA + kA kA) + 0: it is 0 if both products are rounded, and not 0 if
+/// only one is.
 const glm::vec3 kDirection(kA, kA, 0.0f), kVector(-kA, kA, 0.0f);
 
 RayBundle bundle_of(const PolygonRecord& record) {
@@ -60,8 +60,8 @@ void check_plane() {
 }
 
 void check_exact() {
-  // The ray along the edge's plane, exactly: the sign of the sum is the tilt's (towards +x), and
-  // the exact sums of exact.cpp have to find that it is 0.
+  // The ray lies exactly in the edge's plane. exact.cpp must find a sum of exactly 0, so that the
+  // tilt (towards +x) decides the sign.
   const Ray ray = {glm::vec3(0.0f), glm::vec3(1.0f, 1.0f, 1.0f / 3.0f)};
   const glm::vec3 a(1.0f, 1.0f, 0.1f), b(kA, kA, 0.7f);
   expect(edge_side(ray, a, b) == -edge_side(ray, b, a) && edge_side(ray, a, b) != 0, "edge_side");
@@ -71,7 +71,7 @@ void check_exact() {
 }  // namespace raygate
 
 int main(int argc, char**) {
-  if (argc > 1) {  // as programs begin
+  if (argc > 1) {  // the check at the start of programs
     try {
       raygate::require_ieee_floats();
     } catch (const std::exception& error) {

@@ -1,4 +1,4 @@
-// Rays find of instances what they find of the same triangles written out.
+// Rays find the same hits with instances as with the same triangles written out.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -20,7 +20,7 @@ class InstancesTest : public testing::Test {
   Scene scene_ = test::instanced_scene(random_, 30), flat_ = test::written_out(scene_);
   Bvh bvh_{scene_}, flat_bvh_{flat_};
 
-  /// Many of them through vertices, from `origin` or from origins of their own.
+  /// Returns rays, many through vertices, from `origin` or, if null, from different origins.
   std::vector<Ray> rays(int count, const glm::vec3* origin) {
     std::vector<Ray> rays;
     while (static_cast<int>(rays.size()) < count) {

@@ -1,5 +1,5 @@
-// The nearest hit does not depend on the order of reports; two intersectors that differ are told
-// apart.
+// The nearest hit does not depend on the order of reports; CheckIntersector detects intersectors
+// that differ.
 #include "host/intersect/intersector.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace raygate {
 namespace {
 
-/// The cpu intersector, but for what is done to its answers.
+/// A CpuIntersector whose hits `fault` modifies.
 class FaultyIntersector : public CpuIntersector {
  public:
   using Fault = std::function<void(std::span<NearestHit>)>;
@@ -40,7 +40,7 @@ class CheckIntersectorTest : public testing::Test {
     }
   }
 
-  /// What is thrown; nothing where the intersectors agree.
+  /// Returns the message of the exception, or nothing if the intersectors agree.
   std::string complaint(const FaultyIntersector::Fault& fault, const RayQuery& query) {
     CheckIntersector check(bvh_, std::make_unique<FaultyIntersector>(bvh_, fault),
                            test::model_intersector(bvh_));
@@ -83,7 +83,7 @@ TEST_F(CheckIntersectorTest, AnotherTriangleOrDistanceOrNoHitIsThrown) {
   EXPECT_NE(complaint([](auto hits) { hits[3].t = {2.0, 2.0}; }, {}), "");
 }
 
-// Any hit will do, but not one that is beyond.
+// Different hits are accepted if both are nearer than any_hit_before.
 TEST_F(CheckIntersectorTest, OfRaysThatMayEndAnywhereTheAnswerIsWhetherThereIsAHit) {
   const std::vector<float> enough(rays_.size(), 100.0f), little(rays_.size(), 0.01f);
   const auto other = [](auto hits) { hits[3].primitive ^= 1; };
@@ -92,7 +92,7 @@ TEST_F(CheckIntersectorTest, OfRaysThatMayEndAnywhereTheAnswerIsWhetherThereIsAH
   EXPECT_NE(complaint([](auto hits) { hits[3] = {}; }, {.any_hit_before = enough}), "");
 }
 
-// An unscaled direction lost hits in cones once: every intersector refuses it.
+// Cones could miss hits of unscaled directions, so every intersector refuses them.
 TEST_F(CheckIntersectorTest, UnscaledDirectionsAreRefused) {
   CpuIntersector cpu(bvh_);
   const auto unit = test::model_intersector(bvh_);
@@ -113,11 +113,11 @@ Corners at_depth(float z) {
   return {glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)};
 }
 
-/// An interval that says nothing.
+/// Returns a hit whose interval of t decides nothing.
 NearestHit hit_of(std::uint32_t primitive) { return {.primitive = primitive, .t = {0.0, 10.0}}; }
 
-// Five planes: two at the same depth, two an ulp apart, one farther; each order of their reports,
-// as hits with intervals that say nothing and as doubts.
+// Five triangles: two nearest ones at the same depth, two an ulp farther, one far behind. They are
+// reported in every order, as hits whose intervals decide nothing and as doubts.
 TEST(NearestHit, EveryOrderOfReportsGivesTheSame) {
   const float near = 1.0f, beyond = std::nextafter(1.0f, 2.0f);
   const std::vector<Corners> mesh = {at_depth(beyond), at_depth(2), at_depth(near), at_depth(near),
@@ -134,15 +134,15 @@ TEST(NearestHit, EveryOrderOfReportsGivesTheSame) {
       ASSERT_EQ(bvh.triangle_of(best.primitive), 2u);
     }
   } while (std::ranges::next_permutation(primitives).found);
-  // No doubt that is surely farther than a hit is settled: of 120 orders, the two nearest always
-  // are, those an ulp behind in the third in which they come before both, the last one where it is
-  // first.
+  // A doubt is not resolved if it is surely farther than a hit. In the 120 orders, the two nearest
+  // always are resolved, the two an ulp farther if they come before both of these (a third), and
+  // the farthest if it comes first.
   EXPECT_EQ(counters.exact_inside, 2u * 120 + 2u * 40 + 24);
   EXPECT_GT(counters.exact_depth, 0u);
 }
 
-// The end of a ray is open, and exact: a hit an ulp before the limit counts, one at it does not,
-// whatever the interval says.
+// The limit is exclusive and exact: a hit one ulp before it counts, a hit at the limit does not,
+// whatever the interval of t.
 TEST(NearestHit, NothingAtOrBeyondTheLimitCounts) {
   const float limit = 0.7f, before = std::nextafter(limit, 0.0f);
   const Bvh bvh(test::scene_of({at_depth(before), at_depth(limit)}));

@@ -1,5 +1,5 @@
-// The words of records, made in double and in binary32, and the bounds that make their sure answers
-// sure; four records at a time are what they are one by one.
+// Tests the words and bounds of records made in double and in binary32: sure verdicts are right.
+// Records made four at a time equal those made one by one.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -17,7 +17,7 @@ namespace {
 using test::float_dot;
 using test::Random;
 
-/// A triangle and an origin: of any shape, or a sliver, far away, or with an origin near its plane.
+/// An origin and a triangle of any shape; it can be a sliver, far away, or have O near its plane.
 struct View {
   glm::vec3 origin;
   Corners triangle;
@@ -29,7 +29,7 @@ View any_view(Random& random, int kind) {
   FloatCorners t;
   for (glm::vec3& corner : t) corner = random.point() + far;
   if (kind / 2 % 3 == 1) t[2] = glm::mix(t[0], t[1], random.uniform()) + random.point(0x1p-9f);
-  if (kind / 6 % 3 == 1) {  // in the plane, but for roundings and a little more
+  if (kind / 6 % 3 == 1) {  // in the plane, except for roundings and a small random offset
     view.origin = t[0] + (t[1] - t[0]) * random.uniform(-2, 2) +
                   (t[2] - t[0]) * random.uniform(-2, 2) +
                   random.point(std::ldexp(1.0f, -random.below(24)));
@@ -38,7 +38,7 @@ View any_view(Random& random, int kind) {
   return view;
 }
 
-/// From the origin through the triangle, or past an edge of it as near as floats get.
+/// Returns a ray from the origin through the triangle, or past an edge as closely as floats allow.
 Ray aimed(Random& random, const View& view) {
   const Corners& t = view.triangle;
   const double u = random.uniform(0, 1), v = random.below(2) == 0 ? 0.0 : random.uniform(0, 1);
@@ -51,13 +51,13 @@ Ray aimed(Random& random, const View& view) {
 /// Makes records in double (make_record) and in binary32 (set_up).
 struct InDouble {
   static PolygonRecord make(const glm::vec3& o, const Corners& t) { return make_record(o, t); }
-  static constexpr bool kHasSignOfD = true;  // always, exactly
+  static constexpr bool kHasSignOfD = true;  // the sign of d is always exact
 };
 struct InBinary32 {
   static PolygonRecord make(const glm::vec3& o, const Corners& t) {
     return set_up(o, rounded(t)).record;
   }
-  static constexpr bool kHasSignOfD = false;  // or NaN
+  static constexpr bool kHasSignOfD = false;  // d can be NaN
 };
 
 template <class Maker>
@@ -80,8 +80,8 @@ TYPED_TEST(Record, IsWhatThePaperSays) {
   EXPECT_EQ(record.edges[2], glm::cross(glm::vec3(0, 4, 2), glm::vec3(0, 1, 2)));
 }
 
-// Tries to break the bound: the float sum against the exact one, on directions that nearly cancel,
-// where all three roundings happen at the size of the terms.
+// Tries to break the bound: compares float sums with exact ones for directions whose terms nearly
+// cancel, so that all three roundings are as large as those of the terms.
 TYPED_TEST(Record, BoundHolds) {
   double worst = 0.0;
   for (int i = 0; i < 250'000; ++i) {
@@ -101,10 +101,10 @@ TYPED_TEST(Record, BoundHolds) {
     }
   }
   std::cout << "worst error " << worst << " of the bound\n";
-  EXPECT_GT(worst, 0.1);  // the query does reach the neighbourhood of the bound
+  EXPECT_GT(worst, 0.1);  // some cases come near the bound
 }
 
-// Also at scales at which unscaled words would leave float's range.
+// This includes scales at which unscaled words would leave float's range.
 TYPED_TEST(Record, SureAnswersAreRightAtEveryScale) {
   const ReferenceBurstUnit unit;
   long counts[3] = {}, of_known_d = 0;
@@ -132,7 +132,7 @@ TYPED_TEST(Record, SureAnswersAreRightAtEveryScale) {
   EXPECT_GT(of_known_d, 100'000);
 }
 
-// Numbers that no loader lets in: nothing is sure of them, and nothing undefined happens.
+// No loader accepts such numbers. No hit with them is sure, and no behaviour is undefined.
 TYPED_TEST(Record, WhatIsNotFiniteIsNeverSure) {
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float bad : {infinity, -infinity, infinity - infinity}) {
@@ -169,7 +169,7 @@ TEST(PolygonRecord, NeighboursHoldOppositeEdges) {
   }
 }
 
-/// How many floats lie between t and the nearer end of an interval.
+/// Returns the number of floats between t and the nearer end of an interval, 0 if t is inside.
 double floats_between(float t, const Interval& exact) {
   const auto word = [](double x) {
     return static_cast<double>(std::bit_cast<std::uint32_t>(static_cast<float>(x)));
@@ -235,7 +235,7 @@ TEST(RecordBatch, HasTheBitsOfSingleRecordsAndPlanes) {
     for (int i = random.below(9); i >= 0; --i) {
       FloatCorners t = {random.point(size), random.point(size), random.point(size)};
       const int kind = random.below(8);
-      if (kind == 0) t[1] = t[0];                         // no edge
+      if (kind == 0) t[1] = t[0];                         // an edge without length
       if (kind == 1) t[2] = t[0] + 0.5f * (t[1] - t[0]);  // hardly any area
       if (kind == 2) t[0] = origin;
       for (glm::vec3& v : t) {

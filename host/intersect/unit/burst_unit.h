@@ -36,7 +36,7 @@ struct alignas(32) RayBundle {
 };
 
 /// Tests batches of bundles in two steps, so that the unit is busy while the caller prepares
-/// another.
+/// another batch.
 template <class Result>
 class BatchTester {
  public:
@@ -51,7 +51,7 @@ class BatchTester {
   /// Completes the oldest batch and appends its results, in the order of the batch.
   virtual void finish(std::vector<Result>& results) = 0;
 
-  /// Tests a batch if no other one is started.
+  /// Tests a batch in one call. No other batch may be started.
   void run(std::span<const RayBundle> batch, std::vector<Result>& results) {
     start(batch);
     finish(results);
@@ -110,9 +110,9 @@ using BurstResults = std::vector<BurstResult>;
 ///   doubt  otherwise
 ///
 /// The error of t is 2^(6 + e), where e is how far V's exponent is below the largest of N's, or 0
-/// (proof in hw/hit_test/hit_test_pkg.sv). One hit of a burst is kept: the first, which each later
-/// hit with a smaller t replaces. If the distance of two hits, in floats, is at most the sum of
-/// their errors, the one that is not kept is reported as a near tie.
+/// (proof in hw/hit_test/hit_test_pkg.sv). Each burst keeps one hit: its first, until a later hit
+/// with a smaller t replaces it. If a later hit and the kept one are no more floats apart than the
+/// sum of their errors, the hit that is not kept is reported as a near tie.
 class BurstUnit : public BatchTester<BurstResult> {
  public:
   /// Returns statistics since construction, without `unit_tests`. Idle clocks and stalls are
@@ -154,13 +154,13 @@ inline void count(UnitVerdict verdict, HitCounters& counters) {
   counters.edge_doubts += verdict == UnitVerdict::kDoubt;
 }
 
-/// The distance of a hit. At most 2^(6 + error) numbers of the format separate it from the exact t.
+/// A hit's distance: at most 2^(6 + error) numbers of the format lie between t and the exact t.
 struct HitDistance {
   float t = 0.0f;
   std::uint32_t error = 0;
 };
 
-/// Returns the range of a positive t within its error.
+/// Returns the interval of the exact t, from a positive t and its error.
 template <class Math>
 Interval around(const HitDistance& distance, const Math& math) {
   const std::uint32_t word = math.to_word(distance.t), margin = 64u << distance.error;
@@ -198,9 +198,9 @@ class BasicReferenceBurstUnit : public BurstUnit {
     return math_.is_normal(distance.t) ? UnitVerdict::kHit : UnitVerdict::kDoubt;
   }
 
-  /// Returns the verdict of the edges alone; kHit if the triangle is hit provided that it is in
-  /// front of the origin (on the side of d's sign). If d is NaN, edges of opposite signs are a miss
-  /// and everything else is in doubt.
+  /// Returns the verdict of the edges alone. kHit: the triangle is hit, if it is in front of the
+  /// origin (on the side of d's sign). If d is NaN, edges of opposite signs are a miss and
+  /// everything else is in doubt.
   [[nodiscard]] UnitVerdict edges_verdict(const PolygonRecord& record,
                                           const glm::vec3& direction) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();

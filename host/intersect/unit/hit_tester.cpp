@@ -9,8 +9,8 @@
 namespace raygate {
 namespace {
 
-/// Returns the bundle of a unit's result. Throws std::runtime_error if there is none, or if it has
-/// no such lane or record, which means that the unit is broken.
+/// Returns the bundle of a unit's result. Throws std::runtime_error if the bundle, its lane or its
+/// record does not exist, which means that the unit is broken.
 const RayBundle& bundle_of(const BurstResult& result, std::span<const RayBundle> batch) {
   if (result.bundle >= batch.size() || result.lane >= kLanes ||
       result.record >= batch[result.bundle].record_count) {
@@ -86,7 +86,7 @@ void SerialHitTester::finish(HitReports& reports) {
   points_.resize(plane_tests_.size());
   unit_->intersect(plane_tests_, points_);
   counters_.plane_tests += plane_tests_.size();
-  std::size_t first = reports.size();  // of the burst
+  std::size_t first = reports.size();  // index of the burst's first report
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const auto& [index, lane, number, verdict] = pairs_[i];
     if (i != 0 && (pairs_[i - 1].bundle != index || pairs_[i - 1].lane != lane)) {

@@ -18,26 +18,26 @@ struct HitReport {
   std::uint32_t bundle = 0;  ///< index into the batch
   std::uint32_t lane = 0;
   bool is_sure = false;  ///< a hit in front of the origin; otherwise exact arithmetic decides
-  /// `primitive` is the tag. P has the unit's bits, and is valid if it is a hit. `t` is valid if
-  /// the hit is sure; high = +infinity if binary32 gives no bound.
+  /// `primitive` is the tag. P has the unit's bits, and is valid if the triangle is hit. `t` is
+  /// valid if the hit is sure; t.high = +infinity if binary32 gives no bound.
   NearestHit hit;
 };
 
-/// Reports of a batch. Bursts without a hit or doubt have none; other bursts have one sure hit, or
-/// several that binary32 cannot order, and their doubts.
+/// Reports of a batch: of each burst its doubts and its nearest sure hit, or several sure hits that
+/// binary32 cannot order.
 using HitReports = std::vector<HitReport>;
 
-/// Tests batches with a hit-test unit. Each thread has its own.
+/// Tests batches with a hit-test unit. Each thread has its own tester.
 ///
-/// In exact arithmetic on the records' coordinates, a sure hit is a hit, and a pair that is not
+/// In exact arithmetic on the records' coordinates, a sure hit is a hit, and a test that is not
 /// reported is a miss or farther than a sure hit of its burst. Engines may differ in the doubts.
 class HitTester : public BatchTester<HitReport> {
  public:
   [[nodiscard]] virtual HitCounters counters() const = 0;
 };
 
-/// The pipelined unit decides everything except doubts. P and t of doubts and near ties are
-/// computed here by the same formulas.
+/// The pipelined unit decides everything except doubts. Software computes P of doubts and near
+/// ties, and t of near ties, by the same formulas.
 class PipelineHitTester : public HitTester {
  public:
   explicit PipelineHitTester(std::unique_ptr<BurstUnit> unit) : unit_(std::move(unit)) {}

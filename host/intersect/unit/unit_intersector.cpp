@@ -147,7 +147,7 @@ class UnitIntersector : public Intersector {
     return tests;
   }
 
-  /// Makes the records of a batch, all at once, as bundles point to them.
+  /// Makes the records of a batch, in a vector of the final size, as bundles point into it.
   void make_records_of(Half& half) {
     std::size_t count = 0;
     for (const RayBundle& bundle : half.batch) count += bundle.record_count;
@@ -172,7 +172,7 @@ class UnitIntersector : public Intersector {
     return packets_[half.owner[report.bundle]].rays[report.lane];
   }
 
-  /// Resolves a report, and shortens or ends the ray if it is the nearest hit.
+  /// Resolves a report. If that is the nearest hit so far, shortens or ends the ray.
   void offer(const Half& half, const HitReport& report) {
     Packet& packet = packets_[half.owner[report.bundle]];
     const std::uint32_t number = ray_of(half, report);
@@ -189,8 +189,8 @@ class UnitIntersector : public Intersector {
     packet.traversal.set_cutoff(static_cast<int>(report.lane), ends ? -1.0 : hits_[number].t.high);
   }
 
-  /// Tests all other triangles of the bundle exactly if its hit is ignored, since a burst does not
-  /// report hits that are surely farther than another one.
+  /// Tests all other triangles of the bundle exactly after a sure hit was ignored, since a burst
+  /// does not report hits that are surely farther than another.
   void offer_hidden(const Half& half, const HitReport& ignored) {
     const RayBundle& bundle = half.batch[ignored.bundle];
     if (ignored.hit.t.low >= query_.t_max_of(ray_of(half, ignored))) return;
@@ -201,7 +201,7 @@ class UnitIntersector : public Intersector {
     }
   }
 
-  /// Takes sure hits first: most doubts are then surely too far away.
+  /// Offers sure hits first, so that most doubts are surely farther and need no exact arithmetic.
   void merge(const Half& half) {
     for (const bool is_sure : {true, false}) {
       for (const HitReport& report : reports_) {

@@ -1,4 +1,4 @@
-// A square of two triangles, and a ray exactly through their shared edge: exactly one is hit.
+// A ray exactly through the shared edge of a square's two triangles hits exactly one of them.
 #include <raygate/raygate.h>
 
 #include <cstdio>

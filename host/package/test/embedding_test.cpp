@@ -1,4 +1,4 @@
-// What EMBEDDING.md promises to programs that have the library in them.
+// Tests the guarantees of EMBEDDING.md for programs that embed the library.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -21,8 +21,8 @@
 
 namespace {
 
-// Allocations of this program: how many are alive, and after how many more one fails (below 0: none
-// does).
+// The number of live allocations of this program, and the number of allocations until one fails
+// (below 0: none fails).
 std::atomic<std::int64_t> alive = 0, left = -1;
 
 void* allocate(std::size_t size, std::size_t alignment) {
@@ -66,7 +66,7 @@ struct Case {
   }
 };
 
-/// Triangles of the nearest hits.
+/// Returns the triangles of the nearest hits.
 std::vector<std::uint32_t> nearest(const Tracer& tracer, const std::vector<Tracer::Ray>& rays) {
   std::vector<Tracer::Hit> hits(rays.size());
   tracer.nearest(rays, hits);
@@ -146,7 +146,7 @@ TEST(Embedding, RefusesUnknownVectors) {
     EXPECT_THROW((void)nearest(Tracer(all.triangles), all.rays), std::runtime_error);
     return;
   }
-  EXPECT_TRUE(in_child([] {  // this test again, in a process that has not asked yet
+  EXPECT_TRUE(in_child([] {  // this test again, in a process that has not read the variable yet
     ::setenv("RAYGATE_VECTORS", "foo", 1);
     ::execl("/proc/self/exe", "embedding_test", "--gtest_filter=Embedding.RefusesUnknownVectors",
             "--gtest_brief=1", nullptr);
@@ -164,8 +164,8 @@ TEST(Embedding, WorksInAChildAfterFork) {
   }));
 }
 
-/// Lets each allocation of `work` fail in turn: it throws std::bad_alloc, and all that it took is
-/// given back. How many there were.
+/// Lets each allocation of `work` fail in turn. Expects that `work` then throws std::bad_alloc and
+/// frees all its memory. Returns the number of allocations.
 template <class Work>
 int fail_each(const Work& work) {
   for (int count = 0;; ++count) {

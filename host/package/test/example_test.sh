@@ -1,6 +1,6 @@
 #!/bin/sh
 # example_test.sh SOURCES BUILD CMAKE: installs the library of a build into a clean folder, builds the
-# example from that alone, and compares what it prints. Then: the library configures by itself, too.
+# example from that alone, and compares its output. Then configures the library by itself.
 set -eu
 sources=$1 build=$2 cmake=$3
 folder=$(mktemp -d)

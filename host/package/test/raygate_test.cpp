@@ -1,4 +1,4 @@
-// The installed header's promises, against rationals.
+// Compares results of the installed header's interface with rationals.
 #include "host/package/raygate.h"
 
 #include <gmpxx.h>
@@ -25,7 +25,7 @@ namespace {
 
 using Point = Tracer::Point;
 
-/// A cube of 12 triangles whose corners are at 1 and -1.
+/// Returns a cube of 12 triangles, with corners at 1 and -1 on each axis.
 std::vector<Tracer::Triangle> cube() {
   std::vector<Tracer::Triangle> triangles;
   for (int axis = 0; axis < 3; ++axis) {
@@ -101,7 +101,7 @@ TEST(Tracer, SaysWhatRationalsSay) {
   EXPECT_GT(limited, 50u);
 }
 
-/// All that a Tracer on two threads says of triangles and rays.
+/// Returns all results of a Tracer, built on two threads, for triangles and rays.
 std::vector<double> answers(std::span<const Tracer::Triangle> triangles,
                             std::span<const Tracer::Ray> rays) {
   const Tracer tracer(triangles, 2);
@@ -120,12 +120,12 @@ std::vector<double> answers(std::span<const Tracer::Triangle> triangles,
   return said;
 }
 
-// What other libraries do to a thread's arithmetic changes no answer, and is there again
-// afterwards.
+// A thread's state of arithmetic, which other libraries may change, changes no result, and is
+// restored afterwards.
 TEST(Tracer, AnswersInAnyStateOfTheThread) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> any(-1.0f, 1.0f);
-  for (const float size : {1.0f, 1e-40f}) {  // of the second, coordinates are subnormal
+  for (const float size : {1.0f, 1e-40f}) {  // coordinates of size 1e-40 are subnormal
     const auto point = [&](float scale) {
       return Point{scale * any(random), scale * any(random), scale * any(random)};
     };
@@ -166,7 +166,7 @@ TEST(Tracer, AnswersInAnyStateOfTheThread) {
   }
 }
 
-// A ray along an edge that is 2^-126 high at the triangle, and the floats next to that.
+// Rays through an edge at height 2^-126 of the triangle, and rays an ulp above and below.
 TEST(Tracer, RoundsWhatUnderflowsAndNothingElse) {
   const float edge = 0x1p-126f;
   const Tracer::Triangle triangle = {{{1, edge, -1}, {1, 1, 0}, {1, edge, 1}}};
@@ -187,8 +187,8 @@ TEST(Tracer, RoundsWhatUnderflowsAndNothingElse) {
     EXPECT_NE(truth(above), truth(0.0f));
     EXPECT_EQ(triangle_at(above), truth(above)) << exponent;
     EXPECT_EQ(triangle_at(along), truth(along)) << exponent;
-    // The float below that is half of 2^-149 away where it is no subnormal, and rounded to even:
-    // up.
+    // If it is not subnormal, the float below is half of 2^-149 away after scaling, and rounded to
+    // even: up.
     const float below = std::nextafter(along, 0.0f);
     EXPECT_EQ(triangle_at(below), truth(exponent > 0 ? along : below)) << exponent;
     const float end = std::ldexp(1.0f, -exponent);  // t of the hit

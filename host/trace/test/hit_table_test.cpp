@@ -1,4 +1,4 @@
-// What is said of hits, where it is easy to say something odd.
+// Special cases of the rows for hits.
 #include "host/trace/hit_table.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(HitTable, SharesOfCornersAreNeverNegative) {
   test::Random random;
   RayTable block;
   std::vector<RayHit> found;
-  for (int i = 0; i < 2000; ++i) {  // at corners and edges, where a share is 0
+  for (int i = 0; i < 2000; ++i) {  // at corners and edges, where u, v or 1 - u - v is 0
     const Triangle& aim = scene.triangles[static_cast<std::size_t>(random.below(320))];
     glm::dvec3 target(scene.positions[aim.vertices[0]]);
     if (i % 2 == 0) target = 0.5 * (target + glm::dvec3(scene.positions[aim.vertices[1]]));

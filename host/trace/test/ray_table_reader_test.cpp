@@ -1,4 +1,4 @@
-// Tables of rays: what is read, and what is said of those that cannot be.
+// Reads tables of rays, and reports errors in invalid ones.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ class Table : public testing::Test {
     return all;
   }
 
-  /// What comes after the file's name.
+  /// Returns the error message for a table without the file's name.
   std::string refusal(const std::string& bytes) {
     const std::string error = folder_.error_of([&] { read_all(bytes); });
     EXPECT_TRUE(error.starts_with("rays")) << error;
@@ -48,7 +48,7 @@ TEST_F(Table, OfText) {
   EXPECT_EQ(rays.rays[0].origin, glm::vec3(1.0f, 2.0f, 3.0f));
   EXPECT_EQ(rays.rays[0].direction, glm::vec3(0.0f, 0.0f, -1.0f));
   EXPECT_EQ(rays.limits[0], kInfinity);
-  // 3 = 1.5 * 2: t of the scaled ray is twice the file's.
+  // 3 = 1.5 * 2, so t of the scaled ray is twice the t of the file's ray.
   EXPECT_EQ(rays.rays[1].direction, glm::vec3(1.5f, 0.0f, 0.0f));
   EXPECT_EQ(rays.exponents[1], -1);
   EXPECT_EQ(rays.limits[1], 4.0f);
@@ -121,7 +121,7 @@ TEST(RayTable, CountsEachRayOnce) {
   table.add({1, 0, 0}, {1, 0, 0}, kInfinity, {});
   table.add({0.1, 0, 0}, {1, 0, 0}, kInfinity, {});          // rounded by round()
   table.add({0.1, 0, 0}, {1, 0, 0}, 0.1, {});                // limits are kept
-  table.add({0, 0, 0}, {1e300, 1e-300, 0}, kInfinity, {});   // what becomes 0 counts
+  table.add({0, 0, 0}, {1e300, 1e-300, 0}, kInfinity, {});   // 1e-300 becomes 0
   table.add({0, 0, 0}, {1e-300, 1e-300, 0}, kInfinity, {});  // scaled exactly
   EXPECT_EQ(table.rounded, 1u);
   table.round();

@@ -1,5 +1,5 @@
-// Damaged tables of rays: what comes out can be traced, or one line says what is wrong; and no
-// table takes memory.
+// Rays of damaged tables can be traced, or the table is refused with one line. Large tables do not
+// take much memory.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -24,7 +24,7 @@ constexpr std::string_view kCsv =
 constexpr const char* kSplinters[] = {"1e38", "1e39", "-0", ",", ",,",   "\n",   "\r",
                                       "#",    " ",    "--", "+", "0x10", "\xFF", "'"};
 
-/// What reading a table ends in: its rays, or what is wrong.
+/// The result of reading a table: its rays, or an error.
 struct Outcome {
   std::vector<Ray> rays;
   std::vector<double> limits;
@@ -54,7 +54,7 @@ class DamagedRays : public testing::Test {
     return outcome;
   }
 
-  int file_ = memfd_create("rays", 0);  // of no disk: thousands are written
+  int file_ = memfd_create("rays", 0);  // in memory, as thousands of tables are written
   std::filesystem::path path_ = "/proc/self/fd/" + std::to_string(file_);
   test::Damage damage_{20261122, kSplinters};
 };
@@ -86,7 +86,7 @@ TEST_F(DamagedRays, CanBeTracedOrAreRefused) {
   EXPECT_GT(refused, 1000);
 }
 
-/// What this process has held at once so far, in bytes.
+/// Returns the peak memory use of this process so far, in bytes.
 long most_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -99,7 +99,7 @@ TEST_F(DamagedRays, LargeOnesTakeNoMemory) {
   write("0,0,0,0,0,1\n");
   (void)read(1 << 14);
   const long before = most_memory();
-  // Zeros without an end of line.
+  // Zero bytes without an end of line.
   ASSERT_EQ(ftruncate(file_, kLarge), 0);
   EXPECT_NE(read(1 << 14).error.find(":2: found a line of over 1,000,000 bytes"),
             std::string::npos);

@@ -1,4 +1,4 @@
-// Tracing of tables: what is in memory at a time.
+// Traces tables in limited memory.
 #include "host/trace/tracer.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace raygate {
 namespace {
 
-// Rows of all hits of a block may be more than memory holds.
+// The rows of all hits of a block may exceed memory.
 TEST(Trace, WritesTheRowsOfABlockBitByBit) {
   constexpr std::size_t kSheets = 200, kRays = 3000, kRow = 16;
   std::vector<Corners> sheets;

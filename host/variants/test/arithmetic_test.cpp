@@ -1,4 +1,4 @@
-// The emulated arithmetic against the machine's, and in narrow formats against its definition.
+// Compares the emulated arithmetic with the machine's and, in narrow formats, with its definition.
 #include "host/variants/arithmetic.h"
 
 #include <gmpxx.h>
@@ -16,7 +16,7 @@ namespace {
 
 using lab::Random;
 
-/// Any finite float, exponents near one another more often than not.
+/// Returns a finite float. The exponents of most floats are near each other.
 float any_float(Random& random) {
   if (random.one_in(4)) {
     const auto bits = static_cast<std::uint32_t>(random.uniform(0, 0x1p32));
@@ -41,7 +41,7 @@ TEST(Arithmetic, OfAllDigitsIsTheMachines) {
   }
 }
 
-/// `result` is the float of `digits` digits nearest to `exact` (or next towards zero).
+/// Expects the float of `digits` digits that is nearest to `exact` (or next towards zero).
 void expect_rounded(float result, const mpq_class& exact, int digits, Rounding rounding) {
   if (exact == 0 || !std::isnormal(result)) return;
   const double ulp = std::ldexp(1.0, std::ilogb(result) - digits + 1);
@@ -73,7 +73,7 @@ TEST(Arithmetic, OfFewDigitsRoundsOnce) {
   }
 }
 
-// The paper's worked example: 21 digits, cut off. 1.75 * 3.3125 / 59.225830078125.
+// The paper's worked example, 1.75 * 3.3125 / 59.225830078125 and so on, truncated to 21 digits.
 TEST(Arithmetic, QuotientsOfThePaper) {
   const Arithmetic math{.quotient_digits = 21};
   EXPECT_EQ(bits(math.divide(5.796875f, 59.225830078125f)), 0x3DC873F8u);
@@ -98,7 +98,7 @@ TEST(Arithmetic, RoundedOnceIsTheNearestToTheExactDotProduct) {
         a[k] = math.read(any_float(random) * 0x1p-60f);
         b[k] = math.read(static_cast<float>(random.uniform(-2, 2)));
       }
-      if (random.one_in(2)) {  // the first two cancel, but for little or nothing
+      if (random.one_in(2)) {  // the first two products cancel, exactly or nearly
         a.y = -a.x;
         b.y = random.one_in(2) ? b.x : math.read(std::nextafter(b.x, 4.0f));
         a.z = std::ldexp(a.z, -20);
@@ -113,7 +113,7 @@ TEST(Arithmetic, RoundedOnceIsTheNearestToTheExactDotProduct) {
   }
 }
 
-/// Every bit of every result, against the cores of hw/fp, Verilated.
+/// Compares every bit of every result with the Verilated cores of hw/fp.
 TEST(Arithmetic, IsTheHardwares) {
   int compared = 0;
   for (const FloatFormat format : {kBinary32, kBinary16, kBfloat16, kFloat8}) {

@@ -51,7 +51,7 @@ Case hard_case(Random& random) {
   return c;
 }
 
-/// One test: a bundle of one ray and one record.
+/// Runs one test, as a bundle of one ray and one record.
 HitReports test(HitTester& tester, const Case& c, const PolygonRecord& record) {
   RayBundle bundle;
   for (int k = 0; k < 3; ++k) bundle.direction[k][0] = c.ray.direction[k];
@@ -106,7 +106,7 @@ TEST(VariantHitTester, IsOftenWrongWhereTheyAreIgnored) {
 }
 
 TEST(VariantHitTester, IgnoringDoubtsKeepsTheNearestOfABurst) {
-  // Three parallel triangles across the axis, the nearest one in the middle, two equally far.
+  // Three parallel triangles across the axis: a farther one, then two at the same distance.
   std::vector<PolygonRecord> records;
   for (const float z : {3.0f, 2.0f, 2.0f}) {
     const Corners triangle = {glm::vec3(-1, -1, z), glm::vec3(1, -1, z), glm::vec3(0, 1, z)};
@@ -139,7 +139,7 @@ TEST(VariantRecord, OfFewExponentsIsScaledIntoThem) {
     EXPECT_TRUE(top >= 1.0f && top <= 2.0f);
     EXPECT_TRUE(std::isfinite(record.bounds[k]));
   }
-  // Out of its range: all in doubt.
+  // Numbers out of the format's range put every edge in doubt.
   const PolygonRecord lost = variant_record(half, make_record(glm::vec3(-1e6f, 0, 0), triangle));
   for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isinf(lost.bounds[k]));
 }

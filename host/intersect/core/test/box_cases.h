@@ -1,4 +1,4 @@
-// Nodes and rays that try the box unit: from plain ones to those at the ends of binary32.
+// Test nodes and rays for the box unit, from ordinary ones to the limits of binary32.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,13 @@ namespace raygate {
 /// A node, and a ray towards it.
 struct BoxCase {
   NodeLine node;
-  Ray ray;  ///< scaled; what the unit reads of it is `read()`
+  Ray ray;  ///< scaled; read() returns the fields that the unit reads
   float limit = std::numeric_limits<float>::infinity();
 
   [[nodiscard]] BoxRay read() const { return {ray.origin, 1.0f / ray.direction, limit}; }
 };
 
-/// Always the same cases for the same seed.
+/// Generates cases. Equal seeds give equal cases.
 class BoxCases {
  public:
   explicit BoxCases(std::uint32_t seed) : random_(seed) {}
@@ -43,7 +43,7 @@ class BoxCases {
         child.high[k] = one_in(6) ? child.low[k] : std::max(a, b);
       }
     }
-    // Through a point of a box, as a rule one on its border, from any distance; or within a plane.
+    // Mostly through a corner of a box, from any distance; sometimes parallel to a plane.
     const NodeLine::Child& aim = node.child[random_() % NodeLine::kChildren];
     const float distance = std::ldexp(1.0f, one_in(8) ? between(-20, 20) : between(-2, 3));
     for (int k = 0; k < 3; ++k) {
@@ -84,7 +84,7 @@ class BoxCases {
  private:
   bool one_in(unsigned n) { return random_() % n == 0; }
   int between(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
-  /// From -1 to 1, often a short one.
+  /// Returns a number in [-1, 1], often a multiple of 1/8.
   float number() {
     const auto bits = static_cast<float>(between(-(1 << 23), 1 << 23));
     return one_in(4) ? std::ldexp(static_cast<float>(between(-8, 8)), -3) : std::ldexp(bits, -23);

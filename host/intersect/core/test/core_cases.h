@@ -1,4 +1,4 @@
-// A scene and rays that try a ray core.
+// A scene and rays to test ray cores with.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace raygate::test {
 
-/// Bodies of which one is flat, one much too large and one far away.
+/// Returns a sphere, a large box around it, a flat box and a far box.
 inline std::vector<Corners> bodies() {
   std::vector<Corners> mesh = sphere(2);
   for (const auto& part :
@@ -18,7 +18,7 @@ inline std::vector<Corners> bodies() {
   return mesh;
 }
 
-/// Some go through corners, some along an axis, some from a common origin.
+/// Returns rays, some through vertices, some along an axis, some with a common origin.
 inline std::vector<Ray> some_rays(const std::vector<Corners>& mesh, Random& random, int count) {
   std::vector<Ray> rays;
   const glm::vec3 shared = random.point(2.5f);

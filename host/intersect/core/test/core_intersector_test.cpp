@@ -1,6 +1,6 @@
-// Rays through a core, its reference model, find what CpuIntersector finds, bit for bit; an exact
-// core resolves every doubt, so that the host decides nothing. The box unit leaves out no box that
-// a ray exactly enters, by rationals.
+// The reference model of the ray core finds the hits of CpuIntersector, bit for bit. With an exact
+// core the host resolves no doubts. The box unit omits no box that a ray enters in rational
+// arithmetic.
 #include "host/intersect/core/core_intersector.h"
 
 #include <gmpxx.h>
@@ -37,7 +37,7 @@ class CoreIntersectorTest : public testing::Test {
  protected:
   explicit CoreIntersectorTest(std::vector<Corners> mesh = bodies()) : mesh_(std::move(mesh)) {}
 
-  /// Throws where the two differ.
+  /// Throws EngineMismatch if the core's hits differ from CpuIntersector's.
   void check(const std::vector<Ray>& rays, const RayQuery& query, int stack_depth,
              bool exact = false) {
     auto unit = std::make_unique<ReferenceCore>(stack_depth, exact);
@@ -53,7 +53,7 @@ class CoreIntersectorTest : public testing::Test {
     EXPECT_TRUE(!exact || host.exact_inside + host.exact_depth == 0u);
   }
 
-  /// Of a triangle of the mesh.
+  /// Returns the primitive index of a triangle of the mesh.
   [[nodiscard]] std::uint32_t primitive_of(std::size_t triangle) const {
     std::uint32_t primitive = 0;
     while (bvh_.triangle_of(primitive) != triangle) ++primitive;
@@ -103,7 +103,7 @@ TEST_F(CoreIntersectorTest, LimitsIgnoredTrianglesAndFirstHitsCount) {
   EXPECT_LT(counters_.nodes, nodes);
 }
 
-// Next to the plane float32 cannot tell on which side the origin is: each such ray has a doubt.
+// float32 cannot tell on which side of a plane a very near origin is, so each ray has a doubt.
 TEST_F(CoreIntersectorTest, TheTriangleThatARayLeavesIsNoDoubt) {
   std::vector<Ray> rays;
   std::vector<std::uint32_t> sources;
@@ -132,12 +132,12 @@ TEST_F(CoreIntersectorTest, TheWorkOfEachRayIsCounted) {
   EXPECT_EQ(tests, counters_.tests);
 }
 
-/// Every hit is a tie.
+/// Tests with a mesh in which every hit is a tie.
 class ExactCoreTest : public CoreIntersectorTest {
  protected:
   ExactCoreTest() : CoreIntersectorTest(doubled()) {}
 
-  /// The bodies, each triangle twice, its corners in another order.
+  /// Returns the bodies, then all of their triangles again with the corners in another order.
   static std::vector<Corners> doubled() {
     std::vector<Corners> mesh = test::bodies();
     const std::size_t count = mesh.size();
@@ -160,7 +160,7 @@ TEST_F(ExactCoreTest, LimitsSkippedTrianglesFirstHitsAndSourcesCount) {
   std::vector<float> limits;
   std::vector<std::uint32_t> skipped;
   for (const NearestHit& hit : nearest) {
-    // Mostly at the hit, within a few floats: on this side of it, on that one, or there.
+    // Mostly at the hit or within a few floats on either side.
     float limit = 1.0f;
     if (hit.primitive != NearestHit::kNone) {
       limit =
@@ -189,7 +189,7 @@ TEST_F(ExactCoreTest, LimitsSkippedTrianglesFirstHitsAndSourcesCount) {
   check(rays, {.t_max = limits, .source_ids = sources}, 8, true);
 }
 
-/// A sure hit has t within its bound, whoever settled it; what float32 has no t for says so.
+/// t is within its error bound, also for hits found exactly; kNoT marks hits without t in float32.
 TEST_F(ExactCoreTest, DistancesHoldTheirBounds) {
   const std::vector<Ray> rays = some_rays(mesh_, random_, 5'000);
   ReferenceCore core(ReferenceCore::kStackDepth, true);
@@ -217,7 +217,7 @@ TEST_F(ExactCoreTest, DistancesHoldTheirBounds) {
   EXPECT_GT(with, 3'000);
 }
 
-/// A core before a memory that lacks its last line, or whose root is below itself.
+/// A core whose memory lacks its last line; if `cyclic`, the root is also below itself.
 class BrokenMemory : public ReferenceCore {
  public:
   explicit BrokenMemory(bool cyclic) : cyclic_(cyclic) {}
@@ -240,7 +240,7 @@ class BrokenMemory : public ReferenceCore {
 
 TEST_F(CoreIntersectorTest, ErrorsOfTheCoreAreInputErrors) {
   std::vector<Ray> rays = some_rays(mesh_, random_, 100);
-  // One that begins close to the triangle of the last line.
+  // A ray that starts close to the triangle of the last line.
   const Corners t = widened(TriangleLine(image_->lines().back()).corners);
   const glm::dvec3 normal = glm::normalize(triangle_normal(t));
   rays.push_back(
@@ -285,7 +285,7 @@ TEST(MemoryImage, LinesHoldWhatTheyAreMadeOf) {
   EXPECT_EQ(NodeLine(node.line()).base, 0x8000001u);
 }
 
-/// Says a word about the first ray that it is given.
+/// A core that returns the same result for all rays.
 class WildCore : public CoreUnit {
  public:
   explicit WildCore(const CoreResult& word) : word_(word) {}
@@ -317,9 +317,9 @@ TEST_F(CoreIntersectorTest, RefusesWordsAboutWhatItDidNotGive) {
   }
 }
 
-/// Where the ray, 0 <= t <= limit, is in the child's box; `first` becomes the smallest such t.
+/// Returns whether the ray, for 0 <= t <= limit, meets the child's box; `first` is the smallest t.
 bool enters(const BoxCase& box, const NodeLine::Child& child, mpq_class& first) {
-  mpq_class low = 0, high = -1;  // -1: no end
+  mpq_class low = 0, high = -1;  // -1: no limit
   if (std::isfinite(box.limit)) high = mpq_class(box.limit);
   for (int k = 0; k < 3; ++k) {
     const auto at = static_cast<std::size_t>(k);
@@ -382,7 +382,7 @@ TEST(ReferenceBoxUnit, LeavesOutNoBoxThatARayEnters) {
   }
   EXPECT_EQ(most, 7u);
   EXPECT_GT(entered, boxes / 16);
-  EXPECT_LT(given, entered + boxes / 16);  // nor does it take in all that there are
+  EXPECT_LT(given, entered + boxes / 16);  // few false hits
 }
 
 }  // namespace

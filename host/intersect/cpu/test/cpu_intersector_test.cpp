@@ -1,6 +1,6 @@
-// The CPU intersector finds what batches of the reference model find, the bits of P included, and
-// in exact arithmetic the nearest; the same with all vectors, in packets and ray by ray. All hits
-// are those of rationals.
+// CpuIntersector finds the hits of the unit's reference model, with the same bits of P, in packets
+// and ray by ray, with all vectors. Ties and limits are exact. all_hits() finds the hits of
+// rational arithmetic.
 #include "host/intersect/cpu/cpu_intersector.h"
 
 #include <gtest/gtest.h>
@@ -20,14 +20,14 @@ namespace {
 
 using test::Random;
 
-/// With a common origin (packets) and without (ray by ray).
+/// Parameter: whether all rays have a common origin (packets) or not (ray by ray).
 class CpuIntersectorTest : public testing::TestWithParam<bool> {
  protected:
   const Corners& any(const std::vector<Corners>& mesh) {
     return mesh[random_.below(static_cast<int>(mesh.size()))];
   }
 
-  /// A point of a triangle: a corner, the middle of an edge, or that of the triangle.
+  /// Returns a corner of the triangle, the middle of an edge, or the middle of the triangle.
   glm::dvec3 middle(const Corners& t) {
     const int corners = 1 + random_.below(3);
     glm::dvec3 sum(0.0);
@@ -35,8 +35,8 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
     return sum / static_cast<double>(corners);
   }
 
-  /// Rays, some aimed at corners and edges, then some that hit nothing at all. Common origin: a fan
-  /// of any width; otherwise from anywhere, some from corners or nearly on triangles.
+  /// Returns rays, some aimed at corners and edges; the last ones have unusable directions. Rays of
+  /// a common origin are a fan of any width; others start anywhere, some at or nearly on triangles.
   std::vector<Ray> some_rays(const std::vector<Corners>& mesh, float size, int count) {
     const glm::vec3 eye = random_.point(2.0f * size), target = random_.point(size);
     const float width = GetParam() ? std::ldexp(size, -random_.below(12)) : size;
@@ -63,8 +63,8 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
     return rays;
   }
 
-  /// Expects the hits of the reference model, the same bits with all vectors, and counts that add
-  /// up. Returns the number of hits.
+  /// Expects the hits of the reference model, the same bits with all vectors, and consistent
+  /// counts. Returns the number of hits.
   int compare(const Bvh& bvh, const std::vector<Ray>& rays, RayQuery query) {
     query.common_origin = GetParam();
     std::vector<NearestHit> expected(rays.size()), first;
@@ -155,7 +155,7 @@ class CpuIntersectorTest : public testing::TestWithParam<bool> {
   }
 
   Random random_;
-  std::uint64_t tests_ = 0;  // of all that was compared
+  std::uint64_t tests_ = 0;  // sum over all comparisons
 };
 
 INSTANTIATE_TEST_SUITE_P(CommonOrigin, CpuIntersectorTest, testing::Values(false, true));
@@ -181,8 +181,8 @@ TEST_P(CpuIntersectorTest, FindsWhatBatchesFindAtAnyScale) {
   }
 }
 
-// Rays that hit at exactly their limit do not hit, and those that hit two triangles at once hit the
-// lower one.
+// A hit exactly at the limit does not count, and of two hits at equal t the lower triangle index
+// is reported.
 TEST(CpuIntersector, LimitsAndTiesAreExact) {
   const Corners wall = {glm::vec3(-4, -4, 3), glm::vec3(4, -4, 3), glm::vec3(0, 4, 3)};
   const Bvh bvh(test::scene_of({wall, wall}));
@@ -199,14 +199,14 @@ TEST(CpuIntersector, LimitsAndTiesAreExact) {
 
 class AllHits : public testing::Test {
  protected:
-  /// Compares some rays through a mesh of about that size; returns the number of hits.
+  /// Compares some rays' hits in a mesh of about this `size`; returns the number of hits.
   std::size_t compare(const std::vector<Corners>& mesh, float size, int rays) {
     const Bvh bvh(test::scene_of(mesh));
     std::size_t count = 0;
     for (int i = 0; i < rays; ++i) {
       Ray ray{random_.point(1.5f * size), glm::vec3(0.0f)};
       const Corners& aim = mesh[random_.below(static_cast<int>(mesh.size()))];
-      const int kind = random_.below(4);  // at a corner, an edge, an inside, anywhere
+      const int kind = random_.below(4);  // aim: a corner, an edge, an inside, anywhere
       glm::dvec3 target(0.0);
       for (int v = 0; v <= std::min(kind, 2); ++v) {
         target += glm::dvec3(aim[v]) / (std::min(kind, 2) + 1.0);

@@ -1,5 +1,5 @@
-// What float32 calls sure is so in exact arithmetic, however hard rays and triangles make it: of
-// tests of rays, and of records.
+// Sure verdicts of float32 agree with exact arithmetic on difficult rays and triangles, for
+// test_quad and for QuadRecord.
 #include "host/intersect/cpu/quad_test.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ enum Parts { kNone = 0, kCorners = 1, kOrigin = 2, kDirection = 4, kAll = 7 };
 /// Parameter: which parts are rounded from binary64.
 class Quads : public testing::TestWithParam<int> {
  protected:
-  /// Returns a position that rounds to this one, if this part is rounded.
+  /// Returns a binary64 position that rounds to `position` if `part` is rounded, else `position`.
   glm::dvec3 spread(const glm::vec3& position, Parts part) {
     glm::dvec3 exact(position);
     for (int k = 0; k < 3 && (GetParam() & part) != 0; ++k) {
@@ -30,7 +30,7 @@ class Quads : public testing::TestWithParam<int> {
     return exact;
   }
 
-  /// The corners in the format of test_quad, with anything behind them.
+  /// Returns the corners in the format of test_quad, followed by arbitrary numbers.
   std::vector<float> words_of(const std::vector<Corners>& triangles) {
     const std::size_t count = triangles.size();
     std::vector<float> words(9 * count + kQuad, random_.uniform());
@@ -44,7 +44,7 @@ class Quads : public testing::TestWithParam<int> {
     return words;
   }
 
-  /// Up to four triangles around a point, some with hardly any area, some parallel to an axis.
+  /// Returns up to four triangles around a point, some with hardly any area or parallel to an axis.
   std::vector<Corners> some_triangles(float size) {
     const float smaller = std::ldexp(1.0f, -random_.below(20));
     const glm::vec3 middle = random_.point(size);
@@ -70,7 +70,7 @@ class Quads : public testing::TestWithParam<int> {
     return {origin, scaled_direction(way == glm::dvec3(0.0) ? glm::dvec3(1.0, 0.0, 0.0) : way)};
   }
 
-  /// A point of the triangle's plane, near or on an edge as often as not.
+  /// Returns a point of the triangle's plane, often near or on an edge.
   glm::dvec3 aim_at(const Corners& t) {
     const auto& [a, b, c] = t;
     const auto near_zero = [&] {
@@ -91,7 +91,7 @@ class Quads : public testing::TestWithParam<int> {
   Random random_;
 };
 
-/// Verdicts on rays and triangles against the exact ones.
+/// Compares verdicts on rays and triangles with the exact ones.
 class QuadTest : public Quads {
  protected:
   void expect_right(const Ray& given, const std::vector<Corners>& triangles) {
@@ -137,7 +137,7 @@ TEST_P(QuadTest, IsRightWhereItIsSure) {
     const std::vector<Corners> triangles = some_triangles(size);
     const Corners& aimed = triangles[random_.below(static_cast<int>(triangles.size()))];
     glm::vec3 origin = random_.point(size * std::ldexp(1.0f, 2 - random_.below(10)));
-    if (random_.below(4) == 0) origin = glm::vec3(aim_at(aimed));  // on it, or nearly
+    if (random_.below(4) == 0) origin = glm::vec3(aim_at(aimed));  // on the plane, or nearly
     if (random_.below(8) == 0)
       origin = glm::vec3(aimed[static_cast<std::size_t>(random_.below(3))]);
     expect_right(ray_to(origin, aim_at(aimed)), triangles);
@@ -165,7 +165,7 @@ TEST_P(QuadTest, IsHardlyEverInDoubt) {
   EXPECT_LT(doubts_, 5);
 }
 
-/// Records, and the signs of sides computed from them.
+/// Compares records, and the signs of sides computed from them, with exact values.
 class QuadRecordTest : public Quads {
  protected:
   void expect_right(const glm::vec3& origin, const std::vector<Corners>& triangles) {
@@ -228,7 +228,7 @@ class QuadRecordTest : public Quads {
   }
 
   int sides_ = 0, unsure_ = 0, sure_ = 0, doubts_ = 0;
-  int naive_ = 0;  // doubts about which the sign would be wrong
+  int naive_ = 0;  // doubts in which the computed sign is wrong
 };
 
 TEST_P(QuadRecordTest, IsRightWhereItIsSure) {
@@ -236,7 +236,7 @@ TEST_P(QuadRecordTest, IsRightWhereItIsSure) {
     const float size = some_size(70);
     const std::vector<Corners> triangles = some_triangles(size);
     glm::vec3 origin = random_.point(size * std::ldexp(1.0f, 2 - random_.below(10)));
-    if (random_.below(8) == 0) {  // in a plane, or nearly
+    if (random_.below(8) == 0) {  // in a triangle's plane, or nearly
       origin = glm::vec3(triangles[0][0] + 2.0 * (triangles[0][1] - triangles[0][2]));
     }
     expect_right(origin, triangles);

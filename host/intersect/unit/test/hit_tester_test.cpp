@@ -1,5 +1,5 @@
-// What a tester calls sure is so, and what it leaves out is no nearest hit; the comparison of burst
-// units, and the reference model of the plane unit.
+// Sure hits of testers are hits, and every nearest hit is reported. Also tests the comparison of
+// burst units and the reference model of the plane unit.
 #include "host/intersect/unit/hit_tester.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ namespace {
 
 using test::Random;
 
-/// A batch of bundles, each of eight rays from one origin against a run of triangles around it.
+/// A batch of bundles, each of seven rays from one origin and a run of triangles around the origin.
 struct Batch {
   std::vector<glm::vec3> origins;
   std::vector<std::vector<Corners>> triangles;
@@ -48,7 +48,7 @@ struct Batch {
     std::vector<Corners> run;
     for (int i = random.below(6); i >= 0; --i) {
       run.push_back({random.point(2.0f), random.point(2.0f), random.point(2.0f)});
-      if (random.below(3) == 0) run.push_back({run[0][1], run[0][0], run[0][2]});  // the same again
+      if (random.below(3) == 0) run.push_back({run[0][1], run[0][0], run[0][2]});  // a duplicate
       if (random.below(3) == 0) {  // a near tie in depth
         Corners close = run[0];
         for (auto& v : close) v *= 1.0f + random.uniform(-1e-7f, 1e-7f);
@@ -79,7 +79,7 @@ using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
 
 Key key_of(const HitReport& report) { return {report.bundle, report.lane, report.hit.primitive}; }
 
-/// Checks the promises of `tester`, which is new, against exact arithmetic.
+/// Compares the reports of `tester`, which must be new, with exact arithmetic.
 void expect_the_truth(HitTester& tester) {
   Random random;
   const Batch batch(random, 20000);
@@ -134,7 +134,7 @@ TEST(PipelineHitTester, ReportsHoldTheTruth) {
   expect_the_truth(tester);
 }
 
-// Two ways to the same P: the unit's for the nearest hit, the tester's for what is only reported.
+// The unit computes P of nearest hits, the tester P of other reports: both have the same bits.
 TEST(PipelineHitTester, HasThePointsOfTheSerialUnit) {
   Random random;
   const Batch batch(random, 2000);
@@ -173,7 +173,7 @@ TEST(SerialHitTester, ThePlaneOfTheOriginIsAMissAndAnEmptyRunNothing) {
   EXPECT_EQ(tester.counters().misses, 1u);
 }
 
-/// Gives the same result for every batch.
+/// A unit that returns the same result for every batch.
 class WildUnit : public BurstUnit {
  public:
   explicit WildUnit(const BurstResult& result) : result_(result) {}
@@ -208,8 +208,8 @@ TEST(PipelineHitTester, RefusesResultsAboutWhatItDidNotGive) {
             "hit-test unit: found record 0 of lane 8 of bundle 1, expected one that it was given");
 }
 
-// P is no farther off than its error says, from straight on to as flat as the unit goes;
-// coordinates that underflow by no more than the bound for these besides.
+// P is within its error bound for rays from perpendicular to as flat as the unit allows, with the
+// additional bound for coordinates that underflow.
 class PointError : public testing::Test {
  protected:
   void check(const Ray& ray, const Corners& triangle) {
@@ -223,7 +223,7 @@ class PointError : public testing::Test {
     }
     ++hits_;
     flat_ += error > 0x1p-12f;
-    const Interval t = hit_distance(ray, triangle);  // off by 2^-33 at most
+    const Interval t = hit_distance(ray, triangle);  // relative error at most 2^-33
     const glm::dvec3 exact = 0.5 * (t.low + t.high) * glm::dvec3(ray.direction);
     const double of_itself = double{error} + 0x1p-33, besides = 0x1p-46 * largest(exact);
     for (int k = 0; k < 3; ++k) {
@@ -283,7 +283,7 @@ class SameResultsTest : public testing::Test {
     records_[1] =
         make_record(origin, {glm::vec3(0, -1, 1), glm::vec3(0, 1, 1), glm::vec3(3, 0, 1)});
     RayBundle& bundle = batch_[0];
-    bundle.direction[2][5] = 1.0f;  // through the first one, and the edge of the second
+    bundle.direction[2][5] = 1.0f;  // through the first triangle, and an edge of the second
     bundle.lanes = 1u << 5;
     bundle.records = records_;
     bundle.record_count = 2;

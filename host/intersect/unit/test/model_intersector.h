@@ -1,4 +1,4 @@
-// Intersectors of tests: the pipelined unit's reference model, and queries of any kind.
+// An intersector with the pipelined unit's reference model, and a search function, for tests.
 #pragma once
 
 #include <memory>
@@ -13,12 +13,12 @@ inline std::unique_ptr<Intersector> model_intersector(const Bvh& bvh) {
       bvh, std::make_unique<PipelineHitTester>(std::make_unique<ReferenceBurstUnit>()));
 }
 
-/// Returns whether points are wanted: not by queries for shadow rays.
+/// Returns whether a query needs points; queries for shadow rays do not.
 inline bool with_points(const RayQuery& query) {
   return query.any_hit_before.empty() && query.skip_ids.empty();
 }
 
-/// Finds the nearest hits, with_points() or without.
+/// Finds the nearest hits, and their points if the query needs them (with_points()).
 inline void find(Intersector& intersector, std::span<const Ray> rays, RayQuery query,
                  std::span<NearestHit> hits) {
   query.with_points = with_points(query);

@@ -33,7 +33,7 @@ inline void require_same(std::span<const RayBundle> batch, const BurstResults& a
   const auto [a, e] = std::ranges::mismatch(actual, expected);
   const bool a_left = a != actual.end(), e_left = e != expected.end();
   if (!a_left && !e_left) return;
-  // The burst that differs is that of the earlier result.
+  // If the results belong to different bursts, the earlier burst is the one that differs.
   const BurstResult& culprit = !e_left || (a_left && detail::earlier(*a, *e)) ? *a : *e;
   const auto part = [&](bool left, auto result) {
     return left && !detail::earlier(culprit, *result) ? detail::describe(*result)

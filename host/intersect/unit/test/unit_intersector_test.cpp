@@ -1,4 +1,4 @@
-// Rays of any origins find what trying every triangle in exact arithmetic finds.
+// Rays of any origins find the hits of an exact test of every triangle.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -72,8 +72,7 @@ TEST_F(UnitIntersectorTest, TheWorkOfEachRayIsCounted) {
   EXPECT_EQ(tests, intersector_->counters().hit.tests);
 }
 
-// Rays that may end at any hit before some t end there whenever there is one; the others find their
-// nearest.
+// A ray ends early if any hit is nearer than any_hit_before; otherwise it finds its nearest hit.
 TEST_F(UnitIntersectorTest, RaysEndAtAnyHitThatWillDo) {
   std::vector<Ray> rays = some_rays(mesh_, random_, 1000);
   std::vector<float> enough;
@@ -99,11 +98,11 @@ TEST_F(UnitIntersectorTest, RaysEndAtAnyHitThatWillDo) {
   EXPECT_EQ(intersector_->counters().ended_early, static_cast<std::uint64_t>(ended));
 }
 
-// Also where an ignored hit hides a farther one of its leaf from the reports.
+// This includes bursts whose ignored hit hides a farther hit of the same leaf.
 TEST_F(UnitIntersectorTest, IgnoredSlotsDoNotCount) {
   std::vector<Ray> rays = some_rays(mesh_, random_, 1000);
   for (Ray& ray : rays) {
-    ray.origin *= 10.0f;  // outside: the sphere's two sides, and the box's
+    ray.origin *= 10.0f;  // outside: rays meet both sides of the sphere and of the box
     ray.direction = scaled_direction(glm::dvec3(random_.point(1.5f) - ray.origin));
   }
   std::vector<std::uint32_t> ignored;
