@@ -40,7 +40,7 @@ inline constexpr double kMostCoordinate = 0x1p126;
 
 /// Returns an origin near the middle of most positions. Differences of positions from it are exact
 /// in double and up to kMostCoordinate. Each coordinate is a multiple of the least power of two
-/// that achieves this, or 0.
+/// that achieves this, or 0 if none does.
 [[nodiscard]] glm::dvec3 exact_origin(std::span<const glm::dvec3> positions);
 
 /// Returns the nearest multiple of 2^-149.

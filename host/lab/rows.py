@@ -71,7 +71,9 @@ def describe() -> dict:
     compiler = _first(r"^CMAKE_CXX_COMPILER:\w+=(.*)$", settings)
     return {
         "table": "machine",
-        "processor": _first(r"^model name\s*:\s*(.*)$", cpu) or platform.processor(),
+        "processor": ", ".join(text for text in (_first(r"^model name\s*:\s*(.*)$", cpu) or platform.processor(),
+                                                 *(f"{name} {value}" for name, value in re.findall(r"^(cpu family|model)\s*: (\d+)$", cpu, re.M)[:2]))
+                               if text),
         "processors": processors(),
         "compiler": _first(r"^(.*)$", _output(compiler, "--version")) if compiler else "",
         "date": datetime.date.today().isoformat(),

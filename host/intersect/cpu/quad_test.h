@@ -289,7 +289,7 @@ struct alignas(sizeof(FloatLanes)) QuadRecord {
   float bounds[kQuad];            ///< |float32(I . E) - exact| < bound, for each edge
   float normal_bound[kQuad];      ///< likewise for I . N
   float low[kQuad], high[kQuad];  ///< bounds of |d|; low = 0 if the sign of d was unsure
-  std::int32_t flip[kQuad];       ///< the sign bit of d as computed
+  std::int32_t flip[kQuad];       ///< the sign bit of d, as computed or set
   LaneMask unsure;                ///< triangles whose d may have the other sign
 
   [[nodiscard]] RAYGATE_INLINE float word(int plane, int axis, int triangle) const {
@@ -368,6 +368,7 @@ RAYGATE_INLINE void make_quad_record(const glm::vec3& origin, const float* corne
 /// Sets the sign of d, -1 or 1, if float32 is not sure of it.
 RAYGATE_INLINE void set_side(QuadRecord& record, int triangle, int side) {
   if ((record.flip[triangle] != 0) == (side < 0)) return;
+  record.flip[triangle] ^= std::numeric_limits<std::int32_t>::min();
   for (auto& pair : record.planes) {
     for (auto& axis : pair) {
       for (auto& plane : axis) plane[triangle] = -plane[triangle];
