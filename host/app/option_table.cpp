@@ -35,7 +35,10 @@ void OptionTable::add(const std::string& names, const char* value, const std::st
 std::string OptionTable::help() const {
   std::string text = about_ + "\n";
   const char* group = nullptr;
-  for (const Row& row : rows_) {
+  std::vector<Row> rows = rows_;
+  for (Row& row : rows) row.group = (row.places & kMostUsed) != 0 ? "Most used" : row.group;
+  std::ranges::stable_partition(rows, [](const Row& row) { return row.places & kMostUsed; });
+  for (const Row& row : rows) {
     if (group != row.group) text += std::string(group != nullptr ? "\n" : "") + row.group + "\n";
     group = row.group;
     std::string line = "  " + listed(row.names, ", ");

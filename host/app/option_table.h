@@ -105,6 +105,7 @@ enum OptionPlaces : unsigned {
   kInPython = 4,     ///< keyword of the Python module
   kInSceneFile = 8,  ///< key of "render" in scene files
   kInPage = 16,      ///< parameter of requests to --serve
+  kMostUsed = 32,    ///< listed first in --help, not in its group
 };
 
 /// The words of a command line.

@@ -146,7 +146,7 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
         return vector_text(camera.eye) + "," + vector_text(camera.target) + "," +
                number_text(camera.fov.value_or(Camera::kDefaultFov));
       },
-      kInExr | kInPage);
+      kInExr | kInPage | kMostUsed);
   table.value<Angles>(
       "--view", "NAME|AZ,EL",
       "the whole scene: " + listed(names_of(kViews), ", ") + ", or azimuth and elevation (33,24)",
@@ -162,11 +162,12 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
       [](const Angles& angles) {
         return list_text({angles.first, angles.second});
       },
-      kInExr | kInPage);
+      kInExr | kInPage | kMostUsed);
   table.value<glm::dvec3>(
       "--up", "AXIS", "up axis: " + listed(names_of(kAxes)) + " (that of the format)",
       listed(names_of(kAxes)), request.up,
-      [](const std::string& text) { return value_of(kAxes, text); }, vector_text, kInExr | kInPage);
+      [](const std::string& text) { return value_of(kAxes, in_lower_case(text)); }, vector_text,
+      kInExr | kInPage);
   table.number("--fov", "DEGREES", "vertical field of view of any camera (35)", request.fov,
                kFovRange, kInExr | kInPage);
   table.choice<Projection>("--projection", "NAME", "perspective (default) or orthographic",
@@ -185,7 +186,8 @@ void add_camera_options(OptionTable& table, CameraRequest& request) {
 
 void add_environment_options(OptionTable& table, EnvironmentSetting& environment) {
   table.add(
-      "--environment", "FILE", "environment map: EXR or HDR, latitude-longitude", "a file",
+      "--environment", "FILE",
+      "environment map, background and light: EXR or HDR, latitude-longitude", "a file",
       [&](const std::string& text) {
         environment = {.file = text};
         return true;
@@ -224,7 +226,7 @@ void add_render_options(OptionTable& table, Options& options) {
       "--size", "WxH", "the frame in pixels ({})",
       "WIDTHxHEIGHT, each from 1 to " + std::to_string(kSideRange.high) + " pixels (640x480)",
       [&](const std::string& text) { return read_size(text, render); },
-      [&] { return size_text(render.width, render.height); }, kInSceneFile | kInPage);
+      [&] { return size_text(render.width, render.height); }, kInSceneFile | kInPage | kMostUsed);
   table.add("--crop", "X0,Y0,X1,Y1", "only this part of it; X1 and Y1 are not included", "",
             [&](const std::string& text) {
               const std::vector<int> n = parse_list<int>(text);
@@ -383,7 +385,7 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
   table.choice("--engine", "NAME",
                "rtl: simulated hardware; model: its model in C++; cpu: same hits, faster; check: "
                "rtl and cpu, compared ({})",
-               options.engine, kEngines, kInStats | kInPage);
+               options.engine, kEngines, kInStats | kInPage | kMostUsed);
   table.choice<std::string>(
       "--unit", "NAME", "pipeline, serial (the paper's), core, board ({})", options.unit,
       {{"pipeline", "pipeline"}, {"serial", "serial"}, {"core", "core"}, {"board", "board"}},
@@ -414,12 +416,13 @@ void add_engine_options(OptionTable& table, EngineOptions& options) {
 }
 
 void add_picture_options(OptionTable& table, OutputOptions& options) {
-  table.add("-o,--output", "NAME", "NAME.exr, NAME.png, or NAME (or a folder) for both", "a name",
-            [](const auto&) { return true; });  // see name_outputs()
+  table.add(
+      "-o,--output", "NAME", "NAME.exr, NAME.png, or NAME (or a folder) for both", "a name",
+      [](const auto&) { return true; }, {}, kMostUsed);  // see name_outputs()
   table.number("--exposure", "STOPS", "PNG exposure in stops: +1 is twice as bright ({})",
                options.display.exposure,
                Range{-100.0, 100.0, "a number of stops from -100 to 100 (1 is twice as bright)"},
-               kInSceneFile | kInPage);
+               kInSceneFile | kInPage | kMostUsed);
   table.choice<Tone>("--tone", "clip|filmic", "tone curve of the PNG ({})", options.display.tone,
                      {{"clip", Tone::kClip}, {"filmic", Tone::kFilmic}}, kInSceneFile | kInPage);
   std::vector<std::string> channels = names_of(kExtraChannels);
@@ -460,9 +463,9 @@ void add_light_options(OptionTable& table, RenderSettings& settings) {
                                {{"primary", IntegratorKind::kPrimary},
                                 {"whitted", IntegratorKind::kWhitted},
                                 {"path", IntegratorKind::kPath}},
-                               kEverywhere);
+                               kEverywhere | kMostUsed);
   table.number("--spp", "N", "samples per pixel ({}; path by an environment: 16)", settings.samples,
-               Range{1, 1 << 20}, kEverywhere);
+               Range{1, 1 << 20}, kEverywhere | kMostUsed);
   table.number("--error", "X",
                "adaptive sampling to error X, in steps of an 8-bit display: stop a pixel after 16 "
                "samples if its error is X, after n if it is X n / 16",

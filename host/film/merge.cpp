@@ -93,17 +93,21 @@ std::optional<std::string> different_picture(const FilmFile& found, const ExrMet
   auto names = here;
   names.insert(there.begin(), there.end());
   for (const char* name : {kSamplesAttribute, kPartialAttribute}) names.erase(name);
-  for (const auto& [name, ignored] : names) {
-    const auto fact = [&name = name](const auto& attributes) {
+  const auto size = [](int x, int y) { return std::to_string(x) + "x" + std::to_string(y); };
+  const std::string frame = size(found.film.width, found.film.height);
+  if (frame != size(width, height)) {
+    return "a frame of " + frame + ", expected " + size(width, height);
+  }
+  std::vector<std::string> first{kSceneAttribute, "integrator"};  // others depend on these
+  for (const auto& [name, ignored] : names) first.push_back(name);
+  for (const std::string& name : first) {
+    const auto fact = [&name](const auto& attributes) {
       const auto at = attributes.find(name);
       return at == attributes.end() ? "no " + name : name + " " + at->second;
     };
     if (fact(here) == fact(there)) continue;
     if (name == kSceneAttribute) return "another geometry, material or light, expected those";
     return fact(here) + ", expected " + fact(there);
-  }
-  if (found.film.width != width || found.film.height != height) {
-    return "another frame, expected that";
   }
   if (found.metadata.world_to_camera != expected.world_to_camera) {
     return "another camera, expected that";

@@ -36,7 +36,7 @@ auto loader_of(const std::filesystem::path& file) {
   }
   throw InputError(file.string() + ": found a " + file.extension().string() +
                    " file, expected .obj, .glb, .gltf, .ply or .stl; Blender writes them by File > "
-                   "Export > glTF 2.0 (with materials, lights and camera) or Wavefront");
+                   "Export > glTF 2.0 (with materials, lights and camera) or Wavefront (.obj)");
 }
 
 constexpr double kMost = std::numeric_limits<float>::max();
