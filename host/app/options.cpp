@@ -10,6 +10,7 @@
 #include "host/film/atomic_file.h"
 #include "host/film/merge.h"
 #include "host/render/adaptive_sampling.h"
+#include "host/scene/io/text.h"
 #include "sim/simulation.h"
 
 namespace raygate {
