@@ -99,6 +99,10 @@ module ray_core_axi
     4'b0111, 8'(Clocks), 4'($clog2(DataWidth / 8)), 4'(Exact), 4'($clog2(Rays)), 8'd1
   };
 
+  if (Clocks > 255 || Exact > 15) begin : gen_check
+    $error("ray_core_axi: expected Clocks of 255 or less, and Exact of 15 or less");
+  end
+
   assign {m_axi_arcache, m_axi_arprot} = {AxCache, AxProt};
   assign {m_axi_awcache, m_axi_awprot} = {AxCache, AxProt};
   assign m_axi_awid = '0;
