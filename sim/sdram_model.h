@@ -27,7 +27,7 @@ class SdramModel {
   explicit SdramModel(double clock_mhz)
       : clock_ns_(1000.0 / clock_mhz), words_(std::size_t{1} << 24) {}
 
-  /// Takes the pins after the user's last edge; returns the data pins at its next edge.
+  /// Takes the pins after the user's last edge; returns the data pins at the user's next.
   std::uint16_t clock(const Pins& pins) {
     ++now_;
     const std::uint16_t out = coming_;

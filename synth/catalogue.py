@@ -97,7 +97,7 @@ class Library:
 
 
 def of_user(file: pathlib.Path) -> Library:
-    """Returns the library in a user's Liberty file. Its driver is the inverter nearest to four times the input capacitance of the smallest,
+    """Returns the library in a user's Liberty file. Its driver is the inverter of about four times the smallest one's input capacitance,
     its load eight inputs of the smallest: about as in the other libraries. Raises ValueError."""
     if not file.is_file():
         raise ValueError(f"{file}: found no such file, expected a Liberty file")

@@ -13,7 +13,7 @@ from synth import smt, tools
 
 @dataclasses.dataclass(frozen=True)
 class Model:
-    """A module in that form, as text."""
+    """A module as SMT-LIB text."""
 
     top: str
     text: str

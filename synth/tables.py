@@ -65,7 +65,7 @@ def with_results(text: str, measured_by: dict[str, str] = {}) -> str:
 
 
 def publish(file: str, text: str, command: str) -> None:
-    """Writes a CSV file of results/ and the tables of the page there that show it."""
+    """Writes a CSV file of results/, and its tables in results/README.md."""
     (RESULTS / file).write_text(text)
     results = RESULTS / "README.md"
     results.write_text(with_results(results.read_text(), {file: measured(command)}))

@@ -138,7 +138,7 @@ class OptionTable {
            const std::string& expected, const Read& read, const Show& show = {},
            unsigned places = kNowhere);
 
-  /// Adds an option whose text `parse` turns into a value, or nullopt if the text is not as
+  /// Adds an option. `parse` returns the value of its text, or nullopt if the text is not as
   /// expected. `target`: a T or an optional T. `show` returns the text of a value.
   template <typename T, typename Target>
   void value(const std::string& names, const char* value, const std::string& help,

@@ -35,7 +35,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1, help="stress (1)")
     parser.add_argument("--jobs", type=int, default=processors(), help="stress: suites at once (all processors)")
     parser.add_argument("--variant", nargs="*", default=[], metavar="FRAC_WIDTH=15", help="variant: what is not as in binary32")
-    parser.add_argument("--command", default="", help="the command of make, for the report")
+    parser.add_argument("--command", type=str.strip, default="", help="the command of make, for the report")
     parser.add_argument("--publish", action="store_true", help="write the report into host/lab/results too")
     return parser.parse_args()
 

@@ -70,7 +70,7 @@ struct PathLanes {
   }
   /// Returns whether each ray is the first of its path.
   [[nodiscard]] RAYGATE_INLINE MaskOf<T> is_first() const { return specular_history == 1u; }
-  /// Return the histories after reflection in a mirror and after refraction by glass.
+  /// Return specular_history after reflection in a mirror and after refraction by glass.
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_mirror() const { return after_specular(0); }
   [[nodiscard]] RAYGATE_INLINE WordOf<T> after_glass() const { return after_specular(1); }
   /// Returns whether `mask` contains the history. Histories in masks are below kSpecularHistories.

@@ -22,7 +22,7 @@ struct IntegratorSettings {
   std::optional<int> max_depth{};
   double threshold = 1.0 / 256.0;   ///< Whitted: rays with a throughput below this are not traced
   std::optional<double> ambient{};  ///< Whitted: ambient radiance; default: Lights::ambient()
-  /// For kPath: whether light paths find caustics where they can: with several samples, no camera
+  /// For kPath: whether light paths find caustics. They need several samples, error 0, no camera
   /// lights, and a perspective camera.
   bool caustics = true;
   /// The host computes the hit point P if the relative error of the unit's P may exceed this. 0:

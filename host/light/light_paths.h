@@ -55,7 +55,7 @@ class LightPaths {
 
   /// Returns whether light paths exist: requires an emitting light, and a mirror or smooth glass.
   [[nodiscard]] bool exist() const { return !source_cdf_.empty(); }
-  /// Returns the number of light paths for each sample of all pixels of the frame.
+  /// Returns the number of light paths for one sample of every pixel of the frame.
   [[nodiscard]] std::uint64_t count() const { return count_; }
 
   struct Start {

@@ -139,7 +139,7 @@ struct MetallicRoughnessLobes {
     const T cosine = -dot(ggx.normal, light);
     const auto is_any = is_glass & (before > 0.0f) & (beyond > 0.0f) & (cosine > 0.0f);
     const T inner = at_most(before, 1.0f);
-    // Density of facets per steradian of `light`, over the visible projected area.
+    // Density of visible facets (VNDF) per steradian of `light`.
     const T facets = 2.0f * ggx.pair(view, light * eta).d * before * beyond *
                      (eta * eta * per_size) / (view_cosine + ggx.stretched(view_cosine));
     const T value = glass * glass_gain * (1.0f - fresnel_reflectance(inner, eta)) * facets *

@@ -64,8 +64,8 @@ struct SquarePoint {
 };
 
 /// Returns point `index` of the stream `key`: the first two Sobol dimensions, a (0,2)-sequence.
-/// Each elementary interval of area 2^-k has one of 2^k successive points from a multiple of 2^k
-/// on. Every stream has its own Owen scrambling of both coordinates and of the order ("Practical
+/// Each elementary interval of area 2^-k has one of 2^k successive points that begin at a multiple
+/// of 2^k. Each stream has its own Owen scrambling of both coordinates and of the order ("Practical
 /// Hash-based Owen Scrambling", Burley 2020, with the permutation of Laine and Karras 2011).
 template <class T>
 RAYGATE_INLINE SquarePoint<T> sobol_point(const WordOf<T>& index, const WordOf<T>& key) {

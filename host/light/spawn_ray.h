@@ -131,16 +131,16 @@ struct SpawnOrigin {
 /// Finds origins for secondary rays without an epsilon.
 ///
 /// Let X be the exact point, hardly ever a float, in which a ray first hits a triangle. The origin
-/// O' is a float point near X. It lies strictly on the same side of the triangle's plane, and of
-/// the plane of every other triangle that is near on that side, as the points of the ray just
-/// before X (kIncident) or just after it (kTransmitted), decided in exact arithmetic. So
+/// O' is a float point near X. It lies strictly on the side of the ray's points just before X
+/// (kIncident) or just after it (kTransmitted), for the triangle's plane and for the plane of every
+/// other triangle near on that side, decided in exact arithmetic. So
 ///   * no triangle lies between X and O': none is skipped, even in the sharpest corner;
 ///   * a ray from O' that leaves the triangle's plane (decided exactly by leaves()) never hits that
 ///     triangle again.
 ///
-/// Distance: let u be one float step (ulp) of X's largest coordinate, or the error of X, which is
-/// computed in double from the corners, if that is larger. If no other triangle is within 4 u of X,
-/// O' is within 1.5 u (3 u next to a power of two) of the computed X on each axis (proof in
+/// Distance: X is computed in double from the corners. Let u be the larger of its error and one
+/// float step (ulp) of its largest coordinate. If no other triangle is within 4 u of X, O' is
+/// within 1.5 u (3 u next to a power of two) of the computed X on each axis (proof in
 /// spawn_ray.cpp). In narrower corners O' moves away from X by powers of two, along the normal or
 /// the ray, up to the ray's origin, so that a convex room always has an O' for kIncident. Corners
 /// narrower than the precision of float may have none; the path ends there.

@@ -28,7 +28,7 @@ inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 class EmitterSupersampler {
  public:
   /// The references must outlive this object. `counts_work`: whether tests and doubts are counted.
-  /// Adds the numbers of rays and point doubts, and the shading time, to `stats`.
+  /// Adds the numbers of rays and `point_doubts`, and the shading time, to `stats`.
   EmitterSupersampler(const RenderContext& context, Intersector& intersector, bool counts_work,
                       RenderStats& stats);
 

@@ -19,7 +19,7 @@ std::uint32_t append(std::vector<T>& all, std::vector<T>&& more) {
   return first;
 }
 
-/// Appends `more` to attributes of the elements of another list, of which there are `count` so far.
+/// Pads `all` with `missing` to `count` elements, then appends `more`. Ignores an empty `more`.
 template <class T>
 void append_parallel(std::vector<T>& all, std::size_t count, std::vector<T>&& more,
                      const T& missing = T(0.0f)) {

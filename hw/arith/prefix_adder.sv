@@ -22,8 +22,8 @@ module prefix_adder #(
     generated    = a_i & b_i;
     generated[0] = generated[0] | (half_sum[0] & carry_i);
     propagated   = half_sum;
-    // At each level blocks of 2 * size bits are made of two of size bits: the pair at the top of
-    // the lower block goes to all bits of the upper one.
+    // At each level two blocks of size bits become one: generated and propagated at the top of
+    // the lower block go to all bits of the upper one.
     for (int unsigned size = 1; size < Width; size = size * 2) begin
       for (int unsigned i = 0; i < Width; i++) upper[i] = ((i / size) % 2) == 1;
       below_generated  = (generated << 1) & upper & ~(upper << 1);

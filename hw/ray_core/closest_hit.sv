@@ -39,7 +39,7 @@ module closest_hit
   input  logic [RayWidth-1:0]     result_ray_i,
   input  logic [31:0]             result_tag_i,  // the ray's, for doubts
   input  verdict_t                result_i,
-  // A ray's t_max, a clock after its number; exact_o in the same clock. ended: by any_hit, or the ray has failed
+  // A ray's t_max, a clock after its number; exact_o in the same clock. ended: any_hit found a hit, or the ray failed
   input  logic [Rays-1:0]         failed_i,
   input  logic [RayWidth-1:0]     traversal_ray_i,
   output logic [30:0]             traversal_t_max_o,

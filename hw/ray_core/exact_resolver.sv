@@ -36,7 +36,7 @@ module exact_resolver
   // rays with nothing else to do, and rays that have doubts or a candidate
   input  logic [Rays-1:0]         idle_i,
   output logic [Rays-1:0]         busy_o,
-  // the ray in work; what is known of it, in the same clock
+  // the current ray; what is known of it, in the same clock
   output logic [RayWidth-1:0]     ctx_o,
   input  known_t                  known_i,
   // requests for its lines: exact ones for here, others for the test whose hit is kept

@@ -86,7 +86,7 @@ module ray_core_axi
   input  logic [IdWidth-1:0]     m_axi_bid,  // 0
   // verilator lint_on UNUSEDSIGNAL
   input  logic [1:0]             m_axi_bresp,
-  // results: AXI4-Stream, one record per transfer, see registers.md
+  // results: AXI4-Stream, one per transfer, see registers.md
   output logic                   m_axis_tvalid,
   input  logic                   m_axis_tready,
   output logic [255:0]           m_axis_tdata,
@@ -299,7 +299,7 @@ module ray_core_axi
     .error_number_o(error_number)
   );
 
-  // ---- Results: a record each, to memory or by the stream
+  // ---- Results: 32 bytes each, to memory or the stream
 
   logic to_memory, record_ready;
   logic [255:0] record;

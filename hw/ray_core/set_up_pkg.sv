@@ -12,7 +12,7 @@ package set_up_pkg;
 
   localparam int unsigned PlaneErrorWidth = 4;
 
-  // The largest error of a plane that is good enough, alone or with the test's t_error added.
+  // The largest error (log2) of a good plane, alone or with the test's t_error added.
   localparam int unsigned MostPlaneError = 14;
 
   // If is_good_hit, fewer than 2**t_error_exponent numbers lie between a hit's t and the exact t. t_error is

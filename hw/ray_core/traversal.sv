@@ -289,7 +289,7 @@ module traversal
     .data_o(group)
   );
 
-  // ---- State; of picking, start and a node's result, a ray has only one in a clock
+  // ---- State; picking, start and a node's result of one clock concern different rays
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

@@ -1,6 +1,6 @@
-"""Estimates the wires of a placement before routing: each net is the shortest tree of straight lines between its pins.
+"""Estimates the wires of a placement before routing: each net is the shortest tree of L-shaped lines between its pins.
 
-A line goes upwards in the lowest vertical metal, then across in the next horizontal metal above. Detours of
+A line goes vertically in the lowest vertical metal, then across in the next horizontal metal. Detours of
 routing are not included; but a tree branches only at pins, which makes it longer than necessary.
 """
 

@@ -1,4 +1,4 @@
-// Composition, step 2: a row is its digit's multiple of a:
+// Composition, step 2: a row is its digit times `a`:
 // row + negative - negative * 2**(Width+1) = digit * a, modulo 2**(Width+3), which keeps all values distinct.
 module booth_row_multiple #(
   parameter int unsigned Width = 24

@@ -1,7 +1,7 @@
-// Rays that enter and leave a ray core, whatever is done for them and however long it takes, from reset on: a context
-// is given to one ray at a time; only a ray that began and has not ended ends; every ray is in one place, and leaves as
-// one end. No queue overflows. A marked ray, which may be any, leaves with its mark, once, and with the P that was
-// there when it ended, as P is in the same word of the queue.
+// From reset on, whatever a ray core does for its rays and however long: a context belongs to one ray at a time; only
+// rays in the core end; every ray is in one place, and leaves with one end. No queue overflows. A marked ray,
+// which may be any, leaves once, with its mark and with the P that was there when it ended, as P is in the same word of
+// the queue.
 // opened_ray_contexts is contracts/ray_contexts.sv with its registers as outputs.
 module contexts_answer_once #(
   parameter int unsigned Rays = 4,

@@ -96,8 +96,9 @@ class IntersectorSubject : public Subject {
     for (const Corners& triangle : *mesh) trees_.emplace_back(Mesh{triangle}, make_);
   }
 
-  /// Finds the hits of all rays. Rays with one origin are traced again: as a full cone, each ray in
-  /// several groups and lanes, and alone if it had a doubt. Results must not depend on other rays.
+  /// Finds the hits of all rays. Rays with one origin are traced again: repeated up to kCone rays,
+  /// each in several groups and lanes, and alone after a doubt. Results must not depend on other
+  /// rays.
   void search(Tree& tree) {
     hits_.assign(rays_.size(), {});
     work_.assign(rays_.size(), {});

@@ -47,7 +47,7 @@ Rates are of one thread, by processor time; compare only rows of one run. Embree
 single rays, -8 and -16 packets, -stream 1,024 rays. Embree builds BVHs of high quality and gets the coherent flag for rays of one origin. For a
 hit, Embree also computes u, v and the normal, raygate P and an interval that contains t. The cpu engine uses {{ of("rays")[0].engine_vectors }} vectors (the machine has {{ of("rays")[0].machine_vectors }}), Embree the widest that it supports.
 
-± is the sum of both interquartile ranges of the runs.
+± is the ratio times the sum of raygate's and Embree's relative interquartile ranges.
 
 {{ table(over_best, "scene", "rays", "raygate, Mrays/s = mrays :.1f", "over the fastest = fast", "mode = fast_mode",
          "over the fastest robust = robust", "mode = robust_mode") }}

@@ -78,8 +78,8 @@ PAGE = """# Stress test
 {{ "{:,.0f}".format(suites|sum("seconds")) }} s of processor time. Rays that a suite wrongly claims to start inside a mesh: {{ suites|sum("broken_claims") }}.
 
 A case is a ray and a triangle; a subject is an engine, a variant or another hit test. All subjects see the same cases, slow subjects only the first ones
-of each suite; cases are counted once. Suites named 64 have binary64 vertices and, for half of the origins, binary64 rays. Ray cores and variants skip
-these suites; of the engines, only `trace` takes binary64 rays. Float32 tests and Embree get rounded vertices and rays.
+of each suite; cases are counted once. Suites `... 64` have binary64 vertices and, for half of the origins, binary64 rays. Ray cores and variants skip
+these suites; of the exact subjects, only `trace` takes binary64 rays. Float32 tests and Embree get rounded vertices and rays.
 
 ## Subjects that promise to be exact
 
@@ -97,7 +97,7 @@ an edge exactly (a tie), exact subjects must follow their tie rule; for others, 
 {% if watertight %}
 ## Public tests of watertightness
 
-Each ray must hit the mesh exactly once. Tests named 64 have binary64 vertices. `nomiss` and `singlehit` follow the Vulkan conformance tests
+Each ray must hit the mesh exactly once. Tests `... 64` have binary64 vertices. `nomiss` and `singlehit` follow the Vulkan conformance tests
 (`ray_tracing_pipeline.watertightness`), `sphere` follows Embree's `verify`. `edges` and `vertices` aim rays from inside a sphere at its edges and vertices, as
 Woop, Benthin and Wald did. Meshes and random numbers differ from the originals. `model` and the simulated hardware find only the nearest hit.
 

@@ -60,7 +60,7 @@ def check_finite(name: str, array: Array, each: str, exponent: int) -> None:
 
 
 def points(values: npt.ArrayLike, exponent: int) -> Array:
-    """Returns points as of shape (N, 3); one has the shape (3,), too. Coordinates beyond 2^exponent raise InputError."""
+    """Returns points with the shape (N, 3); a single point may have the shape (3,). Coordinates beyond 2^exponent raise InputError."""
     array = vectors("points", values, takes_one=True)
     check_finite("points", array, "point", exponent)
     return array

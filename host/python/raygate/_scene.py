@@ -162,7 +162,7 @@ class Scene(_raygate.Scene):
     @in_context
     def inside(self, points: npt.ArrayLike, *, threads: int | None = None) -> npt.NDArray[np.bool_]:
         """Returns whether points, of shape (N, 3), or (3,) for one, are inside of closed surfaces: an array of bool, (N,).
-        threads: as of trace().
+        threads: as for trace().
 
         A point is inside if a ray from it crosses surfaces an odd number of times, counted exactly, for points as trace() rounds
         origins. So the orientation of faces does not matter, a shell within another one is a cavity, and what two solids share
@@ -177,7 +177,7 @@ class Scene(_raygate.Scene):
         """Returns how often the surfaces wind around points, of shape (N, 3) or (3,), and bounds of the errors: two arrays of float64,
         (N,). Around a closed surface of faces oriented alike, also one that crosses itself, the number is whole and exact: 1 inside, 0
         outside, 2 where two solids overlap. Around an open one it is the solid angle seen from the point over 4 pi. The error is inf if
-        a point is so near a surface that rounding, as of origins in trace(), may move it across. The numbers have no meaning for a
+        a point is so near a surface that rounding (see origins in trace()) may move it across. The numbers have no meaning for a
         point on a surface. Raises InputError as inside() does."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])

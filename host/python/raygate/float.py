@@ -103,28 +103,28 @@ def fp_add(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, roundi
 @in_context
 def fp_subtract(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
                 tininess: Tininess = "after") -> Result:
-    """Returns a - b; arguments as of fp_add."""
+    """Returns a - b. Arguments: see fp_add."""
     return _run("-", a, b, format, rounding, tininess)
 
 
 @in_context
 def fp_multiply(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
                 tininess: Tininess = "after") -> Result:
-    """Returns a * b; arguments as of fp_add."""
+    """Returns a * b. Arguments: see fp_add."""
     return _run("*", a, b, format, rounding, tininess)
 
 
 @in_context
 def fp_divide(a: npt.ArrayLike, b: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even",
               tininess: Tininess = "after") -> Result:
-    """Returns a / b; arguments as of fp_add."""
+    """Returns a / b. Arguments: see fp_add."""
     return _run("/", a, b, format, rounding, tininess)
 
 
 @in_context
 def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: Format = BINARY32) -> Result:
-    """Returns whether a `relation` b, as bool. `relation`: one of RELATIONS; "==" is quiet, the others signal INVALID
-    for any NaN. Other arguments as of fp_add."""
+    """Returns `a relation b`, as bool. `relation`: one of RELATIONS; "==" is quiet, the others signal INVALID
+    for any NaN. Other arguments: see fp_add."""
     _one_of("relation", relation, RELATIONS)
     return _run(relation, a, b, format, "nearest-even", "after")
 
@@ -132,7 +132,7 @@ def fp_compare(a: npt.ArrayLike, b: npt.ArrayLike, relation: Relation, format: F
 @in_context
 def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even", tininess: Tininess = "after") -> Result:
     """Returns numbers rounded to the format, as floats of their own type, or as float64 if that cannot hold the format, and
-    the flags of the rounding. Arguments as of fp_add."""
+    the flags of the rounding. Arguments: see fp_add."""
     x = _numbers(x)
     bits, flags = encode(x, format, rounding, tininess)
     return Result(_held(decode(bits, format), x.dtype, format), flags)
@@ -140,7 +140,7 @@ def round_to(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "
 
 @in_context
 def encode(x: npt.ArrayLike, format: Format = BINARY32, rounding: Rounding = "nearest-even", tininess: Tininess = "after") -> Result:
-    """Returns numbers rounded to the format, as words, uint32, and the flags of the rounding. Arguments as of fp_add."""
+    """Returns numbers rounded to the format, as words, uint32, and the flags of the rounding. Arguments: see fp_add."""
     x = _numbers(x)
     if x.dtype.kind != "f" or x.dtype.itemsize > 8:
         raise InputError(f"found an array of {x.dtype}, expected one of float16, float32 or float64")

@@ -70,6 +70,6 @@ class RayMeshIntersector:
         return np.asarray(self.scene.trace(ray_origins, ray_directions, hits="any", columns="hit")["hit"], bool)
 
     def contains_points(self, points: npt.ArrayLike) -> Array:
-        """Returns whether points are inside of the mesh, which must be closed: shape (n,). As of trimesh, a closed shell
+        """Returns whether points are inside of the mesh, which must be closed: shape (n,). As in trimesh, a closed shell
         within another one is a cavity, and the orientation of faces does not matter."""
         return self.scene.inside(points)

@@ -1,4 +1,4 @@
-// A queue that gives each word at once: for the proof of which part of a word is which port.
+// A queue that gives each word at once, for the proof that ports are the right parts of words.
 module fifo #(
   parameter int unsigned Width   = 32,
   parameter int unsigned Depth   = 2,
