@@ -52,7 +52,7 @@ module core_link
   // ---- Messages: the first word, then the others from the top of a shift register
 
   logic outstanding_q;  // a clock late, but without rays in the core it cannot rise
-  logic first_q, full_q, done, is_ray;  // first_q: a message's first word is next; full_q: all are here
+  logic first_q, full_q, done, is_ray;  // first_q: a message's first word is next; full_q: all came
   logic [3:0] kind_q;
   logic [4:0] left_q;  // words of the message still to come
   logic [AddressWidth-1:0] number_q;

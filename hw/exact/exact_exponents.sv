@@ -78,7 +78,7 @@ module exact_exponents
   localparam int unsigned Direction = PlaceDirection / 3;
   localparam int unsigned Other = PlaceOther / 3;
 
-  logic [ExpWidth-1:0] lows[2*Vectors], highs[2*Vectors];  // trees: nodes 2 n and 2 n + 1 are below n
+  logic [ExpWidth-1:0] lows[2*Vectors], highs[2*Vectors];  // trees: 2 n, 2 n + 1 are below n
   logic [ExpWidth-1:0] coordinate_high_q, direction_high_q;
 
   always_comb begin

@@ -34,7 +34,7 @@ module nearest_hit
   input  logic [Width-1:0]        t_i,
   input  logic [TErrorWidth-1:0]  t_error_i,
   input  logic [PayloadWidth-1:0] payload_i,
-  output logic                    sure_hit_o,  // combinational: the test is a sure hit, with a valid t
+  output logic                    sure_hit_o,  // combinational: a sure hit with a valid t
   output report_e                 report_o,
   output logic [TagWidth-1:0]     report_tag_o,
   output logic                    closed_o,

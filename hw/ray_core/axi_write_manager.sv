@@ -16,7 +16,7 @@ module axi_write_manager #(
   input  logic [31:0]            length_i,  // capacity in records
   input  logic                   rewind_i,  // only while not busy_o
   output logic                   busy_o,  // a record's write has not been answered
-  output logic                   full_o,  // a record waits for capacity, and all others are in memory
+  output logic                   full_o,  // a record waits for capacity, all others are written
   output logic                   bus_error_o,  // an answer in this clock has an error
   output logic [31:0]            written_o,
   input  logic                   record_valid_i,

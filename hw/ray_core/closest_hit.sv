@@ -67,7 +67,7 @@ module closest_hit
   output logic                    near_tie_o
 );
 
-  localparam int unsigned CountWidth = $clog2(Queue + 2);  // up to Queue + 1, with a test of settle_i
+  localparam int unsigned CountWidth = $clog2(Queue + 2);  // up to Queue + 1: with settle_i's
 
   logic [30:0] t_max[Rays];
   logic [31:0] nearest_t[Rays];

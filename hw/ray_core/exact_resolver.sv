@@ -148,7 +148,7 @@ module exact_resolver
   logic [31:0] rank_q, other_rank_q;
   logic [95:0] origin, direction;
   logic fetch, line_here;
-  logic [Units-1:0] unit_ready, free, unit_valid, answered, nearer;  // free, answered: one-hot, the first
+  logic [Units-1:0] unit_ready, free, unit_valid, answered, nearer;  // free, answered: one-hot
   logic [Units*AboutWidth-1:0] abouts;
   logic [AboutWidth-1:0] about;  // of the unit that has answered
 

@@ -175,7 +175,7 @@ module line_cache
   assign follows = same_q & pending_ways_q;
   assign hit    = hits != '0;
   assign follow = follows != '0;
-  assign entry  = {way, set};  // the set is known before the way: as low bits it selects first in memories
+  assign entry  = {way, set};  // low bits select first in memories; the set is known first
 
   always_comb begin
     way = (hit | follow) ? '0 : victim_way;

@@ -25,8 +25,8 @@ module ray_core
   parameter int unsigned Depth = 8,   // groups on a ray's own stack
   parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
   parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
-  parameter int unsigned Clocks = 1,  // per node and triangle: 1, pipelined; or 7 or more, with shared cores
-  parameter int unsigned Exact = 0,  // number of exact_units, for which triangles have ranks; 0: doubts leave
+  parameter int unsigned Clocks = 1,  // per node and triangle: 1, or with shared cores 7 or more
+  parameter int unsigned Exact = 0,  // number of exact_units, which need ranks; 0: doubts leave
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned ReadIdWidth = read_id_width(NodeLines, TriangleLines)

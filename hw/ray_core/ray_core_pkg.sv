@@ -32,8 +32,8 @@ package ray_core_pkg;
   // ---- Triangle line
 
   localparam int unsigned TriangleCorners = 0;  // nine binary32: A.x, A.y, A.z, B.x, ... C.z
-  localparam int unsigned TriangleIndex = 288;  // 32 bits, the triangle's id; with Exact this line's number
-  localparam int unsigned TriangleRank = 320;  // 32 bits, with Exact: at equal t the lowest is nearest
+  localparam int unsigned TriangleIndex = 288;  // 32 bits, the id; with Exact this line's number
+  localparam int unsigned TriangleRank = 320;  // 32 bits; with Exact, the lowest wins at equal t
 
   localparam int unsigned TriangleWidth = 320;  // bits used of the line, without the rank
   localparam int unsigned RankWidth = 32;
@@ -125,7 +125,7 @@ package ray_core_pkg;
   typedef struct packed {
     logic                    kind;      // result_e
     logic [31:0]             tag;
-    logic                    found;     // for ResultEnd, like all fields down to tests: a sure hit exists
+    logic                    found;     // fields down to tests are for ResultEnd; a sure hit exists
     logic [31:0]             triangle;  // for ResultDoubt: the triangle in doubt
     logic [31:0]             t;
     logic [TErrorWidth-1:0]  t_error;   // t is off by fewer than 2**t_error numbers, see NoT
