@@ -16,7 +16,7 @@ module srt_row #(
   output logic [1:0]       negative_o
 );
 
-  localparam int unsigned EstimateWidth = 7;  // of 4 w: 4 integer bits with the sign, 3 fraction bits
+  localparam int unsigned EstimateWidth = 7;  // of 4 w: 4 integer bits with sign, 3 fraction
 
   // ---- Estimate 4 w from the first bits of both words
 

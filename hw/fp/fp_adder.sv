@@ -30,7 +30,7 @@ module fp_adder #(
 );
 
   localparam int unsigned SigWidth = FracWidth + 1;  // significand with its integer bit
-  localparam int unsigned NearWidth = FracWidth + 2;  // a bit more, for exponents that differ by one
+  localparam int unsigned NearWidth = FracWidth + 2;  // a bit more, if exponents differ by one
   localparam int unsigned FarWidth = FracWidth + 3;  // two integer bits, fraction, guard
   localparam int unsigned CountWidth = $clog2(NearWidth);
 

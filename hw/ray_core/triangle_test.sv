@@ -348,7 +348,7 @@ module triangle_test
     assign divide          = valid_q[Decide+1] & hit_q;
     assign verdict_o.valid = valid_q[Last];
   end else begin : gen_turns
-    localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // from t's quotient to the step
+    localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // quotient of t to step
     logic [3:0] since_q;  // [n]: n + 1 clocks after the step
     logic [Wait*32-1:0] waiting_q;
     logic [(Wait+1)*32-1:0] waiting;  // the latest is highest
