@@ -77,7 +77,7 @@ class Plan:
         return int(hashlib.sha256(case.encode()).hexdigest(), 16) % turns == self.runs % turns
 
     def cases(self, name: str, cases: list[str]) -> list[str]:
-        """Returns those of the cases that run."""
+        """Returns the cases that run."""
         if any(file.startswith(SET_UP) for file in self.files):
             return cases
         guard, touched = TABLE[name], {room(file) for file in self.files}
@@ -89,7 +89,7 @@ class Plan:
         return cases if self.runs_in_full(name) else [case for case in cases if self.has_turn(name, case)]
 
     def skipped(self, tests: list[str]) -> list[str]:
-        """Returns those of ctest's tests that do not run."""
+        """Returns ctest's tests that do not run."""
         skipped = []
         for name, guard in TABLE.items():
             if "tests" in guard:

@@ -93,7 +93,7 @@ RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& val
   require_ordinary(largest(s), good);
 }
 
-/// Stores four words of each of four records: those of record i from words[i][first] on.
+/// Stores four words of each of four records i, at words[i][first] and behind.
 template <std::size_t kWords>
 RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const FloatQuad& c,
                                 const FloatQuad& d, float (&words)[kQuad][kWords],

@@ -141,7 +141,7 @@ module exact_resolver
   // ---- The question
 
   logic has_candidate, simple, lacks_q, nearer_q;
-  logic ended_q, found_q;  // of the ray in work
+  logic ended_q, found_q;  // of the current ray
   logic [1:0] against, against_q;  // exact_pkg::against_e
   logic [AddressWidth-1:0] other_line_q, candidate;
   logic [CornersWidth-1:0] corners_q, other_q;

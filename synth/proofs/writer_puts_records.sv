@@ -1,7 +1,7 @@
-// The port that writes results, for any memory, from reset on: it keeps AXI4 (sim/checks/axi_write_checks). The n-th
-// record since the last rewind is offered once, at base + 32 n, in order, while n is below the length. written_o counts
-// the records that were answered. Memory is assumed to answer no burst that it has not taken.
-// opened_axi_write_manager is the manager with its registers as outputs.
+// From reset on, for any memory, the port that writes results keeps AXI4 (sim/checks/axi_write_checks). The n-th result
+// since the last rewind is offered once, at base + 32 n, in order, while n is below the length. written_o counts the
+// results that were answered. Memory is assumed to answer no burst that it has not taken. opened_axi_write_manager is
+// the manager with its registers as outputs.
 module writer_puts_records #(
   parameter int unsigned DataWidth = 128,
   localparam int unsigned BeatWidth = (DataWidth < 256) ? DataWidth : 256,
