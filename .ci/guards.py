@@ -2,8 +2,8 @@
 
 usage: guards.py plan            prints each guard and what of it runs
        guards.py due GUARD       exit status 0 if GUARD runs, 1 if not
-       guards.py cases GUARD     of the cases on standard input, one a line, those that run
-       guards.py rooms           prints the rooms of the address sanitizer, one a line
+       guards.py cases GUARD     of the cases on standard input, one per line, those that run
+       guards.py rooms           prints the rooms of the address sanitizer, one per line
        guards.py skipped BUILD   a regular expression of the tests of a build that do not run
        guards.py passed COMMIT   records that everything passed at this commit
        guards.py try [GUARD ...] puts each guard's fault into a clone, in build/guards, and shows that the guard refuses it

@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// Returns the result in a record of ray_core_axi: hw/ray_core/registers.md.
+/// Returns the result in 256 bits of ray_core_axi: see hw/ray_core/registers.md.
 inline CoreResult result_of(const std::array<std::uint32_t, 8>& words) {
   CoreResult result;
   result.kind = static_cast<CoreResult::Kind>(words[0] & 1);

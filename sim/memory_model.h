@@ -13,7 +13,7 @@
 
 namespace raygate {
 
-/// Memory of lines, by number; a line has its request's tag. At most one request and line a clock.
+/// Memory of lines, by number; lines have their request's tag. Takes and gives one per clock.
 class MemoryModel {
  public:
   explicit MemoryModel(const MemoryTiming& timing)

@@ -103,7 +103,7 @@ RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const Fl
   for (int i = 0; i < kQuad; ++i) std::memcpy(&words[i][first], &record[i], 16);
 }
 
-/// Returns the bound of an edge: a constant times the sum of its magnitudes, rounded up.
+/// Returns the bound of an edge: a constant times the sum of its words' magnitudes, rounded up.
 RAYGATE_INLINE FloatQuad edge_bound(const Triple<FloatQuad>& words) {
   const Points e = absolute(wide(words));
   const DoubleQuad exact = kEdgeBound * 0x1p-24 * (e.x + e.y + e.z);

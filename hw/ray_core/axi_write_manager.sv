@@ -1,9 +1,9 @@
-// AXI4 write manager: records of 32 bytes to memory, a burst each.
+// AXI4 write manager: results of 32 bytes to memory, a burst each.
 //
 // Result n (0, 1, ...) goes to base_i + 32 n while n is below length_i; further results wait until rewind_i, after
 // which n is 0 again. written_o: results whose writes have been answered, in order, as all have the same AXI ID.
 //
-// Throughput: a record in 256 / DataWidth clocks, at least 1 (a clock for each beat). On a port of 512 bits a beat uses
+// Throughput: a result in 256 / DataWidth clocks, at least 1 (a clock for each beat). On a port of 512 bits a beat uses
 // the half that its address selects. No output of AXI depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.
 module axi_write_manager #(

@@ -88,7 +88,7 @@ module exact_resolver
     .data_o({queued_ctx, queued_hit, queued_line})
   );
 
-  // ---- For each ray: whether its doubts wait, its candidate, and whether a question of it is open
+  // ---- For each ray: whether its doubts wait, its candidate, and whether a question about it is open
 
   // Doubts are numbered as they come, and leave in that order: when a ray's last doubt leaves, none of its doubts
   // waits. There are more numbers than doubts can wait.

@@ -81,7 +81,7 @@ class Placement:
 
 
 def _spread(wanted: list[tuple[float, str]], last: int) -> list[tuple[int, str]]:
-    """Returns whole places from 1 to `last`, all different, in order, near those wanted."""
+    """Returns whole places from 1 to `last`, all different, in order, near the wanted places."""
     places, low = [], 1
     for count, (at, name) in enumerate(wanted):
         room = last - (len(wanted) - 1 - count)  # so that the remaining ones find places

@@ -8,7 +8,7 @@ module writer_puts_records #(
   localparam int unsigned Beats = 256 / BeatWidth
 ) (
   input logic clk,
-  input logic choose  // watch the record taken now
+  input logic choose  // watch the result taken now
 );
 
   (* anyseq *) logic [63:0] base;
@@ -94,7 +94,7 @@ module writer_puts_records #(
     end else assume (!bvalid && !rewind && !record_valid);
   end
 
-  // ---- Records taken and answered since the last rewind
+  // ---- Results taken and answered since the last rewind
 
   logic take;
   logic [31:0] taken, answered;
@@ -104,7 +104,7 @@ module writer_puts_records #(
     else {taken, answered} <= {taken + 32'(take), answered + 32'(bvalid)};
   end
 
-  // ---- The watched record: its address and its beats, until both have been taken
+  // ---- The watched result: its address and its beats, until both have been taken
 
   logic watching, address_taken, in_upper;
   logic [3:0] beats;  // taken

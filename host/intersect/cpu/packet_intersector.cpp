@@ -262,7 +262,7 @@ RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& nod
                                    bounds8.cutoff[lane], entry);
 }
 
-/// Inserts a child into the stack, whose entries from `bottom` on are sorted, the nearest last.
+/// Inserts a child into the stack, whose entries are sorted from `bottom` up, the nearest last.
 RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
                          const ConeTraversal::StackEntry& next) {
   tree.prefetch(next.child);
