@@ -9,7 +9,7 @@ usage: guards.py plan            prints each guard and what of it runs
        guards.py try [GUARD ...] puts each guard's fault into a clone, in build/guards, and shows that the guard refuses it
 
 A guard runs in full if a file that it guards differs from the commit that last passed on this machine, or if none is known.
-All guards do if the set-up of builds or checks differs. Otherwise a guard with `turns` runs one case in so many, other ones at the next run.
+All guards do if the set-up of builds or checks differs. Otherwise a guard with `turns` runs one case in `turns`, others at the next run.
 """
 
 import hashlib

@@ -50,7 +50,7 @@ def _kept(*modules: str) -> str:
 
 
 def gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
-    """Returns commands that make gates and registers of an elaborated design. None looks across a multiplexer: carry-select stays."""
+    """Returns commands that make gates and registers of an elaborated design. None crosses a multiplexer, so carry-select stays."""
     lines = ["proc"]
     if flow == "blocks":  # a read enable becomes the memory's; else the word would wait in a register after it
         lines += ["opt_clean", "opt_dff -nosdff ram$*"]
