@@ -133,7 +133,7 @@ else
 endif
 
 
-# The first build of a folder is faster with several sources at once; who goes on to change them: `make everything UNITY=0`.
+# The first build of a folder is faster with several sources at once; for later changes: `make everything UNITY=0`.
 ifeq ($(wildcard build/CMakeCache.txt),)
 UNITY ?= 1
 endif
@@ -151,8 +151,8 @@ everything:
 include synth/synth.mk
 include host/lab/lab.mk
 
-# A variable of the command line that no target to make reads is misspelt or meant for another target. A target reads what its
-# paragraph here and those of its macros name; CMake reads some from the environment.
+# A variable of the command line that no target to make reads is misspelt or meant for another target. A target reads variables named in its
+# paragraph here and in its macros' paragraphs; CMake reads some from the environment.
 define words
 { text[NR] = $$0 }
 END {

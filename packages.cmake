@@ -1,5 +1,5 @@
-# Names the Debian packages of the compiler and of all libraries that are missing, at once, rather than one by one as each
-# is looked for: before CMake looks for a compiler in words of its own.
+# Names all missing Debian packages of the compiler and of libraries at once, instead of one by one as each is looked for.
+# Runs before CMake looks for a compiler, which would fail with another message.
 include(CheckLanguage)
 set(missing)
 # scikit-build-core asks for g++. CMake would take c++, which ccache holds for another compiler although it is the same file.

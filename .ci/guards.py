@@ -2,14 +2,14 @@
 
 usage: guards.py plan            prints each guard and what of it runs
        guards.py due GUARD       exit status 0 if GUARD runs, 1 if not
-       guards.py cases GUARD     of the cases on standard input, one a line, those that run
-       guards.py rooms           prints the rooms of the address sanitizer, one a line
+       guards.py cases GUARD     of the cases on standard input, one per line, those that run
+       guards.py rooms           prints the rooms of the address sanitizer, one per line
        guards.py skipped BUILD   a regular expression of the tests of a build that do not run
        guards.py passed COMMIT   records that everything passed at this commit
        guards.py try [GUARD ...] puts each guard's fault into a clone, in build/guards, and shows that the guard refuses it
 
 A guard runs in full if a file that it guards differs from the commit that last passed on this machine, or if none is known.
-All guards do if the set-up of builds or checks differs. Otherwise a guard with `turns` runs one case in so many, other ones at the next run.
+All guards do if the set-up of builds or checks differs. Otherwise a guard with `turns` runs one case in `turns`, others at the next run.
 """
 
 import hashlib
@@ -77,7 +77,7 @@ class Plan:
         return int(hashlib.sha256(case.encode()).hexdigest(), 16) % turns == self.runs % turns
 
     def cases(self, name: str, cases: list[str]) -> list[str]:
-        """Returns those of the cases that run."""
+        """Returns the cases that run."""
         if any(file.startswith(SET_UP) for file in self.files):
             return cases
         guard, touched = TABLE[name], {room(file) for file in self.files}
@@ -89,7 +89,7 @@ class Plan:
         return cases if self.runs_in_full(name) else [case for case in cases if self.has_turn(name, case)]
 
     def skipped(self, tests: list[str]) -> list[str]:
-        """Returns those of ctest's tests that do not run."""
+        """Returns ctest's tests that do not run."""
         skipped = []
         for name, guard in TABLE.items():
             if "tests" in guard:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes Blender's camera as a scene file: what the OBJ, PLY or STL that Blender exports cannot say.
+"""Writes Blender's camera as a scene file, as OBJ, PLY or STL files from Blender cannot hold it.
 
   blender room.blend --background --python scenes/blender_camera.py -- room.obj
 

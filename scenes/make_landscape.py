@@ -3,7 +3,7 @@
 
 Heights are sums of octaves of value noise: random numbers at the corners of a lattice, interpolated
 smoothly. Each octave has half the wavelength and half the height of the one before. The default of
-448 cells a side makes 401,408 triangles.
+448 cells per side makes 401,408 triangles.
 """
 import argparse
 import pathlib

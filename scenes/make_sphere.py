@@ -87,7 +87,7 @@ def main():
     with open(options.output, "w", encoding="ascii") as file:
         file.write(f"# A closed sphere of {len(triangles)} triangles: make_sphere.py\no sphere\n")
         for v in vertices:
-            # 17 digits: a far centre must not cost the sphere its shape.
+            # 17 digits keep the sphere's shape even if its centre is far away.
             file.write("v %.17g %.17g %.17g\n" % tuple(
                 c + options.radius * x for c, x in zip(options.centre, v)))
         if options.normals:

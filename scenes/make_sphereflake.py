@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes a sphereflake as OBJ and MTL: a sphere that carries nine of a third its size, and so on.
 
-The idea is Eric Haines's ("A Proposal for Standard Graphics Environments", 1987). With the default
-depth, 820 spheres of 320 triangles above a floor: 262,402 triangles.
+The idea is Eric Haines's ("A Proposal for Standard Graphics Environments", 1987). The default depth gives 820 spheres of 320 triangles
+above a floor: 262,402 triangles.
 """
 import argparse
 import math

@@ -56,7 +56,7 @@ class BurstCursor {
   }
 
  private:
-  /// Moves to the first bundle from here on that has a test.
+  /// Moves to the next bundle that has a test; stays if this one has.
   void settle() {
     while (!done() && (batch_[bundle_].record_count == 0 || batch_[bundle_].lanes == 0)) ++bundle_;
     lanes_ = done() ? 0 : batch_[bundle_].lanes;

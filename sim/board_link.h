@@ -10,7 +10,7 @@
 
 namespace raygate {
 
-/// `Top`: a class that Verilator made of board_core. At most one word a clock in each direction.
+/// `Top`: a class that Verilator made of board_core. At most one word per clock in each direction.
 /// Throws std::runtime_error if the board neither takes nor gives a word for kPatience clocks.
 template <class Top>
 class BoardLink : public WordLink {

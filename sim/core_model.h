@@ -18,9 +18,9 @@
 namespace raygate {
 
 /// Cores of class `Top`, each in a `Holder` (see CorePort), clocked together. They share one port
-/// to memory, which takes one request and gives one line a clock, in turn. Throws
-/// std::runtime_error if a core is broken: no line, result or test for longer than its queued
-/// questions can take, a ray that ends twice, lines in flight that it does not report.
+/// to memory in turn; it takes one request and gives one line per clock. Throws std::runtime_error
+/// if a core is broken: no line, result or test for longer than its queued questions can take, a
+/// ray that ends twice, lines in flight that it does not report.
 template <class Top, template <class> class Holder = Model>
 class CoreModel : public CoreUnit {
  public:

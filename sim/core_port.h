@@ -12,7 +12,7 @@
 
 namespace raygate {
 
-/// Returns the result in a record of ray_core_axi: hw/ray_core/registers.md.
+/// Returns the result in 256 bits of ray_core_axi: see hw/ray_core/registers.md.
 inline CoreResult result_of(const std::array<std::uint32_t, 8>& words) {
   CoreResult result;
   result.kind = static_cast<CoreResult::Kind>(words[0] & 1);
@@ -106,14 +106,14 @@ class CorePort {
 
   // ---- Memory
 
-  /// Whether lines are in flight, or will be: memory must not change.
+  /// Returns whether lines are in flight, or will be: memory must not change.
   [[nodiscard]] bool is_busy_with_memory() const { return model_->outstanding_o != 0; }
-  /// Whether a line is requested; below, its number and its tag.
+  /// Returns whether a line is requested; below, its number and its tag.
   [[nodiscard]] bool is_reading() const { return model_->read_valid_o != 0; }
   [[nodiscard]] std::uint32_t line() const { return model_->read_line_o; }
   [[nodiscard]] std::uint64_t tag() const { return model_->read_id_o; }
   void set_read_ready(bool ready) { model_->read_ready_i = ready; }
-  /// Whether a line can be put at the port.
+  /// Returns whether a line can be put at the port.
   [[nodiscard]] bool has_room() const { return model_->line_valid_i == 0; }
   void put(const MemoryLine& line, bool is_error, std::uint64_t tag) {
     model_->line_valid_i = 1;

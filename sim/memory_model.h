@@ -13,7 +13,7 @@
 
 namespace raygate {
 
-/// Memory of lines, by number; a line has its request's tag. At most one request and line a clock.
+/// Memory of lines, by number; lines have their request's tag. Takes and gives one per clock.
 class MemoryModel {
  public:
   explicit MemoryModel(const MemoryTiming& timing)
@@ -34,7 +34,7 @@ class MemoryModel {
              (timing_.not_taken == 0 || static_cast<int>(random_() & 0xFF) >= timing_.not_taken);
   }
 
-  /// Whether a request would be taken in this clock.
+  /// Returns whether a request would be taken in this clock.
   [[nodiscard]] bool ready() const { return ready_; }
   /// Takes a request. Lines beyond the last one come with an error.
   void read(std::uint32_t line, std::uint64_t tag) {
@@ -53,7 +53,7 @@ class MemoryModel {
     free_at_ = now_ + static_cast<std::uint64_t>(64 / timing_.bytes);
   }
 
-  /// Whether a line is there in this clock.
+  /// Returns whether a line is there in this clock.
   [[nodiscard]] bool valid() const { return !due_.empty() && due_.top().at <= now_; }
   [[nodiscard]] std::uint32_t number() const { return due_.top().line; }
   [[nodiscard]] bool is_error() const { return number() >= lines_.size(); }
@@ -62,7 +62,7 @@ class MemoryModel {
   [[nodiscard]] std::uint64_t tag() const { return due_.top().tag; }
   void pop() { due_.pop(); }
 
-  /// Whether no line is in flight.
+  /// Returns whether no line is in flight.
   [[nodiscard]] bool is_idle() const { return due_.empty(); }
 
   /// Returns the number of lines that the cache lacked.

@@ -11,8 +11,8 @@ struct MemoryTiming {
   int cache_lines = 0;     ///< of a direct-mapped cache in front of the memory; 0 or a power of two
   int cache_latency = 4;   ///< of a cache hit
   int disorder = 0;        ///< maximum of random extra clocks for each line
-  int not_taken = 0;       ///< chance in 1/256 a clock that no request is taken
-  std::uint64_t seed = 0;  ///< of the last two
+  int not_taken = 0;       ///< chance per clock, in 1/256, that no request is taken
+  std::uint64_t seed = 0;  ///< of disorder and not_taken
 };
 
 }  // namespace raygate

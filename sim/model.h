@@ -22,7 +22,7 @@ inline std::unique_ptr<VerilatedContext> make_context() {
 }
 
 /// One Verilated model `Top` (a class that Verilator made) in a context of its own, so that each
-/// thread may have one. Ports are reached by `model->port`. Neither copied nor moved: waves and
+/// thread may have one. Ports are reached by `model->port`. Must not be copied or moved: waves and
 /// contexts keep its address.
 template <class Top>
 class Model {

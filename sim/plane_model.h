@@ -48,7 +48,7 @@ class PlaneModelOf final : public PlaneModel {
   [[nodiscard]] std::uint64_t clocks() const override { return unit_.clocks(); }
 
  private:
-  /// One clock with `word` on the bus; returns what is on the other bus after it.
+  /// Simulates a clock with `word` on the bus; returns the other bus's word after it.
   float exchange(float word) {
     unit_->bus_i = numbers_.to_word(word);
     unit_.clock();

@@ -7,7 +7,7 @@
 
 namespace raygate {
 
-/// Returns slot `n` of a port with `size` bytes a slot: Verilator keeps the lowest bits at the
+/// Returns slot `n` of a port with `size` bytes per slot: Verilator keeps the lowest bits at the
 /// lowest address, as this machine does.
 template <class Port>
 char* slot(Port& port, int n, std::size_t size) {

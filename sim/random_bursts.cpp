@@ -85,10 +85,10 @@ void RandomBursts::spoil(PolygonRecord& record, const glm::vec3& direction) {
         record.bounds[k] = stepped(std::abs(u), static_cast<int>(below(3)) - 1);
       }
       break;
-    case 2:  // t far up or down
+    case 2:  // t much larger or smaller
       record.d = std::ldexp(record.d, static_cast<int>(below(300)) - 150);
       break;
-    case 3: {  // V far up or down, beyond what may be divided
+    case 3: {  // V much larger or smaller, beyond the range of valid divisors
       const int shift = static_cast<int>(below(40)) - 20;
       for (int k = 0; k < 3; ++k) record.normal[k] = std::ldexp(record.normal[k], shift);
       if (one_in(2)) record.normal[static_cast<int>(below(3))] *= std::exp2(13.0f);

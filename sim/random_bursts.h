@@ -15,13 +15,12 @@ struct BurstBatch {
   std::uint64_t tests = 0;
 };
 
-/// Makes batches from a seed. Of the records about
-///   half are triangles that some of the rays hit, edge-on and grazing ones among them;
-///   a quarter are such triangles with words replaced: by specials (zeros, subnormals, infinities,
-///   NaN, the largest and smallest), bounds by |U| of a ray or its neighbours, d by
-///   values that bring distances to near ties, to overflow and to underflow;
-///   an eighth are copies of the record before, alike or with d a few units off;
-///   an eighth are random bits.
+/// Makes batches from a seed. About half of the records are triangles that some of the rays hit,
+///   edge-on and grazing ones among them; a quarter are such triangles with words replaced: by
+///   specials (zeros, subnormals, infinities, NaN, the largest and smallest), bounds by |U| of a
+///   ray or its neighbours, d by values that bring distances to near ties, to overflow and to
+///   underflow; an eighth are copies of the record before, alike or with d a few units off; an
+///   eighth are random bits.
 class RandomBursts {
  public:
   explicit RandomBursts(std::uint64_t seed) : random_(seed) {}

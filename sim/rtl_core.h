@@ -10,7 +10,7 @@
 
 namespace raygate {
 
-/// Chances, in 1/256 a clock, that no ray is offered and that a result is not taken.
+/// Chances per clock, in 1/256, that no ray is offered and that a result is not taken.
 struct CoreStalls {
   int no_ray = 0, not_taken = 0;
   std::uint64_t seed = 0;

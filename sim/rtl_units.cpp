@@ -23,7 +23,7 @@ std::unique_ptr<PlaneModel> make_plane(Arith arith) {
   return std::unique_ptr<PlaneModel>(make());
 }
 
-// If no other batch follows, the unit runs empty for 46 clocks after a batch. Of 0 to 256 tests a
+// If no other batch follows, the unit runs empty for 46 clocks after a batch. Of 0 to 256 tests per
 // lane, this number took the fewest clocks on most scenes, for one lane and for eight.
 constexpr std::size_t kEnoughTestsALane = 64;
 

@@ -13,7 +13,7 @@ namespace raygate {
 class PlaneModel;
 
 /// hw/hit_test/hit_test_unit.sv in binary32, rounded to nearest even. Tests follow each other
-/// without a gap: 7 clocks each, and 3 more a call for the last result. Not thread-safe; each
+/// without a gap: 7 clocks each, and 3 more per call for the last result. Not thread-safe; each
 /// thread may have its own.
 class RtlPlaneUnit final : public PlaneUnit {
  public:
@@ -28,7 +28,7 @@ class RtlPlaneUnit final : public PlaneUnit {
   std::unique_ptr<PlaneModel> model_;
 };
 
-/// Chances, in 1/256 a clock and lane, that no test is offered and that a result is not taken.
+/// Chances per clock and lane, in 1/256, that no test is offered and that a result is not taken.
 struct BurstStalls {
   int no_test = 0, not_taken = 0;
   std::uint64_t seed = 0;

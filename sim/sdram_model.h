@@ -11,9 +11,9 @@
 namespace raygate {
 
 /// SDRAM by the data sheets of MT48LC16M16A2 and AS4C16M16. It takes a command between two edges of
-/// its user's clock; a word that is read is valid at the second edge after that at which the
-/// command left. Throws std::runtime_error if the user violates a data sheet: a command too early,
-/// a row that is not open, a refresh too late.
+/// its user's clock; a word that is read is valid two edges after the edge at which the command
+/// left. Throws std::runtime_error if the user violates a data sheet: a command too early, a row
+/// that is not open, a refresh too late.
 class SdramModel {
  public:
   /// State of the pins in a clock.
@@ -97,7 +97,7 @@ class SdramModel {
   // RAS, CAS, WE
   static constexpr unsigned kNone = 7, kActivate = 3, kRead = 5, kWrite = 4, kPrecharge = 2,
                             kRefresh = 1, kMode = 0, kAll = 1u << 10;
-  static constexpr std::uint16_t kNoise = 0xA5A5;  // nobody drives the pins
+  static constexpr std::uint16_t kNoise = 0xA5A5;  // no device drives the pins
 
   [[nodiscard]] std::uint64_t clocks(double ns) const {
     const auto whole = static_cast<std::uint64_t>(ns / clock_ns_);

@@ -11,7 +11,7 @@
 namespace raygate {
 
 /// A Model of a `Top` that was made OPEN. After `record`, every clock is written to a waveform:
-/// a value change dump, which GTKWave and others show, 10 ns a clock.
+/// a value change dump, which GTKWave and others show, 10 ns per clock.
 template <class Top>
 class WaveModel : public Model<Top> {
  public:

@@ -1,4 +1,4 @@
-// Stubs for programs without simulated units: making one throws InputError, with how to get it.
+// Stubs for programs without simulated units: making one throws InputError with instructions.
 #include <string>
 
 #include "host/base/input_error.h"

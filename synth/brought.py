@@ -34,8 +34,8 @@ SAT_WIDTH, MOST_PRODUCTS = 5, 11  # of multipliers: bits that SAT proves in one 
 
 @dataclasses.dataclass(frozen=True)
 class Place:
-    """A module of hw/ that users may replace. `proofs`: makes its proofs for a unit; `told`: makes, from the values of a counterexample,
-    the module's outputs and the correct ones."""
+    """A module of hw/ that users may replace. `proofs`: makes its proofs for a unit; `told`: returns the module's outputs and the correct
+    ones, from the values of a counterexample."""
     module: str
     proofs: Callable[[catalogue.Design], list[Proof]]
     told: Callable[[dict[str, int]], tuple[dict[str, int], dict[str, int]]] | None = None

@@ -1,7 +1,7 @@
 """Reads the hardware's lists of files, hw/*/*.core, in FuseSoC's format (CAPI2). There is no other list.
 
 `python3 -m synth.cores [CORE ...]` prints the files of these cores (hit_test, ...; all if none) and of the
-cores that they depend on, one a line, in the order to compile them: a core after those that it uses, its
+cores that they depend on, one per line, in the order to compile them: a core after those that it uses, its
 packages first. Exit status 2 if a list and its folder disagree.
 """
 

@@ -53,8 +53,8 @@ def word(model: str, wire: str) -> str:
 
 
 def joints(cut: Cut, stages: str, uncut: str) -> list[str]:
-    """Returns equalities to be proven in this order, each from those before: of the registers after each row of the divider. A solver that
-    gets only the claim about the result does not end."""
+    """Returns equalities of the registers after each row of the divider, to be proven in this order, each from the ones before. A solver
+    that gets only the claim about the result does not end."""
     found: dict[int, list[str]] = {}
     for wire, row in re.findall(rf"\(define-fun \|{cut.top}_n (\S+gen_row\[(\d+)\]\.\w+_q)\|", stages):
         inside = f"uncut_n {wire}|"

@@ -28,7 +28,7 @@ def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
     wanted = store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts,
                        inspect.getsource(registered), inspect.getsource(_map))
     netlist, mapped = store.cached(folder, wanted, lambda: step("mapping", folder / "yosys.log", lambda: _map(design, fpga, folder)))
-    # A placement is kept under the netlist's contents, so that a change of the RTL that leaves the netlist alone keeps it.
+    # A placement is kept under the netlist's contents, so that changes of the RTL that do not change the netlist reuse it.
     pins = [tools.ROOT / word for word in fpga.arguments if word.endswith(".lpf")]
     wanted = store.key(pins, netlist["digest"], tools.version(fpga.tool), fpga.tool, fpga.arguments, fpga.wanted_mhz, inspect.getsource(_place))
     runs = [store.cached(folder / f"seed-{seed}", wanted,

@@ -1,7 +1,7 @@
 """Proves a module's assertions for all inputs, by induction over clocks, with Bitwuzla.
 
-The module is SMT-LIB as Yosys's `write_smt2 -stbv` writes it: states, which of them may be first, which may
-follow which, and what is assumed, asserted and covered in a state.
+The module is SMT-LIB as Yosys's `write_smt2 -stbv` writes it: states, the possible first ones, the transitions between them, and what is
+assumed, asserted and covered in a state.
 """
 
 import dataclasses

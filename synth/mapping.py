@@ -131,7 +131,7 @@ def registers(netlist: str, path: list[dict]) -> dict[str, str]:
 def critical_path(report: str) -> tuple[float, list[dict]]:
     """Returns the slowest path in OpenSTA's report: its length in ns, set-up time included, and its steps.
 
-    Raises ToolFailed if the report has no path, as of a design that was not timed.
+    Raises ToolFailed if the report has no path, as for a design that was not timed.
     """
     arrival = re.search(r"^\s*(-?[\d.]+)\s+data arrival time", report, re.M)
     if arrival is None:

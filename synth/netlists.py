@@ -60,7 +60,7 @@ def _agree(design: Design, library: Library, flow: str, vectors: int,
            folder: pathlib.Path) -> dict:
     mapping.synthesise(design, library, flow)
     run = store.OUT / "runs" / f"{design.name}.{library.name}.{flow}"
-    # The cells as the library's own functions define them; the netlist under a name of its own.
+    # Writes the cells as the library's own functions define them, and the netlist under another name.
     yosys.run(f"""{cells(library)}
 write_verilog -noattr {folder}/cells.v
 design -reset

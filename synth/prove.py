@@ -127,7 +127,7 @@ def all_proofs() -> list[Proof]:
 
 
 def outcome(proof: Proof, result: dict | None) -> str:
-    """Returns proven; simulated, which is no proof; or FAILED."""
+    """Returns "proven", "simulated" (no proof) or "FAILED"."""
     if result is None:
         return "FAILED"
     return "simulated" if proof.how in ("simulation", "evaluation") else "proven"

@@ -10,7 +10,7 @@ import re
 from synth import cores
 
 PAGE = cores.HW / "ray_core" / "registers.md"
-PLAIN = 32  # words from address 0 on; those with access `idle` are plain registers
+PLAIN = 32  # words from address 0 up; words with access `idle` are plain registers
 ACCESSES = ("ro", "rw", "wo", "w1c", "idle")
 
 

@@ -50,7 +50,7 @@ def measured_tables(rows: list[Row], targets: measure.Targets) -> tuple[list[dic
 
 
 def legend(records: list[dict]) -> str:
-    """Returns the meaning of the tables' numbers and flows, a line each."""
+    """Returns the meaning of the tables' numbers and flows, one line for each."""
     flows = [flow for flow in FLOWS if any(record["flow"] == flow for record in records)]
     parts = ["um2 / ns: of the cells alone (NAND2X1: 96 in 0.35 um); the slowest path at the typical corner, before layout"] if flows else []
     if any("mhz" in record for record in records):

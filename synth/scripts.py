@@ -50,7 +50,7 @@ def _kept(*modules: str) -> str:
 
 
 def gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
-    """Returns commands that make gates and registers of an elaborated design. None looks across a multiplexer: carry-select stays."""
+    """Returns commands that make gates and registers of an elaborated design. None crosses a multiplexer, so carry-select stays."""
     lines = ["proc"]
     if flow == "blocks":  # a read enable becomes the memory's; else the word would wait in a register after it
         lines += ["opt_clean", "opt_dff -nosdff ram$*"]
@@ -58,7 +58,7 @@ def gates(flow: str, blocks: list[str], out: pathlib.Path) -> str:
         lines += [_kept("fp_adder", "fp_multiplier", "fp_divider", *(blocks if flow == "blocks" else []))]
     if flow == "modules":
         lines += [_kept(*PICTURED)]
-    # opt_dff: a reset to a constant, which the reader states as an asynchronous load.
+    # opt_dff: restores resets to constants, which the reader states as asynchronous loads.
     lines += ["flatten -noscopeinfo", "opt_expr", "opt_merge", "opt_dff -nodffe -nosdff", "opt_clean"]
     if flow == "blocks":
         lines += ["memory -nomap", f"read_verilog -lib {tools.FLOWS}/kept_memory.v", f"techmap -map {tools.FLOWS}/kept_memories.v",

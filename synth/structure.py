@@ -104,7 +104,7 @@ def hardware(module: dict) -> dict[str, int]:
     return {**found, "gate": len(kinds) - sum(found.values())}
 
 
-# By type of cell: output port -> its value from those of the input ports; unsigned numbers.
+# By type of cell: output port -> function of the input ports' values; unsigned numbers.
 FUNCTIONS: dict[str, dict[str, Callable[[dict[str, int]], int]]] = {
     "FULL_ADDER": {"SUM": lambda x: x["A"] ^ x["B"] ^ x["C"], "CARRY": lambda x: int(x["A"] + x["B"] + x["C"] > 1)},
     "MULTIPLEXER": {"OUT": lambda x: x["WHEN_1"] if x["SELECT"] else x["WHEN_0"]},

@@ -3,7 +3,7 @@ SYNTH_JOBS ?= 2
 
 .PHONY: synth prove fpga lecture layout
 
-# $(call options,...): those of these variables that are given, as options of their names.
+# $(call options,...): the given ones of these variables, as options of their names.
 options = $(foreach name,$(1),$(if $($(name)),--$(subst _,-,$(name))='$($(name))'))
 design_words = TOP ADDER WIDTH GROUPS LOOK_AHEAD EXP_WIDTH FRAC_WIDTH EXACT TARGETS PUBLISH
 

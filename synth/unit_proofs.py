@@ -1,4 +1,4 @@
-"""The proofs of proofs/units.toml: claims about the units and their modules. In place of arithmetic stand modules with only the properties
+"""The proofs of proofs/units.toml: claims about the units and their modules. Arithmetic is replaced by modules with only the properties
 that the claim needs (proofs/contracts)."""
 
 import functools

@@ -1,6 +1,6 @@
 """Runs Yosys, the library of Python's package pyosys, in a process of its own: a crash of Yosys ends that process alone.
 
-`python3 -m synth.yosys 'COMMANDS'`: runs commands, one a line or separated by semicolons, and prints Yosys's log. With
+`python3 -m synth.yosys 'COMMANDS'`: runs commands, one per line or separated by semicolons, and prints Yosys's log. With
 --strict, a warning fails, too. `python3 -m synth.yosys --abc 'COMMANDS'` runs ABC. Exit status 1 where a command fails.
 """
 

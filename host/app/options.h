@@ -133,8 +133,8 @@ void check_light_options(const OptionTable& table, bool has_environment, RenderS
 /// overrides them. Throws InputError, and Information for --help and --version.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
-/// Returns the options of a scene whose file was read, with new values: `given`, then `requested`
-/// by a request to --serve, which must be options at kInPage. Throws InputError.
+/// Returns the options of a scene whose file was read, with the values of `given`, then of
+/// `requested`, from a request to --serve, whose options must be at kInPage. Throws InputError.
 [[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given,
                                   const std::vector<OptionValue>& requested = {});
 

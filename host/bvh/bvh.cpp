@@ -201,7 +201,7 @@ class BvhWriter {
 
   [[nodiscard]] bool is_leaf(Ref ref) const { return tree_.is_leaf(ref) || plans_[ref].is_leaf; }
 
-  /// Writes a leaf with the primitives from index `first` on.
+  /// Writes a leaf with the primitives that begin at index `first`.
   void write_primitives(const Bvh::Child& leaf, std::uint32_t first) {
     float* const to = &bvh_.corners_[9 * std::size_t{leaf.first}];
     for (std::uint32_t i = 0; i < leaf.count; ++i) {

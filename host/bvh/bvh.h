@@ -22,7 +22,7 @@ namespace raygate {
 class RangeMap {
  public:
   RangeMap() = default;
-  /// Makes ranges of these lengths, the first from `begin` on. Their end is below 2^32.
+  /// Makes successive ranges of these lengths, starting at `begin`. Their end is below 2^32.
   RangeMap(std::uint32_t begin, const std::vector<std::uint32_t>& lengths) : begins_{begin} {
     begins_.reserve(lengths.size() + 1);
     for (const std::uint32_t length : lengths) begins_.push_back(begins_.back() + length);
@@ -54,8 +54,8 @@ class RangeMap {
   int shift_ = 0;
 };
 
-/// An instance of a mesh. It has the nodes and primitives of the mesh's BVH, renumbered from
-/// `first` on.
+/// An instance of a mesh. It has the nodes and primitives of the mesh's BVH, renumbered to start at
+/// `first`.
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance
   float matrix[3][3];     ///< linear part of the transform, rounded
@@ -234,8 +234,8 @@ class Bvh {
   std::span<const glm::ivec3> rests_;  // the scene's rests, or none
   std::span<const Triangle> faces_;    // the scene's triangles
 
-  // Nodes and primitives from this number on belong to instances. Each instance has as many numbers
-  // as its mesh has primitives, and a mesh has no more nodes than primitives.
+  // Nodes and primitives with at least this number belong to instances. Each instance has as many
+  // numbers as its mesh has primitives, and a mesh has no more nodes than primitives.
   std::uint32_t first_instanced_ = 0xFFFFFFFF;
   RangeMap instance_numbers_;
   std::vector<InstanceBvh> instances_;

@@ -102,7 +102,7 @@ LeafVisits PacketTraversal::next_leaf() {
         if (child.lanes == 0) continue;
         tree.prefetch(child.child);
         enter = enter <= rays_.cutoff ? enter : FloatLanes{} + kFarthest;
-        // Sorts as the hardware's batches are: by entry without its last three bits, then by index.
+        // Sorts as the hardware sorts: by entry without its last three bits, then by index.
         child.entry = std::bit_cast<float>(std::bit_cast<std::int32_t>(-largest_of(-enter)) & ~7);
         int place = depth_++;
         for (; place > bottom && stack_[place - 1].entry <= child.entry; --place) {

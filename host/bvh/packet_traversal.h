@@ -43,7 +43,7 @@ class PacketTraversal {
   /// Sets the ray of an unused lane. Must be called before the first next_leaf().
   void set_ray(int lane, const glm::vec3& origin, const glm::vec3& direction);
 
-  /// Restricts the ray in `lane` to distances up to `t` from now on.
+  /// Restricts the ray in `lane` to distances up to `t` henceforth.
   void set_cutoff(int lane, double t);
 
   /// Returns the next leaf that any ray meets.

@@ -54,7 +54,7 @@ struct Slices {
   }
 };
 
-/// A split of a range: bins below `part` go left or, of up to kFew primitives, the first `part`.
+/// A split: bins below `part` go left; in ranges up to kFew, the first `part` primitives.
 struct Cut {
   float cost = kNever;  ///< area times count, summed over both sides
   int axis = 0;

@@ -72,7 +72,7 @@ Imf::Header make_header(const Film& film, const ExrMetadata& metadata, const Pix
   for (const auto& [name, text] : metadata.attributes) {
     header.insert(name, Imf::StringAttribute(text));
   }
-  // A matrix for column vectors, stored by columns, equals that for row vectors, stored by rows.
+  // A matrix for column vectors, stored by columns, equals one for row vectors, stored by rows.
   Imath::M44f matrix;
   std::memcpy(matrix.x, glm::value_ptr(metadata.world_to_camera), sizeof matrix.x);
   Imf::addWorldToCamera(header, matrix);

@@ -19,7 +19,7 @@ struct ExrMetadata {
   /// unfinished: pixels without a sample are misses, others may have too few samples.
   std::map<std::string, std::string> attributes{};
   /// Attribute "worldToCamera", as OpenEXR defines it: +x to the right of the picture, +y up,
-  /// +z along the view. The matrix here is for column vectors, that of the file for row vectors.
+  /// +z along the view. The matrix here is for column vectors, the file's for row vectors.
   glm::mat4 world_to_camera{1.0f};
   /// Attribute "screenWindowWidth": width of the frame in the plane at distance 1.
   float screen_window_width = 1.0f;

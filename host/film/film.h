@@ -207,7 +207,7 @@ struct Channel {
   std::size_t stride;  ///< bytes from one pixel to the next; rows follow without a gap
 };
 
-/// Returns the channels of all arrays, but sums only if `keeps_sums`, `samples` also with `error`.
+/// Returns the channels of all arrays; sums need `keeps_sums` (`samples`: `keeps_sums` or `error`).
 [[nodiscard]] std::vector<Channel> channels_of(const Film& film);
 
 /// Returns the channel's value at array index `index`; exact.

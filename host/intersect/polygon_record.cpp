@@ -93,7 +93,7 @@ RAYGATE_INLINE void accurate_cross(const Points& u, const Points& v, Points& val
   require_ordinary(largest(s), good);
 }
 
-/// Stores four words of each of four records: those of record i from words[i][first] on.
+/// Stores four words of each of four records i, at words[i][first] and behind.
 template <std::size_t kWords>
 RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const FloatQuad& c,
                                 const FloatQuad& d, float (&words)[kQuad][kWords],
@@ -103,7 +103,7 @@ RAYGATE_INLINE void store_words(const FloatQuad& a, const FloatQuad& b, const Fl
   for (int i = 0; i < kQuad; ++i) std::memcpy(&words[i][first], &record[i], 16);
 }
 
-/// Returns the bound of an edge: a constant times the sum of its magnitudes, rounded up.
+/// Returns the bound of an edge: a constant times the sum of its words' magnitudes, rounded up.
 RAYGATE_INLINE FloatQuad edge_bound(const Triple<FloatQuad>& words) {
   const Points e = absolute(wide(words));
   const DoubleQuad exact = kEdgeBound * 0x1p-24 * (e.x + e.y + e.z);

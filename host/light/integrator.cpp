@@ -32,8 +32,8 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
   });
 }
 
-/// Returns ShadingScene::max_depth. kEmitters shades hits one deeper than that, as kPath does; for
-/// other integrators, which do not, its limit is one lower.
+/// Returns ShadingScene::max_depth. kEmitters and kPath shade hits one deeper than that. Beside
+/// other integrators, which do not, kEmitters has a limit that is one lower.
 int last_depth(IntegratorKind kind, const IntegratorSettings& settings) {
   if (kind == IntegratorKind::kPrimary) return 0;
   const int depth = settings.integrator == IntegratorKind::kPrimary ? 0 : settings.depth();

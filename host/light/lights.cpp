@@ -127,7 +127,7 @@ std::optional<CameraLights> default_lights(const Scene& scene, const Camera& cam
   if (is_lit_by_emitters(scene, size, is_preview)) return {};
   CameraLights lights;
   lights.background = is_preview && !is_dark ? scene.background : kDimSky;
-  // `radiance` is that of a facing white wall at `distance`.
+  // `radiance`: of a facing white wall at `distance`.
   const auto add = [&](const glm::dvec3& at, double distance, double radiance) {
     lights.points.push_back({glm::vec3(glm::clamp(at, -kMostCoordinate, kMostCoordinate)),
                              glm::dvec3(radiance * std::numbers::pi * distance * distance)});

@@ -50,7 +50,7 @@ RAYGATE_INLINE T spot_falloff(const T& cosine, const T& scale, const T& offset) 
   return ramp * ramp;
 }
 
-/// Side of a triangle that is outside of the closed surface to which the triangle belongs.
+/// Side of a triangle that faces out of the closed surface to which the triangle belongs.
 enum class OuterSide : std::uint8_t {
   kBoth,           ///< the triangle does not belong to a closed surface
   kAlongNormal,    ///< the side of its normal

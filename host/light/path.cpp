@@ -147,7 +147,7 @@ RAYGATE_INLINE void sample_scattered_ray(const ShadingScene& shading, Hits<T>& h
     next.path.throughput = choose(
         contributes, bounded(throughput * bsdf.eval(next.direction) * (cosine / next.path.pdf)),
         zero<T>());
-    // Light paths end at rough glass, so PathState::light_over_camera_pdf is 0 from here on.
+    // Light paths end at rough glass: beyond it, PathState::light_over_camera_pdf is 0.
     if (has_rough_glass) {
       if (kFromLight) return;
       next.is_transmitted = dot(surface.normal, next.direction) < 0.0f;

@@ -18,7 +18,7 @@ namespace raygate {
 class WindingNumbers {
  public:
   struct Number {
-    double value, error;  ///< `error` bounds that of `value`
+    double value, error;  ///< `error` bounds the error of `value`
   };
 
   /// The references must outlive this object. Merges vertices with equal coordinates.

@@ -13,7 +13,7 @@ namespace raygate {
 inline constexpr int kErrorBlock = 4;
 
 /// Errors are checked at 8, 16, 32, ... samples per pixel. The first check yields no error
-/// estimate, so a block can stop from the second one on.
+/// estimate, so the second one is the first at which a block can stop.
 inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
 
 /// Returns the number of samples of the next check after `samples`.

@@ -17,7 +17,7 @@ struct RenderSettings : IntegratorSettings {
   PixelRect window;               ///< pixels to render, within the frame; empty: the whole frame
   int threads = 1;                ///< at least 1; does not affect the film
   int first_sample = 0;           ///< samples [first, end) are rendered
-  int end_sample = 0;             ///< 0: all samples from the first on
+  int end_sample = 0;             ///< 0: all samples, starting at the first
   /// Above 0: adaptive sampling to this error, in steps of an 8-bit display after `exposure` stops
   /// (see has_converged in adaptive_sampling.h); `samples` is the maximum. The window must begin
   /// and end at multiples of kErrorBlock or at the frame's edges, and first_sample and end_sample

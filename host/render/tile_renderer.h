@@ -88,7 +88,7 @@ class TileRenderer {
   std::vector<RayWork> path_work_;  // by path, for all its rays; if counted
   bool is_counting_;
   ShadingOutput output_;
-  std::vector<glm::vec3> direct_light_;  // by path: from shadow rays
+  std::vector<glm::vec3> direct_light_;  // by path: light found by shadow rays
   // Emission added by emitter_supersampler_, by pixel.
   std::vector<std::array<ExactAccumulator, 3>> emitter_sums_;
   PixelRect tile_;

@@ -68,8 +68,8 @@ module booth_multiplier #(
         assign rows[2*Width*(k+1)+:2*Width] = (2 * Width)'(row) << 2 * k;
       end
     end else begin : gen_full
-      // n fits below the last row and ~n above row 0, except ~n[2]: from bit Width + 1 on, the 1 and ~n[1:0] add up to
-      // 4 - n[0], whose three bits displace ~n[2] to row 1.
+      // n fits below the last row and ~n above row 0, except ~n[2]: starting at bit Width + 1, the 1 and ~n[1:0] add up
+      // to 4 - n[0], whose three bits displace ~n[2] to row 1.
       if (k == 0) begin : gen_first
         assign rows[0+:2*Width] = (2 * Width)'({
           ~negative[2*Digits-1:3], ~negative[0], negative[0], negative[0], row

@@ -1,7 +1,7 @@
 // Carry-select adder: {carry_o, sum_o} = a_i + b_i + carry_i.
 //
 // The operands are cut into groups. Each group computes its sum for both possible carries into it; then one multiplexer
-// a group passes the carry on, and each carry selects its group's sum. Groups of one width make the paper's uniform
+// per group passes the carry on, and each carry selects its group's sum. Groups of one width make the paper's uniform
 // adder, groups that grow towards the top its graded one (section 3.4).
 //
 // GroupWidths: see arith_pkg; the widths must add up to Width.

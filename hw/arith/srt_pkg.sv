@@ -21,8 +21,8 @@ package srt_pkg;
     threshold = ceiling((3 * k - 2) * ((k > 0) ? i + 9 : i + 8), 3);
   endfunction
 
-  // m_k of all intervals, a byte each: in eighths, plus 64, so that they compare as unsigned numbers. Byte i is for a
-  // divisor in [1 + i/8, 1 + (i+1)/8).
+  // m_k of all intervals, one byte per interval: in eighths, plus 64, so that they compare as unsigned numbers. Byte i
+  // is for a divisor in [1 + i/8, 1 + (i+1)/8).
   function automatic bit [8*8-1:0] thresholds(int k);
     for (int i = 0; i < 8; i++) thresholds[8*i+:8] = 8'(threshold(k, i) + 64);
   endfunction

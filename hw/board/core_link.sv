@@ -4,7 +4,7 @@
 //   1     the line of that number; its 16 words follow
 //   2     memory has changed: it now has that number of lines, and the caches are emptied
 //   4-7   a ray: any_hit in bit 28; its tag, source_id, skip_id, t_max, and x, y, z of direction and origin follow
-// Other messages are ignored. A result is 8 words, result_t from bit 0 on, zeros above it.
+// Other messages are ignored. A result is 8 words: result_t in the lowest bits, zeros above it.
 //
 // The host must send messages 1 and 2 while no ray is in the core; they wait until no line is in flight to the core.
 // Words: valid/ready.

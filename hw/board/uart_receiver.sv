@@ -1,4 +1,4 @@
-// Serial line to words of 32 bits: 8N1, four bytes a word, lowest byte and bit first.
+// Serial line to words of 32 bits: 8N1, four bytes per word, lowest byte and bit first.
 //
 // Throughput: a word in 40 ClocksPerBit clocks; a bit is sampled in its middle. A low stop bit is a break: break_o is
 // high for a clock, and the next byte is the first of a word. word_o is valid only in the clock of valid_o.

@@ -1,4 +1,4 @@
-// Words of 32 bits to a serial line: 8N1, four bytes a word, lowest byte and bit first; valid/ready.
+// Words of 32 bits to a serial line: 8N1, four bytes per word, lowest byte and bit first; valid/ready.
 // Throughput: a word in 40 ClocksPerBit clocks.
 module uart_transmitter #(
   parameter int unsigned ClocksPerBit = 20

@@ -1,8 +1,8 @@
 // Shared by the parts of the exact unit: requests, answers, numbers, instructions, steps.
 //
-// A number is the sum of d_k 2**(Width k), k from 0 on, in a power of two as the unit, common to all numbers of its
-// kind. Its digits are balanced, -2**(Width-1) <= d_k < 2**(Width-1), in two's complement, so the highest digit that is
-// not 0 has the number's sign. n digits hold any number below 2**(Width n - 2).
+// A number is the sum of d_k 2**(Width k), k = 0, 1, ..., in units of a power of two that is common to all numbers of
+// its kind. Its digits are balanced, -2**(Width-1) <= d_k < 2**(Width-1), in two's complement, so the highest digit
+// that is not 0 has the number's sign. n digits hold any number below 2**(Width n - 2).
 package exact_pkg;
 
   // verilator lint_off UNUSEDPARAM
@@ -45,7 +45,7 @@ package exact_pkg;
   localparam int unsigned OtherDistance = 20;
   localparam int unsigned Numbers = 22;
 
-  localparam int unsigned CountWidth = 6;  // of the number of a number's digits
+  localparam int unsigned CountWidth = 6;  // of the count of a number's digits
 
   // Words of the memory of digits, if a difference has `digits` digits.
   function automatic int unsigned memory_depth(int unsigned digits);

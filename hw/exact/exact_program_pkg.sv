@@ -17,7 +17,7 @@ package exact_program_pkg;
   typedef instruction_t [0:2] vector_t;  // of x, y, z
   typedef logic [NumberWidth-1:0] place_t;  // of a float in a request, or of a number in memory
 
-  // ---- Places; a vector's is that of its x
+  // ---- Places of floats and numbers; a vector's place is its x's
 
   localparam place_t Origin = place_t'(PlaceOrigin);
   localparam place_t Triangle = place_t'(PlaceTriangle);  // its corners A, B, C

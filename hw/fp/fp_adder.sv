@@ -1,6 +1,6 @@
 // Floating-point add and subtract: a_i + b_i, or a_i - b_i with subtract_i.
 //
-// Two paths, of which the second needs no rounding and the first no long normalising shift:
+// There are two paths; the second needs no rounding and the first no long normalising shift:
 //   far   the smaller operand shifted right, one addition, the shared rounder
 //   near  a difference of operands whose exponents are equal, or are neighbours and cancel at least the leading bit:
 //         exact, so only a leading-zero count and a left shift

@@ -23,7 +23,7 @@ package fp_pkg;
 
   // Class of an operand, see fp_unpack
   typedef struct packed {
-    logic special;  // one of the next three
+    logic special;  // zero, infinity or nan
     logic zero;
     logic infinity;
     logic nan;      // quiet or signalling

@@ -1,8 +1,8 @@
 // Adds, subtracts or multiplies vectors word by word: result[n] = a[n] op b[n].
 //
 // Latency: 3 clocks, or one step. Clocks = 1: a core for each word, a vector a clock; step_i is ignored. Else words
-// share cores, Clocks - 3 words a core: step_i is high in one of Clocks clocks. At that clock edge words are taken, and
-// result_o has the results of the words taken at the step before. Multiply: products; else sums, or differences for
+// share cores, Clocks - 3 words per core: step_i is high in one of Clocks clocks. At that clock edge words are taken,
+// and result_o has the results of the words taken at the step before. Multiply: products; else sums, or differences for
 // words with a 1 in Subtract. Accepts every bit pattern; no flags.
 module fp_vector #(
   parameter int unsigned ExpWidth = 8,

@@ -5,7 +5,7 @@
 // order. For a slot's contents see hit_test_pipeline; slot n of every port is the n-th from the bottom.
 //
 // counter_o is counter count_select_i of count_e, summed over the lanes since reset, modulo 2**CounterWidth, up to
-// three clocks late; other numbers give 0. Counters of clocks count each lane: with 4 lanes, 4 a clock.
+// three clocks late; other numbers give 0. Counters of clocks count each lane: with 4 lanes, 4 per clock.
 module hit_test_array
   import hit_test_pkg::*;
 #(

@@ -43,7 +43,7 @@ package hit_test_pkg;
   localparam int unsigned AdderLatency = 3;
   localparam int unsigned DotLatency = MultiplierLatency + 2 * AdderLatency;
 
-  // fp_divider: a row for each two bits of the quotient, and five stages around them.
+  // fp_divider: a row for every two bits of the quotient, and five stages around them.
   function automatic int unsigned divide_latency(int unsigned frac_width);
     divide_latency = (frac_width + 2) / 2 + 5;
   endfunction

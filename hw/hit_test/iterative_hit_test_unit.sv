@@ -37,7 +37,7 @@ module iterative_hit_test_unit
   localparam int unsigned NumWords = 7;
 
   // The adder's two sums must not collide in the period; the last of the three kept products must arrive before the
-  // first is divided, and the last be divided before those of the next test arrive.
+  // first is divided, and must be divided before the next test's products arrive.
   if (AdderLatency < 2 || 2 * AdderLatency - 1 > NumWords) begin : gen_check
     $error("iterative_hit_test_unit: expected an AdderLatency of 2 to (NumWords + 1) / 2");
   end

@@ -1,9 +1,9 @@
-// AXI4 write manager: records of 32 bytes to memory, a burst each.
+// AXI4 write manager: results of 32 bytes to memory, a burst each.
 //
-// Record n goes to base_i + 32 n, n from 0 on, while n is below length_i; further records wait until rewind_i, after
-// which n is 0 again. written_o: records whose writes have been answered, in order, as all have the same AXI ID.
+// Result n (0, 1, ...) goes to base_i + 32 n while n is below length_i; further results wait until rewind_i, after
+// which n is 0 again. written_o: results whose writes have been answered, in order, as all have the same AXI ID.
 //
-// Throughput: a record in 256 / DataWidth clocks, at least 1 (a clock for each beat). On a port of 512 bits a beat uses
+// Throughput: a result in 256 / DataWidth clocks, at least 1 (a clock for each beat). On a port of 512 bits a beat uses
 // the half that its address selects. No output of AXI depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.
 module axi_write_manager #(
@@ -13,10 +13,10 @@ module axi_write_manager #(
   input  logic                   clk_i,
   input  logic                   rst_ni,
   input  logic [63:0]            base_i,  // a multiple of 64: the lower bits are ignored
-  input  logic [31:0]            length_i,  // capacity in records
+  input  logic [31:0]            length_i,  // capacity in results
   input  logic                   rewind_i,  // only while not busy_o
-  output logic                   busy_o,  // a record's write has not been answered
-  output logic                   full_o,  // a record waits for capacity, all others are written
+  output logic                   busy_o,  // a result's write has not been answered
+  output logic                   full_o,  // a result waits for capacity, all others are written
   output logic                   bus_error_o,  // an answer in this clock has an error
   output logic [31:0]            written_o,
   input  logic                   record_valid_i,

@@ -254,7 +254,7 @@ module box_unit
     .data_o({children, aligned_exponent, aligned_back})
   );
 
-  // ---- Step and enter: a key for each child, {left out, enter}; all children at once, or one a clock
+  // ---- Step and enter: a key for each child, {left out, enter}; all children at once, or one per clock
 
   localparam int unsigned Tests = (Clocks == 1) ? Children : 1;
   localparam int unsigned KeyWidth = UnitBits + 2;

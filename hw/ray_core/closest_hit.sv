@@ -6,8 +6,8 @@
 // leaves as a doubt, as does a test without a verdict. Distances are positive floats, ordered as integers. At first
 // t_max is the user's: a hit that may lie beyond it is a doubt. A ray with any_hit ends with its first certain hit.
 //
-// Credits count tests in flight, from test_i on, and waiting doubts: tests_allowed_o is low while all Queue are used.
-// So neither a test nor a line from memory ever waits for a doubt to leave.
+// Credits count tests in flight, starting at test_i, and waiting doubts: tests_allowed_o is low while all Queue are
+// used. So neither a test nor a line from memory ever waits for a doubt to leave.
 //
 // With Exact no doubt leaves: open_o passes each to exact_resolver in the clock in which its test ends. If a doubt is
 // the ray's nearest hit, its triangle is tested again with settle_i, as the ray's last test, and kept whatever the

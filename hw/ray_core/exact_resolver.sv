@@ -88,7 +88,7 @@ module exact_resolver
     .data_o({queued_ctx, queued_hit, queued_line})
   );
 
-  // ---- For each ray: whether its doubts wait, its candidate, and whether a question of it is open
+  // ---- For each ray: whether its doubts wait, its candidate, and whether a question about it is open
 
   // Doubts are numbered as they come, and leave in that order: when a ray's last doubt leaves, none of its doubts
   // waits. There are more numbers than doubts can wait.
@@ -141,7 +141,7 @@ module exact_resolver
   // ---- The question
 
   logic has_candidate, simple, lacks_q, nearer_q;
-  logic ended_q, found_q;  // of the ray in work
+  logic ended_q, found_q;  // of the current ray
   logic [1:0] against, against_q;  // exact_pkg::against_e
   logic [AddressWidth-1:0] other_line_q, candidate;
   logic [CornersWidth-1:0] corners_q, other_q;

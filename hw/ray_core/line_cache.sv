@@ -13,7 +13,7 @@
 // if its set has no way for it or memory takes no request. outstanding_o: a prefetch is being looked up.
 //
 // A line from memory is taken when the previous one has left or leaves: it is written, and its latest target is looked
-// up. From the next clock on it goes to its targets, one a clock, the latest first. Throughput: a line a clock; lines
+// up. From the next clock it goes to its targets, one per clock, the latest first. Throughput: a line a clock; lines
 // leave in any order, each with the ray that asked. While a line from memory leaves, hits wait in their queue; requests
 // are still looked up. A line with an error goes to its targets with error_o, and is not kept.
 //

@@ -25,7 +25,7 @@ module ray_alloc #(
   input  logic                start_fire_i
 );
 
-  localparam int unsigned Depth = hit_test_pkg::divide_latency(23) + 3;  // for a ray a clock
+  localparam int unsigned Depth = hit_test_pkg::divide_latency(23) + 3;  // for one ray per clock
 
   if (Rays < 2 || 2 ** RayWidth != Rays || (Clocks != 1 && Clocks < 7)) begin : gen_check
     $error("ray_alloc: expected Rays of 2 or more, a power of two, and Clocks of 1, or 7 or more");
@@ -54,7 +54,7 @@ module ray_alloc #(
     end
   end
 
-  // ---- Divide: all words at once, or one a clock
+  // ---- Divide: all words at once, or one per clock
 
   localparam int unsigned Latency = hit_test_pkg::divide_latency(23);
   localparam int unsigned Dividers = (Clocks == 1) ? 3 : 1;

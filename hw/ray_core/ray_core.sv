@@ -331,8 +331,8 @@ module ray_core
     .result_o
   );
 
-  // ---- Errors: the first of each ray. A ray has failed from the second clock after its error on, at the latest when
-  // its end is reported, until another ray starts in its context. While abort_i is high, all rays in the core fail.
+  // ---- Errors: the first of each ray. A ray counts as failed two clocks after its error, at the latest when its end
+  // is reported, until another ray starts in its context. While abort_i is high, all rays in the core fail.
 
   logic [Rays-1:0][2:0] errors_q;
   logic node_error_q, triangle_error_q, cycle_q;

@@ -14,15 +14,15 @@ package ray_core_pkg;
   //
   // A box is given on the node's own grid: along axis k, q is the coordinate origin_k + q 2**(e_k - 127),
   // exactly, with q from 0 to 255. A box holds all of its child's triangles (closed: they may touch it).
-  // The children's lines follow each other from line `base` on, child 0's first: one line of an inner node,
-  // or as many triangle lines as the leaf has.
+  // The children's lines follow each other, starting at line `base` with child 0's: one line of an inner node, or as
+  // many triangle lines as the leaf has.
 
   localparam int unsigned Children = 7;
   localparam int unsigned NodeOrigin = 0;  // three binary32, finite
   localparam int unsigned NodeExponents = 96;  // three e_k of eight bits, 1 to 254
   localparam int unsigned NodeBase = 120;  // AddressWidth bits
-  localparam int unsigned NodeKinds = 148;  // four bits a child, see below
-  localparam int unsigned NodeBoxes = 176;  // 48 bits a child: low x, y, z, high x, y, z
+  localparam int unsigned NodeKinds = 148;  // four bits per child, see below
+  localparam int unsigned NodeBoxes = 176;  // 48 bits per child: low x, y, z, high x, y, z
   localparam int unsigned KindWidth = 4;
   localparam int unsigned BoxWidth = 48;
   localparam logic [KindWidth-1:0] KindAbsent = 4'd0;  // 1 to 7: a leaf of so many triangles

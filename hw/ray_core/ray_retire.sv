@@ -29,7 +29,7 @@ module ray_retire
   output result_t             result_o
 );
 
-  localparam int unsigned Depth = 8;  // for an end a clock
+  localparam int unsigned Depth = 8;  // for a throughput of one end per clock
 
   // ---- The end of a ray
 

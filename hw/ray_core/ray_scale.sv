@@ -2,9 +2,9 @@
 // Latency: 2 clocks: registers after the reach along each axis and after E. All inputs come in the same clock. For the
 // reasons see steps 1 and 3 of box_unit's header. Exponents have binary32's bias.
 //
-// In:  distances_i  exponents of D_k = origin_k - O_k, eight bits an axis, x lowest
+// In:  distances_i  exponents of D_k = origin_k - O_k, eight bits per axis, x lowest
 //      inverse_i    1 / I_k, binary32, x lowest
-//      cells_i      the grid's exponents e_k, eight bits an axis
+//      cells_i      the grid's exponents e_k, eight bits per axis
 //      t_max_i      t_max's exponent
 // Out: scale_o      see ray_core_pkg; E is at least -100
 module ray_scale

@@ -146,8 +146,8 @@ module triangle_test
     .result_o({edge_vector, corner})
   );
 
-  // ---- Cross: the edges' planes, then N. A product's word k is a_i b_j - a_j b_i for (i, j, k) = (1, 2, 0) and so on,
-  // the size of its terms |a_i b_j| + |a_j b_i|: the more cancels in a word, the larger its terms are in comparison
+  // ---- Cross: the edges' planes, then N. Word k of a product is a_i b_j - a_j b_i for (i, j, k) = (1, 2, 0) and so
+  // on; the size of its terms is |a_i b_j| + |a_j b_i|, which exceeds the word by more, the more cancels
 
   logic [4*192-1:0] lefts, rights, cross_terms, minuends, others, differences;
   logic [12*32-1:0] product, terms;

@@ -1,4 +1,4 @@
-// Tests for timing the hit-test units: random triangles, of which about a given fraction is hit.
+// Tests for timing the hit-test units: random triangles, about a given fraction of which is hit.
 #pragma once
 
 #include <cstdint>

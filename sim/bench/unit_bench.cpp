@@ -20,7 +20,7 @@
 namespace raygate {
 namespace {
 
-constexpr int kBursts = 1024, kTests = 8;  // 8,192 tests a round
+constexpr int kBursts = 1024, kTests = 8;  // 8,192 tests per round
 constexpr int kRuns = 9, kRounds = 8;
 
 struct Kind {

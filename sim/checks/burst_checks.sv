@@ -1,6 +1,6 @@
 // The framing of bursts at a hit-test pipeline. Its user sends whole bursts: first_i after last_i and nowhere else, one
-// direction a burst. The unit closes no more bursts than went in, and gives no more points than it closed bursts with a
-// nearest hit.
+// direction per burst. The unit closes no more bursts than went in, and gives no more points than it closed bursts with
+// a nearest hit.
 module burst_checks #(
   parameter int unsigned DirectionWidth = 96
 ) (

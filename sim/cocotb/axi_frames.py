@@ -20,7 +20,7 @@ REGISTERS = {name: int(address, 16) for address, name in re.findall(r"^\| (0x\w+
 START, CLEAR = 1, 4
 DONE, BUS_ERROR, RAY_ERROR, WRITE_ERROR = 2, 4, 8, 32
 
-SIZE = 12  # pixels a side
+SIZE = 12  # pixels per side
 STEP = 0.15
 EYE = (-1.0, 1.0, 1.0)
 BASE, RESULTS, ROOM = 0x1000, 0x8000, 400  # addresses, records
@@ -28,7 +28,7 @@ TRIANGLES = {10: (3.0, 0.0, 4.0), 11: (2.0, 0.0, 4.0), 12: (5.0, 4.0, 7.0)}  # x
 
 
 def node(base, kinds, *boxes):
-    """Returns a node line on a grid of 1/32 from zero on."""
+    """Returns a node line on a grid of step 1/32 that begins at zero."""
     bits = 0x7A7A7A << 96 | base << 120 | kinds << 148
     return (bits | sum(box << (176 + 48 * n) for n, box in enumerate(boxes))).to_bytes(64, "little")
 
@@ -81,7 +81,7 @@ def check(records):
 
 
 class Memory(axi.MemoryRegion):
-    """Memory of which a part, `broken`, answers with SLVERR."""
+    """Memory with a part, `broken`, that answers with SLVERR."""
 
     broken = range(0)
 
@@ -165,13 +165,13 @@ async def begin(dut, seed):
 
 
 def in_buffer(bench, count):
-    """Returns records of the buffer."""
+    """Returns results in the buffer."""
     return [struct.unpack_from("<8I", bench.memory.mem, RESULTS + 32 * n) for n in range(count)]
 
 
 @cocotb.test()
 async def results_go_to_memory(dut):
-    """Results are records in the buffer, also of a memory with pauses."""
+    """Results arrive in the buffer, also if the memory pauses."""
     bench = await begin(dut, 1)
     assert await bench.draw(ROOM) & ~1 == DONE
     check(in_buffer(bench, await bench.read("written")))

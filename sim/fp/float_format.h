@@ -22,7 +22,7 @@ struct FloatFormat {
   }
   /// The one NaN that the cores give.
   constexpr std::uint32_t quiet_nan() const { return infinity() | 1u << (frac_bits - 1); }
-  /// Whether `bits` (no more than width() of them) are a NaN of either kind.
+  /// Returns whether `bits` (at most width() of them) are a NaN of either kind.
   constexpr bool is_nan(std::uint32_t bits) const { return (bits & ~sign_bit()) > infinity(); }
   constexpr bool is_signaling(std::uint32_t bits) const {
     return is_nan(bits) && (bits >> (frac_bits - 1) & 1) == 0;

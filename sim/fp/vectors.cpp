@@ -94,8 +94,8 @@ OperandPair PairSource::cancelling() {
 }
 
 OperandPair PairSource::near_boundary() {
-  // A boundary is a significand of one bit more than the format's. Chooses one, and an operand; the
-  // other operand is the one that comes nearest to it, or a neighbour.
+  // Chooses a boundary, which is a significand of one bit more than the format's, and an operand.
+  // The other operand brings the result nearest to the boundary, or is its neighbour.
   const int f = format_.frac_bits;
   const double boundary = std::ldexp(1.0 + std::ldexp(fraction() + 0.5 * below(2), -f), 0);
   const double other = 1.0 + std::ldexp(fraction(), -f);
@@ -126,8 +126,8 @@ namespace {
 /// Returns a division whose quotient is as close to a rounding boundary as it can be: significands
 /// a, b in [2^F, 2^(F+1)), F = frac_bits, with a * 2^k = m * b + r, |r| small, where m is odd with
 /// F+2 bits (a midpoint) or even. Given b odd and r, m is r / -b modulo a power of two (after
-/// Matula and McFearin, 2001). `k` is F+1, or F+2 for quotients below 1. Returns {0, 0} where there
-/// is no such a.
+/// Matula and McFearin, 2001). `k` is F+1, or F+2 for quotients below 1. Returns {0, 0} if no such
+/// a exists.
 OperandPair hard_division(FloatFormat format, std::uint32_t b, int r, int k, bool midpoint) {
   const int f = format.frac_bits;
   std::uint64_t inverse = b;  // of odd b, modulo 2^64: each step doubles the bits that are right

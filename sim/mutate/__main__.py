@@ -1,8 +1,8 @@
 """`python3 -m sim.mutate BUILD`: how many single faults of the hardware its tests catch.
 
 For each unit: a netlist with faults (netlist.py) runs the unit's own tests with one fault after the other. A fault that
-survives is no fault if ABC's equivalence check shows that it changes no output for any input. What is left is listed, with
-its lines in hw/. `--at-most PERCENT`: the check is that no more survive, and stops where that is known."""
+survives is no fault if ABC's equivalence check shows that it changes no output for any input. The remaining faults are listed, with their
+lines in hw/. `--at-most PERCENT`: checks that no more survive, and stops when that is known."""
 
 import argparse
 import collections
@@ -85,7 +85,7 @@ def test_passes(program: pathlib.Path, fault: int, limit: int) -> bool:
 
 
 def test_survivors(program: pathlib.Path, faults: int) -> list[int]:
-    """Returns those of a unit's faults, numbered from 1, with which its test passes."""
+    """Returns a unit's faults, numbered from 1, that its test does not detect."""
     begin = time.monotonic()
     if not test_passes(program, 0, 3600):
         raise ValueError(f"{program}: fails without a fault")

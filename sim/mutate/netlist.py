@@ -1,5 +1,4 @@
-"""`python3 -m sim.mutate.netlist`: a module of hw/ as Yosys elaborates it, with single faults in it, of
-which an input chooses one.
+"""`python3 -m sim.mutate.netlist`: a module of hw/ as Yosys elaborates it, with single faults; an input chooses one of them.
 
 Writes NAME.v, the flattened module with one more port, `mutant`: 0 for the sound module, k for fault k;
 NAME.list, Yosys's own lines, a fault each, with the lines of hw/ it is in; and NAME.il, the sound one.
@@ -52,7 +51,7 @@ def write(out: pathlib.Path, top: str, parameters: list[str], count: int, seed: 
     lines = [line.replace("mutate ", f"mutate -ctrl mutant 16 {number} ", 1)
              for number, line in enumerate(lines, 1)]
     faults.write_text("\n".join(lines) + "\n")
-    # Wires are split into bits: Verilator takes a word of which one bit depends on another for a loop.
+    # Wires are split into bits: if one bit of a word depends on another, Verilator takes the word for a loop.
     yosys.run(f"read_rtlil {out}.il\nscript {faults}\nsplitnets -driver\nopt_clean\nwrite_verilog -noattr {out}.v",
               out.with_suffix(".faults.log"))
     return len(lines)

@@ -1,7 +1,7 @@
 """`python3 -m sim.page OUT.html`: the paper's hit-test unit as a page that needs nothing installed.
 
-Verilates hit_test_unit with an adder of which the page can break a gate (fp_adder.sv here), compiles that to
-WebAssembly (Emscripten, which is looked for as em++), and writes one file for any web server, or to be opened."""
+Verilates hit_test_unit with an adder whose gates the page can break (fp_adder.sv here), compiles that to WebAssembly (Emscripten, which is
+looked for as em++), and writes one file for any web server, or to be opened."""
 
 import argparse
 import json

@@ -1,4 +1,4 @@
-// Gate-level adder, one gate of which may be broken: `make page` puts it in place of hw/fp/fp_adder.
+// Gate-level adder in which one gate may be broken: `make page` puts it in place of hw/fp/fp_adder.
 //
 // fp_adder_gates is Yosys's netlist of fp_adder in binary32 with single faults (sim/mutate/netlist.py). `mutant`
 // is set by the page: 0 for the sound adder, k for fault k of the netlist's list.

@@ -32,7 +32,7 @@ class Macro:
 
 @dataclasses.dataclass(frozen=True)
 class Layer:
-    """A layer of wires: the pitch of its tracks and the width of a wire, um; ohms a square."""
+    """A layer of wires: the pitch of its tracks and the width of a wire, um; ohms per square."""
 
     pitch: float
     offset: float

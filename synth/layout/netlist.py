@@ -47,7 +47,7 @@ class Netlist:
         return found
 
     def verilog(self) -> str:
-        """Returns Verilog with these names: what is timed is what was placed."""
+        """Returns Verilog with these names, so that the timed netlist is the placed one."""
         constant = {rail: f"1'b{bit}" for bit, rail in CONSTANTS.items() if bit != "x"}
         lines = [f"module {self.top} ({', '.join(self.ports)});"]
         wires = {net for cell in self.cells.values() for net in cell.pins.values()}

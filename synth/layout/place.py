@@ -1,7 +1,7 @@
 """Places a netlist in rows with Coloquinte, in seconds.
 
 Coloquinte reads and writes the files of the placement contests (bookshelf): .nodes, .nets, .pl, .scl. Its coordinates are whole numbers:
-here x in tracks, y in steps of a row's height by STEPS. A step is longer than a track, so wires across, which have one metal, cost more
+here x in tracks, y in steps of 1/STEPS of a row's height. A step is longer than a track, so wires across, which have one metal, cost more
 than wires upwards, which have two.
 """
 
@@ -81,7 +81,7 @@ class Placement:
 
 
 def _spread(wanted: list[tuple[float, str]], last: int) -> list[tuple[int, str]]:
-    """Returns whole places from 1 to `last`, all different, in order, near those wanted."""
+    """Returns whole places from 1 to `last`, all different, in order, near the wanted places."""
     places, low = [], 1
     for count, (at, name) in enumerate(wanted):
         room = last - (len(wanted) - 1 - count)  # so that the remaining ones find places
@@ -203,7 +203,7 @@ def gaps(netlist: Netlist, technology: Technology, density: float, pitch: float)
     """
     widths = {name: technology.macros[cell.kind].width for name, cell in netlist.cells.items()}
     room = sum(widths.values()) * (1 / density - 1)
-    low, high = 0.0, sum(widths.values()) / density  # um a pin
+    low, high = 0.0, sum(widths.values()) / density  # um per pin
     for _ in range(60):
         middle = (low + high) / 2
         taken = sum(max(0.0, middle * len(cell.pins) - widths[name]) for name, cell in netlist.cells.items())

@@ -1,5 +1,5 @@
-// Composition, step 1: the recoded digits, from -2 to 2, add up to the multiplier operand:
-// the sum over k of digit[k] * 4**k is b. Also, no digit is both 1 and 2, and the last is not negative.
+// Composition, step 1: the recoded digits, from -2 to 2, add up to the multiplier operand `b`: it is the sum over k of
+// digit[k] * 4**k. Also, no digit is both 1 and 2, and the last is not negative.
 module booth_digits #(
   parameter int unsigned Width = 24,
   localparam int unsigned Digits = Width / 2 + 1

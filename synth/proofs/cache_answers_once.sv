@@ -1,6 +1,6 @@
-// The cache of lines, for any requests and any order of memory's answers, from reset on: a demand request that is taken
-// is compared and looked up once, and answered once, with its ray, by memory's line of its number or by an error. Until
-// then it waits in the queue of hits, or is a target of an entry whose line is pending; that line does not leave
+// From reset on, for any requests and any order of memory's answers: line_cache compares and looks up each demand
+// request once, and answers it once, with its ray, by memory's line of its number or by an error. Until then the
+// request waits in the queue of hits, or is a target of an entry whose line is pending; that line does not leave
 // before. No line is read while it is here or pending. opened_line_cache is line_cache of two sets and two targets with
 // its registers and memories as outputs. Of memory only the line `number`, any number, is known.
 module cache_answers_once #(

@@ -130,7 +130,7 @@ module contexts_answer_once #(
       assert (free_q == ~used && active_q == used);
       assert (TotalWidth'(rays_count) == TotalWidth'(inverses_count) + ones(32'(dividing_q)));
       assert (inverses_valid == (inverses_count != '0));
-      // A memory gives a word a clock later, so that a single word may not be valid yet
+      // A memory gives a word one clock later, so a single word may not be valid yet
       if (rays_count != InCountWidth'(dividing_q[0])) assert (rays_valid);
       if (ends_count > EndCountWidth'(1)) assert (ends_valid);
       if (rays_valid) assert (rays_count != '0);

@@ -1,7 +1,7 @@
-// The registers' port, for any manager, from reset on: it keeps AXI4-Lite (sim/checks/axi_lite_checks). A plain
-// register changes only by a write to it that is answered OKAY, in the bytes and bits that can be written. A write is
-// refused while rays are generated or traced, and to `base` while lines are read. A read gives the register's value.
-// The watched register may be any. opened_csr is csr with some registers as outputs.
+// From reset on, for any manager, the registers' port keeps AXI4-Lite (sim/checks/axi_lite_checks). A plain register
+// changes only by a write to it that is answered OKAY, in the bytes and bits that can be written. A write is refused
+// while rays are generated or traced, and to `base` while lines are read. A read gives the register's value. The
+// watched register may be any. opened_csr is csr with some registers as outputs.
 module csr_keeps_protocol (
   input logic clk
 );

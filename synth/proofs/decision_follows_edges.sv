@@ -1,5 +1,5 @@
-// hit_decision, in one format, if an edge product beyond its bound has the sign of the exact product. Then a hit has
-// all three exact edge products on d's side, so the ray, aimed ahead, meets the triangle. A miss has d = 0, or an exact
+// Assume that an edge product beyond its bound has the sign of the exact product. Then, in one format, a hit has all
+// three exact edge products on d's side, so the ray, aimed ahead, meets the triangle. A miss has d = 0, or an exact
 // product on the other side or, if d is a NaN, two on different sides. One verdict is given. A hit's V is a normal
 // number of d's sign, whose error is stated. Exact products are any three signs; a zero has neither.
 module decision_follows_edges #(

@@ -1,10 +1,10 @@
-// An edge product in a small format, computed by the cores themselves: beyond its bound it has the sign of the exact
+// In a small format, an edge product that the cores compute and that is beyond its bound has the sign of the exact
 // product, for every ray and record. The exact product is J . E for every E that rounds to the record's words F: at
 // most half a unit in the last place from each.
 //
-// |J_i| < 2, |F_i| < 2 and one |F_i| at least 1, as the set-up scales them; the bound is any number from
-// C 2^-(FracWidth+1) |F|_1 on, C = C1024 / 1024. All sums here are whole numbers, in units of the
-// format's smallest number, or of its square.
+// |J_i| < 2, |F_i| < 2 and one |F_i| at least 1, as the set-up scales them; the bound is any number of at least C
+// 2^-(FracWidth+1) |F|_1, C = C1024 / 1024. All sums here are whole numbers, in units of the format's smallest number,
+// or of its square.
 module edge_sign_is_exact #(
   parameter int unsigned ExpWidth  = 4,
   parameter int unsigned FracWidth = 3,

@@ -1,4 +1,4 @@
-// exact_accumulator, for any terms: its register is the exact sum of a column's terms and of what enters the column
+// For any terms, exact_accumulator's register is the exact sum of a column's terms and of what enters the column
 // (upwards the carry out of the digits so far, downwards the sum above times 2**DigitWidth), and does not overflow. A
 // digit is that sum modulo 2**DigitWidth, balanced. A sum with sure_o is larger than all columns below together can be.
 // opened_exact_accumulator is exact_accumulator with its register as an output.

@@ -1,6 +1,6 @@
-// exact_exponents, for any words that stay: each coordinate and each component of the direction that is not 0 is a
-// whole number of units, and with a difference of two fits in the digits. The unit is one of their exponents, and a
-// digit fewer is not enough. `one` and `limit` have shifts with which D one < S limit is t < limit, and fit.
+// For any constant inputs of exact_exponents: each coordinate and each component of the direction that is not 0 is a
+// whole number of units. It fits in the digits, as does a difference of two. The unit is one of their exponents, and
+// one digit less is not enough. `one` and `limit` fit; their shifts make D one < S limit equivalent to t < limit.
 module exact_exponents_fit #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,

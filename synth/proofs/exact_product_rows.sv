@@ -1,5 +1,5 @@
-// The words of exact_product's tree are the digits' multiples of a, and a correction for signs. With d[k] = -2 b[2k+1]
-// + b[2k] + b[2k-1], negated if `negate`, word k is (d[k] a - n[k] + 2**DigitWidth) 4**k, and the last the sum of (n[k]
+// The words of exact_product's tree are the digits times `a`, and a correction for signs. With d[k] = -2 b[2k+1] +
+// b[2k] + b[2k-1], negated if `negate`, word k is (d[k] a - n[k] + 2**DigitWidth) 4**k, and the last the sum of (n[k]
 // - 2**DigitWidth) 4**k. The sum of d[k] 4**k is +-b. All modulo 2**Width. opened_exact_product shows them.
 module exact_product_rows #(
   parameter int unsigned DigitWidth = 48,

@@ -1,7 +1,6 @@
-// The steps of exact_sequencer, whatever signs become known and whenever: each product of an instruction, digit i of x
-// and digit j of y in a term, is issued once, in column i + j, unless the sign is known before. Columns come in order;
-// digits stay within their numbers. opened_exact_sequencer shows its registers. The watched product may be any of an
-// instruction.
+// Whatever signs become known and whenever, exact_sequencer issues each product of an instruction, digit i of x and
+// digit j of y in a term, once, in column i + j, unless the sign is known before. Columns come in order; digits stay
+// within their numbers. opened_exact_sequencer shows its registers. The watched product may be any of an instruction.
 module exact_sequencer_steps #(
   parameter int unsigned Digits = 6,
   localparam int unsigned AddressWidth = $clog2(48 * Digits)

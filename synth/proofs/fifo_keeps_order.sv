@@ -1,7 +1,6 @@
-// The FIFO, for any pushes and pops that are allowed, from reset on: it gives the words in the order in which they
-// came, each once, with Memory from the second clock after they came. It never holds more than Depth words; valid_o and
-// space_o tell whether there are words and whether more than Reserve are free; an output that is valid holds until it
-// is taken.
+// From reset on, for any allowed pushes and pops, the FIFO gives the words in the order in which they came, each once
+// (with Memory not before the second clock after they came). It never holds more than Depth words; valid_o and space_o
+// tell whether there are words and whether more than Reserve are free; an output that is valid holds until it is taken.
 // opened_fifo is the FIFO with its registers as outputs, for the induction.
 module fifo_keeps_order #(
   parameter int unsigned Depth   = 5,

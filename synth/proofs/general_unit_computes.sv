@@ -1,6 +1,6 @@
-// What the general unit computes from a test's words, whatever functions its cores compute: whenever it takes a test,
-// and whatever it did before and gets afterwards, the components that leave it 13, 14 and 15 clocks later are O_k + t
-// I_k with t = -(((d + a Ox) + b Oy) + c Oz) / ((a Ix + b Iy) + c Iz). The next test may come 10 clocks after this one.
+// Whatever functions its cores compute, whenever it takes a test, and whatever it did before and gets afterwards: the
+// components that leave the general unit 13, 14 and 15 clocks later are O_k + t I_k with t = -(((d + a Ox) + b Oy) + c
+// Oz) / ((a Ix + b Iy) + c Iz). The next test may come 10 clocks after this one.
 module general_unit_computes #(
   localparam int unsigned Width = 32
 ) (

@@ -1,4 +1,4 @@
-// closest_hit, for any results of tests at any time, from reset on: no sure hit is lost silently. A hit is kept, or has
+// From reset on, for any results of tests at any time, closest_hit loses no sure hit silently. A hit is kept, or has
 // been reported once as a doubt, or its lower bound is above t_max, the least of the user's t_max and the upper bounds
 // of all hits so far. A test without a verdict is reported once as a doubt. P and t are the kept hit's. Tests in flight
 // are counted correctly, and there is room for the doubts of all of them. opened_closest_hit is closest_hit of two rays

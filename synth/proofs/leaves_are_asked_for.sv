@@ -1,8 +1,8 @@
-// The triangles of leaves that a ray enters, for any groups and any waiting rays, from reset on: a group's triangles
-// are requested in order, near leaves first, each once, by the lines that the group gives. If one is not requested, its
-// leaf was beyond the ray's t_max, or the ray had ended, in the clock in which it was dropped. Until then the ray
-// counts as leaf_pending. No more groups wait than there is room for.
-// opened_primitive_fetch is primitive_fetch of two rays with its registers and its queue as outputs.
+// From reset on, for any groups of leaves that rays enter and any waiting rays: a group's triangles are requested in
+// order, near leaves first, each once, by the lines that the group gives. If one is not requested, its leaf was beyond
+// the ray's t_max, or the ray had ended, in the clock in which it was dropped. Until then the ray counts as
+// leaf_pending. No more groups wait than there is room for. opened_primitive_fetch is primitive_fetch of two rays with
+// its registers and its queue as outputs.
 module leaves_are_asked_for #(
   localparam int unsigned Rays = 2,
   localparam int unsigned Children = ray_core_pkg::Children,
@@ -104,7 +104,7 @@ module leaves_are_asked_for #(
     else assume (!box);
   end
 
-  // The group in work ends: its last triangle is given, or it is dropped.
+  // The current group ends: its last triangle is given, or it is dropped.
   logic leaves, dropped;
   logic [2:0] nearest;
   always_comb begin

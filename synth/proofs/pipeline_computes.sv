@@ -1,8 +1,8 @@
-// What the pipelined unit computes from its words, whatever functions its cores compute: V and U_k are (x + y) + z of
-// products of the record's words and the direction's, the verdict is hit_decision's for them, t = d / V, and P_k = (d
-// I_k) / V for a nearest hit. The same words, all at once, are compared with those that enter nearest_hit, and those of
-// P, after the unit's latency. opened_hit_test_pipeline is the unit with these as outputs. pipeline_keeps_tags proves
-// that tests come there once and in order, with their tags.
+// Whatever functions the pipelined unit's cores compute: V and U_k are (x + y) + z of products of the record's words
+// and the direction's, the verdict is hit_decision's for them, t = d / V, and P_k = (d I_k) / V for a nearest hit. The
+// proof computes these words in one clock and, after the unit's latency, compares them with the words that enter
+// nearest_hit, and with P. opened_hit_test_pipeline is the unit with these as outputs. pipeline_keeps_tags proves that
+// tests come there once and in order, with their tags.
 module pipeline_computes #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,

@@ -1,6 +1,6 @@
-// The pipelined unit, for any arithmetic, any tests and any taking of results, from reset on: no result is pushed into
-// a full queue; an offered result stays, with its data, until it is taken. opened_hit_test_pipeline is the unit with
-// its valid bits and its queue's registers as outputs.
+// From reset on, for any arithmetic, any tests and any taking of results: the pipelined unit pushes no result into a
+// full queue; an offered result stays, with its data, until it is taken. opened_hit_test_pipeline is the unit with its
+// valid bits and its queue's registers as outputs.
 module pipeline_keeps_credits #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,

@@ -1,6 +1,6 @@
-// The pipelined unit, for any arithmetic: the tests that enter nearest_hit are those taken, each once and in order,
-// with its tag, first_i and last_i. opened_hit_test_pipeline is the unit with what enters nearest_hit as outputs.
-// nearest_hit_keeps_nearest and fifo_keeps_order prove the rest.
+// For any arithmetic, the tests that enter the pipelined unit's nearest_hit are the tests taken, each once and in
+// order, with its tag, first_i and last_i. opened_hit_test_pipeline is the unit with what enters nearest_hit as
+// outputs. nearest_hit_keeps_nearest and fifo_keeps_order prove the rest.
 module pipeline_keeps_tags #(
   parameter int unsigned ExpWidth  = 5,
   parameter int unsigned FracWidth = 10,

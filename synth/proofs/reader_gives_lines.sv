@@ -1,8 +1,8 @@
-// The core's memory port, for any memory that answers in any order, with interleaved beats and any errors, from reset
-// on: it keeps AXI4 (sim/checks/axi_read_checks). A read is requested at its line's address and gets one line, with its
-// id: its burst's beats in order, with an error if a beat had one or RLAST did not come with the last beat.
-// There are never more lines than reads. Memory is assumed to send no beat that was not requested.
-// opened_axi_read_manager is the manager of two IDs, two beats a line, with its registers as outputs.
+// From reset on, for any memory that answers in any order, with interleaved beats and any errors: the core's memory
+// port keeps AXI4 (sim/checks/axi_read_checks). A read is requested at its line's address and gets one line, with its
+// id: its burst's beats in order, with an error if a beat had one or RLAST did not come with the last beat. There are
+// never more lines than reads. Memory is assumed to send no beat that was not requested. opened_axi_read_manager is the
+// manager of two IDs, two beats per line, with its registers as outputs.
 module reader_gives_lines (
   input logic clk,
   input logic choose  // watch the read taken now

@@ -1,9 +1,9 @@
-// A ray's stack, for any results of box_unit and any waiting rays, from reset on: a node that was pushed is requested,
-// once, by the line that its group gives, unless in a clock in which its stack was examined it was beyond the ray's
-// t_max, or the ray had ended or met a node again. Until then the ray counts as traversing. No group is pushed without
-// room on the ray's own stack or on the shared one, which one ray at a time has, as long as it needs it. A refused ray
-// waits for a ray that has it and traverses, until that ray gives it back. opened_traversal is traversal of two rays,
-// with stacks of two groups and two shared ones, with its state as outputs.
+// From reset on, for any results of box_unit and any waiting rays: a node that was pushed is requested, once, by the
+// line that its group gives, unless it was beyond the ray's t_max, or the ray had ended or met a node again, in a clock
+// in which the ray's stack was examined. Until then the ray counts as traversing. No group is pushed without room on
+// the ray's own stack or on the shared one, which one ray at a time has, as long as it needs it. A refused ray waits
+// for a ray that has it and traverses, until that ray gives it back. opened_traversal is traversal of two rays, with
+// stacks of two groups and two shared ones, with its state as outputs.
 module stack_keeps_nodes #(
   localparam int unsigned Rays  = 2,
   localparam int unsigned Depth = 2,

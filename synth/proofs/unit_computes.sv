@@ -1,6 +1,6 @@
-// What the paper's unit computes from a test's words, whatever functions its cores compute: whenever it takes a test,
-// and whatever it did before and gets afterwards, the components that leave it 8, 9 and 10 clocks later are d I_k /
-// (((0 + a Ix) + b Iy) + c Iz). timetable proves that it takes tests when it should.
+// Whatever functions its cores compute, whenever it takes a test, and whatever it did before and gets afterwards: the
+// components that leave the paper's unit 8, 9 and 10 clocks later are d I_k / (((0 + a Ix) + b Iy) + c Iz). timetable
+// proves that it takes tests when it should.
 module unit_computes #(
   localparam int unsigned Width = 32
 ) (

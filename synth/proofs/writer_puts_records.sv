@@ -1,14 +1,14 @@
-// The port that writes results, for any memory, from reset on: it keeps AXI4 (sim/checks/axi_write_checks). The n-th
-// record since the last rewind is offered once, at base + 32 n, in order, while n is below the length. written_o counts
-// the records that were answered. Memory is assumed to answer no burst that it has not taken.
-// opened_axi_write_manager is the manager with its registers as outputs.
+// From reset on, for any memory, the port that writes results keeps AXI4 (sim/checks/axi_write_checks). The n-th result
+// since the last rewind is offered once, at base + 32 n, in order, while n is below the length. written_o counts the
+// results that were answered. Memory is assumed to answer no burst that it has not taken. opened_axi_write_manager is
+// the manager with its registers as outputs.
 module writer_puts_records #(
   parameter int unsigned DataWidth = 128,
   localparam int unsigned BeatWidth = (DataWidth < 256) ? DataWidth : 256,
   localparam int unsigned Beats = 256 / BeatWidth
 ) (
   input logic clk,
-  input logic choose  // watch the record taken now
+  input logic choose  // watch the result taken now
 );
 
   (* anyseq *) logic [63:0] base;
@@ -94,7 +94,7 @@ module writer_puts_records #(
     end else assume (!bvalid && !rewind && !record_valid);
   end
 
-  // ---- Records taken and answered since the last rewind
+  // ---- Results taken and answered since the last rewind
 
   logic take;
   logic [31:0] taken, answered;
@@ -104,7 +104,7 @@ module writer_puts_records #(
     else {taken, answered} <= {taken + 32'(take), answered + 32'(bvalid)};
   end
 
-  // ---- The watched record: its address and its beats, until both have been taken
+  // ---- The watched result: its address and its beats, until both have been taken
 
   logic watching, address_taken, in_upper;
   logic [3:0] beats;  // taken

@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(all_scenes()), []
   return name;
 });
 
-/// A room with instances of a glass ball, a light and a teapot. Of the teapots one is mirrored, two
+/// A room with instances of a glass ball, a light and a teapot. One of the teapots is mirrored, two
 /// coincide and two intersect.
 class InstancedScene : public Render {
  protected:

@@ -66,7 +66,7 @@ class LinkedCore : public CoreUnit {
 
  private:
   void load(std::span<const MemoryLine> lines);
-  /// Appends the results of which all words have arrived. Returns the number of rays that ended.
+  /// Appends the results whose words have all arrived. Returns the number of rays that ended.
   std::size_t take_results(std::vector<CoreResult>& results);
 
   std::unique_ptr<WordLink> link_;

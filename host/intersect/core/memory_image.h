@@ -86,7 +86,7 @@ struct NodeLine {
 struct TriangleLine {
   FloatCorners corners{};
   std::uint32_t index = 0;      ///< index of this line
-  std::uint32_t rank = 0;       ///< of hits at equal t, that with the lowest rank is nearest
+  std::uint32_t rank = 0;       ///< of hits at equal t, the lowest rank is nearest
   std::uint32_t primitive = 0;  ///< the host's primitive index, not read by the core
 
   TriangleLine() = default;

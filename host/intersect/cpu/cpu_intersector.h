@@ -61,8 +61,8 @@ class PointWriter {
   /// Writes the points of the hits that were added.
   void write();
 
-  /// If the primitive's plane is cached, writes the points of eight consecutive rays, from `number`
-  /// on, that hit the primitive. Returns whether the plane is cached.
+  /// If the primitive's plane is cached, writes the points of eight consecutive rays, starting at
+  /// `number`, that hit the primitive. Returns whether the plane is cached.
   template <Vectors kCode>
   [[nodiscard]] RAYGATE_INLINE bool write_group(std::uint32_t number, std::uint32_t primitive,
                                                 const FloatLanes (&directions)[3]) {

@@ -262,7 +262,7 @@ RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& nod
                                    bounds8.cutoff[lane], entry);
 }
 
-/// Inserts a child into the stack, whose entries from `bottom` on are sorted, the nearest last.
+/// Inserts a child into the stack, whose entries are sorted from `bottom` up, the nearest last.
 RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
                          const ConeTraversal::StackEntry& next) {
   tree.prefetch(next.child);
@@ -273,7 +273,7 @@ RAYGATE_INLINE void push(ConeTraversal& walk, const BvhView& tree, int bottom,
   walk.stack[place] = next;
 }
 
-/// At most this many rays, if in several groups, are tested against a node one by one. If not,
+/// Up to this many rays are tested against a node one by one if in several groups. Without this,
 /// light rays of `build/lab rays` trace at 0.7 times the rate on sphereflake, 0.85 on landscape.
 constexpr int kFewRays = 8;
 

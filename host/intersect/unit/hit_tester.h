@@ -23,8 +23,8 @@ struct HitReport {
   NearestHit hit;
 };
 
-/// Reports of a batch: of each burst its doubts and its nearest sure hit, or several sure hits that
-/// binary32 cannot order.
+/// Reports of a batch: for each burst its doubts, and its nearest sure hit or several sure hits
+/// that binary32 cannot order.
 using HitReports = std::vector<HitReport>;
 
 /// Tests batches with a hit-test unit. Each thread has its own tester.

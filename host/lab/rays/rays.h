@@ -24,7 +24,7 @@ struct RaySet {
   std::vector<float> t_max;    ///< empty, or one per ray: only hits with t < t_max[i] count
   bool any_hit = false;        ///< the query asks only whether there is a hit
 
-  /// Finds the hits of the rays from `first` on.
+  /// Finds the hits of the rays, starting at ray `first`.
   void find(Intersector& intersector, std::size_t first, std::span<NearestHit> hits) const {
     const std::span found = std::span(rays).subspan(first, hits.size());
     RayQuery query{.common_origin = common_origin};

@@ -97,8 +97,7 @@ class IntersectorSubject : public Subject {
   }
 
   /// Finds the hits of all rays. Rays with one origin are traced again: repeated up to kCone rays,
-  /// each in several groups and lanes, and alone after a doubt. Results must not depend on other
-  /// rays.
+  /// and alone after a doubt. Results must not depend on other rays, groups or lanes.
   void search(Tree& tree) {
     hits_.assign(rays_.size(), {});
     work_.assign(rays_.size(), {});

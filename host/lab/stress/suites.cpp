@@ -255,7 +255,7 @@ Shot axis_shot(Random& random, const MeshPointer& mesh) {
   const glm::dvec3 low = box[0][0], high = box[2][2];
   const int axis = random.below(3);
   const Corners& t = box[random.below(static_cast<int>(box.size()))];
-  // Each coordinate of the origin is that of a vertex, or any.
+  // Each coordinate of the origin equals a vertex's, or is any.
   for (int k = 0; k < 3; ++k) {
     const double between = std::lerp(low[k], high[k], random.uniform(0.05, 0.95));
     shot.origin[k] = random.one_in(2) ? t[0][k] : between;

@@ -107,7 +107,7 @@ Ratios of raygate to Mitsuba (`llvm_ad_rgb`) with its best sampler, one thread, 
 
 ## Do they compute the same picture?
 
-{{ saved("peers-references", of("references"), "scene", "samples :d", "mean, raygate = mean_raygate :.5f", "mean, Mitsuba = mean_mitsuba :.5f", "RMSE = rmse :.6f", "of which noise = noise :.6f") }}: means of both, the RMSE between them, and the RMSE to expect
+{{ saved("peers-references", of("references"), "scene", "samples :d", "mean, raygate = mean_raygate :.5f", "mean, Mitsuba = mean_mitsuba :.5f", "RMSE = rmse :.6f", "of which noise = noise :.6f") }}: means of both pictures, the RMSE between them, and the RMSE to expect
 from noise. The largest RMSE beyond noise is {{ "%.6f"|format(beyond) }}.
 
 ## Error against time

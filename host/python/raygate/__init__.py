@@ -14,7 +14,7 @@ Which triangles a ray hits, and in which order, is exact for float64 vertices an
 answer as the ray casters of these libraries do. raygate.float is IEEE 754 arithmetic in any small format.
 """
 
-from . import _raygate, float, open3d, trimesh  # from here on `float` is the module, not Python's class
+from . import _raygate, float, open3d, trimesh  # below, `float` is the module, not Python's class
 from ._raygate import InputError
 from ._scene import Picture, Scene
 

@@ -151,7 +151,7 @@ class RaycastingScene:
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Returns 1 for points inside the surface, as Scene.inside() does, and 0 for others. `nsamples`, which must be odd as in
-        Open3D, changes nothing: one ray tells."""
+        Open3D, changes nothing: one ray suffices."""
         if nsamples < 1 or nsamples % 2 != 1:
             raise InputError(f"nsamples: found {nsamples!r}, expected an odd number of at least 1")
         shape, points = _rows("query_points", query_points, 3)

@@ -1,4 +1,4 @@
-"""The notebook runs from end to end and draws its figures. With --renew: keeps what comes out in it."""
+"""The notebook runs from end to end and draws its figures. With --renew, stores the new outputs in it."""
 
 import pathlib
 import sys

@@ -168,7 +168,7 @@ class Pages(unittest.TestCase):
 
 
 class Arrays(unittest.TestCase):
-    """A scene of NumPy arrays, and what is asked of points."""
+    """A scene of NumPy arrays, and queries of points."""
 
     VERTICES = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
     FACES = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
@@ -489,7 +489,7 @@ class Render(unittest.TestCase):
 
 
 def in_child(work):
-    """Whether `work`, in a child of this process, is true."""
+    """Returns whether `work` is true in a child of this process."""
     child = os.fork()
     if child == 0:
         done = False
@@ -542,7 +542,7 @@ class Embedding(unittest.TestCase):
             self.assertTrue((found["distance"] > 1e-3 * far).all())
 
     def seconds_until_interrupted(self, call, after=0.1):
-        """Processor time that `call` takes after a signal like Ctrl-C's, which comes `after` seconds of processor time."""
+        """Returns the processor time that `call` takes after a signal like Ctrl-C's, sent after `after` seconds of processor time."""
         raised = signal.signal(signal.SIGPROF, signal.default_int_handler)
         signal.setitimer(signal.ITIMER_PROF, after)
         start = time.process_time()
@@ -606,7 +606,7 @@ class Embedding(unittest.TestCase):
 
 @unittest.skipUnless(platform.machine() == "x86_64", "MXCSR is x86's")
 class StateOfTheThread(unittest.TestCase):
-    """What other modules do to the arithmetic changes nothing, and is there again afterwards."""
+    """Other modules' settings of the arithmetic change no result, and are restored afterwards."""
 
     TRAPS = 0x1F80  # masked where 1
     CHANGES = [(0x0800, 0x4000),  # rounding upward

@@ -292,7 +292,7 @@ ROWS = [
     ("trimesh#1494, #790, #44", {"a.ply": ply(VERTICES + FACES.replace("face 1", "face 3"), POINTS + "3 0 1 1\n3 0 1 2\n3 0 2 3\n")},
      {"rays": [LOWER, UPPER], "numbers": [1, 2], "warns": [NO_AREA]}),
     ("trimesh#1494, #790, #44", {"a.obj": SQUARE + "f 1 2 2\nf 1 2 3\nf 1 3 4\n"}, {"rays": [LOWER, UPPER], "numbers": [1, 2], "warns": [NO_AREA]}),
-    # Corners that binary32 cannot hold: of the last row, it would move an edge by 0.2.
+    # Corners that binary32 cannot hold: in the last row, rounding would move an edge by 0.2.
     ("three-mesh-bvh#112, Open3D#5777", {"a.obj": "v 500000.125 4649776.25 0\nv 500001.125 4649776.25 0\nv 500000.125 4649777.25 0\nf 1 2 3\n"},
      {"rays": [(500000.375, 4649776.5)]}),
     ("three-mesh-bvh#112 and a stray face", {"a.obj": "v 500000 4649776.3 0\nv 500001 4649776.3 0\nv 500000 4649778.3 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n"},

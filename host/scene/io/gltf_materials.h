@@ -77,7 +77,7 @@ class GltfMaterials {
                               *kTransmission = "KHR_materials_transmission",
                               *kTransform = "KHR_texture_transform";
 
-  /// Returns the number of the set of coordinates that a texture uses.
+  /// Returns the index of the texture coordinate set that a texture uses.
   static int set_of(const Json& info) {
     const double set =
         number_in(extension(info, kTransform), "texCoord", number_in(info, "texCoord", 0.0));

@@ -81,7 +81,7 @@ class Words {
     return to_number(take()).value_or(std::numeric_limits<double>::quiet_NaN());
   }
 
-  /// Returns the text from the next word on.
+  /// Returns the text that begins at the next word.
   [[nodiscard]] std::string_view rest() const { return text_.substr(next_ - word_.size()); }
   /// Drops the next word that begins with '#', and the text after it.
   void drop_comment() {

@@ -57,7 +57,7 @@ TEST_F(UartTest, WordsArrive) {
   EXPECT_GE(model_.clocks() - begin, 40 * kClocksPerBit * sent.size());
 }
 
-/// 8N1 bit by bit: a start bit, eight data bits, lowest first, a stop bit; four bytes a word.
+/// 8N1 bit by bit: a start bit, eight data bits, lowest first, a stop bit; four bytes per word.
 TEST_F(UartTest, BitsAreTheStandards) {
   send(0x0180FF53);
   std::vector<bool> expected;

@@ -14,7 +14,7 @@ module siblings_top (
   output logic [191:0] bus_o
 );
 
-  // Of each kind, a byte each: exponent bits, fraction bits, rounding mode
+  // One byte per kind: exponent bits, fraction bits, rounding mode
   localparam bit [6*24-1:0] Kinds = {
     24'h08_17_02,  // binary32, down
     24'h08_17_03,  // binary32, up

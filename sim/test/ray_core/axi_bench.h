@@ -138,7 +138,7 @@ class AxiBench : public testing::Test {
     }
   }
 
-  /// Sends results to a buffer of `records` records, or with 0 to the stream.
+  /// Sends results to a buffer for `records` results, or, with 0, to the stream.
   void use_buffer(std::uint32_t records) {
     write(RAYGATE_RESULTS, static_cast<std::uint32_t>(kResults) | 31);
     write(RAYGATE_RESULTS_HIGH, static_cast<std::uint32_t>(kResults >> 32));
@@ -235,7 +235,7 @@ class AxiBench : public testing::Test {
   std::mt19937 random_{kSeed};
   Model<Top> model_;
   std::deque<Beat> beats_;
-  std::size_t bursts_ = 0, answered_ = 0, unanswered_ = 0;  // of records written to memory
+  std::size_t bursts_ = 0, answered_ = 0, unanswered_ = 0;  // of results written to memory
   std::vector<std::uint32_t> written_;
   std::vector<CoreResult> results_;
   std::map<std::uint32_t, CoreResult> ends_;  // by pixel

@@ -34,8 +34,8 @@ class LineCacheTest : public testing::Test {
     model_.reset();
   }
 
-  /// Returns the n-th line: from kLines on, lines differ from the first only in bits that `part_`
-  /// moves.
+  /// Returns the n-th line. Lines n >= kLines differ from the first kLines only in bits that
+  /// `part_` moves.
   [[nodiscard]] std::uint32_t line(unsigned n) const {
     const unsigned high = n / kLines;
     return n % kLines + (high == 0 ? 0 : kLines << (high + part_) % 24);

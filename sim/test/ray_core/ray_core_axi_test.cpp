@@ -1,5 +1,5 @@
 // The ray core behind AXI, in cases beyond random traffic (axi_traffic_test): rectangles that end
-// or are aborted, reads while results are not taken, reproducible records.
+// or are aborted, reads while results are not taken, reproducible results.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// ram of 512 words of 72 bits in two parts: of random words, written and read at the same edge, a read gives the word
-// before the edge, and keeps it until the next read.
+// ram of 512 words of 72 bits in two parts: random words are written and read. A read at a write's edge gives the old
+// word, and holds it until the next read.
 module bench;
   reg clk = 0, read = 0;
   reg [1:0] write = 0;

@@ -1,4 +1,4 @@
-// A carry-save adder of which only step 4 is known: any two words with the sum of the three.
+// A carry-save adder reduced to step 4: it gives any two words with the sum of the three.
 module carry_save_adder #(
   parameter int unsigned Width = 48
 ) (

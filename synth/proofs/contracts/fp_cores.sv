@@ -1,4 +1,4 @@
-// Float cores of which nothing is known: any result, any flags. That is enough for proofs of control.
+// Float cores that give any result and any flags. That is enough for proofs of control.
 module fp_multiplier #(
   parameter int unsigned ExpWidth = 8,
   parameter int unsigned FracWidth = 23,

@@ -1,5 +1,5 @@
-// The float cores as functions of their operands: only known is that equal operands give equal results. For proofs of a
-// unit's data flow: which words go through which cores, and where the results go.
+// The float cores as functions of their operands: it is only known that equal operands give equal results. For proofs
+// of a unit's data flow: which words go through which cores, and where the results go.
 //
 // induction.py makes each X_result the value of the function X at X_operands. Cores have all registers or none, as in
 // the units. A divider with registers gives any result for operands without valid_i.

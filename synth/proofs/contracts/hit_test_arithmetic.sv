@@ -1,5 +1,5 @@
-// The arithmetic of the pipelined unit, of which nothing is known: any word, and any one verdict. That is enough for
-// proofs of control.
+// The arithmetic of the pipelined unit, reduced to outputs of any word and any one verdict. That is enough for proofs
+// of control.
 module hit_dots #(
   parameter int unsigned ExpWidth  = 8,
   parameter int unsigned FracWidth = 23,

@@ -128,7 +128,7 @@ module fifo #(
   end
 endmodule
 
-// A divider of which nothing is known.
+// A divider that gives any quotient.
 module fp_divider #(
   parameter int unsigned ExpWidth     = 8,
   parameter int unsigned FracWidth    = 23,

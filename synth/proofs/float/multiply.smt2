@@ -10,8 +10,8 @@
 (define-fun exponent ((w Word)) (_ BitVec $WE)
   ((_ zero_extend $EXTEND) (ite (is-normal-field w) (field w) (_ bv1 $E))))
 
-; The multiplier of significands gives their product. A query that does not multiply only knows: a product by a
-; significand in [1, 2) is in [1, 2) times the other one, and it is zero only if a factor is.
+; The multiplier of significands gives their product. A query that does not multiply knows only this: a significand in
+; [1, 2) scales the other by a factor in [1, 2), and a product is zero only if a factor is.
 (define-fun product-of ((a Word) (b Word)) Product
   (bvmul ((_ zero_extend $S) (significand a)) ((_ zero_extend $S) (significand b))))
 (define-fun in-range ((x Word) (y Word) (product Product)) Bool

@@ -1,6 +1,6 @@
-; bfloat16, a format that the solver does not know: its numbers are held as binary32 numbers, of which they are the
-; upper half, so that no operation of SMT-LIB rounds to it. By clause 4.3 a result is right if its magnitude is the
-; largest that the rounded exact value reaches. To be read after format.smt2.
+; bfloat16, a format that the solver does not know: its numbers are held as the binary32 numbers whose upper halves they
+; are, so that no operation of SMT-LIB rounds to it. By clause 4.3 a result is right if its magnitude is the largest
+; that the rounded exact value reaches. To be read after format.smt2.
 
 ; The magnitude k / 2 places after zero, in the order of words of equal sign; after the largest, the next power of two.
 (define-sort Place () (_ BitVec $W))

@@ -5,7 +5,7 @@
 ; Real numbers. An operation to nearest is off by at most u of its exact result, and by 2^-150 more if
 ; a product underflows (a sum does not). f is the magnitude of F_i, a float word, which differs by g
 ; from D_i, a double, which differs by h from the exact E_i. |I_i| <= 2; x, y, z stand for I_i F_i,
-; I_i (D_i - F_i), I_i (E_i - D_i), of which only bounds are known: no question multiplies.
+; I_i (D_i - F_i), I_i (E_i - D_i), for which only bounds are known: no question multiplies.
 (set-logic QF_LRA)
 (define-fun u () Real (/ 1.0 16777216.0))
 (define-fun tiny () Real (/ 1.0 1427247692705959881058285969449495136382746624.0)) ; 2^-150
