@@ -26,7 +26,7 @@ std::vector<BusTest<NumWords>> random_tests(std::size_t num_tests) {
 
 }  // namespace
 
-// A register's enable for an edge is read after the edge before. The first edge of all takes a word
+// After an edge, enables are those of the next edge. The first edge takes a word
 // and computes nothing, so reading after every edge misses no operation.
 
 OperationCount count_proposed_form(std::size_t num_tests) {

@@ -33,7 +33,7 @@ struct LeafVisits {
 ///
 /// Box tests are conservative: no ray misses a triangle that it hits in exact arithmetic at a
 /// distance up to its cutoff (proof in packet_traversal.cpp). A ray also visits other triangles
-/// whose boxes it meets, except those in a plane through its origin, which no ray hits.
+/// whose boxes it meets, except those in a plane through its origin, which it cannot hit.
 class PacketTraversal {
  public:
   /// All rays point into one octant. Directions are scaled (scaled_direction: the largest component

@@ -142,7 +142,7 @@ std::optional<CameraLights> default_lights(const Scene& scene, const Camera& cam
         middle + kFar * size * (up * camera.up() + right * camera.right() - 1.3 * camera.forward());
     add(at, glm::length(at - middle), radiance);
   };
-  // Together with the sky and interreflection, white stays below 1.
+  // White surfaces stay below 1, with sky and interreflection added.
   add_far(-0.8, 1.2, is_preview ? 0.4 : 0.6);
   if (is_preview) add_far(1.4, 0.3, 0.16);
   lights.radius = 0.5 * size;  // penumbras are 1/8 as wide as the occluder's distance

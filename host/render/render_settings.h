@@ -38,7 +38,7 @@ struct RenderMonitor {
   /// for a copy. The threads continue meanwhile.
   std::function<void(const Film*)> snapshot{};
   double snapshot_seconds = 10.0;
-  /// Receives the film if the threads have not stopped within 0.5 s. Must end the process.
+  /// Receives the film if threads still run 0.5 s after a stop. Must end the process.
   std::function<void(const Film&)> abandon{};
 };
 

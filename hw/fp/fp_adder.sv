@@ -87,7 +87,7 @@ module fp_adder #(
   end
   assign distance = swap ? differences[1] : differences[0];
 
-  // ---- First cut
+  // ---- First register
 
   logic sign_1, subtract_1, odd_1, near_0_1, near_1_1, odd, near_0, near_1, ordinary;
   logic [ExpWidth-1:0] big_exp_1, distance_1;
@@ -184,7 +184,7 @@ module fp_adder #(
   assign near_mark = NearWidth'({1'b1, {NearWidth{1'b0}}} >> big_exp_1);
   assign near = near_0_1 | (near_1_1 & ~near_difference[NearWidth-1]);
 
-  // ---- Second cut
+  // ---- Second register
 
   logic sign_2, near_2, far_sticky_2;
   logic [ExpWidth-1:0] big_exp_2, far_exp_2;
@@ -260,7 +260,7 @@ module fp_adder #(
   assign flags = near_2 ? 5'b00000 : far_flags;
   assign unused_zero = a_class.zero ^ b_class.zero;  // zeros need no special care
 
-  // ---- Last cut
+  // ---- Last register
 
   delay_line #(
     .Width(ExpWidth + FracWidth + 1),

@@ -132,7 +132,7 @@ module fp_divider #(
     end
   end
 
-  // ---- First cut; exponent, sign and specials pass beside the division
+  // ---- First register; exponent, sign and specials pass beside the division
 
   logic [RoundExpWidth-1:0] exp_difference_1, count_difference_1, exponent, exponent_2;
   logic sign_1, sign_2, valid_1, divided;
@@ -229,7 +229,7 @@ module fp_divider #(
     .flags_o(flags)
   );
 
-  // ---- Last cut
+  // ---- Last register
 
   delay_line #(
     .Width(ExpWidth + FracWidth + 6),

@@ -213,7 +213,7 @@ module fp_multiplier #(
     .flags_o(flags)
   );
 
-  // ---- Last cut
+  // ---- Last register
 
   delay_line #(
     .Width(ExpWidth + FracWidth + 1),

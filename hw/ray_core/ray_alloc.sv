@@ -120,7 +120,7 @@ module ray_alloc #(
     end
   end
 
-  // ---- Wait: never more inverses than rays
+  // ---- Queues; u_inverses is never fuller than u_rays
 
   logic inverse_valid;
 

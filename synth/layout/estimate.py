@@ -61,6 +61,6 @@ def _line(one: tuple, other: tuple, up: str, across: str, layers: list[str]) -> 
 
 
 def _contacts(low: str, high: str, x: float, y: float, layers: list[str]) -> list[Wire]:
-    """Returns the vias between two metals, one on another."""
+    """Returns the stacked vias from one metal to another."""
     low, high = sorted((layers.index(low), layers.index(high)))
     return [Wire(layers[place], x, y, x, y, layers[place + 1]) for place in range(low, high)]

@@ -25,7 +25,7 @@ class Wire:
 
     @property
     def length(self) -> float:
-        """um."""
+        """Length in um."""
         return abs(self.x1 - self.x0) + abs(self.y1 - self.y0)
 
 

@@ -153,7 +153,7 @@ class IntersectorSubject : public Subject {
   std::vector<bool> torn_;
 };
 
-/// Completes a subject: each object of it has a separate engine, whose BVHs share one unit.
+/// Completes a kind of subject; each has its own engine, whose BVHs share one unit.
 SubjectKind with(SubjectKind kind, const std::function<IntersectorOf()>& engine, const Way& way) {
   kind.make = [=] { return std::make_unique<IntersectorSubject>(engine(), way); };
   kind.engine = engine;

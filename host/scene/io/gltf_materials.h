@@ -90,7 +90,7 @@ class GltfMaterials {
     return index == -1 ? kDefault : file_.at(file_.list("materials"), index, "material");
   }
 
-  /// Returns a material's list at a key; an empty list, with a warning, unless of `size` numbers.
+  /// Returns the `size` numbers at a key; none if it is absent or, with a warning, wrong.
   std::vector<double> numbers(const Json& object, const char* key, std::size_t size) {
     std::vector<double> numbers = numbers_in(object, key);
     if (numbers.size() == size) return numbers;
