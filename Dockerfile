@@ -5,5 +5,5 @@ COPY . /raygate
 WORKDIR /raygate
 RUN apt-get update && apt-get install -y --no-install-recommends make && .ci/setup python && make cpu && python3 -m venv /opt/python && /opt/python/bin/pip install --no-cache-dir .
 RUN for program in render trace merge; do ln -s "/raygate/build/$program" /usr/local/bin; done && \
-    ln -s /opt/python/bin/python3 /usr/local/bin/raygate-python
+    printf '#!/bin/sh\nexec /opt/python/bin/python3 "$@"\n' >/usr/local/bin/raygate-python && chmod +x /usr/local/bin/raygate-python
 CMD ["render", "--help"]

@@ -25,7 +25,7 @@ class Others(unittest.TestCase):
               mock.patch.object(prove, "adds"), mock.patch.object(structure, "netlist"), mock.patch.object(structure, "hardware", return_value={"gate": 1}),
               contextlib.redirect_stdout(io.StringIO())):
             main.run_one(catalogue.design("adder", adder="graded", widths=[4, 5], Width=9), measure.Targets(("osu035", "ice40")))
-        self.assertEqual([[sorted(row.flows) for row in rows] for rows in measured], [[["ice40", "osu035"]] * 5] * 2)
+        self.assertEqual([[sorted(row.flows) for row in rows] for rows in measured], [[["ice40", "osu035"]] * 6] * 2)
 
 
 class Measured(unittest.TestCase):
