@@ -19,9 +19,9 @@ WORDS = 12  # of a module's description, at most
 INTRO = """\
 # Modules
 
-Made by `make synth DATASHEET=1` from headers and measurements: OSU 0.35 um, cells alone, default parameters, flow `fast`
-(arith, fp), `parts` (hit_test) or `blocks`. Memories count in bits. Latency 0 means combinational. Where a cell is empty,
-the clocks depend on memory, the host or other rays.
+Made by `make synth DATASHEET=1` from headers and measurements: OSU 0.35 um, cells alone, default parameters, flow
+`fast` (arith, fp), `parts` (hit_test) or `blocks`. Memories inside a module count in bits. Latency 0 means
+combinational. Where latency or throughput is empty, it depends on memory, the host or other rays.
 """
 
 
@@ -75,8 +75,9 @@ def figures() -> dict[str, list[str]]:
     records = [record for _, found in measure.measure(rows, measure.Targets((library.name,)), failures) for record in found]
     if failures:
         raise tools.ToolFailed("\n".join(failures))
-    return {record["design"]: [f"{record['area']:,}", f"{record['delay_ns']:.2f}",
-                               f"{sum(block['bits'] for block in record.get('blocks', {}).values()) or '':,}"] for record in records}
+    bits = {record["design"]: sum(block["bits"] for block in record.get("blocks", {}).values()) for record in records}
+    return {record["design"]: [f"{record['area']:,}", f"{record['delay_ns']:.2f}", f"{bits[record['design']]:,}" if bits[record["design"]] else ""]
+            for record in records}
 
 
 def lint(text: str) -> None:
