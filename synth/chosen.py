@@ -46,7 +46,7 @@ def design(given: argparse.Namespace) -> catalogue.Design:
     kind = given.adder or ("graded" if given.groups else "")
     kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]
     if kind and kind not in kinds:
-        raise ValueError(f"no adder {kind}; there are {', '.join(kinds)}")
+        raise ValueError(f"no adder {kind}; there are {', '.join(kinds)}; for a file of yours: make variant ADDER=FILE")
     if given.groups and given.top == "adder":
         if given.width not in (None, sum(given.groups)):
             raise ValueError(f"the groups have {sum(given.groups)} bits together, the adder {given.width}")
