@@ -49,7 +49,8 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
     if timed:
         best = min((record for record in timed if record["target"] == timed[0]["target"]),
                    key=lambda record: record["delay_ns"])
-        print(f"Critical path, {report.title(best['target'])}, {best['flow']}:\n")
+        ends = f", from {best['from']} to {best['to']}" if "from" in best else ""
+        print(f"Critical path, {report.title(best['target'])}, {best['flow']}{ends}:\n")
         print(report.path_table(best))
     if cells and structure.hardware(module := structure.netlist(design))["gate"] == 0:  # else the model does not apply
         print("Full-adder delays: " + "; ".join(

@@ -40,7 +40,7 @@ def synthesise(design: Design, library: Library, flow: str,
     """Returns area (liberty units), delay (ns), cells and critical path; and whether they were cached."""
     folder = (root or store.OUT / "runs") / f"{design.name}.{library.name}.{flow}"
     read = [*design.sources(flow == "cells"), library.liberty, *files()]
-    wanted = store.key(read, flow_facts(), design.facts, library, flow)
+    wanted = store.key(read, flow_facts(), design.facts, design.clock, library, flow)
     return store.cached(folder, wanted, lambda: _map_and_time(design, library, flow, folder))
 
 

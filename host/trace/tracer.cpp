@@ -72,9 +72,10 @@ void find_hits(const Bvh& bvh, Intersector& intersector, const RayTable& block, 
   intersector.nearest(block.rays, query, hits);
   std::vector<NearestHit> before;
   for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].primitive == NearestHit::kNone) continue;
     const ExactRay ray = block.exact_ray(i);
     const double limit = block.limits[i];
-    if (hits[i].primitive == NearestHit::kNone || is_before(bvh, ray, hits[i], limit)) continue;
+    if (is_before(bvh, ray, hits[i], limit)) continue;
     RayWork ignored;
     all_hits(bvh, ray, limit, before, ignored);
     hits[i] = before.empty() ? NearestHit{} : before[0];

@@ -7,7 +7,7 @@
 // Other messages are ignored. A result is 8 words: result_t in the lowest bits, zeros above it.
 //
 // The host must send messages 1 and 2 while no ray is in the core; they wait until no line is in flight to the core.
-// Words: valid/ready.
+// Words use valid/ready handshakes.
 //
 // A break (break_i, for a clock) ends the host's session: the next word is a message's first, and the rays in the core
 // are aborted. Of their results only the one that is being sent goes out. Words are accepted again when no ray is left.

@@ -39,8 +39,15 @@ module m;
                 for row in csv.DictReader((tables.RESULTS / "synth.csv").read_text().splitlines())}
         ripple, less, more, graded = (float(rows[f"adder-{name}", "osu035", "cells"]["delay_ns"])
                                       for name in ("ripple", "uniform-12x4", "uniform-6x8", "graded"))
+        layouts = {(row["design"], row["flow"]): float(row["median"])
+                   for row in csv.DictReader((tables.RESULTS / "layout-adders.csv").read_text().splitlines())}
+        saved = [f"{100 - 100 * layouts[f'adder-{name}', 'cells'] / layouts['adder-ripple', 'cells']:.0f}" for name in (
+            "uniform-12x4", "uniform-6x8", "graded")]
         text = (tables.RESULTS / "README.md").read_text()
-        for claim in (f"{1 - less / ripple:.0%} (12 x 4), {1 - more / ripple:.0%} (6 x 8); graded {1 - graded / ripple:.0%}".replace("%", " %"),
+        for claim in (f"uniform {saved[0]}, {saved[1]} %; graded {saved[2]} %", "in `fast`: " + ", ".join(
+                          f"{name} {layouts[design, 'fast']:.1f}" for name, design in (
+                              ("ripple", "adder-ripple"), ("graded", "adder-graded"), ("`+`", "adder-behavioural"))),
+                      f"{1 - less / ripple:.0%} (12 x 4), {1 - more / ripple:.0%} (6 x 8); graded {1 - graded / ripple:.0%}".replace("%", " %"),
                       f"{float(rows['hit_test_unit', 'osu035', 'parts']['delay_ns']):.2f} ns",
                       *(f"{name} {float(rows[f'adder-{design}', 'ice40', 'placed']['mhz']):.0f}" for name, design in (
                           ("ripple", "ripple"), ("graded", "graded"), ("uniform", "uniform-6x8"), ("`+` wins:", "behavioural")))):
