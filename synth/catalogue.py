@@ -334,8 +334,6 @@ def first_rows() -> list[Row]:
 # Formats by name: exponent and fraction bits.
 FORMATS = {"binary32": (8, 23), "binary16": (5, 10), "bfloat16": (8, 7)}
 ARITHMETICS = {"structural": 0, "behavioural": 1}  # arith_pkg's
-# ray_core's parameters for an FPGA
-SMALL_CORE = {"Rays": 16, "Depth": 4, "NodeLines": 64, "TriangleLines": 64, "Clocks": 11, "Arith": 1}
 
 
 def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
@@ -350,6 +348,4 @@ def fpga_units() -> list[tuple[Design, str, str, Fpga]]:
             unit("general_hit_test_unit", "binary32", "behavioural", ECP5),
             *(unit("iterative_hit_test_unit", "binary32", kind, ECP5) for kind in ARITHMETICS),
             *(unit("hit_test_unit", "binary16", kind, ICE40) for kind in ARITHMETICS),
-            unit("hit_test_pipeline", "binary32", "behavioural", ECP5_LUT4S),
-            *(unit("hit_test_pipeline", "bfloat16", kind, ECP5) for kind in ARITHMETICS),
-            (design("ray_core", "small_core", **SMALL_CORE), "binary32", "behavioural", ECP5)]
+            unit("hit_test_pipeline", "binary32", "behavioural", ECP5_LUT4S)]

@@ -23,7 +23,8 @@ MOST_PINS = 150  # as many as every package here has
 
 
 def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
-    """Returns LUTs, registers, multipliers, block RAMs and MHz between registers, of the median seed; and whether all was kept."""
+    """Returns LUTs, registers, multipliers, block RAMs and MHz between registers, of the median seed, with the MHz of all seeds as
+    `rates`; and whether all was kept."""
     folder = store.OUT / "runs" / f"{design.name}.{fpga.name}"
     wanted = store.key([*design.sources(), *scripts.FILES], yosys.version(), design.facts, fpga.name, fpga.luts,
                        inspect.getsource(registered), inspect.getsource(_map))
@@ -34,18 +35,14 @@ def place(design: Design, fpga: Fpga) -> tuple[dict, bool]:
     runs = [store.cached(folder / f"seed-{seed}", wanted,
                          lambda s=seed: step("placing, routing", folder / f"seed-{s}" / "nextpnr.log", lambda: _place(fpga, folder, s)))
             for seed in fpga.seeds]
-    return median([run for run, _ in runs]), mapped and all(there for _, there in runs)
+    by_rate = sorted((run for run, _ in runs), key=lambda run: run["mhz"])
+    return {**by_rate[len(runs) // 2], "rates": [run["mhz"] for run in by_rate]}, mapped and all(there for _, there in runs)
 
 
 def step(what: str, log: pathlib.Path, work: Callable[[], dict]) -> dict:
     """Returns the result of `work`, after printing what begins and where to watch it."""
     print(f"{what}: {log.relative_to(tools.ROOT)}", file=sys.stderr, flush=True)
     return work()
-
-
-def median(runs: list[dict]) -> dict:
-    """Returns the run with the median clock rate."""
-    return sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
 
 
 def _map(design: Design, fpga: Fpga, folder: pathlib.Path) -> dict:
@@ -134,6 +131,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*", help="beginnings of units' names; all if none")
     parser.add_argument("--seeds", type=int, default=3, help="placements, of which the median counts "
                         "(%(default)s)")
+    parser.add_argument("--jobs", type=int, default=2, help="at once (%(default)s)")
     parser.add_argument("--publish", action="store_true", help="write the table into the pages of hw that have a place for it")
     given = parser.parse_args()
     units = [unit for unit in catalogue.fpga_units() if unit[0].name.startswith(tuple(given.names or [""]))]
@@ -144,15 +142,13 @@ def main() -> int:
                          + ", ".join(unit[0].name for unit in catalogue.fpga_units()))
     for _, _, _, fpga in units:
         tools.find(fpga.tool)
-    jobs = [(unit, seed) for unit in units for seed in range(1, given.seeds + 1)]
+    seeds = tuple(range(1, given.seeds + 1))
     results, failures = runner.run_all(
-        [runner.Job(f"{design.name} {fpga.name} seed {seed}",
-                    functools.partial(place, design, dataclasses.replace(fpga, seeds=(seed,))),
+        [runner.Job(f"{design.name} {fpga.name}", functools.partial(place, design, dataclasses.replace(fpga, seeds=seeds)),
                     lambda got: f"{got['luts']} LUTs, {got['mhz']} MHz, from {got['from']} to {got['to']}, "
                                f"{got['wires']} of {got['logic'] + got['wires']:.1f} ns in wires")
-         for (design, _, _, fpga), seed in jobs], 1)
-    runs = [(unit, [result for (of, _), result in zip(jobs, results, strict=True) if of is unit and result]) for unit in units]
-    text = table([(unit, mine) for unit, mine in runs if mine])
+         for design, _, _, fpga in units], given.jobs)
+    text = table([(unit, got) for unit, got in zip(units, results, strict=True) if got])
     print(text)
     if given.publish:
         for page in catalogue.HW.glob("*/README.md"):
@@ -160,32 +156,28 @@ def main() -> int:
     return runner.status(failures)
 
 
-def period(top: str, clocks: str = "") -> int | None:
-    """Returns a unit's clocks per test: `clocks`, its parameter, if given, else as in the header of its module."""
-    if clocks:
-        return int(clocks)
+def period(top: str) -> int:
+    """Returns a unit's clocks per test, as in the header of its module."""
     (file,) = catalogue.HW.glob(f"*/{top}.sv")
     said = re.search(r"Throughput:? (?:a test every (\d+) clocks|one test a clock)", file.read_text())
-    return said and int(said[1] or 1)
+    return int(said[1] or 1)
 
 
-def table(units: list[tuple[tuple, list[dict]]]) -> str:
-    """Returns the table of units (of catalogue.fpga_units): what they take, and their clock rates over the seeds."""
+def table(units: list[tuple[tuple, dict]]) -> str:
+    """Returns the table of units (of catalogue.fpga_units) and their results of place()."""
     heads = ["unit", "format", "arithmetic", "device", "LUTs", "registers", "multipliers", "MHz (least to most)",
              "million tests/s"]
     rows = []
-    for (design, form, kind, fpga), runs in units:
-        got, rates = median(runs), [run["mhz"] for run in runs]
+    for (design, form, kind, fpga), got in units:
         name = ", ".join([design.top, *(says for key, says in NAMES.items() if key in design.parameters)])
         cells = ["-" if not cell else got[key] for key, cell in zip(
             ("luts", "registers", "multipliers"), fpga.cells, strict=False)]
-        rows.append([name, form, kind, fpga.title, *cells, got["mhz"] if len(runs) == 1 else f"{got['mhz']} ({min(rates)} to {max(rates)})",
-                     f"{got['mhz'] / period(design.top, dict(design.parameters).get('Clocks', '')):.2f}"])
+        rows.append([name, form, kind, fpga.title, *cells, f"{got['mhz']} ({got['rates'][0]} to {got['rates'][-1]})", f"{got['mhz'] / period(design.top):.2f}"])
     return f"{tables.markdown(heads, rows)}\n{tables.measured('make fpga')}"
 
 
 # Parameters of units, in words.
-NAMES = {("QuotientBits", "21"): "21-bit quotients", ("Clocks", "11"): "small (a node and a triangle in 11 clocks)"}
+NAMES = {("QuotientBits", "21"): "21-bit quotients"}
 
 
 if __name__ == "__main__":

@@ -37,7 +37,7 @@ fpga: ## hardware: place and route on FPGAs: make fpga [UNITS=hit_test_unit-bina
 ifdef BOARD
 	@$(PYTHON) -m synth.board '$(TOP)' '$(BOARD)' $(if $(SEEDS),--seed $(SEEDS))
 else
-	@$(PYTHON) -m synth.fpga $(if $(SEEDS),--seeds $(SEEDS)) $(if $(PUBLISH),--publish) $(UNITS)
+	@$(PYTHON) -m synth.fpga --jobs $(SYNTH_JOBS) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(PUBLISH),--publish) $(UNITS)
 endif
 
 lecture: ## hardware: numbers in gates, a page: make lecture [WIDTH=12 GROUPS=3,4,5 A=1365 B=2731 X=1.5 Y=-0.3 | EXAMPLE=1: the paper's, clock by clock | PIXEL=64,64 SCENE= ARGS=: its ray in the ray core]
