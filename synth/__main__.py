@@ -5,7 +5,7 @@ import pathlib
 import resource
 import sys
 
-from synth import catalogue, chosen, float_peers, grading, measure, prove, report, runner, store, structure, tools
+from synth import brought, catalogue, chosen, cores, float_peers, grading, measure, prove, report, runner, store, structure, tools
 
 
 def arguments() -> argparse.Namespace:
@@ -37,7 +37,8 @@ def run_one(design: catalogue.Design, targets: measure.Targets) -> int:
     if cells:
         width = dict(design.parameters).get("Width", grading.WIDTH)
         others = [catalogue.design("adder", adder=kind, look_ahead=False if kind in ("uniform", "graded") else None, Width=width)
-                  for kind in ("ripple", "uniform", "graded", "prefix", catalogue.BEHAVIOURAL)]
+                  for kind in ("ripple", "uniform", "graded", "prefix", catalogue.BEHAVIOURAL)
+                  if kind != "prefix" or not cores.replaced]  # a user's file stands in for the prefix adder
         rows += [catalogue.Row(design.name, other, plan) for other in others if other.name != design.name]
     records, failures, _ = report.measured_tables(rows, targets)
     print(report.legend(records))
@@ -87,6 +88,14 @@ def main() -> int:
     given = arguments()
     if given.publish and (given.top or not given.all or given.liberty or given.targets):
         raise ValueError("PUBLISH=1: expected the whole report, ALL=1 without TOP, LIBERTY and TARGETS")
+    if not chosen.is_file(given.adder):
+        return run(given)
+    with brought.in_place(brought.bring({"ADDER": given.adder})):
+        return run(given)
+
+
+def run(given: argparse.Namespace) -> int:
+    """Measures what the command line asks for."""
     one = chosen.design(given) if given.top and given.top not in ("adders", "float_peers") else None
     if given.liberty:
         catalogue.LIBRARIES.append(catalogue.of_user(pathlib.Path(given.liberty)))

@@ -1,6 +1,7 @@
 """Reads one design of hw/ from a command line."""
 
 import argparse
+import pathlib
 import re
 import sys
 from collections.abc import Callable
@@ -24,7 +25,7 @@ def whole_numbers(text: str) -> list[int]:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the options that `design` reads."""
-    parser.add_argument("--adder", default="", help="ripple, uniform, graded, prefix or behavioural")
+    parser.add_argument("--adder", default="", help="ripple, uniform, graded, prefix, behavioural, or a file of yours: my_adder.sv")
     parser.add_argument("--width", type=whole(1, catalogue.MOST_BITS), help="bits of an adder or a multiplier")
     parser.add_argument("--groups", type=whole_numbers, help="carry-select groups, least significant first: 4,5,7,...")
     parser.add_argument("--look-ahead", type=whole(0, 1), help="1: groups add by carry look-ahead, 0: by ripple carry, as those of an adder do if not given")
@@ -40,17 +41,25 @@ def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
     return parser.parse_args([re.sub("^--[A-Z-]+", lambda name: name[0].lower(), word) for word in sys.argv[1:]])
 
 
+def is_file(adder: str) -> bool:
+    """Returns whether option --adder names a user's file, which replaces the prefix adder (see brought.py)."""
+    return adder.endswith((".sv", ".v"))
+
+
 def design(given: argparse.Namespace) -> catalogue.Design:
     """Returns the design that `given.top` and the options describe."""
     parameters = {"Width": given.width, "ExpWidth": given.exp_width, "FracWidth": given.frac_width, "Exact": given.exact}
     kind = given.adder or ("graded" if given.groups else "")
+    own = pathlib.Path(kind).stem if is_file(kind) else ""
+    kind = "prefix" if own else kind
     kinds = [*catalogue.adder_kinds(), catalogue.BEHAVIOURAL]
     if kind and kind not in kinds:
-        raise ValueError(f"no adder {kind}; there are {', '.join(kinds)}; for a file of yours: make variant ADDER=FILE")
+        raise ValueError(f"no adder {kind}; there are {', '.join(kinds)}, and files of yours: ADDER=my_adder.sv")
     if given.groups and given.top == "adder":
         if given.width not in (None, sum(given.groups)):
             raise ValueError(f"the groups have {sum(given.groups)} bits together, the adder {given.width}")
         parameters["Width"] = sum(given.groups)
     return catalogue.design(
-        given.top, adder=kind, widths=given.groups, look_ahead=None if given.look_ahead is None else bool(given.look_ahead),
+        given.top, f"{given.top}-{own}" if own else "", adder=kind, widths=given.groups,
+        look_ahead=None if given.look_ahead is None else bool(given.look_ahead),
         **{name: value for name, value in parameters.items() if value is not None})
