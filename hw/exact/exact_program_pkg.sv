@@ -1,10 +1,10 @@
 // Micro-programs of the exact unit: the polynomials whose signs it takes, instruction by instruction.
 //
 // An instruction computes a number from floats or earlier numbers, or the sign of a number. A digit cannot be read
-// before its last product has passed the pipeline (sim/checks/exact_checks.sv checks that), so independent vectors
-// alternate; where that is not enough, an instruction has a fence: it waits until all earlier results are written.
+// before its last product has passed the pipeline (sim/checks/exact_checks.sv checks this). So instructions for
+// independent vectors alternate, or an instruction has a fence: it waits until all earlier results are written.
 //
-// Limit and Order compare hits; they follow Hit if a request asks for both.
+// Limit and Order compare hits; one of the two follows Hit if a request asks for hit and order.
 package exact_program_pkg;
 
   // Programs are indexed from left to right; no top module uses everything.
@@ -30,28 +30,29 @@ package exact_program_pkg;
   localparam place_t C = 5'd9;
   localparam place_t N = place_t'(Normal);
   localparam place_t M = place_t'(SecondNormal);
-  localparam place_t T = place_t'(Distance);  // t = T / S
+  localparam place_t T = place_t'(Distance);  // a hit's t is T / S, another hit's OtherT / OtherS
   localparam place_t S = T + 5'd1;
   localparam place_t OtherT = place_t'(OtherDistance);
   localparam place_t OtherS = OtherT + 5'd1;
 
   // ---- Instructions
 
-  // Makes the number `result`: x0 y0, minus or plus the other products as its kind says (x0 - y0 for floats).
+  // Returns an instruction for the number `result`: x0 y0 plus or minus further products, as in kind_e (floats: x0 -
+  // y0).
   function automatic instruction_t number(kind_e kind, place_t result, place_t x0, place_t y0,
                                           place_t x1 = '0, place_t y1 = '0, place_t x2 = '0,
                                           place_t y2 = '0);
     number = '{kind, 1'b0, 1'b0, 1'b0, result, y2, x2, y1, x1, y0, x0};
   endfunction
 
-  // A vector of differences of floats.
+  // Returns instructions for the three components of a difference of vectors of floats.
   function automatic vector_t difference(place_t result, place_t minuend, place_t subtrahend);
     for (logic [4:0] k = 0; k < 3; k++) begin
       difference[k] = number(KindCoordinate, result + k, minuend + k, subtrahend + k);
     end
   endfunction
 
-  // The direction as numbers.
+  // Returns instructions that make numbers of the direction's floats.
   function automatic vector_t direction();
     for (logic [4:0] k = 0; k < 3; k++) begin
       direction[k] = number(KindRay, I + k, place_t'(PlaceDirection) + k, Zero);
@@ -75,14 +76,14 @@ package exact_program_pkg;
     dot_product = number(kind, result, x, y, x + 5'd1, y + 5'd1, x + 5'd2, y + 5'd2);
   endfunction
 
-  // Takes the sign of x . y; `last`: it ends the program.
+  // Returns an instruction that takes the sign of x . y; `last`: it ends the program.
   function automatic instruction_t sign(kind_e kind, place_t x, place_t y, logic last = 1'b0);
     sign = dot_product(kind, '0, x, y);
     sign.decide = 1'b1;
     sign.last = last;
   endfunction
 
-  // Takes the sign of (t - t') S S', with t = T / S.
+  // Returns an instruction that takes the sign of (t - t') S S', with t = T / S and t' = OtherT / OtherS = T' / S'.
   function automatic instruction_t compare();
     compare = number(KindCompare, '0, T, OtherS, S, OtherT);
     compare.decide = 1'b1;
@@ -110,7 +111,7 @@ package exact_program_pkg;
     cross_product(N, A, B),
     sign(KindEdge, I, M),
     sign(KindEdge, I, N, 1'b1),
-    // Limit: t = A . N / I . N with N = (B - A) x (C - A), against a limit / 1
+    // Limit: t = A . N / I . N with N = (B - A) x (C - A), against limit / 1; here B and C are B - A and C - A
     difference(B, Triangle + 5'd3, Triangle),
     difference(C, Triangle + 5'd6, Triangle),
     difference(A, Triangle, Origin),
