@@ -2,8 +2,7 @@
 //
 // Every addition of significands or exponents uses this module. Arith selects the kind of adder: see arith_pkg.
 // GroupWidths: group widths of a carry-select adder, a list as in arith_pkg; other kinds ignore it. 0 selects one group
-// if LookAhead is 1 and Width is at most 12 (as for exponents), else the groups of Arith. LookAhead: see
-// carry_select_adder.
+// if LookAhead (see carry_select_adder) is 1 and Width is at most 12, as for exponents, else the groups of Arith.
 module adder #(
   parameter int unsigned Width = 48,
   parameter int unsigned Arith = arith_pkg::Graded,

@@ -5,8 +5,7 @@
 // blocks and carry chains. The other kinds are structural: Booth recoding, carry-save trees and adders of the named
 // kind. All kinds have the same pipeline stages and give the same bits.
 //
-// A list of group widths is a vector of MaxGroups bytes, the least significant group in the lowest byte. A byte of 0
-// ends the list.
+// A list of group widths is a vector of MaxGroups bytes. The least significant group is lowest; a byte of 0 ends it.
 package arith_pkg;
 
   typedef enum int unsigned {

@@ -3,8 +3,8 @@
 // Setting all bits below the highest 1 turns the word into a run of ones; the top of the run marks the highest 1. Bit j
 // of count_o is the OR of the marks at all places p for which bit j of Width - 1 - p, the zeros above p, is 1.
 //
-// Combinational: $clog2(Width) levels, one AND, and an OR of half the places. For a_i = 0, zero_o is 1 and count_o is
-// all ones.
+// Combinational: $clog2(Width) levels, one AND, and an OR of half the places. If a_i is 0, zero_o is 1, count_o all
+// ones.
 module leading_zero_counter #(
   parameter int unsigned Width = 24
 ) (

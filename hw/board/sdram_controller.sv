@@ -1,8 +1,8 @@
 // Memory of lines in one SDRAM of 16 bits: reads and writes of 64 bytes by line number, valid/ready.
 //
 // A line is 32 neighbouring words of a row, and a row has 16 lines. Successive groups of 16 lines are in successive
-// banks. Commands leave from registers. The SDRAM's clock is the inverse of clk_i: the SDRAM takes a command half a
-// clock after it left, and the word of a read (CAS latency 2) is sampled two clocks after its command left. So half a
+// banks. Commands leave from registers. The SDRAM's clock is the inverse of clk_i. So the SDRAM takes a command half a
+// clock after it left, and the word of a read (CAS latency 2) is sampled two clocks after its command left. Half a
 // period of clk_i must cover the SDRAM's access time, 6 ns, and the delays of pads out and back, some 6 ns: 40 MHz.
 // Writes have priority over reads, refreshes over both. A line comes with its request's id and stays until it is taken.
 // A line to be written stays at the port until its last word leaves.
@@ -18,7 +18,7 @@ module sdram_controller
 ) (
   input  logic                   clk_i,
   input  logic                   rst_ni,
-  // lines; only the low 19 bits of a number count
+  // lines; only the low 19 bits of a line's number are used
   input  logic                   read_valid_i,
   output logic                   read_ready_o,
   // verilator lint_off UNUSEDSIGNAL

@@ -63,8 +63,7 @@ package exact_pkg;
   //
   // With e its exponent field (1 for subnormals), a float is a whole number of significand_width bits in units of
   // 2**(e - Bias - FracWidth). Let the unit be that of the smallest exponent, and `spread` the largest exponent above
-  // it. The difference of two such numbers is below 2**b with b = spread + significand_width + 1: n digits with width n
-  // - 2 >= b.
+  // it. The difference of two such numbers is below 2**(spread + significand_width + 1), so it fits into the digits.
 
   function automatic int unsigned digits_of(int unsigned spread, int unsigned significand_width,
                                             int unsigned width);

@@ -5,8 +5,8 @@
 //
 //   hit    A . (B x C) is not 0, and I . (B x C), I . (C x A), I . (A x B) have its sign. A product I . M that is 0
 //          takes the sign of M's first non-zero component (as if the ray tilted towards +x, less towards +y, then +z)
-//   order  the sign of t - limit or t - t'. For hits, t = D / S > 0 with D = A . N and S = I . N. With t' = D' / S' (or
-//          limit / 1), it is the sign of (D S' - D' S) D D'
+//   order  the sign of t - limit or t - t'. For hits, t = D / S > 0 with D = A . N and S = I . N, and t' = D' / S' (or
+//          limit / 1). So the order is the sign of (D S' - D' S) D D'
 //
 // All are sums of products of floats, so whole numbers in units that the exponents give (exact_exponents), summed
 // without rounding. exact_program_pkg has the programs. Latency: up to 161 clocks, at worst 3,686 (binary32, digits of
@@ -14,8 +14,7 @@
 //
 // Coordinates are of magnitude 2**126 at most, the direction is not 0, the limit is positive; all are finite. hit_i and
 // against_i select the questions. hit_o is high if hit_i was low. order_o is 0 for a miss or if no order was asked for;
-// with hit_i low, a miss is not detected. One request at a time: ready_o is high between an answer and the next
-// request.
+// with hit_i low, misses are not detected. ready_o is high between an answer and the next request.
 module exact_unit
   import exact_pkg::*;
 #(
@@ -163,8 +162,7 @@ module exact_unit
     limit_q     <= 32'(x_place) == PlaceLimit;
   end
 
-  // ---- Stage 1: digits of numbers, from memory, or of floats. Only x can be the limit or the constant 1, each of
-  // which has its own shift
+  // ---- Stage 1: digits of numbers, from memory, or of floats. Only x can be the limit or 1; each has its own shift
 
   logic write, loads;
   logic [DigitWidth-1:0] digit;

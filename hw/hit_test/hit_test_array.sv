@@ -1,8 +1,8 @@
 // Several pipelined hit-test units side by side, and their counters.
 //
 // Every port has a slot for each lane, lane 0 lowest; for a slot's contents see hit_test_pipeline. Each lane has its
-// own valid and ready, so no lane waits for another. All tests of a burst must go to the same lane. Their results leave
-// from that lane, in order.
+// own valid and ready, so no lane waits for another. All tests of a burst must go to one lane, where results keep
+// order.
 //
 // counter_o is the counter of count_e that count_select_i selects (0 for other values), summed over the lanes since
 // reset, modulo 2**CounterWidth, up to three clocks late. Counters of clocks count each lane: 4 lanes, 4 per clock.

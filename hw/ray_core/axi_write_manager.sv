@@ -1,10 +1,10 @@
 // AXI4 write manager: results of 32 bytes to memory, a burst each.
 //
-// Result n (0, 1, ...) goes to base_i + 32 n while n is below length_i; further results wait until rewind_i, after
-// which n is 0 again. written_o: results whose writes have been answered, in order, as all have the same AXI ID.
+// Result n (0, 1, ...) goes to base_i + 32 n while n is below length_i. Further results wait until rewind_i, which
+// makes n 0 again. written_o counts the writes that have been answered; with one AXI ID, answers come in order.
 //
 // Throughput: a result in 256 / DataWidth clocks, at least 1 (a clock for each beat). On a port of 512 bits a beat uses
-// the half that its address selects. No output of AXI depends on an input in the same clock.
+// the half that its address selects. No AXI output depends on an input in the same clock.
 // Source: AMBA AXI protocol specification, issue E (AXI4): A3.
 module axi_write_manager #(
   parameter int unsigned DataWidth = 128,  // 32 to 512, a power of two

@@ -1,7 +1,7 @@
 // Control and status registers of the ray core, on AXI4-Lite: what to draw, from which memory, counters, flags.
 //
-// registers.md has the words, bits, and what is refused while the core is busy; csr_pkg is made from it. One write and
-// one read at a time; no output of AXI depends on an input in the same clock. interrupt_o: an enabled flag is high.
+// registers.md has the words, bits, and what is refused while the core is busy; csr_pkg is generated from it. One write
+// and one read at a time; no AXI output depends on an input in the same clock. interrupt_o: an enabled flag is high.
 // Source: AMBA AXI protocol specification, issue E, B1 (AXI4-Lite).
 module csr
   import ray_core_pkg::*, csr_pkg::*;
@@ -65,7 +65,7 @@ module csr
 
   // ---- Writes: address and data are taken, each into a register; then the word is written
 
-  logic write, refused, address_q, data_q;  // address_q, data_q: it has been taken
+  logic write, refused, address_q, data_q;  // address_q, data_q: taken, not written yet
   logic [9:0] write_word_q, read_word;
   logic [3:0] strobes_q;
   logic [31:0] write_data_q, mask;  // the bits to write

@@ -1,21 +1,21 @@
 // Non-blocking cache of memory lines of one kind, nodes or triangles: eight ways, read only.
 //
-// The lowest bits of a line's number select its set. A miss takes a way of its set, the one after the way that was used
-// last, and asks memory for the line. Until the line comes, further requests for it join the miss as its targets. If
-// all ways of the set wait for other lines, the request waits.
+// The lowest bits of a line's number select its set. A miss requests the line from memory and takes a way of its set
+// that waits for no line: the first after the way that was used last. Until the line comes, further requests for it
+// join the miss as its targets. If all ways of the set wait for other lines, the request waits.
 //
 //   ask      a request is taken; the tags of its set are read
-//   compare  the tags of its set are compared with the line's
+//   compare  these tags are compared with the line's
 //   look up  a hit's line is read, a miss asks memory
 //   queue    hits wait for a clock in which no line from memory leaves
 //
 // A prefetch is a request with demand_i low: it has no target. It may be withdrawn before it is taken, and is dropped
 // if its set has no way for it or memory takes no request. outstanding_o: a prefetch is being looked up.
 //
-// A line from memory is taken when the previous one has left or leaves: it is written, and its latest target is looked
-// up. From the next clock it goes to its targets, one per clock, the latest first. Throughput: a line a clock; lines
-// leave in any order, each with the ray that asked. While a line from memory leaves, hits wait in their queue; requests
-// are still looked up. A line with an error goes to its targets with error_o, and is not kept.
+// A line from memory is taken when the previous one has left, or leaves for its last target. It is written, and its
+// latest target is looked up. From the next clock the line goes to its targets, one per clock, the latest first. While
+// it leaves, hits wait in their queue; requests are still looked up. A line with an error goes to its targets with
+// error_o, and is not kept. Throughput: a line a clock; lines leave in any order, each with the ray that asked.
 //
 // invalidate_i empties the cache; no request and no line may be in flight then.
 module line_cache
@@ -67,7 +67,7 @@ module line_cache
     $error("line_cache: expected Lines of 16 or more, a power of two, and Targets of 2 or more");
   end
 
-  logic [Lines-1:0] valid_q, pending_q;  // the entry's line is here; it is on its way
+  logic [Lines-1:0] valid_q, pending_q;  // the entry's line is here; the line is requested
   logic [Sets-1:0][WayWidth-1:0] victims_q;  // by set: the way after the one that was used last
 
   // ---- Ask

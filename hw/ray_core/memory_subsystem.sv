@@ -7,8 +7,7 @@
 // of prefetches is full. Its line may come after the last ray has ended: while outstanding_o is high, memory must not
 // change and the caches must not be emptied.
 //
-// Lines leave with step_o, which is high in one of Clocks clocks, and wait for nothing else: line_ready_o does not
-// depend on results.
+// Lines leave with step_o, which is high in one of Clocks clocks. line_ready_o does not depend on results.
 module memory_subsystem
   import ray_core_pkg::*;
 #(
@@ -23,13 +22,13 @@ module memory_subsystem
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    invalidate_i,  // empties the caches: memory has changed
-  output logic                    outstanding_o,  // a line is on its way, or will be
-  // nodes asked for: one for each ray at most
+  output logic                    outstanding_o,  // a line is requested, or will be
+  // requests for nodes: one for each ray at most
   input  logic [RayWidth-1:0]     node_ctx_i,
   input  request_t                node_i,
-  // a node that may be asked for soon: a prefetch
+  // a request for a node that may be needed soon: a prefetch
   input  request_t                prefetch_i,
-  // triangles asked for
+  // requests for triangles
   input  logic [RayWidth-1:0]     triangle_ctx_i,
   input  triangle_request_t       triangle_i,
   output logic                    triangle_ready_o,

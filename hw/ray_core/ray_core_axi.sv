@@ -1,10 +1,10 @@
 // Ray core on AXI4, with registers on AXI4-Lite. Rays come by valid/ready, results leave by AXI4 or AXI4-Stream.
 //
-//   csr                what to draw, counters, flags
-//   ray_generator      the rays of a rectangle; the tag of each is its pixel, {y, x}
+//   csr                registers: what to draw, counters, flags
+//   ray_generator      the rays of a rectangle; a ray's tag is its pixel, {y, x}
 //   ray_core
-//   axi_read_manager   its memory port
-//   axi_write_manager  results to memory if register `length` is not 0; else they leave by the stream
+//   axi_read_manager   the core's memory port
+//   axi_write_manager  results to memory if register `length` is not 0; else results leave by the stream
 //
 // AxPROT and AxCACHE are constant. By default accesses are non-secure, unprivileged, to data; memory is normal, not
 // cacheable, bufferable, so bridges may merge beats. Writes have ID 0. The user's rays (ray_*) wait while a rectangle
@@ -206,7 +206,7 @@ module ray_core_axi
 
   ray_t generated;
   logic core_ready, core_valid, ray_fire;
-  logic closed_q;  // to the user's rays, except one that is already offered
+  logic closed_q;  // the user's rays wait, except one that is already offered
   assign core_valid   = camera_valid | (ray_valid_i & ~closed_q);
   assign camera_ready = core_ready;
   assign generated = {

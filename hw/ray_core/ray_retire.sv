@@ -1,8 +1,8 @@
 // Exit of rays: detects that a ray has ended, and queues results.
 //
 // A ray has ended when it has no node, no leaf, no test and no doubt left. Its context is free at once; its nearest hit
-// waits in a queue. A ray's doubts leave before its end. Unused fields are zero: a doubt has only its tag and triangle,
-// an end without a hit no triangle, t, t_error or P. Throughput: a ray and a result a clock.
+// waits in a queue. A ray's doubts leave before its end. Unused fields of a result are zero: a doubt has only tag and
+// triangle; the end of a ray without a hit has no triangle, t, t_error or P. Throughput: a ray and a result a clock.
 module ray_retire
   import ray_core_pkg::*;
 #(

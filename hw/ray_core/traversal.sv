@@ -1,25 +1,25 @@
 // Traversal of the tree: short stacks, and which ray goes next.
 //
 // A stack entry is a group: the children of a node that a ray enters and has not visited yet, the nearest on top. In
-// each clock one ray is picked, of those that neither wait for a node nor have leaves to be fetched. Its groups whose
-// nearest child lies beyond t_max are dropped, all at once; the nearest child of the topmost group left is asked for.
-// Rays without tests in flight come first, as their t_max is final for now; among these is a ray that starts.
+// each clock one ray is picked, of those that neither wait for a node nor have leaves to be fetched. The ray's groups
+// are dropped if their nearest child lies beyond t_max. Then the nearest child of its topmost group is requested. Rays
+// without tests in flight have priority, as their t_max is final for now; so has a ray that starts.
 //
-// Each ray has Depth groups of its own. Levels - Depth more are shared by all rays. One ray at a time holds the shared
-// groups, on top of its own, from when it asks for a node with its own stack full until its own stack has room again;
-// overflow_o is high when a ray takes them. Other rays that need them wait; the holder depends on no other ray, so each
-// gets its turn. Only the topmost shared group is examined. It is never dropped for t_max, as box_unit culls boxes
-// beyond t_max.
+// Each ray has Depth groups of its own. Levels - Depth more groups are shared, held by one ray at a time on top of its
+// own. A ray takes the shared groups when it requests a node with its own stack full, and overflow_o is high. It holds
+// them until its own stack has room again. Other rays that need them wait. The holder waits for no other ray, so each
+// ray gets its turn. Only the topmost shared group is examined. It is not dropped for t_max, as box_unit leaves out
+// boxes beyond t_max.
 //
 // In a tree a ray enters each node once, and has at most one group for each level. A ray that is about to enter more
-// than lines_i nodes, or has Levels groups, is in a cycle: its stack is dropped, and cycle_o is high.
+// than lines_i nodes, or that has Levels groups, is in a cycle: its stack is dropped, and cycle_o is high.
 //
 //   gather   the rays that may be picked
 //   pick     one of them
 //   read     its groups and its t_max
 //   choose   the group
 //   fetch    the group from memory
-//   ask      for the line of its nearest child or, in a clock without one, for the root, on behalf of a ray that starts
+//   ask      request the line of its nearest child or, in a clock without a group, the root's for a ray that starts
 module traversal
   import ray_core_pkg::*;
 #(
@@ -40,15 +40,15 @@ module traversal
   input  group_t                  box_group_i,
   input  logic [Children-1:0]     box_inner_i,
   // what is known of rays
-  input  logic [Rays-1:0]         leaf_pending_i,  // has leaves to be asked for
-  input  logic [Rays-1:0]         testing_i,  // has tests in flight
+  input  logic [Rays-1:0]         leaf_pending_i,  // rays that have leaves to be fetched
+  input  logic [Rays-1:0]         testing_i,  // rays that have tests in flight
   output logic [RayWidth-1:0]     t_max_ray_o,
   input  logic [30:0]             t_max_i,  // of t_max_ray_o of the clock before
-  input  logic                    ended_i,  // the same ray needs no more nodes
-  output logic                    cycle_o,  // cycle_ray_o meets a node again
+  input  logic                    ended_i,  // the ray of t_max_i needs no more nodes
+  output logic                    cycle_o,  // cycle_ray_o is in a cycle
   output logic [RayWidth-1:0]     cycle_ray_o,
-  input  logic [AddressWidth-1:0] lines_i,  // of memory; 0: 2**AddressWidth
-  output logic [Rays-1:0]         traversing_o,  // waits for a node, or has some on its stack
+  input  logic [AddressWidth-1:0] lines_i,  // number of memory's lines; 0: 2**AddressWidth
+  output logic [Rays-1:0]         traversing_o,  // rays that wait for a node or have a group
   // requests for nodes; at most one for each ray
   output logic [RayWidth-1:0]     node_ray_o,
   output request_t                node_o,
@@ -68,14 +68,14 @@ module traversal
   end
 
   logic [LevelWidth-1:0] levels[Rays];  // groups on the stack
-  logic [AddressWidth-1:0] entered[Rays];  // nodes
-  logic [Rays-1:0] busy_q;     // waits for a node
-  logic [Rays-1:0] waiting_q;  // levels is not 0
-  logic [Rays-1:0] refused_q;  // waits for the shared groups
+  logic [AddressWidth-1:0] entered[Rays];  // number of nodes entered
+  logic [Rays-1:0] busy_q;     // the ray waits for a node, or is picked
+  logic [Rays-1:0] waiting_q;  // the ray's levels is not 0
+  logic [Rays-1:0] refused_q;  // the ray waits for the shared groups
 
   assign traversing_o = busy_q | waiting_q;
 
-  // Address of a ray's group in u_groups; then, of a shared group in shared_masks.
+  // Return the address of a ray's group in u_groups, and the address of a shared group in shared_masks.
   function automatic logic [StackWidth-1:0] stack_address(logic [RayWidth-1:0] ctx,
                                                           logic [LevelWidth-1:0] level);
     stack_address = StackWidth'(level) + ((level < LevelWidth'(Depth))
@@ -85,7 +85,7 @@ module traversal
     shared_address = SharedWidth'(level - LevelWidth'(Depth));
   endfunction
 
-  // The nearest of the entries in `which`, as {enter, offset}; 0 for none.
+  // Returns the nearest of the entries in `which`, as {enter, offset}; 0 if `which` is 0.
   function automatic logic [EnterWidth+OffsetWidth-1:0] nearest(
     logic [Children*ChildWidth-1:0] entries, logic [Children-1:0] which);
     nearest = '0;
@@ -139,7 +139,7 @@ module traversal
   logic [RayWidth-1:0] choosing_ray_q, asking_ray_q, next_ray_q;
   logic [AddressWidth-1:0] entered_q;
   logic [30:0] t_max_q;
-  logic [Depth-1:0] open;  // levels that have a child within the t_max
+  logic [Depth-1:0] open;  // levels whose nearest child is not beyond t_max
   logic [Children-1:0] shared_masks[Shared], shared_mask_q;
   logic [Depth*Children-1:0] masks;
   logic [Children-1:0] mask, remaining, mask_q, remaining_q, next_remaining_q;
