@@ -13,7 +13,7 @@ module prefix_adder #(
 
   logic [Width-1:0] half_sum;
   logic [Width-1:0] generated;  // by carry_i and the bits from bit 0 to this bit
-  logic [Width-1:0] carries;    // out of each bit
+  logic [Width-1:0] carries;    // carry out of each bit
 
   assign half_sum = a_i ^ b_i;
 

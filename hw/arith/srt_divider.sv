@@ -11,7 +11,7 @@
 // a pipelined divider are invalid, as registers load valid data only. Nothing is reset: valid_o is undefined at first.
 // Source: Ercegovac and Lang, "Division and Square Root", 1994, chapter 3; selection constants: srt_pkg.
 module srt_divider #(
-  parameter int unsigned Width = 24,  // of both operands
+  parameter int unsigned Width = 24,  // width of both operands
   parameter int unsigned Rows  = 12,
   parameter int unsigned SideWidth = 1,
   parameter int unsigned Arith = arith_pkg::Graded,
@@ -28,7 +28,7 @@ module srt_divider #(
   output logic                 valid_o
 );
 
-  // Fraction bits of the residual: the divisor's, but at least as many as digit selection reads.
+  // Fraction bits of the residual: as many as the divisor has, but not fewer than digit selection reads.
   localparam int unsigned FracWidth = (Width < 6) ? 5 : Width - 1;
   localparam int unsigned ResWidth = 2 + FracWidth;
   localparam int unsigned PadWidth = FracWidth + 1 - Width;

@@ -12,14 +12,14 @@ module srt_first_row #(
   output logic [1:0]       digit_o
 );
 
-  // ---- Choose the digit (see srt_pkg) by the divisor's first sixteenths
+  // ---- Choose the digit (see srt_pkg) by the divisor's first four fraction bits
 
   localparam bit [8*16-1:0] First2 = srt_pkg::first_thresholds(2);
   localparam bit [8*16-1:0] First3 = srt_pkg::first_thresholds(3);
   localparam bit [8*16-1:0] First4 = srt_pkg::first_thresholds(4);
 
   logic [5:0] y;  // 2 x in eighths
-  logic [6:0] sixteenth;  // bit index into the thresholds
+  logic [6:0] sixteenth;  // bit index of the threshold's byte
   logic from_2, from_3, from_4;  // the digit is at least 2, 3, 4
 
   assign y = {1'b0, dividend_doubled_i[Width-1-:5]};

@@ -16,7 +16,7 @@ module srt_row #(
   output logic [1:0]       negative_o
 );
 
-  localparam int unsigned EstimateWidth = 7;  // of 4 w: 4 integer bits with sign, 3 fraction
+  localparam int unsigned EstimateWidth = 7;  // the estimate of 4 w: 4 integer, 3 fraction bits
 
   // ---- Estimate 4 w from the first bits of both words
 
@@ -42,8 +42,8 @@ module srt_row #(
   localparam bit [8*8-1:0] M2 = srt_pkg::thresholds(2);
 
   logic [EstimateWidth-1:0] y;
-  logic [5:0] eighth;  // bit index into the thresholds
-  logic [3:0] from;  // the digit is at least -1, 0, 1, 2
+  logic [5:0] eighth;  // bit index of the threshold's byte
+  logic [3:0] from;  // [n]: the digit is at least n - 1
   logic [Width-1:0] multiple;
 
   assign y = estimate ^ {1'b1, {(EstimateWidth - 1) {1'b0}}};
@@ -53,7 +53,7 @@ module srt_row #(
   assign from[1] = y >= M0[eighth+:EstimateWidth];
   assign from[2] = y >= M1[eighth+:EstimateWidth];
   assign from[3] = y >= M2[eighth+:EstimateWidth];
-  // At most one of the next four bits is 1
+  // At most one of the four bits of positive_o and negative_o is 1.
   assign positive_o = {from[3], from[2] & ~from[3]};
   assign negative_o = {~from[0], from[0] & ~from[1]};
   assign multiple = {Width{from[2]}}

@@ -57,7 +57,7 @@ module core_link
   logic [4:0] left_q;  // words of the message still to come
   logic [AddressWidth-1:0] number_q;
   logic [LineWords*32-1:0] words_q;
-  logic [15:0] rays_q;  // in the core
+  logic [15:0] rays_q;  // number of rays in the core
   logic ray_fire, ended, result_load;
 
   assign word_ready_o = ~full_q & ~abort_o;

@@ -16,7 +16,7 @@ module exact_accumulator
   import exact_pkg::*;
 #(
   parameter int unsigned DigitWidth = 48,
-  parameter int unsigned Products = 36,  // in a column, at most
+  parameter int unsigned Products = 36,  // maximum number of products in a column
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned Width = sum_width(DigitWidth, Products)
 ) (

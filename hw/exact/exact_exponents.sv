@@ -43,7 +43,7 @@ module exact_exponents
     end
   endfunction
 
-  // ---- The least and the largest exponent of each vector, without its zeros
+  // ---- The least and the largest exponent of each vector's non-zero components
 
   logic [ExpWidth-1:0] lows_d[Vectors], highs_d[Vectors], lows_q[Vectors], highs_q[Vectors];
 

@@ -45,7 +45,7 @@ package exact_pkg;
   localparam int unsigned OtherDistance = 20;
   localparam int unsigned Numbers = 22;
 
-  localparam int unsigned CountWidth = 6;  // of the count of a number's digits
+  localparam int unsigned CountWidth = 6;  // width of a count of digits
 
   // Returns the number of words of the memory of digits, if a difference has up to `digits` digits.
   function automatic int unsigned memory_depth(int unsigned digits);
@@ -59,7 +59,7 @@ package exact_pkg;
                 : (24 + 3 * (number - Distance)) * digits;
   endfunction
 
-  // ---- Digits that a range of exponents needs
+  // ---- Number of digits that a range of exponents needs
   //
   // With e its exponent field (1 for subnormals), a float is a whole number of significand_width bits in units of
   // 2**(e - Bias - FracWidth). Let the unit be that of the smallest exponent, and `spread` the largest exponent above
@@ -88,12 +88,12 @@ package exact_pkg;
   // ---- Instructions, see exact_program_pkg
 
   typedef enum logic [2:0] {
-    KindCoordinate = 3'd0,  // a number: one coordinate minus another
+    KindCoordinate = 3'd0,  // one coordinate minus another
     KindRay        = 3'd1,  // a direction's component
     KindPair       = 3'd2,  // the limit, or the constant 1
     KindCross      = 3'd3,  // x0 y0 - x1 y1: a component of a normal
     KindPlane      = 3'd4,  // x0 y0 + x1 y1 + x2 y2: a corner times a normal
-    KindEdge       = 3'd5,  // likewise, the direction times a normal
+    KindEdge       = 3'd5,  // as KindPlane: the direction times a normal
     KindCompare    = 3'd6   // x0 y0 - x1 y1: compares two fractions
   } kind_e;
 

@@ -14,10 +14,10 @@ package exact_program_pkg;
 
   import exact_pkg::*;
 
-  typedef instruction_t [0:2] vector_t;  // of x, y, z
-  typedef logic [NumberWidth-1:0] place_t;  // of a float in a request, or of a number in memory
+  typedef instruction_t [0:2] vector_t;  // instructions for x, y, z
+  typedef logic [NumberWidth-1:0] place_t;  // a float in a request, or a number in memory
 
-  // ---- Places of floats and numbers; a vector's place is its x's
+  // ---- Places of floats and numbers; a vector's place is that of its x
 
   localparam place_t Origin = place_t'(PlaceOrigin);
   localparam place_t Triangle = place_t'(PlaceTriangle);  // its corners A, B, C
@@ -98,7 +98,7 @@ package exact_program_pkg;
 
   // verilog_format: off
   localparam instruction_t [0:Length-1] Program = {
-    // Hit: the sides on which the ray passes the edges; here A, B and C are relative to the origin
+    // Hit: on which sides of the edges the ray passes; here A, B and C are relative to the origin
     difference(B, Triangle + 5'd3, Origin),
     difference(C, Triangle + 5'd6, Origin),
     difference(A, Triangle, Origin),
@@ -121,7 +121,7 @@ package exact_program_pkg;
     dot_product(KindPlane, T, A, N),
     dot_product(KindEdge, S, I, N),
     compare(),
-    // Order: t against t' of the other triangle
+    // Order: t against t' of the other triangle's hit
     difference(B, Triangle + 5'd3, Triangle),
     difference(C, Triangle + 5'd6, Triangle),
     difference(A, Triangle, Origin),

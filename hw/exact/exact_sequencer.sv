@@ -11,7 +11,7 @@
 module exact_sequencer
   import exact_pkg::*;
 #(
-  parameter int unsigned Digits = 6,  // of a difference, at most
+  parameter int unsigned Digits = 6,  // maximum number of digits of a difference
   localparam int unsigned AddressWidth = $clog2(memory_depth(Digits))
 ) (
   input  logic                    clk_i,
@@ -42,7 +42,7 @@ module exact_sequencer
   output logic [AddressWidth-1:0] result_address_o
 );
 
-  // ---- Fetch: the next instruction, and its last digits
+  // ---- Fetch: the next instruction, and the numbers of the last digits of x, y and the result
 
   instruction_t fetched, instruction_q;
   logic [6:0] compares, next_q, address_q;
@@ -111,7 +111,7 @@ module exact_sequencer
     end
   end
 
-  // ---- Steps: the term, digit i of x and digit j of y, and the first i and j of the column
+  // ---- Steps: the term, digit i of x and digit j of y; from_i and from_j are the first i and j of the column
 
   logic [1:0] term_q, terms_last;
   logic [CountWidth-1:0] i_q, j_q, from_i_q, from_j_q, from_i_d, from_j_d, column_q;

@@ -30,7 +30,7 @@ module exact_unit
   output logic                    ready_o,
   input  logic                    hit_i,
   input  logic [1:0]              against_i,  // against_e
-  input  logic [Floats*Width-1:0] floats_i,  // exact_pkg's places
+  input  logic [Floats*Width-1:0] floats_i,  // words: places of exact_pkg
   output logic                    valid_o,
   input  logic                    ready_i,
   output logic                    hit_o,
@@ -43,11 +43,11 @@ module exact_unit
   localparam int unsigned AddressWidth = $clog2(Depth);
   localparam int unsigned MaxShift = largest_gap(ExpWidth, Significand);
   localparam int unsigned ShiftWidth = $clog2(MaxShift + 1);
-  localparam int unsigned Products = 6 * Digits;  // in a column, at most
+  localparam int unsigned Products = 6 * Digits;  // maximum number in a column
   localparam int unsigned SumWidth = sum_width(DigitWidth, Products);
   localparam int unsigned Stages = 4;
 
-  // ---- Request: the words, then their exponents
+  // ---- Request: keeps the words, and waits for their exponents
 
   logic done, asks_hit_q;
   logic [1:0] against_q;
@@ -96,7 +96,7 @@ module exact_unit
 
   typedef struct packed {
     step_t step;
-    logic [6:0] address;  // of the step's instruction
+    logic [6:0] address;  // program address of the step's instruction
     logic [AddressWidth-1:0] result;  // address of the digit that the step completes
   } stage_t;
 
@@ -274,7 +274,7 @@ module exact_unit
     .sure_o    (sure)
   );
 
-  // ---- Stage 4: a digit is written; the sign of a number is that of its highest digit
+  // ---- Stage 4: a digit is written; a number has the sign of its highest non-zero digit
 
   logic [Numbers-1:0] negative_q, nonzero_q;
 

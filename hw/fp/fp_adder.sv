@@ -160,7 +160,7 @@ module fp_adder #(
 
   assign far_exp = big_exp_1 - (subtract_1 ? ExpWidth'(2) : ExpWidth'(1));
 
-  // ---- Near path: subtract; the exponents' lowest bits give their distance, 0 or 1
+  // ---- Near path: subtract; exponents differ by 0 or 1, so their lowest bits suffice to align
 
   logic [NearWidth-1:0] near_small, near_difference;
 

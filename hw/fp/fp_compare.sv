@@ -18,7 +18,7 @@ module fp_compare #(
   output fp_pkg::flags_t              flags_o
 );
 
-  localparam int unsigned MagWidth = ExpWidth + FracWidth;  // of the word without its sign
+  localparam int unsigned MagWidth = ExpWidth + FracWidth;  // width of a word without its sign
   localparam logic [MagWidth-1:0] Infinity = {{ExpWidth{1'b1}}, {FracWidth{1'b0}}};
 
   logic a_sign, b_sign, a_nan, b_nan, any_signaling, both_zero;

@@ -54,7 +54,7 @@ module hit_decision
   // ---- The plane
 
   logic [ExpWidth-1:0] v_exponent;
-  logic [ExpWidth:0] grazing;  // modulo 2**(ExpWidth+1)
+  logic [ExpWidth:0] grazing;  // difference of exponents, modulo 2**(ExpWidth+1)
   logic grazing_negative, v_good;
 
   assign v_exponent       = v_i[FracWidth +: ExpWidth];

@@ -55,7 +55,7 @@ module hit_test_pipeline
   output logic [TErrorWidth-1:0]       t_error_o,
   output logic                         point_valid_o,
   output logic [3*Width-1:0]           point_o,
-  output logic [NumCounts-1:0]         events_o  // in this clock, see count_e
+  output logic [NumCounts-1:0]         events_o  // events of this clock, see count_e
 );
 
   localparam int unsigned DivideLatency = divide_latency(FracWidth);
@@ -91,7 +91,7 @@ module hit_test_pipeline
     .dividends_o(dot_dividends)
   );
 
-  // The rest of the record passes beside the dot products, with the largest exponent of N instead of N.
+  // The rest of the record bypasses the dot products. Of N, only the largest exponent is needed.
   logic [ExpWidth-1:0] nx_exponent, ny_exponent, nz_exponent, nxy_exponent, normal_exponent;
 
   assign nx_exponent     = record_i[Width*RecordNormal+FracWidth +: ExpWidth];

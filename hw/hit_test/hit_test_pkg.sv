@@ -58,13 +58,13 @@ package hit_test_pkg;
   // ---- Counters of hit_test_array, by the number that selects them
 
   typedef enum logic [3:0] {
-    CountTests          = 4'd0,  // taken
+    CountTests          = 4'd0,  // tests taken
     CountMisses         = 4'd1,
-    CountHits           = 4'd2,  // sure ones, near ties included
+    CountHits           = 4'd2,  // sure hits, near ties included
     CountDoubts         = 4'd3,
     CountNearTies       = 4'd4,
     CountDistances      = 4'd5,  // divisions for t
-    CountPoints         = 4'd6,  // three divisions each
+    CountPoints         = 4'd6,  // points P, three divisions each
     CountIdleClocks     = 4'd7,  // clocks in which a lane could have taken a test, but none came
     CountOutputStalls   = 4'd8   // clocks in which a lane's ready_o was low
   } count_e;

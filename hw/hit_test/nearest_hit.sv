@@ -25,8 +25,8 @@ module nearest_hit
   input  logic                    clk_i,
   input  logic                    rst_ni,
   input  logic                    valid_i,  // a test; else the inputs below are ignored
-  input  logic                    first_i,  // of its burst
-  input  logic                    last_i,  // of its burst
+  input  logic                    first_i,  // the first test of its burst
+  input  logic                    last_i,  // the last test of its burst
   input  logic                    hit_i,
   input  logic                    doubt_i,
   input  logic [TagWidth-1:0]     tag_i,

@@ -100,7 +100,7 @@ module axi_read_manager
   assign axi_arsize_o  = 3'($clog2(DataWidth / 8));
   assign axi_arburst_o = BurstIncrement;
 
-  // ---- Beats: all but a line's last beat wait for the last one, each in its own memory
+  // ---- Beats: beat b of a line waits in memory b for the line's last beat
 
   logic [DataWidth-1:0] beat, last_beat_q;
 

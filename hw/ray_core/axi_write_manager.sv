@@ -16,7 +16,7 @@ module axi_write_manager #(
   input  logic [31:0]            length_i,  // capacity in results
   input  logic                   rewind_i,  // only while not busy_o
   output logic                   busy_o,  // a result's write has not been answered
-  output logic                   full_o,  // a result waits for capacity, all others are written
+  output logic                   full_o,  // a result waits for capacity; all others are written
   output logic                   bus_error_o,  // an answer in this clock has an error
   output logic [31:0]            written_o,
   input  logic                   record_valid_i,
@@ -49,7 +49,7 @@ module axi_write_manager #(
   end
 
   logic [31:0] next_q;
-  logic [2:0] left_q;  // beats after the one that is offered
+  logic [2:0] left_q;  // beats that follow the offered beat
   logic [RecordWidth-1:0] record_q;
   logic fire, some_room, address_free, data_free;
 

@@ -44,7 +44,7 @@ module box_unit
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays = 64,
-  parameter int unsigned Clocks = 1,  // per node: 1, or Children or more
+  parameter int unsigned Clocks = 1,  // clocks per node: 1, or Children or more
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
@@ -61,7 +61,7 @@ module box_unit
 
   localparam logic [UnitBits:0] Whole = (UnitBits + 1)'(1) << UnitBits;  // 2**E
 
-  // Clocks of the stages
+  // Latencies of the stages, in clocks
   localparam int unsigned Take = 2;
   localparam int unsigned Subtract = hit_test_pkg::AdderLatency;
   localparam int unsigned Scale = 3;
@@ -105,7 +105,7 @@ module box_unit
     {origin_q, inverse_q, t_max_q} <= {origin_i, inverse_i, t_max_i};
   end
 
-  // Passes beside the arithmetic: base, kinds and boxes of the node, and the ray's t_max
+  // These words bypass the arithmetic: base, kinds and boxes of the node, and the ray's t_max
   localparam int unsigned Base = NodeBase;
   localparam int unsigned ChildrenWidth = LineWidth - Base;
   localparam int unsigned Kinds = NodeKinds - Base;
@@ -195,7 +195,7 @@ module box_unit
 
   // ---- Align
 
-  logic [1:0][2:0][PlaneWidth-1:0] planes_q, next_planes_q;  // a_k - r_k; a_k + r_k
+  logic [1:0][2:0][PlaneWidth-1:0] planes_q, next_planes_q;  // [0]: a_k - r_k; [1]: a_k + r_k
   logic [3*StepWidth-1:0] step_q;
   logic [2:0] back, aligned_back, next_back_q;
   logic [8:0] aligned_exponent, sorted_exponent;
@@ -253,12 +253,12 @@ module box_unit
     .data_o({children, aligned_exponent, aligned_back})
   );
 
-  // ---- Step and enter: a key for each child, {left out, enter}; all children at once, or one per clock
+  // ---- Step and enter: a key for each child, {not entered, enter}; all children at once, or one per clock
 
   localparam int unsigned Tests = (Clocks == 1) ? Children : 1;
   localparam int unsigned KeyWidth = UnitBits + 2;
 
-  logic [Boxes-1:0] stepped_node, sorted_node;  // base and kinds
+  logic [Boxes-1:0] stepped_node, sorted_node;  // base and kinds of the node
   logic [8:0] stepped_exponent;
   logic [Children*KeyWidth-1:0] keys;
   logic [Tests*KeyWidth-1:0] tested;

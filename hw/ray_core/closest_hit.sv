@@ -33,11 +33,11 @@ module closest_hit
   // a test begins: a ray's triangle was requested
   input  logic                    test_i,
   input  logic [RayWidth-1:0]     test_ray_i,
-  input  logic                    settle_i,  // with test_i
+  input  logic                    settle_i,  // with test_i: test of a doubt that is the nearest hit
   output logic                    tests_allowed_o,
   // a test is over
   input  logic [RayWidth-1:0]     result_ray_i,
-  input  logic [31:0]             result_tag_i,  // the ray's, for doubts
+  input  logic [31:0]             result_tag_i,  // tag of result_ray_i, for doubts
   input  verdict_t                result_i,
   // A ray's t_max, a clock after its number; exact_o in the same clock. ended: the ray has any_hit and a hit, or failed
   input  logic [Rays-1:0]         failed_i,
@@ -75,7 +75,7 @@ module closest_hit
   logic [TErrorWidth-1:0] nearest_error[Rays];
   logic [31:0] nearest_triangle[Rays];
   logic [TestsWidth-1:0] tests[Rays];
-  logic [CountWidth-1:0] counts[Rays];  // tests in flight
+  logic [CountWidth-1:0] counts[Rays];  // number of tests in flight
   logic [Rays-1:0] found_q, any_hit_q, ended;
   logic [RayWidth-1:0] traversal_ray_q, leaf_ray_q, box_ray_q;
 
@@ -178,8 +178,8 @@ module closest_hit
 
   // ---- Doubts
 
-  logic [CountWidth-1:0] here_q;  // tests in flight and doubts, without tests of settle_i
-  logic taken, returned;  // credits
+  logic [CountWidth-1:0] here_q;  // tests in flight, without settle_i's, and doubts
+  logic taken, returned;  // a credit is taken, is returned
 
   assign taken    = test_i & ~settle_i;
   assign returned = is_over_q & ~settled_q & ~doubt;

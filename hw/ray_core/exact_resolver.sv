@@ -29,11 +29,11 @@ module exact_resolver
   input  logic [RayWidth-1:0]     load_ctx_i,
   input  logic [95:0]             load_origin_i,
   input  logic [95:0]             load_direction_i,
-  // a test leaves a doubt; taken_o: a doubt leaves the queue
+  // a doubt of closest_hit enters the queue; taken_o: a doubt leaves the queue
   input  logic [RayWidth-1:0]     open_ctx_i,
   input  open_t                   open_i,
   output logic                    taken_o,
-  // rays with nothing else to do, and rays that have doubts or a candidate
+  // idle_i: rays without nodes, leaves and tests; busy_o: rays that have doubts or a candidate
   input  logic [Rays-1:0]         idle_i,
   output logic [Rays-1:0]         busy_o,
   // the current ray; what is known of it, in the same clock
@@ -94,12 +94,12 @@ module exact_resolver
   // waits. Numbers wrap, but there are more numbers than places in the queue.
   logic [CountWidth-1:0] pushed_q, popped_q;  // doubts that came and left
   logic [CountWidth-1:0] lasts[Rays];  // number of the ray's last doubt
-  logic [AddressWidth-1:0] candidates[Rays];  // lines
+  logic [AddressWidth-1:0] candidates[Rays];  // line of the ray's candidate
   logic [Rays-1:0] doubtful_q, candidate_q, open_q, ready_q;
   logic [RayWidth-1:0] ready_ctx, next_ctx;
   logic settle, begin_any, done, doubt_done, is_last, keep, drop;
   logic settling_q, is_hit_q;  // the question is of settling; the doubt is certainly a hit
-  logic [AddressWidth-1:0] line_q;  // of the doubt, or the candidate
+  logic [AddressWidth-1:0] line_q;  // line of the doubt or candidate in question
 
   assign busy_o  = doubtful_q | open_q | candidate_q;
   assign is_last = (state_q == StateLook) & ~settling_q & (lasts[ctx_o] == popped_q);
@@ -141,7 +141,7 @@ module exact_resolver
   // ---- The question
 
   logic has_candidate, simple, lacks_q, nearer_q;
-  logic ended_q, found_q;  // of the current ray
+  logic ended_q, found_q;  // known_i.ended and .found of the current ray
   logic [1:0] against, against_q;  // exact_pkg::against_e
   logic [AddressWidth-1:0] other_line_q, candidate;
   logic [CornersWidth-1:0] corners_q, other_q;
@@ -150,7 +150,7 @@ module exact_resolver
   logic fetch, line_here;
   logic [Units-1:0] unit_ready, free, unit_valid, answered, nearer;  // free, answered: one-hot
   logic [Units*AboutWidth-1:0] abouts;
-  logic [AboutWidth-1:0] about;  // of the unit that has answered
+  logic [AboutWidth-1:0] about;  // what the unit that has answered was asked about
 
   assign candidate     = candidates[ctx_o];
   assign has_candidate = candidate_q[ctx_o];
@@ -160,7 +160,7 @@ module exact_resolver
     if (settling_q ? found_q : has_candidate) against = exact_pkg::AgainstOther;
     else if (settling_q && known_i.t_max != Infinity) against = exact_pkg::AgainstLimit;
   end
-  // No question is needed.
+  // The answer is known without a question.
   assign simple = (against == exact_pkg::AgainstNothing) & (settling_q | is_hit_q);
 
   assign line_here = line_i.valid & line_i.exact;
@@ -226,9 +226,9 @@ module exact_resolver
     end
     if (state_q == StateChoose) begin
       against_q <= against;
-      lacks_q   <= against == exact_pkg::AgainstOther;  // the other triangle's line comes first
+      lacks_q   <= against == exact_pkg::AgainstOther;  // the other triangle's line is read first
     end
-    // The cache's outputs come late in a clock: too late to enable so many registers.
+    // The cache's outputs come too late in a clock to enable so many registers.
     if (state_q == StateFetch) {other_q, other_rank_q} <= {corners_q, rank_q};
     if (state_q == StateWait) begin
       corners_q <= line_i.line[TriangleCorners+:CornersWidth];
@@ -265,7 +265,7 @@ module exact_resolver
 
   for (genvar u = 0; u < Units; u++) begin : gen_unit
     logic ask, wins_tie_q, hit;
-    logic negative, nonzero;  // of the order
+    logic negative, nonzero;  // sign of the unit's order_o
     logic [AboutWidth-1:0] about_q;
 
     assign ask       = (state_q == StateAsk) & free[u];

@@ -22,7 +22,7 @@ module line_cache
   import ray_core_pkg::*;
 #(
   parameter int unsigned Lines    = 256,
-  parameter int unsigned Targets  = 64,   // requests that may wait for lines
+  parameter int unsigned Targets  = 64,   // number of requests that may wait for lines
   parameter int unsigned RayWidth = 6,
   parameter int unsigned Width    = LineWidth,  // bits kept of a line
   localparam int unsigned EntryWidth = $clog2(Lines),
@@ -51,7 +51,7 @@ module line_cache
   input  logic                    fill_error_i,
   // answers
   output logic                    valid_o,
-  input  logic                    ready_i,  // else nothing leaves
+  input  logic                    ready_i,  // if it is low, no line leaves
   output logic [RayWidth-1:0]     ray_o,
   output logic [Width-1:0]        line_o,
   output logic                    error_o
@@ -99,7 +99,7 @@ module line_cache
       compare_ray_q    <= ray_i;
       compare_tag_q    <= asked_tag;
       compare_set_q    <= asked_set;
-      // A tag that is written at this edge is read with its old value.
+      // The ram reads the old value of a tag that is written at this edge.
       changed_q     <= allocate & (asked_set == set);
       changed_way_q <= way;
       changed_tag_q <= tag;
@@ -126,7 +126,7 @@ module line_cache
     .data_o(set_tags)
   );
 
-  // ---- Compare: with the set's ways as they are after this clock
+  // ---- Compare: same, valid and pending are for the state of the ways after this clock
 
   logic [SetWidth-1:0] fill_set;
   logic [WayWidth-1:0] fill_way;

@@ -12,9 +12,9 @@ module memory_subsystem
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays          = 64,
-  parameter int unsigned NodeLines     = 256,  // of the nodes' cache
-  parameter int unsigned TriangleLines = 256,  // of the triangles'
-  parameter bit Exact = 1'b0,  // triangles have ranks, and some are for exact_resolver
+  parameter int unsigned NodeLines     = 256,  // lines of the cache of nodes
+  parameter int unsigned TriangleLines = 256,  // lines of the cache of triangles
+  parameter bit Exact = 1'b0,  // lines have ranks; some are for exact_resolver
   parameter int unsigned Clocks = 1,
   localparam int unsigned RayWidth = $clog2(Rays),
   localparam int unsigned ReadIdWidth = read_id_width(NodeLines, TriangleLines)
@@ -216,9 +216,9 @@ module memory_subsystem
   localparam int unsigned CountWidth = $clog2(NodeLines + TriangleLines + 1);
 
   logic [MissWidth:0] out;
-  logic out_ready, ask, ask_node, node_last_q;  // the last request was a node's
-  logic ask_q, done_q;  // counted a clock late
-  logic [CountWidth-1:0] lines_q;  // requested, and not in the caches yet
+  logic out_ready, ask, ask_node, node_last_q;  // node_last_q: the last was a node's
+  logic ask_q, done_q;  // events of the clock before
+  logic [CountWidth-1:0] lines_q;  // lines requested and not in a cache yet
 
   assign node_miss_ready     = out_ready & (~triangle_miss_valid | ~node_last_q);
   assign ask_node            = node_miss_valid & node_miss_ready;

@@ -5,7 +5,7 @@
 // Structural kinds: a carry-save tree with a row for each bit of q, a register for its two words, and one adder, which
 // computes the difference as floor((256 from + 255 - q s) / 256). Behavioural uses `*`.
 module plane_offset #(
-  parameter int unsigned Width = 33,  // of s
+  parameter int unsigned Width = 33,  // width of s
   parameter int unsigned PlaneWidth = 36,
   parameter int unsigned Arith = arith_pkg::Graded
 ) (
@@ -13,7 +13,7 @@ module plane_offset #(
   input  logic [7:0]            q_i,
   input  logic [Width-1:0]      step_i,
   input  logic [PlaneWidth-1:0] from_i,
-  input  logic                  back_i,  // minus
+  input  logic                  back_i,  // 1: subtract
   output logic [PlaneWidth-1:0] plane_o
 );
 

@@ -15,7 +15,7 @@ module primitive_fetch
   input  group_t              box_group_i,
   input  logic [Children-1:0] box_leaf_i,
   output logic [RayWidth-1:0] t_max_ray_o,
-  input  logic [30:0]         t_max_i,  // of t_max_ray_o of the clock before
+  input  logic [30:0]         t_max_i,  // t_max of t_max_ray_o of the clock before
   input  logic                ended_i,  // the ray of t_max_i needs no more tests
   output logic [Rays-1:0]     leaf_pending_o,  // rays with a group here
   // requests for triangles
@@ -53,7 +53,7 @@ module primitive_fetch
   logic valid_q;
   logic [RayWidth-1:0] ray_q;
   logic [Children-1:0] mask_q, lowest, remaining;
-  logic [LeafWidth-1:0] number_q;  // of the triangle in its leaf
+  logic [LeafWidth-1:0] number_q;  // number of the triangle in its leaf
   logic [ChildWidth-1:0] entry;
   logic beyond, fire, last, done;
 

@@ -4,8 +4,8 @@
 // free one. So no context is held during a division. Reciprocals are rounded to nearest.
 // Throughput: a ray in Clocks clocks; with three dividers if Clocks is 1, else (7 or more) with one.
 module ray_alloc #(
-  parameter int unsigned Rays  = 64,  // contexts
-  parameter int unsigned Width = 32,  // of a ray's data, without the reciprocals
+  parameter int unsigned Rays  = 64,  // number of contexts
+  parameter int unsigned Width = 32,  // width of a ray's data, without the reciprocals
   parameter int unsigned Clocks = 1,
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays)

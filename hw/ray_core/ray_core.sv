@@ -22,10 +22,10 @@ module ray_core
   import ray_core_pkg::*;
 #(
   parameter int unsigned Rays  = 64,  // contexts; a power of two
-  parameter int unsigned Depth = 8,   // groups on a ray's own stack
-  parameter int unsigned NodeLines     = 256,  // of the cache of nodes; a power of two
-  parameter int unsigned TriangleLines = 256,  // of the cache of triangles; likewise
-  parameter int unsigned Clocks = 1,  // per node and triangle: 1, or with shared cores 7 or more
+  parameter int unsigned Depth = 8,   // groups (see traversal) on a ray's own stack
+  parameter int unsigned NodeLines     = 256,  // lines of the cache of nodes; a power of two
+  parameter int unsigned TriangleLines = 256,  // lines of the cache of triangles; a power of two
+  parameter int unsigned Clocks = 1,  // clocks per node and triangle: 1, or 7 or more
   parameter int unsigned Exact = 0,  // number of exact_units, which need ranks; 0: doubts leave
   parameter int unsigned Arith = arith_pkg::Graded,
   localparam int unsigned RayWidth = $clog2(Rays),
@@ -52,11 +52,11 @@ module ray_core
   input  logic [ReadIdWidth-1:0]  line_id_i,
   input  logic [LineWidth-1:0]    line_i,
   input  logic                    line_error_i,
-  output logic [NumEvents-1:0]    events_o  // of the clock before, see event_e
+  output logic [NumEvents-1:0]    events_o  // events of the clock before, see event_e
 );
 
-  // ---- Rays that start, and their contexts: a ray's data for a node, a triangle or a test come a clock after they
-  // were asked for
+  // ---- Rays that start, and their contexts: the data of a ray for a node, a triangle or a test come from memories, a
+  // clock after the number of its context
 
   logic start_valid, start_fire, ending, step;
   logic [RayWidth-1:0]
@@ -331,8 +331,8 @@ module ray_core
     .result_o
   );
 
-  // ---- Errors: the first of each ray. A ray counts as failed two clocks after its error, at the latest when its end
-  // is reported, until another ray starts in its context. While abort_i is high, all rays in the core fail.
+  // ---- Errors: the first error of each ray. A ray counts as failed two clocks after its error, at the latest when its
+  // end is reported, until another ray starts in its context. While abort_i is high, all rays in the core fail.
 
   logic [Rays-1:0][2:0] errors_q;
   logic node_error_q, triangle_error_q, cycle_q;

@@ -18,7 +18,7 @@ module ray_core_axi
   parameter int unsigned TriangleLines = 256,
   parameter int unsigned Clocks = 1,
   parameter int unsigned Exact = 0,
-  parameter int unsigned DataWidth = 128,  // of the AXI4 port
+  parameter int unsigned DataWidth = 128,  // width of the AXI4 port, in bits
   parameter int unsigned IdWidth   = 6,
   parameter bit [2:0] AxProt  = 3'b010,
   parameter bit [3:0] AxCache = 4'b0011,
@@ -83,7 +83,7 @@ module ray_core_axi
   input  logic                   m_axi_bvalid,
   output logic                   m_axi_bready,
   // verilator lint_off UNUSEDSIGNAL
-  input  logic [IdWidth-1:0]     m_axi_bid,  // 0
+  input  logic [IdWidth-1:0]     m_axi_bid,  // always 0
   // verilator lint_on UNUSEDSIGNAL
   input  logic [1:0]             m_axi_bresp,
   // results: AXI4-Stream, one per transfer, see registers.md
@@ -120,7 +120,7 @@ module ray_core_axi
   logic [31:0] corner, size;
   logic [4*96-1:0] camera;
   logic [NumEvents-1:0] events;
-  logic [31:0] in_flight_q;  // rays taken whose end has not left
+  logic [31:0] in_flight_q;  // number of rays taken whose end has not left
 
   assign result_fire = result_valid & result_ready;
   assign is_doubt    = result_fire & (result.kind == ResultDoubt);
@@ -202,7 +202,7 @@ module ray_core_axi
     .pixel_o(pixel)
   );
 
-  // ---- Rays: the generator's first
+  // ---- Rays: those of the generator have priority
 
   ray_t generated;
   logic core_ready, core_valid, ray_fire;

@@ -7,7 +7,7 @@ package ray_core_pkg;
   // No top module uses everything.
 
   localparam int unsigned LineWidth = 512;
-  localparam int unsigned AddressWidth = 28;  // of a line: 16 GiB
+  localparam int unsigned AddressWidth = 28;  // width of a line's number: 16 GiB of memory
 
   // ---- Node line: up to seven children and their boxes
   //
@@ -25,7 +25,7 @@ package ray_core_pkg;
   localparam int unsigned BoxWidth = 48;
   localparam logic [KindWidth-1:0] KindAbsent = 4'd0;  // 1 to 7: a leaf of that many triangles
   localparam logic [KindWidth-1:0] KindInner = 4'd8;
-  localparam int unsigned MaxLevels = 48;  // nodes on a path from the root to a leaf, at most
+  localparam int unsigned MaxLevels = 48;  // maximum number of nodes from the root to a leaf
 
   // ---- Triangle line
 
@@ -33,7 +33,7 @@ package ray_core_pkg;
   localparam int unsigned TriangleIndex = 288;  // 32 bits: the id; with Exact, this line's number
   localparam int unsigned TriangleRank = 320;  // 32 bits; with Exact, the lowest wins at equal t
 
-  localparam int unsigned TriangleWidth = 320;  // bits used of the line, without the rank
+  localparam int unsigned TriangleWidth = 320;  // used bits of the line, without the rank
   localparam int unsigned RankWidth = 32;
 
   // ---- box_unit's result for a node: a group of children
@@ -42,7 +42,7 @@ package ray_core_pkg;
   // where the ray enters the box: the upper bits of a binary32 number without its sign, all ones if t overflows.
 
   localparam int unsigned EnterWidth = 19;
-  localparam int unsigned OffsetWidth = 6;  // of a child's first line from `base`: below 7 * 7
+  localparam int unsigned OffsetWidth = 6;  // child's first line less `base`: below 7 * 7
   localparam int unsigned LeafWidth = 3;  // number of a leaf's triangles; 0: an inner node
   // {enter, offset, count}
   localparam int unsigned ChildWidth = EnterWidth + OffsetWidth + LeafWidth;
@@ -64,11 +64,11 @@ package ray_core_pkg;
   // ---- Numbers inside box_unit, in units of 2**(E - UnitBits); in the node, t is below 2**E
 
   localparam int unsigned UnitBits = 22;
-  localparam int unsigned StepWidth = 33;  // of s, up to 2**32, in 256ths of a unit
-  localparam int unsigned PlaneWidth = 36;  // of planes, two's complement
+  localparam int unsigned StepWidth = 33;  // width of s, up to 2**32, in 256ths of a unit
+  localparam int unsigned PlaneWidth = 36;  // width of planes, two's complement
 
   typedef struct packed {  // values of a ray in a node; words and bits by axis, x lowest
-    logic [8:0]  exponent;   // E
+    logic [8:0]  exponent;   // the exponent E, with binary32's bias
     logic [95:0] inverse;    // 1 / I_k with its sign, limited to the cap 2**(E + 2 - (e_k - 127))
     logic [32:0] caps;       // the exponents of the caps, 11 signed bits each
     logic [2:0]  is_capped;  // the inverse is the cap
@@ -117,7 +117,7 @@ package ray_core_pkg;
   endfunction
 
   localparam int unsigned TErrorWidth = set_up_pkg::TErrorExponentWidth;
-  localparam logic [TErrorWidth-1:0] NoT = '1;  // of a hit whose t and P are not known
+  localparam logic [TErrorWidth-1:0] NoT = '1;  // t_error of a hit whose t and P are not known
 
   typedef struct packed {
     logic                    kind;      // result_e

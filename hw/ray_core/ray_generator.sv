@@ -68,7 +68,7 @@ module ray_generator #(
 
   // ---- The pixel's numbers as binary32, exactly
 
-  logic [31:0] number_q[2];  // x, y
+  logic [31:0] number_q[2];  // x and y as binary32
 
   for (genvar n = 0; n < 2; n++) begin : gen_number
     logic [15:0] count, normalised;  // the highest bit only adds to the exponent

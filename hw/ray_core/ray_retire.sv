@@ -11,7 +11,7 @@ module ray_retire
 ) (
   input  logic                clk_i,
   input  logic                rst_ni,
-  input  logic                start_i,  // a ray is in a context
+  input  logic                start_i,  // a ray enters the context start_ctx_i
   input  logic [RayWidth-1:0] start_ctx_i,
   input  logic [Rays-1:0]     busy_i,  // contexts whose ray has work left
   // a ray ends and its context is free; its data come in the next clock
@@ -55,7 +55,7 @@ module ray_retire
     end
   end
 
-  // ---- The ray's data wait
+  // ---- Queue of the data of rays that have ended
 
   logic known_q, end_valid, end_fire;
   end_t ended;

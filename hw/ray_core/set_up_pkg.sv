@@ -34,7 +34,7 @@ package set_up_pkg;
     t_error_exponent = TErrorExponentWidth'(TErrorUnit) + ((plane > distance) ? plane : distance);
   endfunction
 
-  // ---- Derived in the header of triangle_test, from sums and exponents
+  // ---- Bounds; the header of triangle_test derives them
 
   localparam int unsigned LeastField = 27;  // smallest exponent field that is not tiny: 2**-100
   localparam int unsigned BoundShift = 20;  // 16 u = 2**-20, with u = 2**-24

@@ -21,7 +21,7 @@ module slab_setup
   output logic [StepWidth-1:0]       step_o
 );
 
-  localparam int unsigned SizeWidth = 34;  // of |a|, up to 2**33
+  localparam int unsigned SizeWidth = 34;  // width of |a|, up to 2**33 units
   localparam logic [PlaneWidth-1:0] Far = PlaneWidth'(1) << 33;
 
   logic [7:0] product_field, inverse_field;

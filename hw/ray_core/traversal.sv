@@ -25,7 +25,7 @@ module traversal
 #(
   parameter int unsigned Rays  = 64,
   parameter int unsigned Depth = 8,  // groups on a ray's own stack
-  parameter int unsigned Levels = MaxLevels,  // including the shared groups
+  parameter int unsigned Levels = MaxLevels,  // maximum number of groups, with the shared ones
   localparam int unsigned RayWidth = $clog2(Rays)
 ) (
   input  logic                    clk_i,
@@ -39,11 +39,11 @@ module traversal
   input  logic [RayWidth-1:0]     box_ray_i,
   input  group_t                  box_group_i,
   input  logic [Children-1:0]     box_inner_i,
-  // what is known of rays
+  // state of rays
   input  logic [Rays-1:0]         leaf_pending_i,  // rays that have leaves to be fetched
   input  logic [Rays-1:0]         testing_i,  // rays that have tests in flight
   output logic [RayWidth-1:0]     t_max_ray_o,
-  input  logic [30:0]             t_max_i,  // of t_max_ray_o of the clock before
+  input  logic [30:0]             t_max_i,  // t_max of t_max_ray_o of the clock before
   input  logic                    ended_i,  // the ray of t_max_i needs no more nodes
   output logic                    cycle_o,  // cycle_ray_o is in a cycle
   output logic [RayWidth-1:0]     cycle_ray_o,
@@ -67,7 +67,7 @@ module traversal
     $error("traversal: expected a Depth of 1 or more, and Levels of Depth + 2 or more");
   end
 
-  logic [LevelWidth-1:0] levels[Rays];  // groups on the stack
+  logic [LevelWidth-1:0] levels[Rays];  // number of groups on the ray's stack
   logic [AddressWidth-1:0] entered[Rays];  // number of nodes entered
   logic [Rays-1:0] busy_q;     // the ray waits for a node, or is picked
   logic [Rays-1:0] waiting_q;  // the ray's levels is not 0
@@ -96,7 +96,7 @@ module traversal
     end
   endfunction
 
-  // ---- Gather: without the rays picked in this clock or the last
+  // ---- Gather: rays picked in this clock or the one before are left out
 
   logic [Rays-1:0] ready, sure, ready_q;
 
@@ -132,7 +132,7 @@ module traversal
     end
   end
 
-  // ---- Read: for each level of the stack, which entries wait, and the `enter` of the first
+  // ---- Read: for each level of the stack, the waiting entries of the group and the `enter` of the nearest
 
   logic push, asked_q, choosing_q, ended_q, next_valid_q;
   logic [LevelWidth-1:0] box_level, level_q, chosen, left, asked_level_q, next_level_q;
@@ -168,7 +168,7 @@ module traversal
   end
 
   for (genvar d = 0; d < Depth; d++) begin : gen_level
-    logic [NextWidth-1:0] nexts[Rays];  // {mask, enter}
+    logic [NextWidth-1:0] nexts[Rays];  // {waiting entries, enter of the nearest of them}
     logic [NextWidth-1:0] next_q;
 
     always_ff @(posedge clk_i) begin
@@ -188,7 +188,7 @@ module traversal
 
   logic is_shared, some, full, shared_q, free;
   logic [RayWidth-1:0] shared_ray_q;
-  logic [Children-1:0] own_top;  // of a ray whose own stack is full
+  logic [Children-1:0] own_top;  // mask of the top of a full own stack
 
   assign is_shared = level_q > LevelWidth'(Depth);
   assign own_top   = masks[Children*(Depth-1) +: Children];
@@ -214,7 +214,7 @@ module traversal
                      & ((entered_q == lines_i) | (level_q == LevelWidth'(Levels)));
   assign cycle_ray_o = choosing_ray_q;
   assign left        = (~some | cycle_o) ? '0 : (remaining == '0) ? chosen : chosen + 1'b1;
-  // Equivalent to "left is Depth or more", but known earlier.
+  // Equivalent to `left` >= Depth, but available earlier.
   assign full        = ~cycle_o & (is_shared ? ~ended_q
                      : open[Depth-1] & ((own_top & (own_top - 1'b1)) != '0));
   assign free        = ~shared_q | (shared_ray_q == choosing_ray_q);
@@ -289,7 +289,7 @@ module traversal
     .data_o(group)
   );
 
-  // ---- State; picking, start and a node's result of one clock concern different rays
+  // ---- State; in one clock, picking, start and a node's result concern different rays
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

@@ -60,11 +60,11 @@ module triangle_test
   input  logic                step_i,
   input  logic [RayWidth-1:0] ctx_i,
   // verilator lint_off UNUSEDSIGNAL
-  // Ranks, and lines that are `exact`, are for exact_resolver.
+  // Ranks, and lines with `exact` high, are for exact_resolver.
   input  triangle_line_t      triangle_i,  // skipped if it has an error
   // verilator lint_on UNUSEDSIGNAL
   input  logic [95:0]         origin_i,
-  input  logic [31:0]         skip_id_i,  // triangles to skip
+  input  logic [31:0]         skip_id_i,  // the ray skips triangles skip_id_i and source_id_i
   input  logic [31:0]         source_id_i,
   output logic [RayWidth-1:0] direction_ctx_o,
   input  logic [95:0]         direction_i,
@@ -78,9 +78,9 @@ module triangle_test
     $error("triangle_test: expected Clocks of 1, or 7 or more");
   end
 
-  // In steps, which are clocks if Clocks is 1
+  // Latencies in steps, which are clocks if Clocks is 1
   localparam int unsigned Operation = (Clocks == 1) ? hit_test_pkg::AdderLatency : 1;
-  localparam int unsigned Take = (Clocks == 1) ? 2 : 1;  // a register for a memory's output
+  localparam int unsigned Take = (Clocks == 1) ? 2 : 1;  // with one for a memory's output
   localparam int unsigned Decide = Take + 9 * Operation;
   localparam int unsigned Divide = hit_test_pkg::divide_latency(set_up_pkg::FracWidth);  // clocks
   localparam int unsigned DivideSteps = (Clocks == 1) ? Divide + 1 : (Divide + 3) / Clocks + 1;
@@ -195,7 +195,7 @@ module triangle_test
     .result_o(differences)
   );
 
-  // ---- Sum: x + y of the edges' terms, then + z; x + y of d, then + z. Bounds come an operation before d
+  // ---- Sum: x + y of the edges' terms, then + z; x + y of d, then + z. Bounds are ready an operation before d
 
   logic [95:0] vertex, shares, last_terms, early_bounds, bounds;  // shares: N_k A_k
   logic [31:0] last_share, d, good_d;
@@ -353,8 +353,8 @@ module triangle_test
     assign divide          = valid_q[Decide+1] & hit_q;
     assign verdict_o.valid = valid_q[Last];
   end else begin : gen_turns
-    localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // quotient of t to step
-    logic [3:0] since_q;  // [n]: n + 1 clocks after the step
+    localparam int unsigned Wait = DivideSteps * Clocks - 1 - Divide;  // from t to the step
+    logic [3:0] since_q;  // [n]: step_i was high n + 1 clocks ago
     logic [Wait*32-1:0] waiting_q;
     logic [(Wait+1)*32-1:0] waiting;  // the latest is highest
 
