@@ -62,8 +62,8 @@ package exact_pkg;
   // ---- Number of digits that a range of exponents needs
   //
   // With e its exponent field (1 for subnormals), a float is a whole number of significand_width bits in units of
-  // 2**(e - Bias - FracWidth). Let the unit be that of the smallest exponent, and `spread` the largest exponent above
-  // it. The difference of two such numbers is below 2**(spread + significand_width + 1), so it fits into the digits.
+  // 2**(e - Bias - FracWidth). Let the smallest exponent give the unit, and let the largest be `spread` above it. The
+  // difference of two such numbers is below 2**(spread + significand_width + 1); the digits returned can hold it.
 
   function automatic int unsigned digits_of(int unsigned spread, int unsigned significand_width,
                                             int unsigned width);

@@ -37,7 +37,7 @@ package exact_program_pkg;
 
   // ---- Instructions
 
-  // Returns an instruction for the number `result`: x0 y0 -+ further products, as in kind_e (for floats, x0 - y0).
+  // Returns an instruction for the number `result`: x0 y0 plus or minus more products, see kind_e (floats: x0 - y0).
   function automatic instruction_t number(kind_e kind, place_t result, place_t x0, place_t y0,
                                           place_t x1 = '0, place_t y1 = '0, place_t x2 = '0,
                                           place_t y2 = '0);

@@ -1,8 +1,8 @@
 // Slab test: whether and where the ray enters one child's box. Vectors have x lowest.
 // Latency: 4 clocks: registers after products, planes, the largest and smallest of them, and the key.
 //
-// In:  box_i         low x, y, z, high x, y, z: a byte each; step_i: s; back_i: along these axes, the ray goes towards
-//                    smaller q
+// In:  box_i         low x, y, z, high x, y, z: a byte each; step_i: s; back_i: 1 for each axis along which the ray
+//                    goes towards smaller q
 //      next_planes_i, next_back_i  a clock later: the planes at q = 0, near ones and far ones; and back_i again
 //      t_max_i       in units, two clocks later: no box is entered beyond this t
 //      kind_i        the child's kind (ray_core_pkg), three clocks later

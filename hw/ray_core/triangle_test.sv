@@ -13,8 +13,9 @@
 //   then        the decision, and t = d / V, P_k = (d I_k) / V            see hit_decision; 4 dividers, or one
 //
 // An operation takes 3 clocks, or a step. triangle_i and the context of its ray, ctx_i, come with step_i. origin_i and
-// both ids of this ray come in the next clock and stay until the next step_i. direction_i is asked for by
-// direction_ctx_o at a step_i; it comes and stays likewise. A verdict and its P are valid for a clock.
+// both ids of this ray come in the next clock and stay until the next step_i. direction_ctx_o is the context whose
+// direction is needed. direction_i must be its direction from the clock after a step_i until the next step_i. A verdict
+// and its P are valid for a clock.
 //
 // The record has hit_test_pkg's format. It differs in two ways from a record that a host computes in double precision:
 //   * Bounds are about twice as large, because they include the errors of words computed in binary32 (see below).
@@ -23,8 +24,9 @@
 // The verdict's normal_error and distance_error bound the errors of N and d, if d is a number. For a hit, set_up_pkg
 // computes the error of t from these and t_error.
 //
-// Why sure answers are right. u = 2**-24 is the unit roundoff, primes mark computed words, e(x) is the exponent of x.
-// A, B, C are relative to the origin. They and the edge vectors D (B - A, C - B, A - C) are rounded once: off by u.
+// Why sure answers are right. u = 2**-24 is the unit roundoff, primes mark computed words, e(x) is the exponent of x,
+// for a vector its largest one. A, B, C are relative to the origin. They and the edge vectors D (B - A, C - B, A - C)
+// are rounded once, so they have a relative error of at most u.
 //   Error of I . E for an edge plane E = A x D, compared with its bound:
 //     E_k is a difference of two products such as A_i D_j. T_k is the sum of their magnitudes, T = T_x + T_y + T_z.
 //     A product is off by three roundings, the difference by one more: |E'_k - E_k| <= 3.02 u T_k + 1.01 u |E'_k|.
@@ -37,13 +39,12 @@
 //     |d' - d| <= u sum |A_k| (5.04 |N_k| + 3.02 M_k) <= 8.06 u sum |A_k| M_k < 96.8 u 2**(e(A) + e(M)).
 //   Error of t = d / V. Let m = e(M) - e(N') (normal_error), q = max(e(A) + e(M) - e(d), 0) (distance_error),
 //     g = max(e(N') - e(V), 0) (the decision's t_error) and x = max(m + g, q).
-//     V' is off by at most 84.5 u 2**(m + g) of itself. If m + g <= 14 (set_up_pkg's is_good_hit), this is at most
-//     0.083.
+//     V' is off by at most 84.5 u 2**(m + g) of itself. If m + g <= 14 (is_good_hit), this is at most 0.083.
 //     d' is off by at most 96.8 u 2**q of itself. If q <= 14 (else plane_of makes d NaN), its sign is right.
 //     With the division's rounding, t' is off by (181.3 + 1) u 2**x / (1 - 0.083) < 199 u 2**x of itself.
 //     Floats near t are at least u t apart, so fewer than 2**(8 + x) lie between t' and t.
-//   Underflow adds at most 2**-150 to each product. Bounds are infinite, or d is NaN, if a size that matters is below
-//     2**-100. Otherwise underflow is far below the margin of the constants.
+//   Underflow adds at most 2**-150 to each product. It is far below the margins of the constants, unless a size is
+//     below 2**-100: then the bound is infinite, or d is NaN.
 //   Overflow gives an infinity or NaN, which is never sure.
 //
 // Source: the paper's section 2.2 (what is computed once for an origin); the bounds are this project's.
