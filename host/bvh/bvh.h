@@ -49,7 +49,7 @@ class RangeMap {
 
  private:
   std::vector<std::uint32_t> begins_{0};  // start of each range, and the end
-  // Index of the range in which each chunk of 2^shift_ numbers begins, then that of the last range.
+  // For each chunk of 2^shift_ numbers, the range in which it begins; then the index of the last.
   std::vector<std::uint32_t> first_;
   int shift_ = 0;
 };
@@ -59,7 +59,7 @@ class RangeMap {
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance
   float matrix[3][3];     ///< linear part of the transform, rounded
-  float low[3], high[3];  ///< bounds of the translation, widened for all rounding
+  float low[3], high[3];  ///< bounds of the translation, widened to cover rounding of boxes
   std::uint32_t mesh;     ///< index of the mesh's BVH
   std::uint32_t first = 0;
   std::uint32_t first_triangle = 0;  ///< index in the scene of the instance's first triangle
@@ -90,7 +90,7 @@ class Bvh {
     std::uint32_t first;  ///< index of an inner node, or of a leaf's first primitive
     std::uint32_t count;  ///< number of a leaf's primitives; 0: an inner node
 
-    /// kNone, with more triangles than a leaf may have, marks the end of a traversal.
+    /// kNone marks the end of a traversal; `count` is then more than kMaxLeafSize.
     enum Kind : std::size_t { kInner, kLeaf, kNone, kKinds };
     [[nodiscard]] std::size_t kind() const { return (count + kMaxLeafSize - 1) / kMaxLeafSize; }
   };
@@ -124,8 +124,8 @@ class Bvh {
   };
 
   /// Builds the BVH of fewer than 2^31 triangles. All positions are finite with a magnitude of at
-  /// most 2^126, also after instances' transforms, even if terms are summed by magnitude. No ray
-  /// enters the BVH of a scene without triangles. A scene with rests must outlive the BVH.
+  /// most 2^126, also after instances' transforms, where this limit holds for the sum of the
+  /// magnitudes of a coordinate's terms. A scene with rests must outlive the BVH.
   explicit Bvh(const Scene& scene, int threads = 1);
 
   /// Returns the stored nodes, without those of instances; nodes()[0] is the root.
@@ -170,7 +170,7 @@ class Bvh {
     if (!is_binary32() && !is_instanced(primitive)) add_rests(triangles_[primitive], corners);
     return corners;
   }
-  /// Prefetches what corners_of() reads beside binary32 corners, by three calls with step 0, 1, 2.
+  /// Prefetches the triangle and rests that corners_of() reads, by three calls: step 0, 1 and 2.
   RAYGATE_INLINE void prefetch_rests(std::uint32_t primitive, int step) const {
     if (is_binary32() || is_instanced(primitive)) return;
     const std::uint32_t& triangle = triangles_[primitive];
@@ -234,8 +234,8 @@ class Bvh {
   std::span<const glm::ivec3> rests_;  // the scene's rests, or none
   std::span<const Triangle> faces_;    // the scene's triangles
 
-  // Nodes and primitives with at least this number belong to instances. Each instance has as many
-  // numbers as its mesh has primitives, and a mesh has no more nodes than primitives.
+  // Node and primitive indices from this one on belong to instances. Each instance has as many
+  // indices as its mesh has primitives. A mesh has no more nodes than primitives.
   std::uint32_t first_instanced_ = 0xFFFFFFFF;
   RangeMap instance_numbers_;
   std::vector<InstanceBvh> instances_;
@@ -262,9 +262,9 @@ class BvhView {
     return static_cast<const Bvh::Node*>(places_[Bvh::Child::kInner].begin)[index];
   }
 
-  /// Returns the corners of a leaf's triangles: coordinate k of corner v of triangle i is at [(3 v
-  /// + k) count + i]. Further floats, up to four triangles, can be read but are undefined. Corners
-  /// of instances are computed in `room`.
+  /// Returns the corners of a leaf's triangles. Coordinate k of corner v of triangle i is at index
+  /// (3 v + k) leaf.count + i, which can be read for i up to 3; values for i >= leaf.count are
+  /// meaningless. Corners of instances are computed in `room`.
   [[nodiscard]] RAYGATE_INLINE const float* corners_of(const Bvh::Child& leaf,
                                                        Bvh::LeafRoom& room) const {
     if (leaf.first >= first_instanced_) [[unlikely]] {

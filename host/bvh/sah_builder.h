@@ -47,7 +47,7 @@ RAYGATE_INLINE Box box_around(const glm::vec3& a, const glm::vec3& b, const glm:
   // the negative number of least magnitude for both zeros.
   const IntLanes bits = reinterpret_cast<IntLanes>(box);
   const IntLanes zero = (bits & 0x7FFFFFFF) == 0;
-  const IntLanes below = bits + ((bits > 0) | 1);  // -1 where positive: no lane overflows
+  const IntLanes below = bits + ((bits > 0) | 1);  // adds -1 to positive bits, 1 to others
   return reinterpret_cast<Box>(zero ? IntLanes{} + static_cast<std::int32_t>(0x80000001u) : below);
 }
 
@@ -73,9 +73,8 @@ struct Primitive {
 
 /// A binary BVH with one primitive per leaf, split top-down by the surface area heuristic (Wald,
 /// "On fast construction of SAH-based bounding volume hierarchies", 2007). A node covers a range of
-/// `primitives`, which the builder sorts; the node whose range is split at m is nodes[m]. So each
-/// thread knows where its nodes are stored, and the BVH does not depend on which thread builds a
-/// part.
+/// `primitives`, which the builder reorders. The node whose range is split at index m is nodes[m],
+/// so nodes are stored at the same index whichever thread builds them.
 struct BinaryBvh {
   /// Index of a node, or size() plus the index of a leaf's primitive.
   using Ref = std::uint32_t;

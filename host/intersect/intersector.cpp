@@ -45,7 +45,7 @@ bool is_nearer(const Bvh& bvh, const ExactRay& ray, const NearestHit& a, const N
 bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHit hit, bool is_sure,
                      NearestHit& best, IntersectCounters& counters) {
   const bool is_first = best.primitive == NearestHit::kNone;
-  // Two equal triangles, as in sheets that coincide, need no comparison of distances.
+  // Hits of two triangles with equal corners need no comparison of distances.
   if (!is_first && is_sure &&
       bvh.float_corners_of(hit.primitive) == bvh.float_corners_of(best.primitive) &&
       bvh.corners_of(hit.primitive) == bvh.corners_of(best.primitive)) {

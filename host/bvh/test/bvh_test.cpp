@@ -191,7 +191,7 @@ TEST(Bvh, WhatOneThreadThrowsEndsAll) {
   const Scene scene = test::scene_of(soup(random, 20000));
   const UsingVectors put_back(vectors_in_use());
   ASSERT_EQ(::setenv("RAYGATE_VECTORS", "foo", 1), 0);
-  detail::vectors_in_use = -1;  // as in a process that has not selected them yet
+  detail::vectors_in_use = -1;  // as in a process that has not selected an instruction set
   EXPECT_THROW(Bvh(scene, 2), std::runtime_error);
   ::unsetenv("RAYGATE_VECTORS");
 }
