@@ -28,17 +28,18 @@ std::int64_t shift_right(std::int64_t x, int amount) {
   return amount > 63 ? 0 : x >> amount;
 }
 
-/// An axis as seen from the ray: grid plane q is at a + q s / 256, or a - q s / 256 if `back`.
+/// An axis as seen from the ray. The ray meets the grid plane q at t = a + q step / 256 or, if
+/// `back`, at t = a - q step / 256. All times are in units of 2^E / kWhole (see enter_boxes).
 struct Axis {
   bool back;               // the ray goes towards smaller q
-  std::int64_t near, far;  // a minus and plus the error margin, in units
-  std::int64_t step;       // s
+  std::int64_t near, far;  // a minus the error margin, and a plus the error margin
+  std::int64_t step;
 };
 
 }  // namespace
 
 BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
-  // The ray surely leaves the node before 2^E.
+  // E = exponent - 127: the ray surely leaves the node before t = 2^E.
   float distance[3];
   int exponent = field(ray.t_max) == 0xFF ? 511 : field(ray.t_max) + 1;
   for (int k = 0; k < 3; ++k) {
@@ -290,8 +291,8 @@ struct RayTrace {
     return inside;
   }
 
-  /// Tests a triangle. `settles`: exact arithmetic has found that it is the ray's nearest hit, so
-  /// the result is replaced.
+  /// Tests a triangle. `settles`: exact arithmetic has found that the triangle is the ray's nearest
+  /// hit, so the test only computes the result.
   void test(const TriangleLine& triangle, bool settles) {
     const ReferenceBurstUnit unit;
     const glm::vec3& direction = ray.ray.direction;

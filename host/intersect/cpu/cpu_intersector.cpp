@@ -28,7 +28,7 @@ void PointWriter::write() {
     const auto plane = [&](std::size_t i) { return std::min(first + i, planes_ - 1); };
     const auto origin = [&](std::size_t i) { return rays_[firsts_[plane(i)]].origin; };
     const auto corners = [&](std::size_t i) { return bvh_.corners_of(primitives_[plane(i)]); };
-    // Initialised in place: copies would stall on the words just stored.
+    // Initialised in place: a copy would have to wait for the words just stored.
     const PlaneViews views{{origin(0), origin(1), origin(2), origin(3)},
                            {corners(0), corners(1), corners(2), corners(3)}};
     float words[4][kQuad];

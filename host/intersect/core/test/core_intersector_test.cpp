@@ -160,7 +160,7 @@ TEST_F(ExactCoreTest, LimitsSkippedTrianglesFirstHitsAndSourcesCount) {
   std::vector<float> limits;
   std::vector<std::uint32_t> skipped;
   for (const NearestHit& hit : nearest) {
-    // Mostly at the hit or within a few floats on either side.
+    // Most limits are at the hit or within a few floats on either side.
     float limit = 1.0f;
     if (hit.primitive != NearestHit::kNone) {
       limit =
