@@ -11,8 +11,7 @@
 
 namespace raygate {
 
-/// Returns the contents of a file. Throws InputError if it is unreadable, a folder, a device or
-/// empty.
+/// Returns a file's contents. Throws InputError for folders, devices, unreadable and empty files.
 [[nodiscard]] std::string read_file(const std::filesystem::path& file);
 
 /// Returns the number stored at `bytes`: big-endian if `highest_first`, otherwise little-endian.

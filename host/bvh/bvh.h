@@ -54,8 +54,7 @@ class RangeMap {
   int shift_ = 0;
 };
 
-/// An instance of a mesh. It has the nodes and primitives of the mesh's BVH, renumbered to start at
-/// `first`.
+/// An instance of a mesh: nodes and primitives of the mesh's BVH, renumbered to start at `first`.
 struct InstanceBvh {
   double rows[3][4];      ///< the transform, as in Instance
   float matrix[3][3];     ///< linear part of the transform, rounded
@@ -96,8 +95,7 @@ class Bvh {
   };
 
   /// Eight boxes that are tested against a ray at once. Each is one float wider than its contents
-  /// on every side. Absent children come last and have empty boxes: low = +infinity, high =
-  /// -infinity.
+  /// on every side. Absent children come last; their boxes have low = +infinity, high = -infinity.
   struct alignas(64) Node {
     float bounds[2][3][kWidth];  ///< [low = 0, high = 1][axis][child]
     Child child[kWidth];
@@ -276,9 +274,8 @@ class BvhView {
            9 * std::size_t{leaf.first};
   }
 
-  /// Prefetches a child that will be visited soon; for kNone, the first leaf. There is no branch on
-  /// the kind, which would be mispredicted. (Always inlined: GCC 12 drops calls of a function that
-  /// only prefetches.)
+  /// Prefetches a child that will be visited soon; for kNone, the first leaf. Does not branch on
+  /// the kind, to avoid mispredictions. (GCC 12 drops calls of functions that only prefetch.)
   RAYGATE_INLINE void prefetch(const Bvh::Child& child) const {
     if (child.first >= first_instanced_) [[unlikely]]
       return bvh_->prefetch_instance(child);

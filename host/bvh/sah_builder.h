@@ -1,5 +1,4 @@
-// SAH builder: splits primitives into a binary tree by the surface area heuristic, with boxes in
-// vector registers.
+// SAH builder: splits primitives into a binary tree by the surface area heuristic (SAH).
 #pragma once
 
 #include <algorithm>
@@ -85,9 +84,8 @@ struct BinaryBvh {
     std::uint32_t first, count;  ///< range of primitives
   };
 
-  /// Bounds are finite with a magnitude of at most 2^126; there are fewer than 2^31 primitives. No
-  /// leaf is deeper than `max_depth` (the root's depth is 0), unless a balanced tree would be
-  /// deeper.
+  /// Bounds are finite with a magnitude of at most 2^126; there are fewer than 2^31 primitives. The
+  /// depth is at most `max_depth` (root: 0), or the depth of a balanced tree if this is larger.
   BinaryBvh(std::vector<Primitive> boxes, int max_depth, int threads);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(primitives.size()); }

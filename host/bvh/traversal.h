@@ -47,8 +47,7 @@ RAYGATE_INLINE bool any_leaf(const Bvh& bvh, const Boxes& boxes, const Visit& vi
 // If near - O has the sign of I, the bounds enter no later than any ray; otherwise all enter at 0.
 // If far - O has the sign of I, they leave no earlier; otherwise no ray hits anything in the box.
 
-/// Direction components with a smaller magnitude than kSmallestComponent count as 0. Exit distances
-/// are multiplied by kExitGrowth.
+/// Direction components below kSmallestComponent count as 0. Exits are multiplied by kExitGrowth.
 inline constexpr float kSmallestComponent = 0x1p-100f;
 inline constexpr float kExitGrowth = 1.0f + 0x1p-21f;
 

@@ -35,7 +35,7 @@ template <class T>
 /// Largest magnitude of coordinates that BVHs and predicates accept.
 inline constexpr double kMostCoordinate = 0x1p126;
 
-/// Returns whether a - b is a double.
+/// Returns whether the exact a - b is a double.
 [[nodiscard]] bool has_exact_difference(double a, double b);
 
 /// Returns an origin near the middle of most positions, so that all `position - origin` are exact

@@ -90,11 +90,9 @@ struct RayWork {
   }
 };
 
-/// Options of a search for many rays. Spans must outlive the search, and are empty or have one
-/// element per ray.
+/// Options of a search. Spans must outlive the search. A span is empty or has one element per ray.
 struct RayQuery {
-  /// Whether all rays start at one point (the camera, a light), which makes some engines faster.
-  /// Does not change results.
+  /// Whether all rays start at one point: faster in some engines, and does not change results.
   bool common_origin = false;
   /// Positive. Only hits with exact t < t_max[i] count; +infinity: no limit.
   std::span<const float> t_max{};

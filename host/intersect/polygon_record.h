@@ -83,8 +83,7 @@ void make_planes(const PlaneViews& views, float (&words)[4][kQuad]);
 // coordinate. Nothing overflows if d, t < 2^104.
 
 /// Returns BurstResult::t_error: how far the exponent of V = I . N is below `largest`, the largest
-/// exponent field of N, or 0. `v` has the bits of V, which is finite. `Bits` is std::int32_t or a
-/// vector of it.
+/// exponent field of N, or 0. `v`: the bits of a finite V. `Bits`: std::int32_t or a vector.
 template <class Bits>
 RAYGATE_INLINE Bits grazing_of(const Bits& largest, const Bits& v) {
   return maximum(Bits(largest - (v >> 23 & 0xFF)), Bits{});

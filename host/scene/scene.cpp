@@ -38,8 +38,8 @@ class Digest {
     word(bits);
   }
 
-  // Only types without padding are hashed by their bytes. 0.0 and -0.0 have different digests, as
-  // they may give different images.
+  // Only types without padding are hashed by their bytes. 0.0 and -0.0 have different digests,
+  // because they may give different images.
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void add(T value) { bytes(&value, sizeof value); }

@@ -260,8 +260,7 @@ struct Scene {
 /// Adds a light to a scene whose origin is set. Throws InputError if its position overflows float.
 void add_light(Scene& scene, const WorldPointLight& light, const std::string& file);
 
-/// Adds triangles (0, 1, 2) and (0, 2, 3) of `corners`, the material, and an object with the
-/// material's name.
+/// Adds triangles (0, 1, 2) and (0, 2, 3) of `corners`, the material, and an object of this name.
 void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, const Material& material);
 
 /// Returns a 64-bit digest, as 16 hexadecimal digits, of a scene's geometry, materials, textures,

@@ -1,5 +1,4 @@
-// The BVH holds every triangle once, inside all boxes above it and at a bounded depth, also below
-// instances.
+// BVHs with and without instances hold each triangle once, inside its boxes, at bounded depth.
 #include "host/bvh/bvh.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +20,7 @@ namespace {
 
 using test::Random;
 
-/// Walks a whole BVH, including instances. Fails if a corner is not strictly inside the boxes above
-/// it.
+/// Walks a whole BVH, including instances. Fails if a corner is not strictly inside all its boxes.
 struct TreeWalk {
   const Bvh& bvh;
   std::vector<int> visits;       // number of visits, by triangle

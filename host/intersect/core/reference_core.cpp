@@ -129,8 +129,7 @@ constexpr int kMostPlaneError = 14;
 constexpr std::uint32_t kTErrorUnit = 8;
 constexpr auto kNan = std::bit_cast<float>(0x7FC00000u);
 
-/// Returns u x v with the hardware's NaN, and for each component the sum of the magnitudes of its
-/// two products.
+/// Returns u x v with the hardware's NaN. Sets `terms` to the sums of the products' magnitudes.
 glm::vec3 cross_product(const glm::vec3& u, const glm::vec3& v, glm::vec3& terms) {
   glm::vec3 product = cross(u, v, terms);
   for (int k = 0; k < 3; ++k) {
@@ -347,8 +346,7 @@ struct RayTrace {
     return widened(TriangleLine(lines[line]).corners);
   }
 
-  /// Returns whether the ray hits `line` before `other` or, at equal t, `line` has the lower rank.
-  /// Both must be hit.
+  /// Returns whether the hit of `line` is nearer than that of `other` or, at equal t, ranks lower.
   [[nodiscard]] bool is_nearer(std::uint32_t line, std::uint32_t other) const {
     const int order = compare_hits(ray.ray, corners_of(line), corners_of(other));
     return order < 0 ||

@@ -98,8 +98,7 @@ struct ConeTraversal {
   }
 };
 
-/// Returns distances beyond which boxes can be skipped for rays with maximum distances `high` (see
-/// cutoff_beyond).
+/// Returns a cutoff for each ray: at least cutoff_beyond(high) for active rays, -1 for others.
 RAYGATE_INLINE FloatLanes cutoffs_beyond(const IntLanes& high, LaneMask active) {
   constexpr float kGrow = 1.0f + 0x1p-20f;
   const IntLanes going = lanes_of(active);

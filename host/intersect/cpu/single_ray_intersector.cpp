@@ -421,8 +421,7 @@ class SingleRayIntersector {
   }
 
   /// Traverses the BVH with all rays, nearest children first. kAtOnce rays are interleaved to hide
-  /// memory latency. Choices that depend on a ray select values, because branches would often be
-  /// mispredicted.
+  /// memory latency. Choices that depend on a ray avoid branches, which are often mispredicted.
   void walk_all() {
     const auto walks = std::make_unique<RayTraversal[]>(kAtOnce);
     in_vectors([&](auto code) RAYGATE_BODY {

@@ -1,5 +1,4 @@
-// The nearest hit does not depend on the order of reports; CheckIntersector detects intersectors
-// that differ.
+// Nearest hits do not depend on the order of reports. CheckIntersector detects wrong hits.
 #include "host/intersect/intersector.h"
 
 #include <gtest/gtest.h>

@@ -35,15 +35,13 @@ struct alignas(32) RayBundle {
   }
 };
 
-/// Tests batches of bundles in two steps, so that the unit is busy while the caller prepares
-/// another batch.
+/// Tests batches of bundles in two steps: the unit works while the caller prepares another batch.
 template <class Result>
 class BatchTester {
  public:
   virtual ~BatchTester() = default;
 
-  /// Starts a batch, which must live until its finish(). At most two batches may be started and not
-  /// finished.
+  /// Starts a batch, which must live until its finish(). At most two batches may be unfinished.
   virtual void start(std::span<const RayBundle> batch) {
     assert(started_count_ < 2);
     started_[started_count_++] = batch;

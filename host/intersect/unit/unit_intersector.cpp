@@ -106,8 +106,7 @@ class UnitIntersector : public Intersector {
     }
   }
 
-  /// Fills the batch: advances every packet to its next leaf, repeatedly if there are too few
-  /// tests.
+  /// Fills the batch: advances every packet to its next leaf until there are enough tests.
   void collect(Half& half) {
     half.batch.clear();
     half.owner.clear();

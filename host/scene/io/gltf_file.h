@@ -1,5 +1,5 @@
-// GltfFile: the JSON, the buffers and the images of a glTF 2.0 file, with checked access to them. A
-// part of the reader in gltf_loader.cpp.
+// GltfFile: checked access to the JSON, buffers and images of a glTF 2.0 file (a part of
+// gltf_loader.cpp).
 #pragma once
 
 #include <algorithm>
@@ -116,7 +116,7 @@ class GltfFile {
  public:
   std::string name;
   std::vector<std::filesystem::path> files;  ///< all files read so far
-  std::size_t bytes = 0;                     ///< their total size
+  std::size_t bytes = 0;                     ///< total size of `files`
   Json json;
 
   /// Appends warnings to `warnings`, which must outlive this object. Throws InputError if a file

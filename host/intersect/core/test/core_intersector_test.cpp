@@ -1,6 +1,5 @@
-// The reference model of the ray core finds the hits of CpuIntersector, bit for bit. With an exact
-// core the host resolves no doubts. The box unit omits no box that a ray enters in rational
-// arithmetic.
+// The reference model of the ray core finds the hits of CpuIntersector, bit for bit. Exact cores
+// have no doubts. The box unit omits no box that a ray enters in rational arithmetic.
 #include "host/intersect/core/core_intersector.h"
 
 #include <gmpxx.h>
