@@ -63,7 +63,7 @@ RAYGATE_INLINE WideOf<T> turns_of(const T& y, const T& x) {
 template <class D>
 RAYGATE_INLINE D binary_logarithm(const D& x) {
   constexpr double kLog2OfE = 1.4426950408889634073599246810019;
-  // x = m 2^exponent with m in about [sqrt(1/2), sqrt(2)]; float precision suffices to find it.
+  // x = m 2^exponent with m in about [sqrt(1/2), sqrt(2)]. The exponent is found in float.
   constexpr std::int32_t kRootOfHalf = 0x3F3504F3;
   const auto exponent = (bits_in(narrow(x)) - kRootOfHalf) >> 23;
   const D m = x * wide(float_of((127 - exponent) << 23));

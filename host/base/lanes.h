@@ -110,7 +110,8 @@ RAYGATE_INLINE T spread(Element x) {
   return T{} + x;
 }
 
-/// Converts lanes to another element type. Floats are rounded to nearest, integers towards 0.
+/// Converts lanes to another element type. Converting to floats rounds to nearest, to integers
+/// towards 0.
 template <class To, class T>
 RAYGATE_INLINE To convert(const T& x) {
   if constexpr (std::is_arithmetic_v<T>) {

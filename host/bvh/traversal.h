@@ -45,7 +45,8 @@ RAYGATE_INLINE bool any_leaf(const Bvh& bvh, const Boxes& boxes, const Visit& vi
 // and inverse_far of a component no larger. Inverses do not grow with the magnitude, so
 // |inverse_near| is at most, and |inverse_far| at least, the value of each ray.
 // If near - O has the sign of I, the bounds enter no later than any ray; otherwise all enter at 0.
-// If far - O has the sign of I, they leave no earlier; otherwise no ray hits anything in the box.
+// If far - O has the sign of I, the bounds leave no earlier than any ray; otherwise no ray hits
+// anything in the box. The cutoff of the bounds is at least each ray's cutoff.
 
 /// Direction components below kSmallestComponent count as 0. Exits are multiplied by kExitGrowth.
 inline constexpr float kSmallestComponent = 0x1p-100f;

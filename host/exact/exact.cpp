@@ -232,7 +232,7 @@ Interval hit_distance(const ExactRay& ray, const Corners& triangle) {
 // The error of u and v is at most 2^-34. They are quotients w / S of one of the three edge products
 // direction . (A x B) and the sum S of all three, with w / S in [0, 1].
 // Each product has an error of at most e = 2^-37 |S|; otherwise all are computed exactly.
-// So the error of S is at most 3 e, and that of a quotient (e + 3 e) / |S| = 2^-35, and roundings.
+// So the error of S is at most 3 e. The error of w / S is (e + 3 e) / |S| = 2^-35, plus roundings.
 // Clamping to [0, 1] only reduces the error.
 Barycentric barycentric(const ExactRay& ray, const Corners& triangle) {
   double weights[3], sum = 0.0, error = 0.0;

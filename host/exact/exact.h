@@ -48,7 +48,7 @@ inline constexpr double kMostCoordinate = 0x1p126;
   return std::abs(x) < 0x1p-97 ? std::nearbyint(x * 0x1p149) * 0x1p-149 : x;
 }
 
-/// Returns 2^-30 ulp(x) for a normal float x. All doubles that round to x are multiples of this.
+/// Returns 2^-30 ulp(x) for a normal float x. All doubles that round to x are multiples of it.
 [[nodiscard]] inline double unit_of_rest(float x) {
   constexpr std::uint32_t kField = 0xFF;
   const std::uint64_t exponent = std::bit_cast<std::uint32_t>(x) >> 23 & kField;
@@ -176,7 +176,8 @@ struct Barycentric {
 [[nodiscard]] int plane_side_at_hit(const ExactRay& ray, const Corners& hit, const Corners& other);
 
 /// Returns the exact sign of direction . N for the normal N of triangle_normal(). A ray moves
-/// towards the plane if this equals orient3d(origin, triangle), away from it if the signs differ.
+/// towards the plane if the sign is that of orient3d(origin, triangle), and away from the plane if
+/// the signs are opposite.
 [[nodiscard]] int direction_side(const glm::dvec3& direction, const Corners& triangle);
 
 /// Returns D = (a - origin) . ((b - a) x (c - a)) in double for the corners a, b, c. The relative

@@ -66,7 +66,7 @@ bool take_if_nearest(const Bvh& bvh, const ExactRay& ray, float t_max, NearestHi
   if (!is_first) {
     counters.exact_depth += overlap(hit.t, best.t);
     if (!is_nearer(bvh, ray, hit, best)) return false;
-    hit.t.high = std::min(hit.t.high, best.t.high);  // it is nearer than `best`
+    hit.t.high = std::min(hit.t.high, best.t.high);  // because `hit` is nearer than `best`
   }
   best = hit;
   return true;

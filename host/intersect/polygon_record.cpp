@@ -10,9 +10,9 @@ namespace raygate {
 // The bound of an edge test
 //
 // To show: |float32(I . F) - I . E| < kEdgeBound u |F|_1. Here u = 2^-24 is the unit roundoff of
-// float, and |X|_1 the sum of the magnitudes of X's components. E is the exact edge plane A x B
-// (times the record's power of two, if any), D is E computed in double, and F is D rounded to
-// float. I is a direction with |I_i| < 2, so |I . X| < 2 |X|_1 for any X.
+// float, and |X|_1 the sum of the magnitudes of X's components. E is the exact edge plane A x B for
+// corners A, B minus the origin (times the record's power of two, if any). D is E computed in
+// double, and F is D rounded to float. I is a direction with |I_i| < 2, so |I . X| < 2 |X|_1.
 //
 // 1. Double: |D_i - E_i| <= 2^-34 |D|_1 by edge_normal. For all components together,
 //    |D - E|_1 <= 3 * 2^-34 |D|_1.

@@ -19,16 +19,16 @@ namespace raygate {
 /// rays from O share the record.
 ///
 /// Words are results of double or exact arithmetic, rounded once to float. (N, d), and each edge
-/// with its bound, are scaled by a power of two if their exponents are outside [-60, 60]; this
-/// changes neither P nor any sign. All words are finite, except that a bound can be +infinity: that
-/// edge is then always in doubt.
+/// with its bound, are scaled by a power of two if their exponents are outside [-60, 60]. Scaling
+/// changes neither hit points nor signs. All words are finite, except that a bound can be
+/// +infinity: its edge is then always in doubt.
 struct alignas(64) PolygonRecord {
   glm::vec3 normal{0.0f};            ///< words 0-2: N = (B-A) x (C-A), the paper's H
   float d = 0.0f;                    ///< word 3: N . A; its sign (-1, 0 or 1) is exact
   std::array<glm::vec3, 3> edges{};  ///< words 4-12: A x B, B x C, C x A; for a shared edge the
                                      ///< two triangles hold exactly opposite numbers
-  std::array<float, 3> bounds{};     ///< words 13-15: |float32(I . E) - exact| < bound, for every
-                                     ///< I with components of magnitude under 2
+  std::array<float, 3> bounds{};     ///< words 13-15: |float32(I . E) - exact| < bound for edge E,
+                                     ///< for every direction I with components of magnitude under 2
 };
 static_assert(sizeof(PolygonRecord) == 64);
 
@@ -70,14 +70,15 @@ struct PlaneViews {
 /// Sets words[k][i] to word k of make_plane(views.origins[i], views.triangles[i]), bit for bit.
 void make_planes(const PlaneViews& views, float (&words)[4][kQuad]);
 
-// Derivation of the error bound of P = d I / V for V = I . N
+// Derivation of the error bound of the hit point P = d I / V, for V = I . N and the direction I
 //
 // Let u = 2^-24, the unit roundoff, and g = how far V's exponent is below the largest of N's, or 0.
 // 1. V has a relative error of at most r = 48.5 u 2^g (proof in hit_test_pkg.sv).
 // 2. t = d / V: d adds 2 u, and the division u. In all, at most (48.5 * 2^g + 3.2) u / (1 - r).
 // 3. P_k = (d I_k) / V has one more rounding: at most (48.5 * 2^g + 4.3) u / (1 - r), which is less
 //    than 2^(6 + g) u = 2^(g - 18) while r <= 0.1, that is, up to g = 12.
-// 4. If d I_k underflows, its error of 2^-150 is less than 2^-48 d for d >= 2^-102: 2^-48 t in P.
+// 4. If d I_k underflows, its error of 2^-150 is less than 2^-48 d for d >= 2^-102. So P_k changes
+//    by less than 2^-48 t.
 // 5. If P_k underflows, its error of 2^-150 is less than 2^-47 t for t >= 2^-103.
 // The errors of 4 and 5 add up to less than 2^-46 t, which is at most 2^-46 of P's largest
 // coordinate. Nothing overflows if d, t < 2^104.

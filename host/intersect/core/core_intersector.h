@@ -51,7 +51,7 @@ struct CoreResult {
   std::uint32_t tag = 0;  ///< CoreRay::tag
   std::uint32_t triangle = CoreRay::kNoTriangle;  ///< the triangle's line in memory
   float t = 0.0f;              ///< kEnd: fewer than 2^t_error floats from the exact t
-  std::uint32_t t_error = 0;   ///< kNoT: t and P are unknown and set to 0
+  std::uint32_t t_error = 0;   ///< kNoT: `t` and `point` are unknown and set to 0
   glm::vec3 point{0.0f};       ///< kEnd: the hit point minus the origin, as the core computes it
   std::uint32_t tests = 0;     ///< kEnd: triangles tested
   Error error = Error::kNone;  ///< kEnd: if not kNone, only `tag` and `line` are valid

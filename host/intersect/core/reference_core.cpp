@@ -115,7 +115,7 @@ BoxGroup enter_boxes(const NodeLine& node, const BoxRay& ray) {
 bool is_beyond(const BoxGroup& group, const BoxGroup::Entry& entry, float limit) {
   // The limit in the entry's units, rounded down.
   const int amount = static_cast<int>(group.exponent) + 23 - kEnterBits - field(limit);
-  if (amount <= 0) return false;  // at least 2^23 units
+  if (amount <= 0) return false;  // the limit is at least 2^23 units
   return entry.enter > shift_right(significand(limit), amount);
 }
 

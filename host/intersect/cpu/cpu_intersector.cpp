@@ -42,7 +42,7 @@ void PointWriter::write() {
     using Floats = NativeFloats<code()>;
     constexpr std::size_t kHits = kLanesOf<Floats>;
     for (std::size_t first = 0; first < count_; first += kHits) {
-      // Each row holds one hit, and after transposing one word of four hits. A ray's load starts
+      // Each row holds one hit or, after transposition, one word of four hits. A ray's load starts
       // one word before the direction.
       FloatQuad rays[kHits / kQuad][kQuad], planes[kHits / kQuad][kQuad];
       std::uint32_t number[kHits];

@@ -130,7 +130,7 @@ RAYGATE_INLINE void load_directions(const float* words, FloatQuad (&components)[
 /// Loads up to 64 rays. Returns a mask of the rays that are usable but not scaled.
 std::uint64_t load_packet(std::span<const Ray> rays, RayPacket& block) {
   return in_vectors([&](auto) RAYGATE_BODY {
-    LaneMask positive[3] = {}, negative[3] = {};  // by axis: not 0 if any ray's component is
+    LaneMask positive[3] = {}, negative[3] = {};  // by axis: rays of any group with such components
     std::uint64_t unscaled = 0;
     for (int group = 0; group < RayPacket::kGroups; ++group) {
       const std::size_t begin = std::size_t(group) * kLanes;
@@ -244,8 +244,8 @@ RAYGATE_INLINE void split_group(ConeTraversal& walk, int group) {
   walk.split |= 1u << group;
 }
 
-/// Returns the children that any of `rays`, in `groups`, may meet. Sets entry[i] to the distance at
-/// which the rays enter child i, or less.
+/// Returns the children that any of `rays`, in `groups`, may meet. Sets entry[i] to a lower bound
+/// of the distance at which a ray enters child i.
 template <Vectors kCode>
 RAYGATE_INLINE LaneMask meet_any(const ConeTraversal& walk, const Bvh::Node& node,
                                  std::uint64_t rays, LaneMask groups, FloatLanes& entry) {
@@ -406,9 +406,9 @@ RAYGATE_INLINE void test_group(const ConeTraversal& walk, const QuadRecord& reco
   verdict.high = bits_in(high);
 }
 
-/// Returns whether so few rays reach a leaf that tests ray by ray are faster. Without this, `make
-/// speed` has 6 to 13 % fewer camera and shadow rays per second on sphere and landscape, and 11 %
-/// fewer camera rays on teapot.
+/// Returns whether so few rays reach a leaf that tests ray by ray are faster. Without such tests,
+/// `make speed` has 6 to 13 % fewer camera and shadow rays per second on sphere and landscape, and
+/// 11 % fewer camera rays on teapot.
 RAYGATE_INLINE bool is_sparse(std::uint64_t rays, LaneMask groups, std::uint32_t triangles) {
   return static_cast<std::uint32_t>(std::popcount(rays)) <
          2 * static_cast<std::uint32_t>(std::popcount(groups)) * triangles;

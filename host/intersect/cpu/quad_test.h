@@ -74,7 +74,7 @@ namespace raygate {
 // Rounded corners and rays
 //
 // Let binary64 corners, origin and direction be rounded to float. Let M be the largest coordinate
-// of the corners and F that of the origin (0 if exact), and r = u (M + F), which exceeds the
+// of the corners, F that of the origin (each 0 if exact), and r = u (M + F), which exceeds the
 // additional error of p-O. A rounded direction adds a relative error of 2 u to s_x and s_y.
 //
 // 1. e grows to 8.02 u m + 2.001 r <= 8.02 u w, for w = m + (M + F) / 4. If the direction is exact,

@@ -104,8 +104,8 @@ using BurstResults = std::vector<BurstResult>;
 ///
 ///   U_k is sure if b_k < |U_k| < infinity (not with a NaN or negative b_k)
 ///   miss   d is 0, or a sure U_k has the opposite sign of d
-///   hit    otherwise, if all U_k are sure, V is normal and has d's sign, its exponent is at most
-///          12 below the largest of N's, and t is a positive normal number
+///   hit    otherwise, if all U_k are sure, V is normal, has d's sign and an exponent at most 12
+///          below the largest exponent of N's words, and t is a positive normal number
 ///   doubt  otherwise
 ///
 /// The error of t is 2^(6 + e) floats. Here e is how far V's exponent is below the largest of N's,
@@ -232,7 +232,7 @@ class BasicReferenceBurstUnit : public BurstUnit {
             static_cast<std::uint32_t>(std::max(grazing(record.normal, v), 0))};
   }
 
-  /// Returns BurstUnit's P (equation 10); any NaN is 0x7FC00000.
+  /// Returns BurstUnit's hit point P (the paper's equation 10); any NaN is 0x7FC00000.
   [[nodiscard]] glm::vec3 point(const PolygonRecord& record, const glm::vec3& direction) const {
     // The paper's accumulator starts from +0, which decides the sign of v if v is 0.
     const float v = math_.add(0.0f, math_.dot(record.normal, direction));
