@@ -50,7 +50,7 @@ class Tracer {
   //
   // Rays are traced with the direction scaled by a power of two, so that its largest component is
   // in [1, 2), and with the limit divided by that power. All coordinates are rounded to multiples
-  // of 2^-149; those of at least 2^-97 stay exact. If the triangles' coordinates are not all
+  // of 2^-149; magnitudes of at least 2^-97 stay exact. If the triangles' coordinates are not all
   // floats, origins are rounded to binary64 relative to a point near the middle of the triangles.
 
   /// Sets hits[i] to the nearest hit of rays[i]. Both spans must have the same size.

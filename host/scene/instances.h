@@ -19,7 +19,7 @@ RAYGATE_INLINE void transform_coordinate(const double (&row)[4], const T (&point
   result = ((row[0] * point[0] + row[1] * point[1]) + row[2] * point[2]) + row[3];
 }
 
-/// Returns a mesh position transformed by an instance, as float, as all intersectors use it.
+/// Returns a mesh position transformed by an instance and rounded to float, for all intersectors.
 [[nodiscard]] inline glm::vec3 transform_point(const double (&rows)[3][4],
                                                const glm::vec3& position) {
   const double point[3] = {position.x, position.y, position.z};

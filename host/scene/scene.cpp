@@ -65,7 +65,7 @@ class Digest {
   template <class... Values>
   requires(sizeof...(Values) > 1) void add(const Values&... values) { (add(values), ...); }
 
-  // Structured bindings name all members, so a new member does not compile until it is handled.
+  // Structured bindings name all members, so a new member does not compile until add() handles it.
   // Rarely used members are skipped at their defaults, which keeps older digests valid.
   void add(const TextureMapping& m) {
     const auto& [scale, offset, sampling, turn, is_second] = m;

@@ -33,7 +33,7 @@ struct TextureMapping {
 
 /// A texture of a material, and its mapping.
 struct MaterialMap {
-  std::string file;  ///< path, with the folder of the file that names it; empty: none, or embedded
+  std::string file;  ///< path, with the folder of the MTL file; empty: no texture, or embedded
   TextureMapping mapping;
   std::uint32_t texture = kNoIndex;  ///< index into Scene::textures
 };

@@ -46,7 +46,7 @@ class EarClipper {
     return clip_ears();
   }
 
-  /// Returns the triangles of the last cut(), as corner numbers; n - 2 if n corners are simple.
+  /// Returns the triangles of the last cut(), as corner numbers: n - 2 for a simple n-gon.
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
 
  private:

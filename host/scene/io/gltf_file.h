@@ -177,7 +177,8 @@ class GltfFile {
 
   /// Returns a list of the file, such as "nodes"; null if it has none.
   [[nodiscard]] const Json& list(const char* key) const { return member(json, key); }
-  /// Returns element `index` of a list. Throws InputError, which names it `what`, if there is none.
+  /// Returns element `index` of a list. Throws InputError, which calls the element `what`, if there
+  /// is none.
   [[nodiscard]] const Json& at(const Json& list, int index, const char* what) const {
     const std::size_t size = list.is_array() ? list.size() : 0;
     if (index >= 0 && static_cast<std::size_t>(index) < size) {

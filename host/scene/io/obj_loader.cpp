@@ -138,7 +138,7 @@ class ObjReader {
         if (index < 0 && field == 0) {
           fail(", but the file has " + std::to_string(so_far[0]) + " vertices so far");
         }
-        const bool is_none = number == 0 || index < 0;  // MeshBuilder warns of such an index
+        const bool is_none = number == 0 || index < 0;  // MeshBuilder warns of kNoIndex - 1
         indices[field] = is_none ? kNoIndex - 1 : static_cast<std::uint32_t>(index);
         at = rest;
       }
