@@ -72,8 +72,7 @@ Expansion<96> exact_slope(const glm::dvec3& direction, const Corners& t) {
   return exact_dot(direction, exact_normal(t));
 }
 
-/// t = D / (direction . N) at a triangle's plane, for N the normal (b - a) x (c - a) of the corners
-/// a, b, c, and D = (a - origin) . N. Both parts are estimates.
+/// Estimates t = D / (direction . N) at a plane, for N of triangle_normal and D of plane_distance.
 struct Fraction {
   Estimate numerator, denominator;
 
@@ -233,7 +232,6 @@ Interval hit_distance(const ExactRay& ray, const Corners& triangle) {
 // direction . (A x B) and the sum S of all three, with w / S in [0, 1].
 // Each product has an error of at most e = 2^-37 |S|; otherwise all are computed exactly.
 // So the error of S is at most 3 e. The error of w / S is (e + 3 e) / |S| = 2^-35, plus roundings.
-// Clamping to [0, 1] only reduces the error.
 Barycentric barycentric(const ExactRay& ray, const Corners& triangle) {
   double weights[3], sum = 0.0, error = 0.0;
   const auto corner = [&](int k) -> const glm::dvec3& { return triangle[std::size_t(k) % 3]; };
@@ -254,7 +252,7 @@ Barycentric barycentric(const ExactRay& ray, const Corners& triangle) {
       sum += weights[k];
     }
   }
-  const auto within = [](double share, double most) {
+  const auto within = [](double share, double most) {  // clamping only reduces errors
     return std::max(0.0, std::min(share, most));
   };
   const double u = within(weights[1] / sum, 1.0);
@@ -267,8 +265,7 @@ PreciseHit precise_hit(const ExactRay& ray, const Corners& triangle) {
   return {static_cast<float>(t), glm::vec3(t * ray.direction)};
 }
 
-// order_of_planes returns the sign of t1 - t2 times the signs of both denominators S = D / t. Hits
-// have t > 0, so S has the sign of D, which is orient3d.
+// order_of_planes includes the signs of S1 and S2, which are those of D1 and D2 because t > 0.
 int compare_hits(const ExactRay& ray, const Corners& first, const Corners& second) {
   return orient3d(ray.origin, first) * orient3d(ray.origin, second) *
          order_of_planes(ray, first, second);

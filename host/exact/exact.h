@@ -16,12 +16,10 @@ namespace raygate {
 
 /// The vertices of a triangle. Coordinates are multiples of 2^-149, the smallest positive float.
 using Corners = std::array<glm::dvec3, 3>;
-/// Corners in binary32.
-using FloatCorners = std::array<glm::vec3, 3>;
+using FloatCorners = std::array<glm::vec3, 3>;  ///< corners in binary32
 [[nodiscard]] inline Corners widened(const FloatCorners& t) {
   return {glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
 }
-
 [[nodiscard]] inline FloatCorners rounded(const Corners& t) {
   return {glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2])};
 }
@@ -143,8 +141,7 @@ struct ExactRay {
 
 /// Returns whether the ray, tilted as in edge_side, hits the triangle. Neighbours in a closed mesh
 /// agree about their shared edge because both use the same tilted ray: of the triangles around a
-/// vertex that the ray meets, exactly one is hit. A triangle is never hit if it is behind the
-/// origin or its plane contains the origin.
+/// vertex, one is hit. Triangles behind the origin, or with the origin in their plane, never are.
 [[nodiscard]] bool hits_triangle(const ExactRay& ray, const Corners& triangle);
 
 /// Returns whether the ray's line meets the triangle's plane in front of the origin, at t > 0.
@@ -175,9 +172,8 @@ struct Barycentric {
 /// Returns orient3d(P, other) for the exact point P at which the ray hits the triangle `hit`.
 [[nodiscard]] int plane_side_at_hit(const ExactRay& ray, const Corners& hit, const Corners& other);
 
-/// Returns the exact sign of direction . N for the normal N of triangle_normal(). A ray moves
-/// towards the plane if the sign is that of orient3d(origin, triangle), and away from the plane if
-/// the signs are opposite.
+/// Returns the exact sign of direction . N for the normal N of triangle_normal(): the sign of
+/// orient3d(origin, triangle) if the ray moves towards the plane, the opposite if it moves away.
 [[nodiscard]] int direction_side(const glm::dvec3& direction, const Corners& triangle);
 
 /// Returns D = (a - origin) . ((b - a) x (c - a)) in double for the corners a, b, c. The relative
@@ -189,8 +185,7 @@ struct Barycentric {
 [[nodiscard]] glm::dvec3 edge_normal(const glm::dvec3& origin, const glm::dvec3& p,
                                      const glm::dvec3& q);
 
-/// Returns (b - a) x (c - a) for the corners a, b, c, with the error bound of edge_normal. The
-/// result is 0 only if the corners are exactly collinear.
+/// Returns (b - a) x (c - a) with edge_normal's error bound; 0 only if a, b, c are exactly in line.
 [[nodiscard]] glm::dvec3 triangle_normal(const Corners& triangle);
 
 /// Returns 1 if a, b, c are in counter-clockwise order, -1 if clockwise, 0 if they are exactly

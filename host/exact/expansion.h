@@ -150,7 +150,6 @@ template <int N, int M>
 template <int N>
 using ExactVector = std::array<Expansion<N>, 3>;
 
-/// Returns a - b.
 [[nodiscard]] inline ExactVector<2> exact_difference(const glm::dvec3& a, const glm::dvec3& b) {
   return {exact_difference(a.x, b.x), exact_difference(a.y, b.y), exact_difference(a.z, b.z)};
 }

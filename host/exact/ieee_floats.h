@@ -1,5 +1,4 @@
-// IEEE 754 arithmetic with rounding to nearest, which exact decisions require: code that checks and
-// sets it, and the operations of the hardware.
+// IEEE 754 arithmetic, rounded to nearest: checking it, setting it, and the hardware's operations.
 #pragma once
 
 #include <bit>
@@ -30,9 +29,8 @@ static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<doubl
 
 namespace raygate {
 
-/// Sets IEEE 754 arithmetic on this thread, and on threads that it starts, for the lifetime of this
-/// object: rounding to nearest, subnormals kept, no traps. The destructor restores the thread's
-/// previous state, including flags.
+/// Sets IEEE 754 arithmetic (rounding to nearest, subnormals kept, no traps) on this thread, and on
+/// threads that it starts, until the destructor restores the thread's state, including flags.
 class IeeeFloats {
  public:
   IeeeFloats();
