@@ -32,8 +32,8 @@ void shade_primary(const ShadingScene& shading, HitBlock& block, HitKind kind,
   });
 }
 
-/// Returns ShadingScene::max_depth. kEmitters and kPath shade hits one deeper than that. Beside
-/// other integrators, which do not, kEmitters has a limit that is one lower.
+/// Returns ShadingScene::max_depth. kEmitters and kPath shade hits one level deeper than this.
+/// Other integrators do not, so kEmitters has a limit one lower when it accompanies them.
 int last_depth(IntegratorKind kind, const IntegratorSettings& settings) {
   if (kind == IntegratorKind::kPrimary) return 0;
   const int depth = settings.integrator == IntegratorKind::kPrimary ? 0 : settings.depth();
@@ -110,7 +110,7 @@ void Integrator::sort(std::span<const NearestHit> hits, std::size_t count, Shadi
   const glm::vec3 behind = background();
   const bool is_dark = behind == glm::vec3(0.0f);
   const bool sees_surroundings = sees_environment();
-  // The first surface behind holes is met by later rays.
+  // Rays of greater depth meet the first surface behind holes.
   const bool may_be_first = kind_ != IntegratorKind::kLight && !output.first_surface.empty() &&
                             (block_.batch->depth == 0 || has_masks_);
   block_.first_surfaces.assign(may_be_first ? count : 0, nullptr);

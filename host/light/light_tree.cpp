@@ -176,7 +176,7 @@ class LightTree::Builder {
     }
     const double length = glm::length(sum.axes);
     if (length > 0.0) all.axis = sum.axes / length;
-    // The widest angle from the axis with full emission; -1 for all directions.
+    // Cosine of the widest angle from the axis with full emission; -1: all directions.
     all.spread = length > 0.0 ? 1.0 : -1.0;
     for (const std::uint32_t number : group) {
       const LightBounds& one = sources_[number];

@@ -86,8 +86,8 @@ LightBounds light_bounds(const PointLight& light, double unit) {
 /// suffices, as it is meant as a light. Otherwise radiance and area must be large, unlike those of
 /// glowing labels and screens. `size` is the scene's diagonal.
 bool is_lit_by_emitters(const Scene& scene, double size, bool is_preview) {
-  // Thresholds of radiance * area / size^2: about 1/100 of the main light, or 1/6 for emission with
-  // a texture, which is meant to be looked at.
+  // Thresholds of radiance * area / size^2, relative to the main light: 1/100, or about 1/6 for
+  // emission with a texture, which is meant to be looked at.
   constexpr double kGlow = 0.01, kPicture = 0.15;
   const auto is_picture = [](const Material& material) {
     return material.emission_map.texture != kNoIndex;
@@ -218,7 +218,7 @@ void Lights::find_areas() {
     const Triangle& face = scene_.triangles[bvh_.triangle_of(primitive)];
     if (emits(scene_.materials[face.material])) emitting.push_back(primitive);
   }
-  // Sort into the scene's order, so that lights do not depend on how the BVH is built.
+  // In the scene's order, lights do not depend on how the BVH is built.
   std::ranges::sort(emitting, {}, [&](std::uint32_t each) { return bvh_.triangle_of(each); });
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
   for (const std::uint32_t primitive : emitting) {

@@ -19,9 +19,10 @@ RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
 ///
 /// * Facets (Ggx) reflect f0 + (f90 - f0) s with f0 = m c + (1 - m)(1 - t) r0 and
 ///   f90 = 1 - (1 - m) t - (1 - m)(1 - t)(1 - w).
-/// * Multiple scattering: the energy 1 - E (FacetAlbedo) that one facet does not reflect returns
-///   in a wide lobe (1 - E(view)) (1 - E(light)) / (1 - mean E), reduced by the facets' absorption
-///   ("Revisiting physically based shading at Imageworks", Kulla and Conty 2017, with Hill's F^2).
+/// * Multiple scattering: E is the single-scattering albedo of facets that absorb nothing
+///   (FacetAlbedo). The lost energy 1 - E returns in a wide lobe, (1 - E(view)) (1 - E(light)) / (1
+///   - mean E), reduced by the facets' absorption ("Revisiting physically based shading at
+///   Imageworks", Kulla and Conty 2017, with the squared mean Fresnel factor of Hill).
 /// * The diffuse base of a dielectric is (1 - m)(1 - t) c times
 ///   (1 - h(view))(1 - h(light)) / (1 - mean h), where h is the albedo of both lobes above in their
 ///   brightest channel. So a white material conserves energy, and the BRDF is reciprocal.
@@ -45,7 +46,7 @@ struct MetallicRoughnessLobes {
   Triple<T> specular;  ///< single-scattering albedo for the view
   Triple<T> multiple;  ///< multiple-scattering albedo
   Triple<T> diffuse;   ///< albedo of the diffuse base
-  /// Fraction of glass; index of refraction behind the interface over that in front of it.
+  /// Fraction of glass; index of refraction behind the interface over the index in front.
   T glass, eta;
   T glass_gain;  ///< compensation for multiple scattering in glass
   MaskOf<T> is_glass;
@@ -166,7 +167,7 @@ struct MetallicRoughnessLobes {
     return has_rough_glass() ? pdf * mirrored_chance(at_most(pair.cos_half, 1.0f)) : pdf;
   }
 
-  /// Returns the fraction of light that is not masked after leaving a sampled facet.
+  /// Returns the unmasked fraction of the light that a sampled facet reflects to `way`.
   [[nodiscard]] RAYGATE_INLINE T g2_over_g1(const Triple<T>& way) const {
     const T cosine = dot(ggx.normal, way);
     return choose(cosine > 0.0f, ggx.g2_over_g1(view_cosine, cosine), T{});
@@ -182,7 +183,7 @@ struct MetallicRoughnessLobes {
   [[nodiscard]] RAYGATE_INLINE static Triple<T> grey(const T& x) { return {x, x, x}; }
 
  private:
-  /// Returns the albedos, at a cosine, of facets that reflect 1 and Schlick's weight.
+  /// Returns the albedos, at a cosine, of facets with reflectance 1 and with Schlick's weight.
   [[nodiscard]] RAYGATE_INLINE Shares shares_at(const T& cosine) const {
     if (!is_rough()) return {spread<T>(1.0f), schlick_weight(cosine)};
     return albedo->at(cosine, alpha);

@@ -25,8 +25,8 @@
 namespace raygate {
 namespace {
 
-/// The threads of a render, which take tiles from one queue. The calling thread reports progress
-/// and makes snapshots, so that no worker waits for a terminal or a disk.
+/// The threads of a render. They take tiles from one queue. Only the calling thread reports
+/// progress and makes snapshots, so no worker waits for a terminal or a disk.
 class RenderThreads {
  public:
   RenderThreads(const RenderContext& context, const Tiles& tiles,
@@ -175,8 +175,9 @@ class RenderThreads {
     monitor_.snapshot(film ? &*film : nullptr);
   }
 
-  /// Returns a copy of the film, made tile by tile, so that a thread waits for at most one tile.
-  /// With light paths, copies all tiles at once, as splats belong to the film's current samples.
+  /// Returns a copy of the film. It is made tile by tile, so a thread waits for at most one tile.
+  /// With light paths, all tiles are copied under one lock, because the splats must match the
+  /// samples.
   Film copy_of_film() {
     Film copy;
     copy.width = film_.width;

@@ -126,8 +126,8 @@ void set_no_hit(Hits& hits) {
   std::memset(&hits.instID, 0xFF, sizeof hits.instID);
 }
 
-/// Traces rays one by one or in packets, by rtcIntersect1, rtcIntersect8 and the like; packets with
-/// the coherent flag for a common origin. `Queries` calls Embree: set_coherent(), intersect() and
+/// Traces rays one by one or in packets, by rtcIntersect1, rtcIntersect8 and the like. Packets with
+/// a common origin have the coherent flag. `Queries` calls Embree: set_coherent(), intersect() and
 /// occluded() for one ray, 8 or 16.
 template <std::size_t kWidth, class Queries>
 class RayPackets : public Peer {

@@ -22,7 +22,7 @@ namespace {
 struct Way {
   bool one_origin =
       false;          ///< shot by shot, as rays of a common origin; otherwise several shots at once
-  bool exact = true;  ///< its intervals contain t
+  bool exact = true;  ///< intervals and errors are checked
   bool delivers = false;          ///< hits that the host delivers are checked, too
   const Variant* unit = nullptr;  ///< the variant whose t is checked; null: none
 };
@@ -80,7 +80,7 @@ class IntersectorSubject : public Subject {
         answers.tests[first_test + ray * triangles.size() + i] = answer(ray, triangles[i]);
       }
     }
-    // Contradictory results get an invalid triangle index, so that the answer counts as wrong.
+    // Contradictory results get an invalid triangle index, which counts as wrong.
     for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
       if (torn_[ray]) answers.nearest[first_ray + ray] = triangles.size();
     }

@@ -87,7 +87,7 @@ std::unique_ptr<BurstUnit> make_rtl_burst_unit([[maybe_unused]] const Variant& v
   return nullptr;
 }
 
-/// Returns hit_test_unit likewise, with QuotientBits. Words are rounded to the format first.
+/// Returns hit_test_unit, Verilated likewise and with QuotientBits, or null. Rounds words first.
 std::unique_ptr<PlaneUnit> make_rtl_plane_unit([[maybe_unused]] const Variant& variant) {
 #define RAYGATE_MODEL(top, ...)            \
   if (matches(variant, __VA_ARGS__))       \
