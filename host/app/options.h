@@ -86,7 +86,7 @@ struct CoreFileOptions {
 /// The options of ./render. Every value is in its range; files are not checked.
 struct Options : EngineOptions {
   std::filesystem::path scene;  ///< the file that was named: a model or a scene file
-  SceneFile scene_file;         ///< the scene file named or beside the model; else the model
+  SceneFile scene_file;         ///< the scene file that was named or is beside the model
   /// Values in the scene file, followed by those on the command line, which override them.
   std::vector<OptionValue> given;
   RenderSettings render;
@@ -133,8 +133,8 @@ void check_light_options(const OptionTable& table, bool has_environment, RenderS
 /// overrides them. Throws InputError, and Information for --help and --version.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& words);
 
-/// Returns the options of a scene whose file was read, with the values of `given`, then of
-/// `requested`, from a request to --serve, whose options must be at kInPage. Throws InputError.
+/// Returns the options of a scene whose file was read: the values of `given`, overridden by
+/// `requested`, the options of a request to --serve. These must be at kInPage. Throws InputError.
 [[nodiscard]] Options with_values(const Options& scene, std::vector<OptionValue> given,
                                   const std::vector<OptionValue>& requested = {});
 

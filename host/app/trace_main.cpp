@@ -116,7 +116,7 @@ void trace_rays(const TraceOptions& options) {
     static const std::string name = file->unnamed().string();  // outlives the file
     if (!file->is_stream()) unfinished_file = name.c_str();
   } else {
-    std::signal(SIGPIPE, SIG_DFL);  // `| head` ends it without a message
+    std::signal(SIGPIPE, SIG_DFL);  // `| head` ends the program silently
   }
   handle_interruptions(end);
   const auto write = [&](std::string_view bytes) {

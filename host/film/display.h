@@ -33,8 +33,8 @@ struct DisplayOptions {
   Tone tone = Tone::kClip;
 };
 
-/// Returns display-linear light of a channel after exposure, in [0, 1] for kFilmic; NaN stays. The
-/// filmic curve is K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
+/// Returns display-linear light for one channel of exposed light; in [0, 1] for kFilmic. Returns
+/// NaN for NaN. The filmic curve is K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
 [[nodiscard]] float tone_map(float light, Tone tone);
 
 /// Returns the luminance after `exposure` stops in steps of an 8-bit sRGB display: 255 is white.

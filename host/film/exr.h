@@ -16,7 +16,7 @@ namespace raygate {
 struct ExrMetadata {
   /// Texts: "software" (name and version), "scene" (file name without folders), "seed", and the
   /// options of `render` that the picture depends on. kPartialAttribute if the render is
-  /// unfinished: pixels without a sample are misses, others may have too few samples.
+  /// unfinished: pixels without a sample are misses, and other pixels may have too few samples.
   std::map<std::string, std::string> attributes{};
   /// Attribute "worldToCamera", as OpenEXR defines it: +x to the right of the picture, +y up,
   /// +z along the view. The matrix here is for column vectors, the file's for row vectors.

@@ -167,7 +167,8 @@ struct FilmField {
   bool is_sum = false;  ///< written to files only if the film keeps its sums
 };
 
-/// Calls `visit` for each field with its array in each of `films`. This is the only list of arrays.
+/// Calls `visit` for each field with its array in each of `films`. All other code lists arrays by
+/// this function.
 template <class Visit, class... Films>
 void for_each_field(const Visit& visit, Films&... films) {
   visit(FilmField{"", "RGBA"}, films.color...);
@@ -207,7 +208,8 @@ struct Channel {
   std::size_t stride;  ///< bytes from one pixel to the next; rows follow without a gap
 };
 
-/// Returns the channels of all arrays; sums need `keeps_sums` (`samples`: `keeps_sums` or `error`).
+/// Returns the channels of all arrays; sums only if `keeps_sums` (`samples` also if there is
+/// `error`).
 [[nodiscard]] std::vector<Channel> channels_of(const Film& film);
 
 /// Returns the channel's value at array index `index`; exact.

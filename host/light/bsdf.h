@@ -9,9 +9,9 @@ namespace raygate {
 
 /// The BSDF of hits of one kind: four lobes, each with a colour as its albedo.
 ///
-/// The material's `illum`, an illumination model of MTL files, selects the lobes. Kd, Ks, Ns, Tf
-/// and Ni are as in MTL files; d is the opacity, 1 is opaque. Lobes that add up to more than an
-/// opaque surface may reflect are scaled down, to conserve energy.
+/// `illum`, the illumination model of an MTL file, selects the lobes. Kd, Ks, Ns, Tf and Ni are
+/// MTL's; d is the opacity (1: opaque). Except for glass, lobes that reflect more than d are scaled
+/// down.
 ///
 /// | illum | diffuse | glossy | mirror | transmission |
 /// |---|---|---|---|---|
@@ -34,9 +34,8 @@ namespace raygate {
 ///
 /// A metallic-roughness material has the lobes of MetallicRoughnessLobes instead: `diffuse` is the
 /// base below the facets, `glossy` the reflection of rough facets, and `mirror` the reflection of
-/// smooth facets. Glass has `mirror` and `transmission`. For rough glass, `mirror` and
-/// `transmission` are the albedos that smooth glass would have, and eval(), sample() and pdf()
-/// scatter to both sides.
+/// smooth facets. Glass has `mirror` and `transmission`. For rough glass, these two are the albedos
+/// of smooth glass, and eval(), sample() and pdf() scatter to both sides.
 ///
 /// T is float or FloatLanes: hits of one kind, each with its own material.
 template <class T>

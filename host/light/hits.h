@@ -182,9 +182,9 @@ struct Hits {
     if (!hits.first_surfaces.empty()) show_first_surfaces();
   }
 
-  /// Returns the cosine of a unit direction to the shading normal; 0 where light from there is not
-  /// scattered: behind the triangle or, with rough glass, where the two normals disagree on the
-  /// side.
+  /// Returns the cosine of a unit direction to the shading normal; 0 if light from there is not
+  /// scattered: behind the triangle or, for rough glass, where shading and geometric normal
+  /// disagree.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});
@@ -331,9 +331,8 @@ ShadeFunction shade_whitted;
 ShadeFunction shade_path;
 
 /// Light tracing (Dutre, Lafortune and Willems, "Monte Carlo light tracing with direct computation
-/// of pixel intensities", 1993): each hit except a path's first, which is on a mirror or glass, is
-/// connected to the camera by a light sample whose target is on the lens. One ray is spawned per
-/// hit.
+/// of pixel intensities", 1993): each hit except a path's first, on a mirror or glass, is connected
+/// to the camera by a light sample whose target is on the lens. Each hit spawns one ray.
 ShadeFunction shade_light_path;
 
 /// Shades hits on specular paths from the camera whose histories are in PathState::supersampled:

@@ -14,13 +14,11 @@
 namespace raygate {
 
 /// Shades the hits of batches. Hits of one HitKind are shaded together. Not thread-safe. The order
-/// of results depends only on the order of the batch, so the radiance of a sample depends only on
-/// its rays.
+/// of results depends only on the order of the batch, and a sample's radiance only on its rays.
 class Integrator {
  public:
   /// The references must outlive this object. `kind` may differ from `settings.integrator` (kLight,
-  /// kEmitters). `light_paths`: with kPath, null if only camera paths find light; with kLight, not
-  /// null.
+  /// kEmitters). `light_paths`: null if only camera paths find light; not null for kLight.
   Integrator(IntegratorKind kind, const PreparedScene& prepared, const Lights& lights,
              const IntegratorSettings& settings, const LightPaths* light_paths = nullptr);
   Integrator(const Integrator&) = delete;

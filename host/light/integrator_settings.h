@@ -29,8 +29,8 @@ struct IntegratorSettings {
   /// exceeds this, the host computes P. 0: always; the largest float: only if the unit has no P.
   float point_error = 0x1p-16f;
 
-  /// Returns max_depth. Defaults: 4 for Whitted, as in his paper; 64 for paths, which Russian
-  /// roulette ends.
+  /// Returns max_depth. Defaults: 4 for kWhitted, as in the paper; 64 for kPath, which has Russian
+  /// roulette.
   [[nodiscard]] int depth() const {
     return max_depth.value_or(integrator == IntegratorKind::kPath ? 64 : 4);
   }

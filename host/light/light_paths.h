@@ -39,8 +39,7 @@ struct FrameView {
 /// only if its first surface is a mirror or glass. Lights are therefore chosen by the flux that
 /// they send to the bounding spheres of the scene's mirrors and glass. Rays from a light at finite
 /// distance are uniform in the solid angles of the spheres. Rays from a distant light are uniform
-/// over the discs that the spheres present to the light. Lengths are in scene units, densities per
-/// square unit of Lights.
+/// over the spheres' discs. Lengths are in scene units, densities per square unit of Lights.
 ///
 /// A path that both camera paths and light paths can find is weighted by multiple importance
 /// sampling with the power heuristic (Veach, "Robust Monte Carlo methods for light transport

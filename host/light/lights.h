@@ -27,10 +27,9 @@ struct CameraLights {
 
 /// Returns lights for a scene that has none: no lights, no background, and no emission except by
 /// textures that hardly light anything. These are a dim sky and a light with soft shadows to the
-/// upper left of the camera, or a light at the camera if the camera is inside the scene. Returns
-/// nullopt for other scenes. With `is_preview`, for a camera that the user did not choose, there is
-/// a second, weaker light from the right, and scenes with only a background or dim emitters get
-/// lights, too.
+/// upper left of the camera, or at the camera if the camera is inside the scene. Returns nullopt
+/// for other scenes. With `is_preview`, for cameras not chosen by the user, there is a second,
+/// weaker light from the right, and scenes with only a background or dim emitters get lights, too.
 [[nodiscard]] std::optional<CameraLights> default_lights(const Scene& scene, const Camera& camera,
                                                          bool is_preview = false);
 

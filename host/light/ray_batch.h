@@ -22,8 +22,7 @@ struct alignas(16) PathState {
   std::uint32_t stream = 0;      ///< stream of random numbers, different for each path
   std::uint32_t index = 0;       ///< index of the path's point in each stream
   /// A code of the mirrors and smooth glass that the path has met: 1 for the first ray; a mirror
-  /// turns code h into 2 h, glass into 2 h + 1. 0: the path met more than four of them, or another
-  /// surface.
+  /// turns code h into 2 h, glass into 2 h + 1. 0: the path met more than four, or another surface.
   std::uint32_t specular_history = 1;
   /// Density of light paths over the density of camera paths, for the path so far; on light paths
   /// the inverse (see LightPaths). 0: only one kind of path finds this light.

@@ -65,8 +65,7 @@ struct Refraction {
 /// roughness, in [kLeast, 1]. Directions are unit vectors away from the surface.
 template <class T>
 struct Ggx {
-  static constexpr float kLeast = 0x1p-10f;  // lower bound of alpha: the narrowest lobe that float
-                                             // cosines resolve
+  static constexpr float kLeast = 0x1p-10f;  // lower bound of alpha, for cosines in float
 
   Triple<T> normal;
   T squared;  ///< alpha^2
@@ -94,8 +93,8 @@ struct Ggx {
     return root(squared + (1.0f - squared) * cosine * cosine);
   }
 
-  /// Returns G2 / (4 a b) for the cosines a, b of both directions. The BRDF is D F G2 / (4 a b),
-  /// with D as in Pair and the Fresnel reflectance F.
+  /// Returns G2 / (4 a b) for the cosines a, b of both directions. The BRDF is this times D times
+  /// the Fresnel reflectance.
   [[nodiscard]] RAYGATE_INLINE T visibility(const T& a, const T& b) const {
     return 0.5f / (a * stretched(b) + b * stretched(a));
   }

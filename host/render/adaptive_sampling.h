@@ -8,9 +8,9 @@
 
 namespace raygate {
 
-/// Errors are estimated per block of 4 x 4 pixels. The estimate of a single pixel may be small by
-/// chance, and the pixel would stop too early. Blocks form a grid from the frame's upper left
-/// corner and are independent.
+/// Errors are estimated per block of 4 x 4 pixels. The estimate of a single pixel can be small by
+/// chance, which would stop it too early. Blocks form a grid from the frame's upper left corner and
+/// are independent.
 inline constexpr int kErrorBlock = 4;
 
 /// Errors are checked at 8, 16, 32, ... samples per pixel. The first check yields no error
@@ -44,11 +44,11 @@ inline constexpr int kFirstErrorCheck = 8, kMinAdaptiveSamples = 16;
 /// the block must have the same number of samples.
 ///
 /// The error is the root mean square, over the block's pixels, of the change in display steps (see
-/// display_steps()) by the last doubling of the samples. With means a and b of the two halves of
-/// the samples, the mean changes from a to (a + b) / 2, by (b - a) / 2. If the halves were
-/// independent, the expected square of this change would be the variance of (a + b) / 2. Halves of
-/// scrambled Sobol points complement each other, so the change overestimates the error slightly.
-/// The 95 % interval is 2.12 errors to each side (Student's t with 16 degrees of freedom).
+/// display_steps()) by the last doubling of the samples. With means a and b of the halves of the
+/// samples, the mean changes from a to (a + b) / 2, by (b - a) / 2. With independent halves, the
+/// expected square of this change would be the variance of (a + b) / 2. Halves of scrambled Sobol
+/// points complement each other, so the change overestimates the error slightly. The 95 % interval
+/// is 2.12 errors to each side (Student's t with 16 degrees of freedom).
 void update_block_error(Film& film, int x, int y, double exposure);
 
 struct PixelSamples {

@@ -13,21 +13,19 @@
 
 namespace raygate {
 
-/// Bit mask of a pixel's specular histories (PathState::specular_history): bit h is history h.
-/// kUnknownHistories before find().
+/// Bit mask of a pixel's PathState::specular_history: bit h is history h. Initially
+/// kUnknownHistories.
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 
 /// Supersamples the outlines of emitters that the camera sees directly or through up to four
 /// mirrors and glass interfaces. Emitters are much brighter than their surroundings, so the pixels
-/// on their outlines are the noisiest. Additional rays collect only the emission. They are cheap:
-/// they sample no lights and no lobes, and cast no shadow rays. The pixels' own samples omit this
-/// emission.
+/// on their outlines are the noisiest. Additional rays collect only emission. They are cheap: they
+/// sample no lights and no lobes. The pixels' own samples omit this emission.
 ///
 /// find() traces a ray through each pixel corner within the radius of a pixel's filter. A history
-/// is in the pixel's mask if rays with this history find different emission. The mask does not
-/// depend on any sample, so the choice adds no bias. Emitters that no ray through a corner meets
-/// are not found.
+/// is in the pixel's mask if rays with this history find different emission. No mask depends on
+/// samples, so there is no bias. Emitters that no ray through a corner meets are missed.
 class EmitterSupersampler {
  public:
   /// The references must outlive this object. `counts_work`: whether tests and doubts are counted.

@@ -176,8 +176,7 @@ class RenderThreads {
   }
 
   /// Returns a copy of the film. It is made tile by tile, so a thread waits for at most one tile.
-  /// With light paths, all tiles are copied under one lock, because the splats must match the
-  /// samples.
+  /// With light paths, all tiles are copied at once: splats must match the samples.
   Film copy_of_film() {
     Film copy;
     copy.width = film_.width;

@@ -15,8 +15,7 @@ struct RenderJob {
   const Camera& camera;
   const RenderSettings& settings;
   std::optional<CameraLights> lights{};  ///< replace the scene's lights
-  /// An unfinished film to resume, or null. It must have sums, and the job's window, settings and
-  /// first sample.
+  /// An unfinished film to resume, or null. It must have sums and this job's window and settings.
   const Film* unfinished = nullptr;
 };
 

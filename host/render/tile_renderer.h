@@ -49,8 +49,7 @@ class SplatLayer {
 /// on the choice of tiles.
 class TileRenderer {
  public:
-  /// `emitter_histories` is indexed by pixel of the film and shared by all tiles. If it is empty,
-  /// emitters are not supersampled.
+  /// `emitter_histories`: by pixel of the film, shared by all tiles; empty: no supersampling.
   TileRenderer(const RenderContext& context, Intersector& intersector, Film& film,
                std::span<HistoryMask> emitter_histories);
 

@@ -23,7 +23,7 @@ def number(value: object, form: str, dash: str = "-") -> str:
 
 
 def cells_of(rows: list[dict], columns: tuple[str | list[str], ...], dash: str, comma: str) -> tuple[list[str], list[list[str]]]:
-    """Returns heads, and the cells of each row. `dash` replaces missing values; `comma` separates thousands.
+    """Returns the heads of the columns, and the cells of each row. `dash` replaces missing values; `comma` separates thousands.
 
     Expressions can use the row's values, `row`, and all names of templates.
     """

@@ -1,4 +1,4 @@
-// Functions of several lanes give the same bits as with one lane, also for special numbers.
+// Functions give the same bits with several lanes as with one lane, also for special numbers.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -23,7 +23,7 @@ RenderOptions = TypedDict("RenderOptions", {"spp": int, "error": float, "depth":
     "integrator": Literal["primary", "whitted", "path"], "filter": Literal["box", "blackman-harris"], "caustics": Literal["auto", "off"],
     "threshold": float, "ambient": float}, total=False)
 
-_DIRECTION = np.array([0.36, 0.48, 0.8], np.float32)  # of rays that count crossings; arbitrary
+_DIRECTION = np.array([0.36, 0.48, 0.8], np.float32)  # of the rays that count crossings; an arbitrary choice
 
 
 class Picture(dict[str, Array]):
@@ -70,13 +70,13 @@ class Scene(_raygate.Scene):
     @in_context
     def __init__(self, file_or_vertices: Any, /, faces: npt.ArrayLike | None = None, *, smooth: float | None = None,
                  degenerate: Degenerate = "leave out", threads: int | None = None) -> None:
-        """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Unlike ./render, a.obj does not read a.json beside it. Or
-        takes vertices, shape (N, 3), float32 or float64, and faces, shape (M, 3), whole numbers: the vertices, from 0, of each.
+        """Reads a file: OBJ, glTF, PLY, STL or a scene file (JSON). Unlike ./render, a.obj does not read a.json beside it. Or takes
+        vertices, shape (N, 3), float32 or float64, and faces, shape (M, 3): whole numbers of each face's vertices, from 0.
 
-        Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them; `degenerate_faces`
-        lists them. A scene needs a face with an area; degenerate="refuse" raises InputError for any without. `smooth`: faces
-        without normals that meet at up to this angle, 0 to 180 degrees, are shaded smoothly. `threads`: 1 to 1024, one per
-        processor by default. Raises InputError, which names the file and line, the vertex or the face that cannot be used."""
+        Triangles have the numbers of the faces. Faces without area keep their numbers, but no ray hits them; `degenerate_faces` lists
+        them. A scene needs a face with an area; degenerate="refuse" raises InputError for any face without area. `smooth`: faces without
+        normals that meet at up to this angle, 0 to 180 degrees, are shaded smoothly. `threads`: 1 to 1024, one per processor by default.
+        Raises InputError that names the file and line, the vertex or the face that cannot be used."""
         options = {"smooth": smooth, "degenerate": degenerate, "threads": threads}
         if faces is None and isinstance(file_or_vertices, (str, bytes, os.PathLike)):
             name = os.fsencode(file_or_vertices)
@@ -164,9 +164,9 @@ class Scene(_raygate.Scene):
         """Returns whether points, of shape (N, 3), or (3,) for one, are inside of closed surfaces: an array of bool, (N,).
         threads: as for trace().
 
-        A point is inside if a ray from it crosses surfaces an odd number of times, counted exactly, for points as trace() rounds
-        origins. So the orientation of faces does not matter, a shell within another one is a cavity, and what two solids share
-        is outside; of faces oriented alike, winding_number(points)[0] != 0 is the union. Answers have no meaning for an open
+        A point is inside if a ray from it crosses surfaces an odd number of times, counted exactly, for points as trace() rounds origins.
+        So the orientation of faces does not matter, a shell within another one is a cavity, and the intersection of two solids is
+        outside. If faces are oriented alike, winding_number(points)[0] != 0 is the union of solids. Answers have no meaning for an open
         surface or a point on a surface. Raises InputError, which names the point, for inf, NaN and coordinates beyond 2^125."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns="ray", threads=threads)
@@ -175,10 +175,10 @@ class Scene(_raygate.Scene):
     @in_context
     def winding_number(self, points: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """Returns how often the surfaces wind around points, of shape (N, 3) or (3,), and bounds of the errors: two arrays of float64,
-        (N,). Around a closed surface of faces oriented alike, also one that crosses itself, the number is whole and exact: 1 inside, 0
-        outside, 2 where two solids overlap. Around an open one it is the solid angle seen from the point over 4 pi. The error is inf if
-        a point is so near a surface that rounding (see origins in trace()) may move it across. The numbers have no meaning for a
-        point on a surface. Raises InputError as inside() does."""
+        (N,). For a closed surface of faces oriented alike, even if it crosses itself, the number is whole and exact: 1 inside, 0 outside,
+        2 where two solids overlap. For an open surface, the number is the surface's solid angle seen from the point over 4 pi. The error
+        is inf if a point is so near a surface that rounding (see origins in trace()) may move the point across. The numbers have no
+        meaning for a point on a surface. Raises InputError as inside() does."""
         points = _arrays.points(points, 125)
         hits = self.trace(points, _DIRECTION, hits="all", columns=["ray", "side"])
         crossings: Array = np.bincount(hits["ray"], hits["side"], minlength=len(points))
@@ -190,9 +190,9 @@ class Scene(_raygate.Scene):
         """Returns the nearest point of the surface to each point: a structured array of N rows with the fields triangle,
         int64, and distance, x, y and z, float64, in the scene's unit of length. points: shape (N, 3), or (3,) for one.
 
-        Distances are computed in float64 and compared as computed: of equal ones the lowest triangle is returned. Errors are
-        absolute, those of rounding coordinates relative to the scene's middle, so small distances have few digits. Raises
-        InputError, which names the point, for inf, NaN and coordinates beyond 2^1000."""
+        Distances are computed in float64; of equal distances, the lowest triangle is returned. Coordinates are rounded relative to the
+        scene's middle, so errors are absolute, and small distances have few digits. Raises InputError, which names the point, for inf,
+        NaN and coordinates beyond 2^1000."""
         points = _arrays.points(points, 1000)
         fields = [("triangle", "<i8"), *((name, "<f8") for name in ("distance", "x", "y", "z"))]
         return self._closest(points).view(np.dtype(fields))
