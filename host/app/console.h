@@ -84,8 +84,7 @@ class Information : public std::runtime_error {
 int run_guarded(const std::function<int()>& program);
 
 /// Body of main(): checks the machine's arithmetic, chooses vector code (RAYGATE_VECTORS) and runs
-/// `program` with the command line's words by run_guarded(). Help shows argv[0]'s path instead of
-/// "./".
+/// `program` with the command line's words by run_guarded(). Help shows argv[0]'s path.
 int run_main(int argc, char** argv,
              const std::function<int(const std::vector<std::string>&)>& program);
 

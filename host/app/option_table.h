@@ -114,9 +114,8 @@ struct CommandLine {
   std::vector<std::string> plain;  ///< words that belong to no option
 };
 
-/// The options of a program, in the order of --help. Values are stored in the rows' targets. The
-/// targets must outlive the table. "{}" in a help text is replaced by the target's value when the
-/// row is added.
+/// The options of a program, in the order of --help. Values are stored in the rows' targets, which
+/// must outlive the table. "{}" in a help text is the target's value at the time of adding.
 class OptionTable {
  public:
   /// Stores a value; returns false if the text does not match the row's `expected`.
@@ -210,8 +209,7 @@ class OptionTable {
 
   /// Throws InputError "--size: found 'big', expected WIDTHxHEIGHT" about the last value given.
   [[noreturn]] void fail_value(const std::string& name, const std::string& expected) const;
-  /// Throws InputError with this message, and with the place of these options' values in scene
-  /// files.
+  /// Throws InputError with this message, and the place of the options' values in a scene file.
   [[noreturn]] void fail(const std::string& message,
                          std::initializer_list<const char*> names) const;
 

@@ -43,8 +43,7 @@ inline double quantile(std::vector<double> values, double part) {
 /// was built. Not thread-safe.
 [[nodiscard]] std::unique_ptr<HitTester> make_rtl_variant_tester(const Variant& variant);
 
-/// Declares a command and its options. Parsing the command's name runs the command, which prints
-/// rows.
+/// Declares a command and its options. Parsing a command's name runs the command; it prints rows.
 using AddCommand = void(CLI::App& lab);
 
 AddCommand add_stress;      ///< correctness of engines and variants in hard cases

@@ -10,8 +10,7 @@ namespace raygate {
 /// The BSDF of hits of one kind: four lobes, each with a colour as its albedo.
 ///
 /// `illum`, the illumination model of an MTL file, selects the lobes. Kd, Ks, Ns, Tf and Ni are
-/// MTL's; d is the opacity (1: opaque). Except for glass, lobes that reflect more than d are scaled
-/// down.
+/// MTL's; d is the opacity (1: opaque). Except for glass, a sum of lobes above d is scaled to d.
 ///
 /// | illum | diffuse | glossy | mirror | transmission |
 /// |---|---|---|---|---|

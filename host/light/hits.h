@@ -183,8 +183,7 @@ struct Hits {
   }
 
   /// Returns the cosine of a unit direction to the shading normal; 0 if light from there is not
-  /// scattered: behind the triangle or, for rough glass, where shading and geometric normal
-  /// disagree.
+  /// scattered: behind the triangle or, in rough glass, where both normals disagree on the side.
   [[nodiscard]] RAYGATE_INLINE T cosine(const Triple<T>& towards) const {
     const T cosine = dot(surface.normal, towards), flat = dot(surface.flat_normal, towards);
     if (!bsdf.has_rough_glass()) return choose(flat > 0.0f, at_least(cosine, 0.0f), T{});

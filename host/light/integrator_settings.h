@@ -29,8 +29,7 @@ struct IntegratorSettings {
   /// exceeds this, the host computes P. 0: always; the largest float: only if the unit has no P.
   float point_error = 0x1p-16f;
 
-  /// Returns max_depth. Defaults: 4 for kWhitted, as in the paper; 64 for kPath, which has Russian
-  /// roulette.
+  /// Returns max_depth. Defaults: 4 for kWhitted, as in the paper; 64 for kPath.
   [[nodiscard]] int depth() const {
     return max_depth.value_or(integrator == IntegratorKind::kPath ? 64 : 4);
   }

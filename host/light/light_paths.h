@@ -32,8 +32,7 @@ struct FrameView {
   glm::dvec2 low{0.0}, high{1.0};  ///< contributions outside of this range are discarded
 };
 
-/// Samples where light paths start, returns the densities of these starts, and connects path ends
-/// to the camera.
+/// Samples and returns densities of starts of light paths, and connects path ends to the camera.
 ///
 /// Here, mirrors and glass are smooth; rough surfaces sample lights instead. A light path counts
 /// only if its first surface is a mirror or glass. Lights are therefore chosen by the flux that

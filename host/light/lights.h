@@ -208,8 +208,7 @@ class Lights {
   }
 
   [[nodiscard]] bool any_power() const { return any_power_; }
-  /// Samples a source for a surface point and its unit normal (see LightTree). Requires
-  /// any_power().
+  /// Samples a source for a surface point and its unit normal (LightTree). Requires any_power().
   template <class T>
   [[nodiscard]] RAYGATE_INLINE LightTree::Sample sample_source(const glm::vec3& point,
                                                                const glm::vec3& normal,

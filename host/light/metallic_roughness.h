@@ -14,8 +14,7 @@ RAYGATE_INLINE Triple<T> clamped(const Triple<T>& x) {
 }
 
 /// The lobes for base colour c, metalness m, transmission t, specular weight w, and r0, the normal
-/// reflectance of the index of refraction times w and the specular colour. s is Schlick's weight of
-/// a cosine:
+/// reflectance of the index of refraction times w and the specular colour. s: Schlick's weight.
 ///
 /// * Facets (Ggx) reflect f0 + (f90 - f0) s with f0 = m c + (1 - m)(1 - t) r0 and
 ///   f90 = 1 - (1 - m) t - (1 - m)(1 - t)(1 - w).

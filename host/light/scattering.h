@@ -28,8 +28,7 @@ RAYGATE_INLINE T fresnel_reflectance(const T& cosine, const T& eta) {
   return choose(squared <= 0.0f, one, 0.5f * (across * across + parallel * parallel));
 }
 
-/// Returns the weight of Schlick's approximation (1994): 0 at normal incidence, 1 at grazing
-/// angles.
+/// Returns the weight of Schlick's approximation (1994), from 0 at normal incidence to 1.
 template <class T>
 RAYGATE_INLINE T schlick_weight(const T& cosine) {
   const T x = 1.0f - at_most(cosine, 1.0f), squared = x * x;

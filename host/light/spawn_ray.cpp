@@ -189,7 +189,7 @@ class NeighborClearanceSearch {
     return best;
   }
 
-  /// Returns the sum of the g_i of "Why c is a bound"; 0 if one is negative, infinity if all reach
+  /// Returns the sum of the g_i ("Why c is a bound"): 0 if one is negative, inf if all reach
   /// reach_.
   [[nodiscard]] RAYGATE_INLINE DoubleQuad apart(const Vectors3& axis,
                                                 const Vectors3 (&y)[3]) const {
@@ -401,9 +401,8 @@ RAYGATE_INLINE Triple<DoubleQuad> widened(const Triple<FloatQuad>& x) {
 /// Returns the distance from non-negative floats to the next ones.
 RAYGATE_INLINE FloatQuad step_of(const FloatQuad& x) { return float_of(bits_in(x) + 1) - x; }
 
-/// Sets `point` to candidate 0 of each hit, on the incident side if `way` is -1 and on the
-/// transmitted side if it is 1. A candidate is valid if `is_clear` is -1 and no overlap is within
-/// `reach`.
+/// Sets `point` to candidate 0 of each hit, on the incident (`way` is -1) or the transmitted side
+/// (1). A candidate is valid if `is_clear` is -1 and no overlap is within `reach`.
 template <Vectors kCode>
 RAYGATE_INLINE void find_candidates(const SpawnHits& hits, const FloatQuad& way, float margin,
                                     Triple<FloatQuad>& point, FloatQuad& reach, IntQuad& is_clear) {

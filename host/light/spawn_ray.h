@@ -143,8 +143,7 @@ struct SpawnOrigin {
 /// within 1.5 u (3 u next to a power of two) of the computed X on each axis (proof in
 /// spawn_ray.cpp). In narrower corners, candidates for O' are farther away, by powers of two times
 /// u, along the normal or the ray. The last is the ray's origin, so a convex room always has an O'
-/// for kIncident. Corners narrower than the precision of float may have no O', and the path ends
-/// there.
+/// for kIncident. Corners narrower than the precision of float may have no O'; paths end there.
 class RaySpawner {
  public:
   /// `clearances` must outlive this object.

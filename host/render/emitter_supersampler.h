@@ -13,8 +13,7 @@
 
 namespace raygate {
 
-/// Bit mask of a pixel's PathState::specular_history: bit h is history h. Initially
-/// kUnknownHistories.
+/// Mask of a pixel's PathState::specular_history: bit h is history h. Initially kUnknownHistories.
 using HistoryMask = std::uint32_t;
 inline constexpr HistoryMask kUnknownHistories = 0xFFFFFFFF;
 

@@ -177,8 +177,7 @@ def is_closed(mesh: Mesh) -> bool:
 
 def light_meshes(mesh: Mesh, everything: numpy.ndarray) -> list[Mesh]:
     """Returns meshes that emit like a light of raygate. Raygate's lights emit from both sides, Mitsuba's from the front. So the returned
-    mesh faces the lit side. If both sides are lit, there are two meshes, moved to each side by 1e-5 of the scene's size. Closed lights
-    stay unchanged."""
+    mesh faces the lit side. If both are lit, there are two meshes, moved by 1e-5 of the scene's size. Closed lights stay unchanged."""
     if is_closed(mesh):
         return [mesh]
     a, b, c = mesh.positions[mesh.faces[0]]

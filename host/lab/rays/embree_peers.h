@@ -215,8 +215,7 @@ class RayStreams : public RayPackets<1, Queries> {
   static constexpr std::size_t kStream = 1024;
 };
 
-/// Returns peers for single rays, packets and, if `Queries` has them, streams, in default and
-/// robust mode.
+/// Returns peers for single rays, packets and, if `Queries` has them, streams, in both modes.
 template <class Queries>
 std::vector<std::unique_ptr<Peer>> make_embree_peers(const std::string& name,
                                                      const EmbreeFunctions& embree,

@@ -72,8 +72,7 @@ ENVIRONMENT.globals |= {"table": table, "each": each, "rate": rate, "scene_name"
 
 
 def wrap(page: str) -> str:
-    """Returns a Markdown page whose paragraphs and items have lines of at most 120 characters, without repeated empty
-    lines."""
+    """Returns a Markdown page whose paragraphs and items have lines of at most 120 characters, without repeated empty lines."""
     def filled(paragraph: re.Match) -> str:
         text = paragraph[0]
         return textwrap.fill(" ".join(text.split()), 120, subsequent_indent="  " if text.startswith("* ") else "",

@@ -194,8 +194,7 @@ From [netlist]({{ run }}/netlist.v), [timing]({{ run }}/timing.txt), [log]({{ ru
 
 @tools.command("error")
 def main() -> int:
-    """Parses the options, proves user-supplied modules and prepares the build. Returns 1 if a proof is refuted, 2 for
-    invalid options."""
+    """Parses the options, proves user-supplied modules and prepares the build. Returns 1 if a proof is refuted, 2 for invalid options."""
     keep_going = "--keep-going" in sys.argv
     words = [word for word in sys.argv[1:] if word != "--keep-going"]
     brought.bring(brought_files(words))

@@ -212,8 +212,7 @@ TEST(Ggx, FacetsAddUpToTheSurface) {
     double sum = 0.0;
     constexpr int kSteps = 20000;
     for (int i = 0; i < kSteps; ++i) {
-      // The steps are even in t, with tan(angle) / alpha = t / (1 - t). They suit lobes of all
-      // widths.
+      // Even steps in t, with tan(angle) / alpha = t / (1 - t), suit lobes of all widths.
       const double t = (i + 0.5) / kSteps, tangent = alpha * t / (1 - t);
       const double angle = std::atan(tangent), slope = alpha / ((1 - t) * (1 - t));
       const Triple<float> normal = at_angles(angle, 1.0);

@@ -119,8 +119,7 @@ TEST_P(ManyLights, ChancesAreOneInAllAndNoLightThatBringsLightHasNone) {
     all += sum;
   }
   EXPECT_GT(bringing, 50);
-  // The sum is below 1 where a cluster, mostly of spots, seems to contribute but no source in it
-  // does.
+  // Below 1 where a cluster (mostly of spots) seems to contribute but none of its sources does.
   EXPECT_GT(all / 100, 0.7);
 }
 

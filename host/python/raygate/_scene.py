@@ -149,12 +149,11 @@ class Scene(_raygate.Scene):
                target: npt.ArrayLike | None = None, up: npt.ArrayLike | None = None, **options: Unpack[RenderOptions]) -> Picture:
         """Returns a Picture: a dictionary of arrays of `height` rows (480), the top one first, and `width` columns (640), pixels.
 
-        "color", shape (height, width, 4): scene-linear R, G, B, A, premultiplied. "normal", "point", "albedo", shape
-        (height, width, 3); "depth", shape (height, width): float32. "triangle" and "object", shape (height, width):
-        uint32, 4294967295 where nothing is hit. eye, target, up: three numbers each, in the file's coordinates; the
-        camera of the scene file by default, or one that sees the whole scene. Other keywords are these options of
-        ./render, with its defaults: spp, error, integrator, fov (degrees), depth, seed, filter, caustics, threshold,
-        ambient, threads. Raises InputError, which names the option, for values that cannot be used."""
+        "color", shape (height, width, 4): scene-linear R, G, B, A, premultiplied. "normal", "point", "albedo", shape (height, width, 3);
+        "depth", shape (height, width): float32. "triangle" and "object", shape (height, width): uint32, 4294967295 where nothing is hit.
+        eye, target, up: three numbers each, in the file's coordinates; the camera of the scene file by default, or one that sees the
+        whole scene. Other keywords are these options of ./render, with its defaults: spp, error, integrator, fov (degrees), depth, seed,
+        filter, caustics, threshold, ambient, threads. Raises InputError, which names the option, for values that cannot be used."""
         channels, film = self._render(_arrays.point("eye", eye), _arrays.point("target", target), _arrays.point("up", up),
                                       _settings(width=width, height=height, **options))
         return Picture(channels, film)

@@ -113,8 +113,7 @@ def morphed(**of_node):
 
 
 def sparse(corners, count=None, values=None, number=0):
-    """Returns the square with a sparse accessor of these corners. One corner alone replaces the square's; with several, the other corners
-    are 0."""
+    """Returns the square with a sparse accessor of these corners. A single one replaces the square's; with several, the others are 0."""
     gltf = Gltf(NORMAL=[(0., 0., 1.)] * 4)
     places = gltf.view([(3., 3., 0.) if k == 2 else CORNERS[k] for k in corners])
     gltf.json["accessors"][number]["sparse"] = {"count": count or len(corners), "indices": {"bufferView": gltf.view(corners, "H"), "componentType": 5123},

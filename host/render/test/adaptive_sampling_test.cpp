@@ -84,8 +84,7 @@ Coverage coverage_of(const Scene& scene, const Camera& camera, int samples, doub
   return coverage;
 }
 
-/// Returns a white floor under `lights`. kAtFloor is so close to the floor that all pixels are
-/// alike.
+/// Returns a white floor under `lights`. kAtFloor is so close to it that pixels hardly differ.
 Scene floor_under(Scene lights) {
   add(lights, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));
   return lights;

@@ -51,8 +51,7 @@ TEST(Caustics, ASlabLetsTheSunThroughAsFresnelSays) {
   }
 }
 
-// A point light is above the slab. Each number of reflections inside gives a ring, with a radius by
-// Snell's law.
+// Above the slab is a point light. Each number of reflections inside gives a ring, by Snell's law.
 TEST(Caustics, ASlabBendsALampsLightAsSnellSays) {
   constexpr double kLamp = 7.0, kIndex = 1.5;
   Scene scene = slab();

@@ -219,8 +219,7 @@ TEST(DirectLight, FacetsReflectALight) {
   }
 }
 
-// Through rough glass, a point light is visible, and an area light is as bright as an integral
-// says.
+// Through rough glass, a point light is visible, and an area light equals an integral.
 TEST(DirectLight, RoughGlassShowsTheLightsBehindIt) {
   for (const float roughness : {0.3f, 0.7f, 1.0f}) {
     Scene scene;
@@ -269,8 +268,7 @@ TEST(DirectLight, DiscLightHasItsFormFactor) {
   EXPECT_NEAR(floor_radiance(scene, kPath, 4096), 2.0 * form, 4e-3 * form);
 }
 
-// A square is between a light and the floor. A pixel is lit exactly if its line to the light misses
-// it.
+// Below a square, a pixel of the floor is lit exactly if its line to the light misses the square.
 TEST(DirectLight, ShadowOfASquareIsWhereItMustBe) {
   Scene scene;
   add(scene, rectangle({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}), matte(glm::vec3(1.0f)));

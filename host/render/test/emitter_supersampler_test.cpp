@@ -1,5 +1,4 @@
-// Outlines of emitters, seen directly, in mirrors or through glass, are exact to a fraction of a
-// sample.
+// Outlines of emitters (direct, in mirrors, through glass) are exact to a fraction of a sample.
 #include "host/render/emitter_supersampler.h"
 
 #include <gtest/gtest.h>

@@ -35,8 +35,7 @@ Scene sphere_in_box() {
   return scene;
 }
 
-// The eye is on a diagonal and the picture is square, so rays run exactly through edges and
-// vertices.
+// The eye is on a diagonal and the picture is square: rays run exactly through edges and vertices.
 const Camera kCamera =
     Camera::look_at({glm::dvec3(2), glm::dvec3(0), glm::dvec3(0, 0, 1), 60.0}, 1.0);
 
@@ -111,8 +110,7 @@ TEST(Renderer, LambertLitFromTheCamera) {
   EXPECT_NEAR(film.normal[0].z, 0.5f, 1e-6f);
 }
 
-// Requests each extra channel alone. It has the right contents, and no other channel is made or
-// changed.
+// Each extra channel alone has the right contents, and no other channel is made or changed.
 TEST(Renderer, ExtraChannelsOnDemand) {
   Scene scene = sphere_in_box();
   scene.origin = glm::dvec3(100.0, 0.0, 0.0);
